@@ -1,0 +1,84 @@
+//! The closed list of ways an input can be wrong.
+
+use std::fmt;
+
+/// A value that the physics cannot work with, or a motion that cannot be continued.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Error {
+    /// The quantity is infinite or not a number.
+    NotFinite {
+        /// Name of the quantity, as the user knows it.
+        quantity: &'static str,
+        /// The offending value.
+        value: f64,
+    },
+    /// The quantity must be greater than `limit`.
+    TooSmall {
+        /// Name of the quantity, as the user knows it.
+        quantity: &'static str,
+        /// The offending value.
+        value: f64,
+        /// What it must exceed.
+        limit: f64,
+    },
+    /// The quantity must not be greater than `limit`.
+    TooLarge {
+        /// Name of the quantity, as the user knows it.
+        quantity: &'static str,
+        /// The offending value.
+        value: f64,
+        /// What it must not exceed.
+        limit: f64,
+    },
+    /// Events pile up at one instant.
+    Chattering {
+        /// The guard that keeps firing.
+        guard: &'static str,
+        /// Model time at which it happens.
+        time: f64,
+    },
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotFinite { quantity, value } => {
+                write!(f, "{quantity} is {value}: a finite number is needed")
+            }
+            Self::TooSmall { quantity, value, limit } => {
+                write!(f, "{quantity} is {value}: it must be greater than {limit}")
+            }
+            Self::TooLarge { quantity, value, limit } => {
+                write!(f, "{quantity} is {value}: it must not exceed {limit}")
+            }
+            Self::Chattering { guard, time } => {
+                write!(f, "the motion switches without end at time {time} (guard: {guard})")
+            }
+        }
+    }
+}
+
+impl std::error::Error for Error {}
+
+/// `value` if it is finite.
+pub(crate) fn finite(quantity: &'static str, value: f64) -> Result<f64, Error> {
+    if value.is_finite() { Ok(value) } else { Err(Error::NotFinite { quantity, value }) }
+}
+
+/// `value` if it is finite and greater than `limit`.
+pub(crate) fn above(quantity: &'static str, value: f64, limit: f64) -> Result<f64, Error> {
+    if finite(quantity, value)? > limit {
+        Ok(value)
+    } else {
+        Err(Error::TooSmall { quantity, value, limit })
+    }
+}
+
+/// `value` if it is finite and at most `limit`.
+pub(crate) fn at_most(quantity: &'static str, value: f64, limit: f64) -> Result<f64, Error> {
+    if finite(quantity, value)? <= limit {
+        Ok(value)
+    } else {
+        Err(Error::TooLarge { quantity, value, limit })
+    }
+}

@@ -1,0 +1,115 @@
+//! The paper's baseline against the exact solution of its equations (published numbers at 1e-12).
+
+use hersey_core::drag::{Closure, Drag, Mode};
+use hersey_core::motion::{CycleKind, Drivetrain, Start, simulate, stick_slip};
+
+fn baseline() -> (Drivetrain, Drag) {
+    let drag = Drag::new(50.0, 1.0, -0.7, -1.2, 0.01, Closure::Retained).unwrap();
+    (Drivetrain::new(1000.0, 1.0).unwrap(), drag)
+}
+
+fn assert_close(found: f64, expected: f64, relative: f64) {
+    assert!((found - expected).abs() <= relative * expected.abs(), "{found} is not {expected}");
+}
+
+#[test]
+fn breakaway_force_of_eq_29() {
+    assert_close(baseline().1.breakaway_force(), 341.400_762_1, 1e-9);
+}
+
+#[test]
+fn baseline_cycle() {
+    let (train, drag) = baseline();
+    let cycle = stick_slip(&train, &drag, 1.0, Start::REST, 1e-9).unwrap();
+    assert_eq!(cycle.kind, CycleKind::StickSlip);
+    assert_close(cycle.frequency, 3.940_313_951_318_513, 1e-8);
+    assert_close(cycle.speed_max, 3.152_923_049_536_937, 1e-8);
+    assert_close(cycle.stick_duration * cycle.frequency, 0.474_319_010_585_888_6, 1e-8);
+    assert_close(cycle.stretch_max, 0.135_348_711_865_784_5, 1e-8);
+    assert_close(cycle.stretch_min, -0.001_354_996_194_663_639_4, 1e-7);
+}
+
+#[test]
+fn first_events_from_rest() {
+    // the first slip swings back harder than A/e, so the belt sticks below the stick speed
+    let (train, drag) = baseline();
+    let run = simulate(&train, &drag, 1.0, Start::REST, 1.1, 100, 1e-11).unwrap();
+    let held: Vec<_> =
+        run.events.iter().filter(|e| e.from == Mode::Stuck || e.to == Mode::Stuck).collect();
+    let expected = [
+        (0.341_400_762_1, 0.341_400_762_1, 0.0),
+        (0.449_312_772_3, -0.161_400_179_1, 0.007_491_701_8),
+        (0.774_549_708_6, 0.161_400_179_1, 0.007_491_701_8),
+        (0.896_892_482_5, -0.018_292_045_4, 0.01),
+        (1.042_232_247_0, 0.125_594_321_6, 0.01),
+    ];
+    assert_eq!(held.len(), expected.len());
+    for (event, (time, stretch, belt_speed)) in held.iter().zip(expected) {
+        assert_close(event.time, time, 1e-8);
+        assert_close(event.stretch, stretch, 1e-8);
+        assert!((event.belt_speed - belt_speed).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn a_small_oscillation_survives_just_below_the_transition() {
+    let (train, drag) = baseline();
+    let start = Start { belt_speed: 0.99, stretch: drag.force(0.99) / 1000.0 * 1.001 };
+    let cycle = stick_slip(&train, &drag, 0.99, start, 1e-9).unwrap();
+    assert_eq!(cycle.kind, CycleKind::Oscillation);
+    assert_close(cycle.speed_min, 0.9122, 1e-4);
+    assert_close(cycle.speed_max, 1.0674, 1e-4);
+}
+
+#[test]
+fn first_stick_from_near_steady_sliding() {
+    let (train, drag) = baseline();
+    for (drive_speed, expected) in [(0.98, 12.285), (0.97, 4.160)] {
+        let start =
+            Start { belt_speed: 1.001 * drive_speed, stretch: drag.force(drive_speed) / 1000.0 };
+        let run = simulate(&train, &drag, drive_speed, start, 20.0, 2, 1e-12).unwrap();
+        let stick = run.events.iter().find(|e| e.to == Mode::Stuck).unwrap();
+        assert!((stick.time - expected).abs() < 2e-3, "{} is not {expected}", stick.time);
+    }
+}
+
+#[test]
+fn the_past_decides_between_the_transition_and_the_fold() {
+    // Fig. 13: at 1.9 v_t the belt still sticks when it comes from below; Fig. 14: not from above
+    let (train, drag) = baseline();
+    let from_below = stick_slip(&train, &drag, 1.9, Start::REST, 1e-9).unwrap();
+    assert_eq!(from_below.kind, CycleKind::StickSlip);
+    let above = Start { belt_speed: 2.5, stretch: drag.force(2.5) / 1000.0 };
+    let from_above = stick_slip(&train, &drag, 1.9, above, 1e-9).unwrap();
+    assert_eq!(from_above.kind, CycleKind::SteadySliding);
+    let beyond_fold = stick_slip(&train, &drag, 2.2, Start::REST, 1e-9).unwrap();
+    assert_eq!(beyond_fold.kind, CycleKind::SteadySliding);
+}
+
+#[test]
+fn steady_sliding_exactly_at_the_transition_speed_stays() {
+    let (train, drag) = baseline();
+    let start = Start { belt_speed: 1.0, stretch: 0.05 };
+    let run = simulate(&train, &drag, 1.0, start, 50.0, 11, 1e-9).unwrap();
+    assert!(run.belt_speed.iter().all(|v| (v - 1.0).abs() < 1e-9));
+}
+
+#[test]
+fn samples_do_not_change_the_motion() {
+    let (train, drag) = baseline();
+    let coarse = simulate(&train, &drag, 1.0, Start::REST, 3.0, 4, 1e-9).unwrap();
+    let fine = simulate(&train, &drag, 1.0, Start::REST, 3.0, 30_001, 1e-9).unwrap();
+    assert_eq!(coarse.events, fine.events);
+    assert_eq!(coarse.belt_speed[2].to_bits(), fine.belt_speed[20_000].to_bits());
+}
+
+#[test]
+fn errors_name_the_quantity() {
+    let stiffness = Drivetrain::new(-1.0, 1.0).unwrap_err();
+    assert_eq!(stiffness.to_string(), "stiffness is -1: it must be greater than 0");
+    let stick = Drag::new(50.0, 1.0, -0.7, -1.2, 2.0, Closure::Retained).unwrap_err();
+    assert_eq!(stick.to_string(), "stick_speed is 2: it must not exceed 1");
+    let (train, drag) = baseline();
+    assert!(simulate(&train, &drag, f64::NAN, Start::REST, 1.0, 10, 1e-9).is_err());
+    assert!(simulate(&train, &drag, 1.0, Start::REST, 1.0, 10, 0.1).is_err());
+}
