@@ -1,0 +1,97 @@
+"""Which column plays which role: found by name and unit, or named by the user."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from hersey.errors import ChannelError, UnitError
+from hersey.log.layout import Column
+from hersey.units import KINDS, Conversion, conversion
+
+#: Roles of a log's columns, in the order in which they are asked for.
+ROLES = ("time", "torque", "speed", "temperature")
+
+_NAMES = {
+    "time": r"t|time.*|.*\btime|zeit|timestamp|elapsed.*|.*seconds",
+    "torque": r".*torque.*|tq.*|.*\btq|.*moment.*|m",
+    "speed": r".*speed.*|.*velocity.*|.*rpm.*|.*omega.*|.*drehzahl.*|n|w|ω",
+    "temperature": r".*temp.*|.*thermistor.*|.*heater.*|.*thermocouple.*|.*film t.*",
+}
+_SETPOINT = re.compile(r"\b(set|cmd|command|commanded|target|demand|reference|soll|nominal)", re.IGNORECASE)
+
+
+@dataclass(frozen=True)
+class ChannelChoice:
+    """What the user says of a role: column name and unit, empty where the file is to tell."""
+
+    name: str = ""
+    unit: str = ""
+
+
+def find_channel(
+    role: str, columns: tuple[Column, ...], choice: ChannelChoice, file: str
+) -> tuple[Column, Conversion] | None:
+    """Return the column of a role and the conversion to SI, or None if no column comes near it.
+
+    Raises
+    ------
+    ChannelError
+        If several columns could play the role, or the named one is not there.
+    UnitError
+        If the column that must be it has no unit, an unknown one, or one of another kind.
+    """
+    if choice.name:
+        return _with_unit(role, _named(role, columns, choice.name, file), choice, file)
+    named = [c for c in columns if re.fullmatch(_NAMES[role], c.name, re.IGNORECASE)]
+    fitting = [c for c in columns if _fits(role, c)]
+    likely = [c for c in named if c in fitting] or fitting if not choice.unit else named
+    if not likely and not named:
+        return None
+    candidates = likely or named
+    measured = [c for c in candidates if not _SETPOINT.search(c.name)] or candidates
+    if len(measured) > 1:
+        listed = " or ".join(f"'{c}'" for c in measured)
+        raise ChannelError(f"{file}: {role} could be {listed}: choose with --{role} '{measured[0].name}'")
+    return _with_unit(role, measured[0], choice, file)
+
+
+def no_channel(role: str, columns: tuple[Column, ...], file: str) -> ChannelError:
+    """Return the error for a role that no column plays."""
+    listed = ", ".join(f"'{c}'" for c in columns)
+    return ChannelError(f"{file}: no {role} column among {listed}: name it with --{role}")
+
+
+def _named(role: str, columns: tuple[Column, ...], name: str, file: str) -> Column:
+    def spellings(c: Column) -> set[str]:
+        return {c.name, str(c), f"{c.name} ({c.unit})"}
+
+    found = [c for c in columns if name in spellings(c)]
+    found = found or [c for c in columns if name.lower() in {s.lower() for s in spellings(c)}]
+    if not found:
+        listed = ", ".join(f"'{c}'" for c in columns)
+        raise ChannelError(f"{file}: --{role}: there is no column '{name}'; the file has {listed}")
+    if len(found) > 1:
+        raise ChannelError(f"{file}: --{role}: {len(found)} columns are called '{name}': rename one")
+    return found[0]
+
+
+def _fits(role: str, column: Column) -> bool:
+    try:
+        return bool(column.unit) and conversion(role, column.unit) is not None
+    except UnitError:
+        return False
+
+
+def _with_unit(role: str, column: Column, choice: ChannelChoice, file: str) -> tuple[Column, Conversion]:
+    unit = choice.unit or column.unit
+    if not unit:
+        example = KINDS[role][1]
+        raise UnitError(
+            f"{file}: column '{column.name}' has no unit: write '{column.name} [{example}]' in the header, "
+            f"add a row of units, or say --{role}-unit '{example}'"
+        )
+    try:
+        return column, conversion(role, unit)
+    except UnitError as error:
+        raise UnitError(f"{file}: column '{column.name}': {error}") from None

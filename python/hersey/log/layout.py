@@ -1,0 +1,181 @@
+"""Where the table starts in a delimited text file, and how its numbers are written."""
+
+from __future__ import annotations
+
+import codecs
+import csv
+import re
+from collections import Counter
+from dataclasses import dataclass
+
+from hersey.errors import UnreadableLogError
+
+#: Bytes looked at; preambles of data loggers are far shorter.
+SNIFFED = 1 << 17
+#: Spellings of a value that was not measured.
+MISSING = ("", "nan", "na", "n/a", "null", "none", "-", "--", "---", "ovl", "#n/a", "inf", "-inf", "+inf")
+_COMMENTS = ("#", "~", "//")
+_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
+_NAME_WITH_UNIT = re.compile(r"(.*?)\s*(?:\[([^\]]*)\]|\(([^)]*)\))\s*")
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of the file: position from 0, name and unit as written (unit empty if none)."""
+
+    index: int
+    name: str
+    unit: str
+
+    def __str__(self) -> str:
+        """Return name and unit as a header would show them."""
+        return f"{self.name} [{self.unit}]" if self.unit else self.name
+
+
+@dataclass(frozen=True)
+class Layout:
+    """How to read the table: ``first_line`` is the line of the first row, counted from 1."""
+
+    encoding: str
+    separator: str
+    decimal_comma: bool
+    comment: str | None
+    columns: tuple[Column, ...]
+    first_line: int
+
+
+def find_layout(start: bytes, name: str) -> Layout:
+    """Return the layout of a text file from its first `SNIFFED` bytes.
+
+    Raises
+    ------
+    UnreadableLogError
+        If the bytes are no text, or hold no header followed by rows of numbers.
+    """
+    encoding = _encoding(start, name)
+    lines = start.decode(encoding, errors="replace").splitlines()
+    if len(start) >= SNIFFED:
+        lines = lines[:-1]
+    comment = next((c for c in _COMMENTS if any(line.startswith(c) for line in lines)), None)
+    numbered = [
+        (number, line)
+        for number, line in enumerate(lines, start=1)
+        if line.strip() and not (comment and line.startswith(comment))
+    ]
+    if not numbered:
+        raise UnreadableLogError(f"{name} is empty: a header and rows of numbers are needed")
+    table = max((_table(numbered, separator) for separator in ";\t,|"), key=lambda t: t.score)
+    if table.score == 0:
+        raise UnreadableLogError(
+            f"{name} has a header but no rows of numbers below it"
+            if _looks_like_header(numbered[-1][1])
+            else f"{name} holds no table of numbers with at least two columns"
+        )
+    if table.first == 0:
+        raise UnreadableLogError(
+            f"{name}, line {numbered[0][0]}: the file starts with numbers; "
+            "put a header line with name and unit of each column above them, such as 'Torque [N*m]'"
+        )
+    columns = _columns(table, [line for _, line in numbered])
+    decimal_comma = table.separator != "," and _uses_decimal_comma(table, numbered)
+    return Layout(encoding, table.separator, decimal_comma, comment, columns, numbered[table.first][0])
+
+
+@dataclass(frozen=True)
+class _Table:
+    separator: str
+    width: int
+    first: int
+    score: int
+
+
+def split(line: str, separator: str) -> list[str]:
+    """Return the cells of a line, without surrounding blanks."""
+    return [cell.strip() for cell in next(csv.reader([line], delimiter=separator), [])]
+
+
+def is_number(cell: str, decimal_comma: bool) -> bool:
+    """Return whether a cell is a finite number as the file writes them."""
+    return _NUMBER.fullmatch(cell.replace(",", ".", 1) if decimal_comma else cell) is not None
+
+
+def is_missing(cell: str) -> bool:
+    """Return whether a cell stands for a value that was not measured."""
+    return cell.lower() in MISSING
+
+
+def _encoding(start: bytes, name: str) -> str:
+    if start.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return "utf-16"
+    if b"\0" in start:
+        raise UnreadableLogError(
+            f"{name} is a binary file, not text; this version reads CSV: export the channels as text"
+        )
+    try:
+        codecs.getincrementaldecoder("utf-8")().decode(start)
+    except UnicodeDecodeError:
+        return "latin-1"
+    return "utf-8-sig"
+
+
+def _table(numbered: list[tuple[int, str]], separator: str) -> _Table:
+    """The longest reading of the lines as rows of numbers with this separator."""
+    cells = [split(line, separator) for _, line in numbered]
+    widths = Counter(len(row) for row in cells if len(row) > 1)
+    best = _Table(separator, 0, 0, 0)
+    for width in widths:
+        rows = [len(row) == width and _mostly_numbers(row) for row in cells]
+        count = sum(rows)
+        if count and count * width > best.score:
+            best = _Table(separator, width, _first_of_block(rows), count * width)
+    return best
+
+
+def _mostly_numbers(row: list[str]) -> bool:
+    filled = [cell for cell in row if not is_missing(cell)]
+    numbers = sum(is_number(cell, True) for cell in filled)
+    return (numbers > 0 and 2 * numbers > len(filled)) or (not filled and any(row))
+
+
+def _first_of_block(rows: list[bool]) -> int:
+    """Index of the first row of the table: preambles too have a line of numbers here and there."""
+    first = next(i for i, row in enumerate(rows) if row)
+    while (gap := next((i for i in range(first, min(first + 3, len(rows))) if not rows[i]), None)) is not None:
+        later = next((i for i in range(gap, len(rows)) if rows[i]), None)
+        if later is None or sum(rows[later:]) < sum(rows[first:gap]):
+            break
+        first = later
+    return first
+
+
+def _looks_like_header(line: str) -> bool:
+    return any(len(split(line, separator)) > 1 for separator in ";\t,|")
+
+
+def _columns(table: _Table, lines: list[str]) -> tuple[Column, ...]:
+    above = [split(line, table.separator) for line in lines[: table.first]]
+    header = above[-1]
+    units: list[str] = []
+    if len(above) > 1 and len(above[-2]) == len(header) and _is_units_row(header, above[-2]):
+        units, header = header, above[-2]
+    columns = []
+    for index in range(table.width):
+        name = header[index] if index < len(header) else ""
+        unit = units[index].strip("[]() ") if index < len(units) else ""
+        match = _NAME_WITH_UNIT.fullmatch(name)
+        if match and not unit:
+            name, unit = match[1], match[2] if match[2] is not None else match[3]
+        columns.append(Column(index, name, unit.strip()))
+    return tuple(columns)
+
+
+def _is_units_row(row: list[str], names: list[str]) -> bool:
+    """Units are short, and the names above them carry none of their own."""
+    return all(len(cell) <= 16 for cell in row) and not any(_NAME_WITH_UNIT.fullmatch(n) for n in names)
+
+
+def _uses_decimal_comma(table: _Table, numbered: list[tuple[int, str]]) -> bool:
+    cells = [c for _, line in numbered[table.first :] for c in split(line, table.separator)]
+    commas = sum("," in cell and is_number(cell, True) for cell in cells)
+    points = sum("." in cell and is_number(cell, False) for cell in cells)
+    return commas > points

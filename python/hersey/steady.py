@@ -1,0 +1,377 @@
+"""Dwells: stretches of constant speed, reduced to one steady point each, with honest standard errors.
+
+The settling at the start of a dwell is cut by the marginal standard error rule (White, Simulation 69
+(1997) 323): drop as many samples as makes the standard error of the rest least. Standard errors allow for
+autocorrelation through the integrated autocorrelation time with Sokal's window.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+import polars as pl
+
+from hersey.errors import InsufficientDataError, ParameterError
+from hersey.log.torque_log import FloatArray, Run, TorqueLog
+from hersey.units import convert
+
+#: Length of the blocks in which speed is judged, s, and how many a run may have at most.
+BLOCK_DURATION, MAX_BLOCKS = 0.2, 200_000
+#: Speed may stray from the mean of a dwell by this share, or by this many standard deviations of a block.
+SPEED_TOLERANCE, SPEED_NOISE = 0.05, 4.0
+#: An excursion of the speed shorter than this, s, does not end a dwell.
+MAX_EXCURSION = 1.0
+#: Below this share of the fastest speed of the run the drive stands.
+STANDING = 0.003
+#: Fewest samples of a dwell.
+MIN_SAMPLES = 20
+#: Largest drifts within a dwell: of temperature in K; of speed and torque as a share; of torque also in
+#: standard deviations of what fluctuates about the drift (a turning shaft makes slow waves of its own).
+MAX_TEMPERATURE_DRIFT, MAX_SPEED_DRIFT, MAX_TORQUE_DRIFT, MAX_DRIFT_TO_NOISE = 2.0, 0.02, 0.03, 2.0
+#: Largest standard deviation within a dwell as a share of the mean, of torque and of speed.
+MAX_TORQUE_SWING, MAX_SPEED_SWING = 0.35, 0.2
+#: Drift counts as real beyond this many standard errors.
+SIGNIFICANT = 3.0
+
+
+@dataclass(frozen=True)
+class Rejection:
+    """A stretch of the log that is not used, and why; times in s, first row from 0 within the run."""
+
+    run: int
+    start: float
+    end: float
+    rows: int
+    reason: str
+
+
+@dataclass(frozen=True)
+class SteadyPoints:
+    """One row per dwell.
+
+    Attributes
+    ----------
+    table
+        Columns ``run`` (index), ``start``, ``end`` (s), ``speed``, ``speed_error`` (rad/s), ``torque``,
+        ``torque_error`` (N m), ``temperature``, ``temperature_error`` (K, null if not recorded), ``rows``,
+        ``effective_rows`` (independent samples), ``settling_rows`` (cut at the ends), ``approach``
+        (``from below``, ``from above`` or ``start``). Errors are standard errors of the mean. Speed and
+        torque carry the sign of the rotation.
+    rejected
+        Every other stretch, with the reason. Rows of the table and of this list add up to the log's.
+    tare
+        Torque subtracted from every sample, N m.
+    standing_torque
+        Mean torque while the drive stood, N m, or None if it never did.
+    log
+        What was reduced.
+    """
+
+    table: pl.DataFrame
+    rejected: tuple[Rejection, ...]
+    tare: float
+    standing_torque: float | None
+    log: TorqueLog
+
+    def __len__(self) -> int:
+        """Return how many steady points there are."""
+        return self.table.height
+
+    def column(self, name: str) -> FloatArray:
+        """Return a column as an array of shape (points,)."""
+        return self.table[name].to_numpy()
+
+
+def steady_points(
+    log: TorqueLog, *, min_dwell: float = 2.0, tare: str = "none", rotation: str = "both"
+) -> SteadyPoints:
+    """Find the dwells of a log and reduce each to a steady point.
+
+    Parameters
+    ----------
+    min_dwell
+        Shortest dwell, s, after its settling is cut.
+    tare
+        ``none``, or ``standing`` to subtract the mean torque of the stretches where the drive stands.
+    rotation
+        ``both``, or only ``forward`` (positive speed) or ``reverse`` dwells.
+
+    Raises
+    ------
+    InsufficientDataError
+        If no dwell is found, or there is no standing stretch to tare with.
+    """
+    if tare not in ("none", "standing"):
+        raise ParameterError(f"tare '{tare}' is not known: none or standing")
+    if rotation not in ("both", "forward", "reverse"):
+        raise ParameterError(f"rotation '{rotation}' is not known: both, forward or reverse")
+    if log.rows < MIN_SAMPLES:
+        raise InsufficientDataError(f"the log has {log.rows} rows; one dwell alone needs {MIN_SAMPLES}")
+    segments = [_segments(run) for run in log.runs]
+    standing = _standing_torque(log, segments)
+    if tare == "standing" and standing is None:
+        raise InsufficientDataError("the drive never stands still for 2 s: there is no torque to tare with")
+    offset = standing if tare == "standing" and standing is not None else 0.0
+    rows: list[dict[str, object]] = []
+    rejected: list[Rejection] = []
+    for index, (run, found) in enumerate(zip(log.runs, segments, strict=True)):
+        previous: float | None = None
+        for segment in found:
+            result = _reduce(run, index, segment, previous, offset, min_dwell, rotation)
+            if isinstance(result, Rejection):
+                rejected.append(result)
+            else:
+                rows.append(result)
+            if segment.steady:
+                previous = abs(segment.speed)
+    if not rows:
+        raise InsufficientDataError(_nothing_steady(rejected))
+    table = pl.DataFrame(rows, schema_overrides={"temperature": pl.Float64, "temperature_error": pl.Float64})
+    return SteadyPoints(table, tuple(rejected), offset, standing, log)
+
+
+@dataclass(frozen=True)
+class _Segment:
+    """Rows [start, end) of a run; ``steady`` if the speed holds, ``speed`` its mean."""
+
+    start: int
+    end: int
+    speed: float
+    steady: bool
+    standing: bool
+
+
+def _segments(run: Run) -> list[_Segment]:
+    """Cut a run where the speed changes, judged on block means."""
+    rows = run.time.size
+    duration = float(run.time[-1] - run.time[0])
+    per_second = rows / duration if duration > 0 else rows
+    block = max(1, round(per_second * BLOCK_DURATION), -(-rows // MAX_BLOCKS))
+    starts = np.arange(0, rows, block)
+    counts = np.diff(starts, append=rows)
+    means = np.add.reduceat(run.speed, starts) / counts
+    # three quarters of the changes between blocks are noise: 1.627 turns that quantile into a deviation
+    noise = float(np.quantile(np.abs(np.diff(means)), 0.75)) / 1.627 if means.size > 1 else 0.0
+    still = STANDING * float(np.max(np.abs(means)))
+    cuts = [0]
+    total, count = means[0], 1
+    for i in range(1, means.size):
+        mean = total / count
+        if abs(means[i] - mean) <= max(SPEED_TOLERANCE * abs(mean), SPEED_NOISE * noise, still):
+            total, count = total + means[i], count + 1
+        else:
+            cuts.append(i)
+            total, count = means[i], 1
+    segments = []
+    for first, last in zip(cuts, [*cuts[1:], means.size], strict=True):
+        start, end = int(starts[first]), int(starts[last - 1] + counts[last - 1])
+        speed = float(np.mean(run.speed[start:end]))
+        long = run.time[end - 1] - run.time[start] >= 5 * BLOCK_DURATION and end - start >= MIN_SAMPLES
+        segments.append(_Segment(start, end, speed, bool(long), abs(speed) <= still))
+    return _joined(run, segments)
+
+
+def _joined(run: Run, segments: list[_Segment]) -> list[_Segment]:
+    """Join pieces of changing speed into one stretch, and dwells that only an excursion parts."""
+    joined: list[_Segment] = []
+    for segment in segments:
+        joined.append(segment)
+        while len(joined) > 1 and not joined[-1].steady and not joined[-2].steady:
+            last = joined.pop()
+            joined[-1] = replace(joined[-1], end=last.end)
+        if not segment.steady:
+            continue
+        for apart in (2, 3):
+            if len(joined) >= apart and _same_dwell(run, joined[-apart], segment):
+                first = joined[-apart]
+                speed = float(np.mean(run.speed[first.start : segment.end]))
+                joined[-apart:] = [replace(first, end=segment.end, speed=speed)]
+                break
+    return joined
+
+
+def _same_dwell(run: Run, before: _Segment, after: _Segment) -> bool:
+    apart = run.time[after.start] - run.time[before.end - 1]
+    strayed = abs(after.speed - before.speed)
+    near = strayed <= SPEED_TOLERANCE * max(abs(before.speed), abs(after.speed))
+    return before.steady and apart <= MAX_EXCURSION and (near or (before.standing and after.standing))
+
+
+def _standing_torque(log: TorqueLog, segments: list[list[_Segment]]) -> float | None:
+    sums, rows = 0.0, 0
+    for run, found in zip(log.runs, segments, strict=True):
+        for s in found:
+            if s.standing and s.steady:
+                trim = (s.end - s.start) // 10
+                kept = run.torque[s.start + trim : s.end - trim]
+                sums, rows = sums + float(np.sum(kept)), rows + kept.size
+    return sums / rows if rows else None
+
+
+def _reduce(
+    run: Run,
+    index: int,
+    segment: _Segment,
+    previous: float | None,
+    tare: float,
+    min_dwell: float,
+    rotation: str,
+) -> dict[str, object] | Rejection:
+    def reject(reason: str) -> Rejection:
+        start, end = float(run.time[segment.start]), float(run.time[segment.end - 1])
+        return Rejection(index, start, end, segment.end - segment.start, reason)
+
+    if not segment.steady:
+        return reject("speed changing")
+    if segment.standing:
+        return reject("drive standing")
+    if rotation != "both" and (segment.speed > 0) != (rotation == "forward"):
+        return reject(f"rotation not {rotation}, as asked")
+    start, end = _settled(run, segment)
+    if run.time[end - 1] - run.time[start] < min_dwell or end - start < MIN_SAMPLES:
+        lasted = run.time[segment.end - 1] - run.time[segment.start]
+        return reject(f"dwell too short: {lasted:.1f} s, of which {min_dwell:g} s must be settled")
+    speed, torque = run.speed[start:end], run.torque[start:end] - tare
+    temperature = None if run.temperature is None else run.temperature[start:end]
+    reason = _unsteady(run.time[start:end], speed, torque, temperature)
+    if reason:
+        return reject(reason)
+    torque_mean, torque_error, independent = mean_and_error(torque)
+    # a drift small enough to be kept is still one: its own deviation about the mean is added
+    torque_error = float(np.hypot(torque_error, _drift(run.time[start:end], torque)[0] / np.sqrt(12.0)))
+    speed_mean, speed_error, _ = mean_and_error(speed)
+    if torque_mean * speed_mean <= 0:
+        return reject("torque and speed have opposite signs: check the sign of the torque channel")
+    hot = mean_and_error(temperature) if temperature is not None else (None, None)
+    approach = "start"
+    if previous is not None:
+        approach = "from below" if previous < abs(speed_mean) else "from above"
+    return {
+        "run": index,
+        "start": float(run.time[start]),
+        "end": float(run.time[end - 1]),
+        "speed": speed_mean,
+        "speed_error": speed_error,
+        "torque": torque_mean,
+        "torque_error": torque_error,
+        "temperature": hot[0],
+        "temperature_error": hot[1],
+        "rows": end - start,
+        "effective_rows": independent,
+        "settling_rows": (segment.end - segment.start) - (end - start),
+        "approach": approach,
+    }
+
+
+def _settled(run: Run, segment: _Segment) -> tuple[int, int]:
+    """Rows of the dwell without its edges and its settling."""
+    rows = segment.end - segment.start
+    size = max(1, rows // 200)
+    count = rows // size
+    blocks = slice(segment.start, segment.start + count * size)
+    # the first and last block of a dwell may hold the end of a ramp
+    edge = -(-round(BLOCK_DURATION / run.sampling_interval) // size) if count > 20 else 0
+    cut = edge
+    for channel in (run.torque, run.temperature):
+        if channel is not None:
+            means = channel[blocks].reshape(count, size).mean(axis=1)[edge : count - edge]
+            cut = max(cut, edge + _settling_blocks(means))
+    return segment.start + cut * size, segment.end - edge * size
+
+
+def _settling_blocks(means: FloatArray) -> int:
+    """Blocks to drop by the marginal standard error rule, at most half; none if that gains little."""
+    count = means.size
+    if count < 8:
+        return 0
+    left = np.arange(count, 0, -1)
+    centred = means - means.mean()
+    total = np.cumsum(centred[::-1])[::-1] / left
+    square = np.cumsum(centred[::-1] ** 2)[::-1] / left
+    error = np.sqrt(np.maximum(square - total**2, 0.0) / left)[: count // 2]
+    best = int(np.argmin(error))
+    return best if error[best] < 0.8 * error[0] else 0
+
+
+def _unsteady(
+    time: FloatArray, speed: FloatArray, torque: FloatArray, temperature: FloatArray | None
+) -> str | None:
+    """Why a dwell is not steady, or None."""
+    if np.std(speed) > MAX_SPEED_SWING * abs(np.mean(speed)):
+        return f"speed not held: it varies by {np.std(speed) / abs(np.mean(speed)):.0%} (standard deviation)"
+    swing = float(np.std(torque)) / abs(float(np.mean(torque)))
+    if swing > MAX_TORQUE_SWING:
+        return f"torque swings by {swing:.0%} (standard deviation): stick-slip or chatter, not steady sliding"
+    drift, _ = _drift(time, speed)
+    if abs(drift) > MAX_SPEED_DRIFT * abs(float(np.mean(speed))):
+        return f"speed drifts by {drift / float(np.mean(speed)):+.1%} over the dwell"
+    drift, _ = _drift(time, temperature) if temperature is not None else (0.0, 0.0)
+    if abs(drift) > MAX_TEMPERATURE_DRIFT:
+        return f"temperature drifts by {drift:+.1f} K over the dwell"
+    drift, noise = _drift(time, torque)
+    if abs(drift) > max(MAX_TORQUE_DRIFT * abs(float(np.mean(torque))), MAX_DRIFT_TO_NOISE * noise):
+        return f"torque drifts by {drift / float(np.mean(torque)):+.1%} over the dwell"
+    return None
+
+
+def _drift(time: FloatArray, values: FloatArray) -> tuple[float, float]:
+    """Change along a straight line over the dwell, 0 if within chance, and the deviation about the line."""
+    t = time - time.mean()
+    spread = float(t @ t)
+    if spread == 0.0:
+        return 0.0, 0.0
+    slope = float(t @ values) / spread
+    residual = values - values.mean() - slope * t
+    error = mean_and_error(residual)[1] * np.sqrt(12.0)  # of a line's rise, uniform times
+    rise = slope * float(time[-1] - time[0])
+    return (rise if abs(rise) > SIGNIFICANT * error else 0.0), float(np.std(residual))
+
+
+def mean_and_error(values: FloatArray) -> tuple[float, float, float]:
+    """Return mean, standard error of the mean and number of independent samples of a stationary series.
+
+    The integrated autocorrelation time is summed up to the first lag of five times itself (Sokal).
+    """
+    size = max(1, values.size // 65_536)
+    series = values[: values.size // size * size].reshape(-1, size).mean(axis=1)
+    count = series.size
+    centred = series - series.mean()
+    variance = float(centred @ centred) / max(count - 1, 1)
+    if variance <= 1e-30 * float(np.mean(values)) ** 2:
+        return float(np.mean(values)), 0.0, float(count)
+    length = 1 << (2 * count - 1).bit_length()
+    spectrum = np.fft.rfft(centred, length)
+    correlation = np.fft.irfft(np.abs(spectrum) ** 2, length)[:count]
+    times = 2.0 * np.cumsum(correlation / correlation[0]) - 1.0
+    window = int(np.argmax(np.arange(count) >= 5.0 * np.maximum(times, 1.0)))
+    time = min(max(1.0, float(times[window])), count / 2)
+    return float(np.mean(values)), float(np.sqrt(variance * time / count)), count / time
+
+
+def _nothing_steady(rejected: list[Rejection]) -> str:
+    reasons: dict[str, int] = {}
+    for r in rejected:
+        kind = r.reason.split(":")[0].split(" by ")[0]
+        reasons[kind] = reasons.get(kind, 0) + 1
+    listed = ", ".join(f"{count} x {reason}" for reason, count in reasons.items())
+    return f"no steady stretch was found ({listed}); a dwell holds one speed for at least 2 s"
+
+
+def groups_of_temperature(temperature: FloatArray, width: float = 6.0) -> Iterator[FloatArray]:
+    """Yield the indices of points that share a temperature, coldest first.
+
+    Neighbours in sorted order belong together while the whole group spans no more than ``width`` K.
+    """
+    order = np.argsort(temperature, kind="stable")
+    start = 0
+    for i in range(1, order.size + 1):
+        if i == order.size or temperature[order[i]] - temperature[order[start]] > width:
+            yield order[start:i]
+            start = i
+
+
+def rpm(speed: float) -> float:
+    """Return a speed in rad/s as revolutions per minute, for people."""
+    return convert(speed, "rad/s", "rpm")
