@@ -1,1 +1,48 @@
-"""x"""
+"""From a torque log to the lubrication state of a sliding drive.
+
+==============  ==============================================================================
+log             reading files into a `TorqueLog`
+steady          dwells, reduced to steady points with honest errors
+surface         the fitted damping surface B = a T^b w^c
+regime          what the exponents say about lubrication
+motion          stick-slip motion of the belt
+fuser           what the log cannot tell: drivetrain and geometry
+analysis        the analysis document
+charts          one chart per result
+report          the page that shows both
+testbench       the virtual test stand
+units, errors   the one unit registry; the closed table of errors
+cli             the commands
+==============  ==============================================================================
+
+SI inside, always; units are read and written at the door. Every interval is at 95 %. Nothing flows
+backwards: a log knows no fit, a fit knows no motion.
+"""
+
+from hersey._core import VERSION as __version__
+from hersey.errors import HerseyError
+from hersey.log import TorqueLog, read
+from hersey.motion import Drag, Drivetrain, StickSlipCycle, Trajectory, simulate, stick_slip
+from hersey.regime import Regime, regime
+from hersey.steady import SteadyPoints
+from hersey.surface import DampingSurface, Estimate, Transition, fit
+
+__all__ = [
+    "DampingSurface",
+    "Drag",
+    "Drivetrain",
+    "Estimate",
+    "HerseyError",
+    "Regime",
+    "SteadyPoints",
+    "StickSlipCycle",
+    "TorqueLog",
+    "Trajectory",
+    "Transition",
+    "__version__",
+    "fit",
+    "read",
+    "regime",
+    "simulate",
+    "stick_slip",
+]

@@ -32,6 +32,8 @@ MIN_SAMPLES = 20
 MAX_TEMPERATURE_DRIFT, MAX_SPEED_DRIFT, MAX_TORQUE_DRIFT, MAX_DRIFT_TO_NOISE = 2.0, 0.02, 0.03, 2.0
 #: Largest standard deviation within a dwell as a share of the mean, of torque and of speed.
 MAX_TORQUE_SWING, MAX_SPEED_SWING = 0.35, 0.2
+#: Stick-slip: torque swings by more than this, and its changes are this skewed (slow rises, sudden drops).
+STICK_SLIP_SWING, STICK_SLIP_SKEWNESS = 0.05, -3.0
 #: Drift counts as real beyond this many standard errors.
 SIGNIFICANT = 3.0
 
@@ -302,8 +304,10 @@ def _unsteady(
     if np.std(speed) > MAX_SPEED_SWING * abs(np.mean(speed)):
         return f"speed not held: it varies by {np.std(speed) / abs(np.mean(speed)):.0%} (standard deviation)"
     swing = float(np.std(torque)) / abs(float(np.mean(torque)))
+    if swing > STICK_SLIP_SWING and _skewness_of_changes(torque) < STICK_SLIP_SKEWNESS:
+        return f"stick-slip: torque swings by {swing:.0%} (standard deviation), rising slowly and dropping at once"
     if swing > MAX_TORQUE_SWING:
-        return f"torque swings by {swing:.0%} (standard deviation): stick-slip or chatter, not steady sliding"
+        return f"torque swings by {swing:.0%} (standard deviation): no steady sliding"
     drift, _ = _drift(time, speed)
     if abs(drift) > MAX_SPEED_DRIFT * abs(float(np.mean(speed))):
         return f"speed drifts by {drift / float(np.mean(speed)):+.1%} over the dwell"
@@ -314,6 +318,19 @@ def _unsteady(
     if abs(drift) > max(MAX_TORQUE_DRIFT * abs(float(np.mean(torque))), MAX_DRIFT_TO_NOISE * noise):
         return f"torque drifts by {drift / float(np.mean(torque)):+.1%} over the dwell"
     return None
+
+
+def _skewness_of_changes(torque: FloatArray) -> float:
+    """Least skewness of the changes of torque (taken positive) from block to block, over block lengths."""
+    load = torque * np.sign(torque.mean())
+    least = 0.0
+    for blocks in (100, 400, 1600):
+        size = max(1, load.size // blocks)
+        changes = np.diff(load[: load.size // size * size].reshape(-1, size).mean(axis=1))
+        deviation = float(np.std(changes))
+        if deviation > 0:
+            least = min(least, float(np.mean((changes - changes.mean()) ** 3)) / deviation**3)
+    return least
 
 
 def _drift(time: FloatArray, values: FloatArray) -> tuple[float, float]:

@@ -83,8 +83,8 @@ class Stand:
     dropped: float = 0.002  #: share of samples lost
     stick_slip: bool = True  #: a stretch at the slowest speed and highest temperature
     roll_radius: float = 0.015  #: m
-    stiffness: float = 175.0  #: N/m, of the drivetrain at the belt
-    mass: float = 0.18  #: kg
+    stiffness: float = 11_000.0  #: N/m, of the drivetrain at the belt
+    mass: float = 1.0  #: kg
     stick_speed: float = 0.0003  #: m/s
 
 

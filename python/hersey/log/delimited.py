@@ -53,7 +53,7 @@ def read_delimited(
         raise MissingFileError(f"{path} cannot be opened: no permission to read it") from None
     run = Run(name, arrays["time"], arrays["torque"], arrays["speed"], arrays.get("temperature"))
     channels = tuple(Channel(role, column.name, line.unit) for role, (column, line) in found.items())
-    return run, LogFile(name, digest, size, run.time.size, missing, channels)
+    return run, LogFile(name, digest, size, run.time.size, missing, channels, layout.comments)
 
 
 def _channels(

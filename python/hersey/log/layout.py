@@ -42,6 +42,7 @@ class Layout:
     comment: str | None
     columns: tuple[Column, ...]
     first_line: int
+    comments: tuple[str, ...]
 
 
 def find_layout(start: bytes, name: str) -> Layout:
@@ -78,7 +79,10 @@ def find_layout(start: bytes, name: str) -> Layout:
         )
     columns = _columns(table, [line for _, line in numbered])
     decimal_comma = table.separator != "," and _uses_decimal_comma(table, numbered)
-    return Layout(encoding, table.separator, decimal_comma, comment, columns, numbered[table.first][0])
+    first_line = numbered[table.first][0]
+    above = lines[: first_line - 1]
+    comments = tuple(li.strip("# ~/")[:200] for li in above if comment and li.startswith(comment))[:5]
+    return Layout(encoding, table.separator, decimal_comma, comment, columns, first_line, comments)
 
 
 @dataclass(frozen=True)

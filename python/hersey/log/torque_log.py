@@ -33,6 +33,7 @@ class LogFile:
     rows: int
     missing_rows: int
     channels: tuple[Channel, ...]
+    comments: tuple[str, ...]  #: comment lines above the header
 
 
 @dataclass(frozen=True)
