@@ -5,6 +5,7 @@ It is the contract between the Python package and the page: charts and text are 
 
 from __future__ import annotations
 
+import itertools
 import warnings
 from collections.abc import Sequence
 from typing import Literal
@@ -14,18 +15,18 @@ from pydantic import BaseModel, ConfigDict, Field
 from tsdownsample import MinMaxLTTBDownsampler
 
 from hersey import _core
-from hersey.errors import ParameterError
+from hersey.errors import ExtrapolationWarning, ParameterError
 from hersey.fuser import Fuser
 from hersey.log import TorqueLog
 from hersey.log.torque_log import FloatArray, Run
 from hersey.motion import Drag, Drivetrain, simulate, stick_slip
 from hersey.regime import Regime, celsius, regime
-from hersey.steady import SteadyPoints, rpm
+from hersey.steady import SteadyPoints, groups_of_temperature, rpm
 from hersey.surface import DampingSurface, Estimate, fit
 
-SCHEMA_VERSION = "1"
+SCHEMA_VERSION: Literal["1"] = "1"
 #: Samples kept of each channel for display; extremes survive the thinning.
-DISPLAYED_SAMPLES = 3000
+DISPLAYED_SAMPLES = 2000
 #: A difference between directions counts as one beyond this share and this many standard errors.
 NOTABLE_DIFFERENCE, SIGNIFICANT = 0.02, 3.0
 #: Drive speed of the simulation of the user's machine, as a share of its transition speed.
@@ -82,6 +83,7 @@ class Point(Part):
     torque_error: float
     temperature: float | None
     temperature_error: float | None
+    group_temperature: float | None = Field(description="K, mean of the dwells at about this temperature")
     rows: int
     effective_rows: float
     settling_rows: int
@@ -123,6 +125,31 @@ class TransitionPart(Part):
     evidence: float = Field(description="gain in AICc over a single power law")
 
 
+class Curve(Part):
+    """The fitted law at one temperature (K; null if none): speeds in rad/s, damping in N m s/rad."""
+
+    temperature: float | None
+    speed: list[float]
+    damping: list[float]
+
+
+class Cell(Part):
+    """The fitted law at the middle of a cell of speed (rad/s) and temperature (K)."""
+
+    speed_low: float
+    speed_high: float
+    temperature_low: float | None
+    temperature_high: float | None
+    damping: float
+
+
+class TransitionAt(Part):
+    """Transition speed (rad/s) at a temperature (K)."""
+
+    temperature: float
+    speed: float
+
+
 class FitPart(Part):
     """B = a T^b w^c: B in N m s/rad, w in rad/s, T in the scale named."""
 
@@ -147,6 +174,9 @@ class FitPart(Part):
     speed_range: tuple[float, float]
     temperature_range: tuple[float, float] | None = Field(description="K")
     summary: str
+    curves: list[Curve]
+    cells: list[Cell]
+    transition_curve: list[TransitionAt]
 
 
 class HypothesisPart(Part):
@@ -200,6 +230,7 @@ class SimulationPart(Part):
 
     title: str
     source: Literal["paper", "fit"]
+    units: str
     speed_unit: str
     force_unit: str
     parameters: dict[str, float | str]
@@ -256,7 +287,7 @@ def analyse(
         files=[_file(log, i) for i in range(len(log.files))],
         quality=_quality(log, points),
         points=_points(points, surface),
-        fit=_fit_part(surface),
+        fit=_fit_part(points, surface),
         regime=_regime_part(found),
         simulation=_simulation(surface, fuser),
         timeline=_timeline(log),
@@ -305,14 +336,83 @@ def _quality(log: TorqueLog, points: SteadyPoints) -> Quality:
 
 def _points(points: SteadyPoints, surface: DampingSurface) -> list[Point]:
     out = []
-    for row, residual in zip(points.table.iter_rows(named=True), surface.residuals, strict=True):
+    levels = _group_temperatures(points)
+    rows = zip(points.table.iter_rows(named=True), surface.residuals, levels, strict=True)
+    for row, residual, level in rows:
         damping = row["torque"] / row["speed"]
         fitted = damping * float(np.exp(-residual))
-        out.append(Point(**row, damping=damping, damping_fitted=fitted, residual=float(residual)))
+        out.append(
+            Point(
+                **row,
+                group_temperature=level,
+                damping=damping,
+                damping_fitted=fitted,
+                residual=float(residual),
+            )
+        )
     return out
 
 
-def _fit_part(s: DampingSurface) -> FitPart:
+def _group_temperatures(points: SteadyPoints) -> list[float | None]:
+    if not points.log.has_temperature:
+        return [None] * len(points)
+    kelvin = points.column("temperature")
+    levels = np.empty_like(kelvin)
+    for group in groups_of_temperature(kelvin):
+        levels[group] = np.mean(kelvin[group])
+    return [float(level) for level in levels]
+
+
+def _curves(points: SteadyPoints, s: DampingSurface) -> list[Curve]:
+    out = []
+    speed, levels = np.abs(points.column("speed")), _group_temperatures(points)
+    for level in dict.fromkeys(levels):
+        own = speed[[other == level for other in levels]]
+        kelvin = None if s.b is None else level
+        at = s.transition_speed(kelvin)
+        grid = np.geomspace(own.min(), own.max(), 25)
+        grid = np.sort(np.append(grid, at)) if own.min() < at < own.max() else grid
+        out.append(Curve(temperature=kelvin, speed=grid.tolist(), damping=_damping(s, grid, kelvin)))
+    return out
+
+
+def _cells(s: DampingSurface) -> list[Cell]:
+    edges = np.geomspace(*s.speed_range, 41)
+    middles = np.sqrt(edges[:-1] * edges[1:])
+    hot = s.temperature_range if s.b else None
+    levels = np.linspace(*hot, 21) if hot else np.zeros(2)
+    out = []
+    for cold, warm in itertools.pairwise(levels.tolist()):
+        kelvin = (cold + warm) / 2 if hot else None
+        values = zip(itertools.pairwise(edges.tolist()), _damping(s, middles, kelvin), strict=True)
+        for (low, high), damping in values:
+            out.append(
+                Cell(
+                    speed_low=low,
+                    speed_high=high,
+                    temperature_low=cold if hot else None,
+                    temperature_high=warm if hot else None,
+                    damping=damping,
+                )
+            )
+    return out
+
+
+def _transition_curve(s: DampingSurface) -> list[TransitionAt]:
+    if s.transition is None or s.temperature_range is None:
+        return []
+    levels = np.linspace(*s.temperature_range, 41).tolist()
+    curve = [TransitionAt(temperature=t, speed=s.transition_speed(t)) for t in levels]
+    return [at for at in curve if s.speed_range[0] <= at.speed <= s.speed_range[1]]
+
+
+def _damping(s: DampingSurface, speed: FloatArray, kelvin: float | None) -> list[float]:
+    with warnings.catch_warnings():  # the mean of a group of temperatures may graze the edge of the range
+        warnings.simplefilter("ignore", ExtrapolationWarning)
+        return [float(f"{b:.6g}") for b in s.damping(speed, kelvin)]
+
+
+def _fit_part(points: SteadyPoints, s: DampingSurface) -> FitPart:
     transition = None
     if s.transition:
         transition = TransitionPart(
@@ -345,6 +445,9 @@ def _fit_part(s: DampingSurface) -> FitPart:
         speed_range=s.speed_range,
         temperature_range=s.temperature_range,
         summary=s.summary(),
+        curves=_curves(points, s),
+        cells=_cells(s),
+        transition_curve=_transition_curve(s),
     )
 
 
@@ -365,7 +468,7 @@ def _regime_part(r: Regime) -> RegimePart:
         exponents=[
             BranchPart(
                 temperature=e.temperature,
-                branch=e.branch,  # type: ignore[arg-type]  # validated by the schema
+                branch=e.branch,
                 points=e.points,
                 speed_low=e.speed_low,
                 speed_high=e.speed_high,
@@ -387,12 +490,15 @@ def _warnings(
             out.append(f"{file.name}: {file.missing_rows} rows without a number were left out, as asked.")
         if run.gaps():
             share = 1.0 - run.time.size * run.sampling_interval / max(float(run.time[-1] - run.time[0]), 1e-9)
-            out.append(f"{file.name}: rows are missing at {run.gaps()} places ({max(share, 0):.1%} of the time).")
+            out.append(
+                f"{file.name}: rows are missing at {run.gaps()} places ({max(share, 0):.1%} of the time)."
+            )
     out += _tare_warning(points)
     swinging = [r for r in points.rejected if "stick-slip" in r.reason]
     if swinging:
         out.append(
-            f"{len(swinging)} stretch(es) of held speed are left out because the torque swings as in stick-slip."
+            f"Stick-slip was recorded: {len(swinging)} "
+            f"{'stretch' if len(swinging) == 1 else 'stretches'} of held speed, left out of the fit."
         )
     out += _direction_warnings(points, surface)
     out += _fit_warnings(surface)
@@ -410,8 +516,8 @@ def _tare_warning(points: SteadyPoints) -> list[str]:
     if abs(standing) < 0.001 * least:
         return []
     return [
-        f"While the drive stood, torque read {standing * 1e3:.3g} mN m, {abs(standing) / least:.1%} of the least "
-        "dwell. It is not subtracted; if it is the sensor's offset, say --tare standing."
+        f"While the drive stood, torque read {standing * 1e3:.3g} mN m, {abs(standing) / least:.1%} of the "
+        "least dwell. It is not subtracted; if it is the sensor's offset, say --tare standing."
     ]
 
 
@@ -435,8 +541,8 @@ def _direction_warnings(points: SteadyPoints, surface: DampingSurface) -> list[s
             if abs(difference) > max(NOTABLE_DIFFERENCE, SIGNIFICANT * error):
                 advice = "; fit one alone with --rotation" if name == "forward" else ""
                 out.append(
-                    f"Torque differs by {np.expm1(difference):+.1%} between {name} and {other}: one surface does "
-                    f"not describe both{advice}."
+                    f"Torque differs by {np.expm1(difference):+.1%} between {name} and {other}: "
+                    f"one surface does not describe both{advice}."
                 )
     return out
 
@@ -445,21 +551,26 @@ def _fit_warnings(surface: DampingSurface) -> list[str]:
     out = []
     for name, estimate in surface.torque_space.items():
         own = {"a": surface.a, "b": surface.b, "c": surface.c}[name]
-        if own and name != "a" and abs(own.value - estimate.value) > 2.0 * np.hypot(own.error, estimate.error):
+        if (
+            own
+            and name != "a"
+            and abs(own.value - estimate.value) > 2.0 * np.hypot(own.error, estimate.error)
+        ):
             out.append(
-                f"Exponent {name} is {own.value:.3f} fitted in logarithms but {estimate.value:.3f} fitted in torque: "
-                "the power law does not hold over the whole range."
+                f"Exponent {name} is {own.value:.3f} fitted in logarithms but {estimate.value:.3f} fitted in "
+                "torque: the power law does not hold over the whole range."
             )
     if surface.temperature_range:
         low, high = (celsius(t) for t in surface.temperature_range)
         if high - low < 30.0:
             out.append(
-                f"Temperature spans only {low:.0f} to {high:.0f} degC: a and b are strongly correlated, and the law "
-                "must not be used far outside."
+                f"Temperature spans only {low:.0f} to {high:.0f} degC: a and b are strongly correlated, and "
+                "the law must not be used far outside."
             )
     if surface.statistics.scatter > 0.05:
         out.append(
-            f"Dwells scatter by {surface.statistics.scatter:.0%} about the surface, more than their noise explains."
+            f"Dwells scatter by {surface.statistics.scatter:.0%} about the surface, more than their noise "
+            "explains."
         )
     return out
 
@@ -470,12 +581,11 @@ def _simulation(surface: DampingSurface, fuser: Fuser | None) -> SimulationPart:
         title = "The paper's baseline: k = 1000, B0 = 50, m = 1, drive speed 1 (inches, ounces, seconds)"
         return _simulated(train, drag, speed, title, "paper", "in/s", "ozf")
     kelvin = surface.temperature_range[1] if surface.temperature_range else None
-    drag = surface.drag(
-        roll_radius=fuser.roll_radius, stick_speed=fuser.stick_speed, temperature=kelvin
-    )
-    at = "" if kelvin is None else f" at {celsius(kelvin):.0f} degC"
+    drag = surface.drag(roll_radius=fuser.roll_radius, stick_speed=fuser.stick_speed, temperature=kelvin)
+    at = "" if kelvin is None else f" at {celsius(kelvin):.0f} °C"
     slow = SIMULATED_SPEED * surface.transition_speed(kelvin)
-    title = f"This machine{at}, driven at {rpm(slow):.3g} rpm, {SIMULATED_SPEED:.0%} of its transition speed"
+    share = f"{100 * SIMULATED_SPEED:.0f} % of its transition speed"
+    title = f"This machine{at}, driven at {rpm(slow):.3g} rpm, {share}"
     return _simulated(fuser.train, drag, slow * fuser.roll_radius, title, "fit", "m/s", "N")
 
 
@@ -500,6 +610,7 @@ def _simulated(
     return SimulationPart(
         title=title,
         source=source,
+        units="inches, ounces of force, seconds" if source == "paper" else "SI: N/m, kg, N, m/s",
         speed_unit=speed_unit,
         force_unit=force_unit,
         parameters={

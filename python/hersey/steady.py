@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import polars as pl
+from numpy.typing import NDArray
 
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.log.torque_log import FloatArray, Run, TorqueLog
@@ -305,7 +306,9 @@ def _unsteady(
         return f"speed not held: it varies by {np.std(speed) / abs(np.mean(speed)):.0%} (standard deviation)"
     swing = float(np.std(torque)) / abs(float(np.mean(torque)))
     if swing > STICK_SLIP_SWING and _skewness_of_changes(torque) < STICK_SLIP_SKEWNESS:
-        return f"stick-slip: torque swings by {swing:.0%} (standard deviation), rising slowly and dropping at once"
+        return (
+            f"stick-slip: torque swings by {swing:.0%} (standard deviation), rising slowly and dropping fast"
+        )
     if swing > MAX_TORQUE_SWING:
         return f"torque swings by {swing:.0%} (standard deviation): no steady sliding"
     drift, _ = _drift(time, speed)
@@ -376,7 +379,7 @@ def _nothing_steady(rejected: list[Rejection]) -> str:
     return f"no steady stretch was found ({listed}); a dwell holds one speed for at least 2 s"
 
 
-def groups_of_temperature(temperature: FloatArray, width: float = 6.0) -> Iterator[FloatArray]:
+def groups_of_temperature(temperature: FloatArray, width: float = 6.0) -> Iterator[NDArray[np.intp]]:
     """Yield the indices of points that share a temperature, coldest first.
 
     Neighbours in sorted order belong together while the whole group spans no more than ``width`` K.

@@ -16,6 +16,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -59,7 +60,9 @@ class Transition:
     """Where the falling (mixed) branch meets the rising (EHL) one."""
 
     speed: Estimate  #: rad/s, at the reference temperature of the surface, where the branches meet
-    least_torque_speed: float  #: rad/s, there too: between the slow and the fast points, where torque is least
+    least_torque_speed: (
+        float  #: rad/s, there too: between the slow and the fast points, where torque is least
+    )
     mixed_exponent: Estimate  #: exponent of damping in speed below it
     temperature_exponent: float  #: transition speed varies as T to this power
     evidence: float  #: AICc of the single power law minus that of the two branches
@@ -127,7 +130,7 @@ class DampingSurface:
 
     def torque(self, speed: ArrayLike, temperature: ArrayLike | None = None) -> FloatArray:
         """Return drag torque in N m, with the sign of the speed (rad/s); temperature in K."""
-        return self.damping(speed, temperature) * np.asarray(speed, dtype=float)
+        return np.asarray(self.damping(speed, temperature) * np.asarray(speed, dtype=float))
 
     def transition_speed(self, temperature: float | None = None) -> float:
         """Return the transition speed in rad/s at a temperature (K); NaN where the data show none."""
@@ -366,9 +369,7 @@ def _quantile(freedom: int) -> float:
     return float(stats.t.ppf(0.5 + CONFIDENCE / 2, max(freedom, 1)))
 
 
-def _solve(
-    residual: Callable[[FloatArray], FloatArray], errors: FloatArray, start: FloatArray
-) -> _Solution:
+def _solve(residual: Callable[[FloatArray], FloatArray], errors: FloatArray, start: FloatArray) -> _Solution:
     """Least squares with a scatter beyond the errors, found so that chi-square equals the freedom."""
     freedom = errors.size - start.size
     values, scatter = start, float(np.std(residual(start)))
@@ -376,15 +377,23 @@ def _solve(
     result = None
     for _ in range(12):
         sigma = np.sqrt(errors**2 + scatter**2 + floor**2)
-        result = optimize.least_squares(lambda v, s=sigma: residual(v) / s, values, x_scale="jac", xtol=1e-14)
+        weighted = partial(_weighted, residual, sigma)
+        result = optimize.least_squares(weighted, values, x_scale="jac", xtol=1e-14)
         values = result.x
         updated = _scatter(residual(values), errors, freedom)
         if abs(updated - scatter) <= 1e-6 * max(scatter, floor):
             break
         scatter = updated
     assert result is not None
-    covariance = np.linalg.pinv(result.jac.T @ result.jac)
+    jacobian = np.asarray(result.jac)
+    covariance = np.linalg.pinv(jacobian.T @ jacobian)
     return _Solution(values, covariance, scatter, residual(values), sigma)
+
+
+def _weighted(
+    residual: Callable[[FloatArray], FloatArray], sigma: FloatArray, values: FloatArray
+) -> FloatArray:
+    return np.asarray(residual(values) / sigma)
 
 
 def _scatter(residuals: FloatArray, errors: FloatArray, freedom: int) -> float:
@@ -482,21 +491,19 @@ def _splits(data: _Data, temperature_exponent: float) -> list[tuple[float, BoolA
 
 def _unimodal_residuals(torque: FloatArray) -> FloatArray:
     """Residuals of the best curve that falls, then rises."""
-    best = torque - torque.mean()
+    best: FloatArray = np.asarray(torque - torque.mean())
     for i in range(1, torque.size):
         falling = optimize.isotonic_regression(torque[:i], increasing=False).x
         rising = optimize.isotonic_regression(torque[i:]).x
         residuals = torque - np.append(falling, rising)
         if residuals @ residuals < best @ best:
-            best = residuals
+            best = np.asarray(residuals)
     return best
 
 
 def _enough(data: _Data, side: BoolArray) -> bool:
-    return (
-        np.count_nonzero(side) >= MIN_BRANCH_POINTS
-        and distinct_speeds(data.speed[side]) >= MIN_BRANCH_SPEEDS
-    )
+    points, speeds = int(np.count_nonzero(side)), distinct_speeds(data.speed[side])
+    return points >= MIN_BRANCH_POINTS and speeds >= MIN_BRANCH_SPEEDS
 
 
 def _weights(data: _Data, solution: _Solution, **share: float) -> FloatArray:
@@ -556,9 +563,7 @@ def _fit_torque(data: _Data, solution: _Solution) -> _Solution:
 def _coefficients(data: _Data, solution: _Solution) -> dict[str, Estimate]:
     """a, b and c as Eq. 4 has them, from values about the reference point."""
     speed, temperature = np.log(data.reference_speed), np.log(data.reference_temperature or 1.0)
-    log_a = solution.estimate(
-        _weights(data, solution, level=1.0, b=-float(temperature), c=-float(speed))
-    )
+    log_a = solution.estimate(_weights(data, solution, level=1.0, b=-float(temperature), c=-float(speed)))
     a = float(np.exp(log_a.value))
     out = {"a": Estimate(a, a * log_a.error, float(np.exp(log_a.low)), float(np.exp(log_a.high)))}
     if data.thermal:
@@ -626,18 +631,22 @@ def _summary(s: DampingSurface) -> str:
         f"    reduced chi-square = {st.reduced_chi_square:.6g}",
         f"    Akaike (AICc)      = {st.aicc:.6g}",
         f"    R-squared, torque  = {st.r_squared_torque:.6f}",
-        f"    R-squared, damping = {st.r_squared_damping:.6f}  (dividing by speed spreads the values, so this",
-        "                         is nearer 1 without telling more)",
+        f"    R-squared, damping = {st.r_squared_damping:.6f}  (division by speed spreads the values:",
+        "                         nearer 1, yet it tells no more)",
         "[[Variables]]                                        95 % interval",
     ]
     lines += [_variable("a", s.a), *([_variable("b", s.b)] if s.b else []), _variable("c", s.c)]
     if s.transition:
-        at = "" if s.reference_temperature is None else f" at {s.reference_temperature:.4g} {s.temperature_scale}"
+        at = (
+            ""
+            if s.reference_temperature is None
+            else f" at {s.reference_temperature:.4g} {s.temperature_scale}"
+        )
         lines += [
             _variable("c_mixed", s.transition.mixed_exponent),
             _variable("w_t", s.transition.speed) + f"  rad/s{at}",
-            f"    w_t varies as T^{s.transition.temperature_exponent:.3g} (fixed Hersey number); below it the "
-            "exponent is c_mixed",
+            f"    w_t varies as T^{s.transition.temperature_exponent:.3g} (fixed Hersey number); "
+            "below it the exponent is c_mixed",
         ]
     lines += ["[[Fitted in torque space, errors absolute]]"]
     lines += [_variable(name, estimate) for name, estimate in s.torque_space.items()]

@@ -25,6 +25,8 @@ KELVIN = 273.15
 #: First line of every log.
 PREAMBLE = "# SYNTHETIC log of the hersey virtual test stand (not a measurement)"
 COLUMNS = ("Time [s]", "Drive torque [N*m]", "Drive speed [rpm]", "Heater temperature [degC]")
+#: Decimal places written of each column.
+DIGITS = (2, 4, 3, 2)
 
 
 @dataclass(frozen=True)
@@ -113,7 +115,7 @@ class VirtualLog:
             with file.open("w", encoding="utf-8") as opened:
                 return self.write(opened)
         file.write(f"{PREAMBLE}, seed {self.seed}\n")
-        file.write(self.table.write_csv(float_precision=4))
+        file.write(self.table.write_csv())
         return None
 
 
@@ -140,14 +142,16 @@ def run(*, seed: int = 0, truth: Truth | None = None, stand: Stand | None = None
         hottest = level == max(stand.temperatures_degC)
         parts.append(_staircase(stand, truth, random, before, level, stand.stick_slip and hottest))
     speed, temperature, torque, scatter = (np.concatenate(c) for c in zip(*parts, strict=True))
-    time = np.arange(speed.size) * stand.sampling_interval
+    time: FloatArray = np.arange(speed.size, dtype=np.float64) * stand.sampling_interval
     measured = _measured_torque(stand, random, time, speed, torque * scatter)
     angle = np.cumsum(speed) * stand.sampling_interval
     shown_speed = speed * (1.0 + stand.speed_ripple * np.sin(angle)) / RPM
     shown_temperature = temperature + stand.temperature_noise * random.standard_normal(time.size)
     kept = random.random(time.size) >= stand.dropped
     columns = (time, measured, shown_speed, shown_temperature)
-    table = pl.DataFrame({name: c[kept] for name, c in zip(COLUMNS, columns, strict=True)})
+    digits = (DIGITS[0] + max(0, int(-np.log10(stand.sampling_interval))), *DIGITS[1:])
+    shown = zip(COLUMNS, columns, digits, strict=True)
+    table = pl.DataFrame({name: np.round(values[kept], places) for name, values, places in shown})
     return VirtualLog(table, truth, stand, seed)
 
 
@@ -180,18 +184,15 @@ def _staircase(
     steps = [*stand.speeds_rpm, *stand.speeds_rpm[-2::-1]]
     dt = stand.sampling_interval
     dwell, ramp = round(stand.dwell / dt), round(stand.ramp / dt)
-    warm_up = round(4.0 * stand.thermal_time / dt)
+    warm_up = round(6.0 * stand.thermal_time / dt)
     speeds, scatters = [np.full(warm_up, steps[0] * RPM)], [np.ones(warm_up)]
     last = steps[0]
-    for speed in steps:
-        speeds += [np.linspace(last, speed, ramp, endpoint=False) * RPM, np.full(dwell, speed * RPM)]
+    for step in steps:
+        speeds += [np.linspace(last, step, ramp, endpoint=False) * RPM, np.full(dwell, step * RPM)]
         scatters += [np.ones(ramp), np.full(dwell, 1.0 + stand.repeatability * random.standard_normal())]
-        last = speed
+        last = step
     speed, scatter = np.concatenate(speeds), np.concatenate(scatters)
-    elapsed = np.arange(speed.size) * dt / stand.thermal_time
-    # a step of the heater with a little overshoot, as of a second-order control loop
-    rise = 1.0 - np.exp(-elapsed) * (np.cos(2.0 * elapsed) + (1.0 - 8.0 * stand.overshoot) * np.sin(2.0 * elapsed) / 2)
-    temperature = before + (level - before) * rise
+    temperature = before + (level - before) * _heater(stand, np.arange(speed.size, dtype=np.float64) * dt)
     torque = truth.torque(speed, temperature)
     if sticks:
         slip_speed, slip = _stick_slip(stand, truth, level, min(stand.speeds_rpm) * RPM)
@@ -201,8 +202,17 @@ def _staircase(
     return speed, temperature, torque, scatter
 
 
+def _heater(stand: Stand, time: FloatArray) -> FloatArray:
+    """Response of the heater to a step of one: second order, with the overshoot asked for."""
+    decay = time / stand.thermal_time
+    if stand.overshoot <= 0:
+        return np.asarray(1.0 - np.exp(-decay) * (1.0 + decay))
+    swing = np.pi / -np.log(stand.overshoot)
+    return np.asarray(1.0 - np.exp(-decay) * (np.cos(swing * decay) + np.sin(swing * decay) / swing))
+
+
 def _stick_slip(stand: Stand, truth: Truth, level: float, speed: float) -> tuple[FloatArray, FloatArray]:
-    """A stretch in which the belt sticks and slips at half the slowest speed: torque is the spring's."""
+    """Speed and torque of a stretch of stick-slip at half the slowest speed: the torque is the spring's."""
     w_t = float(truth.transition_speed(np.array(level)))
     drag = Drag(
         transition_force=float(truth.torque(np.array(w_t), np.array(level))) / stand.roll_radius,
@@ -253,14 +263,13 @@ def long_log(
     """Yield the text of a log of at least ``bytes_wanted`` bytes: the staircase sampled ever faster."""
     stand = Stand()
     first = run(seed=seed, stand=stand)
-    text = first.table.write_csv(float_precision=4)
-    faster = max(1.0, bytes_wanted / len(text)) * 1.01
+    faster = max(1.0, bytes_wanted / len(first.table.write_csv())) * 1.01
     fine = run(seed=seed, stand=Stand(sampling_interval=stand.sampling_interval / faster))
     yield f"{PREAMBLE}, seed {seed}\n"
     rows = 1_000_000
     for start in range(0, fine.table.height, rows):
         part = fine.table.slice(start, rows)
-        text = part.write_csv(float_precision=5, include_header=start == 0)
+        text = part.write_csv(include_header=start == 0)
         if progress:
             progress(len(text))
         yield text

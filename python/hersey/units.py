@@ -107,7 +107,7 @@ def parse(kind: str, text: str) -> float:
         If there is no number, no unit, or a unit of another kind.
     """
     match = re.fullmatch(r"\s*([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*(.*?)\s*", text)
-    si, example = KINDS[kind]
+    example = KINDS[kind][1]
     if match is None or not match[2]:
         raise UnitError(f"'{text}' needs a number and a unit of {kind}, such as '1 {example}'")
     try:

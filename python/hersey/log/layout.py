@@ -144,7 +144,9 @@ def _mostly_numbers(row: list[str]) -> bool:
 def _first_of_block(rows: list[bool]) -> int:
     """Index of the first row of the table: preambles too have a line of numbers here and there."""
     first = next(i for i, row in enumerate(rows) if row)
-    while (gap := next((i for i in range(first, min(first + 3, len(rows))) if not rows[i]), None)) is not None:
+    while (
+        gap := next((i for i in range(first, min(first + 3, len(rows))) if not rows[i]), None)
+    ) is not None:
         later = next((i for i in range(gap, len(rows)) if rows[i]), None)
         if later is None or sum(rows[later:]) < sum(rows[first:gap]):
             break

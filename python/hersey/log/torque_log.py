@@ -73,9 +73,7 @@ class TorqueLog:
         """Whether every run carries a temperature."""
         return all(run.temperature is not None for run in self.runs)
 
-    def steady(
-        self, *, min_dwell: float = 2.0, tare: str = "none", rotation: str = "both"
-    ) -> SteadyPoints:
+    def steady(self, *, min_dwell: float = 2.0, tare: str = "none", rotation: str = "both") -> SteadyPoints:
         """Reduce the log to its steady points: see `hersey.steady.steady_points`."""
         from hersey.steady import steady_points
 

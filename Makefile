@@ -1,0 +1,65 @@
+# Every chore, the same for a person, a hook and CI. `make help` lists them.
+PYTHON ?= python3
+BIN := .venv/bin
+SHELL := /bin/bash
+.SHELLFLAGS := -eu -o pipefail -c
+SOURCES := $(shell find crates -name '*.rs' -o -name Cargo.toml) Cargo.toml pyproject.toml
+
+.PHONY: help build demo test lint format typecheck test-rust test-python browser benchmark clean
+.DEFAULT_GOAL := help
+
+help: ## list the targets
+	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
+
+build: .venv/built ## make .venv with hersey in it
+
+.venv/tools: constraints.txt pyproject.toml
+	@test -x $(BIN)/python || $(PYTHON) -m venv .venv || \
+	  { echo "this Python cannot make virtual environments: apt-get install python3-venv" >&2; exit 1; }
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt 'pip>=25.1' maturin
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt --group dev
+	@touch $@
+
+.venv/built: .venv/tools $(SOURCES)
+	PIP_CONSTRAINT=$(CURDIR)/constraints.txt $(BIN)/maturin develop --release --quiet
+	@touch $@
+
+demo: build ## run the main job on the shipped log
+	mkdir -p build/demo
+	$(BIN)/hersey report examples/bench.csv --fuser examples/fuser.toml --tare standing \
+	  --out build/demo/report.html --figures build/demo/figures --force
+
+test: lint typecheck test-rust test-python ## everything: lint, types, Rust and Python tests, the page in a browser
+
+lint: build ## check format and style
+	$(BIN)/ruff format --check --quiet .
+	$(BIN)/ruff check --quiet .
+	cargo fmt --check
+	cargo clippy --quiet --workspace --all-targets -- -D warnings
+
+format: build ## put format and style right
+	$(BIN)/ruff format .
+	$(BIN)/ruff check --fix .
+	cargo fmt
+
+typecheck: build ## check types, and the stub against the bindings
+	$(BIN)/mypy
+	$(BIN)/python -m mypy.stubtest hersey._core
+
+test-rust: ## tests of the core
+	cargo test --release --quiet --package hersey-core
+
+test-python: build browser ## tests of the package and the page
+	$(BIN)/python -m pytest -n auto
+
+# The page is tested in a real Chromium; Playwright drives the one of the system.
+browser: ## install Chromium if there is none
+	@command -v chromium >/dev/null || command -v chromium-browser >/dev/null || { \
+	  root=$$(test "$$(id -u)" = 0 || echo sudo); \
+	  $$root apt-get update -qq && $$root apt-get install -y -qq --no-install-recommends chromium >/dev/null; }
+
+benchmark: build ## ratios against peers, printed and written to benchmarks/RESULTS.md
+	$(BIN)/python benchmarks/read_csv.py
+
+clean: ## remove everything that was built
+	rm -rf .venv build target Cargo.lock

@@ -1,0 +1,191 @@
+// The page of a report. It shows the analysis document and the charts made from it, and computes nothing
+// but the change of units for people. All text enters through textContent: nothing in a log can run.
+
+const data = JSON.parse(document.getElementById("document").textContent);
+const charts = JSON.parse(document.getElementById("charts").textContent);
+const report = document.getElementById("report");
+
+const TO_RPM = 60 / (2 * Math.PI);
+const celsius = (kelvin) => kelvin - 273.15;
+
+function digits(value, count = 4) {
+  if (value === null || value === undefined) return "–";
+  const size = Math.abs(value);
+  if (size !== 0 && (size >= 1e6 || size < 1e-4)) return value.toExponential(count - 1);
+  return String(Number(value.toPrecision(count)));
+}
+function interval(e, scale = 1, count = 4) {
+  return `${digits(e.value * scale, count)} [${digits(e.low * scale, count)}, ${digits(e.high * scale, count)}]`;
+}
+function seconds(value) {
+  return value >= 600 ? `${(value / 60).toFixed(1)} min` : `${digits(value)} s`;
+}
+
+function add(parent, tag, text = "", className = "") {
+  const element = document.createElement(tag);
+  element.textContent = text;
+  if (className) element.className = className;
+  parent.appendChild(element);
+  return element;
+}
+function table(parent, heads, rows, numeric = []) {
+  const wide = add(parent, "div", "", "wide");
+  const element = add(wide, "table");
+  const head = add(add(element, "thead"), "tr");
+  heads.forEach((text, i) => add(head, "th", text, numeric.includes(i) ? "number" : ""));
+  const body = add(element, "tbody");
+  for (const row of rows) {
+    const line = add(body, "tr");
+    row.forEach((text, i) => add(line, "td", text, numeric.includes(i) ? "number" : ""));
+  }
+  return element;
+}
+function fold(parent, title) {
+  const details = add(parent, "details");
+  add(details, "summary", title);
+  return details;
+}
+async function chart(parent, name) {
+  if (!charts[name]) return;
+  const place = add(parent, "div", "", "chart");
+  place.id = `chart-${name}`;
+  await window.vegaEmbed(place, charts[name], {
+    renderer: "svg",
+    actions: { export: true, source: false, compiled: false, editor: false },
+    downloadFileName: `hersey-${name}`,
+  });
+}
+
+function head() {
+  add(report, "p", `hersey ${data.hersey_version} · lubrication report`, "soft");
+  add(report, "h1", data.title);
+  add(report, "p", data.regime.verdict, "verdict").id = "verdict";
+  if (data.warnings.length) {
+    const list = add(report, "ul", "", "warnings");
+    list.id = "warnings";
+    data.warnings.forEach((text) => add(list, "li", text));
+  }
+  const cards = add(report, "div", "", "cards");
+  const card = (value, label) => {
+    const box = add(cards, "div", "", "card");
+    add(box, "b", value);
+    add(box, "span", label);
+  };
+  const { coefficients: c, transition } = data.fit;
+  card(digits(c.c.value, 3), `exponent of speed c, 95 %: ${digits(c.c.low, 3)} to ${digits(c.c.high, 3)}`);
+  if (c.b) {
+    const scale = data.fit.temperature_scale;
+    card(digits(c.b.value, 3), `exponent of temperature b (in ${scale}), 95 %: ${digits(c.b.low, 3)} to ${digits(c.b.high, 3)}`);
+  }
+  if (transition) {
+    const t = data.fit.reference_temperature;
+    const at = t === null ? "" : ` at ${digits(t, 3)} ${data.fit.temperature_scale}`;
+    const s = transition.speed;
+    card(`${digits(s.value * TO_RPM, 3)} rpm`, `transition${at}, 95 %: ${digits(s.low * TO_RPM, 3)} to ${digits(s.high * TO_RPM, 3)}`);
+    const m = transition.mixed_exponent;
+    card(digits(m.value, 3), `exponent below it, 95 %: ${digits(m.low, 3)} to ${digits(m.high, 3)}`);
+  } else {
+    card("none", "transition to a falling branch");
+  }
+  card(digits(data.fit.r_squared_torque, 4), `R² of torque (of damping: ${digits(data.fit.r_squared_damping, 4)})`);
+  card(String(data.points.length), "steady points (dwells)");
+}
+
+function quality() {
+  add(report, "h2", "What the log holds");
+  const q = data.quality;
+  const share = (rows) => `${rows} (${((100 * rows) / q.rows).toFixed(1)} %)`;
+  add(report, "p", `Of ${q.rows} rows, ${share(q.rows_used)} lie in settled dwells, ${share(q.rows_settling)} are the settling `
+    + `and edges of those dwells, and ${share(q.rows_rejected)} are not used, for the reasons below.`);
+  if (q.standing_torque !== null) {
+    const used = q.tare ? "subtracted everywhere" : "not subtracted";
+    add(report, "p", `Torque while the drive stood: ${digits(q.standing_torque * 1e3, 3)} mN·m (${used}).`);
+  }
+  const reasons = new Map();
+  for (const r of q.rejected) {
+    const kind = r.reason.split(/ by |: /)[0];
+    const known = reasons.get(kind) ?? { count: 0, rows: 0 };
+    reasons.set(kind, { count: known.count + 1, rows: known.rows + r.rows });
+  }
+  if (reasons.size) {
+    table(report, ["not used because", "stretches", "rows"],
+      [...reasons].map(([kind, r]) => [kind, String(r.count), String(r.rows)]), [1, 2]);
+    const all = fold(report, "every stretch that is not used");
+    table(all, ["file", "from (s)", "to (s)", "rows", "reason"], q.rejected.map((r) => [
+      data.files[r.run].name, r.start.toFixed(2), r.end.toFixed(2), String(r.rows), r.reason]), [1, 2, 3]);
+  }
+}
+
+function files() {
+  add(report, "h2", "Input");
+  table(report, ["file", "rows", "duration", "every", "gaps", "channels"], data.files.map((f) => [
+    f.name, String(f.rows), seconds(f.duration), `${digits(f.sampling_interval * 1e3, 3)} ms`, String(f.gaps),
+    f.channels.map((c) => `${c.role}: ${c.name || "(no name)"} [${c.unit}]`).join(", ")]), [1, 2, 3, 4]);
+  for (const f of data.files) f.comments.forEach((text) => add(report, "p", `${f.name}: “${text}”`, "soft"));
+}
+
+function points() {
+  const all = fold(report, "every steady point");
+  const hot = data.points.some((p) => p.temperature !== null);
+  table(all, ["rpm", ...(hot ? ["°C"] : []), "torque (mN·m)", "± (1 s.e.)", "B (mN·m·s/rad)", "off the fit", "approached", "dwell (s)"],
+    data.points.map((p) => [
+      digits(p.speed * TO_RPM), ...(hot ? [celsius(p.temperature).toFixed(1)] : []), digits(p.torque * 1e3),
+      digits(p.torque_error * 1e3, 2), digits(p.damping * 1e3), `${(100 * Math.expm1(p.residual)).toFixed(1)} %`,
+      p.approach, `${p.start.toFixed(1)}–${p.end.toFixed(1)}`]), hot ? [0, 1, 2, 3, 4, 5] : [0, 1, 2, 3, 4]);
+}
+
+function hypotheses() {
+  const element = table(report, ["hypothesis", "exponent", "p-value", "", "meaning"], data.regime.hypotheses.map((h) => {
+    const range = h.low === null ? `below ${h.high}` : h.low === h.high ? String(h.high) : `${h.low} to ${h.high}`;
+    return [h.name, range, h.p_value < 1e-4 ? "< 0.0001" : h.p_value.toFixed(4), h.consistent ? "agrees" : "rejected", h.meaning];
+  }), [2]);
+  data.regime.hypotheses.forEach((h, i) => { if (h.consistent) element.tBodies[0].rows[i].className = "kept"; });
+  add(report, "p", "An exponent is evidence, not proof: heating of the film with speed, starvation or shear thinning can "
+    + "move it too. Agreement means that the 95 % interval of c does not exclude the value.", "soft");
+}
+
+function reproduce() {
+  add(report, "h2", "How to reproduce this report");
+  if (data.command) add(report, "pre", data.command).id = "command";
+  add(report, "p", `hersey ${data.hersey_version}, document schema ${data.schema_version}. Input:`, "soft");
+  add(report, "pre", data.files.map((f) => `sha256 ${f.sha256}  ${f.name}`).join("\n"));
+}
+
+async function main() {
+  document.title = `hersey: ${data.title}`;
+  head();
+  quality();
+  for (const name of ["timeline_speed", "timeline_torque", "timeline_temperature"]) await chart(report, name);
+  add(report, "h2", "Torque and damping");
+  add(report, "p", "Drag to move, Shift and wheel to zoom, double-click to reset; point at a mark for its numbers.", "soft hint");
+  await chart(report, "torque");
+  await chart(report, "damping");
+  points();
+  add(report, "h2", "The surface");
+  await chart(report, "surface");
+  add(report, "pre", data.fit.summary).id = "summary";
+  await chart(report, "residuals");
+  add(report, "h2", "Which regime of lubrication");
+  await chart(report, "regime");
+  hypotheses();
+  const level = data.fit.reference_temperature;
+  const at = level === null ? "" : ` (at ${digits(level, 3)} ${data.fit.temperature_scale})`;
+  add(report, "p", data.fit.transition
+    ? `The second branch is better than a single power law by ${data.fit.transition.evidence.toFixed(0)} in AICc. Torque is least `
+      + `near ${digits(data.fit.transition.least_torque_speed * TO_RPM, 3)} rpm; the branches meet at ${interval(data.fit.transition.speed, TO_RPM, 3)} rpm${at}.`
+    : `No falling branch is announced: ${data.fit.no_transition}.`);
+  add(report, "h2", "What stick-slip looks like");
+  await chart(report, "simulation_speed");
+  await chart(report, "simulation_force");
+  add(report, "p", "Exact solution of the paper's hybrid model from rest; parameters: "
+    + Object.entries(data.simulation.parameters).map(([k, v]) => `${k.replace("_", " ")} ${typeof v === "number" ? digits(v) : v}`).join(", ")
+    + ` (${data.simulation.units}).`, "soft");
+  files();
+  reproduce();
+  document.body.dataset.ready = "true";
+}
+
+main().catch((error) => {
+  add(report, "p", `The page could not be drawn: ${error}`, "warnings");
+  document.body.dataset.ready = "failed";
+});
