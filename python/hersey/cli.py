@@ -36,6 +36,8 @@ app = typer.Typer(
     ),
 )
 stderr = Console(stderr=True)
+#: Exit code after Ctrl-C, as shells have it.
+INTERRUPTED = 130
 
 Logs = Annotated[list[Path], typer.Argument(metavar="LOG...", help="Log file, or several of one machine.")]
 Torque = Annotated[str, typer.Option("--torque", help="Name of the torque column, as 'Tq' or 'Tq (ozf.in)'.")]
@@ -295,13 +297,11 @@ def testbench(
 def main() -> None:
     """Run the command line."""
     try:
-        app(standalone_mode=False)
+        code = app(standalone_mode=False)
     except HerseyError as error:
         _fail(str(error))
-    except typer.Exit as leave:
-        sys.exit(leave.exit_code)
     except (KeyboardInterrupt, typer.Abort):
-        _fail("interrupted", code=130)
+        code = INTERRUPTED
     except BrokenPipeError:
         sys.exit(0)
     except Exception as error:
@@ -309,6 +309,9 @@ def main() -> None:
         if usage is None:
             raise
         _fail(usage())
+    if code == INTERRUPTED:
+        _fail("interrupted", code=INTERRUPTED)
+    sys.exit(code or 0)
 
 
 def _fail(message: str, code: int = 2) -> None:

@@ -37,6 +37,8 @@ CONFIDENCE = 0.95
 EVIDENCE = 6.0
 #: Points and distinct speeds that each branch needs.
 MIN_BRANCH_POINTS, MIN_BRANCH_SPEEDS = 4, 3
+#: Residuals (of logarithms, or of torques in N m) below this are those of exact data.
+ROUNDING = 1e-13
 #: Speeds closer than this share count as the same.
 SAME_SPEED = 0.03
 
@@ -360,7 +362,7 @@ class _Solution:
     def estimate(self, weights: FloatArray) -> Estimate:
         """A linear combination of the values."""
         value = float(weights @ self.values)
-        error = float(np.sqrt(weights @ self.covariance @ weights))
+        error = float(np.sqrt(max(weights @ self.covariance @ weights, 0.0)))
         reach = _quantile(self.residuals.size - self.values.size) * error
         return Estimate(value, error, value - reach, value + reach)
 
@@ -400,8 +402,8 @@ def _scatter(residuals: FloatArray, errors: FloatArray, freedom: int) -> float:
     def excess(scatter: float) -> float:
         return float(np.sum(residuals**2 / (errors**2 + scatter**2))) - freedom
 
-    top = float(np.sqrt(np.sum(residuals**2) / freedom)) + 1e-300
-    if np.all(errors > 0) and excess(0.0) <= 0:
+    top = float(np.sqrt(np.sum(residuals**2) / freedom))
+    if top < ROUNDING or (np.all(errors > 0) and excess(0.0) <= 0):
         return 0.0
     low = 0.0 if np.all(errors > 0) else 1e-9 * top
     return float(optimize.brentq(excess, low, top)) if excess(low) > 0 else 0.0

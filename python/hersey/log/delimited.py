@@ -95,7 +95,16 @@ def _read_table(
         for (role, (_, si)), values in zip(found.items(), columns, strict=True):
             kept = values[~gone] if gone.any() else values
             parts[role].append(kept * si.scale + si.offset)
-        last_time = _check_time(parts["time"][-1], last_time, line, name)
+        time = parts["time"][-1]
+        steps = np.diff(time, prepend=last_time)
+        if (steps < 0).any():
+            row = int(np.argmax(steps < 0))
+            number, _ = list(_rows(block, line, layout))[int(np.flatnonzero(~gone)[row])]
+            raise UnreadableLogError(
+                f"{name}, line {number}: time runs backwards by {-steps[row]:.6g} s; "
+                "split the file there, or sort its rows"
+            )
+        last_time = float(time[-1]) if time.size else last_time
         if progress:
             progress(done, size)
     arrays = {}
@@ -147,6 +156,8 @@ class _Utf16:
 
 def _parse(block: bytes, line: int, layout: Layout, columns: list[Column], name: str) -> list[FloatArray]:
     """The wanted columns of a block as numbers, NaN where a cell stands for a missing value."""
+    if block.startswith((b"\n", b"\r\n")) or b"\n\n" in block or b"\n\r\n" in block:
+        block = b"\n".join(text for text in block.splitlines() if text.strip())
     wanted = sorted(column.index for column in columns)
     nulls = [spelling for word in MISSING for spelling in {word, word.upper(), word.capitalize(), "NaN"}]
     try:
@@ -170,8 +181,9 @@ def _parse(block: bytes, line: int, layout: Layout, columns: list[Column], name:
 
 
 def _rows(block: bytes, line: int, layout: Layout) -> Iterator[tuple[int, list[str]]]:
+    """Line number and cells of each row of the table: no comments, no blank lines."""
     for number, text in enumerate(block.decode("utf-8", errors="replace").splitlines(), start=line):
-        if not (layout.comment and text.startswith(layout.comment)):
+        if text.strip() and not (layout.comment and text.startswith(layout.comment)):
             yield number, split(text, layout.separator)
 
 
@@ -206,14 +218,3 @@ def _missing_value(
                     "mend the file, or say --drop-missing to leave such rows out (they will be counted)"
                 )
     return UnreadableLogError(f"{name}: a row from line {line} on has no number; say --drop-missing")
-
-
-def _check_time(time: FloatArray, last: float, line: int, name: str) -> float:
-    steps = np.diff(time, prepend=last)
-    if (steps < 0).any():
-        row = int(np.argmax(steps < 0))
-        raise UnreadableLogError(
-            f"{name}, line {line + row}: time runs backwards by {-steps[row]:.6g} s; "
-            "split the file there, or sort its rows"
-        )
-    return float(time[-1]) if time.size else last

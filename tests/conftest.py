@@ -1,0 +1,53 @@
+"""Logs and documents shared by the tests."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import hersey
+from hersey import testbench
+from hersey.analysis import Analysis, analyse
+from hersey.fuser import read_fuser
+
+ROOT = Path(__file__).parents[1]
+SHARED = ROOT.parent / "shared"
+
+
+@pytest.fixture(scope="session")
+def root() -> Path:
+    """The repository."""
+    return ROOT
+
+
+def shared(path: str) -> Path:
+    """A file or folder of measurements by others, read in place; the test skips where it is absent."""
+    found = SHARED / path
+    if not found.exists():
+        pytest.skip(f"the shared folder with {path} is not beside the repository")
+    return found
+
+
+@pytest.fixture(scope="session")
+def bench_csv(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A log of the virtual test stand."""
+    path = tmp_path_factory.mktemp("bench") / "bench.csv"
+    testbench.run(seed=3).write(path)
+    return path
+
+
+@pytest.fixture(scope="session")
+def log(bench_csv: Path) -> hersey.TorqueLog:
+    return hersey.read(bench_csv)
+
+
+@pytest.fixture(scope="session")
+def points(log: hersey.TorqueLog) -> hersey.SteadyPoints:
+    return log.steady(tare="standing")
+
+
+@pytest.fixture(scope="session")
+def document(log: hersey.TorqueLog, points: hersey.SteadyPoints) -> Analysis:
+    machine = read_fuser(ROOT / "examples" / "fuser.toml")
+    return analyse(log, points, command="hersey report bench.csv", fuser=machine)

@@ -1,0 +1,85 @@
+"""Two screw drives measured by others (Cursi et al., IEEE T-RO 37 (2021), their data set).
+
+Torque comes in percent of 9.84 mN m, one file per speed, semicolons, nine to thirteen lines of preamble, and
+the recorded signs are opposite to the commanded ones.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import hersey
+from hersey.log.torque_log import TorqueLog
+from tests.conftest import shared
+from tests.test_cli import run
+
+RPM = np.pi / 30
+UNITS = {"torque": "-9.84 mN*m / 100", "speed": "-1 rpm"}
+
+
+def files(drive: int) -> list[Path]:
+    return sorted(shared(f"friction/tro2021_screw_drives/driveNo{drive}/steady_state").glob("*.csv"))
+
+
+@pytest.fixture(scope="module", params=[1, 2])
+def drive(request: pytest.FixtureRequest) -> tuple[int, TorqueLog]:
+    return request.param, hersey.read(files(request.param), units=UNITS, isothermal=True)
+
+
+def test_files_are_read_as_they_are(drive: tuple[int, TorqueLog]) -> None:
+    _, log = drive
+    assert len(log.runs) == 30
+    assert {run.time.size for run in log.runs} == {500}
+    commanded = {run.name: float(run.name[:-4].replace("n", "-")) for run in log.runs}
+    for run_ in log.runs:
+        if abs(commanded[run_.name]) >= 10:
+            assert np.mean(run_.speed) / RPM == pytest.approx(commanded[run_.name], abs=2)
+
+
+def test_least_torque_of_drive_1() -> None:
+    log = hersey.read(files(1), units=UNITS, isothermal=True)
+    points = log.steady(rotation="forward")
+    least = points.table.sort("torque").row(0, named=True)
+    assert least["speed"] / RPM == pytest.approx(50, abs=1)
+    assert least["torque"] == pytest.approx(2.526e-3, rel=0.01)
+
+
+def test_drive_1_has_a_falling_and_a_rising_branch() -> None:
+    points = hersey.read(files(1), units=UNITS, isothermal=True).steady(rotation="forward")
+    surface = hersey.fit(points)
+    assert surface.transition is not None
+    # published: exponent -1.055 for 10-50 rpm, -0.81 for 60-199 rpm, Stribeck speed 61 rpm
+    assert surface.transition.mixed_exponent.value == pytest.approx(-1.055, abs=0.01)
+    assert surface.c.value == pytest.approx(-0.81, abs=0.01)
+    assert 40 < surface.transition.least_torque_speed / RPM < 60
+    assert surface.transition.speed.low < 61 * RPM < surface.transition.speed.high
+    verdict = hersey.regime(points, surface).verdict
+    assert "can stick and slip" in verdict
+
+
+@pytest.mark.parametrize("rotation", ["forward", "reverse", "both"])
+def test_drive_2_announces_no_transition(rotation: str) -> None:
+    points = hersey.read(files(2), units=UNITS, isothermal=True).steady(rotation=rotation)
+    surface = hersey.fit(points)
+    assert surface.transition is None
+    assert "No transition" in hersey.regime(points, surface).verdict
+
+
+def test_through_the_command(tmp_path: Path) -> None:
+    options = ["--torque-unit", UNITS["torque"], "--speed-unit", UNITS["speed"], "--isothermal"]
+    result = run("report", *files(1), *options, "--rotation", "forward", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    assert "torque rises as the drive slows" in result.stdout
+    assert (tmp_path / "report.html").stat().st_size < 2_000_000
+    document = json.loads(run("report", *files(1), *options, "--json", cwd=tmp_path).stdout)
+    assert any("reverse rotation" in w and "--rotation" in w for w in document["warnings"])
+
+
+def test_percent_is_asked_about(tmp_path: Path) -> None:
+    result = run("report", files(1)[0], "--isothermal", cwd=tmp_path)
+    assert result.returncode == 2
+    assert "--torque-unit" in result.stderr

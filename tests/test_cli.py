@@ -1,0 +1,110 @@
+"""The commands: their help teaches, their results can be piped, and they leave nothing half done."""
+
+from __future__ import annotations
+
+import json
+import re
+import shlex
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+import typer
+
+from hersey.cli import app
+from tests.conftest import ROOT
+
+COMMANDS = ["report", "fit", "simulate", "testbench"]
+HERSEY = [sys.executable, "-m", "hersey.cli"]
+
+
+def run(*arguments: str | Path, cwd: Path) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [*HERSEY, *map(str, arguments)], cwd=cwd, capture_output=True, text=True, check=False, timeout=120
+    )
+
+
+def test_all_commands_are_listed() -> None:
+    assert sorted(typer.main.get_command(app).commands) == sorted(COMMANDS)  # type: ignore[attr-defined]
+
+
+def example(*command: str) -> str:
+    text = run(*command, "--help", cwd=ROOT).stdout
+    lines = " ".join(line.strip(" │") for line in text.splitlines())
+    found = re.search(r"Example:\s+(hersey .*?)\s{2,}", lines)
+    assert found, text
+    return re.sub(r"\s+", " ", found[1])
+
+
+@pytest.mark.parametrize("command", [(), *[(c,) for c in COMMANDS]])
+def test_the_example_in_the_help_works_as_typed(command: tuple[str, ...], tmp_path: Path) -> None:
+    (tmp_path / "examples").symlink_to(ROOT / "examples")
+    typed = shlex.split(example(*command))
+    result = run(*typed[1:], cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    assert result.stdout
+
+
+def test_report_prints_verdict_and_path(bench_csv: Path, tmp_path: Path) -> None:
+    result = run("report", bench_csv, "--out", "page.html", cwd=tmp_path)
+    assert result.returncode == 0
+    assert "Dowson-Higginson" in result.stdout
+    assert result.stdout.endswith("report: page.html\n")
+    assert (tmp_path / "page.html").exists()
+
+
+def test_json_goes_to_a_pipe_alone(bench_csv: Path, tmp_path: Path) -> None:
+    result = run("report", bench_csv, "--json", cwd=tmp_path)
+    document = json.loads(result.stdout)
+    assert document["schema_version"] == "1"
+    assert document["command"].startswith("hersey report")
+    assert list(tmp_path.iterdir()) == []
+    fit = json.loads(run("fit", bench_csv, "--json", cwd=tmp_path).stdout)
+    assert fit["fit"]["coefficients"]["c"] == document["fit"]["coefficients"]["c"]
+    cycle = json.loads(run("simulate", "--json", cwd=tmp_path).stdout)
+    assert cycle["frequency"] == pytest.approx(3.940314, rel=1e-6)
+
+
+def test_simulation_is_written_as_csv(tmp_path: Path) -> None:
+    assert run("simulate", "--csv", "motion.csv", cwd=tmp_path).returncode == 0
+    assert (tmp_path / "motion.csv").read_text().startswith("time,belt_speed,stretch,spring_force,mode\n")
+    assert run("simulate", "--csv", "motion.csv", cwd=tmp_path).returncode == 2
+
+
+def test_the_test_bench_writes_log_and_truth(tmp_path: Path) -> None:
+    result = run("testbench", "--out", "log.csv", "--truth", "truth.json", "--seed", "7", cwd=tmp_path)
+    assert "synthetic log (seed 7)" in result.stdout
+    assert json.loads((tmp_path / "truth.json").read_text())["seed"] == 7
+    assert (tmp_path / "log.csv").read_text().startswith("# SYNTHETIC")
+
+
+def test_a_long_log_is_as_long_as_asked(tmp_path: Path) -> None:
+    assert run("testbench", "--out", "log.csv", "--size", "5 MB", cwd=tmp_path).returncode == 0
+    assert 5e6 <= (tmp_path / "log.csv").stat().st_size < 7e6
+    assert run("fit", "log.csv", cwd=tmp_path).returncode == 0
+
+
+def test_an_interrupt_leaves_no_half_written_file(tmp_path: Path) -> None:
+    process = subprocess.Popen(
+        [*HERSEY, "testbench", "--out", "log.csv", "--size", "400 MB"], cwd=tmp_path, stderr=subprocess.PIPE
+    )
+    deadline = time.monotonic() + 60
+    while not list(tmp_path.glob(".*.part")):
+        assert process.poll() is None
+        assert time.monotonic() < deadline
+        time.sleep(0.02)
+    process.send_signal(signal.SIGINT)
+    _, stderr = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert stderr.decode() == "hersey: interrupted\n"
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_version() -> None:
+    assert run("--version", cwd=ROOT).stdout == f"hersey {ROOT_VERSION}\n"
+
+
+ROOT_VERSION = re.search(r'^version = "(.*)"', (ROOT / "Cargo.toml").read_text(), re.MULTILINE)[1]  # type: ignore[index]

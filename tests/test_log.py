@@ -1,0 +1,142 @@
+"""Every shape of CSV that loggers write is read to the same numbers."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import hersey
+from hersey.errors import ChannelError, UnitError
+from hersey.log import delimited
+
+ROWS = [(0.0, 0.5, 60.0, 150.0), (0.1, 0.625, 61.5, 151.25), (0.2, 0.75, 63.0, 149.5)]
+
+
+def plain(separator: str = ",", decimal: str = ".") -> str:
+    return "\n".join(separator.join(f"{v}".replace(".", decimal) for v in row) for row in ROWS) + "\n"
+
+
+HEADER = "Time [s],Torque [N.m],Speed [rpm],Temp [degC]\n"
+SHAPES = {
+    "name [unit]": HEADER + plain(),
+    "name (unit)": HEADER.replace("[", "(").replace("]", ")") + plain(),
+    "units row": "t,Tq,n,T1 temp\ns,N*m,rpm,degC\n" + plain(),
+    "units row in brackets": "Time,Torque,Speed,Temp\n[s],[N.m],[rpm],[degC]\n" + plain(),
+    "semicolon, decimal comma": HEADER.replace(",", ";") + plain(";", ","),
+    "semicolon, decimal point": HEADER.replace(",", ";") + plain(";"),
+    "tabs": HEADER.replace(",", "\t") + plain("\t"),
+    "bars": HEADER.replace(",", "|") + plain("|"),
+    "comments": "# made by hand\n# on a Friday, 2 of them\n" + HEADER + plain(),
+    "preamble": "Logger X;v2\nSerial;0012;A\nSampling;10\n\n" + HEADER.replace(",", ";") + plain(";"),
+    "preamble of commas": "Logger,X\nScale,0,True,2.0,49.5\nDate,2020-07-08\n" + HEADER + plain(),
+    "empty last column": HEADER.replace("\n", ",\n") + plain().replace("\n", ",\n"),
+    "other columns": "Note,"
+    + HEADER
+    + "".join(f"step {i},{line}\n" for i, line in enumerate(plain().splitlines())),
+    "quoted": '"Time [s]","Torque [N.m]","Speed [rpm]","Temp [degC]"\n' + plain(),
+    "trailing blank lines": HEADER + plain() + "\n\n",
+    "no newline at the end": (HEADER + plain()).rstrip("\n"),
+    "windows": (HEADER + plain()).replace("\n", "\r\n"),
+}
+
+
+def assert_same(log: hersey.TorqueLog) -> None:
+    (run,) = log.runs
+    expected = np.array(ROWS).T
+    np.testing.assert_allclose(run.time, expected[0], rtol=1e-12)
+    np.testing.assert_allclose(run.torque, expected[1], rtol=1e-12)
+    np.testing.assert_allclose(run.speed, expected[2] * np.pi / 30, rtol=1e-12)
+    assert run.temperature is not None
+    np.testing.assert_allclose(run.temperature, expected[3] + 273.15, rtol=1e-12)
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_shape(shape: str, tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_bytes(SHAPES[shape].encode())
+    assert_same(hersey.read(path))
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "latin-1"])
+def test_encoding(encoding: str, tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_bytes((HEADER.replace("degC", "°C") + plain()).encode(encoding))
+    assert_same(hersey.read(path))
+
+
+@pytest.mark.parametrize("size", [7, 64, 101])
+@pytest.mark.parametrize("shape", ["name [unit]", "windows", "comments", "no newline at the end"])
+def test_blocks_change_nothing(
+    size: int, shape: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(delimited, "BLOCK", size)
+    path = tmp_path / "log.csv"
+    path.write_bytes(SHAPES[shape].encode())
+    assert_same(hersey.read(path))
+
+
+@given(
+    values=st.lists(st.tuples(*[st.floats(-1e6, 1e6, allow_subnormal=False)] * 3), min_size=1, max_size=30),
+    separator=st.sampled_from(",;\t"),
+)
+def test_any_numbers_survive(
+    values: list[tuple[float, float, float]], separator: str, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    path = tmp_path_factory.mktemp("numbers") / "log.csv"
+    rows = [(float(i), *row) for i, row in enumerate(values)]
+    text = separator.join(["t [s]", "Torque [N*m]", "Speed [rad/s]", "Temp [K]"]) + "\n"
+    text += "\n".join(separator.join(repr(v) for v in row) for row in rows)
+    path.write_text(text)
+    run = hersey.read(path).runs[0]
+    assert run.temperature is not None
+    found = np.column_stack([run.time, run.torque, run.speed, run.temperature])
+    np.testing.assert_array_equal(found, np.array(rows))
+
+
+def test_a_channel_is_named_when_two_could_be_it(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text("t [s],Tq (ozf.in),Torque 2 [N*m],Speed [rpm],Temp [degC]\n0,1,2,3,4\n1,1,2,3,4\n")
+    with pytest.raises(ChannelError, match="--torque 'Tq'"):
+        hersey.read(path)
+    chosen = hersey.read(path, channels={"torque": "Tq (ozf.in)"})
+    assert chosen.runs[0].torque[0] == pytest.approx(0.00706155, rel=1e-5)
+    with pytest.raises(ChannelError, match="no column 'Moment'"):
+        hersey.read(path, channels={"torque": "Moment"})
+
+
+def test_set_points_are_not_measurements(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text("t [s],Torque [N*m],Speed set [rpm],Speed [rpm],Temp [degC]\n0,1,99,3,4\n1,1,99,3,4\n")
+    assert hersey.read(path).runs[0].speed[0] == pytest.approx(3 * np.pi / 30)
+
+
+def test_a_unit_may_come_from_the_user(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text("t [s],Torque,Speed [rpm],Temp [degC]\n0,50,3,4\n1,50,3,4\n")
+    with pytest.raises(UnitError, match="column 'Torque' has no unit"):
+        hersey.read(path)
+    log = hersey.read(path, units={"torque": "9.84 mN*m / 100"})
+    assert log.runs[0].torque[0] == pytest.approx(0.00492)
+    assert log.files[0].channels[1].unit == "9.84 mN*m / 100"
+
+
+def test_missing_numbers_are_refused_or_counted(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text(HEADER + plain() + "0.3,NaN,60,150\n0.4,---,60,150\n0.5,1.0,60,150\n")
+    with pytest.raises(hersey.HerseyError, match="line 5, column 'Torque'"):
+        hersey.read(path)
+    log = hersey.read(path, drop_missing=True)
+    assert (log.rows, log.files[0].missing_rows) == (4, 2)
+
+
+def test_many_files_are_runs_of_one_machine(tmp_path: Path) -> None:
+    for name in ("a.csv", "b.csv"):
+        (tmp_path / name).write_text(HEADER + plain())
+    log = hersey.read([tmp_path / "a.csv", tmp_path / "b.csv"])
+    assert [run.name for run in log.runs] == ["a.csv", "b.csv"]
+    assert log.rows == 6
+    assert log.files[0].sha256 == log.files[1].sha256
