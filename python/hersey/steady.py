@@ -35,6 +35,8 @@ MAX_TEMPERATURE_DRIFT, MAX_SPEED_DRIFT, MAX_TORQUE_DRIFT, MAX_DRIFT_TO_NOISE = 2
 MAX_TORQUE_SWING, MAX_SPEED_SWING = 0.35, 0.2
 #: Stick-slip: torque swings by more than this, and its changes are this skewed (slow rises, sudden drops).
 STICK_SLIP_SWING, STICK_SLIP_SKEWNESS = 0.05, -3.0
+#: Samples to which a dwell is averaged before its drift and autocorrelation are computed.
+THINNED = 10_000
 #: Drift counts as real beyond this many standard errors.
 SIGNIFICANT = 3.0
 
@@ -338,6 +340,7 @@ def _skewness_of_changes(torque: FloatArray) -> float:
 
 def _drift(time: FloatArray, values: FloatArray) -> tuple[float, float]:
     """Change along a straight line over the dwell, 0 if within chance, and the deviation about the line."""
+    time, values = _thinned(time), _thinned(values)
     t = time - time.mean()
     spread = float(t @ t)
     if spread == 0.0:
@@ -349,13 +352,18 @@ def _drift(time: FloatArray, values: FloatArray) -> tuple[float, float]:
     return (rise if abs(rise) > SIGNIFICANT * error else 0.0), float(np.std(residual))
 
 
+def _thinned(values: FloatArray) -> FloatArray:
+    """Means over blocks, so many that a dwell has at most about `THINNED` of them."""
+    size = max(1, values.size // THINNED)
+    return np.asarray(values[: values.size // size * size].reshape(-1, size).mean(axis=1))
+
+
 def mean_and_error(values: FloatArray) -> tuple[float, float, float]:
     """Return mean, standard error of the mean and number of independent samples of a stationary series.
 
     The integrated autocorrelation time is summed up to the first lag of five times itself (Sokal).
     """
-    size = max(1, values.size // 65_536)
-    series = values[: values.size // size * size].reshape(-1, size).mean(axis=1)
+    series = _thinned(values)
     count = series.size
     centred = series - series.mean()
     variance = float(centred @ centred) / max(count - 1, 1)

@@ -362,7 +362,7 @@ class _Solution:
     def estimate(self, weights: FloatArray) -> Estimate:
         """A linear combination of the values."""
         value = float(weights @ self.values)
-        error = float(np.sqrt(max(weights @ self.covariance @ weights, 0.0)))
+        error = float(np.sqrt(max(float(weights @ self.covariance @ weights), 0.0)))
         reach = _quantile(self.residuals.size - self.values.size) * error
         return Estimate(value, error, value - reach, value + reach)
 

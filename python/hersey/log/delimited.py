@@ -135,10 +135,10 @@ def _blocks(
             head, _, block = block.partition(b"\n")
             skip, line = skip - 1, line + 1
             del head
-        if block.strip():
+        if block and not block.isspace():
             yield block, line, done
         line += block.count(b"\n")
-    if rest.strip():
+    if rest and not rest.isspace():
         yield rest, line, done
 
 

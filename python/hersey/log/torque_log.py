@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -46,7 +47,7 @@ class Run:
     speed: FloatArray
     temperature: FloatArray | None
 
-    @property
+    @cached_property
     def sampling_interval(self) -> float:
         """Median time between rows, in s."""
         return float(np.median(np.diff(self.time)))
