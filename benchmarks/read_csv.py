@@ -82,8 +82,8 @@ def main() -> None:
     lines = [
         "# Reading a large CSV",
         "",
-        f"{megabytes:.0f} MB, {found['hersey.read']['rows'] / 1e6:.1f} million rows, 4 columns; {cpu()}; best of three;",
-        "Python starts and imports are inside, the file is in the page cache. `python benchmarks/read_csv.py`.",
+        f"{megabytes:.0f} MB, {found['hersey.read']['rows'] / 1e6:.1f} million rows, 4 columns; {cpu()};",
+        "best of three; imports are inside, the file is in the page cache. `python benchmarks/read_csv.py`.",
         "",
         "| | MB/s | time against polars | peak memory (GB) |",
         "|---|---|---|---|",

@@ -40,6 +40,14 @@ def test_start_decides_between_transition_and_fold() -> None:
     assert (below.kind, above.kind) == ("stick_slip", "steady_sliding")
 
 
+def test_a_steady_start_below_the_transition_is_told_apart() -> None:
+    kinds = [
+        hersey.stick_slip(TRAIN, DRAG, drive_speed=v, start="steady").kind
+        for v in (0.3, 0.5, 0.98, 0.99, 1.0)
+    ]
+    assert kinds == ["stick_slip", "stick_slip", "stick_slip", "oscillation", "steady_sliding"]
+
+
 @settings(max_examples=30, deadline=None)
 @given(
     k=st.floats(200, 5000),

@@ -3,7 +3,10 @@
 ==============  ==============================================================================
 log             reading files into a `TorqueLog`
 steady          dwells, reduced to steady points with honest errors
-surface         the fitted damping surface B = a T^b w^c
+estimation      weighted least squares with an unknown scatter
+law             B = a T^b w^c in logarithms, and the data it is fitted to
+branches        two branches of the law: whether, and where they meet
+surface         the fitted damping surface
 regime          what the exponents say about lubrication
 motion          stick-slip motion of the belt
 fuser           what the log cannot tell: drivetrain and geometry
@@ -20,12 +23,14 @@ backwards: a log knows no fit, a fit knows no motion.
 """
 
 from hersey._core import VERSION as __version__
+from hersey.branches import Transition
 from hersey.errors import HerseyError
+from hersey.estimation import Estimate
 from hersey.log import TorqueLog, read
 from hersey.motion import Drag, Drivetrain, StickSlipCycle, Trajectory, simulate, stick_slip
 from hersey.regime import Regime, regime
 from hersey.steady import SteadyPoints
-from hersey.surface import DampingSurface, Estimate, Transition, fit
+from hersey.surface import DampingSurface, fit
 
 __all__ = [
     "DampingSurface",

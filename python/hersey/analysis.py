@@ -16,19 +16,22 @@ from tsdownsample import MinMaxLTTBDownsampler
 
 from hersey import _core
 from hersey.errors import ExtrapolationWarning, ParameterError
+from hersey.estimation import Estimate
 from hersey.fuser import Fuser
 from hersey.log import TorqueLog
 from hersey.log.torque_log import FloatArray, Run
 from hersey.motion import Drag, Drivetrain, simulate, stick_slip
 from hersey.regime import Regime, celsius, regime
 from hersey.steady import SteadyPoints, groups_of_temperature, rpm
-from hersey.surface import DampingSurface, Estimate, fit
+from hersey.surface import DampingSurface, fit
 
 SCHEMA_VERSION: Literal["1"] = "1"
 #: Samples kept of each channel for display; extremes survive the thinning.
 DISPLAYED_SAMPLES = 2000
 #: A difference between directions counts as one beyond this share and this many standard errors.
 NOTABLE_DIFFERENCE, SIGNIFICANT = 0.02, 3.0
+#: A tare beyond this share of the least torque is asked about.
+LARGE_TARE = 0.1
 #: Drive speed of the simulation of the user's machine, as a share of its transition speed.
 SIMULATED_SPEED = 0.8
 
@@ -123,6 +126,7 @@ class TransitionPart(Part):
     mixed_exponent: Interval
     temperature_exponent: float
     evidence: float = Field(description="gain in AICc over a single power law")
+    gradual: bool = Field(description="branches are trend lines on either side of a gradual bend")
 
 
 class Curve(Part):
@@ -421,6 +425,7 @@ def _fit_part(points: SteadyPoints, s: DampingSurface) -> FitPart:
             mixed_exponent=_interval(s.transition.mixed_exponent),
             temperature_exponent=s.transition.temperature_exponent,
             evidence=s.transition.evidence,
+            gradual=s.transition.gradual,
         )
     coefficients = {"a": s.a, **({"b": s.b} if s.b else {}), "c": s.c}
     return FitPart(
@@ -510,9 +515,16 @@ def _warnings(
 
 def _tare_warning(points: SteadyPoints) -> list[str]:
     standing = points.standing_torque
-    if standing is None or points.tare:
+    if standing is None:
         return []
     least = float(np.min(np.abs(points.column("torque"))))
+    if points.tare:
+        if abs(points.tare) < LARGE_TARE * least:
+            return []
+        return [
+            f"The tare, {points.tare * 1e3:.3g} mN m, is {abs(points.tare) / least:.0%} of the least dwell: "
+            "is it the sensor's offset, and did the drive stand free?"
+        ]
     if abs(standing) < 0.001 * least:
         return []
     return [

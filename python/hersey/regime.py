@@ -7,9 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import stats
 
+from hersey.estimation import CONFIDENCE, Estimate
+from hersey.law import distinct_speeds, scaled_temperature
 from hersey.log.torque_log import FloatArray
 from hersey.steady import SteadyPoints, groups_of_temperature, rpm
-from hersey.surface import CONFIDENCE, DampingSurface, Estimate, distinct_speeds
+from hersey.surface import DampingSurface
 from hersey.units import convert
 
 #: Name, least and greatest exponent of damping in speed, and where it comes from.
@@ -83,6 +85,7 @@ def _exponents(points: SteadyPoints, surface: DampingSurface) -> tuple[BranchExp
     torque = np.abs(points.column("torque"))
     error = np.hypot(points.column("torque_error") / torque, surface.statistics.scatter)
     hot = surface.b is not None
+    level = torque * np.exp(-_warmth(points, surface))
     groups = list(groups_of_temperature(points.column("temperature"))) if hot else [np.arange(speed.size)]
     found = []
     for group in groups:
@@ -94,10 +97,18 @@ def _exponents(points: SteadyPoints, surface: DampingSurface) -> tuple[BranchExp
             sides = [("mixed", group[slow]), ("ehl", group[~slow])]
         for branch, members in sides:
             if members.size > 2 and distinct_speeds(speed[members]) >= 3:
-                exponent = _slope(speed[members], torque[members], error[members], surface)
+                exponent = _slope(speed[members], level[members], error[members], surface)
                 low, high = float(speed[members].min()), float(speed[members].max())
                 found.append(BranchExponent(kelvin, branch, int(members.size), low, high, exponent))
     return tuple(found)
+
+
+def _warmth(points: SteadyPoints, surface: DampingSurface) -> FloatArray:
+    """Logarithm of T^b of each dwell about the reference: dwells of a group differ by some kelvin."""
+    if surface.b is None or surface.reference_temperature is None:
+        return np.zeros(len(points))
+    temperature = scaled_temperature(points.column("temperature"), surface.temperature_scale)
+    return np.asarray(surface.b.value * np.log(temperature / surface.reference_temperature))
 
 
 def _slope(speed: FloatArray, torque: FloatArray, error: FloatArray, surface: DampingSurface) -> Estimate:

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import polars as pl
 from numpy.typing import NDArray
+from scipy.ndimage import percentile_filter
 
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.log.torque_log import FloatArray, Run, TorqueLog
@@ -24,17 +25,19 @@ BLOCK_DURATION, MAX_BLOCKS = 0.2, 200_000
 SPEED_TOLERANCE, SPEED_NOISE = 0.05, 4.0
 #: An excursion of the speed shorter than this, s, does not end a dwell.
 MAX_EXCURSION = 1.0
-#: Below this share of the fastest speed of the run the drive stands.
-STANDING = 0.003
+#: Slower than this, rad/s (a fiftieth of a revolution a minute), the drive stands.
+STANDING = 0.002
 #: Fewest samples of a dwell.
 MIN_SAMPLES = 20
 #: Largest drifts within a dwell: of temperature in K; of speed and torque as a share; of torque also in
 #: standard deviations of what fluctuates about the drift (a turning shaft makes slow waves of its own).
-MAX_TEMPERATURE_DRIFT, MAX_SPEED_DRIFT, MAX_TORQUE_DRIFT, MAX_DRIFT_TO_NOISE = 2.0, 0.02, 0.03, 2.0
+MAX_TEMPERATURE_DRIFT, MAX_SPEED_DRIFT, MAX_TORQUE_DRIFT, MAX_DRIFT_TO_NOISE = 2.0, 0.01, 0.03, 2.0
 #: Largest standard deviation within a dwell as a share of the mean, of torque and of speed.
 MAX_TORQUE_SWING, MAX_SPEED_SWING = 0.35, 0.2
 #: Stick-slip: torque swings by more than this, and its changes are this skewed (slow rises, sudden drops).
 STICK_SLIP_SWING, STICK_SLIP_SKEWNESS = 0.05, -3.0
+#: Where a dwell that drifts is tried again, as shares of it cut from its start.
+LATER_STARTS = (0.3, 0.5, 0.65, 0.8, 0.9)
 #: Samples to which a dwell is averaged before its drift and autocorrelation are computed.
 THINNED = 10_000
 #: Drift counts as real beyond this many standard errors.
@@ -66,8 +69,8 @@ class SteadyPoints:
         torque carry the sign of the rotation.
     rejected
         Every other stretch, with the reason. Rows of the table and of this list add up to the log's.
-    tare
-        Torque subtracted from every sample, N m.
+    tare, tare_error
+        Torque subtracted from every sample, and its standard error, N m.
     standing_torque
         Mean torque while the drive stood, N m, or None if it never did.
     log
@@ -79,6 +82,7 @@ class SteadyPoints:
     tare: float
     standing_torque: float | None
     log: TorqueLog
+    tare_error: float = 0.0
 
     def __len__(self) -> int:
         """Return how many steady points there are."""
@@ -118,7 +122,7 @@ def steady_points(
     standing = _standing_torque(log, segments)
     if tare == "standing" and standing is None:
         raise InsufficientDataError("the drive never stands still for 2 s: there is no torque to tare with")
-    offset = standing if tare == "standing" and standing is not None else 0.0
+    offset, offset_error = standing if tare == "standing" and standing is not None else (0.0, 0.0)
     rows: list[dict[str, object]] = []
     rejected: list[Rejection] = []
     for index, (run, found) in enumerate(zip(log.runs, segments, strict=True)):
@@ -134,7 +138,8 @@ def steady_points(
     if not rows:
         raise InsufficientDataError(_nothing_steady(rejected))
     table = pl.DataFrame(rows, schema_overrides={"temperature": pl.Float64, "temperature_error": pl.Float64})
-    return SteadyPoints(table, tuple(rejected), offset, standing, log)
+    shown = None if standing is None else standing[0]
+    return SteadyPoints(table, tuple(rejected), offset, shown, log, offset_error)
 
 
 @dataclass(frozen=True)
@@ -149,7 +154,7 @@ class _Segment:
 
 
 def _segments(run: Run) -> list[_Segment]:
-    """Cut a run where the speed changes, judged on block means."""
+    """Cut a run where the speed changes, judged on block means against the noise about them."""
     rows = run.time.size
     duration = float(run.time[-1] - run.time[0])
     per_second = rows / duration if duration > 0 else rows
@@ -157,14 +162,12 @@ def _segments(run: Run) -> list[_Segment]:
     starts = np.arange(0, rows, block)
     counts = np.diff(starts, append=rows)
     means = np.add.reduceat(run.speed, starts) / counts
-    # three quarters of the changes between blocks are noise: 1.627 turns that quantile into a deviation
-    noise = float(np.quantile(np.abs(np.diff(means)), 0.75)) / 1.627 if means.size > 1 else 0.0
-    still = STANDING * float(np.max(np.abs(means)))
+    noise = _local_noise(means)
     cuts = [0]
     total, count = means[0], 1
     for i in range(1, means.size):
         mean = total / count
-        if abs(means[i] - mean) <= max(SPEED_TOLERANCE * abs(mean), SPEED_NOISE * noise, still):
+        if abs(means[i] - mean) <= max(SPEED_TOLERANCE * abs(mean), SPEED_NOISE * noise[i], STANDING):
             total, count = total + means[i], count + 1
         else:
             cuts.append(i)
@@ -174,8 +177,26 @@ def _segments(run: Run) -> list[_Segment]:
         start, end = int(starts[first]), int(starts[last - 1] + counts[last - 1])
         speed = float(np.mean(run.speed[start:end]))
         long = run.time[end - 1] - run.time[start] >= 5 * BLOCK_DURATION and end - start >= MIN_SAMPLES
-        segments.append(_Segment(start, end, speed, bool(long), abs(speed) <= still))
-    return _joined(run, segments)
+        chance = 3.0 * float(np.median(noise[first:last])) / (last - first) ** 0.5
+        still = abs(speed) <= max(STANDING, chance)
+        segments.append(_Segment(start, end, speed, bool(long), still))
+    return _joined(run, _surely_standing(segments))
+
+
+def _local_noise(means: FloatArray) -> FloatArray:
+    """Standard deviation of block means about the speed held, near each block.
+
+    Three quarters of the changes between neighbours are noise: 1.627 turns that quantile into a deviation.
+    """
+    changes = np.abs(np.diff(means, prepend=means[:1]))
+    return np.asarray(percentile_filter(changes, 75, size=min(25, changes.size)) / 1.627)
+
+
+def _surely_standing(segments: list[_Segment]) -> list[_Segment]:
+    """A drive stands only if it is far slower than wherever it surely moves."""
+    moving = [abs(s.speed) for s in segments if s.steady and not s.standing]
+    slowest = min(moving, default=np.inf)
+    return [replace(s, standing=s.standing and abs(s.speed) <= 0.05 * slowest) for s in segments]
 
 
 def _joined(run: Run, segments: list[_Segment]) -> list[_Segment]:
@@ -204,15 +225,18 @@ def _same_dwell(run: Run, before: _Segment, after: _Segment) -> bool:
     return before.steady and apart <= MAX_EXCURSION and (near or (before.standing and after.standing))
 
 
-def _standing_torque(log: TorqueLog, segments: list[list[_Segment]]) -> float | None:
-    sums, rows = 0.0, 0
+def _standing_torque(log: TorqueLog, segments: list[list[_Segment]]) -> tuple[float, float] | None:
+    """Mean torque while the drive stands, and its standard error, N m."""
+    parts = []
     for run, found in zip(log.runs, segments, strict=True):
         for s in found:
             if s.standing and s.steady:
                 trim = (s.end - s.start) // 10
-                kept = run.torque[s.start + trim : s.end - trim]
-                sums, rows = sums + float(np.sum(kept)), rows + kept.size
-    return sums / rows if rows else None
+                parts.append(run.torque[s.start + trim : s.end - trim])
+    if not parts:
+        return None
+    mean, error, _ = mean_and_error(np.concatenate(parts))
+    return mean, error
 
 
 def _reduce(
@@ -229,20 +253,28 @@ def _reduce(
         return Rejection(index, start, end, segment.end - segment.start, reason)
 
     if not segment.steady:
-        return reject("speed changing")
+        few = segment.end - segment.start < MIN_SAMPLES
+        return reject(
+            f"speed changing, or held for fewer than {MIN_SAMPLES} rows" if few else "speed changing"
+        )
     if segment.standing:
         return reject("drive standing")
     if rotation != "both" and (segment.speed > 0) != (rotation == "forward"):
         return reject(f"rotation not {rotation}, as asked")
     start, end = _settled(run, segment)
-    if run.time[end - 1] - run.time[start] < min_dwell or end - start < MIN_SAMPLES:
-        lasted = run.time[segment.end - 1] - run.time[segment.start]
-        return reject(f"dwell too short: {lasted:.1f} s, of which {min_dwell:g} s must be settled")
-    speed, torque = run.speed[start:end], run.torque[start:end] - tare
-    temperature = None if run.temperature is None else run.temperature[start:end]
-    reason = _unsteady(run.time[start:end], speed, torque, temperature)
+    reason = _unsteady(run, start, end, min_dwell, tare)
+    for share in LATER_STARTS:  # a warm-up at the same speed may come before what is steady
+        later = start + round(share * (end - start))
+        if (
+            reason
+            and reason.startswith(("temperature drifts", "torque drifts"))
+            and _unsteady(run, later, end, min_dwell, tare) is None
+        ):
+            start, reason = later, None
     if reason:
         return reject(reason)
+    speed, torque = run.speed[start:end], run.torque[start:end] - tare
+    temperature = None if run.temperature is None else run.temperature[start:end]
     torque_mean, torque_error, independent = mean_and_error(torque)
     # a drift small enough to be kept is still one: its own deviation about the mean is added
     torque_error = float(np.hypot(torque_error, _drift(run.time[start:end], torque)[0] / np.sqrt(12.0)))
@@ -276,14 +308,19 @@ def _settled(run: Run, segment: _Segment) -> tuple[int, int]:
     size = max(1, rows // 200)
     count = rows // size
     blocks = slice(segment.start, segment.start + count * size)
-    # the first and last block of a dwell may hold the end of a ramp
+    # the first and last block of a dwell may hold the end of a ramp, a slow ramp many more
     edge = -(-round(BLOCK_DURATION / run.sampling_interval) // size) if count > 20 else 0
-    cut = edge
+    held = run.speed[blocks].reshape(count, size).mean(axis=1)
+    noise = float(np.median(np.abs(np.diff(held)))) if count > 1 else 0.0
+    away = np.abs(held - np.median(held))
+    near = np.flatnonzero(away <= max(MAX_SPEED_DRIFT * abs(segment.speed), SPEED_NOISE * noise))
+    first, last = max(int(near[0]), edge), max(count - 1 - int(near[-1]), edge)
+    cut = first
     for channel in (run.torque, run.temperature):
         if channel is not None:
-            means = channel[blocks].reshape(count, size).mean(axis=1)[edge : count - edge]
-            cut = max(cut, edge + _settling_blocks(means))
-    return segment.start + cut * size, segment.end - edge * size
+            means = channel[blocks].reshape(count, size).mean(axis=1)[first : count - last]
+            cut = max(cut, first + _settling_blocks(means))
+    return segment.start + cut * size, segment.end - last * size
 
 
 def _settling_blocks(means: FloatArray) -> int:
@@ -300,10 +337,18 @@ def _settling_blocks(means: FloatArray) -> int:
     return best if error[best] < 0.8 * error[0] else 0
 
 
-def _unsteady(
-    time: FloatArray, speed: FloatArray, torque: FloatArray, temperature: FloatArray | None
-) -> str | None:
-    """Why a dwell is not steady, or None."""
+def _unsteady(run: Run, start: int, end: int, min_dwell: float, tare: float) -> str | None:
+    """Why rows [start, end) are not a steady dwell, or None."""
+    time, speed, torque = run.time[start:end], run.speed[start:end], run.torque[start:end] - tare
+    if end - start < MIN_SAMPLES or time[-1] - time[0] < min_dwell:
+        lasted = float(time[-1] - time[0]) if end > start else 0.0
+        return (
+            f"dwell too short: {lasted:.1f} s or {end - start} rows are settled, "
+            f"{min_dwell:g} s and {MIN_SAMPLES} rows are needed"
+        )
+    if np.mean(torque) == 0.0:
+        return "torque is zero: is the sensor connected?"
+    temperature = None if run.temperature is None else run.temperature[start:end]
     if np.std(speed) > MAX_SPEED_SWING * abs(np.mean(speed)):
         return f"speed not held: it varies by {np.std(speed) / abs(np.mean(speed)):.0%} (standard deviation)"
     swing = float(np.std(torque)) / abs(float(np.mean(torque)))
@@ -342,10 +387,10 @@ def _drift(time: FloatArray, values: FloatArray) -> tuple[float, float]:
     """Change along a straight line over the dwell, 0 if within chance, and the deviation about the line."""
     time, values = _thinned(time), _thinned(values)
     t = time - time.mean()
-    spread = float(t @ t)
+    spread = float(np.sum(t * t))
     if spread == 0.0:
         return 0.0, 0.0
-    slope = float(t @ values) / spread
+    slope = float(np.sum(t * values)) / spread
     residual = values - values.mean() - slope * t
     error = mean_and_error(residual)[1] * np.sqrt(12.0)  # of a line's rise, uniform times
     rise = slope * float(time[-1] - time[0])
@@ -366,7 +411,7 @@ def mean_and_error(values: FloatArray) -> tuple[float, float, float]:
     series = _thinned(values)
     count = series.size
     centred = series - series.mean()
-    variance = float(centred @ centred) / max(count - 1, 1)
+    variance = float(np.sum(centred * centred)) / max(count - 1, 1)
     if variance <= 1e-30 * float(np.mean(values)) ** 2:
         return float(np.mean(values)), 0.0, float(count)
     length = 1 << (2 * count - 1).bit_length()
@@ -374,8 +419,10 @@ def mean_and_error(values: FloatArray) -> tuple[float, float, float]:
     correlation = np.fft.irfft(np.abs(spectrum) ** 2, length)[:count]
     times = 2.0 * np.cumsum(correlation / correlation[0]) - 1.0
     window = int(np.argmax(np.arange(count) >= 5.0 * np.maximum(times, 1.0)))
-    time = min(max(1.0, float(times[window])), count / 2)
-    return float(np.mean(values)), float(np.sqrt(variance * time / count)), count / time
+    # a finite series underestimates: Wolff, Comput. Phys. Commun. 156 (2004) 143, and its variance too
+    time = min(max(1.0, float(times[window])) * (1.0 + (2.0 * window + 1.0) / count), count / 2)
+    error = float(np.sqrt(variance * time / (count - time)))
+    return float(np.mean(values)), error, count / time
 
 
 def _nothing_steady(rejected: list[Rejection]) -> str:

@@ -113,3 +113,23 @@ fn errors_name_the_quantity() {
     assert!(simulate(&train, &drag, f64::NAN, Start::REST, 1.0, 10, 1e-9).is_err());
     assert!(simulate(&train, &drag, 1.0, Start::REST, 1.0, 10, 0.1).is_err());
 }
+
+#[test]
+fn steady_sliding_is_recognised_by_its_energy() {
+    // hardly damped, so that waiting for the swing to die out would take thousands of laps
+    let drag = Drag::new(0.5, 1.0, -0.7, -1.2, 0.01, Closure::Retained).unwrap();
+    let train = Drivetrain::new(1000.0, 1.0).unwrap();
+    let cycle = stick_slip(&train, &drag, 5.0, Start::REST, 1e-9).unwrap();
+    assert_eq!(cycle.kind, CycleKind::SteadySliding);
+    assert!(cycle.laps < 200);
+    assert_close(cycle.speed_max, 5.0, 0.0);
+    assert_close(cycle.stretch_max, drag.force(5.0) / 1000.0, 1e-12);
+}
+
+#[test]
+fn an_unstable_balance_does_not_count_as_motion() {
+    // at 0.5 v_t steady sliding is unstable: a nudge grows into stick-slip
+    let (train, drag) = baseline();
+    let start = Start { belt_speed: 0.5 * 1.001, stretch: drag.force(0.5) / 1000.0 };
+    assert_eq!(stick_slip(&train, &drag, 0.5, start, 1e-9).unwrap().kind, CycleKind::StickSlip);
+}

@@ -49,11 +49,13 @@ pub struct StickSlipCycle {
 /// Laps after which an orbit that has not closed is reported as unsettled.
 const MAX_LAPS: usize = 20_000;
 /// Pieces without a lap after which the motion is judged where it stands.
-const MAX_PIECES_PER_LAP: usize = 100_000;
+const MAX_PIECES_PER_LAP: usize = 1_000_000;
 /// Relative change of the section state between laps at which an orbit has closed.
 const CLOSED: f64 = 1e-9;
 /// Swing of the belt speed, relative to the drive speed, below which it counts as steady.
 const STEADY: f64 = 1e-7;
+/// Swing, relative to the drive speed, below which a lap on the falling branch is still growing out of rounding.
+const GROWING: f64 = 1e-6;
 
 /// What the motion settles to at constant `drive_speed` from `start`.
 ///
@@ -79,7 +81,8 @@ pub fn stick_slip(
         let still = piece.duration.is_infinite() || is_steady(&piece, train, drag, drive_speed);
         if still || pieces > MAX_PIECES_PER_LAP {
             let kind = if still { CycleKind::SteadySliding } else { CycleKind::Unsettled };
-            return Ok(lap.cycle(kind, motion.time(), laps));
+            let steady = still.then(|| steady_stretch(&piece, train, drag, drive_speed));
+            return Ok(lap.cycle(kind, motion.time(), laps, drive_speed, steady));
         }
         let found = release(event).or_else(|| overtaking(&piece, drive_speed));
         let Some(section) = found.filter(|s| s.stuck || lap.stick_duration == 0.0) else {
@@ -92,14 +95,15 @@ pub fn stick_slip(
         }
         (pieces, overtakings) = (0, 0);
         laps += 1;
-        let closed = previous.is_some_and(|p| section.repeats(&p, drag, train));
+        let grown = section.stuck || lap.speed.1 - lap.speed.0 > GROWING * drive_speed.abs();
+        let closed = grown && previous.is_some_and(|p| section.repeats(&p, drag, train));
         if closed || laps >= MAX_LAPS {
             let kind = match (closed, section.stuck) {
                 (false, _) => CycleKind::Unsettled,
                 (true, true) => CycleKind::StickSlip,
                 (true, false) => CycleKind::Oscillation,
             };
-            return Ok(lap.cycle(kind, section.time, laps));
+            return Ok(lap.cycle(kind, section.time, laps, drive_speed, None));
         }
         previous = Some(section);
         lap = Lap::starting_at(section.time);
@@ -143,20 +147,35 @@ fn overtaking(piece: &Piece, drive_speed: f64) -> Option<Section> {
     Some(Section { time: piece.time + elapsed, stuck: false, belt_speed, stretch })
 }
 
-/// Whether the belt slides with the drive, to within `STEADY`, where that is stable.
+/// Whether the belt slides with the drive for good.
+///
+/// On a rising branch the energy of the deviation, `m (u - v)^2/2 + k (s - s*)^2/2`, falls at the rate
+/// `(F(u) - F(v)) (u - v) >= 0`; once it is too small to carry the belt down to the transition speed, the belt
+/// never leaves the branch again and the deviation dies out.
 fn is_steady(piece: &Piece, train: &Drivetrain, drag: &Drag, drive_speed: f64) -> bool {
     let (belt_speed, stretch) = piece.at(0.0);
     if piece.start.creeping {
         return (belt_speed - drive_speed).abs() <= STEADY * drag.stick_speed();
     }
-    if piece.start.mode != Mode::Ehl || drive_speed.abs() < drag.transition_speed() {
+    let margin = drive_speed.abs() - drag.transition_speed();
+    if piece.start.mode != Mode::Ehl || margin < 0.0 {
         return false;
     }
-    let force = train.stiffness() * stretch;
-    let holding = drag.force(drive_speed);
-    let impedance = (train.stiffness() * train.mass()).sqrt();
-    (belt_speed - drive_speed).abs() <= STEADY * drive_speed.abs()
-        && (force - holding).abs() <= STEADY * drive_speed.abs() * impedance
+    let rising = drag.force_exponent(Mode::Ehl) >= 0.0;
+    let reach =
+        if rising { margin.max(STEADY * drive_speed.abs()) } else { STEADY * drive_speed.abs() };
+    let off = stretch - drag.force(drive_speed) / train.stiffness();
+    let energy = train.mass() * (belt_speed - drive_speed).powi(2) + train.stiffness() * off * off;
+    energy < train.mass() * reach * reach
+}
+
+/// Spring stretch of steady motion at the drive speed.
+fn steady_stretch(piece: &Piece, train: &Drivetrain, drag: &Drag, drive_speed: f64) -> f64 {
+    if piece.start.mode == Mode::Ehl {
+        drag.force(drive_speed) / train.stiffness()
+    } else {
+        piece.at(0.0).1
+    }
 }
 
 /// Extremes and durations of the lap under way.
@@ -197,18 +216,29 @@ impl Lap {
         }
     }
 
-    fn cycle(&self, kind: CycleKind, end: f64, laps: usize) -> StickSlipCycle {
+    fn cycle(
+        &self,
+        kind: CycleKind,
+        end: f64,
+        laps: usize,
+        drive_speed: f64,
+        steady: Option<f64>,
+    ) -> StickSlipCycle {
         let duration = end - self.begin;
         let periodic = kind != CycleKind::SteadySliding && duration.is_finite() && duration > 0.0;
+        let (speed, stretch) = match steady {
+            Some(stretch) => ((drive_speed, drive_speed), (stretch, stretch)),
+            None => (self.speed, self.stretch),
+        };
         StickSlipCycle {
             kind,
             frequency: if periodic { 1.0 / duration } else { 0.0 },
             slip_duration: if periodic { duration - self.stick_duration } else { 0.0 },
             stick_duration: if periodic { self.stick_duration } else { 0.0 },
-            speed_min: self.speed.0,
-            speed_max: self.speed.1,
-            stretch_min: self.stretch.0,
-            stretch_max: self.stretch.1,
+            speed_min: speed.0,
+            speed_max: speed.1,
+            stretch_min: stretch.0,
+            stretch_max: stretch.1,
             laps,
         }
     }
