@@ -111,9 +111,11 @@ def surface(document: Analysis) -> Chart:
         .mark_point(filled=True, fill="white", stroke="#222", strokeWidth=1, size=40, opacity=1)
         .encode(x=x, y="low:Q", tooltip=_point_tips(document))
     )
-    subtitle = f"{document.fit.law}; circles: the dwells" + ("; dashed: transition speed" if line else "")
+    subtitle = document.fit.law + ("; circles: the dwells" if rows else "")
+    subtitle += "; dashed: transition speed" if line else ""
     title = alt.Title("Fitted damping surface", subtitle=subtitle)
-    return alt.layer(cell, bend, dots).properties(title=title, width=WIDTH, height=HEIGHT if hot else 80)
+    layers = [cell, *([bend] if line else []), *([dots] if rows else [])]
+    return alt.layer(*layers).properties(title=title, width=WIDTH, height=HEIGHT if hot else 80)
 
 
 def residuals(document: Analysis) -> Chart:

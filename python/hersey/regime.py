@@ -138,13 +138,16 @@ def _verdict(surface: DampingSurface, tested: tuple[Hypothesis, ...]) -> str:
         )
     t = surface.transition
     where = f"{rpm(t.speed.value):.3g} rpm [{rpm(t.speed.low):.3g}, {rpm(t.speed.high):.3g}]"
+    if t.gradual:
+        where = f"about {rpm(t.least_torque_speed):.2g} rpm"
     if surface.reference_temperature is not None:
         where += f" at {surface.reference_temperature:.0f} {surface.temperature_scale}"
         where += ", higher when hotter" if t.temperature_exponent > 0 else ""
+    least = ", where torque is least," if t.gradual else ""
     return (
-        f"Above {where} a film carries the load: damping varies as speed to the power {c}, which {agrees}. "
-        f"Below it torque rises as the drive slows (exponent {_in_words(t.mixed_exponent)}, below -1): mixed "
-        "lubrication, where the drive can stick and slip."
+        f"Above {where}{least} torque rises with speed, as under a carrying film: damping varies as speed to the "
+        f"power {c}, which {agrees}. Below it torque rises as the drive slows (exponent "
+        f"{_in_words(t.mixed_exponent)}, below -1): mixed lubrication, where the drive can stick and slip."
     )
 
 

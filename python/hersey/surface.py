@@ -280,9 +280,10 @@ def _summary(s: DampingSurface) -> str:
         lines += [
             _variable("c_mixed", s.transition.mixed_exponent),
             _variable("w_t", s.transition.speed) + f"  rad/s{at}",
-            f"    w_t varies as T^{s.transition.temperature_exponent:.3g} (fixed Hersey number); "
-            "below it the exponent is c_mixed",
         ]
+        if s.b:
+            lines.append(f"    w_t varies as T^{s.transition.temperature_exponent:.3g} (fixed Hersey number)")
+        lines.append("    below w_t the exponent is c_mixed")
     lines += ["[[Fitted in torque space, errors absolute]]"]
     lines += [_variable(name, estimate) for name, estimate in s.torque_space.items()]
     lines += ["[[Correlations]] (unreported are below 0.1)", *_correlations(s)]

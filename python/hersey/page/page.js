@@ -140,6 +140,8 @@ function hypotheses() {
     return [h.name, range, h.p_value < 1e-4 ? "< 0.0001" : h.p_value.toFixed(4), h.consistent ? "agrees" : "rejected", h.meaning];
   }), [2]);
   data.regime.hypotheses.forEach((h, i) => { if (h.consistent) element.tBodies[0].rows[i].className = "kept"; });
+  const tested = data.fit.transition ? "of the rising branch" : "over all speeds";
+  add(report, "p", `Tested is the exponent c ${tested}, ${interval(data.fit.coefficients.c, 1, 3)}. `, "soft");
   add(report, "p", "An exponent is evidence, not proof: heating of the film with speed, starvation or shear thinning can "
     + "move it too. Agreement means that the 95 % interval of c does not exclude the value.", "soft");
 }
@@ -172,7 +174,8 @@ async function main() {
   const at = level === null ? "" : ` (at ${digits(level, 3)} ${data.fit.temperature_scale})`;
   add(report, "p", data.fit.transition
     ? `The second branch is better than a single power law by ${data.fit.transition.evidence.toFixed(0)} in AICc. Torque is least `
-      + `near ${digits(data.fit.transition.least_torque_speed * TO_RPM, 3)} rpm; the branches meet at ${interval(data.fit.transition.speed, TO_RPM, 3)} rpm${at}.`
+      + `near ${digits(data.fit.transition.least_torque_speed * TO_RPM, 3)} rpm; the ${data.fit.transition.gradual ? "bend is gradual: trend lines on either side" : "branches"} `
+      + `meet at ${interval(data.fit.transition.speed, TO_RPM, 3)} rpm${at}.`
     : `No falling branch is announced: ${data.fit.no_transition}.`);
   add(report, "h2", "What stick-slip looks like");
   await chart(report, "simulation_speed");
