@@ -5,6 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+__all__ = ["MODES", "VERSION", "breakaway_force", "drag_force", "simulate", "stick_slip"]
+
 MODES: list[str]
 VERSION: str
 

@@ -145,8 +145,8 @@ def _verdict(surface: DampingSurface, tested: tuple[Hypothesis, ...]) -> str:
         where += ", higher when hotter" if t.temperature_exponent > 0 else ""
     least = ", where torque is least," if t.gradual else ""
     return (
-        f"Above {where}{least} torque rises with speed, as under a carrying film: damping varies as speed to the "
-        f"power {c}, which {agrees}. Below it torque rises as the drive slows (exponent "
+        f"Above {where}{least} torque rises with speed, as under a carrying film: damping varies as speed to "
+        f"the power {c}, which {agrees}. Below it torque rises as the drive slows (exponent "
         f"{_in_words(t.mixed_exponent)}, below -1): mixed lubrication, where the drive can stick and slip."
     )
 
