@@ -59,6 +59,16 @@ FILES: dict[str, tuple[bytes, list[str]]] = {
     "two rows": (text(staircase()[:2]), ["2 rows"]),
     "nothing steady": (text([f"{i / 10},1,{i},100" for i in range(400)]), ["no steady stretch"]),
     "numbers without a header": ("\n".join(staircase()).encode(), ["header"]),
+    "one row": (text(staircase()[:1]), ["1 row"]),
+    "one time for all": (text([r.replace(r.split(",")[0], "5.0", 1) for r in staircase()]), ["same time"]),
+    "zero torque": (
+        text([",".join([r.split(",")[0], "0", *r.split(",")[2:]]) for r in staircase()]),
+        ["zero"],
+    ),
+    "signs against each other": (
+        text([",".join([r.split(",")[0], "-1", *r.split(",")[2:]]) for r in staircase()]),
+        ["opposite signs", "--torque-unit"],
+    ),
     "binary file": (bytes(range(256)) * 40, ["binary"]),
     "text that is no table": (b"Dear sir,\nthe log is late.\nYours\n", ["table"]),
 }
@@ -104,6 +114,20 @@ def test_missing_file(good: Path) -> None:
     assert_one_clear_line(run("report", "other.csv", cwd=good), ["other.csv", "no such file"])
 
 
+def test_no_ordinary_file(good: Path) -> None:
+    os.mkfifo(good / "pipe")
+    assert_one_clear_line(run("report", "pipe", cwd=good), ["no ordinary file"])
+    assert_one_clear_line(run("report", "log.csv/x", cwd=good), ["cannot be read"])
+    (good / "loop").symlink_to("loop")
+    assert_one_clear_line(run("report", "loop", cwd=good), ["loop"])
+
+
+def test_links_are_not_replaced(good: Path) -> None:
+    (good / "report.html").symlink_to("elsewhere.html")
+    assert_one_clear_line(run("report", "log.csv", "--force", cwd=good), ["no ordinary file"])
+    assert (good / "report.html").is_symlink()
+
+
 def test_directory(good: Path) -> None:
     assert_one_clear_line(run("report", ".", cwd=good), ["directory"])
 
@@ -139,6 +163,12 @@ def test_no_write_permission_on_a_system_folder(good: Path) -> None:
         (["--rotation", "left"], ["rotation 'left'"]),
         (["--rotation", "reverse"], ["no steady stretch"]),
         (["--min-dwell", "soon"], ["'soon'"]),
+        (["--min-dwell", "-5 s"], ["min_dwell is -5 s"]),
+        (["--min-dwell", "2,5 s"], ["'2,5 s'"]),
+        (["--isothermal", "--temperature", "Temperature"], ["--isothermal"]),
+        (["--out", "log.csv", "--force"], ["is an input"]),
+        (["--out", "/dev/null", "--force"], ["no ordinary file"]),
+        (["--out", "x" * 300], ["cannot be written"]),
         (["--temperature-scale", "F"], ["temperature scale 'F'"]),
         (["--torque", "Moment"], ["no column 'Moment'"]),
         (["--torque-unit", "V"], ["'V'"]),
@@ -155,6 +185,9 @@ def test_bad_option(arguments: list[str], says: list[str], good: Path) -> None:
     ("toml", "says"),
     [
         ("[drivetrain", ["not valid TOML"]),
+        ("a = " + "[" * 5000, ["not valid TOML"]),
+        ('[drivetrain]\nstiffness = "1e300 N/m"\n', ["drivetrain.stiffness", "believed"]),
+        ('[drivetrain]\nstiffness = "0,3 N/m"\n', ["drivetrain.stiffness"]),
         ("[roll]\n", ["[drivetrain]"]),
         ('[drivetrain]\nstiffness = "11 N/mm"\n', ["lacks 'mass'"]),
         ("[drivetrain]\nstiffness = 11\n", ["drivetrain.stiffness", "unit"]),

@@ -80,7 +80,7 @@ def test_blocks_change_nothing(
 
 
 @given(
-    values=st.lists(st.tuples(*[st.floats(-1e6, 1e6, allow_subnormal=False)] * 3), min_size=1, max_size=30),
+    values=st.lists(st.tuples(*[st.floats(-1e6, 1e6, allow_subnormal=False)] * 3), min_size=2, max_size=30),
     separator=st.sampled_from(",;\t"),
 )
 def test_any_numbers_survive(
@@ -106,6 +106,89 @@ def test_a_channel_is_named_when_two_could_be_it(tmp_path: Path) -> None:
     assert chosen.runs[0].torque[0] == pytest.approx(0.00706155, rel=1e-5)
     with pytest.raises(ChannelError, match="no column 'Moment'"):
         hersey.read(path, channels={"torque": "Moment"})
+
+
+GOOD = {
+    "padded cells": HEADER + plain().replace(",", " , "),
+    "comments and blank lines in the middle": HEADER + plain().replace("\n", "\n\n# a note\n  # two\n"),
+    "units under names with remarks": "Time (log),Torque (cell),Speed (roll),Temp (heater)\ns,N.m,rpm,degC\n"
+    + plain(),
+    "a wide line above the header": "Site,Operator,Rig,Date\n" + HEADER + plain(),
+    "coarse clock": HEADER + plain(),
+}
+
+
+@pytest.mark.parametrize("case", GOOD)
+def test_odd_but_good(case: str, tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text(GOOD[case])
+    assert_same(hersey.read(path))
+
+
+LINE = "{},0.5,60,150\n"
+BODY = "".join(LINE.format(i / 10) for i in range(30))
+MISREAD = {
+    # name: text, what the refusal says; each was once read as something else without a word
+    "a fan beside a speed in Hz": (
+        "t [s],Torque [N*m],Drive speed [Hz],Temp [degC],Fan [rpm]\n" + BODY.replace("\n", ",900\n"),
+        "revolutions or radians",
+    ),
+    "an ambient beside a film temperature without unit": (
+        "t [s],Torque [N*m],Speed [rpm],Film temperature,Cabinet [degC]\n" + BODY.replace("\n", ",25\n"),
+        "has no unit",
+    ),
+    "a set point beside a measured speed without unit": (
+        "t [s],Torque [N*m],Speed actual,Temp [degC],Speed setpoint [rpm]\n" + BODY.replace("\n", ",60\n"),
+        "has no unit",
+    ),
+    "an index column without a name": (HEADER + BODY.replace("\n", ",1\n"), "header has 4 cells"),
+    "stray quotes": (
+        HEADER.replace("\n", ",Note\n")
+        + "".join(
+            LINE.format(i / 10).replace("\n", ',5" roll\n' if i in (3, 20) else ",\n") for i in range(30)
+        ),
+        None,
+    ),
+    "thousands marks in a decimal comma file": (
+        HEADER.replace(",", ";") + "0,1;0,5;60,0;150,0\n" * 5 + "0,2;28.140;60,0;150,0\n",
+        "'28.140' is not a number",
+    ),
+    "a row behind a comment mark": (
+        HEADER + BODY + "#VALUE!,0.5,60,150\n" + "9,0.5,60,150\n",
+        "like a comment",
+    ),
+    "a coarse value beyond belief": (HEADER + BODY + "9,1e200,60,150\n", "line 32, column 'Torque'"),
+    "two readings of the same column": (HEADER + BODY, "cannot be both"),
+}
+
+
+@pytest.mark.parametrize("case", MISREAD)
+def test_nothing_is_misread_in_silence(case: str, tmp_path: Path) -> None:
+    text, says = MISREAD[case]
+    path = tmp_path / "log.csv"
+    path.write_text(text)
+    channels = {"torque": "Speed"} if says == "cannot be both" else {}
+    units = {"torque": "N*m"} if says == "cannot be both" else {}
+    if says is None:
+        assert hersey.read(path).rows == 30
+    else:
+        with pytest.raises(hersey.HerseyError, match=says.replace("'", ".")):
+            hersey.read(path, channels=channels, units=units)
+
+
+@pytest.mark.parametrize("mark", ["\x85", "\x0b", "\x0c", "\x1c", "\u2028", "\r"])
+def test_odd_line_separators_do_not_shift_rows(mark: str, tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_bytes((f"# rig{mark}one\n" + HEADER + plain()).encode("utf-8"))
+    assert_same(hersey.read(path))
+
+
+def test_a_file_that_stops_within_a_line_is_reported(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text((HEADER + plain()).rstrip()[:-3])
+    assert hersey.read(path).files[0].cut_off
+    path.write_text(HEADER + plain())
+    assert not hersey.read(path).files[0].cut_off
 
 
 def test_set_points_are_not_measurements(tmp_path: Path) -> None:
@@ -135,8 +218,10 @@ def test_missing_numbers_are_refused_or_counted(tmp_path: Path) -> None:
 
 def test_many_files_are_runs_of_one_machine(tmp_path: Path) -> None:
     for name in ("a.csv", "b.csv"):
-        (tmp_path / name).write_text(HEADER + plain())
+        (tmp_path / name).write_text(f"# {name}\n" + HEADER + plain())
     log = hersey.read([tmp_path / "a.csv", tmp_path / "b.csv"])
     assert [run.name for run in log.runs] == ["a.csv", "b.csv"]
     assert log.rows == 6
-    assert log.files[0].sha256 == log.files[1].sha256
+    assert log.files[0].comments == ("a.csv",)
+    with pytest.raises(hersey.HerseyError, match="each file once"):
+        hersey.read([tmp_path / "a.csv", tmp_path / "a.csv"])

@@ -491,6 +491,8 @@ def _warnings(
     for file, run in zip(log.files, log.runs, strict=True):
         if any("synthetic" in comment.lower() for comment in file.comments):
             out.append(f"{file.name} is synthetic, by its own words: no measurement.")
+        if file.cut_off:
+            out.append(f"{file.name}: the last line has no end and is shorter than the one before: cut off?")
         if file.missing_rows:
             out.append(f"{file.name}: {file.missing_rows} rows without a number were left out, as asked.")
         if run.gaps():
@@ -566,7 +568,7 @@ def _fit_warnings(surface: DampingSurface) -> list[str]:
         if (
             own
             and name != "a"
-            and abs(own.value - estimate.value) > 2.0 * np.hypot(own.error, estimate.error)
+            and abs(own.value - estimate.value) > max(0.005, 2.0 * np.hypot(own.error, estimate.error))
         ):
             out.append(
                 f"Exponent {name} is {own.value:.3f} fitted in logarithms but {estimate.value:.3f} fitted in "

@@ -6,9 +6,12 @@ A mistake of the user's ends in one line on stderr and exit code 2.
 from __future__ import annotations
 
 import json
+import os
 import shlex
+import signal
 import sys
-from collections.abc import Callable, Iterator
+import tempfile
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
@@ -36,6 +39,8 @@ app = typer.Typer(
     ),
 )
 stderr = Console(stderr=True)
+#: Largest log that `testbench --size` writes, bytes.
+LARGEST_LOG = 4e9
 #: Exit code after Ctrl-C, as shells have it.
 INTERRUPTED = 130
 
@@ -110,7 +115,7 @@ def report(
 
     page = out or (None if as_json else Path("report.html"))
     if page is not None:
-        _may_write(page, force)
+        _may_write(page, force, inputs=[*logs, *([fuser] if fuser else [])])
     if figures is not None:
         _may_write_folder(figures, force)
     machine = None if fuser is None else read_fuser(fuser)
@@ -279,6 +284,8 @@ def testbench(
     for path in (out, truth):
         if path is not None:
             _may_write(path, force)
+    if truth is not None and truth.absolute() == out.absolute():
+        raise OutputError(f"--out and --truth both name {out}: name two files")
     if size:
         _write_long(out, _bytes(size), seed)
         document = {**stand.run(seed=seed).truth_document(), "size": size}
@@ -296,6 +303,8 @@ def testbench(
 
 def main() -> None:
     """Run the command line."""
+    signal.signal(signal.SIGTERM, _interrupt)
+    code: int | None = None
     try:
         code = app(standalone_mode=False)
     except HerseyError as error:
@@ -303,7 +312,10 @@ def main() -> None:
     except (KeyboardInterrupt, typer.Abort):
         code = INTERRUPTED
     except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # nothing is left to flush into it
         sys.exit(0)
+    except OSError as error:
+        _fail(f"cannot write the result: {error.strerror}")
     except Exception as error:
         usage = getattr(error, "format_message", None)  # click's own errors know how to say it
         if usage is None:
@@ -315,8 +327,14 @@ def main() -> None:
 
 
 def _fail(message: str, code: int = 2) -> None:
-    print(f"hersey: {' '.join(message.split())}", file=sys.stderr)
+    shown = "".join(c if c.isprintable() else "?" for c in " ".join(message.split()))
+    if shown:
+        print(f"hersey: {shown}", file=sys.stderr)
     sys.exit(code)
+
+
+def _interrupt(_signal: int, _frame: object) -> None:
+    raise KeyboardInterrupt
 
 
 @app.callback(invoke_without_command=True)
@@ -356,41 +374,63 @@ def _duration(text: str) -> float:
 def _bytes(text: str) -> int:
     import re
 
-    match = re.fullmatch(r"\s*([\d.]+)\s*([kMG]?)B\s*", text)
+    match = re.fullmatch(r"\s*(\d+(?:\.\d+)?)\s*([kMG]?)B\s*", text)
     if match is None:
         raise ParameterError(f"--size '{text}' is not a size: write it as '1 GB' or '20 MB'")
-    return int(float(match[1]) * {"": 1, "k": 1e3, "M": 1e6, "G": 1e9}[match[2]])
+    size = float(match[1]) * {"": 1, "k": 1e3, "M": 1e6, "G": 1e9}[match[2]]
+    if size > LARGEST_LOG:
+        raise ParameterError(f"--size '{text}' is more than the {LARGEST_LOG / 1e9:g} GB that fit in memory")
+    return int(size)
 
 
 def _command() -> str:
     return " ".join(["hersey", *(shlex.quote(part) for part in sys.argv[1:])])
 
 
-def _may_write(path: Path, force: bool) -> None:
+def _may_write(path: Path, force: bool, inputs: Sequence[Path] = ()) -> None:
     """Refuse early what cannot be written, and ask before replacing anything."""
-    if path.is_dir():
-        raise OutputError(f"{path} is a directory: name a file in it")
-    if not path.parent.is_dir():
-        raise OutputError(f"{path}: there is no directory {path.parent}")
-    if path.exists() and not force:
+    try:
+        exists = os.path.lexists(path)
+        if path.is_dir():
+            raise OutputError(f"{path} is a directory: name a file in it")
+        if not path.parent.is_dir():
+            raise OutputError(f"{path}: there is no directory {path.parent}")
+        if exists and (path.is_symlink() or not path.is_file()):
+            raise OutputError(f"{path} is no ordinary file: name another")
+        if any(exists and other.exists() and path.samefile(other) for other in inputs):
+            raise OutputError(f"{path} is an input: name another file for the output")
+    except OSError as error:
+        if isinstance(error, OutputError):
+            raise
+        raise OutputError(f"{path} cannot be written: {error.strerror}") from None
+    if exists and not force:
         asked = sys.stdin.isatty() and typer.confirm(f"{path} exists. Replace it?", err=True)
         if not asked:
             raise OutputError(f"{path} exists: say --force to replace it, or name another file")
 
 
 def _may_write_folder(folder: Path, force: bool) -> None:
-    if folder.exists() and not folder.is_dir():
-        raise OutputError(f"{folder} is a file: --figures needs a directory")
-    if folder.is_dir() and any(folder.iterdir()) and not force:
-        raise OutputError(f"{folder} is not empty: say --force to write the figures into it")
+    try:
+        if folder.exists() and not folder.is_dir():
+            raise OutputError(f"{folder} is a file: --figures needs a directory")
+        if folder.is_dir() and any(folder.iterdir()) and not force:
+            raise OutputError(f"{folder} is not empty: say --force to write the figures into it")
+        if not folder.parent.is_dir():
+            raise OutputError(f"{folder}: there is no directory {folder.parent}")
+    except OSError as error:
+        if isinstance(error, OutputError):
+            raise
+        raise OutputError(f"{folder} cannot be written: {error.strerror}") from None
 
 
 def _write_long(path: Path, size: int, seed: int) -> None:
     from hersey import testbench as stand
 
-    part = path.with_name(f".{path.name}.part")
+    part: Path | None = None
     try:
-        with part.open("w", encoding="utf-8") as file, _bar("writing") as progress:
+        handle, name = tempfile.mkstemp(dir=path.parent, prefix=".hersey-", suffix=".part")
+        part = Path(name)
+        with os.fdopen(handle, "w", encoding="utf-8") as file, _bar("writing") as progress:
             done = 0
             for text in stand.long_log(bytes_wanted=size, seed=seed):
                 file.write(text)
@@ -400,7 +440,8 @@ def _write_long(path: Path, size: int, seed: int) -> None:
     except OSError as error:
         raise OutputError(f"{path} cannot be written: {error.strerror}") from None
     finally:
-        part.unlink(missing_ok=True)
+        if part is not None:
+            part.unlink(missing_ok=True)
 
 
 @contextmanager

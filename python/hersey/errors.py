@@ -27,6 +27,10 @@ class UnitError(HerseyError, ValueError):
     """A unit that is missing, unknown or of the wrong dimension."""
 
 
+class WrongKindError(UnitError):
+    """A known unit, of another kind of quantity."""
+
+
 class InsufficientDataError(HerseyError, ValueError):
     """Data that cannot answer the question asked of it."""
 

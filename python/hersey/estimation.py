@@ -156,4 +156,4 @@ def fitted_scatter(residuals: FloatArray, errors: FloatArray, freedom: int) -> f
     if top < ROUNDING or (np.all(errors > 0) and excess(0.0) <= 0):
         return 0.0
     low = 0.0 if np.all(errors > 0) else 1e-9 * top
-    return float(optimize.brentq(excess, low, top)) if excess(low) > 0 else 0.0
+    return float(optimize.brentq(excess, low, top)) if excess(low) > 0 > excess(top) else top

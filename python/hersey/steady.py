@@ -116,8 +116,12 @@ def steady_points(
         raise ParameterError(f"tare '{tare}' is not known: none or standing")
     if rotation not in ("both", "forward", "reverse"):
         raise ParameterError(f"rotation '{rotation}' is not known: both, forward or reverse")
+    if not 0 < min_dwell < float("inf"):
+        raise ParameterError(f"min_dwell is {min_dwell:g} s: it must be greater than 0")
     if log.rows < MIN_SAMPLES:
-        raise InsufficientDataError(f"the log has {log.rows} rows; one dwell alone needs {MIN_SAMPLES}")
+        raise InsufficientDataError(
+            f"{log.files[0].name} has {log.rows} rows; one dwell alone needs {MIN_SAMPLES}"
+        )
     segments = [_segments(run) for run in log.runs]
     standing = _standing_torque(log, segments)
     if tare == "standing" and standing is None:
@@ -136,7 +140,7 @@ def steady_points(
             if segment.steady:
                 previous = abs(segment.speed)
     if not rows:
-        raise InsufficientDataError(_nothing_steady(rejected))
+        raise InsufficientDataError(_nothing_steady(log, rejected, min_dwell))
     table = pl.DataFrame(rows, schema_overrides={"temperature": pl.Float64, "temperature_error": pl.Float64})
     shown = None if standing is None else standing[0]
     return SteadyPoints(table, tuple(rejected), offset, shown, log, offset_error)
@@ -280,7 +284,7 @@ def _reduce(
     torque_error = float(np.hypot(torque_error, _drift(run.time[start:end], torque)[0] / np.sqrt(12.0)))
     speed_mean, speed_error, _ = mean_and_error(speed)
     if torque_mean * speed_mean <= 0:
-        return reject("torque and speed have opposite signs: check the sign of the torque channel")
+        return reject("torque and speed have opposite signs: turn one with --torque-unit '-1 N*m'")
     hot = mean_and_error(temperature) if temperature is not None else (None, None)
     approach = "start"
     if previous is not None:
@@ -314,7 +318,8 @@ def _settled(run: Run, segment: _Segment) -> tuple[int, int]:
     noise = float(np.median(np.abs(np.diff(held)))) if count > 1 else 0.0
     away = np.abs(held - np.median(held))
     near = np.flatnonzero(away <= max(MAX_SPEED_DRIFT * abs(segment.speed), SPEED_NOISE * noise))
-    first, last = max(int(near[0]), edge), max(count - 1 - int(near[-1]), edge)
+    first, last = (int(near[0]), count - 1 - int(near[-1])) if near.size else (0, 0)
+    first, last = max(first, edge), max(last, edge)
     cut = first
     for channel in (run.torque, run.temperature):
         if channel is not None:
@@ -425,13 +430,14 @@ def mean_and_error(values: FloatArray) -> tuple[float, float, float]:
     return float(np.mean(values)), error, count / time
 
 
-def _nothing_steady(rejected: list[Rejection]) -> str:
+def _nothing_steady(log: TorqueLog, rejected: list[Rejection], min_dwell: float) -> str:
     reasons: dict[str, int] = {}
     for r in rejected:
-        kind = r.reason.split(":")[0].split(" by ")[0]
+        kind = r.reason if "opposite signs" in r.reason else r.reason.split(":")[0].split(" by ")[0]
         reasons[kind] = reasons.get(kind, 0) + 1
     listed = ", ".join(f"{count} x {reason}" for reason, count in reasons.items())
-    return f"no steady stretch was found ({listed}); a dwell holds one speed for at least 2 s"
+    name = log.files[0].name + (f" and {len(log.files) - 1} more" if len(log.files) > 1 else "")
+    return f"{name}: no steady stretch ({listed}); a dwell holds one speed for at least {min_dwell:g} s"
 
 
 def groups_of_temperature(temperature: FloatArray, width: float = 6.0) -> Iterator[NDArray[np.intp]]:

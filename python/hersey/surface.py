@@ -247,7 +247,9 @@ def _surface(
 
 
 def _r_squared(measured: FloatArray, fitted: FloatArray) -> float:
-    return float(1.0 - np.sum((measured - fitted) ** 2) / np.sum((measured - measured.mean()) ** 2))
+    """Share of the variance explained; 0 where there is none to explain."""
+    total = float(np.sum((measured - measured.mean()) ** 2))
+    return 1.0 - float(np.sum((measured - fitted) ** 2)) / total if total > 0 else 0.0
 
 
 def _summary(s: DampingSurface) -> str:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass
 from functools import lru_cache
 
 import pint
 
-from hersey.errors import UnitError
+from hersey.errors import UnitError, WrongKindError
 
 registry: pint.UnitRegistry[float] = pint.UnitRegistry(autoconvert_offset_to_baseunit=True, cache_folder=None)
 registry.define("rev = revolution")
@@ -26,21 +27,25 @@ KINDS: dict[str, tuple[str, str]] = {
 }
 
 # Spellings of the field that pint does not know, or reads as something else.
-_SPELLINGS = {
-    r"°\s*C|deg\s*C|℃|C|Celsius": "degC",
-    r"°\s*F|deg\s*F|℉|F|Fahrenheit": "degF",
-    r"°\s*K|deg\s*K": "K",
-    r"oz[f]?[\s.*·-]?in|in[\s.*·-]?oz[f]?": "ozf*in",
-    r"lb[f]?[\s.*·-]?in|in[\s.*·-]?lb[f]?": "lbf*in",
-    r"lb[f]?[\s.*·-]?ft|ft[\s.*·-]?lb[f]?": "lbf*ft",
-    r"U/min|r/min|rev/min|1/min|min\^?-1|min⁻¹": "rpm",
-    r"([mcknuµ]?)N[\s.·-]?([mc]?m)": r"\1N*\2",
-    r"sec": "s",
-}
-# Powers that no unit has, and that would take for ever to evaluate.
-_ABSURD = re.compile(r".{41,}|.*(\*\*|\^)\s*(-?\d{2,}|\(|-?\d+\s*(\*\*|\^))", re.DOTALL)
-# A reciprocal time could be revolutions or radians: a factor of 2 pi that nobody would notice.
-_AMBIGUOUS_SPEED = re.compile(r"[kM]?Hz|1/s(ec)?|s\^?-1|s⁻¹")
+_SPELLINGS = (
+    (r"(?i:(°|º|deg(\.|rees?)?)\s*C|℃|celsius)|C", "degC"),
+    (r"(?i:(°|º|deg(\.|rees?)?)\s*F|℉|fahrenheit)|F", "degF"),
+    (r"°\s*K|deg\s*K", "K"),
+    (r"(?i:ozf?[\s.*·-]?in|in[\s.*·-]?ozf?)", "ozf*in"),
+    (r"(?i:lbf?[\s.*·-]?in|in[\s.*·-]?lbf?)", "lbf*in"),
+    (r"(?i:lbf?[\s.*·-]?ft|ft[\s.*·-]?lbf?)", "lbf*ft"),
+    (r"(?i:rpm|(U|r|rev|1)?\s*/\s*min|min(\^|\*\*)?\(?-1\)?|min⁻¹)", "rpm"),
+    (r"U/s|r/s", "rev/s"),
+    (r"rad\s+s(\^|\*\*)?-1|rad\s+s⁻¹", "rad/s"),
+    (r"([mcdknuµμ]?)N[\s.·*-]?([mc]?m)", r"\1N*\2"),
+    (r"(?i:sec)", "s"),
+)
+_ALPHABET = re.compile(r"[A-Za-z0-9_°ºµμΩ%℃℉\s.·*/^()⁻¹²³-]{0,60}")
+_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+_FACTORED = re.compile(rf"\s*({_NUMBER})?\s*\*?\s*([A-Za-z°ºµμ%℃℉/(1].*?)\s*(?:/\s*({_NUMBER}))?\s*")
+_POWER = re.compile(r"(?<=[A-Za-z)])(\*\*|\^)-?[1-4](?![\d.*^])")
+_ANGLES = re.compile(r"radian|degree|rev|turn|cycle|arc")
+_ENERGIES = re.compile(r"joule|watt|volt|calorie|erg|british")
 
 
 @dataclass(frozen=True)
@@ -60,42 +65,52 @@ def conversion(kind: str, unit: str) -> Conversion:
 
     Raises
     ------
+    WrongKindError
+        If the unit is one of another kind.
     UnitError
-        If the unit is unknown, ambiguous, or not one of the kind.
+        If the unit is unknown, or could be read in two ways.
     """
     si, example = KINDS[kind]
-    text = unit.strip()
-    if kind == "speed" and _AMBIGUOUS_SPEED.fullmatch(text):
-        raise UnitError(f"unit '{unit}' of a speed could count revolutions or radians: write rev/s or rad/s")
-    for spelling, standard in _SPELLINGS.items():
-        if re.fullmatch(spelling, text):
-            text = re.sub(spelling, standard, text)
-            break
+    factor, text = _split_factor(unit.strip(), unit, example)
     try:
-        if _ABSURD.match(text):
-            raise ValueError(text)
-        parsed = registry.parse_expression(re.sub(r"(?<=[A-Za-z])[.·](?=[A-Za-z])", "*", text))
+        parsed = registry.parse_units(text)
     except Exception as error:  # pint raises many kinds, from its tokenizer too
         raise UnitError(f"unknown unit '{unit}': write one such as {example}") from error
-    if not isinstance(parsed, registry.Quantity):
-        raise UnitError(f"'{unit}' is no unit of {kind}: write one such as {example}")
-    if parsed.magnitude == 1 and kind == "temperature" and not parsed.check("[temperature]"):
-        raise _wrong_dimension(kind, unit, example)
-    try:
-        if kind == "temperature":
-            zero, far = (registry.Quantity(x, parsed.units).to(si).magnitude for x in (0.0, 1e6))
-            return Conversion(unit, (far - zero) / 1e6, zero)
-        return Conversion(unit, float(parsed.to(si).magnitude), 0.0)
-    except pint.DimensionalityError as error:
-        raise _wrong_dimension(kind, unit, example) from error
+    names = " ".join(str(name) for name in parsed._units)
+    if kind == "speed" and parsed.dimensionality == {"[time]": -1} and not _ANGLES.search(names):
+        raise UnitError(f"unit '{unit}' of a speed could count revolutions or radians: write rev/s or rad/s")
+    if parsed.dimensionality != registry.parse_units(si).dimensionality or (
+        kind == "torque" and _ENERGIES.search(names)
+    ):
+        if unit.strip() in ("%", "percent") and kind == "torque":
+            raise WrongKindError(
+                "unit '%' of a torque needs the torque that 100 % stands for: --torque-unit '9.84 mN*m / 100'"
+            )
+        raise WrongKindError(f"unit '{unit}' is not a unit of {kind}: write one such as {example}")
+    if "delta_" in names:
+        raise UnitError(f"unit '{unit}' is a difference of temperatures: write degC or K")
+    zero, far = (float(registry.Quantity(x, parsed).to(si).magnitude) for x in (0.0, 1e6))
+    scale = factor * (far - zero) / 1e6
+    if not 1e-15 < abs(scale) < 1e15:
+        raise UnitError(f"unit '{unit}' has an impossible factor")
+    return Conversion(unit, scale, zero)
 
 
-def _wrong_dimension(kind: str, unit: str, example: str) -> UnitError:
-    if unit.strip() in ("%", "percent") and kind == "torque":
-        return UnitError(
-            "unit '%' of a torque needs the torque that 100 % stands for: --torque-unit '9.84 mN*m / 100'"
-        )
-    return UnitError(f"unit '{unit}' is not a unit of {kind}: write one such as {example}")
+def _split_factor(text: str, unit: str, example: str) -> tuple[float, str]:
+    """Factor and plain unit; what is left holds no digits but small powers, so it cannot run for ever."""
+    match = _FACTORED.fullmatch(text)
+    if match is None or _ALPHABET.fullmatch(re.sub(_NUMBER, "", text)) is None:
+        what = f"unknown unit '{unit[:40]}'" if text else "no unit is given"
+        raise UnitError(f"{what}: write one such as {example}")
+    factor = float(match[1] or 1.0) / (float(match[3] or 1.0) or math.nan)
+    plain = f"1{match[2]}" if match[2].startswith("/") else match[2]
+    for spelling, standard in _SPELLINGS:
+        if re.fullmatch(spelling, plain):
+            return factor, re.sub(f"^(?:{spelling})$", standard, plain)
+    plain = re.sub(r"(?<=[A-Za-z])[.·](?=[A-Za-z])", "*", plain)
+    if re.search(r"\d", _POWER.sub("", re.sub(r"^1\s*/", "/", plain))):
+        raise UnitError(f"unknown unit '{unit}': write one such as {example}")
+    return factor, plain
 
 
 def parse(kind: str, text: str) -> float:
@@ -106,16 +121,15 @@ def parse(kind: str, text: str) -> float:
     UnitError
         If there is no number, no unit, or a unit of another kind.
     """
-    match = re.fullmatch(r"\s*([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*(.*?)\s*", text)
     example = KINDS[kind][1]
-    if match is None or not match[2]:
+    match = re.fullmatch(rf"\s*({_NUMBER})\s*([A-Za-z°ºµμ%℃℉].*?)\s*", text)
+    if match is None:
         raise UnitError(f"'{text}' needs a number and a unit of {kind}, such as '1 {example}'")
-    try:
-        number = float(match[1])
-    except ValueError:
-        raise UnitError(f"'{match[1]}' in '{text}' is not a number") from None
     line = conversion(kind, match[2])
-    return line.scale * number + line.offset
+    value = line.scale * float(match[1]) + line.offset
+    if not math.isfinite(value):
+        raise UnitError(f"'{text}' is not a finite number")
+    return value
 
 
 def convert(value: float, si: str, unit: str) -> float:

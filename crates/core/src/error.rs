@@ -30,6 +30,13 @@ pub enum Error {
         /// What it must not exceed.
         limit: f64,
     },
+    /// The motion takes more steps than anybody would wait for.
+    TooLong {
+        /// Steps taken.
+        steps: usize,
+        /// Model time reached.
+        time: f64,
+    },
     /// Events pile up at one instant.
     Chattering {
         /// The guard that keeps firing.
@@ -50,6 +57,12 @@ impl fmt::Display for Error {
             }
             Self::TooLarge { quantity, value, limit } => {
                 write!(f, "{quantity} is {value}: it must not exceed {limit}")
+            }
+            Self::TooLong { steps, time } => {
+                write!(
+                    f,
+                    "after {steps} steps the motion has reached time {time} only: values too far apart"
+                )
             }
             Self::Chattering { guard, time } => {
                 write!(f, "the motion switches without end at time {time} (guard: {guard})")

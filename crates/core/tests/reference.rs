@@ -133,3 +133,20 @@ fn an_unstable_balance_does_not_count_as_motion() {
     let start = Start { belt_speed: 0.5 * 1.001, stretch: drag.force(0.5) / 1000.0 };
     assert_eq!(stick_slip(&train, &drag, 0.5, start, 1e-9).unwrap().kind, CycleKind::StickSlip);
 }
+
+#[test]
+fn absurd_values_end_with_an_error_or_a_result_but_do_end() {
+    for (k, m, force, v_t, stick, drive) in [
+        (1e308, 1.0, 50.0, 1.0, 0.01, 1.0),
+        (1000.0, 1e-300, 50.0, 1.0, 0.01, 1.0),
+        (1000.0, 1.0, 50.0, 1.0, 1e-300, 1.0),
+        (1000.0, 1.0, 50.0, 1.0, 0.01, 1e300),
+        (1e-300, 1e300, 50.0, 1.0, 0.01, 1.0),
+        (1000.0, 1.0, 1e-300, 1e-150, 1e-160, 1.0),
+    ] {
+        let drag = Drag::new(force, v_t, -0.7, -1.2, stick, Closure::Retained).unwrap();
+        let train = Drivetrain::new(k, m).unwrap();
+        let _ = stick_slip(&train, &drag, drive, Start::REST, 1e-9);
+        let _ = simulate(&train, &drag, drive, Start::REST, 1.0, 11, 1e-9);
+    }
+}

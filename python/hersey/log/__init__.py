@@ -72,12 +72,15 @@ def read(
         if role not in ROLES:
             raise ParameterError(f"'{role}' is no role of a channel: they are {', '.join(ROLES)}")
     choices = {r: ChannelChoice((channels or {}).get(r, ""), (units or {}).get(r, "")) for r in ROLES}
-    runs, logs = [], []
+    runs: list[Run] = []
+    logs: list[LogFile] = []
     for file in files:
         reader = READERS.get(Path(file).suffix.lower(), read_delimited)
         run, log = reader(
             Path(file), choices, isothermal=isothermal, drop_missing=drop_missing, progress=progress
         )
+        if any(log.sha256 == other.sha256 for other in logs):
+            raise ParameterError(f"{log.name} holds the same bytes as a file before it: name each file once")
         runs.append(run)
         logs.append(log)
     return TorqueLog(tuple(runs), tuple(logs))

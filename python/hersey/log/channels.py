@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from hersey.errors import ChannelError, UnitError
+from hersey.errors import ChannelError, UnitError, WrongKindError
 from hersey.log.layout import Column
 from hersey.units import KINDS, Conversion, conversion
 
@@ -44,16 +44,21 @@ def find_channel(
     if choice.name:
         return _with_unit(role, _named(role, columns, choice.name, file), choice, file)
     named = [c for c in columns if re.fullmatch(_NAMES[role], c.name, re.IGNORECASE)]
-    fitting = [c for c in columns if _fits(role, c)]
-    likely = [c for c in named if c in fitting] or fitting if not choice.unit else named
-    if not likely and not named:
+    measured = [c for c in named if not _SETPOINT.search(c.name)] or named
+    # a column of another kind of unit is out; one without a unit could still be it
+    candidates = [c for c in measured if _could_be(role, c)] or measured
+    if not named:
+        candidates = [c for c in columns if c.unit and _could_be(role, c, surely=True)]
+    if not candidates:
         return None
-    candidates = likely or named
-    measured = [c for c in candidates if not _SETPOINT.search(c.name)] or candidates
-    if len(measured) > 1:
-        listed = " or ".join(f"'{c}'" for c in measured)
-        raise ChannelError(f"{file}: {role} could be {listed}: choose with --{role} '{measured[0].name}'")
-    return _with_unit(role, measured[0], choice, file)
+    if len(candidates) > 1:
+        listed = " or ".join(f"'{c}'" for c in candidates)
+        if len({c.name for c in candidates}) == 1:
+            raise ChannelError(
+                f"{file}: {len(candidates)} columns are called '{candidates[0].name}': rename one"
+            )
+        raise ChannelError(f"{file}: {role} could be {listed}: choose with --{role} '{candidates[0].name}'")
+    return _with_unit(role, candidates[0], choice, file)
 
 
 def no_channel(role: str, columns: tuple[Column, ...], file: str) -> ChannelError:
@@ -76,11 +81,14 @@ def _named(role: str, columns: tuple[Column, ...], name: str, file: str) -> Colu
     return found[0]
 
 
-def _fits(role: str, column: Column) -> bool:
+def _could_be(role: str, column: Column, surely: bool = False) -> bool:
+    """Whether the unit allows the role; one that is missing or unknown does, unless asked to be sure."""
     try:
-        return bool(column.unit) and conversion(role, column.unit) is not None
-    except UnitError:
+        return bool(column.unit and conversion(role, column.unit)) or not surely
+    except WrongKindError:
         return False
+    except UnitError:
+        return not surely
 
 
 def _with_unit(role: str, column: Column, choice: ChannelChoice, file: str) -> tuple[Column, Conversion]:

@@ -8,14 +8,16 @@ import re
 from collections import Counter
 from dataclasses import dataclass
 
-from hersey.errors import UnreadableLogError
+from hersey.errors import UnitError, UnreadableLogError, WrongKindError
+from hersey.units import KINDS, conversion
 
 #: Bytes looked at; preambles of data loggers are far shorter.
 SNIFFED = 1 << 17
 #: Spellings of a value that was not measured.
 MISSING = ("", "nan", "na", "n/a", "null", "none", "-", "--", "---", "ovl", "#n/a", "inf", "-inf", "+inf")
 _COMMENTS = ("#", "~", "//")
-_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
+_POINT = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
+_COMMA = re.compile(r"[-+]?(\d+,?\d*|,\d+)([eE][-+]?\d+)?")
 _NAME_WITH_UNIT = re.compile(r"(.*?)\s*(?:\[([^\]]*)\]|\(([^)]*)\))\s*")
 
 
@@ -39,7 +41,7 @@ class Layout:
     encoding: str
     separator: str
     decimal_comma: bool
-    comment: str | None
+    comment: str
     columns: tuple[Column, ...]
     first_line: int
     comments: tuple[str, ...]
@@ -54,14 +56,19 @@ def find_layout(start: bytes, name: str) -> Layout:
         If the bytes are no text, or hold no header followed by rows of numbers.
     """
     encoding = _encoding(start, name)
-    lines = start.decode(encoding, errors="replace").splitlines()
+    text = start.decode(encoding, errors="replace")
+    if "\r" in text and "\n" not in text:
+        raise UnreadableLogError(f"{name}: its lines end with CR alone: save it with ordinary line ends")
+    lines = [line.rstrip("\r") for line in text.split("\n")]
     if len(start) >= SNIFFED:
         lines = lines[:-1]
-    comment = next((c for c in _COMMENTS if any(line.startswith(c) for line in lines)), None)
+        if not any(line.strip() for line in lines):
+            raise UnreadableLogError(f"{name} holds no table: its first line has over {SNIFFED} characters")
+    comment = next((c for c in _COMMENTS if any(line.startswith(c) for line in lines)), "#")
     numbered = [
         (number, line)
         for number, line in enumerate(lines, start=1)
-        if line.strip() and not (comment and line.startswith(comment))
+        if line.strip() and not line.lstrip().startswith(comment)
     ]
     if not numbered:
         raise UnreadableLogError(f"{name} is empty: a header and rows of numbers are needed")
@@ -75,13 +82,14 @@ def find_layout(start: bytes, name: str) -> Layout:
     if table.first == 0:
         raise UnreadableLogError(
             f"{name}, line {numbered[0][0]}: the file starts with numbers; "
-            "put a header line with name and unit of each column above them, such as 'Torque [N*m]'"
+            "put a header line with name and unit of each column above them, such as 'Torque [N*m]' "
+            f"(and without '{comment}' before it)"
         )
-    columns = _columns(table, [line for _, line in numbered])
+    columns = _columns(table, numbered, name)
     decimal_comma = table.separator != "," and _uses_decimal_comma(table, numbered)
     first_line = numbered[table.first][0]
     above = lines[: first_line - 1]
-    comments = tuple(li.strip("# ~/")[:200] for li in above if comment and li.startswith(comment))[:5]
+    comments = tuple(li.strip("# ~/")[:200] for li in above if li.startswith(comment))[:5]
     return Layout(encoding, table.separator, decimal_comma, comment, columns, first_line, comments)
 
 
@@ -95,12 +103,15 @@ class _Table:
 
 def split(line: str, separator: str) -> list[str]:
     """Return the cells of a line, without surrounding blanks."""
-    return [cell.strip() for cell in next(csv.reader([line], delimiter=separator), [])]
+    try:
+        return [cell.strip() for cell in next(csv.reader([line], delimiter=separator), [])]
+    except csv.Error:  # a cell beyond the limit of the csv module
+        return [cell.strip() for cell in line.split(separator)]
 
 
 def is_number(cell: str, decimal_comma: bool) -> bool:
     """Return whether a cell is a finite number as the file writes them."""
-    return _NUMBER.fullmatch(cell.replace(",", ".", 1) if decimal_comma else cell) is not None
+    return (_COMMA if decimal_comma else _POINT).fullmatch(cell) is not None
 
 
 def is_missing(cell: str) -> bool:
@@ -137,7 +148,7 @@ def _table(numbered: list[tuple[int, str]], separator: str) -> _Table:
 
 def _mostly_numbers(row: list[str]) -> bool:
     filled = [cell for cell in row if not is_missing(cell)]
-    numbers = sum(is_number(cell, True) for cell in filled)
+    numbers = sum(is_number(cell, True) or is_number(cell, False) for cell in filled)
     return (numbers > 0 and 2 * numbers > len(filled)) or (not filled and any(row))
 
 
@@ -158,12 +169,13 @@ def _looks_like_header(line: str) -> bool:
     return any(len(split(line, separator)) > 1 for separator in ";\t,|")
 
 
-def _columns(table: _Table, lines: list[str]) -> tuple[Column, ...]:
-    above = [split(line, table.separator) for line in lines[: table.first]]
-    header = above[-1]
+def _columns(table: _Table, numbered: list[tuple[int, str]], file: str) -> tuple[Column, ...]:
+    above = [split(line, table.separator) for _, line in numbered[: table.first]]
+    line, header = numbered[table.first - 1][0], above[-1]
     units: list[str] = []
-    if len(above) > 1 and len(above[-2]) == len(header) and _is_units_row(header, above[-2]):
-        units, header = header, above[-2]
+    if len(above) > 1 and len(above[-2]) == len(header) and _is_units_row(header):
+        line, units, header = numbered[table.first - 2][0], header, above[-2]
+    _require_width(table, numbered, header, line, file)
     columns = []
     for index in range(table.width):
         name = header[index] if index < len(header) else ""
@@ -175,9 +187,38 @@ def _columns(table: _Table, lines: list[str]) -> tuple[Column, ...]:
     return tuple(columns)
 
 
-def _is_units_row(row: list[str], names: list[str]) -> bool:
-    """Units are short, and the names above them carry none of their own."""
-    return all(len(cell) <= 16 for cell in row) and not any(_NAME_WITH_UNIT.fullmatch(n) for n in names)
+def _require_width(
+    table: _Table, numbered: list[tuple[int, str]], header: list[str], line: int, file: str
+) -> None:
+    """A header with fewer or more names than the rows have cells would shift every column."""
+    rows = [split(text, table.separator) for _, text in numbered[table.first :]]
+    beyond = any(any(row[len(header) :]) for row in rows if len(row) == table.width)
+    if beyond or any(header[table.width :]):
+        raise UnreadableLogError(
+            f"{file}, line {line}: the header has {len(header)} cells where the rows have {table.width}: "
+            "give every column a name"
+        )
+
+
+def _is_units_row(row: list[str]) -> bool:
+    """Units of at least half of the cells that are not blank; no number, no name with a unit of its own."""
+    filled = [cell.strip("[]() ") for cell in row if cell.strip()]
+    if any(is_number(cell, False) for cell in filled) or any(
+        _NAME_WITH_UNIT.fullmatch(c) for c in row if c[:1] not in "[("
+    ):
+        return False
+    return bool(filled) and 2 * sum(_is_unit(cell) for cell in filled) >= len(filled)
+
+
+def _is_unit(cell: str) -> bool:
+    for kind in KINDS:
+        try:
+            return bool(conversion(kind, cell))
+        except WrongKindError:
+            return True
+        except UnitError:
+            continue
+    return False
 
 
 def _uses_decimal_comma(table: _Table, numbered: list[tuple[int, str]]) -> bool:

@@ -35,6 +35,7 @@ class LogFile:
     missing_rows: int
     channels: tuple[Channel, ...]
     comments: tuple[str, ...]  #: comment lines above the header
+    cut_off: bool = False  #: the last line has no end and looks shorter than the one before
 
 
 @dataclass(frozen=True)
@@ -49,8 +50,9 @@ class Run:
 
     @cached_property
     def sampling_interval(self) -> float:
-        """Median time between rows, in s."""
-        return float(np.median(np.diff(self.time)))
+        """Median time between rows in s; where clocks are coarse and stamps repeat, the mean."""
+        median = float(np.median(np.diff(self.time)))
+        return median or float(self.time[-1] - self.time[0]) / (self.time.size - 1)
 
     def gaps(self) -> int:
         """Return how many times rows are missing: intervals over 1.5 times the usual one."""

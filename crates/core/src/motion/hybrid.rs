@@ -12,6 +12,9 @@ use crate::error::Error;
 /// Longest step in units of `sqrt(m/k)`, about half a period of the free oscillation.
 const LONGEST_STEP: f64 = 3.0;
 
+/// Steps after which a motion is given up as too long, some seconds of work.
+const MAX_STEPS: usize = 5_000_000;
+
 /// Events without any time passing before the motion is given up as endless switching.
 const MAX_EVENTS_AT_ONCE: u32 = 32;
 
@@ -103,6 +106,7 @@ pub(super) struct Motion<'a> {
     time: f64,
     phase: Phase,
     events_at_once: u32,
+    steps: usize,
 }
 
 impl<'a> Motion<'a> {
@@ -123,8 +127,16 @@ impl<'a> Motion<'a> {
             stretch: direction * start.stretch,
             speed: direction * start.belt_speed,
         };
-        let mut motion =
-            Self { train, drag, drive_speed, tolerance, time: 0.0, phase, events_at_once: 0 };
+        let mut motion = Self {
+            train,
+            drag,
+            drive_speed,
+            tolerance,
+            time: 0.0,
+            phase,
+            events_at_once: 0,
+            steps: 0,
+        };
         motion.phase.mode = motion.mode_at_start();
         motion
     }
@@ -135,6 +147,10 @@ impl<'a> Motion<'a> {
 
     /// The next piece, no longer than `longest`, and the event that ends it, if one does.
     pub(super) fn advance(&mut self, longest: f64) -> Result<(Piece, Option<Event>), Error> {
+        self.steps += 1;
+        if self.steps > MAX_STEPS {
+            return Err(Error::TooLong { steps: MAX_STEPS, time: self.time });
+        }
         let (mut piece, crossing) = match self.phase.mode {
             Mode::Stuck => self.stuck_piece(longest),
             _ => self.slip_piece(longest),

@@ -26,6 +26,9 @@ pub(super) fn subtracted_from(constant: f64, c: &Polynomial) -> Polynomial {
 /// A step that starts on its own guard has `g(0) = 0`, exactly: those leading terms are divided out,
 /// and what is left says at once whether the motion enters or leaves the region.
 pub(super) fn first_crossing(g: &Polynomial, end: f64) -> Option<f64> {
+    if !g.iter().all(|ci| ci.is_finite()) || !end.is_finite() {
+        return Some(0.0); // numbers beyond range: an event at once, which ends the motion with an error
+    }
     let zeros = g.iter().position(|ci| *ci != 0.0)?;
     let mut c = [0.0; ORDER + 1];
     c[..=ORDER - zeros].copy_from_slice(&g[zeros..]);
@@ -47,6 +50,9 @@ fn crossing_within(c: &Polynomial, start: f64, end: f64, depth: u32) -> Option<f
     }
     if lowest > 0.0 {
         return None;
+    }
+    if !(lowest.is_finite() && steepest.is_finite()) {
+        return Some(start); // beyond the range of numbers, where no bound can be had
     }
     if steepest < 0.0 || depth == 0 {
         return (value(&local, width) <= 0.0).then(|| start + falling_root(&local, width));
