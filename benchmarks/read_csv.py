@@ -48,9 +48,9 @@ print(json.dumps({{"seconds": seconds, "peak": peak, "rows": rows}}))
 
 
 def measure(part: str, path: Path) -> dict[str, float]:
-    """Best of three runs: seconds, peak memory in GB, rows."""
+    """Better of two runs: seconds, peak memory in GB, rows."""
     runs = []
-    for _ in range(3):
+    for _ in range(2):
         command = [sys.executable, "-c", MEASURED.format(part=part), str(path)]
         done = subprocess.run(command, capture_output=True, text=True, check=True)
         runs.append(json.loads(done.stdout))
@@ -83,7 +83,7 @@ def main() -> None:
         "# Reading a large CSV",
         "",
         f"{megabytes:.0f} MB, {found['hersey.read']['rows'] / 1e6:.1f} million rows, 4 columns; {cpu()};",
-        "best of three; imports are inside, the file is in the page cache. `python benchmarks/read_csv.py`.",
+        "better of two runs; imports are inside, the file is in the page cache. `python benchmarks/read_csv.py`.",
         "",
         "| | MB/s | time against polars | peak memory (GB) |",
         "|---|---|---|---|",

@@ -61,11 +61,11 @@ impl fmt::Display for Error {
             Self::TooLong { steps, time } => {
                 write!(
                     f,
-                    "after {steps} steps the motion has reached time {time} only: values too far apart"
+                    "after {steps} steps the motion has reached time {time:e} only: values too far apart"
                 )
             }
             Self::Chattering { guard, time } => {
-                write!(f, "the motion switches without end at time {time} (guard: {guard})")
+                write!(f, "the motion switches without end at time {time:e} (guard: {guard})")
             }
         }
     }

@@ -13,6 +13,8 @@ from hersey.units import KINDS, conversion
 
 #: Bytes looked at; preambles of data loggers are far shorter.
 SNIFFED = 1 << 17
+#: Characters of a number at the most: longer cells are text, whatever they hold.
+LONGEST_NUMBER = 60
 #: Spellings of a value that was not measured.
 MISSING = ("", "nan", "na", "n/a", "null", "none", "-", "--", "---", "ovl", "#n/a", "inf", "-inf", "+inf")
 _COMMENTS = ("#", "~", "//")
@@ -111,7 +113,7 @@ def split(line: str, separator: str) -> list[str]:
 
 def is_number(cell: str, decimal_comma: bool) -> bool:
     """Return whether a cell is a finite number as the file writes them."""
-    return (_COMMA if decimal_comma else _POINT).fullmatch(cell) is not None
+    return len(cell) <= LONGEST_NUMBER and bool((_COMMA if decimal_comma else _POINT).fullmatch(cell))
 
 
 def is_missing(cell: str) -> bool:
