@@ -49,7 +49,7 @@ FILES: dict[str, tuple[bytes, list[str]]] = {
     "ambiguous speed unit": (text(staircase(), HEADER.replace("rpm", "Hz")), ["revolutions or radians"]),
     "no torque column": (text(staircase(), HEADER.replace("Torque [N*m]", "Force [N]")), ["--torque"]),
     "time running backwards": (altered(80, 0, "0.5"), ["line 80", "backwards"]),
-    "an endless cell": (altered(99, 2, "1" * 200_000), ["line 99", "'Speed'", "not a number"]),
+    "an endless cell": (altered(99, 2, "1" * 200_000), ["line 99", "'Speed'"]),
     "NaN row": (altered(99, 2, "NaN"), ["line 99", "'Speed'", "--drop-missing"]),
     "empty cell": (altered(99, 2, ""), ["line 99", "'Speed'", "--drop-missing"]),
     "infinite": (altered(99, 2, "inf"), ["line 99", "'Speed'"]),
