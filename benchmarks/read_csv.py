@@ -83,7 +83,7 @@ def main() -> None:
         "# Reading a large CSV",
         "",
         f"{megabytes:.0f} MB, {found['hersey.read']['rows'] / 1e6:.1f} million rows; {cpu()};",
-        "better of two runs; imports are inside, the file is in the page cache. `python benchmarks/read_csv.py`.",
+        "better of two runs; imports inside, file in the page cache. `python benchmarks/read_csv.py`.",
         "",
         "| | MB/s | time against polars | peak memory (GB) |",
         "|---|---|---|---|",
