@@ -17,7 +17,7 @@ import typer
 from hersey.cli import app
 from tests.conftest import ROOT
 
-COMMANDS = ["report", "fit", "simulate", "testbench"]
+COMMANDS = ["report", "fit", "simulate", "sweep", "figures", "testbench"]
 HERSEY = [sys.executable, "-m", "hersey.cli"]
 
 

@@ -23,15 +23,17 @@ LAYERS = [
     ("_core", "errors"),
     ("units",),
     ("log",),
-    ("steady", "motion"),
-    ("estimation", "fuser", "testbench"),
-    ("law",),
+    ("steady", "schedule", "drag"),
+    ("motion",),
+    ("ensemble", "estimation", "fuser", "testbench"),
+    ("law", "scenario"),
     ("branches",),
     ("surface",),
     ("regime",),
     ("analysis",),
     ("charts",),
     ("report",),
+    ("figures",),
     ("cli",),
 ]
 
@@ -88,7 +90,17 @@ def test_public_functions_are_documented() -> None:
             assert inspect.getdoc(thing), name
 
 
-@pytest.mark.parametrize("module", ["hersey.log", "hersey.motion", "hersey.testbench"])
+@pytest.mark.parametrize(
+    "module",
+    [
+        "hersey.drag",
+        "hersey.ensemble",
+        "hersey.log",
+        "hersey.motion",
+        "hersey.schedule",
+        "hersey.testbench",
+    ],
+)
 def test_examples_in_docstrings(module: str, monkeypatch: pytest.MonkeyPatch) -> None:
     import doctest
     import importlib

@@ -83,7 +83,7 @@ def test_same_input_same_bits() -> None:
     ("change", "says"),
     [
         ({"transition_force": 0}, "transition_force"),
-        ({"stick_speed": 2.0}, "stick_speed is 2: it must not exceed 1"),
+        ({"stick_speed": 2.0}, "stick_speed is 2: it must be less than 1"),
         ({"ehl_exponent": float("nan")}, "ehl_exponent is NaN"),
         ({"closure": "glue"}, "glue"),
     ],

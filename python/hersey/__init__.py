@@ -8,11 +8,16 @@ law             B = a T^b w^c in logarithms, and the data it is fitted to
 branches        two branches of the law: whether, and where they meet
 surface         the fitted damping surface
 regime          what the exponents say about lubrication
+schedule        drive speed, torque or temperature against time
+drag            drag laws: force against belt speed and temperature
 motion          stick-slip motion of the belt
+ensemble        thousands of motions in one call
 fuser           what the log cannot tell: drivetrain and geometry
 analysis        the analysis document
 charts          one chart per result
 report          the page that shows both
+figures         the paper's figures anew, each claim judged
+scenario        a sweep described by a file
 testbench       the virtual test stand
 units, errors   the one unit registry; the closed table of errors
 cli             the commands
@@ -24,21 +29,26 @@ backwards: a log knows no fit, a fit knows no motion.
 
 from hersey._core import VERSION as __version__
 from hersey.branches import Transition
+from hersey.drag import Drag, DragTable
+from hersey.ensemble import sweep
 from hersey.errors import HerseyError
 from hersey.estimation import Estimate
 from hersey.log import TorqueLog, read
-from hersey.motion import Drag, Drivetrain, StickSlipCycle, Trajectory, simulate, stick_slip
+from hersey.motion import Drivetrain, StickSlipCycle, Trajectory, simulate, stick_slip
 from hersey.regime import Regime, regime
+from hersey.schedule import Schedule
 from hersey.steady import SteadyPoints
 from hersey.surface import DampingSurface, fit
 
 __all__ = [
     "DampingSurface",
     "Drag",
+    "DragTable",
     "Drivetrain",
     "Estimate",
     "HerseyError",
     "Regime",
+    "Schedule",
     "SteadyPoints",
     "StickSlipCycle",
     "TorqueLog",
@@ -50,4 +60,5 @@ __all__ = [
     "regime",
     "simulate",
     "stick_slip",
+    "sweep",
 ]

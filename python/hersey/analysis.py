@@ -15,12 +15,13 @@ from pydantic import BaseModel, ConfigDict, Field
 from tsdownsample import MinMaxLTTBDownsampler
 
 from hersey import _core
+from hersey.drag import Drag
 from hersey.errors import ExtrapolationWarning, ParameterError
 from hersey.estimation import Estimate
 from hersey.fuser import Fuser
 from hersey.log import TorqueLog
 from hersey.log.torque_log import FloatArray, Run
-from hersey.motion import Drag, Drivetrain, simulate, stick_slip
+from hersey.motion import Drivetrain, simulate, stick_slip
 from hersey.regime import Regime, celsius, regime
 from hersey.steady import SteadyPoints, groups_of_temperature, rpm
 from hersey.surface import DampingSurface, fit

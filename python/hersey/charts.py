@@ -25,7 +25,7 @@ _OVERLAP = 1.004
 _AXIS = 42
 _SHAPES = ("circle", "square", "triangle-up", "diamond", "cross", "triangle-down")
 Row = dict[str, Any]
-Chart = alt.LayerChart | alt.FacetChart
+Chart = alt.LayerChart | alt.FacetChart | alt.VConcatChart
 
 
 def charts(document: Analysis) -> dict[str, Chart]:
@@ -267,17 +267,22 @@ def write_figures(document: Analysis, folder: Path) -> list[Path]:
     folder.mkdir(parents=True, exist_ok=True)
     written = []
     for name, chart in charts(document).items():
-        specification = specification_of(chart)
-        version = alt.SCHEMA_VERSION.removeprefix("v").rsplit(".", 1)[0]
-        for suffix, content in (
-            ("svg", vl_convert.vegalite_to_svg(specification, vl_version=version).encode()),
-            ("png", vl_convert.vegalite_to_png(specification, vl_version=version, scale=2)),
-            ("pdf", vl_convert.vegalite_to_pdf(specification, vl_version=version)),
-        ):
+        for suffix, content in rendered(chart).items():
             path = folder / f"{name}.{suffix}"
             path.write_bytes(content)
             written.append(path)
     return written
+
+
+def rendered(chart: Chart) -> dict[str, bytes]:
+    """Return the content of a chart's files by suffix: svg, png (two pixels per point), pdf."""
+    specification = specification_of(chart)
+    version = alt.SCHEMA_VERSION.removeprefix("v").rsplit(".", 1)[0]
+    return {
+        "svg": vl_convert.vegalite_to_svg(specification, vl_version=version).encode(),
+        "png": vl_convert.vegalite_to_png(specification, vl_version=version, scale=2),
+        "pdf": vl_convert.vegalite_to_pdf(specification, vl_version=version),
+    }
 
 
 def specification_of(chart: Chart) -> Row:
@@ -386,12 +391,12 @@ def _temperature_channels(document: Analysis) -> tuple[alt.Color, alt.Shape]:
     legend = alt.Legend(title="°C") if document.fit.temperature_range else None
     shapes = [_SHAPES[i % len(_SHAPES)] for i in range(len(levels))]
     return (
-        alt.Color("level:N", scale=alt.Scale(domain=levels, range=_ramp(len(levels))), legend=legend),
+        alt.Color("level:N", scale=alt.Scale(domain=levels, range=ramp(len(levels))), legend=legend),
         alt.Shape("level:N", scale=alt.Scale(domain=levels, range=shapes), legend=legend),
     )
 
 
-def _ramp(count: int) -> list[str]:
+def ramp(count: int) -> list[str]:
     """Dark blue (cold) to orange (hot), lightness rising evenly (anchors of the plasma scale)."""
     anchors = np.array([[13, 8, 135], [126, 3, 168], [203, 70, 121], [240, 135, 60]], dtype=float)
     at = np.linspace(0, 3, count) if count > 1 else np.array([0.0])

@@ -19,7 +19,14 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
-from rich.progress import BarColumn, DownloadColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.progress import (
+    BarColumn,
+    DownloadColumn,
+    MofNCompleteColumn,
+    Progress,
+    TextColumn,
+    TimeRemainingColumn,
+)
 
 from hersey import __version__
 from hersey.errors import HerseyError, OutputError, ParameterError
@@ -203,9 +210,21 @@ def simulate(
     ehl_exponent: Annotated[float, typer.Option(help="Damping exponent above it.")] = -0.7,
     mixed_exponent: Annotated[float, typer.Option(help="Damping exponent below it.")] = -1.2,
     stick_speed: Annotated[float, typer.Option(help="Speed below which the belt sticks.")] = 0.01,
+    closure: Annotated[
+        str, typer.Option(help="What happens below it: retained, stiction, stribeck or lugre.")
+    ] = "retained",
+    bristle_stiffness: Annotated[
+        float | None, typer.Option(help="Of lugre: force per deflection of the bristles.")
+    ] = None,
+    bristle_damping: Annotated[
+        float | None, typer.Option(help="Of lugre: force per rate of deflection.")
+    ] = None,
     drive_speed: Annotated[float, typer.Option(help="Speed of the drive.")] = 1.0,
     start: Annotated[str, typer.Option(help="rest, or steady (sliding with the drive).")] = "rest",
-    duration: Annotated[float, typer.Option(help="Time simulated, for --csv.")] = 2.0,
+    duration: Annotated[float, typer.Option(help="Time simulated, for --csv and --check.")] = 2.0,
+    check: Annotated[
+        bool, typer.Option("--check", help="Simulate with a second integrator too, and compare.")
+    ] = False,
     csv: Annotated[
         Path | None, typer.Option("--csv", metavar="FILE", help="Write the motion as CSV.")
     ] = None,
@@ -218,25 +237,33 @@ def simulate(
 
     Example: [bold]hersey simulate --stiffness 2000 --drive-speed 1.3[/bold]
     """
+    from hersey import drag as laws
     from hersey import motion
 
     if csv is not None:
         _may_write(csv, force)
     train = motion.Drivetrain(stiffness, mass)
-    drag = motion.Drag(
+    drag = laws.Drag(
         transition_force,
         transition_speed,
         ehl_exponent=ehl_exponent,
         mixed_exponent=mixed_exponent,
         stick_speed=stick_speed,
+        closure=closure,
+        bristle_stiffness=bristle_stiffness,
+        bristle_damping=bristle_damping,
     )
     cycle = motion.stick_slip(train, drag, drive_speed=drive_speed, start=start)
-    if csv is not None:
+    run = None
+    if csv is not None or check:
+        run = motion.simulate(
+            train, drag, drive_speed=drive_speed, duration=duration, start=start, check=check
+        )
+    if csv is not None and run is not None:
         import polars as pl
 
         from hersey.report import write_atomically
 
-        run = motion.simulate(train, drag, drive_speed=drive_speed, duration=duration, start=start)
         table = pl.DataFrame(
             {
                 "time": run.time,
@@ -248,7 +275,11 @@ def simulate(
         )
         write_atomically(csv, table.write_csv(), overwrite=True)
     if as_json:
-        print(json.dumps({**asdict(cycle), "stuck_fraction": cycle.stuck_fraction}, indent=1))
+        document: dict[str, object] = {**asdict(cycle), "stuck_fraction": cycle.stuck_fraction}
+        if run is not None:
+            document["energy"] = asdict(run.energy)
+            document["check"] = None if run.check is None else asdict(run.check)
+        print(json.dumps(document, indent=1))
         return
     lines = [
         f"{cycle.kind.replace('_', ' ')}",
@@ -256,8 +287,92 @@ def simulate(
         f"  stuck fraction  {cycle.stuck_fraction:.6f}",
         f"  belt speed      {cycle.speed_min:.6f} to {cycle.speed_max:.6f}",
         f"  stretch         {cycle.stretch_min:.6f} to {cycle.stretch_max:.6f}",
+        f"  drag work       {cycle.drag_work:.6f} a lap",
     ]
+    if run is not None:
+        lines.append(f"energy balance: {run.energy.residual:.1e} of the energy turned over is missing")
+    if run is not None and run.check is not None:
+        seen = run.check
+        lines.append(
+            f"{seen.integrator}: " + seen.note
+            if seen.speed_difference is None
+            else f"{seen.integrator} differs by {seen.speed_difference:.1e} in speed and "
+            f"{seen.stretch_difference:.1e} in stretch; "
+            f"{'the same' if seen.same_events else 'OTHER'} events"
+        )
     print("\n".join(lines))
+
+
+@app.command()
+def sweep(
+    scenario: Annotated[Path, typer.Argument(metavar="SCENARIO", help="TOML file that describes the sweep.")],
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="FILE", help="Write every set as a row: .parquet or .csv.")
+    ] = None,
+    threads: Annotated[
+        int, typer.Option("--threads", help="Threads to use; the result is the same for any number.", min=1)
+    ] = 1,
+    as_json: AsJson = False,
+    force: Force = False,
+) -> None:
+    """Find what every combination of parameters settles to, and count the outcomes.
+
+    Example: [bold]hersey sweep examples/scenario.toml --out sweep.parquet --threads 2[/bold]
+    """
+    from hersey.report import write_atomically
+    from hersey.scenario import read_scenario, rows, summary
+
+    if out is not None:
+        if out.suffix not in (".parquet", ".csv"):
+            raise OutputError(f"--out {out}: name a file that ends in .parquet or .csv")
+        _may_write(out, force, inputs=[scenario])
+    described = read_scenario(scenario)
+    with _bar("simulating", unit="sets") as progress:
+        result = described.run(threads=threads, progress=progress)
+    if out is not None:
+        with _working("writing the rows"):
+            write_atomically(out, rows(result, out.suffix), overwrite=True)
+    counted = summary(result)
+    if as_json:
+        print(json.dumps(counted, indent=1))
+        return
+    for kind, share in counted["kinds"].items():
+        print(f"{kind.replace('_', ' '):16s}{share}")
+    for name, (low, high) in counted["stick_slip"].items():
+        print(f"  {name.replace('_', ' '):16s}{low:.6g} to {high:.6g}")
+    for failure in counted["failures"]:
+        print(f"- {failure}")
+    if out is not None:
+        print(f"sweep: {out}")
+
+
+@app.command()
+def figures(
+    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder for the figures.")] = Path(
+        "figures"
+    ),
+    as_json: AsJson = False,
+    force: Force = False,
+) -> None:
+    """Draw the paper's Figs. 9-12 anew, and say of each claim whether it holds and how well.
+
+    Example: [bold]hersey figures --out figures[/bold]
+    """
+    from hersey import figures as paper
+
+    _may_write_folder(out, force, flag="--out")
+    with _working("simulating"):
+        drawn = paper.paper_figures()
+    with _working("drawing"):
+        paper.write(drawn, out, overwrite=force)
+    if as_json:
+        print(paper.as_json(drawn))
+        return
+    for figure in drawn:
+        print(f"Fig. {figure.number}: {figure.title}")
+        for claim in figure.claims:
+            print(f"  {claim.verdict.value}: {claim.statement} ({claim.evidence})")
+    print(f"figures: {out}")
 
 
 @app.command()
@@ -409,10 +524,10 @@ def _may_write(path: Path, force: bool, inputs: Sequence[Path] = ()) -> None:
             raise OutputError(f"{path} exists: say --force to replace it, or name another file")
 
 
-def _may_write_folder(folder: Path, force: bool) -> None:
+def _may_write_folder(folder: Path, force: bool, flag: str = "--figures") -> None:
     try:
         if folder.exists() and not folder.is_dir():
-            raise OutputError(f"{folder} is a file: --figures needs a directory")
+            raise OutputError(f"{folder} is a file: {flag} needs a directory")
         if folder.is_dir() and any(folder.iterdir()) and not force:
             raise OutputError(f"{folder} is not empty: say --force to write the figures into it")
         if not folder.parent.is_dir():
@@ -455,9 +570,10 @@ def _working(what: str) -> Iterator[None]:
 
 
 @contextmanager
-def _bar(what: str) -> Iterator[Callable[[int, int], None]]:
-    """A progress bar on a terminal, nothing elsewhere."""
-    columns = (TextColumn(what), BarColumn(), DownloadColumn(), TimeRemainingColumn())
+def _bar(what: str, unit: str = "") -> Iterator[Callable[[int, int], None]]:
+    """A progress bar on a terminal, nothing elsewhere; counts bytes unless there is a unit."""
+    amount = MofNCompleteColumn() if unit else DownloadColumn()
+    columns = (TextColumn(what), BarColumn(), amount, TextColumn(unit), TimeRemainingColumn())
     with Progress(*columns, console=stderr, transient=True, disable=not stderr.is_terminal) as progress:
         task = progress.add_task(what, total=None)
         yield lambda done, total: progress.update(task, completed=done, total=total)

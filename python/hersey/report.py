@@ -52,7 +52,7 @@ def _embedded(content: object) -> str:
     return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
 
 
-def write_atomically(path: Path, text: str, *, overwrite: bool) -> None:
+def write_atomically(path: Path, content: str | bytes, *, overwrite: bool) -> None:
     """Write a file whole or not at all; never over an existing one unless told to.
 
     Raises
@@ -69,8 +69,8 @@ def write_atomically(path: Path, text: str, *, overwrite: bool) -> None:
     except OSError as error:
         raise OutputError(f"{path} cannot be written: {error.strerror}") from None
     try:
-        with os.fdopen(handle, "w", encoding="utf-8") as file:
-            file.write(text)
+        with os.fdopen(handle, "wb") as file:
+            file.write(content.encode("utf-8") if isinstance(content, str) else content)
         Path(temporary).chmod(0o666 & ~_umask())
         Path(temporary).replace(path)
     except BaseException as error:

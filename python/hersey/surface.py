@@ -10,18 +10,18 @@ meets the first there. The transition sits at a fixed Hersey number, so that it 
 from __future__ import annotations
 
 import warnings
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from hersey import _core
 from hersey.branches import Transition, fit_branches, transition, why_no_transition
+from hersey.drag import Drag
 from hersey.errors import ExtrapolationWarning, InsufficientDataError, ParameterError
 from hersey.estimation import Estimate, Solution, robust, solve
 from hersey.law import FitData, fit_single, log_damping, scaled_temperature, variables
 from hersey.log.torque_log import FloatArray
-from hersey.motion import Drag
 from hersey.steady import SteadyPoints
 
 
@@ -102,7 +102,7 @@ class DampingSurface:
         return float(self.transition.speed.value * ratio**self.transition.temperature_exponent)
 
     def drag(self, *, roll_radius: float, stick_speed: float, temperature: float | None = None) -> Drag:
-        """Return the drag on the belt surface at one temperature.
+        """Return the drag on the belt surface, at one temperature or varying with it.
 
         Parameters
         ----------
@@ -111,7 +111,8 @@ class DampingSurface:
         stick_speed
             Belt speed below which the belt sticks, m/s; no steady log can show it.
         temperature
-            K; not needed for an isothermal law.
+            K; without it the drag of a thermal law keeps its dependence on temperature: forces vary as
+            T^(b + (1 + c) d) and speeds, the stick speed among them, as T^d, which is the fitted law.
 
         Raises
         ------
@@ -120,6 +121,18 @@ class DampingSurface:
         """
         if self.transition is None:
             raise InsufficientDataError(f"the data show no falling branch ({self.rejected_transition})")
+        if temperature is None and self.b is not None and self.reference_temperature is not None:
+            zero = 0.0 if self.temperature_scale == "K" else 273.15
+            reference = self.reference_temperature + zero
+            at_reference = self.drag(roll_radius=roll_radius, stick_speed=stick_speed, temperature=reference)
+            exponent = self.transition.temperature_exponent
+            return replace(
+                at_reference,
+                reference_temperature=reference,
+                force_temperature_exponent=self.b.value + (1.0 + self.c.value) * exponent,
+                speed_temperature_exponent=exponent,
+                temperature_zero=zero,
+            )
         speed = self.transition_speed(temperature)
         with warnings.catch_warnings():  # the transition may lie below the slowest dwell at this temperature
             warnings.simplefilter("ignore", ExtrapolationWarning)

@@ -15,9 +15,10 @@ import numpy as np
 import polars as pl
 
 from hersey import _core
+from hersey.drag import Drag
 from hersey.errors import ParameterError
 from hersey.log.torque_log import FloatArray
-from hersey.motion import Drag, Drivetrain, simulate
+from hersey.motion import Drivetrain, simulate
 
 RPM = 2.0 * np.pi / 60.0
 KELVIN = 273.15

@@ -24,6 +24,8 @@ KINDS: dict[str, tuple[str, str]] = {
     "mass": ("kg", "kg"),
     "length": ("m", "mm"),
     "belt speed": ("m/s", "mm/s"),
+    "force": ("N", "N"),
+    "translational damping": ("N*s/m", "N*s/m"),
 }
 
 # Spellings of the field that pint does not know, or reads as something else.

@@ -30,6 +30,31 @@ pub enum Error {
         /// What it must not exceed.
         limit: f64,
     },
+    /// The quantity must be less than `limit`.
+    NotBelow {
+        /// Name of the quantity, as the user knows it.
+        quantity: &'static str,
+        /// The offending value.
+        value: f64,
+        /// What it must stay below.
+        limit: f64,
+    },
+    /// There are too few values.
+    TooFew {
+        /// What there is too little of.
+        quantity: &'static str,
+        /// How many are needed.
+        needed: usize,
+    },
+    /// A sequence that must ascend does not.
+    Backwards {
+        /// Name of the sequence.
+        quantity: &'static str,
+        /// Position of the value that is not greater than the one before.
+        index: usize,
+        /// That value.
+        value: f64,
+    },
     /// The motion takes more steps than anybody would wait for.
     TooLong {
         /// Steps taken.
@@ -57,6 +82,18 @@ impl fmt::Display for Error {
             }
             Self::TooLarge { quantity, value, limit } => {
                 write!(f, "{quantity} is {value}: it must not exceed {limit}")
+            }
+            Self::NotBelow { quantity, value, limit } => {
+                write!(f, "{quantity} is {value}: it must be less than {limit}")
+            }
+            Self::TooFew { quantity, needed } => {
+                write!(f, "too few {quantity}: at least {needed} are needed")
+            }
+            Self::Backwards { quantity, index, value } => {
+                write!(
+                    f,
+                    "{quantity} runs backwards: entry {index} is {value}, not above the one before"
+                )
             }
             Self::TooLong { steps, time } => {
                 write!(
@@ -93,5 +130,23 @@ pub(crate) fn at_most(quantity: &'static str, value: f64, limit: f64) -> Result<
         Ok(value)
     } else {
         Err(Error::TooLarge { quantity, value, limit })
+    }
+}
+
+/// `value` if it is finite and at least `limit`.
+pub(crate) fn at_least(quantity: &'static str, value: f64, limit: f64) -> Result<f64, Error> {
+    if finite(quantity, value)? >= limit {
+        Ok(value)
+    } else {
+        Err(Error::TooSmall { quantity, value, limit })
+    }
+}
+
+/// `value` if it is finite and less than `limit`.
+pub(crate) fn below(quantity: &'static str, value: f64, limit: f64) -> Result<f64, Error> {
+    if finite(quantity, value)? < limit {
+        Ok(value)
+    } else {
+        Err(Error::NotBelow { quantity, value, limit })
     }
 }

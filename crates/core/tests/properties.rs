@@ -1,7 +1,10 @@
 //! What must hold for every drivetrain and drag law.
 
 use hersey_core::drag::{Closure, Drag, Mode};
-use hersey_core::motion::{CycleKind, Drivetrain, Start, simulate, stick_slip};
+use hersey_core::motion::{
+    CycleKind, Drivetrain, Integrator, Start, System, Trajectory, stick_slip,
+};
+use hersey_core::{Error, motion};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
@@ -33,6 +36,20 @@ fn config() -> ProptestConfig {
 fn built((k, m, force, v_t, ehl, mixed, stick, _): Case) -> (Drivetrain, Drag) {
     let drag = Drag::new(force, v_t, ehl, mixed, stick * v_t, Closure::Retained).unwrap();
     (Drivetrain::new(k, m).unwrap(), drag)
+}
+
+/// Motion at constant drive speed.
+fn simulate(
+    train: &Drivetrain,
+    drag: &Drag,
+    drive_speed: f64,
+    start: Start,
+    duration: f64,
+    samples: usize,
+    tolerance: f64,
+) -> Result<Trajectory, Error> {
+    let system = System::at_speed(*train, drag, drive_speed)?;
+    motion::simulate(&system, start, duration, samples, tolerance, Integrator::Adaptive)
 }
 
 proptest! {

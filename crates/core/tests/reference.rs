@@ -1,11 +1,28 @@
 //! The paper's baseline against the exact solution of its equations (published numbers at 1e-12).
 
 use hersey_core::drag::{Closure, Drag, Mode};
-use hersey_core::motion::{CycleKind, Drivetrain, Start, simulate, stick_slip};
+use hersey_core::motion::{
+    CycleKind, Drivetrain, Integrator, Start, System, Trajectory, stick_slip,
+};
+use hersey_core::{Error, motion};
 
 fn baseline() -> (Drivetrain, Drag) {
     let drag = Drag::new(50.0, 1.0, -0.7, -1.2, 0.01, Closure::Retained).unwrap();
     (Drivetrain::new(1000.0, 1.0).unwrap(), drag)
+}
+
+/// Motion at constant drive speed.
+fn simulate(
+    train: &Drivetrain,
+    drag: &Drag,
+    drive_speed: f64,
+    start: Start,
+    duration: f64,
+    samples: usize,
+    tolerance: f64,
+) -> Result<Trajectory, Error> {
+    let system = System::at_speed(*train, drag, drive_speed)?;
+    motion::simulate(&system, start, duration, samples, tolerance, Integrator::Adaptive)
 }
 
 fn assert_close(found: f64, expected: f64, relative: f64) {
@@ -107,8 +124,11 @@ fn samples_do_not_change_the_motion() {
 fn errors_name_the_quantity() {
     let stiffness = Drivetrain::new(-1.0, 1.0).unwrap_err();
     assert_eq!(stiffness.to_string(), "stiffness is -1: it must be greater than 0");
+    let none =
+        System::at_speed(Drivetrain::new(0.0, 1.0).unwrap(), &baseline().1, 1.0).unwrap_err();
+    assert_eq!(none.to_string(), "stiffness is 0: it must be greater than 0");
     let stick = Drag::new(50.0, 1.0, -0.7, -1.2, 2.0, Closure::Retained).unwrap_err();
-    assert_eq!(stick.to_string(), "stick_speed is 2: it must not exceed 1");
+    assert_eq!(stick.to_string(), "stick_speed is 2: it must be less than 1");
     let (train, drag) = baseline();
     assert!(simulate(&train, &drag, f64::NAN, Start::REST, 1.0, 10, 1e-9).is_err());
     assert!(simulate(&train, &drag, 1.0, Start::REST, 1.0, 10, 0.1).is_err());

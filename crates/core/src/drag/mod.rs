@@ -1,17 +1,17 @@
 //! Sliding drag against belt speed (Eqs. 17-30 of the paper).
 //!
-//! Each branch is written relative to the transition speed, `F = F_t (v/v_t)^(1+n)`, so that drag is
-//! continuous there in any units. Drag is odd in speed: reversal works.
+//! A law is a chain of power branches `F = F_k (v/v_k)^p` that meet at knots `(v_k, F_k)`. Two branches
+//! that meet at the transition are the paper's law; a chain through measured points is a tabulated one,
+//! monotone between its points. Drag is odd in speed: reversal works.
+//!
+//! With temperature the law keeps its shape: all forces vary as `(T/T_0)^b`, all speeds, the stick speed
+//! among them, as `(T/T_0)^d`. Two fitted surfaces `B = a T^b w^c` that meet at a transition are of this form.
 
-use crate::error::{Error, above, at_most, finite};
+mod closure;
 
-/// What the belt does near zero speed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Closure {
-    /// The paper's rule (Eqs. 24-27): below the stick speed drag is `A exp(-|v|/v_s)`, and while the
-    /// spring cannot overcome it the belt keeps its small speed.
-    Retained,
-}
+pub use closure::Closure;
+
+use crate::error::{Error, above, below, finite};
 
 /// State of lubrication, which decides the equation of motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -20,26 +20,40 @@ pub enum Mode {
     Ehl,
     /// Mixed lubrication: between the stick speed and the transition speed.
     Mixed,
-    /// Slower than the stick speed, and the spring overcomes the drag.
+    /// Slower than the stick speed, and moving as the forces say.
     Microslip,
-    /// Slower than the stick speed, and the spring does not overcome the drag.
+    /// Slower than the stick speed, and held by the drag.
     Stuck,
 }
 
-/// Drag force of a lubricated contact as a function of sliding speed at one temperature.
+/// How a law varies with temperature: forces as `(T/reference)^force_exponent`, speeds likewise.
 #[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Warming {
+    /// Temperature at which the law is given, in the scale of its exponents.
+    pub reference: f64,
+    /// Exponent of every force.
+    pub force_exponent: f64,
+    /// Exponent of every speed.
+    pub speed_exponent: f64,
+}
+
+/// Drag force of a lubricated contact as a function of sliding speed and temperature.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Drag {
-    transition_force: f64,
-    transition_speed: f64,
-    ehl_exponent: f64,
-    mixed_exponent: f64,
+    /// (speed, force) where branches meet, speeds ascending.
+    knots: Vec<(f64, f64)>,
+    /// Exponent of force in speed, below the first knot, between knots, above the last.
+    exponents: Vec<f64>,
+    /// Knot of the transition between mixed and EHL.
+    transition: usize,
     stick_speed: f64,
     closure: Closure,
     breakaway_force: f64,
+    warming: Option<Warming>,
 }
 
 impl Drag {
-    /// A drag law from its value at the transition and the damping exponents on either side.
+    /// The paper's law, from its value at the transition and the damping exponents on either side.
     ///
     /// `transition_force` is `F_t` at `transition_speed` `v_t`; the exponents are those of damping
     /// (`n` in `B = B_0 v^n`), so force varies as `v^(1+n)`; `stick_speed` is `v_s`.
@@ -58,26 +72,122 @@ impl Drag {
         above("transition_speed", transition_speed, 0.0)?;
         finite("ehl_exponent", ehl_exponent)?;
         finite("mixed_exponent", mixed_exponent)?;
+        let knots = vec![(transition_speed, transition_force)];
+        Self::chain(knots, vec![1.0 + mixed_exponent, 1.0 + ehl_exponent], 0, stick_speed, closure)
+    }
+
+    /// A law through measured points `(speed, force)`: straight lines between them in logarithmic scales.
+    ///
+    /// Beyond the points the outer lines go on. The transition is the point of least force.
+    ///
+    /// # Errors
+    /// If there are fewer than two points, speeds do not ascend, a value is not positive and finite, or
+    /// `stick_speed` is not below the transition speed.
+    pub fn tabulated(
+        speeds: &[f64],
+        forces: &[f64],
+        stick_speed: f64,
+        closure: Closure,
+    ) -> Result<Self, Error> {
+        if speeds.len() < 2 || speeds.len() != forces.len() {
+            return Err(Error::TooFew { quantity: "points of the drag table", needed: 2 });
+        }
+        for (index, (speed, force)) in speeds.iter().zip(forces).enumerate() {
+            above("speed of the drag table", *speed, 0.0)?;
+            above("force of the drag table", *force, 0.0)?;
+            if index > 0 && *speed <= speeds[index - 1] {
+                return Err(Error::Backwards {
+                    quantity: "speed of the drag table",
+                    index,
+                    value: *speed,
+                });
+            }
+        }
+        let between: Vec<f64> = (1..speeds.len())
+            .map(|i| (forces[i] / forces[i - 1]).ln() / (speeds[i] / speeds[i - 1]).ln())
+            .collect();
+        let mut exponents = vec![between[0]];
+        exponents.extend(&between);
+        exponents.push(between[between.len() - 1]);
+        let least =
+            (0..forces.len()).min_by(|a, b| forces[*a].total_cmp(&forces[*b])).unwrap_or_default();
+        let knots = speeds.iter().copied().zip(forces.iter().copied()).collect();
+        Self::chain(knots, exponents, least, stick_speed, closure)
+    }
+
+    fn chain(
+        knots: Vec<(f64, f64)>,
+        exponents: Vec<f64>,
+        transition: usize,
+        stick_speed: f64,
+        closure: Closure,
+    ) -> Result<Self, Error> {
         above("stick_speed", stick_speed, 0.0)?;
-        at_most("stick_speed", stick_speed, transition_speed)?;
+        below("stick_speed", stick_speed, knots[transition].0)?;
+        closure.check()?;
         let mut drag = Self {
-            transition_force,
-            transition_speed,
-            ehl_exponent,
-            mixed_exponent,
+            knots,
+            exponents,
+            transition,
             stick_speed,
             closure,
             breakaway_force: f64::NAN,
+            warming: None,
         };
-        drag.breakaway_force =
-            finite("breakaway force", std::f64::consts::E * drag.power_law(stick_speed))?;
+        let at_stick_speed = drag.branch_force(drag.branch(stick_speed), stick_speed);
+        drag.breakaway_force = finite("breakaway force", std::f64::consts::E * at_stick_speed)?;
+        above("breakaway force", drag.breakaway_force, 0.0)?;
         Ok(drag)
+    }
+
+    /// The same law, varying with temperature.
+    ///
+    /// # Errors
+    /// If a value is not finite, or the reference temperature is not positive in its scale.
+    pub fn warmed(mut self, warming: Warming) -> Result<Self, Error> {
+        above("reference_temperature", warming.reference, 0.0)?;
+        finite("force_temperature_exponent", warming.force_exponent)?;
+        finite("speed_temperature_exponent", warming.speed_exponent)?;
+        self.warming = Some(warming);
+        Ok(self)
+    }
+
+    /// The law at one `temperature`, in the scale of its exponents.
+    ///
+    /// # Errors
+    /// If the temperature is not positive, or the law leaves the range of numbers there.
+    pub fn at(&self, temperature: f64) -> Result<Self, Error> {
+        let Some(warming) = self.warming else { return Ok(self.clone()) };
+        let ratio = above("temperature", temperature, 0.0)? / warming.reference;
+        let force = ratio.powf(warming.force_exponent);
+        let speed = ratio.powf(warming.speed_exponent);
+        let mut drag = self.clone();
+        drag.warming = None;
+        for (v, f) in &mut drag.knots {
+            *v = above("transition speed at this temperature", *v * speed, 0.0)?;
+            *f = above("drag at this temperature", *f * force, 0.0)?;
+        }
+        drag.stick_speed = above("stick speed at this temperature", drag.stick_speed * speed, 0.0)?;
+        drag.breakaway_force = finite("drag at this temperature", drag.breakaway_force * force)?;
+        Ok(drag)
+    }
+
+    /// How the law varies with temperature, if it does.
+    #[must_use]
+    pub fn warming(&self) -> Option<Warming> {
+        self.warming
     }
 
     /// Speed `v_t` where the mixed and the EHL branch meet.
     #[must_use]
     pub fn transition_speed(&self) -> f64 {
-        self.transition_speed
+        self.knots[self.transition].0
+    }
+
+    /// Drag `F_t` at the transition speed.
+    #[must_use]
+    pub fn transition_force(&self) -> f64 {
+        self.knots[self.transition].1
     }
 
     /// Speed `v_s` below which the closure holds.
@@ -101,29 +211,96 @@ impl Drag {
     /// Largest force that drag can oppose at `speed` (below `v_s`) without the belt accelerating (Eqs. 25-26).
     #[must_use]
     pub fn holding_force(&self, speed: f64) -> f64 {
-        self.breakaway_force * (-speed.abs() / self.stick_speed).exp()
+        match self.closure {
+            Closure::Stiction => self.breakaway_force,
+            _ => self.exponential(speed.abs()),
+        }
     }
 
-    /// Drag force at `speed`, with the sign of `speed`; zero at rest, where it takes whatever value is needed.
+    /// Drag force in steady sliding at `speed`, with its sign; zero at rest, where it takes whatever value is needed.
     #[must_use]
     pub fn force(&self, speed: f64) -> f64 {
         let u = speed.abs();
         let magnitude = match u {
             0.0 => return 0.0,
-            _ if u < self.stick_speed => self.holding_force(u),
-            _ => self.power_law(u),
+            _ if u >= self.stick_speed => self.branch_force(self.branch(u), u),
+            _ => self.force_and_slope_below(u).0,
         };
         magnitude.copysign(speed)
     }
 
-    /// Exponent of force in speed, `1 + n`, on the branch of `mode`.
-    pub(crate) fn force_exponent(&self, mode: Mode) -> f64 {
-        1.0 + if mode == Mode::Ehl { self.ehl_exponent } else { self.mixed_exponent }
+    /// Slope of the drag force in steady sliding at `speed`.
+    #[must_use]
+    pub fn slope(&self, speed: f64) -> f64 {
+        let u = speed.abs();
+        if u >= self.stick_speed {
+            let branch = self.branch(u);
+            self.exponents[branch] * self.branch_force(branch, u) / u
+        } else {
+            self.force_and_slope_below(u).1
+        }
     }
 
-    /// Drag on the power-law branches, for `u >= v_s`.
-    pub(crate) fn power_law(&self, u: f64) -> f64 {
-        let mode = if u >= self.transition_speed { Mode::Ehl } else { Mode::Mixed };
-        self.transition_force * (u / self.transition_speed).powf(self.force_exponent(mode))
+    /// Drag below the stick speed and its slope, continued through zero speed.
+    pub(crate) fn force_and_slope_below(&self, u: f64) -> (f64, f64) {
+        let (exponential, x) = (self.exponential(u), u / self.stick_speed);
+        let slope = self.closure.slope_below_stick_speed(exponential, x) / self.stick_speed;
+        (self.closure.below_stick_speed(exponential, x), slope)
+    }
+
+    /// `A exp(-u/v_s)` (Eq. 30).
+    pub(crate) fn exponential(&self, u: f64) -> f64 {
+        self.breakaway_force * (-u / self.stick_speed).exp()
+    }
+
+    /// Branch on which `u` lies; at a knot the upper one.
+    pub(crate) fn branch(&self, u: f64) -> usize {
+        self.knots.iter().take_while(|(speed, _)| *speed <= u).count()
+    }
+
+    /// Mode of motion on `branch`.
+    pub(crate) fn branch_mode(&self, branch: usize) -> Mode {
+        if branch > self.transition { Mode::Ehl } else { Mode::Mixed }
+    }
+
+    /// Exponent of force in speed on `branch`.
+    pub(crate) fn branch_exponent(&self, branch: usize) -> f64 {
+        self.exponents[branch]
+    }
+
+    /// Drag on `branch` at `u`, exact at the knots on either side of it.
+    pub(crate) fn branch_force(&self, branch: usize, u: f64) -> f64 {
+        if let Some((speed, force)) = self.knots.get(branch)
+            && u.total_cmp(speed).is_eq()
+        {
+            return *force;
+        }
+        let (speed, force) = self.knots[branch.saturating_sub(1)];
+        force * (u / speed).powf(self.exponents[branch])
+    }
+
+    /// Exponents of the mixed and the EHL branch, if these are all there is.
+    pub(crate) fn two_branches(&self) -> Option<(f64, f64)> {
+        if let [mixed, ehl] = self.exponents[..] { Some((mixed, ehl)) } else { None }
+    }
+
+    /// Speed of the knot above `branch`.
+    pub(crate) fn upper_knot(&self, branch: usize) -> Option<f64> {
+        self.knots.get(branch).map(|knot| knot.0)
+    }
+
+    /// Speed of the knot below `branch`, if it is above the stick speed.
+    pub(crate) fn lower_knot(&self, branch: usize) -> Option<f64> {
+        branch.checked_sub(1).map(|i| self.knots[i].0).filter(|speed| *speed > self.stick_speed)
+    }
+
+    /// Whether drag nowhere falls above the transition speed.
+    pub(crate) fn rises_from_transition(&self) -> bool {
+        self.exponents[self.transition + 1..].iter().all(|exponent| *exponent >= 0.0)
+    }
+
+    /// Whether the knot between `branch` and the one above is the transition.
+    pub(crate) fn is_transition(&self, branch: usize) -> bool {
+        branch == self.transition
     }
 }

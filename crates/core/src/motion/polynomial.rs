@@ -3,6 +3,47 @@
 /// Highest power kept.
 pub(super) const ORDER: usize = 14;
 
+/// `a b + c` rounded once, which is one instruction on all machines but the web's.
+#[inline(always)]
+#[allow(clippy::inline_always)]
+pub(super) fn fused(a: f64, b: f64, c: f64) -> f64 {
+    if cfg!(target_arch = "wasm32") { a * b + c } else { a.mul_add(b, c) }
+}
+
+/// The powers, as numbers.
+#[allow(clippy::cast_precision_loss)] // at most ORDER
+pub(super) const POWERS: [f64; ORDER + 1] = {
+    let mut powers = [0.0; ORDER + 1];
+    let mut i = 0;
+    while i <= ORDER {
+        powers[i] = i as f64;
+        i += 1;
+    }
+    powers
+};
+
+/// One over each power; zero for the first.
+pub(super) const INVERSE: [f64; ORDER + 1] = {
+    let mut inverse = [0.0; ORDER + 1];
+    let mut i = 1;
+    while i <= ORDER {
+        inverse[i] = 1.0 / POWERS[i];
+        i += 1;
+    }
+    inverse
+};
+
+/// One over each power plus one.
+pub(super) const INVERSE_NEXT: [f64; ORDER + 1] = {
+    let mut inverse = [0.0; ORDER + 1];
+    let mut i = 0;
+    while i <= ORDER {
+        inverse[i] = 1.0 / (POWERS[i] + 1.0);
+        i += 1;
+    }
+    inverse
+};
+
 /// Coefficients of `sum c_i t^i`.
 pub(super) type Polynomial = [f64; ORDER + 1];
 
@@ -11,13 +52,22 @@ const MAX_DEPTH: u32 = 60;
 
 /// Value at `t`.
 pub(super) fn value(c: &Polynomial, t: f64) -> f64 {
-    c.iter().rev().fold(0.0, |sum, ci| sum.mul_add(t, *ci))
+    c.iter().rev().fold(0.0, |sum, ci| sum * t + ci)
 }
 
 /// `constant - c`.
 pub(super) fn subtracted_from(constant: f64, c: &Polynomial) -> Polynomial {
     let mut out = c.map(|ci| -ci);
     out[0] += constant;
+    out
+}
+
+/// Derivative.
+pub(super) fn derivative(c: &Polynomial) -> Polynomial {
+    let mut out = [0.0; ORDER + 1];
+    for i in 1..=ORDER {
+        out[i - 1] = c[i] * POWERS[i];
+    }
     out
 }
 
@@ -30,48 +80,54 @@ pub(super) fn first_crossing(g: &Polynomial, end: f64) -> Option<f64> {
         return Some(0.0); // numbers beyond range: an event at once, which ends the motion with an error
     }
     let zeros = g.iter().position(|ci| *ci != 0.0)?;
-    let mut c = [0.0; ORDER + 1];
-    c[..=ORDER - zeros].copy_from_slice(&g[zeros..]);
-    if c[0] < 0.0 { Some(0.0) } else { crossing_within(&c, 0.0, end, MAX_DEPTH) }
+    // in units of the interval
+    let (mut c, mut power) = ([0.0; ORDER + 1], 1.0);
+    for (unit, ci) in c.iter_mut().zip(&g[zeros..]) {
+        *unit = ci * power;
+        power *= end;
+    }
+    if c[0] < 0.0 { Some(0.0) } else { Some(crossing_within(&c, MAX_DEPTH)? * end) }
 }
 
-/// As `first_crossing`, for a polynomial that is positive at `start`: bounds prove an interval free of
-/// roots or monotone, otherwise it is halved and the earlier half searched first.
-fn crossing_within(c: &Polynomial, start: f64, end: f64, depth: u32) -> Option<f64> {
-    let local = shifted(c, start);
-    let width = end - start;
-    let (mut lowest, mut steepest, mut power) = (local[0], 0.0, 1.0);
-    for (i, ci) in local.iter().enumerate().skip(1) {
-        #[allow(clippy::cast_precision_loss)] // at most ORDER
-        let slope = ci * i as f64 * power;
-        steepest += if i == 1 { slope } else { slope.max(0.0) };
-        power *= width;
-        lowest += (ci * power).min(0.0);
+/// As `first_crossing`, on the unit interval, for a polynomial that is positive at 0: bounds prove the
+/// interval free of roots or monotone, otherwise it is halved and the earlier half searched first.
+fn crossing_within(c: &Polynomial, depth: u32) -> Option<f64> {
+    let (mut lowest, mut steepest) = (c[0], c[1]);
+    for i in 1..=ORDER {
+        lowest += c[i].min(0.0);
+        steepest += if i == 1 { 0.0 } else { (c[i] * POWERS[i]).max(0.0) };
     }
     if lowest > 0.0 {
         return None;
     }
     if !(lowest.is_finite() && steepest.is_finite()) {
-        return Some(start); // beyond the range of numbers, where no bound can be had
+        return Some(0.0); // beyond the range of numbers, where no bound can be had
     }
     if steepest < 0.0 || depth == 0 {
-        return (value(&local, width) <= 0.0).then(|| start + falling_root(&local, width));
+        let end: f64 = c.iter().sum();
+        return (end <= 0.0).then(|| falling_root(c, end));
     }
-    let middle = 0.5 * (start + end);
-    crossing_within(c, start, middle, depth - 1)
-        .or_else(|| crossing_within(c, middle, end, depth - 1))
+    let (mut left, mut half) = (*c, 1.0);
+    for ci in &mut left {
+        *ci *= half;
+        half *= 0.5;
+    }
+    if let Some(root) = crossing_within(&left, depth - 1) {
+        return Some(0.5 * root);
+    }
+    Some(0.5 + 0.5 * crossing_within(&advanced(&left), depth - 1)?)
 }
 
-/// Root of `c`, falling from positive at 0 to non-positive at `end`: Newton kept inside a bracket.
+/// Root of `c`, falling from positive at 0 to the non-positive value `end` at 1: Newton kept inside a bracket.
 fn falling_root(c: &Polynomial, end: f64) -> f64 {
-    let (mut low, mut high) = (0.0, end);
-    let mut t = 0.5 * end;
+    let (mut low, mut high) = (0.0, 1.0);
+    let mut t = c[0] / (c[0] - end);
     for _ in 0..100 {
         let (v, slope) = value_and_slope(c, t);
         (low, high) = if v > 0.0 { (t, high) } else { (low, t) };
         let newton = t - v / slope;
         let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
-        if (next - t).abs() <= f64::EPSILON * end {
+        if (next - t).abs() <= f64::EPSILON {
             return next;
         }
         t = next;
@@ -80,21 +136,35 @@ fn falling_root(c: &Polynomial, end: f64) -> f64 {
 }
 
 fn value_and_slope(c: &Polynomial, t: f64) -> (f64, f64) {
-    c.iter().rev().fold((0.0, 0.0), |(v, slope), ci| (v.mul_add(t, *ci), slope.mul_add(t, v)))
+    c.iter().rev().fold((0.0, 0.0), |(v, slope), ci| (v * t + ci, slope * t + v))
 }
 
-/// Coefficients about `origin`.
-fn shifted(c: &Polynomial, origin: f64) -> Polynomial {
-    let mut out = *c;
-    if origin != 0.0 {
-        for i in 0..ORDER {
-            for j in (i..ORDER).rev() {
-                out[j] = out[j + 1].mul_add(origin, out[j]);
-            }
+/// Coefficients about 1.
+fn advanced(c: &Polynomial) -> Polynomial {
+    let mut out = [0.0; ORDER + 1];
+    for (row, ci) in BINOMIALS.iter().zip(c) {
+        for (o, b) in out.iter_mut().zip(row) {
+            *o += b * ci;
         }
     }
     out
 }
+
+/// Pascal's triangle.
+const BINOMIALS: [[f64; ORDER + 1]; ORDER + 1] = {
+    let mut rows = [[0.0; ORDER + 1]; ORDER + 1];
+    let mut n = 0;
+    while n <= ORDER {
+        rows[n][0] = 1.0;
+        let mut k = 1;
+        while k <= n {
+            rows[n][k] = rows[n - 1][k - 1] + rows[n - 1][k];
+            k += 1;
+        }
+        n += 1;
+    }
+    rows
+};
 
 #[cfg(test)]
 mod tests {

@@ -1,101 +1,266 @@
-//! One slip step: the Taylor series of stretch and belt speed.
+//! One slip step: the Taylor series of pull and belt speed.
 //!
 //! The drag term is advanced by the recurrence of its own differential equation (powers and
 //! exponentials of a series), so a step costs one call of `pow` or `exp`. See Jorba and Zou, "A
 //! software package for the numerical integration of ODEs by means of high-order Taylor methods",
 //! Experimental Mathematics 14 (2005).
 
-use super::polynomial::{ORDER, Polynomial};
+use super::polynomial::{INVERSE, ORDER, POWERS, Polynomial, fused};
+use super::schedule::Cubic;
 
-/// Drag along the motion, for speeds `u >= 0`.
+/// How the drag term follows a series `q`: `n f_n = (weight sum i q_i f_{n-i} - back n sum q_i f_{n-i}) inverse`.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum SlipDrag {
-    /// Drag `force` at the start of the step, varying as `u^exponent`.
-    Power { force: f64, exponent: f64 },
-    /// Drag `force` at the start of the step, varying as `exp(-u/speed)`.
-    Exponential { force: f64, speed: f64 },
+pub(crate) struct Recurrence {
+    weight: f64,
+    back: f64,
+    inverse: f64,
+}
+
+impl Recurrence {
+    /// `f` varies as `q^exponent`, from `q = speed` on.
+    pub(crate) fn power(exponent: f64, speed: f64) -> Self {
+        Self { weight: exponent + 1.0, back: 1.0, inverse: 1.0 / speed }
+    }
+
+    /// `f` varies as `exp(-q/scale)`.
+    pub(crate) fn exponential(scale: f64) -> Self {
+        Self { weight: -1.0, back: 0.0, inverse: 1.0 / scale }
+    }
 }
 
 /// Series of a step, in time since its start.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Series {
-    /// Spring stretch.
-    pub stretch: Polynomial,
+    /// Pull of the spring.
+    pub pull: Polynomial,
     /// Belt speed.
     pub speed: Polynomial,
-    /// Drag force.
+    /// Drag force; of a held belt, the force that could hold it.
     pub drag: Polynomial,
 }
 
-/// Series of `s' = drive_speed - u`, `m u' = k s - F(u)` from (`stretch`, `speed`).
-#[allow(clippy::cast_precision_loss)] // powers are at most ORDER
-pub(super) fn slip_series(
-    stiffness: f64,
-    mass: f64,
-    drive_speed: f64,
-    law: SlipDrag,
-    stretch: f64,
-    speed: f64,
-) -> Series {
-    let (mut y, mut u, mut f) = ([0.0; ORDER + 1], [0.0; ORDER + 1], [0.0; ORDER + 1]);
-    (y[0], u[0]) = (stretch, speed);
-    f[0] = match law {
-        SlipDrag::Power { force, .. } | SlipDrag::Exponential { force, .. } => force,
-    };
-    for j in 0..ORDER {
-        let n = (j + 1) as f64;
-        // not fused: at a release the two forces are equal, and their difference is exactly nil
-        u[j + 1] = (stiffness * y[j] - f[j]) / (mass * n);
-        y[j + 1] = if j == 0 { drive_speed - u[0] } else { -u[j] / n };
-        f[j + 1] = match law {
-            SlipDrag::Power { exponent, .. } => {
-                let sum: f64 = (1..=j + 1)
-                    .map(|i| (exponent * i as f64 - (j + 1 - i) as f64) * u[i] * f[j + 1 - i])
-                    .sum();
-                sum / (n * u[0])
-            }
-            SlipDrag::Exponential { speed, .. } => {
-                let sum: f64 = (1..=j + 1).map(|i| i as f64 * u[i] * f[j + 1 - i]).sum();
-                -sum / (n * speed)
-            }
-        };
+/// How forces and speeds of the law move during a step, relative to its start.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Warmth {
+    /// Factor of every force.
+    pub force: Polynomial,
+    /// Factor of every speed.
+    pub speed: Polynomial,
+    /// Inverse of the factor of every speed.
+    pub slowness: Polynomial,
+}
+
+impl Warmth {
+    /// From the course of the temperature and the exponents of force and speed.
+    pub(super) fn new(temperature: &Cubic, force_exponent: f64, speed_exponent: f64) -> Self {
+        let mut t = [0.0; ORDER + 1];
+        t[..4].copy_from_slice(temperature);
+        let power = |exponent: f64| composed(Recurrence::power(exponent, t[0]), &t, 1.0);
+        Self {
+            force: power(force_exponent),
+            speed: power(speed_exponent),
+            slowness: power(-speed_exponent),
+        }
     }
-    Series { stretch: y, speed: u, drag: f }
+}
+
+/// What a slip step starts from.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SlipStart<'a> {
+    pub stiffness: f64,
+    pub mass: f64,
+    /// Rate of the pull if the belt stood still, about the start of the step.
+    pub rate: Cubic,
+    pub pull: f64,
+    pub speed: f64,
+    /// Drag at the start, before any warmth.
+    pub force: f64,
+    pub law: Recurrence,
+    pub warmth: Option<&'a Warmth>,
+}
+
+/// A slip series, as work for the best instruction set.
+pub(super) struct Slip<'a>(pub SlipStart<'a>);
+
+impl pulp::WithSimd for Slip<'_> {
+    type Output = Series;
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) -> Series {
+        slip_series(&self.0)
+    }
+}
+
+/// Series of `p' = rate(t) - k u`, `m u' = p - F(u, t)`.
+#[inline(always)]
+#[allow(clippy::inline_always)] // so that it is compiled for the instruction set it is dispatched to
+fn slip_series(start: &SlipStart) -> Series {
+    match start.warmth {
+        None => plain_series(start),
+        Some(warmth) => warm_series(start, warmth),
+    }
+}
+
+/// The recurrence is sorted so that each coefficient waits for the one before through two operations only.
+#[inline(always)]
+#[allow(clippy::inline_always)]
+fn plain_series(start: &SlipStart) -> Series {
+    let (mut p, mut u, mut f) = ([0.0; ORDER + 1], [0.0; ORDER + 1], [0.0; ORDER + 1]);
+    let mut rate = [0.0; ORDER + 1];
+    let Recurrence { weight, back, inverse } = start.law;
+    let (weight, back) = (weight * inverse, back * inverse);
+    let per_mass = 1.0 / start.mass;
+    (p[0], u[0], f[0]) = (start.pull, start.speed, start.force);
+    // not fused: at a release the two forces are equal, and their difference is exactly nil
+    rate[1] = (p[0] - f[0]) * per_mass;
+    u[1] = rate[1];
+    p[1] = start.rate[0] - start.stiffness * u[0];
+    f[1] = (weight - back) * f[0] * u[1];
+    for n in 2..=ORDER {
+        let (mut weighted, mut plain) = (0.0, 0.0);
+        for ((q, rate), f) in u[2..n].iter().zip(&rate[2..n]).zip(f[1..n - 1].iter().rev()) {
+            weighted = fused(*rate, *f, weighted);
+            plain = fused(*q, *f, plain);
+        }
+        let share = weight * INVERSE[n];
+        let early = share * weighted - back * plain;
+        let (from_last, from_rate) = (u[1] * (share - back), f[0] * (share - back * INVERSE[n]));
+        rate[n] = (p[n - 1] - f[n - 1]) * per_mass;
+        u[n] = rate[n] * INVERSE[n];
+        let driven = if n < 5 { start.rate[n - 1] } else { 0.0 };
+        p[n] = (driven - start.stiffness * u[n - 1]) * INVERSE[n];
+        f[n] = fused(from_rate, rate[n], fused(from_last, f[n - 1], early));
+    }
+    Series { pull: p, speed: u, drag: f }
+}
+
+/// The same with a law that moves with temperature: its speeds enter as `q = u/v(T)`, its forces as a factor.
+fn warm_series(start: &SlipStart, warmth: &Warmth) -> Series {
+    let (mut p, mut u, mut f) = ([0.0; ORDER + 1], [0.0; ORDER + 1], [0.0; ORDER + 1]);
+    let (mut q, mut rate, mut g) = ([0.0; ORDER + 1], [0.0; ORDER + 1], [0.0; ORDER + 1]);
+    (p[0], u[0], f[0]) = (start.pull, start.speed, start.force * warmth.force[0]);
+    (q[0], g[0]) = (start.speed * warmth.slowness[0], start.force);
+    for n in 1..=ORDER {
+        u[n] = (p[n - 1] - f[n - 1]) / start.mass * INVERSE[n];
+        let driven = if n < 5 { start.rate[n - 1] } else { 0.0 };
+        p[n] = (driven - start.stiffness * u[n - 1]) * INVERSE[n];
+        q[n] = product(&u, &warmth.slowness, n);
+        rate[n] = POWERS[n] * q[n];
+        g[n] = drag_term(start.law, n, &q, &rate, &g);
+        f[n] = product(&g, &warmth.force, n);
+    }
+    Series { pull: p, speed: u, drag: f }
+}
+
+/// Coefficient `n` of the drag term along `q`, whose coefficients times their power are `rate`.
+fn drag_term(law: Recurrence, n: usize, q: &Polynomial, rate: &Polynomial, f: &Polynomial) -> f64 {
+    let weighted: f64 = (1..=n).map(|i| rate[i] * f[n - i]).sum();
+    let plain: f64 = (1..=n).map(|i| q[i] * f[n - i]).sum();
+    (law.weight * weighted * INVERSE[n] - law.back * plain) * law.inverse
+}
+
+/// Coefficient `n` of the product of two series.
+fn product(a: &Polynomial, b: &Polynomial, n: usize) -> f64 {
+    (0..=n).map(|i| a[i] * b[n - i]).sum()
+}
+
+/// Series of the function that `law` describes along `q`, from `first` on.
+pub(super) fn composed(law: Recurrence, q: &Polynomial, first: f64) -> Polynomial {
+    let mut f = [0.0; ORDER + 1];
+    f[0] = first;
+    let rate = std::array::from_fn(|n| POWERS[n] * q[n]);
+    for n in 1..=ORDER {
+        f[n] = drag_term(law, n, q, &rate, &f);
+    }
+    f
+}
+
+/// Series of a held belt, which keeps `speed`: the pull grows as the drive says.
+pub(super) fn held_series(start: &SlipStart) -> Series {
+    let (mut p, mut u, mut f) = ([0.0; ORDER + 1], [0.0; ORDER + 1], [0.0; ORDER + 1]);
+    (p[0], u[0], f[0]) = (start.pull, start.speed, start.force);
+    for (j, driven) in start.rate.iter().enumerate() {
+        let pulled = if j == 0 { driven - start.stiffness * start.speed } else { *driven };
+        p[j + 1] = pulled * INVERSE[j + 1];
+    }
+    if let Some(warmth) = start.warmth {
+        let q = warmth.slowness.map(|c| start.speed * c);
+        let holding = composed(start.law, &q, start.force);
+        for (n, c) in f.iter_mut().enumerate() {
+            *c = product(&holding, &warmth.force, n);
+        }
+    }
+    Series { pull: p, speed: u, drag: f }
 }
 
 /// Series of creep, where the belt slows just as fast as the growing backward pull allows.
 ///
 /// A belt that moves at `speed < v_s` against the pull of the spring cannot leave the holding force
-/// `A exp(-u/v_s)`: any faster and it is held, any slower and it slips. So `A exp(-u/v_s) = -k s` stays
-/// true while `s' = drive_speed - u`, that is `u' = -v_s (ln(-s))'`.
-#[allow(clippy::cast_precision_loss)] // powers are at most ORDER
-pub(super) fn creep_series(drive_speed: f64, stick_speed: f64, stretch: f64, speed: f64) -> Series {
-    let (mut y, mut u) = ([0.0; ORDER + 1], [0.0; ORDER + 1]);
-    let mut log = [0.0; ORDER + 1];
-    (y[0], u[0]) = (stretch, speed);
+/// `A exp(-u/v_s)`: any faster and it is held, any slower and it slips. So `A exp(-u/v_s) = -p` stays
+/// true while `p' = rate - k u`, that is `(u/v_s)' = (ln A - ln(-p))'`.
+pub(super) fn creep_series(start: &SlipStart, stick_speed: f64) -> Series {
+    let (mut p, mut u) = ([0.0; ORDER + 1], [0.0; ORDER + 1]);
+    let (mut log, mut x) = ([0.0; ORDER + 1], [0.0; ORDER + 1]);
+    (p[0], u[0]) = (start.pull, start.speed);
+    x[0] = start.speed / stick_speed * start.warmth.map_or(1.0, |warmth| warmth.slowness[0]);
+    let growth = start.warmth.map_or([0.0; ORDER + 1], |warmth| logarithm(&warmth.force));
     for j in 0..ORDER {
-        let n = (j + 1) as f64;
-        y[j + 1] = if j == 0 { drive_speed - u[0] } else { -u[j] / n };
-        let sum: f64 = (1..=j).map(|i| i as f64 * log[i] * y[j + 1 - i]).sum();
-        log[j + 1] = (y[j + 1] - sum / n) / y[0];
-        u[j + 1] = -stick_speed * log[j + 1];
+        let n = j + 1;
+        let driven = if j < 4 { start.rate[j] } else { 0.0 };
+        p[n] = (driven - start.stiffness * u[j]) * INVERSE[n];
+        let sum: f64 = (1..n).map(|i| POWERS[i] * log[i] * p[n - i]).sum();
+        log[n] = (p[n] - sum * INVERSE[n]) / p[0];
+        x[n] = growth[n] - log[n];
+        u[n] = stick_speed * start.warmth.map_or(x[n], |warmth| product(&x, &warmth.speed, n));
     }
-    Series { stretch: y, speed: u, drag: [0.0; ORDER + 1] }
+    Series { pull: p, speed: u, drag: p.map(|c| -c) }
+}
+
+fn logarithm(c: &Polynomial) -> Polynomial {
+    let mut log = [0.0; ORDER + 1];
+    log[0] = c[0].ln();
+    for n in 1..=ORDER {
+        let sum: f64 = (1..n).map(|i| POWERS[i] * log[i] * c[n - i]).sum();
+        log[n] = (c[n] - sum * INVERSE[n]) / c[0];
+    }
+    log
+}
+
+/// Exponent bits of 1.0.
+const ONE: u64 = 0x3FF0_0000_0000_0000;
+
+/// `x^(1/n)` within some per cent: the exponent bits divided. Enough for a step size.
+#[inline(always)]
+#[allow(clippy::inline_always)]
+pub(super) fn rough_root(x: f64, n: u64) -> f64 {
+    f64::from_bits((x.to_bits() / n).wrapping_add(ONE - ONE / n))
 }
 
 impl Series {
+    /// Nothing moves.
+    pub(super) fn still(pull: f64, speed: f64) -> Self {
+        let constant = |value: f64| {
+            let mut c = [0.0; ORDER + 1];
+            c[0] = value;
+            c
+        };
+        Self { pull: constant(pull), speed: constant(speed), drag: constant(pull) }
+    }
+
     /// Longest step for which the last two terms stay below `tolerance` times the scales.
-    pub(super) fn step_size(&self, tolerance: f64, stretch_scale: f64, speed_scale: f64) -> f64 {
-        let mut step = f64::INFINITY;
-        for (series, scale) in [(&self.stretch, stretch_scale), (&self.speed, speed_scale)] {
-            for power in [ORDER - 1, ORDER] {
-                #[allow(clippy::cast_precision_loss)] // at most ORDER
-                let root = 1.0 / power as f64;
-                if series[power] != 0.0 {
-                    step = step.min((tolerance * scale / series[power].abs()).powf(root));
-                }
-            }
-        }
-        step
+    #[inline(always)]
+    #[allow(clippy::inline_always)]
+    pub(super) fn step_size(&self, tolerance: f64, pull_scale: f64, speed_scale: f64) -> f64 {
+        let relative =
+            |n: usize| (self.pull[n].abs() / pull_scale).max(self.speed[n].abs() / speed_scale);
+        let (last, before) = (relative(ORDER), relative(ORDER - 1));
+        let by_last =
+            if last > 0.0 { rough_root(tolerance / last, ORDER as u64) } else { f64::INFINITY };
+        let by_before = if before > 0.0 {
+            rough_root(tolerance / before, ORDER as u64 - 1)
+        } else {
+            f64::INFINITY
+        };
+        by_last.min(by_before)
     }
 }

@@ -1,9 +1,13 @@
-//! The motion sampled at given times, with its event table.
+//! The motion sampled at given times, with its event table and its energies.
 
 use super::hybrid::{Event, Motion};
-use super::{Drivetrain, Start, checked_tolerance};
-use crate::drag::{Drag, Mode};
-use crate::error::{Error, above, finite};
+use super::piece::{GAUSS, Path, Piece};
+use super::polynomial::{ORDER, Polynomial, fused};
+use super::schedule::Cubic;
+use super::system::{Drive, Integrator, Start, System};
+use super::taylor::Series;
+use crate::drag::Mode;
+use crate::error::{Error, above};
 
 /// Motion at equally spaced times from 0 to the duration.
 #[derive(Debug, Clone)]
@@ -12,60 +16,199 @@ pub struct Trajectory {
     pub time: Vec<f64>,
     /// Belt speed at each sample.
     pub belt_speed: Vec<f64>,
-    /// Spring stretch at each sample.
+    /// Spring stretch at each sample; with a drive of given force, position of the mass.
     pub stretch: Vec<f64>,
     /// Mode at each sample.
     pub mode: Vec<Mode>,
     /// Every change of mode.
     pub events: Vec<Event>,
+    /// Where the work of the drive went.
+    pub energy: Energy,
+    /// Steps taken.
+    pub steps: usize,
 }
 
-/// Motion at constant `drive_speed` from `start` over `duration`, at `samples` equally spaced times.
+/// Energies of a run, each by its own integral.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Energy {
+    /// Work done by the drive.
+    pub work: f64,
+    /// Work done against drag.
+    pub dissipated: f64,
+    /// Growth of kinetic and spring energy.
+    pub stored: f64,
+    /// Sum of the magnitudes of all work done, the measure of the residual.
+    pub turnover: f64,
+}
+
+impl Energy {
+    /// What is missing, as a share of the energy turned over.
+    #[must_use]
+    pub fn residual(&self) -> f64 {
+        let missing = self.work - self.dissipated - self.stored;
+        if missing == 0.0 { 0.0 } else { missing / self.turnover }
+    }
+}
+
+/// Longest panel of the quadrature of the energies, in units of `sqrt(m/k)`.
+const LONGEST_PANEL: f64 = 0.5;
+
+/// Motion of `system` from `start` over `duration`, at `samples` equally spaced times.
 ///
-/// Events are located to rounding, and the samples are read from the Taylor polynomials of the steps:
+/// Events are located to rounding, and the samples are read from the steps as they are:
 /// neither depends on how densely the output is asked for.
 ///
 /// # Errors
 /// If a value is not finite or out of range, or the motion switches mode without end.
 pub fn simulate(
-    train: &Drivetrain,
-    drag: &Drag,
-    drive_speed: f64,
+    system: &System,
     start: Start,
     duration: f64,
     samples: usize,
     tolerance: f64,
+    integrator: Integrator,
 ) -> Result<Trajectory, Error> {
-    finite("drive_speed", drive_speed)?;
     above("duration", duration, 0.0)?;
-    let mut motion =
-        Motion::new(train, drag, drive_speed, start.checked()?, checked_tolerance(tolerance)?);
-    let mut out = Trajectory {
-        time: sample_times(duration, samples),
-        belt_speed: Vec::with_capacity(samples),
-        stretch: Vec::with_capacity(samples),
-        mode: Vec::with_capacity(samples),
-        events: Vec::new(),
-    };
+    let mut motion = Motion::new(system, start, tolerance, integrator)?;
+    let arch = pulp::Arch::new();
+    let time = sample_times(duration, samples);
+    let (mut speed, mut pull) = (vec![0.0; samples], vec![0.0; samples]);
+    let mut mode = Vec::with_capacity(samples);
+    let (mut events, mut elapsed) = (Vec::new(), Vec::new());
+    let mut energy = Energy::default();
+    let mut end_state = (start.belt_speed, system.pull(start)?);
+    let initial = stored(system, end_state, 0.0);
     while motion.time() < duration {
         let (piece, event) = motion.advance(duration - motion.time())?;
-        let end = if event.is_none() && motion.time() >= duration {
-            f64::INFINITY
-        } else {
-            piece.time + piece.duration
-        };
-        for time in &out.time[out.mode.len()..] {
-            if *time >= end {
-                break;
-            }
-            let (belt_speed, stretch) = piece.at(time - piece.time);
-            out.belt_speed.push(belt_speed);
-            out.stretch.push(stretch);
-            out.mode.push(piece.start.mode);
+        let last = event.is_none() && motion.time() >= duration;
+        let end = if last { f64::INFINITY } else { piece.time + piece.duration };
+        let begin = mode.len();
+        let count = time[begin..].partition_point(|t| *t < end);
+        let range = begin..begin + count;
+        elapsed.clear();
+        elapsed.extend(time[range.clone()].iter().map(|t| t - piece.time));
+        sample(arch, &piece, &elapsed, &mut speed[range.clone()], &mut pull[range]);
+        mode.resize(begin + count, piece.start.mode);
+        energy.add(&piece, system, arch);
+        end_state = piece.at(piece.duration);
+        if let Some(event) = event {
+            events.push(event);
+            end_state.0 = event.belt_speed;
         }
-        out.events.extend(event);
     }
-    Ok(out)
+    let end = stored(system, end_state, duration);
+    energy.dissipated += motion.stopped;
+    energy.stored = (end.0 - initial.0) + (end.1 - initial.1);
+    energy.turnover += energy.stored.abs();
+    let stretch = time.iter().zip(&pull).map(|(t, p)| system.stretch(*p, *t)).collect();
+    Ok(Trajectory { time, belt_speed: speed, stretch, mode, events, energy, steps: motion.steps })
+}
+
+/// Kinetic energy and energy of the spring.
+fn stored(system: &System, (speed, pull): (f64, f64), time: f64) -> (f64, f64) {
+    let stretch = system.stretch(pull, time);
+    let spring = 0.5 * system.train.stiffness() * stretch * stretch;
+    (0.5 * system.train.mass() * speed * speed, spring)
+}
+
+impl Energy {
+    fn add(&mut self, piece: &Piece, system: &System, arch: pulp::Arch) {
+        let panels = (piece.duration / (LONGEST_PANEL * system.train.time_scale())).ceil().max(1.0);
+        let panels = if piece.start.mode == Mode::Stuck { 1.0 } else { panels.min(1e6) };
+        let panel = piece.duration / panels;
+        let schedule = system.drive.schedule();
+        let segment = schedule.segment(piece.time + 0.5 * piece.duration);
+        let driven = schedule.about(segment, piece.time);
+        let mut begin = 0.0;
+        while begin < piece.duration * (1.0 - 1e-9) {
+            self.add_panel(piece, system, arch, &driven, begin, panel);
+            begin += panel;
+        }
+    }
+
+    fn add_panel(
+        &mut self,
+        piece: &Piece,
+        system: &System,
+        arch: pulp::Arch,
+        driven: &Cubic,
+        begin: f64,
+        panel: f64,
+    ) {
+        let times = GAUSS.map(|(x, _)| begin + x * panel);
+        let (mut speed, mut pull) = ([0.0; GAUSS.len()], [0.0; GAUSS.len()]);
+        sample(arch, piece, &times, &mut speed, &mut pull);
+        for (i, (t, (_, weight))) in times.into_iter().zip(GAUSS).enumerate() {
+            let (speed, pull) = (speed[i], pull[i]);
+            let friction = if piece.start.mode == Mode::Stuck {
+                pull
+            } else if piece.start.creeping {
+                pull - piece.start.direction * piece.flow.mass * piece.acceleration(t)
+            } else {
+                piece.friction(t, pull, speed)
+            };
+            let given = driven[0] + t * (driven[1] + t * (driven[2] + t * driven[3]));
+            let power = match system.drive {
+                Drive::Speed(_) => pull * given,
+                Drive::Force(_) => speed * given,
+            };
+            let span = weight * panel;
+            self.work += span * power;
+            self.dissipated += span * friction * speed;
+            self.turnover += span * (power.abs() + (friction * speed).abs());
+        }
+    }
+}
+
+/// Speed and pull of a piece at `times` since its start, signed.
+fn sample(arch: pulp::Arch, piece: &Piece, times: &[f64], speed: &mut [f64], pull: &mut [f64]) {
+    if let Path::Series(series) = &piece.path {
+        let direction = piece.start.direction;
+        arch.dispatch(Sampling { series, direction, times, speed, pull });
+        return;
+    }
+    for (i, t) in times.iter().enumerate() {
+        (speed[i], pull[i]) = piece.at(*t);
+    }
+}
+
+/// Samples of a series, as work for the best instruction set.
+struct Sampling<'a> {
+    series: &'a Series,
+    direction: f64,
+    times: &'a [f64],
+    speed: &'a mut [f64],
+    pull: &'a mut [f64],
+}
+
+impl pulp::WithSimd for Sampling<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        values(&self.series.speed, self.direction, self.times, self.speed);
+        values(&self.series.pull, self.direction, self.times, self.pull);
+    }
+}
+
+/// Values of one polynomial at many times, eight at once.
+#[inline(always)]
+#[allow(clippy::inline_always)] // so that it is compiled for the instruction set it is dispatched to
+fn values(c: &Polynomial, factor: f64, times: &[f64], out: &mut [f64]) {
+    const BLOCK: usize = 8;
+    for (times, out) in times.chunks(BLOCK).zip(out.chunks_mut(BLOCK)) {
+        let mut t = [0.0; BLOCK];
+        t[..times.len()].copy_from_slice(times);
+        let mut sum = [c[ORDER]; BLOCK];
+        for i in (0..ORDER).rev() {
+            for (s, t) in sum.iter_mut().zip(&t) {
+                *s = fused(*s, *t, c[i]);
+            }
+        }
+        for (out, s) in out.iter_mut().zip(&sum) {
+            *out = factor * s;
+        }
+    }
 }
 
 #[allow(clippy::cast_precision_loss)] // more samples than 2^53 do not fit in memory

@@ -1,0 +1,62 @@
+//! What the drag does below the stick speed: the choices, each with its source.
+
+use crate::error::{Error, above, at_least};
+
+/// Width of the smoothed reversal of `Stribeck`, in stick speeds.
+const SMOOTHING: f64 = 0.05;
+
+/// What the belt does near zero speed, where nobody has measured.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Closure {
+    /// The paper's rule (Eqs. 24-27): below the stick speed drag is `A exp(-|v|/v_s)`, and while the
+    /// spring cannot overcome it the belt keeps its small speed.
+    Retained,
+    /// The belt stops dead at the stick speed and is released at `A`. D. Karnopp, "Computer simulation of
+    /// stick-slip friction in mechanical dynamic systems", J. Dyn. Syst. Meas. Control 107 (1985).
+    Stiction,
+    /// Smooth: `A exp(-|v|/v_s) tanh(v/(0.05 v_s))`; the belt never rests, it creeps.
+    Stribeck,
+    /// Bristles that bend before they slip. C. Canudas de Wit, H. Olsson, K. J. Astrom, P. Lischinsky,
+    /// "A new model for control of systems with friction", IEEE Trans. Autom. Control 40 (1995).
+    LuGre {
+        /// Force per bristle deflection.
+        bristle_stiffness: f64,
+        /// Force per rate of deflection, fading with speed as `exp(-(v/v_s)^2)`.
+        bristle_damping: f64,
+    },
+}
+
+impl Closure {
+    pub(super) fn check(self) -> Result<(), Error> {
+        if let Self::LuGre { bristle_stiffness, bristle_damping } = self {
+            above("bristle_stiffness", bristle_stiffness, 0.0)?;
+            at_least("bristle_damping", bristle_damping, 0.0)?;
+        }
+        Ok(())
+    }
+
+    /// Whether the force is a smooth function through zero speed, so that the belt is never held.
+    #[must_use]
+    pub fn is_smooth(self) -> bool {
+        matches!(self, Self::Stribeck | Self::LuGre { .. })
+    }
+
+    /// Drag in steady sliding at `x` stick speeds, where `A exp(-x)` is `exponential`.
+    pub(super) fn below_stick_speed(self, exponential: f64, x: f64) -> f64 {
+        match self {
+            Self::Stribeck => exponential * (x / SMOOTHING).tanh(),
+            _ => exponential,
+        }
+    }
+
+    /// Its slope in `x`.
+    pub(super) fn slope_below_stick_speed(self, exponential: f64, x: f64) -> f64 {
+        match self {
+            Self::Stribeck => {
+                let t = (x / SMOOTHING).tanh();
+                exponential * ((1.0 - t * t) / SMOOTHING - t)
+            }
+            _ => -exponential,
+        }
+    }
+}

@@ -1,0 +1,427 @@
+//! What thousands of belts settle to: laps in lanes where they are plain, the full motion where they are not.
+
+use super::cycle::{CycleKind, Span, StickSlipCycle, settle};
+use super::hybrid::Motion;
+use super::lanes::{LANES, LaneStep, Lanes, arrival};
+use super::piece::Piece;
+use super::system::{Drivetrain, Integrator, Start, System, checked_tolerance};
+use crate::drag::{Closure, Drag, Mode};
+use crate::error::{Error, above, finite};
+
+/// One belt of an ensemble: a drivetrain and drag at constant drive speed, and where the motion starts.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Belt {
+    /// Spring and mass.
+    pub train: Drivetrain,
+    /// Drag at one temperature.
+    pub drag: Drag,
+    /// Speed of the drive.
+    pub drive_speed: f64,
+    /// Where the motion starts.
+    pub start: Start,
+}
+
+/// What a belt settles to, or why its motion cannot be followed.
+pub type Outcome = Result<StickSlipCycle, Error>;
+
+/// What each of `belts` settles to, in their order.
+///
+/// The outcome of a belt does not depend on the others.
+///
+/// # Errors
+/// If tolerance, time or a drive speed is out of range; each belt's outcome may be an error of its own.
+pub fn ensemble(belts: &[Belt], span: Span, tolerance: f64) -> Result<Vec<Outcome>, Error> {
+    checked_tolerance(tolerance)?;
+    if let Span::Lasting(duration) = span {
+        above("duration", duration, 0.0)?;
+    }
+    for belt in belts {
+        finite("drive_speed", belt.drive_speed)?;
+    }
+    let mut run = Run { belts, span, tolerance, next: 0, results: vec![None; belts.len()] };
+    run.lanes();
+    let results = run.results.into_iter().zip(belts);
+    Ok(results
+        .map(|(result, belt)| result.unwrap_or_else(|| alone(belt, span, tolerance)))
+        .collect())
+}
+
+fn alone(belt: &Belt, span: Span, tolerance: f64) -> Outcome {
+    settle(&belt.train, &belt.drag, belt.drive_speed, belt.start, span, tolerance)
+}
+
+/// Swings without sticking after which a belt is followed alone, where its orbit is looked at as a whole.
+const MAX_SWINGS: u32 = 8;
+/// Steps without any event after which a belt is followed alone.
+const MAX_STEPS: u32 = 2000;
+/// Pieces of motion off the lanes after which a belt is followed alone.
+const MAX_PIECES: usize = 200;
+/// Damping of the rising branch, in scaled units, from which the motion is stiff.
+const STIFF: f64 = 30.0;
+/// Relative change of the pull at release between laps at which an orbit has closed.
+const CLOSED: f64 = 1e-9;
+
+/// Sizes that make the equation of a belt dimensionless.
+#[derive(Debug, Clone, Copy)]
+struct Scale {
+    time: f64,
+    speed: f64,
+    pull: f64,
+}
+
+/// Extremes and durations of the lap under way, scaled.
+#[derive(Debug, Clone, Copy)]
+struct Lap {
+    begin: f64,
+    stuck: f64,
+    speed: (f64, f64),
+    pull: (f64, f64),
+    impulse: f64,
+}
+
+impl Lap {
+    fn starting(time: f64) -> Self {
+        let none = (f64::INFINITY, f64::NEG_INFINITY);
+        Self { begin: time, stuck: 0.0, speed: none, pull: none, impulse: 0.0 }
+    }
+
+    fn add_speed(&mut self, speed: f64) {
+        self.speed = (self.speed.0.min(speed), self.speed.1.max(speed));
+    }
+
+    fn add_pull(&mut self, pull: f64) {
+        self.pull = (self.pull.0.min(pull), self.pull.1.max(pull));
+    }
+}
+
+/// A belt on a lane.
+struct Rider {
+    index: usize,
+    system: System,
+    scale: Scale,
+    /// Drag at the transition, stick speed and pull at release, scaled.
+    damping: f64,
+    stick_speed: f64,
+    release: f64,
+    exponents: (f64, f64),
+    drive: f64,
+    /// Time at which the belt is taken off, scaled.
+    until: f64,
+    lap: Lap,
+    /// Pull and speed at the release that began the lap, if one did.
+    released: Option<(f64, f64)>,
+    whole: Option<(Lap, f64)>,
+    laps: usize,
+    swings: u32,
+    steps: u32,
+}
+
+/// What becomes of a rider.
+enum Verdict {
+    Rides,
+    Arrived,
+    Leaves,
+}
+
+struct Run<'a> {
+    belts: &'a [Belt],
+    span: Span,
+    tolerance: f64,
+    next: usize,
+    results: Vec<Option<Outcome>>,
+}
+
+impl Run<'_> {
+    fn lanes(&mut self) {
+        let arch = pulp::Arch::new();
+        let mut lanes = Lanes::idle();
+        let mut riders: [Option<Box<Rider>>; LANES] = std::array::from_fn(|_| None);
+        loop {
+            for (l, rider) in riders.iter_mut().enumerate() {
+                if rider.is_none() {
+                    *rider = self.board(&mut lanes, l);
+                }
+            }
+            if riders.iter().all(Option::is_none) {
+                return;
+            }
+            let tolerance = self.tolerance;
+            arch.dispatch(LaneStep { lanes: &mut lanes, tolerance });
+            for (l, seat) in riders.iter_mut().enumerate() {
+                let Some(rider) = seat else { continue };
+                match rider.follow(&mut lanes, l, self.span, tolerance) {
+                    Verdict::Rides => continue,
+                    Verdict::Arrived => self.results[rider.index] = Some(Ok(rider.cycle())),
+                    Verdict::Leaves => {}
+                }
+                *seat = None;
+            }
+        }
+    }
+
+    /// The next belt that can ride, on lane `l`.
+    fn board(&mut self, lanes: &mut Lanes, l: usize) -> Option<Box<Rider>> {
+        while self.next < self.belts.len() {
+            let index = self.next;
+            self.next += 1;
+            if let Some(mut rider) = Rider::new(index, &self.belts[index], self.span)
+                && rider.start(self.belts[index].start, lanes, l, self.tolerance)
+            {
+                return Some(rider);
+            }
+        }
+        None
+    }
+}
+
+impl Rider {
+    /// The belt in scaled units, if its laps are plain.
+    fn new(index: usize, belt: &Belt, span: Span) -> Option<Box<Self>> {
+        let Belt { train, drag, drive_speed, .. } = belt;
+        let (mixed, ehl) = drag.two_branches()?;
+        let scale = Scale {
+            time: train.time_scale(),
+            speed: drag.transition_speed(),
+            pull: drag.transition_speed() * (train.stiffness() * train.mass()).sqrt(),
+        };
+        let damping = drag.transition_force() / scale.pull;
+        let (stick_speed, drive) = (drag.stick_speed() / scale.speed, drive_speed / scale.speed);
+        let plain = drag.closure() == Closure::Retained
+            && drive > 1.01 * stick_speed
+            && drive < 1e3
+            && damping * ehl.max(mixed) < STIFF
+            && damping > 1e-6
+            && damping < 1e3;
+        if !plain {
+            return None;
+        }
+        let until = match span {
+            Span::UntilClosed => f64::INFINITY,
+            Span::Lasting(duration) => duration / scale.time,
+        };
+        Some(Box::new(Self {
+            index,
+            system: System::at_speed(*train, drag, *drive_speed).ok()?,
+            scale,
+            damping,
+            stick_speed,
+            release: drag.holding_force(drag.stick_speed()) / scale.pull,
+            exponents: (mixed, ehl),
+            drive,
+            until,
+            lap: Lap::starting(0.0),
+            released: None,
+            whole: None,
+            laps: 0,
+            swings: 0,
+            steps: 0,
+        }))
+    }
+
+    /// Put the belt on its lane at the moment it first slides; false if it does not.
+    fn start(&mut self, start: Start, lanes: &mut Lanes, l: usize, tolerance: f64) -> bool {
+        (lanes.time[l], lanes.impulse[l]) = (0.0, 0.0);
+        self.off_lane(start, lanes, l, Span::UntilClosed, tolerance)
+            .is_some_and(|v| matches!(v, Verdict::Rides))
+    }
+
+    /// What the step that lane `l` has just made means for the belt.
+    fn follow(&mut self, lanes: &mut Lanes, l: usize, span: Span, tolerance: f64) -> Verdict {
+        if lanes.time[l] >= self.until {
+            return if self.whole.is_some() { Verdict::Arrived } else { Verdict::Leaves };
+        }
+        self.steps += 1;
+        let met = lanes.arrival[l];
+        if met == arrival::NONE {
+            return if self.steps <= MAX_STEPS { Verdict::Rides } else { Verdict::Leaves };
+        }
+        if met == arrival::LOST {
+            return Verdict::Leaves;
+        }
+        if met == arrival::TURNING {
+            self.lap.add_speed(lanes.speed[l]);
+            self.swings += 1;
+            self.steps = 0;
+            return if self.swings > MAX_SWINGS { Verdict::Leaves } else { Verdict::Rides };
+        }
+        self.steps = 0;
+        let level = lanes.speed[l];
+        if level <= self.stick_speed {
+            return self.stick(lanes, l, span, tolerance);
+        }
+        let rising = met == arrival::UPPER;
+        self.at_level(lanes, l, level, rising);
+        Verdict::Rides
+    }
+
+    /// Enter the range of speeds beyond `level`.
+    fn at_level(&mut self, lanes: &mut Lanes, l: usize, level: f64, rising: bool) {
+        if level == self.drive {
+            self.lap.add_pull(lanes.pull[l]);
+        }
+        if level == 1.0 {
+            lanes.drag[l] = self.damping;
+        }
+        let fast = level > 1.0 || (level == 1.0 && rising);
+        lanes.exponent[l] = if fast { self.exponents.1 } else { self.exponents.0 };
+        let (low, high) = (self.drive.min(1.0), self.drive.max(1.0));
+        let next = [self.stick_speed, low, high, f64::INFINITY];
+        if rising {
+            lanes.lower[l] = level;
+            lanes.upper[l] = next.into_iter().find(|v| *v > level).unwrap_or(f64::INFINITY);
+        } else {
+            lanes.upper[l] = level;
+            lanes.lower[l] =
+                next.into_iter().rev().find(|v| *v < level).unwrap_or(self.stick_speed);
+        }
+    }
+
+    /// The belt has slowed to the stick speed: it is held until the spring has stretched, in closed form.
+    fn stick(&mut self, lanes: &mut Lanes, l: usize, span: Span, tolerance: f64) -> Verdict {
+        let pull = lanes.pull[l];
+        if pull.abs() > self.release {
+            let start = Start {
+                belt_speed: self.system.drag.stick_speed(),
+                stretch: pull * self.scale.pull / self.system.train.stiffness(),
+            };
+            return self.off_lane(start, lanes, l, span, tolerance).unwrap_or(Verdict::Leaves);
+        }
+        let wait = (self.release - pull) / (self.drive - self.stick_speed);
+        self.lap.stuck += wait;
+        self.lap.add_pull(pull);
+        self.lap.add_pull(self.release);
+        self.lap.add_speed(self.stick_speed);
+        lanes.impulse[l] += 0.5 * (pull + self.release) * wait;
+        lanes.time[l] += wait;
+        (lanes.pull[l], lanes.drag[l]) = (self.release, self.release);
+        (lanes.speed[l], lanes.turned[l]) = (self.stick_speed, 0.0);
+        self.at_level(lanes, l, self.stick_speed, true);
+        self.let_go(lanes.time[l], lanes.impulse[l], (self.release, self.stick_speed), span)
+    }
+
+    /// A release ends the lap and begins the next.
+    fn let_go(&mut self, time: f64, impulse: f64, state: (f64, f64), span: Span) -> Verdict {
+        if time > self.until {
+            return if self.whole.is_some() { Verdict::Arrived } else { Verdict::Leaves };
+        }
+        self.swings = 0;
+        if let Some((pull, speed)) = self.released {
+            self.lap.impulse = impulse - self.lap.impulse;
+            self.whole = Some((self.lap, time));
+            self.laps += 1;
+            let closed = (pull - state.0).abs() <= CLOSED * pull.abs()
+                && (speed - state.1).abs() <= CLOSED * self.stick_speed;
+            if closed && matches!(span, Span::UntilClosed) {
+                return Verdict::Arrived;
+            }
+        }
+        self.released = Some(state);
+        self.lap = Lap { impulse, ..Lap::starting(time) };
+        self.lap.add_speed(state.1);
+        self.lap.add_pull(state.0);
+        Verdict::Rides
+    }
+
+    /// Follow the belt with the full motion from `start` until it slides forward; none if it never does.
+    fn off_lane(
+        &mut self,
+        start: Start,
+        lanes: &mut Lanes,
+        l: usize,
+        span: Span,
+        tolerance: f64,
+    ) -> Option<Verdict> {
+        let system = self.system.clone();
+        let Scale { time: time_scale, speed: speed_scale, pull: pull_scale } = self.scale;
+        let origin = lanes.time[l];
+        let mut motion = Motion::new(&system, start, tolerance, Integrator::Adaptive).ok()?;
+        for _ in 0..MAX_PIECES {
+            if matches!(motion.phase().mode, Mode::Ehl | Mode::Mixed)
+                && motion.phase().direction > 0.0
+            {
+                lanes.time[l] = origin + motion.time() / time_scale;
+                self.load(&motion, lanes, l);
+                return Some(Verdict::Rides);
+            }
+            let (piece, event) = motion.advance(f64::INFINITY).ok()?;
+            if piece.duration.is_infinite() {
+                return None;
+            }
+            self.take_in(&piece);
+            lanes.impulse[l] += piece.impulse(0.0) / (pull_scale * time_scale);
+            if let Some(event) = event.filter(|e| e.from == Mode::Stuck) {
+                let now = origin + event.time / time_scale;
+                let stretch = event.stretch * system.train.stiffness() / pull_scale;
+                let state = (stretch, event.belt_speed / speed_scale);
+                let verdict = self.let_go(now, lanes.impulse[l], state, span);
+                if !matches!(verdict, Verdict::Rides) {
+                    return Some(verdict);
+                }
+            }
+        }
+        None
+    }
+
+    /// Extremes and stuck time of a piece off the lanes.
+    fn take_in(&mut self, piece: &Piece) {
+        if piece.start.mode == Mode::Stuck {
+            self.lap.stuck += piece.duration / self.scale.time;
+        }
+        let turning = piece.turning_points();
+        for elapsed in
+            [Some(0.0), Some(piece.duration), turning[0], turning[1]].into_iter().flatten()
+        {
+            let (speed, pull) = piece.at(elapsed);
+            self.lap.add_speed(speed / self.scale.speed);
+            self.lap.add_pull(pull / self.scale.pull);
+        }
+    }
+
+    /// Put the sliding belt on its lane.
+    fn load(&mut self, motion: &Motion, lanes: &mut Lanes, l: usize) {
+        let phase = motion.phase();
+        let drag = &self.system.drag;
+        let speed = if phase.speed == drag.stick_speed() {
+            self.stick_speed
+        } else if phase.speed == drag.transition_speed() {
+            1.0
+        } else {
+            phase.speed / self.scale.speed
+        };
+        lanes.speed[l] = speed;
+        lanes.pull[l] = phase.pull / self.scale.pull;
+        lanes.drag[l] = drag.force(phase.speed) / self.scale.pull;
+        lanes.drive[l] = self.drive;
+        lanes.floor[l] = self.stick_speed;
+        lanes.turned[l] = 0.0;
+        let slower = [1.0, self.drive, self.stick_speed].into_iter().filter(|v| *v <= speed);
+        let below = slower.fold(self.stick_speed, f64::max);
+        self.at_level(lanes, l, below, true);
+        lanes.exponent[l] =
+            if phase.mode == Mode::Ehl { self.exponents.1 } else { self.exponents.0 };
+        if phase.mode == Mode::Mixed && speed >= 1.0 {
+            // on the transition and slowing down
+            self.at_level(lanes, l, 1.0, false);
+        }
+        self.lap.add_speed(speed);
+    }
+
+    fn cycle(&self) -> StickSlipCycle {
+        let (lap, end) = self.whole.unwrap_or((self.lap, self.lap.begin));
+        let Scale { time, speed, pull } = self.scale;
+        let (duration, stuck) = ((end - lap.begin) * time, lap.stuck * time);
+        let stretch = pull / self.system.train.stiffness();
+        StickSlipCycle {
+            kind: CycleKind::StickSlip,
+            frequency: 1.0 / duration,
+            slip_duration: duration - stuck,
+            stick_duration: stuck,
+            speed_min: lap.speed.0 * speed,
+            speed_max: lap.speed.1 * speed,
+            stretch_min: lap.pull.0 * stretch,
+            stretch_max: lap.pull.1 * stretch,
+            drag_work: self.drive * speed * lap.impulse * pull * time,
+            laps: self.laps,
+        }
+    }
+}

@@ -1,0 +1,327 @@
+//! Many belts at once: the slip laps of the `retained` closure, several to a register.
+//!
+//! Each lane is one belt in scaled units: time by `sqrt(m/k)`, speed by `v_t`, pull by `v_t sqrt(k m)`. What
+//! is left of the equation is `p' = w - u`, `u' = p - d u^e`. A lane runs on the power branches and through
+//! the stuck phase at `v_s`; anything rarer (a belt pulled back below `v_s`, reversal, creep) is handed to
+//! the caller, which follows it with the full motion and puts the lane back. Every lane's arithmetic is its
+//! own, so results do not depend on the neighbours, on the instruction set, or on the number of threads.
+//!
+//! A step ends at the next level of the speed (`v_s`, `v_t`, the drive speed) or at a turning point, found
+//! by Newton's method on the polynomial of the step, on which the speed is monotone.
+
+use super::polynomial::fused;
+
+/// Belts that step together.
+pub(super) const LANES: usize = 16;
+
+/// Order of the Taylor steps.
+const ORDER: usize = 12;
+
+/// Longest step in scaled time.
+const LONGEST_STEP: f64 = 2.0;
+
+/// Newton iterations for an extreme, which need not be met exactly for the step to end near it.
+const TURNING_NEWTON: usize = 3;
+
+/// Most Newton iterations for a level.
+const MAX_NEWTON: usize = 12;
+
+/// Relative distance from its level at which a step counts as ended there.
+const ARRIVED: f64 = 1e-13;
+
+type Row = [f64; LANES];
+
+/// What ended a step; numbers, so that they are found for all lanes at once.
+pub(super) mod arrival {
+    /// The step ended for accuracy.
+    pub const NONE: f64 = 0.0;
+    /// The speed has reached its upper level.
+    pub const UPPER: f64 = 1.0;
+    /// The speed has reached its lower level.
+    #[cfg(test)]
+    pub const LOWER: f64 = -1.0;
+    /// The speed has an extreme.
+    pub const TURNING: f64 = 2.0;
+    /// The end of the step was not found.
+    pub const LOST: f64 = 3.0;
+}
+
+/// The state of all lanes, in scaled units.
+#[derive(Debug, Clone)]
+pub(super) struct Lanes {
+    pub time: Row,
+    pub pull: Row,
+    pub speed: Row,
+    /// Drag at the present speed.
+    pub drag: Row,
+    pub drive: Row,
+    /// Exponent of the branch.
+    pub exponent: Row,
+    /// Next levels of the speed.
+    pub upper: Row,
+    pub lower: Row,
+    /// Slowest speed that matters, the stick speed.
+    pub floor: Row,
+    /// One where the step starts at an extreme of the speed.
+    pub turned: Row,
+    /// Integral of the pull.
+    pub impulse: Row,
+    /// See [`arrival`].
+    pub arrival: Row,
+}
+
+/// One step of every lane, as work for the best instruction set.
+pub(super) struct LaneStep<'a> {
+    pub lanes: &'a mut Lanes,
+    pub tolerance: f64,
+}
+
+impl pulp::WithSimd for LaneStep<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        self.lanes.step(self.tolerance);
+    }
+}
+
+impl Lanes {
+    /// Lanes that stand still, for want of work.
+    pub(super) fn idle() -> Self {
+        Self {
+            time: [0.0; LANES],
+            pull: [1.0; LANES],
+            speed: [2.0; LANES],
+            drag: [1.0; LANES],
+            drive: [2.0; LANES],
+            exponent: [0.3; LANES],
+            upper: [f64::INFINITY; LANES],
+            lower: [0.5; LANES],
+            floor: [0.01; LANES],
+            turned: [0.0; LANES],
+            impulse: [0.0; LANES],
+            arrival: [arrival::NONE; LANES],
+        }
+    }
+
+    /// One step of every lane.
+    #[inline(always)]
+    #[allow(clippy::inline_always)] // so that it is compiled for the instruction set it is dispatched to
+    pub(super) fn step(&mut self, tolerance: f64) {
+        let (mut p, mut u, mut iu, mut f) = (
+            [[0.0; LANES]; ORDER + 1],
+            [[0.0; LANES]; ORDER + 1],
+            [[0.0; LANES]; ORDER + 1],
+            [[0.0; LANES]; ORDER + 1],
+        );
+        (p[0], u[0], f[0]) = (self.pull, self.speed, self.drag);
+        let mut inverse = [0.0; LANES];
+        for l in 0..LANES {
+            inverse[l] = 1.0 / self.speed[l];
+        }
+        // sorted so that each coefficient waits for the one before through two operations only
+        for n in 1..=ORDER {
+            let per = INVERSE[n];
+            let (mut weighted, mut plain) = ([0.0; LANES], [0.0; LANES]);
+            for i in 2..n {
+                for l in 0..LANES {
+                    weighted[l] = fused(iu[i][l], f[n - i][l], weighted[l]);
+                    plain[l] = fused(u[i][l], f[n - i][l], plain[l]);
+                }
+            }
+            for l in 0..LANES {
+                let share = (self.exponent[l] + 1.0) * inverse[l] * per;
+                let early = share * weighted[l] - inverse[l] * plain[l];
+                let from_last = if n > 1 { u[1][l] * (share - inverse[l]) } else { 0.0 };
+                let from_rate = f[0][l] * (share - inverse[l] * per);
+                let net = p[n - 1][l] - f[n - 1][l];
+                iu[n][l] = net;
+                u[n][l] = net * per;
+                let driven = if n == 1 { self.drive[l] - self.speed[l] } else { -u[n - 1][l] };
+                p[n][l] = driven * per;
+                f[n][l] = fused(from_rate, net, fused(from_last, f[n - 1][l], early));
+            }
+        }
+        let mut h = step_size(&p, &u, &self.floor, tolerance);
+        let mut end = value(&u, 0, &h);
+        let slope = value(&iu, 1, &h);
+        // a step over an extreme ends there
+        let mut turning: Row = [0.0; LANES];
+        let mut any = 0;
+        for l in 0..LANES {
+            let toward = if self.turned[l] > 0.0 { u[2][l] } else { u[1][l] };
+            turning[l] = if toward * slope[l] < 0.0 { 1.0 } else { 0.0 };
+            any |= turning[l].to_bits();
+        }
+        if any != 0 {
+            let mut t = [0.0; LANES];
+            for l in 0..LANES {
+                let share = u[1][l].abs() / (u[1][l].abs() + slope[l].abs());
+                t[l] = if self.turned[l] > 0.0 { 0.5 * h[l] } else { share * h[l] };
+            }
+            let mut curved = [[0.0; LANES]; ORDER + 1];
+            for n in 2..=ORDER {
+                for l in 0..LANES {
+                    curved[n][l] = iu[n][l] * POWERS[n - 1];
+                }
+            }
+            for _ in 0..TURNING_NEWTON {
+                let (rate, change) = (value(&iu, 1, &t), value(&curved, 2, &t));
+                for l in 0..LANES {
+                    let next = t[l] - rate[l] / change[l];
+                    t[l] = if next > 0.0 && next < h[l] { next } else { t[l] };
+                }
+            }
+            for l in 0..LANES {
+                h[l] = if turning[l] > 0.0 { t[l] } else { h[l] };
+            }
+            end = value(&u, 0, &h);
+        }
+        // a step over a level ends there
+        let mut crossing: Row = [0.0; LANES];
+        let mut any = 0;
+        for l in 0..LANES {
+            let up = if end[l] >= self.upper[l] { 1.0 } else { 0.0 };
+            let down = if end[l] <= self.lower[l] { 1.0 } else { 0.0 };
+            crossing[l] = up - down;
+            any |= crossing[l].to_bits();
+        }
+        let mut lost: Row = [0.0; LANES];
+        if any != 0 {
+            let (mut t, mut level) = ([0.0; LANES], [0.0; LANES]);
+            for l in 0..LANES {
+                level[l] = if crossing[l] > 0.0 { self.upper[l] } else { self.lower[l] };
+                t[l] = h[l] * (level[l] - self.speed[l]) / (end[l] - self.speed[l]);
+            }
+            for _ in 0..MAX_NEWTON {
+                let (v, rate) = (value(&u, 0, &t), value(&iu, 1, &t));
+                any = 0;
+                for l in 0..LANES {
+                    let off = v[l] - level[l];
+                    let next = t[l] - off / rate[l];
+                    // a lane that has arrived keeps its time, however long the others take
+                    let open = crossing[l] != 0.0 && off.abs() > ARRIVED * level[l];
+                    t[l] = if open && next >= 0.0 && next <= h[l] { next } else { t[l] };
+                    lost[l] = if open { 1.0 } else { 0.0 };
+                    any |= lost[l].to_bits();
+                }
+                if any == 0 {
+                    break;
+                }
+            }
+            for l in 0..LANES {
+                h[l] = if crossing[l] == 0.0 { h[l] } else { t[l] };
+                end[l] = if crossing[l] == 0.0 { end[l] } else { level[l] };
+            }
+        }
+        let (pull, drag) = (value(&p, 0, &h), value(&f, 0, &h));
+        let mut impulse = [0.0; LANES];
+        for n in (0..=ORDER).rev() {
+            for l in 0..LANES {
+                impulse[l] = fused(impulse[l], h[l], p[n][l] * INVERSE[n + 1]);
+            }
+        }
+        for l in 0..LANES {
+            self.time[l] += h[l];
+            self.pull[l] = pull[l];
+            self.drag[l] = drag[l];
+            self.speed[l] = end[l];
+            self.impulse[l] += impulse[l] * h[l];
+            let turned = if crossing[l] == 0.0 { turning[l] } else { 0.0 };
+            self.turned[l] = turned;
+            let met = if turned > 0.0 { arrival::TURNING } else { crossing[l] };
+            self.arrival[l] = if lost[l] > 0.0 { arrival::LOST } else { met };
+        }
+    }
+}
+
+/// The powers, as numbers.
+#[allow(clippy::cast_precision_loss)] // small
+const POWERS: [f64; ORDER + 1] = {
+    let mut powers = [0.0; ORDER + 1];
+    let mut i = 0;
+    while i <= ORDER {
+        powers[i] = i as f64;
+        i += 1;
+    }
+    powers
+};
+
+/// One over each power; zero for the first.
+#[allow(clippy::cast_precision_loss)] // small
+const INVERSE: [f64; ORDER + 2] = {
+    let mut inverse = [0.0; ORDER + 2];
+    let mut i = 1;
+    while i <= ORDER + 1 {
+        inverse[i] = 1.0 / i as f64;
+        i += 1;
+    }
+    inverse
+};
+
+type Rows = [Row; ORDER + 1];
+
+/// Sum of `c_n t^(n - first)` for `n` from `first` on; even and odd powers apart, which shortens the chain.
+#[inline(always)]
+#[allow(clippy::inline_always)]
+fn value(c: &Rows, first: usize, t: &Row) -> Row {
+    let mut square = [0.0; LANES];
+    for l in 0..LANES {
+        square[l] = t[l] * t[l];
+    }
+    let (mut even, mut odd) = ([0.0; LANES], [0.0; LANES]);
+    for k in (0..=(ORDER - first) / 2).rev() {
+        let n = first + 2 * k;
+        for l in 0..LANES {
+            even[l] = fused(even[l], square[l], c[n][l]);
+        }
+        if n < ORDER {
+            for l in 0..LANES {
+                odd[l] = fused(odd[l], square[l], c[n + 1][l]);
+            }
+        }
+    }
+    for l in 0..LANES {
+        even[l] = fused(t[l], odd[l], even[l]);
+    }
+    even
+}
+
+/// Upper half of the bits of 1.0, as a number.
+const ONE: f64 = 1_072_693_248.0;
+
+/// A number that grows as the logarithm of `x > 0`: the upper half of its bits.
+#[inline(always)]
+#[allow(clippy::inline_always, clippy::cast_possible_truncation)]
+fn rough_logarithm(x: f64) -> f64 {
+    f64::from((x.to_bits() >> 32) as i32)
+}
+
+/// The longest steps for which the last two terms stay below `tolerance` times the scales.
+#[inline(always)]
+#[allow(
+    clippy::inline_always,
+    clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss
+)]
+fn step_size(p: &Rows, u: &Rows, floor: &Row, tolerance: f64) -> Row {
+    let mut h = [0.0; LANES];
+    for l in 0..LANES {
+        let speed_scale = if u[0][l] > floor[l] { u[0][l] } else { floor[l] };
+        let pull = p[0][l].abs();
+        let pull_scale = if pull > speed_scale { pull } else { speed_scale };
+        let (per_speed, per_pull) = (1.0 / speed_scale, 1.0 / pull_scale);
+        let relative = |n: usize| {
+            let (a, b) = (u[n][l].abs() * per_speed, p[n][l].abs() * per_pull);
+            // never nil, so that it has a logarithm
+            (if a > b { a } else { b }) + 1e-280
+        };
+        let of = |n: usize| (rough_logarithm(tolerance) - rough_logarithm(relative(n))) / n as f64;
+        let (last, before) = (of(ORDER), of(ORDER - 1));
+        let log = ONE + if last < before { last } else { before };
+        let step = f64::from_bits(u64::from(log as u32) << 32);
+        h[l] = if step < LONGEST_STEP { step } else { LONGEST_STEP };
+    }
+    h
+}

@@ -1,0 +1,317 @@
+//! A stretch of smooth motion: the state along it, the conditions that end it, and its turning points.
+
+use super::polynomial::{ORDER, Polynomial, derivative, first_crossing, subtracted_from, value};
+use super::runge_kutta::{Flow, Formula, State};
+use super::taylor::{Series, Warmth};
+use crate::drag::Mode;
+
+/// A moment of the motion, mirrored so that `speed >= 0`.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Phase {
+    pub mode: Mode,
+    /// Branch of the drag law, above the stick speed.
+    pub branch: usize,
+    /// The motion has just left the stuck phase: pull and drag are equal.
+    pub released: bool,
+    /// In microslip: the spring pulls back with just the holding force (see `creep_series`).
+    pub creeping: bool,
+    pub direction: f64,
+    pub pull: f64,
+    pub speed: f64,
+    pub bristle: f64,
+}
+
+impl Phase {
+    pub(super) fn state(&self) -> State {
+        [self.pull, self.speed, self.bristle]
+    }
+}
+
+/// Halvings of a step in search of a moment when a condition that starts from nil holds.
+const MAX_HALVINGS: usize = 50;
+
+/// How the state is known along a piece.
+#[derive(Debug)]
+pub(super) enum Path {
+    Series(Series),
+    Steps { formula: Formula, scales: State, tolerance: f64 },
+}
+
+/// A stretch of smooth motion from `time` on, `duration` long.
+#[derive(Debug)]
+pub(super) struct Piece<'a> {
+    pub time: f64,
+    pub duration: f64,
+    pub start: Phase,
+    pub flow: Flow<'a>,
+    pub path: Path,
+}
+
+/// A quantity that is positive while the motion goes on.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Condition {
+    /// The belt is faster than this speed of the drag law.
+    Faster(f64),
+    /// The belt is slower than this speed of the drag law.
+    Slower(f64),
+    /// The spring pulls harder than this force of the drag law.
+    Pulled(f64),
+    /// The spring pulls harder than the drag.
+    Overcome,
+    /// The held belt is pulled forward by less than can hold it.
+    HeldForward,
+    /// The held belt is pulled back by less than can hold it.
+    HeldBack,
+}
+
+impl Piece<'_> {
+    /// State at `elapsed` since the start, mirrored.
+    pub(super) fn state(&self, elapsed: f64) -> State {
+        match &self.path {
+            Path::Series(series) => {
+                [value(&series.pull, elapsed), value(&series.speed, elapsed), self.start.bristle]
+            }
+            Path::Steps { formula, scales, tolerance } => {
+                formula.at(&self.flow, &self.start.state(), elapsed, scales, *tolerance)
+            }
+        }
+    }
+
+    /// (belt speed, pull) at `elapsed` since the start, signed.
+    pub(super) fn at(&self, elapsed: f64) -> (f64, f64) {
+        let [pull, speed, _] = self.state(elapsed);
+        (self.start.direction * speed, self.start.direction * pull)
+    }
+
+    /// Acceleration at `elapsed` since the start, mirrored.
+    pub(super) fn acceleration(&self, elapsed: f64) -> f64 {
+        match &self.path {
+            Path::Series(series) => value(&derivative(&series.speed), elapsed),
+            Path::Steps { .. } => self.flow.rates(elapsed, &self.state(elapsed))[1],
+        }
+    }
+
+    /// Drag at `elapsed` since the start, from the law itself; `pull` and `speed` are signed, as the result.
+    pub(super) fn friction(&self, elapsed: f64, pull: f64, speed: f64) -> f64 {
+        let d = self.start.direction;
+        let bristle = match self.path {
+            Path::Series(_) => self.start.bristle,
+            Path::Steps { .. } => self.state(elapsed)[2],
+        };
+        d * self.flow.force(elapsed, &[d * pull, d * speed, bristle])
+    }
+
+    /// When `condition` ends first within the piece.
+    pub(super) fn end_of(&self, condition: Condition, warmth: Option<&Warmth>) -> Option<f64> {
+        match &self.path {
+            Path::Series(series) => {
+                let g = condition.series(series, warmth, self.start.pull.signum());
+                first_crossing(&g, self.duration)
+            }
+            Path::Steps { .. } => {
+                let towards = self.start.pull.signum();
+                let slope = condition.slope(&self.flow, &self.start.state(), towards);
+                let g = |t: f64| condition.value(&self.flow, t, &self.state(t), towards);
+                // at a release pull and drag are equal by definition
+                let at_once = matches!(condition, Condition::Overcome) && self.start.released;
+                let begin = if at_once { 0.0 } else { g(0.0) };
+                self.first_zero(g, begin, slope)
+            }
+        }
+    }
+
+    /// First zero of `g` along a piece made of steps; a zero at the start counts only if `g` falls there.
+    fn first_zero(&self, g: impl Fn(f64) -> f64, begin: f64, slope: f64) -> Option<f64> {
+        let (mut start, mut before) = (0.0, begin);
+        if before < 0.0 || (before == 0.0 && slope < 0.0) {
+            return Some(0.0);
+        }
+        if before == 0.0 {
+            // it leaves its zero upwards: begin where it is seen to be positive
+            start = 0.25 * self.duration;
+            before = g(start);
+            for _ in 0..MAX_HALVINGS {
+                if before > 0.0 {
+                    break;
+                }
+                start *= 0.5;
+                before = g(start);
+            }
+            before = before.max(f64::MIN_POSITIVE);
+        }
+        for share in [0.25, 0.5, 0.75, 1.0] {
+            let end = share * self.duration;
+            if end <= start {
+                continue;
+            }
+            let after = g(end);
+            if after.is_nan() || after < 0.0 {
+                return Some(falling_zero(&g, (start, before), (end, after)));
+            }
+            (start, before) = (end, after);
+        }
+        None
+    }
+
+    /// Bounds of the speed over a piece that has a series.
+    pub(super) fn speed_range(&self) -> Option<(f64, f64)> {
+        let Path::Series(series) = &self.path else { return None };
+        let (mut reach, mut power) = (0.0, 1.0);
+        for c in &series.speed[1..] {
+            power *= self.duration;
+            reach += c.abs() * power;
+        }
+        Some((series.speed[0] - reach, series.speed[0] + reach))
+    }
+
+    /// When the belt overtakes a drive of constant speed, if it does.
+    pub(super) fn overtaking(&self, drive_speed: f64) -> Option<f64> {
+        let drive = self.start.direction * drive_speed;
+        if self.start.mode == Mode::Stuck || self.start.speed >= drive {
+            return None;
+        }
+        match &self.path {
+            Path::Series(series) => {
+                first_crossing(&subtracted_from(drive, &series.speed), self.duration)
+            }
+            Path::Steps { .. } => {
+                self.first_zero(|t| drive - self.state(t)[1], drive - self.start.speed, 0.0)
+            }
+        }
+    }
+
+    /// When speed and pull turn, if they do.
+    pub(super) fn turning_points(&self) -> [Option<f64>; 2] {
+        match &self.path {
+            Path::Series(series) => [&series.speed, &series.pull].map(|c| {
+                let rate = derivative(c);
+                let rising = if rate[0] < 0.0 { rate.map(|c| -c) } else { rate };
+                first_crossing(&rising, self.duration)
+            }),
+            Path::Steps { .. } => [1, 0].map(|which| {
+                let rate = |t: f64| self.flow.rates(t, &self.state(t))[which];
+                let sign = rate(0.0).signum();
+                let end = sign * rate(self.duration);
+                (end < 0.0).then(|| {
+                    let g = |t: f64| sign * rate(t);
+                    falling_zero(&g, (0.0, sign * rate(0.0)), (self.duration, end))
+                })
+            }),
+        }
+    }
+
+    /// Integral of the pull over the piece from `begin` on, signed.
+    pub(super) fn impulse(&self, begin: f64) -> f64 {
+        let integral = match &self.path {
+            Path::Series(series) => {
+                let antiderivative = |t: f64| {
+                    let sum = (0..=ORDER).rev().fold(0.0, |sum, i| {
+                        sum * t + series.pull[i] * super::polynomial::INVERSE_NEXT[i]
+                    });
+                    sum * t
+                };
+                antiderivative(self.duration) - antiderivative(begin)
+            }
+            Path::Steps { .. } => {
+                let span = self.duration - begin;
+                GAUSS.iter().map(|(x, w)| w * span * self.state(begin + x * span)[0]).sum()
+            }
+        };
+        self.start.direction * integral
+    }
+}
+
+/// Nodes and weights of Gauss's quadrature with four points on the unit interval.
+pub(super) const GAUSS: [(f64, f64); 4] = [
+    (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
+    (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
+    (0.669_990_521_792_428_1, 0.326_072_577_431_273_07),
+    (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
+];
+
+impl Condition {
+    /// Whether a law that does not move keeps the condition for all speeds within bounds.
+    pub(super) fn holds_over(self, (low, high): (f64, f64)) -> bool {
+        match self {
+            Self::Faster(limit) => low > limit,
+            Self::Slower(limit) => high < limit,
+            _ => false,
+        }
+    }
+
+    fn series(self, series: &Series, warmth: Option<&Warmth>, towards: f64) -> Polynomial {
+        let scaled = |base: f64, factor: fn(&Warmth) -> &Polynomial| match warmth {
+            Some(warmth) => factor(warmth).map(|c| base * c),
+            None => {
+                let mut c = [0.0; ORDER + 1];
+                c[0] = base;
+                c
+            }
+        };
+        let difference = |a: &Polynomial, b: &Polynomial| std::array::from_fn(|i| a[i] - b[i]);
+        match self {
+            Self::Faster(limit) => difference(&series.speed, &scaled(limit, |w| &w.speed)),
+            Self::Slower(limit) => difference(&scaled(limit, |w| &w.speed), &series.speed),
+            Self::Pulled(limit) => {
+                difference(&series.pull.map(|c| towards * c), &scaled(limit, |w| &w.force))
+            }
+            Self::Overcome => difference(&series.pull.map(|c| towards * c), &series.drag),
+            Self::HeldForward => difference(&series.drag, &series.pull),
+            Self::HeldBack => std::array::from_fn(|i| series.drag[i] + series.pull[i]),
+        }
+    }
+
+    /// Rate at which the condition changes at the start of a piece.
+    fn slope(self, flow: &Flow, y: &State, towards: f64) -> f64 {
+        let rates = flow.rates(0.0, y);
+        match self {
+            Self::Faster(_) => rates[1],
+            Self::Slower(_) => -rates[1],
+            Self::Pulled(_) => towards * rates[0],
+            Self::Overcome => towards * rates[0] - flow.force_slope(y) * rates[1],
+            Self::HeldForward | Self::HeldBack => f64::NAN,
+        }
+    }
+
+    fn value(self, flow: &Flow, t: f64, y: &State, towards: f64) -> f64 {
+        let (force, speed) = flow.factors(t);
+        match self {
+            Self::Faster(limit) => y[1] - limit * speed,
+            Self::Slower(limit) => limit * speed - y[1],
+            Self::Pulled(limit) => towards * y[0] - limit * force,
+            Self::Overcome => towards * y[0] - flow.force(t, y),
+            Self::HeldForward | Self::HeldBack => f64::NAN, // a held belt has a series
+        }
+    }
+}
+
+/// Zero of `g` between a point where it is positive and one where it is not: regula falsi, Illinois.
+fn falling_zero(g: &impl Fn(f64) -> f64, mut a: (f64, f64), mut b: (f64, f64)) -> f64 {
+    let mut side = 0;
+    for _ in 0..80 {
+        if (b.0 - a.0).abs() <= 2.0 * f64::EPSILON * b.0.abs() || b.1 == 0.0 {
+            break;
+        }
+        let secant = (a.0 * b.1 - b.0 * a.1) / (b.1 - a.1);
+        let inside = secant > a.0 && secant < b.0;
+        let t = if inside { secant } else { 0.5 * (a.0 + b.0) };
+        if t <= a.0 || t >= b.0 {
+            break;
+        }
+        let v = g(t);
+        if v > 0.0 {
+            a = (t, v);
+            if side == 1 {
+                b.1 *= 0.5;
+            }
+            side = 1;
+        } else {
+            b = (t, v);
+            if side == -1 {
+                a.1 *= 0.5;
+            }
+            side = -1;
+        }
+    }
+    b.0
+}

@@ -1,0 +1,279 @@
+//! Runge-Kutta steps: Radau IIA for stiff motion, Dormand and Prince's pair for the second opinion.
+//!
+//! Both find the state at any time inside a step by a shorter step from its start, so that samples and
+//! events are as accurate as the steps and do not change them. Radau IIA of order 5: E. Hairer,
+//! G. Wanner, "Solving Ordinary Differential Equations II" (1996), IV.5; Dormand and Prince, J. Comput.
+//! Appl. Math. 6 (1980).
+
+use super::schedule::Cubic;
+use crate::drag::{Closure, Drag, Warming};
+
+/// Pull of the spring, belt speed, deflection of the bristles.
+pub(super) type State = [f64; 3];
+
+const N: usize = 3;
+
+/// The equation of a slipping belt, in time since the start of a piece.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Flow<'a> {
+    pub drag: &'a Drag,
+    /// Branch of the law, or none below the stick speed.
+    pub branch: Option<usize>,
+    /// Temperature and how the law varies with it.
+    pub warming: Option<(Cubic, Warming)>,
+    pub rate: Cubic,
+    pub stiffness: f64,
+    pub mass: f64,
+}
+
+impl Flow<'_> {
+    /// Factors of forces and speeds at time `t`.
+    pub(super) fn factors(&self, t: f64) -> (f64, f64) {
+        self.warming.map_or((1.0, 1.0), |(temperature, warming)| {
+            let ratio = horner(&temperature, t) / warming.reference;
+            (ratio.powf(warming.force_exponent), ratio.powf(warming.speed_exponent))
+        })
+    }
+
+    /// Steady drag at `u` and its slope.
+    fn steady_drag(&self, t: f64, u: f64) -> (f64, f64) {
+        let (force, speed) = self.factors(t);
+        let x = u / speed;
+        let (f, slope) = if let Some(branch) = self.branch {
+            let f = self.drag.branch_force(branch, x);
+            (f, self.drag.branch_exponent(branch) * f / x)
+        } else {
+            self.drag.force_and_slope_below(x)
+        };
+        (force * f, force * slope / speed)
+    }
+
+    /// Drag and its slopes in speed and deflection, and the rate of deflection with its slopes.
+    fn friction(&self, t: f64, y: &State) -> ([f64; 3], [f64; 3]) {
+        let (g, slope) = self.steady_drag(t, y[1]);
+        let Closure::LuGre { bristle_stiffness, bristle_damping } = self.drag.closure() else {
+            return ([g, slope, 0.0], [0.0; 3]);
+        };
+        let (u, z) = (y[1], y[2]);
+        let bent = bristle_stiffness * z / g;
+        let rate = u * (1.0 - bent);
+        let rate_u = 1.0 - bent + u * bent * slope / g;
+        let rate_z = -u * bristle_stiffness / g;
+        let (_, speed) = self.factors(t);
+        let v_s = self.drag.stick_speed() * speed;
+        let damping = bristle_damping * (-(u / v_s).powi(2)).exp();
+        let force = bristle_stiffness * z + damping * rate;
+        let force_u = damping * (rate_u - 2.0 * u / (v_s * v_s) * rate);
+        let force_z = bristle_stiffness + damping * rate_z;
+        ([force, force_u, force_z], [rate, rate_u, rate_z])
+    }
+
+    /// Drag force.
+    pub(super) fn force(&self, t: f64, y: &State) -> f64 {
+        self.friction(t, y).0[0]
+    }
+
+    /// Slope of the drag force in speed, at time 0.
+    pub(super) fn force_slope(&self, y: &State) -> f64 {
+        self.friction(0.0, y).0[1]
+    }
+
+    pub(super) fn rates(&self, t: f64, y: &State) -> State {
+        let (force, bristles) = self.friction(t, y);
+        let driven = horner(&self.rate, t);
+        [driven - self.stiffness * y[1], (y[0] - force[0]) / self.mass, bristles[0]]
+    }
+
+    fn jacobian(&self, t: f64, y: &State) -> [[f64; N]; N] {
+        let (force, bristles) = self.friction(t, y);
+        [
+            [0.0, -self.stiffness, 0.0],
+            [1.0 / self.mass, -force[1] / self.mass, -force[2] / self.mass],
+            [0.0, bristles[1], bristles[2]],
+        ]
+    }
+}
+
+fn horner(c: &Cubic, t: f64) -> f64 {
+    c[0] + t * (c[1] + t * (c[2] + t * c[3]))
+}
+
+/// Which formula makes the step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Formula {
+    Radau,
+    DormandPrince,
+}
+
+impl Formula {
+    /// State after `h` from `y` at time 0, and the error of each component; none if the step fails.
+    pub(super) fn step(
+        self,
+        flow: &Flow,
+        y: &State,
+        h: f64,
+        scales: &State,
+        tolerance: f64,
+    ) -> Option<(State, State)> {
+        let stepped = match self {
+            Self::DormandPrince => dormand_prince(flow, y, h),
+            Self::Radau => {
+                let whole = radau(flow, 0.0, y, h, scales, tolerance)?;
+                let half = radau(flow, 0.0, y, 0.5 * h, scales, tolerance)?;
+                let halves = radau(flow, 0.5 * h, &half, 0.5 * h, scales, tolerance)?;
+                (halves, [0, 1, 2].map(|i| (halves[i] - whole[i]) / 31.0))
+            }
+        };
+        stepped.0.iter().all(|x| x.is_finite()).then_some(stepped)
+    }
+
+    /// State at `t` inside a step that succeeded.
+    pub(super) fn at(
+        self,
+        flow: &Flow,
+        y: &State,
+        t: f64,
+        scales: &State,
+        tolerance: f64,
+    ) -> State {
+        if t == 0.0 {
+            return *y;
+        }
+        let found = match self {
+            Self::DormandPrince => Some(dormand_prince(flow, y, t).0),
+            Self::Radau => radau(flow, 0.0, y, 0.5 * t, scales, tolerance)
+                .and_then(|half| radau(flow, 0.5 * t, &half, 0.5 * t, scales, tolerance)),
+        };
+        found.unwrap_or_else(|| dormand_prince(flow, y, t).0)
+    }
+}
+
+/// Growth of a step whose error is `error` times what is allowed.
+pub(super) fn growth(error: f64) -> f64 {
+    (0.9 * error.max(1e-10).powf(-0.2)).clamp(0.2, 5.0)
+}
+
+/// Iterations of the simplified Newton method before a step is given up.
+const MAX_NEWTON: usize = 12;
+
+const ROOT6: f64 = 2.449_489_742_783_178;
+const RADAU_C: [f64; 3] = [(4.0 - ROOT6) / 10.0, (4.0 + ROOT6) / 10.0, 1.0];
+const RADAU_A: [[f64; 3]; 3] = [
+    [(88.0 - 7.0 * ROOT6) / 360.0, (296.0 - 169.0 * ROOT6) / 1800.0, (-2.0 + 3.0 * ROOT6) / 225.0],
+    [(296.0 + 169.0 * ROOT6) / 1800.0, (88.0 + 7.0 * ROOT6) / 360.0, (-2.0 - 3.0 * ROOT6) / 225.0],
+    [(16.0 - ROOT6) / 36.0, (16.0 + ROOT6) / 36.0, 1.0 / 9.0],
+];
+
+/// One step of Radau IIA, order 5.
+fn radau(flow: &Flow, t: f64, y: &State, h: f64, scales: &State, tolerance: f64) -> Option<State> {
+    const M: usize = 3 * N;
+    let jacobian = flow.jacobian(t, y);
+    let mut matrix = [[0.0; M]; M];
+    for (i, row) in matrix.iter_mut().enumerate() {
+        for (j, entry) in row.iter_mut().enumerate() {
+            let identity = f64::from(u8::from(i == j));
+            *entry = identity - h * RADAU_A[i / N][j / N] * jacobian[i % N][j % N];
+        }
+    }
+    let pivots = factorised(&mut matrix)?;
+    let mut z = [[0.0; N]; 3];
+    let mut last = f64::INFINITY;
+    for _ in 0..MAX_NEWTON {
+        let rates: [State; 3] = std::array::from_fn(|i| {
+            flow.rates(t + RADAU_C[i] * h, &std::array::from_fn(|l| y[l] + z[i][l]))
+        });
+        let mut correction: [f64; M] = std::array::from_fn(|i| {
+            let (stage, l) = (i / N, i % N);
+            let sum: f64 = (0..3).map(|j| RADAU_A[stage][j] * rates[j][l]).sum();
+            h * sum - z[stage][l]
+        });
+        solve(&matrix, &pivots, &mut correction);
+        let mut size = 0.0_f64;
+        for (i, c) in correction.iter().enumerate() {
+            z[i / N][i % N] += c;
+            size = size.max(c.abs() / scales[i % N]);
+        }
+        // the iteration has done what it can when corrections no longer shrink
+        if size <= 1e-3 * tolerance || (size >= 0.5 * last && size <= 0.1 * tolerance) {
+            return Some(std::array::from_fn(|l| y[l] + z[2][l]));
+        }
+        if !size.is_finite() || size > 2.0 * last {
+            return None;
+        }
+        last = size;
+    }
+    None
+}
+
+/// LU factors in place, with the order of the rows.
+fn factorised<const M: usize>(a: &mut [[f64; M]; M]) -> Option<[usize; M]> {
+    let mut rows: [usize; M] = std::array::from_fn(|i| i);
+    for column in 0..M {
+        let pivot =
+            (column..M).max_by(|i, j| a[*i][column].abs().total_cmp(&a[*j][column].abs()))?;
+        a.swap(column, pivot);
+        rows.swap(column, pivot);
+        let diagonal = a[column][column];
+        if !diagonal.is_finite() || diagonal == 0.0 {
+            return None;
+        }
+        for row in column + 1..M {
+            let factor = a[row][column] / diagonal;
+            a[row][column] = factor;
+            for j in column + 1..M {
+                a[row][j] -= factor * a[column][j];
+            }
+        }
+    }
+    Some(rows)
+}
+
+fn solve<const M: usize>(lu: &[[f64; M]; M], rows: &[usize; M], b: &mut [f64; M]) {
+    let mut x: [f64; M] = std::array::from_fn(|i| b[rows[i]]);
+    for i in 1..M {
+        for j in 0..i {
+            x[i] -= lu[i][j] * x[j];
+        }
+    }
+    for i in (0..M).rev() {
+        for j in i + 1..M {
+            x[i] -= lu[i][j] * x[j];
+        }
+        x[i] /= lu[i][i];
+    }
+    *b = x;
+}
+
+const DP_C: [f64; 7] = [0.0, 0.2, 0.3, 0.8, 8.0 / 9.0, 1.0, 1.0];
+const DP_A: [[f64; 6]; 7] = [
+    [0.0; 6],
+    [0.2, 0.0, 0.0, 0.0, 0.0, 0.0],
+    [3.0 / 40.0, 9.0 / 40.0, 0.0, 0.0, 0.0, 0.0],
+    [44.0 / 45.0, -56.0 / 15.0, 32.0 / 9.0, 0.0, 0.0, 0.0],
+    [19372.0 / 6561.0, -25360.0 / 2187.0, 64448.0 / 6561.0, -212.0 / 729.0, 0.0, 0.0],
+    [9017.0 / 3168.0, -355.0 / 33.0, 46732.0 / 5247.0, 49.0 / 176.0, -5103.0 / 18656.0, 0.0],
+    [35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0],
+];
+/// Weights of the fifth order less those of the fourth.
+const DP_E: [f64; 7] = [
+    71.0 / 57600.0,
+    0.0,
+    -71.0 / 16695.0,
+    71.0 / 1920.0,
+    -17253.0 / 339_200.0,
+    22.0 / 525.0,
+    -1.0 / 40.0,
+];
+
+/// One step of Dormand and Prince's pair: the state of order 5 and its difference to order 4.
+fn dormand_prince(flow: &Flow, y: &State, h: f64) -> (State, State) {
+    let mut k = [[0.0; N]; 7];
+    let mut stage = *y;
+    for i in 0..7 {
+        stage =
+            std::array::from_fn(|l| y[l] + h * (0..i).map(|j| DP_A[i][j] * k[j][l]).sum::<f64>());
+        k[i] = flow.rates(DP_C[i] * h, &stage);
+    }
+    let error = std::array::from_fn(|l| h * (0..7).map(|j| DP_E[j] * k[j][l]).sum::<f64>());
+    (stage, error)
+}

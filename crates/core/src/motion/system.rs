@@ -1,0 +1,168 @@
+//! The equation to solve: drivetrain, drag, drive and temperature.
+
+use super::schedule::Schedule;
+use crate::drag::{Closure, Drag};
+use crate::error::{Error, above, at_least, at_most, below, finite};
+
+/// Spring and mass between the drive and the sliding contact; for a rotor, torsional stiffness and inertia.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Drivetrain {
+    stiffness: f64,
+    mass: f64,
+}
+
+impl Drivetrain {
+    /// A drivetrain of `stiffness` `k` and moving `mass` `m`; only a drive that gives a force can do without a spring.
+    ///
+    /// # Errors
+    /// If a value is not finite, `stiffness` is negative, or `mass` is not positive.
+    pub fn new(stiffness: f64, mass: f64) -> Result<Self, Error> {
+        Ok(Self {
+            stiffness: at_least("stiffness", stiffness, 0.0)?,
+            mass: above("mass", mass, 0.0)?,
+        })
+    }
+
+    /// Spring stiffness `k`.
+    #[must_use]
+    pub fn stiffness(&self) -> f64 {
+        self.stiffness
+    }
+
+    /// Moving mass `m`.
+    #[must_use]
+    pub fn mass(&self) -> f64 {
+        self.mass
+    }
+
+    /// Time scale `sqrt(m/k)` of the free oscillation.
+    #[must_use]
+    pub fn time_scale(&self) -> f64 {
+        (self.mass / self.stiffness).sqrt()
+    }
+}
+
+/// What moves the belt.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Drive {
+    /// A given speed at the far end of the spring (Eqs. 12-16).
+    Speed(Schedule),
+    /// A given force on the mass, which a spring holds to the ground; for a rotor, torque (Eq. 11).
+    Force(Schedule),
+}
+
+impl Drive {
+    pub(super) fn schedule(&self) -> &Schedule {
+        match self {
+            Self::Speed(schedule) | Self::Force(schedule) => schedule,
+        }
+    }
+}
+
+/// Where the motion starts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Start {
+    /// Belt speed.
+    pub belt_speed: f64,
+    /// Spring stretch: drive position minus belt position; with a drive of given force, position of the mass.
+    pub stretch: f64,
+}
+
+impl Start {
+    /// Belt at rest and spring slack.
+    pub const REST: Self = Self { belt_speed: 0.0, stretch: 0.0 };
+}
+
+/// How the smooth pieces of the motion are integrated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Integrator {
+    /// Taylor series, and Radau IIA where the equation is stiff.
+    Adaptive,
+    /// Dormand and Prince's explicit Runge-Kutta pair, as a second opinion.
+    DormandPrince,
+}
+
+/// A belt with its drivetrain, drag and drive.
+#[derive(Debug, Clone, PartialEq)]
+pub struct System {
+    pub(super) train: Drivetrain,
+    pub(super) drag: Drag,
+    pub(super) drive: Drive,
+    /// Temperature, if it moves and the drag with it.
+    pub(super) temperature: Option<Schedule>,
+}
+
+impl System {
+    /// The equation of `train` and `drag` under `drive`, at a `temperature` in the scale of the drag law.
+    ///
+    /// # Errors
+    /// If a drive of given speed has no spring, the temperature leaves the positive range of its scale, or
+    /// there is a temperature and the drag does not vary with it.
+    pub fn new(
+        train: Drivetrain,
+        drag: &Drag,
+        drive: Drive,
+        temperature: Option<Schedule>,
+    ) -> Result<Self, Error> {
+        if matches!(drive, Drive::Speed(_)) {
+            above("stiffness", train.stiffness, 0.0)?;
+        }
+        let Some(schedule) = temperature else {
+            return Ok(Self { train, drag: drag.clone(), drive, temperature: None });
+        };
+        let (low, high) = schedule.range();
+        above("temperature", low, 0.0)?;
+        let (cold, hot) = (drag.at(low)?, drag.at(high)?);
+        for law in [cold, hot] {
+            below("stick_speed", law.stick_speed(), law.transition_speed())?;
+        }
+        if let Some(temperature) = schedule.steady() {
+            return Ok(Self { train, drag: drag.at(temperature)?, drive, temperature: None });
+        }
+        let temperature = drag.warming().map(|_| schedule);
+        Ok(Self { train, drag: drag.clone(), drive, temperature })
+    }
+
+    /// A belt at constant `drive_speed` and the temperature at which the law is given.
+    ///
+    /// # Errors
+    /// If the speed is not finite or there is no spring.
+    pub fn at_speed(train: Drivetrain, drag: &Drag, drive_speed: f64) -> Result<Self, Error> {
+        finite("drive_speed", drive_speed)?;
+        Self::new(train, drag, Drive::Speed(Schedule::constant(drive_speed)), None)
+    }
+
+    /// Pull of the spring on the belt at `start`, checked.
+    pub(super) fn pull(&self, start: Start) -> Result<f64, Error> {
+        finite("start belt_speed", start.belt_speed)?;
+        let spring = self.train.stiffness * finite("start stretch", start.stretch)?;
+        let pull = match &self.drive {
+            Drive::Speed(_) => spring,
+            Drive::Force(force) => force.at(0.0) - spring,
+        };
+        finite("start stretch", pull)
+    }
+
+    /// Spring stretch that goes with `pull` at `time`; without a spring, zero.
+    pub(super) fn stretch(&self, pull: f64, time: f64) -> f64 {
+        if self.train.stiffness == 0.0 {
+            return 0.0;
+        }
+        match &self.drive {
+            Drive::Speed(_) => pull / self.train.stiffness,
+            Drive::Force(force) => (force.at(time) - pull) / self.train.stiffness,
+        }
+    }
+
+    pub(super) fn has_bristles(&self) -> bool {
+        matches!(self.drag.closure(), Closure::LuGre { .. })
+    }
+}
+
+/// Loosest and tightest relative tolerance that the steps are built for.
+const TOLERANCE_RANGE: (f64, f64) = (1e-14, 1e-3);
+
+pub(super) fn checked_tolerance(tolerance: f64) -> Result<f64, Error> {
+    above("tolerance", tolerance, TOLERANCE_RANGE.0 * 0.999)?;
+    at_most("tolerance", tolerance, TOLERANCE_RANGE.1)
+}

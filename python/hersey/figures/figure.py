@@ -1,0 +1,62 @@
+"""A figure of the paper, its claims, and the verdicts on them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+
+from hersey.charts import Chart
+
+#: How far "about" reaches: in an exponent, or as a share of a value.
+ABOUT = 0.1
+#: Relative differences below this are rounding.
+ROUNDING = 1e-6
+
+
+class Verdict(StrEnum):
+    """Whether a claim of the paper holds."""
+
+    HOLDS = "holds"
+    IN_DIRECTION = "holds in direction, not in size"
+    FAILS = "does not hold"
+
+    @classmethod
+    def of(cls, holds: bool, in_direction: bool) -> Verdict:
+        """Return the verdict: a comparison with a missing number (nan) is false, so it fails."""
+        if holds:
+            return cls.HOLDS
+        return cls.IN_DIRECTION if in_direction else cls.FAILS
+
+
+@dataclass(frozen=True)
+class Claim:
+    """One claim of the paper, the criterion it is judged by, the verdict, and the numbers behind it."""
+
+    source: str
+    statement: str
+    criterion: str
+    verdict: Verdict
+    evidence: str
+    numbers: Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class PaperFigure:
+    """A figure of the paper, drawn anew, with its claims and the ``data`` of its curves by column."""
+
+    number: int
+    title: str
+    chart: Chart
+    claims: tuple[Claim, ...]
+    data: Mapping[str, tuple[float, ...]]
+
+    @property
+    def name(self) -> str:
+        """Name of its files, without the suffix."""
+        return f"figure-{self.number:02d}"
+
+
+def shown(value: float) -> str:
+    """Return a number to four significant digits, zeros among them."""
+    return f"{value:#.4g}".rstrip(".")

@@ -1,0 +1,121 @@
+"""What the belt does near zero speed: published numbers, and a second integrator."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import hersey
+from hersey.errors import ParameterError
+from tests.conftest import shared
+
+TRAIN = hersey.Drivetrain(1000, 1)
+
+
+def drag(closure: str, **changes: float) -> hersey.Drag:
+    values = {"transition_force": 50.0, "transition_speed": 1.0, "stick_speed": 0.01} | changes
+    return hersey.Drag(ehl_exponent=-0.7, mixed_exponent=-1.2, closure=closure, **values)  # type: ignore[arg-type]
+
+
+def test_every_published_cycle_of_both_closures() -> None:
+    """Exact solutions at 1e-12 (reference/stick-slip.json), at the default tolerance."""
+    path: Path = shared("reference/stick-slip.json")
+    rows = json.loads(path.read_text())
+    assert {row["law"] for row in rows} == {"retained", "stiction"}
+    for row in rows:
+        law = drag(row["law"], transition_force=row["B0"], stick_speed=row["vs"])
+        cycle = hersey.stick_slip(hersey.Drivetrain(row["k"], row["m"]), law, drive_speed=row["v2"])
+        assert cycle.kind == "stick_slip"
+        assert cycle.frequency == pytest.approx(row["frequency"], rel=1e-7)
+        assert cycle.speed_max == pytest.approx(row["v_max"], rel=1e-7)
+        assert cycle.stuck_fraction == pytest.approx(row["stuck_fraction"], rel=1e-7)
+
+
+def test_stiction_stops_dead_and_is_released_at_the_breakaway_force() -> None:
+    law = drag("stiction")
+    run = hersey.simulate(TRAIN, law, drive_speed=1.0, duration=5.0, samples=5001)
+    assert (run.belt_speed[run.mode == "stuck"] == 0.0).all()
+    releases = [e for e in run.events if e.from_mode == "stuck"]
+    assert len(releases) > 5
+    for event in releases:
+        assert 1000 * event.stretch == pytest.approx(law.breakaway_force, rel=1e-12)
+    assert abs(run.energy.residual) < 1e-8
+
+
+def test_smooth_closures_tend_to_stiction() -> None:
+    """Stiff bristles stop a belt as stiction does; the smooth curve peaks below A and so slips sooner."""
+    dead = hersey.stick_slip(TRAIN, drag("stiction"), drive_speed=1.0)
+    smooth = hersey.stick_slip(TRAIN, drag("stribeck"), drive_speed=1.0)
+    assert smooth.kind == "stick_slip"
+    assert dead.frequency < smooth.frequency < 1.2 * dead.frequency
+    assert smooth.stretch_max < dead.stretch_max
+    # bristles give way sooner the faster they are loaded (Canudas de Wit et al. 1995, Fig. 4)
+    stiff = drag("lugre", bristle_stiffness=1e7, bristle_damping=6e3)
+    peaks = []
+    for speed in (2.0, 0.5, 0.1):
+        run = hersey.simulate(TRAIN, stiff, drive_speed=speed, duration=0.36 / speed, samples=2001)
+        peaks.append(1000 * run.stretch.max() / stiff.breakaway_force)
+    assert peaks == sorted(peaks)
+    assert 0.5 < peaks[0] < peaks[-1] < 1.0
+
+
+@pytest.mark.parametrize(
+    ("closure", "extra"),
+    [
+        ("retained", {}),
+        ("stiction", {}),
+        ("stribeck", {}),
+        ("lugre", {"bristle_stiffness": 1e5, "bristle_damping": 300.0}),
+    ],
+)
+def test_two_integrators_agree(closure: str, extra: dict[str, float]) -> None:
+    run = hersey.simulate(
+        TRAIN, drag(closure, **extra), drive_speed=1.0, duration=0.8, samples=201, check=True
+    )
+    assert run.check is not None
+    assert run.check.same_events
+    assert run.check.speed_difference < 1e-6
+    assert run.check.stretch_difference < 1e-6
+    assert abs(run.energy.residual) < 1e-8
+
+
+@pytest.mark.parametrize("closure", ["stiction", "stribeck"])
+def test_reversal_mirrors_every_closure(closure: str) -> None:
+    runs = [
+        hersey.simulate(TRAIN, drag(closure), drive_speed=v, duration=1.0, samples=101) for v in (0.7, -0.7)
+    ]
+    np.testing.assert_allclose(runs[0].belt_speed, -runs[1].belt_speed, atol=1e-9)
+
+
+def test_drag_is_odd_for_every_closure() -> None:
+    speeds = np.geomspace(1e-5, 10, 30)
+    for law in (
+        drag("stribeck"),
+        drag("stiction"),
+        drag("lugre", bristle_stiffness=1e5, bristle_damping=1.0),
+    ):
+        np.testing.assert_array_equal(law.force(-speeds), -law.force(speeds))
+
+
+def test_bristles_must_be_given() -> None:
+    with pytest.raises(ParameterError, match="bristle_stiffness"):
+        drag("lugre")
+    with pytest.raises(ParameterError, match="bristle_damping is -1"):
+        drag("lugre", bristle_stiffness=1e5, bristle_damping=-1.0)
+    with pytest.raises(ParameterError, match="retained, stiction, stribeck or lugre"):
+        drag("glue")
+
+
+def test_an_integrator_that_cannot_finish_says_so() -> None:
+    """A stiff drive costs an explicit method more steps than anybody would wait for."""
+    stiff = hersey.Drag(1e5, 1, ehl_exponent=-0.7, mixed_exponent=-1.2, stick_speed=0.01)
+    ramp = hersey.Schedule([0, 1e4], [3.0, 6.0])
+    run = hersey.simulate(
+        hersey.Drivetrain(10.0, 1e-5), stiff, drive_speed=ramp, start="steady", duration=1e4, check=True
+    )
+    assert run.check is not None
+    assert run.check.speed_difference is None
+    assert "steps" in run.check.note
