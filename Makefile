@@ -5,7 +5,7 @@ SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
 SOURCES := $(shell find crates -name '*.rs' -o -name Cargo.toml) Cargo.toml pyproject.toml
 
-.PHONY: help build demo test lint format typecheck test-rust test-python browser benchmark clean
+.PHONY: help build demo test lint format typecheck test-rust test-python browser fuzz benchmark clean
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -58,8 +58,13 @@ browser: ## install Chromium if there is none
 	  root=$$(test "$$(id -u)" = 0 || echo sudo); \
 	  $$root apt-get update -qq && $$root apt-get install -y -qq --no-install-recommends chromium >/dev/null; }
 
+fuzz: ## 100,000 random parameter sets through the motion core (minutes; FUZZ_SEED=1)
+	cargo test --release --quiet --package hersey-core --test fuzz -- --ignored --nocapture
+
 benchmark: build ## ratios against peers, printed and written to benchmarks/RESULTS.md
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt --group benchmark
 	$(BIN)/python benchmarks/read_csv.py
+	$(BIN)/python -m benchmarks.motion
 
 clean: ## remove everything that was built
 	rm -rf .venv build target Cargo.lock

@@ -577,7 +577,10 @@ impl<'a> Motion<'a> {
     }
 
     fn series_piece(&self, longest: f64) -> Piece<'a> {
-        let [pull_scale, speed_scale, _] = self.scales();
+        let [mut pull_scale, speed_scale, _] = self.scales();
+        if self.phase.creeping {
+            pull_scale = self.phase.pull.abs(); // the speed follows its logarithm
+        }
         let start = self.slip_start();
         let v_s = self.system.drag.stick_speed();
         let series = if self.phase.creeping {
