@@ -12,6 +12,7 @@ EXACT = 3.940313951318513  # independent solution at 1e-12 (physics.md, section 
 train = hersey.Drivetrain(1000, 1)
 drag = hersey.Drag(50, 1, ehl_exponent=-0.7, mixed_exponent=-1.2, stick_speed=0.01)
 
+KINDS = ["single motion (order 14)", "lanes (order 12)", "error = tolerance"]
 rows = []
 for power in range(3, 13):
     tolerance = 10.0**-power
@@ -36,8 +37,12 @@ chart = (
             scale=alt.Scale(type="log"),
             axis=alt.Axis(format="~e"),
         ),
-        color=alt.Color("what:N", title=None, scale=alt.Scale(range=["#0b5394", "#bbbbbb", "#e69138"])),
-        strokeDash=alt.StrokeDash("what:N", title=None),
+        color=alt.Color(
+            "what:N", title=None, scale=alt.Scale(domain=KINDS, range=["#0b5394", "#e69138", "#999999"])
+        ),
+        strokeDash=alt.StrokeDash(
+            "what:N", title=None, scale=alt.Scale(domain=KINDS, range=[[1, 0], [6, 2], [2, 3]])
+        ),
     )
     .properties(width=460, height=300, title="Baseline of the paper: k = 1000, B0 = 50, drive speed 1")
 )

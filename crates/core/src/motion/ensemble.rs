@@ -367,7 +367,9 @@ impl Rider {
         if piece.start.mode == Mode::Stuck {
             self.lap.stuck += piece.duration / self.scale.time;
         }
-        let turning = piece.turning_points();
+        // off the lanes a belt that moves forward is slower than the stick speed and the drive: nothing turns
+        let backward = piece.start.direction < 0.0;
+        let turning = if backward { piece.turning_points() } else { [None; 2] };
         for elapsed in
             [Some(0.0), Some(piece.duration), turning[0], turning[1]].into_iter().flatten()
         {

@@ -83,14 +83,6 @@ impl Piece<'_> {
         (self.start.direction * speed, self.start.direction * pull)
     }
 
-    /// Acceleration at `elapsed` since the start, mirrored.
-    pub(super) fn acceleration(&self, elapsed: f64) -> f64 {
-        match &self.path {
-            Path::Series(series) => value(&derivative(&series.speed), elapsed),
-            Path::Steps { .. } => self.flow.rates(elapsed, &self.state(elapsed))[1],
-        }
-    }
-
     /// Drag at `elapsed` since the start, from the law itself; `pull` and `speed` are signed, as the result.
     pub(super) fn friction(&self, elapsed: f64, pull: f64, speed: f64) -> f64 {
         let d = self.start.direction;

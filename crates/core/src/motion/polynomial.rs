@@ -76,9 +76,6 @@ pub(super) fn derivative(c: &Polynomial) -> Polynomial {
 /// A step that starts on its own guard has `g(0) = 0`, exactly: those leading terms are divided out,
 /// and what is left says at once whether the motion enters or leaves the region.
 pub(super) fn first_crossing(g: &Polynomial, end: f64) -> Option<f64> {
-    if !g.iter().all(|ci| ci.is_finite()) || !end.is_finite() {
-        return Some(0.0); // numbers beyond range: an event at once, which ends the motion with an error
-    }
     let zeros = g.iter().position(|ci| *ci != 0.0)?;
     // in units of the interval
     let (mut c, mut power) = ([0.0; ORDER + 1], 1.0);
@@ -86,25 +83,33 @@ pub(super) fn first_crossing(g: &Polynomial, end: f64) -> Option<f64> {
         *unit = ci * power;
         power *= end;
     }
-    if c[0] < 0.0 { Some(0.0) } else { Some(crossing_within(&c, MAX_DEPTH)? * end) }
-}
-
-/// As `first_crossing`, on the unit interval, for a polynomial that is positive at 0: bounds prove the
-/// interval free of roots or monotone, otherwise it is halved and the earlier half searched first.
-fn crossing_within(c: &Polynomial, depth: u32) -> Option<f64> {
-    let (mut lowest, mut steepest) = (c[0], c[1]);
-    for i in 1..=ORDER {
-        lowest += c[i].min(0.0);
-        steepest += if i == 1 { 0.0 } else { (c[i] * POWERS[i]).max(0.0) };
-    }
-    if lowest > 0.0 {
+    if lowest(&c) > 0.0 {
         return None;
     }
-    if !(lowest.is_finite() && steepest.is_finite()) {
-        return Some(0.0); // beyond the range of numbers, where no bound can be had
+    let beyond = !c.iter().all(|ci| ci.is_finite()); // an event at once, which ends the motion with an error
+    if c[0] < 0.0 || beyond { Some(0.0) } else { Some(crossing_within(&c, MAX_DEPTH)? * end) }
+}
+
+/// A bound of the values on the unit interval from below; not a number if a coefficient is beyond range.
+fn lowest(c: &Polynomial) -> f64 {
+    let mut sums = [0.0; 4];
+    for (i, ci) in c.iter().enumerate().skip(1) {
+        sums[i % 4] += ci - ci.abs();
     }
-    if steepest < 0.0 || depth == 0 {
-        let end: f64 = c.iter().sum();
+    c[0] + 0.5 * ((sums[0] + sums[1]) + (sums[2] + sums[3]))
+}
+
+/// As `first_crossing`, on the unit interval, for a polynomial that is positive at 0.
+///
+/// Its graph lies in the hull of its Bernstein coefficients: they prove the interval free of roots or the
+/// polynomial falling, otherwise it is halved and the earlier half searched first.
+fn crossing_within(c: &Polynomial, depth: u32) -> Option<f64> {
+    let hull = weighed(c, &BERNSTEIN);
+    if hull.iter().all(|b| *b > 0.0) {
+        return None;
+    }
+    if hull.windows(2).all(|b| b[1] < b[0]) || depth == 0 {
+        let end = hull[ORDER];
         return (end <= 0.0).then(|| falling_root(c, end));
     }
     let (mut left, mut half) = (*c, 1.0);
@@ -115,22 +120,25 @@ fn crossing_within(c: &Polynomial, depth: u32) -> Option<f64> {
     if let Some(root) = crossing_within(&left, depth - 1) {
         return Some(0.5 * root);
     }
-    Some(0.5 + 0.5 * crossing_within(&advanced(&left), depth - 1)?)
+    Some(0.5 + 0.5 * crossing_within(&weighed(&left, &BINOMIALS), depth - 1)?)
 }
 
 /// Root of `c`, falling from positive at 0 to the non-positive value `end` at 1: Newton kept inside a bracket.
 fn falling_root(c: &Polynomial, end: f64) -> f64 {
     let (mut low, mut high) = (0.0, 1.0);
-    let mut t = c[0] / (c[0] - end);
+    let (mut t, mut last) = (c[0] / (c[0] - end), 1.0);
     for _ in 0..100 {
         let (v, slope) = value_and_slope(c, t);
         (low, high) = if v > 0.0 { (t, high) } else { (low, t) };
         let newton = t - v / slope;
         let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
-        if (next - t).abs() <= f64::EPSILON {
-            return next;
-        }
+        let step = (next - t).abs();
         t = next;
+        // near the root the steps shrink until nothing but rounding is left of them
+        if step <= f64::EPSILON * t || (step < 1e-14 && step >= last) {
+            break;
+        }
+        last = step;
     }
     t
 }
@@ -139,18 +147,33 @@ fn value_and_slope(c: &Polynomial, t: f64) -> (f64, f64) {
     c.iter().rev().fold((0.0, 0.0), |(v, slope), ci| (v * t + ci, slope * t + v))
 }
 
-/// Coefficients about 1.
-fn advanced(c: &Polynomial) -> Polynomial {
+/// Sum of the rows of `table`, each times its coefficient.
+fn weighed(c: &Polynomial, table: &[Polynomial; ORDER + 1]) -> Polynomial {
     let mut out = [0.0; ORDER + 1];
-    for (row, ci) in BINOMIALS.iter().zip(c) {
-        for (o, b) in out.iter_mut().zip(row) {
-            *o += b * ci;
+    for (row, ci) in table.iter().zip(c) {
+        for (o, weight) in out.iter_mut().zip(row) {
+            *o += weight * ci;
         }
     }
     out
 }
 
-/// Pascal's triangle.
+/// Bernstein coefficients of each power on the unit interval: `C(j, i)/C(ORDER, i)`.
+const BERNSTEIN: [Polynomial; ORDER + 1] = {
+    let mut rows = [[0.0; ORDER + 1]; ORDER + 1];
+    let mut i = 0;
+    while i <= ORDER {
+        let mut j = i;
+        while j <= ORDER {
+            rows[i][j] = BINOMIALS[j][i] / BINOMIALS[ORDER][i];
+            j += 1;
+        }
+        i += 1;
+    }
+    rows
+};
+
+/// Pascal's triangle: coefficients of each power about 1.
 const BINOMIALS: [[f64; ORDER + 1]; ORDER + 1] = {
     let mut rows = [[0.0; ORDER + 1]; ORDER + 1];
     let mut n = 0;

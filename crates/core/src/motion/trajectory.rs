@@ -2,7 +2,7 @@
 
 use super::hybrid::{Event, Motion};
 use super::piece::{GAUSS, Path, Piece};
-use super::polynomial::{ORDER, Polynomial, fused};
+use super::polynomial::{ORDER, fused};
 use super::schedule::Cubic;
 use super::system::{Drive, Integrator, Start, System};
 use super::taylor::Series;
@@ -83,7 +83,7 @@ pub fn simulate(
         let last = event.is_none() && motion.time() >= duration;
         let end = if last { f64::INFINITY } else { piece.time + piece.duration };
         let begin = mode.len();
-        let count = time[begin..].partition_point(|t| *t < end);
+        let count = time[begin..].iter().take_while(|t| **t < end).count();
         let range = begin..begin + count;
         elapsed.clear();
         elapsed.extend(time[range.clone()].iter().map(|t| t - piece.time));
@@ -119,6 +119,10 @@ impl Energy {
         let schedule = system.drive.schedule();
         let segment = schedule.segment(piece.time + 0.5 * piece.duration);
         let driven = schedule.about(segment, piece.time);
+        if piece.start.creeping {
+            let (start, end) = (piece.at(0.0).0, piece.at(piece.duration).0);
+            self.dissipated -= 0.5 * piece.flow.mass * (end - start) * (end + start);
+        }
         let mut begin = 0.0;
         while begin < piece.duration * (1.0 - 1e-9) {
             self.add_panel(piece, system, arch, &driven, begin, panel);
@@ -140,13 +144,9 @@ impl Energy {
         sample(arch, piece, &times, &mut speed, &mut pull);
         for (i, (t, (_, weight))) in times.into_iter().zip(GAUSS).enumerate() {
             let (speed, pull) = (speed[i], pull[i]);
-            let friction = if piece.start.mode == Mode::Stuck {
-                pull
-            } else if piece.start.creeping {
-                pull - piece.start.direction * piece.flow.mass * piece.acceleration(t)
-            } else {
-                piece.friction(t, pull, speed)
-            };
+            // a held belt is braked by just the pull, and a creeping one by that and its own slowing down
+            let held = piece.start.mode == Mode::Stuck || piece.start.creeping;
+            let friction = if held { pull } else { piece.friction(t, pull, speed) };
             let given = driven[0] + t * (driven[1] + t * (driven[2] + t * driven[3]));
             let power = match system.drive {
                 Drive::Speed(_) => pull * given,
@@ -186,30 +186,27 @@ impl pulp::WithSimd for Sampling<'_> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) {
-        values(&self.series.speed, self.direction, self.times, self.speed);
-        values(&self.series.pull, self.direction, self.times, self.pull);
+        let (u, p) = (&self.series.speed, &self.series.pull);
+        let outputs = self.speed.chunks_mut(BLOCK).zip(self.pull.chunks_mut(BLOCK));
+        for (times, (speed, pull)) in self.times.chunks(BLOCK).zip(outputs) {
+            let mut t = [0.0; BLOCK];
+            t[..times.len()].copy_from_slice(times);
+            let (mut v, mut q) = ([u[ORDER]; BLOCK], [p[ORDER]; BLOCK]);
+            for i in (0..ORDER).rev() {
+                for l in 0..BLOCK {
+                    v[l] = fused(v[l], t[l], u[i]);
+                    q[l] = fused(q[l], t[l], p[i]);
+                }
+            }
+            for l in 0..times.len() {
+                (speed[l], pull[l]) = (self.direction * v[l], self.direction * q[l]);
+            }
+        }
     }
 }
 
-/// Values of one polynomial at many times, eight at once.
-#[inline(always)]
-#[allow(clippy::inline_always)] // so that it is compiled for the instruction set it is dispatched to
-fn values(c: &Polynomial, factor: f64, times: &[f64], out: &mut [f64]) {
-    const BLOCK: usize = 8;
-    for (times, out) in times.chunks(BLOCK).zip(out.chunks_mut(BLOCK)) {
-        let mut t = [0.0; BLOCK];
-        t[..times.len()].copy_from_slice(times);
-        let mut sum = [c[ORDER]; BLOCK];
-        for i in (0..ORDER).rev() {
-            for (s, t) in sum.iter_mut().zip(&t) {
-                *s = fused(*s, *t, c[i]);
-            }
-        }
-        for (out, s) in out.iter_mut().zip(&sum) {
-            *out = factor * s;
-        }
-    }
-}
+/// Samples that are evaluated at once.
+const BLOCK: usize = 8;
 
 #[allow(clippy::cast_precision_loss)] // more samples than 2^53 do not fit in memory
 fn sample_times(duration: f64, samples: usize) -> Vec<f64> {
