@@ -39,9 +39,9 @@ fn check(random: &mut Random) -> &'static str {
     let mixed = random.between(-1.8, -1.02);
     let drive = transition * random.between(0.05, 4.0);
     // the smooth closure costs a hundred times as much
-    let closure = match (random.unit() * 200.0) as u32 {
-        0 => Closure::Stribeck,
-        1..100 => Closure::Stiction,
+    let closure = match random.unit() {
+        share if share < 0.005 => Closure::Stribeck,
+        share if share < 0.5 => Closure::Stiction,
         _ => Closure::Retained,
     };
     let case = format!(

@@ -1,5 +1,7 @@
 //! `hersey._core`: conversion between Python and `hersey-core`, and nothing else.
 
+#![allow(clippy::needless_pass_by_value)] // arguments arrive from Python as values
+
 mod drag;
 mod ensemble;
 mod motion;

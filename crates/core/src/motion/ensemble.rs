@@ -255,6 +255,7 @@ impl Rider {
     }
 
     /// Enter the range of speeds beyond `level`.
+    #[allow(clippy::float_cmp)] // a level is reached by assigning it
     fn at_level(&mut self, lanes: &mut Lanes, l: usize, level: f64, rising: bool) {
         if level == self.drive {
             self.lap.add_pull(lanes.pull[l]);
@@ -380,6 +381,7 @@ impl Rider {
     }
 
     /// Put the sliding belt on its lane.
+    #[allow(clippy::float_cmp)] // the motion puts a belt on a boundary by assigning it
     fn load(&mut self, motion: &Motion, lanes: &mut Lanes, l: usize) {
         let phase = motion.phase();
         let drag = &self.system.drag;

@@ -508,6 +508,7 @@ impl<'a> Motion<'a> {
     }
 
     /// A piece from here along `series`.
+    #[allow(clippy::large_types_passed_by_value)] // it moves into the piece
     fn along(&self, series: Series, duration: f64) -> Piece<'a> {
         let path = Path::Series(series);
         Piece { time: self.time, duration, start: self.phase, flow: self.flow(), path }
@@ -672,7 +673,7 @@ impl<'a> Motion<'a> {
                 watch(Condition::HeldBack, Guard::HoldingForce);
             }
             Mode::Microslip if self.phase.creeping => {
-                watch(Condition::Faster(0.0), Guard::Reversal)
+                watch(Condition::Faster(0.0), Guard::Reversal);
             }
             Mode::Microslip => {
                 watch(Condition::Slower(v_s), Guard::StickSpeed);

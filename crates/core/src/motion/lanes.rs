@@ -37,9 +37,6 @@ pub(super) mod arrival {
     pub const NONE: f64 = 0.0;
     /// The speed has reached its upper level.
     pub const UPPER: f64 = 1.0;
-    /// The speed has reached its lower level.
-    #[cfg(test)]
-    pub const LOWER: f64 = -1.0;
     /// The speed has an extreme.
     pub const TURNING: f64 = 2.0;
     /// The end of the step was not found.
@@ -80,6 +77,7 @@ impl pulp::WithSimd for LaneStep<'_> {
     type Output = ();
 
     #[inline(always)]
+    #[allow(clippy::inline_always)] // all of a step is compiled for the instruction set it is dispatched to
     fn with_simd<S: pulp::Simd>(self, _: S) {
         self.lanes.step(self.tolerance);
     }
@@ -106,14 +104,39 @@ impl Lanes {
 
     /// One step of every lane.
     #[inline(always)]
-    #[allow(clippy::inline_always)] // so that it is compiled for the instruction set it is dispatched to
+    #[allow(clippy::inline_always)]
     pub(super) fn step(&mut self, tolerance: f64) {
-        let (mut p, mut u, mut iu, mut f) = (
-            [[0.0; LANES]; ORDER + 1],
-            [[0.0; LANES]; ORDER + 1],
-            [[0.0; LANES]; ORDER + 1],
-            [[0.0; LANES]; ORDER + 1],
-        );
+        let series = self.series();
+        let mut h = step_size(&series.pull, &series.speed, &self.floor, tolerance);
+        let turning = self.end_at_extreme(&series, &mut h);
+        let mut end = value(&series.speed, 0, &h);
+        let (crossing, lost) = self.end_at_level(&series, &mut h, &mut end);
+        let (pull, drag) = (value(&series.pull, 0, &h), value(&series.drag, 0, &h));
+        let mut impulse = [0.0; LANES];
+        for n in (0..=ORDER).rev() {
+            for l in 0..LANES {
+                impulse[l] = fused(impulse[l], h[l], series.pull[n][l] * INVERSE[n + 1]);
+            }
+        }
+        for l in 0..LANES {
+            self.time[l] += h[l];
+            self.pull[l] = pull[l];
+            self.drag[l] = drag[l];
+            self.speed[l] = end[l];
+            self.impulse[l] += impulse[l] * h[l];
+            let turned = if crossing[l] == 0.0 { turning[l] } else { 0.0 };
+            self.turned[l] = turned;
+            let met = if turned > 0.0 { arrival::TURNING } else { crossing[l] };
+            self.arrival[l] = if lost[l] > 0.0 { arrival::LOST } else { met };
+        }
+    }
+
+    /// The motion from the present state on; `u f' = e f u'` gives the drag `f`.
+    #[inline(always)]
+    #[allow(clippy::inline_always, clippy::needless_range_loop)]
+    fn series(&self) -> LaneSeries {
+        let (mut p, mut u) = ([[0.0; LANES]; ORDER + 1], [[0.0; LANES]; ORDER + 1]);
+        let (mut iu, mut f) = (p, u);
         (p[0], u[0], f[0]) = (self.pull, self.speed, self.drag);
         let mut inverse = [0.0; LANES];
         for l in 0..LANES {
@@ -142,10 +165,15 @@ impl Lanes {
                 f[n][l] = fused(from_rate, net, fused(from_last, f[n - 1][l], early));
             }
         }
-        let mut h = step_size(&p, &u, &self.floor, tolerance);
-        let mut end = value(&u, 0, &h);
-        let slope = value(&iu, 1, &h);
-        // a step over an extreme ends there
+        LaneSeries { pull: p, speed: u, weighted_speed: iu, drag: f }
+    }
+
+    /// End steps over an extreme of the speed there; one for each lane that does.
+    #[inline(always)]
+    #[allow(clippy::inline_always, clippy::needless_range_loop)]
+    fn end_at_extreme(&self, series: &LaneSeries, h: &mut Row) -> Row {
+        let LaneSeries { speed: u, weighted_speed: iu, .. } = series;
+        let slope = value(iu, 1, h);
         let mut turning: Row = [0.0; LANES];
         let mut any = 0;
         for l in 0..LANES {
@@ -153,32 +181,40 @@ impl Lanes {
             turning[l] = if toward * slope[l] < 0.0 { 1.0 } else { 0.0 };
             any |= turning[l].to_bits();
         }
-        if any != 0 {
-            let mut t = [0.0; LANES];
-            for l in 0..LANES {
-                let share = u[1][l].abs() / (u[1][l].abs() + slope[l].abs());
-                t[l] = if self.turned[l] > 0.0 { 0.5 * h[l] } else { share * h[l] };
-            }
-            let mut curved = [[0.0; LANES]; ORDER + 1];
-            for n in 2..=ORDER {
-                for l in 0..LANES {
-                    curved[n][l] = iu[n][l] * POWERS[n - 1];
-                }
-            }
-            for _ in 0..TURNING_NEWTON {
-                let (rate, change) = (value(&iu, 1, &t), value(&curved, 2, &t));
-                for l in 0..LANES {
-                    let next = t[l] - rate[l] / change[l];
-                    t[l] = if next > 0.0 && next < h[l] { next } else { t[l] };
-                }
-            }
-            for l in 0..LANES {
-                h[l] = if turning[l] > 0.0 { t[l] } else { h[l] };
-            }
-            end = value(&u, 0, &h);
+        if any == 0 {
+            return turning;
         }
-        // a step over a level ends there
+        let mut t = [0.0; LANES];
+        for l in 0..LANES {
+            let share = u[1][l].abs() / (u[1][l].abs() + slope[l].abs());
+            t[l] = if self.turned[l] > 0.0 { 0.5 * h[l] } else { share * h[l] };
+        }
+        let mut curved = [[0.0; LANES]; ORDER + 1];
+        for n in 2..=ORDER {
+            for l in 0..LANES {
+                curved[n][l] = iu[n][l] * POWERS[n - 1];
+            }
+        }
+        for _ in 0..TURNING_NEWTON {
+            let (rate, change) = (value(iu, 1, &t), value(&curved, 2, &t));
+            for l in 0..LANES {
+                let next = t[l] - rate[l] / change[l];
+                t[l] = if next > 0.0 && next < h[l] { next } else { t[l] };
+            }
+        }
+        for l in 0..LANES {
+            h[l] = if turning[l] > 0.0 { t[l] } else { h[l] };
+        }
+        turning
+    }
+
+    /// End steps over a level there, on it exactly: +1 or -1 for each lane that does, and one for each lane
+    /// whose crossing was not found.
+    #[inline(always)]
+    #[allow(clippy::inline_always)]
+    fn end_at_level(&self, series: &LaneSeries, h: &mut Row, end: &mut Row) -> (Row, Row) {
         let mut crossing: Row = [0.0; LANES];
+        let mut lost: Row = [0.0; LANES];
         let mut any = 0;
         for l in 0..LANES {
             let up = if end[l] >= self.upper[l] { 1.0 } else { 0.0 };
@@ -186,53 +222,45 @@ impl Lanes {
             crossing[l] = up - down;
             any |= crossing[l].to_bits();
         }
-        let mut lost: Row = [0.0; LANES];
-        if any != 0 {
-            let (mut t, mut level) = ([0.0; LANES], [0.0; LANES]);
-            for l in 0..LANES {
-                level[l] = if crossing[l] > 0.0 { self.upper[l] } else { self.lower[l] };
-                t[l] = h[l] * (level[l] - self.speed[l]) / (end[l] - self.speed[l]);
-            }
-            for _ in 0..MAX_NEWTON {
-                let (v, rate) = (value(&u, 0, &t), value(&iu, 1, &t));
-                any = 0;
-                for l in 0..LANES {
-                    let off = v[l] - level[l];
-                    let next = t[l] - off / rate[l];
-                    // a lane that has arrived keeps its time, however long the others take
-                    let open = crossing[l] != 0.0 && off.abs() > ARRIVED * level[l];
-                    t[l] = if open && next >= 0.0 && next <= h[l] { next } else { t[l] };
-                    lost[l] = if open { 1.0 } else { 0.0 };
-                    any |= lost[l].to_bits();
-                }
-                if any == 0 {
-                    break;
-                }
-            }
-            for l in 0..LANES {
-                h[l] = if crossing[l] == 0.0 { h[l] } else { t[l] };
-                end[l] = if crossing[l] == 0.0 { end[l] } else { level[l] };
-            }
+        if any == 0 {
+            return (crossing, lost);
         }
-        let (pull, drag) = (value(&p, 0, &h), value(&f, 0, &h));
-        let mut impulse = [0.0; LANES];
-        for n in (0..=ORDER).rev() {
+        let (mut t, mut level) = ([0.0; LANES], [0.0; LANES]);
+        for l in 0..LANES {
+            level[l] = if crossing[l] > 0.0 { self.upper[l] } else { self.lower[l] };
+            t[l] = h[l] * (level[l] - self.speed[l]) / (end[l] - self.speed[l]);
+        }
+        for _ in 0..MAX_NEWTON {
+            let (v, rate) = (value(&series.speed, 0, &t), value(&series.weighted_speed, 1, &t));
+            any = 0;
             for l in 0..LANES {
-                impulse[l] = fused(impulse[l], h[l], p[n][l] * INVERSE[n + 1]);
+                let off = v[l] - level[l];
+                let next = t[l] - off / rate[l];
+                // a lane that has arrived keeps its time, however long the others take
+                let open = crossing[l] != 0.0 && off.abs() > ARRIVED * level[l];
+                t[l] = if open && next >= 0.0 && next <= h[l] { next } else { t[l] };
+                lost[l] = if open { 1.0 } else { 0.0 };
+                any |= lost[l].to_bits();
+            }
+            if any == 0 {
+                break;
             }
         }
         for l in 0..LANES {
-            self.time[l] += h[l];
-            self.pull[l] = pull[l];
-            self.drag[l] = drag[l];
-            self.speed[l] = end[l];
-            self.impulse[l] += impulse[l] * h[l];
-            let turned = if crossing[l] == 0.0 { turning[l] } else { 0.0 };
-            self.turned[l] = turned;
-            let met = if turned > 0.0 { arrival::TURNING } else { crossing[l] };
-            self.arrival[l] = if lost[l] > 0.0 { arrival::LOST } else { met };
+            h[l] = if crossing[l] == 0.0 { h[l] } else { t[l] };
+            end[l] = if crossing[l] == 0.0 { end[l] } else { level[l] };
         }
+        (crossing, lost)
     }
+}
+
+/// Taylor coefficients of every lane.
+struct LaneSeries {
+    pull: Rows,
+    speed: Rows,
+    /// Coefficients of the speed, each times its power.
+    weighted_speed: Rows,
+    drag: Rows,
 }
 
 /// The powers, as numbers.

@@ -32,6 +32,7 @@ const MAX_HALVINGS: usize = 50;
 
 /// How the state is known along a piece.
 #[derive(Debug)]
+#[allow(clippy::large_enum_variant)] // the large one is the common one, and lives on the stack
 pub(super) enum Path {
     Series(Series),
     Steps { formula: Formula, scales: State, tolerance: f64 },
@@ -232,13 +233,13 @@ impl Condition {
     }
 
     fn series(self, series: &Series, warmth: Option<&Warmth>, towards: f64) -> Polynomial {
-        let scaled = |base: f64, factor: fn(&Warmth) -> &Polynomial| match warmth {
-            Some(warmth) => factor(warmth).map(|c| base * c),
-            None => {
-                let mut c = [0.0; ORDER + 1];
-                c[0] = base;
-                c
+        let scaled = |base: f64, factor: fn(&Warmth) -> &Polynomial| {
+            if let Some(warmth) = warmth {
+                return factor(warmth).map(|c| base * c);
             }
+            let mut constant = [0.0; ORDER + 1];
+            constant[0] = base;
+            constant
         };
         let difference = |a: &Polynomial, b: &Polynomial| std::array::from_fn(|i| a[i] - b[i]);
         match self {

@@ -220,8 +220,9 @@ fn factorised<const M: usize>(a: &mut [[f64; M]; M]) -> Option<[usize; M]> {
         for row in column + 1..M {
             let factor = a[row][column] / diagonal;
             a[row][column] = factor;
-            for j in column + 1..M {
-                a[row][j] -= factor * a[column][j];
+            let pivot_row = a[column];
+            for (entry, above) in a[row].iter_mut().zip(pivot_row).skip(column + 1) {
+                *entry -= factor * above;
             }
         }
     }

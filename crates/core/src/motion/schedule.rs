@@ -102,6 +102,7 @@ impl Schedule {
 
     /// The one value that holds at all times, if it does.
     #[must_use]
+    #[allow(clippy::float_cmp)] // a schedule that is constant to the last bit
     pub fn steady(&self) -> Option<f64> {
         let value = self.segments[0].1[0];
         self.segments.iter().all(|(_, c)| *c == [value, 0.0, 0.0, 0.0]).then_some(value)

@@ -86,6 +86,7 @@ impl pulp::WithSimd for Slip<'_> {
     type Output = Series;
 
     #[inline(always)]
+    #[allow(clippy::inline_always)] // so that it is compiled for the instruction set it is dispatched to
     fn with_simd<S: pulp::Simd>(self, _: S) -> Series {
         slip_series(&self.0)
     }

@@ -185,6 +185,7 @@ impl pulp::WithSimd for Sampling<'_> {
     type Output = ();
 
     #[inline(always)]
+    #[allow(clippy::inline_always)] // so that it is compiled for the instruction set it is dispatched to
     fn with_simd<S: pulp::Simd>(self, _: S) {
         let (u, p) = (&self.series.speed, &self.series.pull);
         let outputs = self.speed.chunks_mut(BLOCK).zip(self.pull.chunks_mut(BLOCK));
