@@ -20,6 +20,8 @@ const STIFF: f64 = 30.0;
 
 /// Steps after which a motion is given up as too long, some seconds of work.
 const MAX_STEPS: usize = 5_000_000;
+/// The same for Runge-Kutta steps, which cost more.
+const MAX_RUNGE_KUTTA_STEPS: usize = 500_000;
 
 /// Lengths tried for one Runge-Kutta step before the motion is given up.
 const MAX_TRIES: usize = 200;
@@ -93,8 +95,9 @@ pub(super) struct Motion<'a> {
     next_step: f64,
     warmth: Option<Warmth>,
     events_at_once: u32,
-    /// Pieces made.
+    /// Pieces made, and those of them by Runge-Kutta.
     pub steps: usize,
+    runge_kutta_steps: usize,
     /// Kinetic energy lost by stopping dead.
     pub stopped: f64,
 }
@@ -133,6 +136,7 @@ impl<'a> Motion<'a> {
             warmth: None,
             events_at_once: 0,
             steps: 0,
+            runge_kutta_steps: 0,
             stopped: 0.0,
         };
         motion.find_next_change();
@@ -174,8 +178,8 @@ impl<'a> Motion<'a> {
     /// The next piece, no longer than `longest`, and the event that ends it, if one does.
     pub(super) fn advance(&mut self, longest: f64) -> Result<(Piece<'a>, Option<Event>), Error> {
         self.steps += 1;
-        if self.steps > MAX_STEPS {
-            return Err(Error::TooLong { steps: MAX_STEPS, time: self.time });
+        if self.steps > MAX_STEPS || self.runge_kutta_steps > MAX_RUNGE_KUTTA_STEPS {
+            return Err(Error::TooLong { steps: self.steps, time: self.time });
         }
         self.warm();
         if self.phase.creeping && self.rate()[0] >= self.system.train.stiffness() * self.phase.speed
@@ -610,6 +614,7 @@ impl<'a> Motion<'a> {
     }
 
     fn steps_piece(&mut self, longest: f64) -> Result<Piece<'a>, Error> {
+        self.runge_kutta_steps += 1;
         let (system, flow) = (self.system, self.flow());
         let formula = match self.integrator {
             Integrator::Adaptive => Formula::Radau,

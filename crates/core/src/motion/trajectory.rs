@@ -113,8 +113,14 @@ fn stored(system: &System, (speed, pull): (f64, f64), time: f64) -> (f64, f64) {
 
 impl Energy {
     fn add(&mut self, piece: &Piece, system: &System, arch: pulp::Arch) {
-        let panels = (piece.duration / (LONGEST_PANEL * system.train.time_scale())).ceil().max(1.0);
-        let panels = if piece.start.mode == Mode::Stuck { 1.0 } else { panels.min(1e6) };
+        let panels = match piece.path {
+            _ if piece.start.mode == Mode::Stuck => 1.0,
+            // each state inside a Runge-Kutta step costs a step, and a step is smooth however long it is
+            Path::Steps { .. } => 2.0,
+            Path::Series(_) => {
+                (piece.duration / (LONGEST_PANEL * system.train.time_scale())).ceil().max(1.0)
+            }
+        };
         let panel = piece.duration / panels;
         let schedule = system.drive.schedule();
         let segment = schedule.segment(piece.time + 0.5 * piece.duration);
