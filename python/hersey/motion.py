@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ParamSpec, TypeVar
+from typing import NamedTuple, ParamSpec, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -65,8 +65,7 @@ class Drivetrain:
         return float(self.stiffness), float(self.mass)
 
 
-@dataclass(frozen=True)
-class Event:
+class Event(NamedTuple):
     """A change of mode: when, from and to which, the condition crossed, and the state there."""
 
     time: float
@@ -232,7 +231,7 @@ def simulate(
 
     time, speed, stretch, mode, events, energy, steps = run("adaptive")
     checked = _self_check(lambda: run("dormand-prince"), speed, stretch, events) if check else None
-    rows = tuple(Event(*row) for row in events)
+    rows = tuple(map(Event._make, events))
     force = train.stiffness * stretch
     return Trajectory(time, speed, stretch, force, mode, rows, Energy(*energy), steps, checked)
 

@@ -87,7 +87,27 @@ pub(super) fn first_crossing(g: &Polynomial, end: f64) -> Option<f64> {
         return None;
     }
     let beyond = !c.iter().all(|ci| ci.is_finite()); // an event at once, which ends the motion with an error
-    if c[0] < 0.0 || beyond { Some(0.0) } else { Some(crossing_within(&c, MAX_DEPTH)? * end) }
+    if c[0] < 0.0 || beyond {
+        return Some(0.0);
+    }
+    let root = falling_crossing(&c).or_else(|| crossing_within(&c, MAX_DEPTH))?;
+    Some(root * end)
+}
+
+/// The crossing on the unit interval, if the polynomial is found to fall from its start to there.
+fn falling_crossing(c: &Polynomial) -> Option<f64> {
+    let end = value(c, 1.0);
+    if end > 0.0 {
+        return None;
+    }
+    let root = falling_root(c, end);
+    // the slope stays below its first term and what the others can add up to
+    let (mut slope, mut power) = (c[1], root);
+    for (ci, n) in c.iter().zip(POWERS).skip(2) {
+        slope += n * (ci * power).max(0.0);
+        power *= root;
+    }
+    (slope < 0.0).then_some(root)
 }
 
 /// A bound of the values on the unit interval from below; not a number if a coefficient is beyond range.
@@ -134,8 +154,9 @@ fn falling_root(c: &Polynomial, end: f64) -> f64 {
         let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
         let step = (next - t).abs();
         t = next;
-        // near the root the steps shrink until nothing but rounding is left of them
-        if step <= f64::EPSILON * t || (step < 1e-14 && step >= last) {
+        // quadratic convergence foretells the next step; near the root nothing but rounding is left of them
+        let next_step = step * (step / last) * (step / last);
+        if next_step <= 0.1 * f64::EPSILON * t || (step < 1e-14 && step >= last) {
             break;
         }
         last = step;
@@ -143,8 +164,17 @@ fn falling_root(c: &Polynomial, end: f64) -> f64 {
     t
 }
 
+/// Even and odd powers apart, which shortens the chain: with `x = t^2`, `c = e(x) + t o(x)`.
 fn value_and_slope(c: &Polynomial, t: f64) -> (f64, f64) {
-    c.iter().rev().fold((0.0, 0.0), |(v, slope), ci| (v * t + ci, slope * t + v))
+    let square = t * t;
+    let (mut even, mut odd, mut even_slope, mut odd_slope) = (c[ORDER], 0.0, 0.0, 0.0);
+    for pair in c[..ORDER].chunks_exact(2).rev() {
+        odd_slope = odd_slope * square + odd;
+        even_slope = even_slope * square + even;
+        even = even * square + pair[0];
+        odd = odd * square + pair[1];
+    }
+    (even + t * odd, odd + 2.0 * (t * even_slope + square * odd_slope))
 }
 
 /// Sum of the rows of `table`, each times its coefficient.
