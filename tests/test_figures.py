@@ -275,7 +275,7 @@ def test_the_baseline_is_judged_by_its_motion() -> None:
     assert releases(replace(case, damping=60.0), run).verdict is FAILS
     assert keeps_speed(replace(case, stick_speed=0.009), run).verdict is FAILS
     drifting = replace(
-        run, events=tuple(replace(e, belt_speed=e.belt_speed * (1 - 0.1 * e.time)) for e in run.events)
+        run, events=tuple(e._replace(belt_speed=e.belt_speed * (1 - 0.1 * e.time)) for e in run.events)
     )
     assert keeps_speed(case, drifting).verdict is IN_DIRECTION
     still = replace(run, events=())

@@ -13,5 +13,6 @@
 pub mod drag;
 pub mod error;
 pub mod motion;
+pub mod stability;
 
 pub use error::Error;

@@ -70,7 +70,8 @@ fn check(random: &mut Random) -> &'static str {
     assert!(numbers.iter().all(|x| x.is_finite()), "{cycle:?}: {case}");
     let system = System::at_speed(train, &drag, drive).unwrap();
     let duration = 20.0 * train.time_scale() + 2.0 * force / (stiffness * transition);
-    let run = simulate(&system, start, duration, 11, 1e-9, Integrator::Adaptive)
+    // near steady sliding the kinetic energy is many times the work done, which asks for its own digit
+    let run = simulate(&system, start, duration, 11, 1e-10, Integrator::Adaptive)
         .unwrap_or_else(|e| panic!("{e}: {case}"));
     assert!(run.belt_speed.iter().chain(&run.stretch).all(|x| x.is_finite()), "{case}");
     assert!(run.energy.residual().abs() < 1e-8, "energy {:e}: {case}", run.energy.residual());

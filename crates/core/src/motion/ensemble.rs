@@ -2,7 +2,7 @@
 
 use super::cycle::{CycleKind, Span, StickSlipCycle, settle};
 use super::hybrid::Motion;
-use super::lanes::{LANES, LaneStep, Lanes, arrival};
+use super::lanes::{Lanes, arrival, ride};
 use super::piece::Piece;
 use super::system::{Drivetrain, Integrator, Start, System, checked_tolerance};
 use crate::drag::{Closure, Drag, Mode};
@@ -38,9 +38,22 @@ pub fn ensemble(belts: &[Belt], span: Span, tolerance: f64) -> Result<Vec<Outcom
     for belt in belts {
         finite("drive_speed", belt.drive_speed)?;
     }
-    let mut run = Run { belts, span, tolerance, next: 0, results: vec![None; belts.len()] };
-    run.lanes();
-    let results = run.results.into_iter().zip(belts);
+    let mut results: Vec<Option<Outcome>> = vec![None; belts.len()];
+    let mut waiting = belts.iter().enumerate();
+    let board = |lanes: &mut Lanes, l: usize| {
+        waiting.find_map(|(index, belt)| {
+            let mut rider = Rider::new(index, belt, span)?;
+            rider.start(belt.start, lanes, l, tolerance).then_some(rider)
+        })
+    };
+    ride(tolerance, board, |rider, lanes, l| {
+        let verdict = rider.follow(lanes, l, span, tolerance);
+        if matches!(verdict, Verdict::Arrived) {
+            results[rider.index] = Some(Ok(rider.cycle()));
+        }
+        matches!(verdict, Verdict::Rides)
+    });
+    let results = results.into_iter().zip(belts);
     Ok(results
         .map(|(result, belt)| result.unwrap_or_else(|| alone(belt, span, tolerance)))
         .collect())
@@ -123,57 +136,6 @@ enum Verdict {
     Leaves,
 }
 
-struct Run<'a> {
-    belts: &'a [Belt],
-    span: Span,
-    tolerance: f64,
-    next: usize,
-    results: Vec<Option<Outcome>>,
-}
-
-impl Run<'_> {
-    fn lanes(&mut self) {
-        let arch = pulp::Arch::new();
-        let mut lanes = Lanes::idle();
-        let mut riders: [Option<Box<Rider>>; LANES] = std::array::from_fn(|_| None);
-        loop {
-            for (l, rider) in riders.iter_mut().enumerate() {
-                if rider.is_none() {
-                    *rider = self.board(&mut lanes, l);
-                }
-            }
-            if riders.iter().all(Option::is_none) {
-                return;
-            }
-            let tolerance = self.tolerance;
-            arch.dispatch(LaneStep { lanes: &mut lanes, tolerance });
-            for (l, seat) in riders.iter_mut().enumerate() {
-                let Some(rider) = seat else { continue };
-                match rider.follow(&mut lanes, l, self.span, tolerance) {
-                    Verdict::Rides => continue,
-                    Verdict::Arrived => self.results[rider.index] = Some(Ok(rider.cycle())),
-                    Verdict::Leaves => {}
-                }
-                *seat = None;
-            }
-        }
-    }
-
-    /// The next belt that can ride, on lane `l`.
-    fn board(&mut self, lanes: &mut Lanes, l: usize) -> Option<Box<Rider>> {
-        while self.next < self.belts.len() {
-            let index = self.next;
-            self.next += 1;
-            if let Some(mut rider) = Rider::new(index, &self.belts[index], self.span)
-                && rider.start(self.belts[index].start, lanes, l, self.tolerance)
-            {
-                return Some(rider);
-            }
-        }
-        None
-    }
-}
-
 impl Rider {
     /// The belt in scaled units, if its laps are plain.
     fn new(index: usize, belt: &Belt, span: Span) -> Option<Box<Self>> {
@@ -220,7 +182,7 @@ impl Rider {
 
     /// Put the belt on its lane at the moment it first slides; false if it does not.
     fn start(&mut self, start: Start, lanes: &mut Lanes, l: usize, tolerance: f64) -> bool {
-        (lanes.time[l], lanes.impulse[l]) = (0.0, 0.0);
+        (lanes.time[l], lanes.impulse[l], lanes.sense[l]) = (0.0, 0.0, 1.0);
         self.off_lane(start, lanes, l, Span::UntilClosed, tolerance)
             .is_some_and(|v| matches!(v, Verdict::Rides))
     }

@@ -1,4 +1,4 @@
-//! Many belts at once: the slip laps of the `retained` closure, several to a register.
+//! Many belts at once: slip laps on the two power branches, several to a register.
 //!
 //! Each lane is one belt in scaled units: time by `sqrt(m/k)`, speed by `v_t`, pull by `v_t sqrt(k m)`. What
 //! is left of the equation is `p' = w - u`, `u' = p - d u^e`. A lane runs on the power branches and through
@@ -12,7 +12,7 @@
 use super::polynomial::fused;
 
 /// Belts that step together.
-pub(super) const LANES: usize = 16;
+pub(crate) const LANES: usize = 16;
 
 /// Order of the Taylor steps.
 const ORDER: usize = 12;
@@ -32,7 +32,7 @@ const ARRIVED: f64 = 1e-13;
 type Row = [f64; LANES];
 
 /// What ended a step; numbers, so that they are found for all lanes at once.
-pub(super) mod arrival {
+pub(crate) mod arrival {
     /// The step ended for accuracy.
     pub const NONE: f64 = 0.0;
     /// The speed has reached its upper level.
@@ -45,7 +45,7 @@ pub(super) mod arrival {
 
 /// The state of all lanes, in scaled units.
 #[derive(Debug, Clone)]
-pub(super) struct Lanes {
+pub(crate) struct Lanes {
     pub time: Row,
     pub pull: Row,
     pub speed: Row,
@@ -54,6 +54,8 @@ pub(super) struct Lanes {
     pub drive: Row,
     /// Exponent of the branch.
     pub exponent: Row,
+    /// One, or minus one where the motion is followed back in time; `time` and `impulse` count up all the same.
+    pub sense: Row,
     /// Next levels of the speed.
     pub upper: Row,
     pub lower: Row,
@@ -68,9 +70,9 @@ pub(super) struct Lanes {
 }
 
 /// One step of every lane, as work for the best instruction set.
-pub(super) struct LaneStep<'a> {
-    pub lanes: &'a mut Lanes,
-    pub tolerance: f64,
+struct LaneStep<'a> {
+    lanes: &'a mut Lanes,
+    tolerance: f64,
 }
 
 impl pulp::WithSimd for LaneStep<'_> {
@@ -83,9 +85,38 @@ impl pulp::WithSimd for LaneStep<'_> {
     }
 }
 
+/// Fill the lanes by `board`, step them, and hand each step to `follow` until it says that its rider is done.
+///
+/// `board` may pass over riders; none means that no more wait.
+pub(crate) fn ride<R>(
+    tolerance: f64,
+    mut board: impl FnMut(&mut Lanes, usize) -> Option<R>,
+    mut follow: impl FnMut(&mut R, &mut Lanes, usize) -> bool,
+) {
+    let arch = pulp::Arch::new();
+    let mut lanes = Lanes::idle();
+    let mut riders: [Option<R>; LANES] = std::array::from_fn(|_| None);
+    loop {
+        for (l, rider) in riders.iter_mut().enumerate() {
+            if rider.is_none() {
+                *rider = board(&mut lanes, l);
+            }
+        }
+        if riders.iter().all(Option::is_none) {
+            return;
+        }
+        arch.dispatch(LaneStep { lanes: &mut lanes, tolerance });
+        for (l, seat) in riders.iter_mut().enumerate() {
+            if seat.as_mut().is_some_and(|rider| !follow(rider, &mut lanes, l)) {
+                *seat = None;
+            }
+        }
+    }
+}
+
 impl Lanes {
     /// Lanes that stand still, for want of work.
-    pub(super) fn idle() -> Self {
+    pub(crate) fn idle() -> Self {
         Self {
             time: [0.0; LANES],
             pull: [1.0; LANES],
@@ -93,6 +124,7 @@ impl Lanes {
             drag: [1.0; LANES],
             drive: [2.0; LANES],
             exponent: [0.3; LANES],
+            sense: [1.0; LANES],
             upper: [f64::INFINITY; LANES],
             lower: [0.5; LANES],
             floor: [0.01; LANES],
@@ -105,7 +137,7 @@ impl Lanes {
     /// One step of every lane.
     #[inline(always)]
     #[allow(clippy::inline_always)]
-    pub(super) fn step(&mut self, tolerance: f64) {
+    pub(crate) fn step(&mut self, tolerance: f64) {
         let series = self.series();
         let mut h = step_size(&series.pull, &series.speed, &self.floor, tolerance);
         let turning = self.end_at_extreme(&series, &mut h);
@@ -163,6 +195,14 @@ impl Lanes {
                 let driven = if n == 1 { self.drive[l] - self.speed[l] } else { -u[n - 1][l] };
                 p[n][l] = driven * per;
                 f[n][l] = fused(from_rate, net, fused(from_last, f[n - 1][l], early));
+            }
+        }
+        for n in (1..=ORDER).step_by(2) {
+            for l in 0..LANES {
+                p[n][l] *= self.sense[l];
+                u[n][l] *= self.sense[l];
+                iu[n][l] *= self.sense[l];
+                f[n][l] *= self.sense[l];
             }
         }
         LaneSeries { pull: p, speed: u, weighted_speed: iu, drag: f }

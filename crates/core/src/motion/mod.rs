@@ -20,7 +20,7 @@
 mod cycle;
 mod ensemble;
 mod hybrid;
-mod lanes;
+pub(crate) mod lanes;
 mod piece;
 mod polynomial;
 mod runge_kutta;

@@ -1,0 +1,310 @@
+//! The drive speed at which a slip lap comes back to just where it began.
+//!
+//! In scaled units (time by `sqrt(m/k)`, speed by `v_t`, pull by `v_t sqrt(k m)`) the belt obeys
+//! `p' = w - u`, `u' = p - d u^e`. A lap without sticking passes its slowest speed `u0` with pull and drag equal,
+//! and one that comes back to that point is a cycle: unstable, or stable where it is small. At the stick
+//! speed the same point is where a held belt is released, so there the cycle of sticking and slipping and the
+//! unstable one meet: the upper fold `V*`.
+//!
+//! Whether a lap comes back is asked where it slows down through the transition: forward from the start, and
+//! back in time from the slowest point, where the motion forgets what forward it would blow up. The drive
+//! speed at which both arrive with the same pull is found by the secant method, each on its own lane.
+
+use crate::motion::lanes::{Lanes, arrival, ride};
+
+/// What remains of a belt with two power branches once units are chosen to suit it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SlipLap {
+    /// Drag at the transition over `v_t sqrt(k m)`.
+    pub damping: f64,
+    /// Slowest speed of the lap over `v_t`.
+    pub slowest: f64,
+    /// Exponent of drag on the mixed branch, negative.
+    pub mixed: f64,
+    /// Exponent of drag on the EHL branch.
+    pub ehl: f64,
+}
+
+/// A drive speed at which the lap comes back to its start.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Fold {
+    /// Drive speed over `v_t`.
+    pub drive_speed: f64,
+    /// Greatest speed of the lap over `v_t`.
+    pub speed_max: f64,
+    /// Laps followed, a lap forward and the rest of it back in time together.
+    pub laps: usize,
+}
+
+/// Laps after which a search is given up.
+const MAX_LAPS: usize = 80;
+/// Steps of one lap after which a search is given up.
+const MAX_STEPS: u32 = 20_000;
+/// Greatest drive speed looked at, over `v_t`.
+const FASTEST: f64 = 1e4;
+/// Closeness of laps to the curve of slow motion, in e-folds, from which they are the same.
+const FORGOTTEN: f64 = 45.0;
+/// Error of the drive speed, foretold by the secant method, at which it ends.
+const FOUND: f64 = 1e-12;
+
+/// The fold of each of `laps`; none where there is none below 10,000 `v_t` or it cannot be followed.
+///
+/// `start` gives pull and speed at which the forward lap of a given index begins at a drive speed, if not
+/// from its slowest point.
+pub(super) fn folds(
+    laps: &[SlipLap],
+    tolerance: f64,
+    start: impl Fn(usize, f64) -> Option<(f64, f64)>,
+) -> Vec<Option<Fold>> {
+    let mut found = vec![None; laps.len()];
+    let mut waiting = laps.iter().enumerate();
+    let board = |lanes: &mut Lanes, l: usize| {
+        waiting.find_map(|(index, lap)| {
+            let mut seeker = Seeker::new(index, *lap);
+            seeker.forward(lanes, l, &start).then_some(seeker)
+        })
+    };
+    ride(tolerance, board, |seeker, lanes, l| match seeker.follow(lanes, l, &start) {
+        Next::Goes => true,
+        Next::Found(fold) => {
+            found[seeker.index] = Some(fold);
+            false
+        }
+        Next::Fails => false,
+    });
+    found
+}
+
+/// One search on its lane.
+struct Seeker {
+    index: usize,
+    lap: SlipLap,
+    search: Search,
+    /// Pull with which the forward half has slowed to the section, once it has.
+    arrived: Option<f64>,
+    speed_max: f64,
+    steps: u32,
+}
+
+/// What a lap did at the drive speed that is looked at.
+#[derive(Clone, Copy)]
+enum Outcome {
+    /// Pull at the section less that of the lap which just comes back: negative if the belt sticks.
+    Gap(f64),
+    /// The belt ends in steady sliding or a smaller swing.
+    Escapes,
+}
+
+enum Next {
+    Goes,
+    Found(Fold),
+    Fails,
+}
+
+impl Seeker {
+    fn new(index: usize, lap: SlipLap) -> Self {
+        // close to the baseline's, so that few laps are needed
+        let guess = 0.45 + 0.52 * lap.slowest.powf(-0.26);
+        // from `|F'| >= 2` on, steady sliding on the mixed branch is a node: whatever falls below it sticks
+        let node = -lap.mixed * lap.damping >= 2.0;
+        let search = if node {
+            Search { at: 1.0, ..Search::new(1.0 - f64::EPSILON, guess) }
+        } else {
+            Search::new(lap.slowest, guess.max(0.5 * (1.0 + lap.slowest)))
+        };
+        Self { index, lap, search, arrived: None, speed_max: 0.0, steps: 0 }
+    }
+
+    /// Speed at which the two halves are compared.
+    fn section(&self) -> f64 {
+        self.search.at.min(1.0)
+    }
+
+    fn load(&mut self, lanes: &mut Lanes, l: usize, (pull, speed): (f64, f64), sense: f64) {
+        let SlipLap { damping, mixed, slowest, .. } = self.lap;
+        self.steps = 0;
+        (lanes.time[l], lanes.impulse[l], lanes.sense[l]) = (0.0, 0.0, sense);
+        (lanes.pull[l], lanes.speed[l]) = (pull, speed);
+        lanes.drag[l] = damping * speed.powf(mixed);
+        (lanes.drive[l], lanes.exponent[l], lanes.floor[l]) = (self.search.at, mixed, slowest);
+        lanes.lower[l] = 0.5 * slowest;
+        lanes.upper[l] = if sense > 0.0 { 1.0 } else { self.section() };
+        lanes.turned[l] = if pull.to_bits() == lanes.drag[l].to_bits() { 1.0 } else { 0.0 };
+    }
+
+    /// Pull and speed from which the lap is followed back in time.
+    ///
+    /// Back in time laps close in on the curve of slow motion, `p = F + u'` with `u' = (w - u)/F'`, by the
+    /// factor `exp(-integral of F'^2/(w - u) du)` up to the section. Where little is left of the rest, the
+    /// stiff part of the way is passed over.
+    fn last_point(&self) -> (f64, f64) {
+        let SlipLap { damping, mixed, slowest, .. } = self.lap;
+        let power = 2.0 * mixed - 1.0;
+        let steepness = (mixed * damping).powi(2) / (self.search.at * -power);
+        let section = self.section();
+        let begin = (section.powf(power) + FORGOTTEN / steepness).powf(1.0 / power);
+        if begin <= slowest || begin >= 0.9 * section {
+            return (damping * slowest.powf(mixed), slowest);
+        }
+        let force = damping * begin.powf(mixed);
+        let slope = mixed * force / begin;
+        (force + (self.search.at - begin) / slope, begin)
+    }
+
+    /// Begin the lap at the drive speed that is looked at.
+    fn forward(
+        &mut self,
+        lanes: &mut Lanes,
+        l: usize,
+        start: &impl Fn(usize, f64) -> Option<(f64, f64)>,
+    ) -> bool {
+        let Some(begin) = start(self.index, self.search.at) else { return false };
+        (self.arrived, self.speed_max) = (None, 0.0);
+        self.load(lanes, l, begin, 1.0);
+        true
+    }
+
+    fn follow(
+        &mut self,
+        lanes: &mut Lanes,
+        l: usize,
+        start: &impl Fn(usize, f64) -> Option<(f64, f64)>,
+    ) -> Next {
+        self.steps += 1;
+        let met = lanes.arrival[l];
+        if met == arrival::LOST || self.steps > MAX_STEPS {
+            return Next::Fails;
+        }
+        if self.creeps_to_the_drive(lanes, l) {
+            return self.judge(Outcome::Escapes, lanes, l, start);
+        }
+        if met == arrival::NONE {
+            return Next::Goes;
+        }
+        if let Some(pull) = self.arrived {
+            // back in time from the slowest point the belt has reached the section
+            return self.judge(Outcome::Gap(pull - lanes.pull[l]), lanes, l, start);
+        }
+        let SlipLap { damping, mixed, ehl, .. } = self.lap;
+        if met == arrival::UPPER {
+            (lanes.drag[l], lanes.exponent[l]) = (damping, ehl);
+            (lanes.lower[l], lanes.upper[l]) = (1.0, f64::INFINITY);
+            return Next::Goes;
+        }
+        if met == arrival::TURNING {
+            if self.speed_max > 0.0 {
+                // the belt speeds up again before it has slowed to the section: it has escaped
+                return self.judge(Outcome::Escapes, lanes, l, start);
+            }
+            self.speed_max = lanes.speed[l];
+            if self.speed_max < 1.0 {
+                lanes.lower[l] = self.section();
+            }
+            return Next::Goes;
+        }
+        if lanes.speed[l] > self.section() {
+            (lanes.drag[l], lanes.exponent[l]) = (damping, mixed);
+            (lanes.lower[l], lanes.upper[l]) = (self.section(), 1.0);
+            return Next::Goes;
+        }
+        self.arrived = Some(lanes.pull[l]);
+        self.load(lanes, l, self.last_point(), -1.0);
+        Next::Goes
+    }
+
+    /// Whether the belt slows down so gently that it cannot fall below a drive faster than the transition.
+    ///
+    /// With `y = u - w > 0` the EHL branch gives `y'' = -y - c y'`, where the damping `c = e F/u` only grows as
+    /// the belt slows down. From `c >= 2` and `y' >= -y` on, `y' >= -y` holds for good and `y` never passes zero.
+    fn creeps_to_the_drive(&self, lanes: &Lanes, l: usize) -> bool {
+        let (speed, ahead) = (lanes.speed[l], lanes.speed[l] - self.search.at);
+        self.search.at >= 1.0
+            && self.speed_max > 0.0
+            && speed >= 1.0
+            && self.arrived.is_none()
+            && self.lap.ehl * lanes.drag[l] >= 2.0 * speed
+            && lanes.pull[l] - lanes.drag[l] >= -ahead
+    }
+
+    /// Go on with the drive speed that follows from the outcome at this one.
+    fn judge(
+        &mut self,
+        outcome: Outcome,
+        lanes: &mut Lanes,
+        l: usize,
+        start: &impl Fn(usize, f64) -> Option<(f64, f64)>,
+    ) -> Next {
+        let speed_max = self.speed_max;
+        match self.search.take(outcome) {
+            Step::Again if self.forward(lanes, l, start) => Next::Goes,
+            Step::Again | Step::Nowhere => Next::Fails,
+            Step::At(drive_speed) => {
+                Next::Found(Fold { drive_speed, speed_max, laps: self.search.laps })
+            }
+        }
+    }
+}
+
+/// A root of the gap by the secant method, kept inside a bracket once there is one.
+///
+/// The gap is negative where the belt sticks, and has no value where it escapes.
+struct Search {
+    /// Drive speed that is looked at.
+    at: f64,
+    sticks: f64,
+    escapes: Option<f64>,
+    last: Option<(f64, f64)>,
+    laps: usize,
+}
+
+enum Step {
+    Again,
+    At(f64),
+    Nowhere,
+}
+
+impl Search {
+    fn new(slowest: f64, guess: f64) -> Self {
+        Self { at: guess, sticks: slowest, escapes: None, last: None, laps: 0 }
+    }
+
+    fn take(&mut self, outcome: Outcome) -> Step {
+        self.laps += 1;
+        let x = self.at;
+        let gap = match outcome {
+            Outcome::Gap(gap) => Some(gap),
+            Outcome::Escapes => None,
+        };
+        if gap == Some(0.0) {
+            return Step::At(x);
+        }
+        let sticks = gap.is_some_and(|g| g < 0.0);
+        if sticks {
+            self.sticks = self.sticks.max(x);
+        } else {
+            self.escapes = Some(self.escapes.map_or(x, |e| e.min(x)));
+        }
+        let middle = self.escapes.map_or(1.5 * x, |e| 0.5 * (self.sticks + e));
+        let inside = |y: f64| y > self.sticks && self.escapes.is_none_or(|e| y < e);
+        let secant = gap.zip(self.last).map(|(g, (y, h))| x - g * (x - y) / (g - h));
+        if let (Some(y), Some((before, _))) = (secant, self.last)
+            && (y - x).abs() * (x - before).abs() <= FOUND * x * x
+            && (y - x).abs() <= 1e-3 * x
+        {
+            return Step::At(y);
+        }
+        if self.escapes.is_some_and(|e| e - self.sticks <= FOUND * e) {
+            return Step::At(middle);
+        }
+        // without a slope yet, a first guess at it
+        let nearby = gap.map(|_| x * if sticks { 1.03 } else { 0.97 });
+        let fits = |y: &f64| inside(*y) && *y <= 2.0 * x;
+        let next = secant.or(nearby).filter(fits).unwrap_or(middle);
+        if self.laps >= MAX_LAPS || next > FASTEST || !next.is_finite() {
+            return Step::Nowhere;
+        }
+        self.last = gap.map(|g| (x, g)).or(self.last);
+        self.at = next;
+        Step::Again
+    }
+}
