@@ -78,6 +78,19 @@ pub struct Event {
     pub belt_speed: f64,
 }
 
+/// Pull and speed with which a belt that starts below the stick speed first slides faster, if it does.
+pub(crate) fn first_slide(system: &System, start: Start, tolerance: f64) -> Option<(f64, f64)> {
+    let mut motion = Motion::new(system, start, tolerance, Integrator::Adaptive).ok()?;
+    for _ in 0..1000 {
+        let phase = motion.phase();
+        if matches!(phase.mode, Mode::Ehl | Mode::Mixed) && phase.direction > 0.0 {
+            return Some((phase.pull, phase.speed));
+        }
+        motion.advance(f64::INFINITY).ok()?;
+    }
+    None
+}
+
 /// The motion, from one piece to the next.
 pub(super) struct Motion<'a> {
     system: &'a System,

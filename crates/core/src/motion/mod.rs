@@ -31,6 +31,7 @@ mod trajectory;
 
 pub use cycle::{CycleKind, Span, StickSlipCycle, settle, stick_slip};
 pub use ensemble::{Belt, Outcome, ensemble};
+pub(crate) use hybrid::first_slide;
 pub use hybrid::{Event, Guard};
 pub use schedule::{Cubic, Schedule};
 pub use system::{Drive, Drivetrain, Integrator, Start, System};

@@ -28,7 +28,7 @@ pub struct SlipLap {
 /// A drive speed at which the lap comes back to its start.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fold {
-    /// Drive speed over `v_t`.
+    /// Drive speed over `v_t`; infinite beyond 10,000.
     pub drive_speed: f64,
     /// Greatest speed of the lap over `v_t`.
     pub speed_max: f64,
@@ -40,14 +40,14 @@ pub struct Fold {
 const MAX_LAPS: usize = 80;
 /// Steps of one lap after which a search is given up.
 const MAX_STEPS: u32 = 20_000;
-/// Greatest drive speed looked at, over `v_t`.
+/// Greatest drive speed looked at, over `v_t`; a fold beyond is said to lie at infinity.
 const FASTEST: f64 = 1e4;
 /// Closeness of laps to the curve of slow motion, in e-folds, from which they are the same.
 const FORGOTTEN: f64 = 45.0;
 /// Error of the drive speed, foretold by the secant method, at which it ends.
 const FOUND: f64 = 1e-12;
 
-/// The fold of each of `laps`; none where there is none below 10,000 `v_t` or it cannot be followed.
+/// The fold of each of `laps`; none where they cannot be followed.
 ///
 /// `start` gives pull and speed at which the forward lap of a given index begins at a drive speed, if not
 /// from its slowest point.
@@ -105,10 +105,10 @@ impl Seeker {
     fn new(index: usize, lap: SlipLap) -> Self {
         // close to the baseline's, so that few laps are needed
         let guess = 0.45 + 0.52 * lap.slowest.powf(-0.26);
-        // from `|F'| >= 2` on, steady sliding on the mixed branch is a node: whatever falls below it sticks
+        // from `|F'| >= 2` on no belt comes back from below the transition: the fold is there or above
         let node = -lap.mixed * lap.damping >= 2.0;
         let search = if node {
-            Search { at: 1.0, ..Search::new(1.0 - f64::EPSILON, guess) }
+            Search::new(1.0 - f64::EPSILON, 1.0)
         } else {
             Search::new(lap.slowest, guess.max(0.5 * (1.0 + lap.slowest)))
         };
@@ -143,9 +143,10 @@ impl Seeker {
         let steepness = (mixed * damping).powi(2) / (self.search.at * -power);
         let section = self.section();
         let begin = (section.powf(power) + FORGOTTEN / steepness).powf(1.0 / power);
-        if begin <= slowest || begin >= 0.9 * section {
+        if begin <= slowest {
             return (damping * slowest.powf(mixed), slowest);
         }
+        let begin = begin.min(0.9 * section).max(slowest);
         let force = damping * begin.powf(mixed);
         let slope = mixed * force / begin;
         (force + (self.search.at - begin) / slope, begin)
@@ -207,6 +208,12 @@ impl Seeker {
             (lanes.lower[l], lanes.upper[l]) = (self.section(), 1.0);
             return Next::Goes;
         }
+        let drive = self.search.at;
+        let steady = damping * drive.powf(mixed);
+        if drive <= 1.0 && -mixed * steady >= 2.0 * drive {
+            // steady sliding is an unstable node: whatever falls below it sticks, and back in time laps end there
+            return self.judge(Outcome::Gap(lanes.pull[l] - steady), lanes, l, start);
+        }
         self.arrived = Some(lanes.pull[l]);
         self.load(lanes, l, self.last_point(), -1.0);
         Next::Goes
@@ -264,8 +271,8 @@ enum Step {
 }
 
 impl Search {
-    fn new(slowest: f64, guess: f64) -> Self {
-        Self { at: guess, sticks: slowest, escapes: None, last: None, laps: 0 }
+    fn new(sticks: f64, at: f64) -> Self {
+        Self { at, sticks, escapes: None, last: None, laps: 0 }
     }
 
     fn take(&mut self, outcome: Outcome) -> Step {
@@ -300,7 +307,10 @@ impl Search {
         let nearby = gap.map(|_| x * if sticks { 1.03 } else { 0.97 });
         let fits = |y: &f64| inside(*y) && *y <= 2.0 * x;
         let next = secant.or(nearby).filter(fits).unwrap_or(middle);
-        if self.laps >= MAX_LAPS || next > FASTEST || !next.is_finite() {
+        if next > FASTEST {
+            return Step::At(f64::INFINITY);
+        }
+        if self.laps >= MAX_LAPS || !next.is_finite() {
             return Step::Nowhere;
         }
         self.last = gap.map(|g| (x, g)).or(self.last);

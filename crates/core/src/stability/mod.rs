@@ -1,11 +1,14 @@
 //! Where smooth sliding and stick-slip part (Figs. 13-14).
 //!
-//! | module | responsibility                                                              |
-//! |--------|-----------------------------------------------------------------------------|
-//! | `fold` | drive speed at which a slip lap comes back to its start, many at once       |
+//! | module | responsibility                                                                     |
+//! |--------|------------------------------------------------------------------------------------|
+//! | `fold` | drive speed at which a slip lap comes back to its start, many at once              |
+//! | `band` | lower edge, transition and upper fold of a belt, for every closure                 |
 
+mod band;
 mod fold;
 
+pub use band::{Band, Method, bands, slip_lap};
 pub use fold::{Fold, SlipLap};
 
 /// Folds of laps that begin at their own slowest point: the unstable cycles, and `V*` where that is `v_s`.

@@ -1,0 +1,298 @@
+//! The band of drive speeds where the past decides whether a belt sticks.
+
+use super::cycles;
+use super::fold::{Fold, SlipLap, folds};
+use crate::drag::{Closure, Drag};
+use crate::error::Error;
+use crate::motion::{
+    Belt, CycleKind, Drivetrain, Span, Start, System, ensemble, first_slide, settle,
+};
+
+/// Edges of the behaviour over drive speed, for one belt.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Band {
+    /// Where the last motion without sticking ends: below, every start leads to stick-slip.
+    pub lower: f64,
+    /// Transition speed, below which steady sliding is unstable.
+    pub transition: f64,
+    /// The fold `V*`: above, stick-slip dies out.
+    pub upper: f64,
+    /// Greatest belt speed of the slip lap at the fold; not a number where that was found by simulation.
+    pub speed_max: f64,
+    /// Relative accuracy of the edges.
+    pub lower_accuracy: f64,
+    /// Relative accuracy of the fold.
+    pub upper_accuracy: f64,
+    /// How the fold was found.
+    pub method: Method,
+    /// The stick-slip that lasts longest is not the one released at the stick speed (see `docs/hysteresis.md`).
+    pub deeper: bool,
+    /// Slip laps followed to find the fold; zero where it was found by simulation.
+    pub laps: usize,
+}
+
+/// How a fold was found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Method {
+    /// Slip laps forward and back in time that meet.
+    HalfLaps,
+    /// Simulation from rest, halving the interval.
+    Simulation,
+}
+
+/// Accuracy of edges found by halving.
+const HALVED: f64 = 1e-9;
+/// The same for the lower edge, where each motion takes long to decide.
+const HALVED_LOWER: f64 = 1e-4;
+/// Accuracy of folds of half laps, in tolerances.
+const MEETING: f64 = 30.0;
+/// How far above the fold the belt is started from rest to see whether some deeper stick-slip lasts.
+const ABOVE: f64 = 1e-4;
+/// Nudge from steady sliding, relative.
+const NUDGE: f64 = 1e-3;
+/// Greatest drive speed looked at, in transition speeds.
+const FASTEST: f64 = 1e4;
+
+/// The band of each belt.
+///
+/// # Errors
+/// Each belt's may be an error of its own, if its motion cannot be followed.
+#[must_use]
+pub fn bands(belts: &[(Drivetrain, Drag)], tolerance: f64) -> Vec<Result<Band, Error>> {
+    let laps: Vec<Option<SlipLap>> =
+        belts.iter().map(|(train, drag)| slip_lap(train, drag)).collect();
+    let uppers = half_lap_folds(belts, &laps, tolerance);
+    let deeper = deeper_stick_slip(belts, &uppers, tolerance);
+    let lowers = lower_edges(&laps, tolerance);
+    (0..belts.len())
+        .map(|i| {
+            let (train, drag) = &belts[i];
+            let transition = drag.transition_speed();
+            let (lower, lower_accuracy) = match lowers[i] {
+                Some(edge) => (edge * transition, MEETING * tolerance),
+                None => (lower_by_simulation(train, drag, tolerance)?, HALVED_LOWER),
+            };
+            let half = uppers[i].filter(|_| !deeper[i]);
+            let (upper, upper_accuracy) = match half {
+                Some(fold) => (fold.drive_speed * transition, MEETING * tolerance),
+                None => {
+                    let from = uppers[i].map_or(1.0, |fold| fold.drive_speed * (1.0 + ABOVE));
+                    (upper_by_simulation(train, drag, from * transition, tolerance)?, HALVED)
+                }
+            };
+            Ok(Band {
+                lower,
+                transition,
+                upper,
+                speed_max: half.map_or(f64::NAN, |fold| fold.speed_max * transition),
+                lower_accuracy,
+                upper_accuracy,
+                method: if half.is_some() { Method::HalfLaps } else { Method::Simulation },
+                deeper: deeper[i],
+                laps: half.map_or(0, |fold| fold.laps),
+            })
+        })
+        .collect()
+}
+
+/// The belt in scaled units, if its drag has two power branches whose force follows the speed at once.
+#[must_use]
+pub fn slip_lap(train: &Drivetrain, drag: &Drag) -> Option<SlipLap> {
+    let (mixed, ehl) = drag.two_branches()?;
+    let pull = drag.transition_speed() * (train.stiffness() * train.mass()).sqrt();
+    let memory = matches!(drag.closure(), Closure::LuGre { .. });
+    (!memory && mixed < 0.0 && ehl > 0.0).then(|| SlipLap {
+        damping: drag.transition_force() / pull,
+        slowest: drag.stick_speed() / drag.transition_speed(),
+        mixed,
+        ehl,
+    })
+}
+
+/// Folds by half laps, for the closures whose stuck belt is released and caught where the branches end.
+fn half_lap_folds(
+    belts: &[(Drivetrain, Drag)],
+    laps: &[Option<SlipLap>],
+    tolerance: f64,
+) -> Vec<Option<Fold>> {
+    let sharp = |drag: &Drag| matches!(drag.closure(), Closure::Retained | Closure::Stiction);
+    let (places, known): (Vec<usize>, Vec<SlipLap>) = laps
+        .iter()
+        .enumerate()
+        .filter_map(|(i, lap)| Some((i, (*lap)?)))
+        .filter(|(i, _)| sharp(&belts[*i].1))
+        .unzip();
+    let start = |index: usize, drive_speed: f64| {
+        let (train, drag) = &belts[places[index]];
+        if drag.closure() == Closure::Retained {
+            let SlipLap { damping, slowest, mixed, .. } = known[index];
+            return Some((damping * slowest.powf(mixed), slowest));
+        }
+        leaving_stick_speed(train, drag, drive_speed, tolerance)
+    };
+    let mut found = vec![None; belts.len()];
+    for (place, fold) in places.iter().zip(folds(&known, tolerance, start)) {
+        found[*place] = fold;
+    }
+    found
+}
+
+/// Scaled pull and speed at which a belt that stood still passes the stick speed, for a scaled drive speed.
+fn leaving_stick_speed(
+    train: &Drivetrain,
+    drag: &Drag,
+    drive_speed: f64,
+    tolerance: f64,
+) -> Option<(f64, f64)> {
+    let speed = drag.transition_speed();
+    let system = System::at_speed(*train, drag, drive_speed * speed).ok()?;
+    let start = Start { belt_speed: 0.0, stretch: drag.breakaway_force() / train.stiffness() };
+    let (pull, belt_speed) = first_slide(&system, start, tolerance)?;
+    let impedance = (train.stiffness() * train.mass()).sqrt();
+    Some((pull / (speed * impedance), belt_speed / speed))
+}
+
+/// Whether a belt started from rest just above its fold goes on to stick, released higher each time.
+fn deeper_stick_slip(
+    belts: &[(Drivetrain, Drag)],
+    uppers: &[Option<Fold>],
+    tolerance: f64,
+) -> Vec<bool> {
+    let mut deeper = vec![false; belts.len()];
+    let (places, above): (Vec<usize>, Vec<Belt>) = belts
+        .iter()
+        .zip(uppers)
+        .enumerate()
+        .filter(|(_, ((_, drag), _))| drag.closure() == Closure::Retained)
+        .filter_map(|(i, ((train, drag), fold))| {
+            let drive_speed = (*fold)?.drive_speed * drag.transition_speed() * (1.0 + ABOVE);
+            Some((i, Belt { train: *train, drag: drag.clone(), drive_speed, start: Start::REST }))
+        })
+        .unzip();
+    if let Ok(outcomes) = ensemble(&above, Span::UntilClosed, tolerance) {
+        for (place, outcome) in places.into_iter().zip(outcomes) {
+            deeper[place] = outcome.is_ok_and(|cycle| cycle.kind == CycleKind::StickSlip);
+        }
+    }
+    deeper
+}
+
+/// Slowest speeds, over the transition speed, between which the slowest unstable cycle is looked for.
+const FIRST_LOOKS: [f64; 6] = [0.3, 0.45, 0.6, 0.75, 0.88, 0.96];
+/// Parabolas drawn through the least of three points.
+const PARABOLAS: usize = 5;
+
+/// Least drive speed, over the transition speed, of any cycle without sticking: where two of them meet.
+fn lower_edges(laps: &[Option<SlipLap>], tolerance: f64) -> Vec<Option<f64>> {
+    let (places, known): (Vec<usize>, Vec<SlipLap>) =
+        laps.iter().enumerate().filter_map(|(i, lap)| Some((i, (*lap)?))).unzip();
+    // (slowest speed, drive speed) of the cycles looked at, by slowest speed
+    let mut seen: Vec<Vec<(f64, f64)>> = vec![Vec::new(); known.len()];
+    let look = |seen: &mut Vec<Vec<(f64, f64)>>, at: &[Option<f64>]| {
+        let (which, with): (Vec<usize>, Vec<SlipLap>) = at
+            .iter()
+            .enumerate()
+            .filter_map(|(i, slowest)| Some((i, SlipLap { slowest: (*slowest)?, ..known[i] })))
+            .unzip();
+        for ((i, lap), fold) in which.iter().zip(&with).zip(cycles(&with, tolerance)) {
+            if let Some(fold) = fold {
+                let place = seen[*i].partition_point(|(slowest, _)| *slowest < lap.slowest);
+                seen[*i].insert(place, (lap.slowest, fold.drive_speed));
+            }
+        }
+    };
+    for share in FIRST_LOOKS {
+        let at: Vec<Option<f64>> =
+            known.iter().map(|lap| Some(lap.slowest + share * (1.0 - lap.slowest))).collect();
+        look(&mut seen, &at);
+    }
+    for _ in 0..PARABOLAS {
+        let at: Vec<Option<f64>> = seen.iter().map(|points| below_three(points)).collect();
+        look(&mut seen, &at);
+    }
+    let mut edges = vec![None; laps.len()];
+    for (place, points) in places.into_iter().zip(seen) {
+        // at the transition speed itself cycles of no size begin
+        edges[place] = Some(points.iter().fold(1.0, |least: f64, (_, drive)| least.min(*drive)));
+    }
+    edges
+}
+
+/// Bottom of the parabola through the least point and its neighbours, if it lies between them.
+fn below_three(points: &[(f64, f64)]) -> Option<f64> {
+    let least = (0..points.len()).min_by(|i, j| points[*i].1.total_cmp(&points[*j].1))?;
+    if least == 0 || least + 1 == points.len() {
+        return None;
+    }
+    let [(a, fa), (b, fb), (c, fc)] = [points[least - 1], points[least], points[least + 1]];
+    let (left, right) = ((b - a) * (fb - fc), (b - c) * (fb - fa));
+    let bottom = b - 0.5 * ((b - a) * left - (b - c) * right) / (left - right);
+    let apart = |x: f64| (x - b).abs() > 1e-6 * b;
+    (bottom > a && bottom < c && apart(bottom)).then_some(bottom)
+}
+
+/// Least drive speed above `from` at which a belt from rest ends without sticking, if it sticks at `from`;
+/// otherwise the greatest below at which it sticks.
+fn upper_by_simulation(
+    train: &Drivetrain,
+    drag: &Drag,
+    from: f64,
+    tolerance: f64,
+) -> Result<f64, Error> {
+    let sticks = |drive_speed: f64| -> Result<bool, Error> {
+        let cycle = settle(train, drag, drive_speed, Start::REST, Span::UntilClosed, tolerance)?;
+        Ok(cycle.kind == CycleKind::StickSlip)
+    };
+    let (mut low, mut high) = (from, from);
+    if sticks(from)? {
+        while sticks(high)? {
+            (low, high) = (high, 1.25 * high);
+            if high > FASTEST * drag.transition_speed() {
+                return Ok(f64::INFINITY);
+            }
+        }
+    } else {
+        while !sticks(low)? {
+            (low, high) = (0.8 * low, low);
+            if low < drag.stick_speed() {
+                return Ok(low);
+            }
+        }
+    }
+    halved(low, high, HALVED, sticks)
+}
+
+/// Drive speed below the transition under which a belt nudged from steady sliding comes to stick.
+fn lower_by_simulation(train: &Drivetrain, drag: &Drag, tolerance: f64) -> Result<f64, Error> {
+    let transition = drag.transition_speed();
+    let sticks = |drive_speed: f64| -> Result<bool, Error> {
+        let start = Start {
+            belt_speed: drive_speed * (1.0 + NUDGE),
+            stretch: drag.force(drive_speed) / train.stiffness(),
+        };
+        let cycle = settle(train, drag, drive_speed, start, Span::UntilClosed, tolerance)?;
+        Ok(cycle.kind == CycleKind::StickSlip)
+    };
+    let mut low = 0.9 * transition;
+    while !sticks(low)? {
+        low *= 0.8;
+        if low < drag.stick_speed() {
+            return Ok(low);
+        }
+    }
+    halved(low, transition, HALVED_LOWER, sticks)
+}
+
+/// Where `sticks` changes between `low`, where it holds, and `high`, where it does not.
+fn halved(
+    mut low: f64,
+    mut high: f64,
+    accuracy: f64,
+    sticks: impl Fn(f64) -> Result<bool, Error>,
+) -> Result<f64, Error> {
+    while high - low > accuracy * high {
+        let middle = 0.5 * (low + high);
+        if sticks(middle)? { low = middle } else { high = middle }
+    }
+    Ok(0.5 * (low + high))
+}
