@@ -6,7 +6,18 @@ from typing import TypeAlias, final
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["KINDS", "MODES", "VERSION", "Law", "simulate", "stick_slip", "sweep"]
+__all__ = [
+    "KINDS",
+    "MODES",
+    "VERSION",
+    "Law",
+    "band",
+    "bands",
+    "cycles",
+    "simulate",
+    "stick_slip",
+    "sweep",
+]
 
 KINDS: list[str]
 MODES: list[str]
@@ -76,3 +87,14 @@ def sweep(
     threads: int,
     progress: Callable[[int, int], object] | None,
 ) -> tuple[NDArray[np.uint8], _Floats, NDArray[np.uint32], list[tuple[int, str]]]: ...
+def band(
+    train: tuple[float, float], drag: Law, tolerance: float
+) -> tuple[float, float, float, float, float, float, bool, bool, int]: ...
+def bands(
+    parameters: Sequence[_Floats],
+    closure: _Closure,
+    tolerance: float,
+    threads: int,
+    progress: Callable[[int, int], object] | None,
+) -> tuple[_Floats, list[tuple[int, str]]]: ...
+def cycles(parameters: Sequence[_Floats], tolerance: float) -> tuple[_Floats, _Floats, NDArray[np.uint32]]: ...

@@ -5,7 +5,7 @@ use std::sync::mpsc;
 use std::time::Duration;
 
 use hersey_core::drag::Drag;
-use hersey_core::motion::{Belt, Drivetrain, Outcome, Span, Start, StickSlipCycle, ensemble};
+use hersey_core::motion::{Belt, Drivetrain, Span, Start, StickSlipCycle, ensemble};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -67,7 +67,8 @@ pub fn sweep<'py>(
         _ => PyValueError::new_err(format!("set {i}: {error}")),
     })?;
     let span = duration.map_or(Span::UntilClosed, Span::Lasting);
-    let results = in_chunks(py, &belts, span, tolerance, threads.max(1), progress)?;
+    let follow = |belts: &[Belt]| ensemble(belts, span, tolerance);
+    let results = in_chunks(py, &belts, CHUNK, threads, progress, follow)?;
 
     let kinds = PyArray1::<u8>::zeros(py, sets, false);
     let numbers = PyArray2::<f64>::zeros(py, [8, sets], false);
@@ -112,36 +113,37 @@ fn row_of(cycle: &StickSlipCycle) -> [f64; 8] {
     ]
 }
 
-/// The ensemble in chunks, spread over `threads`; ends early when Python is interrupted.
-fn in_chunks(
+/// What `work` makes of `items`, chunk by chunk, spread over `threads`; ends early when Python is interrupted.
+pub fn in_chunks<T: Sync, R: Clone + Send>(
     py: Python<'_>,
-    belts: &[Belt],
-    span: Span,
-    tolerance: f64,
+    items: &[T],
+    chunk: usize,
     threads: usize,
     progress: Option<Py<PyAny>>,
-) -> PyResult<Vec<Outcome>> {
-    let chunks: Vec<&[Belt]> = belts.chunks(CHUNK).collect();
-    let mut done: Vec<Vec<Outcome>> = vec![Vec::new(); chunks.len()];
+    work: impl Fn(&[T]) -> Result<Vec<R>, hersey_core::Error> + Sync,
+) -> PyResult<Vec<R>> {
+    let chunks: Vec<&[T]> = items.chunks(chunk).collect();
+    let mut done: Vec<Vec<R>> = vec![Vec::new(); chunks.len()];
     let (next, cancelled) = (AtomicUsize::new(0), AtomicBool::new(false));
     let tell = |finished: usize| -> PyResult<()> {
         Python::attach(|py| {
             py.check_signals()?;
             progress
                 .as_ref()
-                .map_or(Ok(()), |call| call.call1(py, (finished, belts.len())).map(drop))
+                .map_or(Ok(()), |call| call.call1(py, (finished, items.len())).map(drop))
         })
     };
     py.detach(|| {
         std::thread::scope(|scope| {
             let (send, receive) = mpsc::channel();
-            for _ in 0..threads.min(chunks.len()) {
+            for _ in 0..threads.clamp(1, chunks.len().max(1)) {
                 let (send, next, cancelled, chunks) = (send.clone(), &next, &cancelled, &chunks);
+                let work = &work;
                 scope.spawn(move || {
                     while !cancelled.load(Ordering::Relaxed) {
                         let index = next.fetch_add(1, Ordering::Relaxed);
                         let Some(chunk) = chunks.get(index) else { break };
-                        if send.send((index, ensemble(chunk, span, tolerance))).is_err() {
+                        if send.send((index, work(chunk))).is_err() {
                             break;
                         }
                     }
@@ -151,12 +153,12 @@ fn in_chunks(
             let (mut finished, mut told) = (0, std::time::Instant::now());
             loop {
                 match receive.recv_timeout(PATIENCE) {
-                    Ok((index, outcomes)) => {
-                        let outcomes = outcomes
+                    Ok((index, results)) => {
+                        let results = results
                             .map_err(value_error)
                             .inspect_err(|_| cancelled.store(true, Ordering::Relaxed))?;
-                        finished += outcomes.len();
-                        done[index] = outcomes;
+                        finished += results.len();
+                        done[index] = results;
                     }
                     Err(mpsc::RecvTimeoutError::Timeout) => {}
                     Err(mpsc::RecvTimeoutError::Disconnected) => break,

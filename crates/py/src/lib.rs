@@ -5,6 +5,7 @@
 mod drag;
 mod ensemble;
 mod motion;
+mod stability;
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -21,6 +22,8 @@ mod _core {
     use super::ensemble::sweep;
     #[pymodule_export]
     use super::motion::{simulate, stick_slip};
+    #[pymodule_export]
+    use super::stability::{band, bands, cycles};
 
     use pyo3::prelude::*;
 

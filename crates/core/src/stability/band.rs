@@ -73,12 +73,11 @@ pub fn bands(belts: &[(Drivetrain, Drag)], tolerance: f64) -> Vec<Result<Band, E
                 None => (lower_by_simulation(train, drag, tolerance)?, HALVED_LOWER),
             };
             let half = uppers[i].filter(|_| !deeper[i]);
-            let (upper, upper_accuracy) = match half {
-                Some(fold) => (fold.drive_speed * transition, MEETING * tolerance),
-                None => {
-                    let from = uppers[i].map_or(1.0, |fold| fold.drive_speed * (1.0 + ABOVE));
-                    (upper_by_simulation(train, drag, from * transition, tolerance)?, HALVED)
-                }
+            let (upper, upper_accuracy) = if let Some(fold) = half {
+                (fold.drive_speed * transition, MEETING * tolerance)
+            } else {
+                let from = uppers[i].map_or(1.0, |fold| fold.drive_speed * (1.0 + ABOVE));
+                (upper_by_simulation(train, drag, from * transition, tolerance)?, HALVED)
             };
             Ok(Band {
                 lower,
