@@ -12,6 +12,8 @@ schedule        drive speed, torque or temperature against time
 drag            drag laws: force against belt speed and temperature
 motion          stick-slip motion of the belt
 ensemble        thousands of motions in one call
+axes            parameters given as arrays, and the axes they span
+hysteresis      the band of drive speeds where the past decides
 fuser           what the log cannot tell: drivetrain and geometry
 analysis        the analysis document
 charts          one chart per result
@@ -33,6 +35,7 @@ from hersey.drag import Drag, DragTable
 from hersey.ensemble import sweep
 from hersey.errors import HerseyError
 from hersey.estimation import Estimate
+from hersey.hysteresis import HysteresisBand, hysteresis, hysteresis_sweep
 from hersey.log import TorqueLog, read
 from hersey.motion import Drivetrain, StickSlipCycle, Trajectory, simulate, stick_slip
 from hersey.regime import Regime, regime
@@ -47,6 +50,7 @@ __all__ = [
     "Drivetrain",
     "Estimate",
     "HerseyError",
+    "HysteresisBand",
     "Regime",
     "Schedule",
     "SteadyPoints",
@@ -56,6 +60,8 @@ __all__ = [
     "Transition",
     "__version__",
     "fit",
+    "hysteresis",
+    "hysteresis_sweep",
     "read",
     "regime",
     "simulate",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -105,6 +105,22 @@ class Drag(AnyDrag):
     def warms(self) -> bool:
         """Whether the law varies with temperature."""
         return self.reference_temperature is not None
+
+    def at(self, temperature: float | None) -> Drag:
+        """Return the law at one temperature, K, as one that does not vary; itself if it does not vary."""
+        law = self.law_at(temperature)
+        if not self.warms:
+            return self
+        return replace(
+            self,
+            transition_force=float(law.force(np.array([law.transition_speed]))[0]),
+            transition_speed=law.transition_speed,
+            stick_speed=law.stick_speed,
+            reference_temperature=None,
+            force_temperature_exponent=0.0,
+            speed_temperature_exponent=0.0,
+            temperature_zero=0.0,
+        )
 
     def law(self) -> _core.Law:
         """Return the law as the core holds it."""

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hersey import _core
+from hersey.axes import crossed, numbers_of, together
 from hersey.drag import Drag
 from hersey.errors import ParameterError
-from hersey.log.torque_log import FloatArray
 from hersey.motion import NUDGE, TOLERANCE, Drivetrain
 
 if TYPE_CHECKING:
@@ -118,8 +118,8 @@ def sweep(
         "stick_speed": stick_speed,
         "drive_speed": drive_speed,
     }
-    given = {name: _numbers(name, own[name] if value is None else value) for name, value in varied.items()}
-    axes, columns = _together(given) if zip else _crossed(given)
+    given = {name: numbers_of(name, own[name] if value is None else value) for name, value in varied.items()}
+    axes, columns = together(given) if zip else crossed(given)
     shape = next(iter(columns.values())).shape
     try:
         kinds, numbers, laps, failures = _core.sweep(
@@ -154,38 +154,3 @@ def sweep(
             "failures": [f"set {index}: {message}" for index, message in failures],
         },
     )
-
-
-def _numbers(name: str, value: ArrayLike) -> FloatArray:
-    try:
-        numbers = np.asarray(value, dtype=float)
-    except (TypeError, ValueError):
-        raise ParameterError(f"{name} is not a number or an array of numbers") from None
-    if numbers.size == 0:
-        raise ParameterError(f"{name} is empty")
-    return numbers
-
-
-def _crossed(given: dict[str, FloatArray]) -> tuple[list[str], dict[str, FloatArray]]:
-    """One axis per array, in the order of the core."""
-    for name, numbers in given.items():
-        if numbers.ndim > 1:
-            raise ParameterError(
-                f"{name} has {numbers.ndim} dimensions: say zip=True to take arrays together"
-            )
-    axes = [name for name, numbers in given.items() if numbers.ndim]
-    grids = np.meshgrid(*(np.atleast_1d(given[name]) for name in given), indexing="ij")
-    shape = [given[name].size for name in axes]
-    return axes, {name: grid.reshape(shape) for name, grid in _pairs(given, grids)}
-
-
-def _together(given: dict[str, FloatArray]) -> tuple[list[str], dict[str, FloatArray]]:
-    """NumPy's rules of broadcasting."""
-    try:
-        arrays = np.broadcast_arrays(*given.values())
-    except ValueError:
-        shapes = ", ".join(f"{name} {numbers.shape}" for name, numbers in given.items() if numbers.ndim)
-        raise ParameterError(f"the arrays do not fit together: {shapes}") from None
-    dimensions = arrays[0].ndim
-    axes = ["set"] if dimensions == 1 else [f"dim_{i}" for i in range(dimensions)]
-    return axes[:dimensions], dict(_pairs(given, arrays))

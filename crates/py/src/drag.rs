@@ -90,6 +90,12 @@ impl Law {
         self.0.breakaway_force()
     }
 
+    /// Speed below which the closure holds.
+    #[getter]
+    fn stick_speed(&self) -> f64 {
+        self.0.stick_speed()
+    }
+
     /// Speed at which the mixed and the EHL branch meet.
     #[getter]
     fn transition_speed(&self) -> f64 {

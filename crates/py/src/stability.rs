@@ -76,7 +76,8 @@ pub fn bands<'py>(
                 Ok(band) => columns_of(band),
                 Err(error) => {
                     failures.push((i, error.to_string()));
-                    [f64::NAN; 9]
+                    let none = f64::NAN;
+                    [none, none, none, none, none, none, 0.0, 0.0, 0.0]
                 }
             };
             for (c, value) in row.into_iter().enumerate() {
