@@ -14,7 +14,9 @@ motion          stick-slip motion of the belt
 ensemble        thousands of motions in one call
 axes            parameters given as arrays, and the axes they span
 hysteresis      the band of drive speeds where the past decides
-fuser           what the log cannot tell: drivetrain and geometry
+fuser           what the log cannot tell: drivetrain, limits, operating points, uncertainty
+spread          how far a parameter is known
+toml_file       opening a TOML file
 analysis        the analysis document
 charts          one chart per result
 report          the page that shows both

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-import tomllib
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 
-from hersey.errors import MissingFileError, ParameterError, UnitError
+from hersey.errors import ParameterError, UnitError
 from hersey.motion import Drivetrain
+from hersey.spread import Spread, read_spread
+from hersey.toml_file import read_toml
 from hersey.units import KINDS, parse
 
 #: Kind of unit, least and greatest value that a sliding drive could have, in SI.
@@ -17,20 +19,66 @@ _DRIVETRAIN = {
     "roll_radius": ("length", 1e-5, 100.0),
     "stick_speed": ("belt speed", 1e-9, 10.0),
 }
+_LIMITS = {
+    "motor_torque": ("torque", 1e-6, 1e6),
+    "roll_friction": (None, 1e-3, 10.0),
+    "nip_load": ("force", 1e-3, 1e7),
+    "acceleration": ("acceleration", 1e-6, 1e5),
+    "speed": ("belt speed", 1e-6, 1e3),
+    "spring_force": ("force", 1e-6, 1e7),
+}
+_POINT = {"speed": ("belt speed", 1e-6, 1e3), "temperature": ("temperature", 150.0, 1000.0)}
+_TABLES = ("drivetrain", "limits", "points", "uncertainty")
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What the machine can bear, in SI; none where nothing is stated.
+
+    ``motor_torque`` (N m) at the roll, ``roll_friction`` (coefficient) and ``nip_load`` (N), whose product is
+    the drag at which the belt slips on the roll, ``acceleration`` (m/s^2) and ``speed`` (m/s) of the drive,
+    ``spring_force`` (N) in the gear train.
+    """
+
+    motor_torque: float | None = None
+    roll_friction: float | None = None
+    nip_load: float | None = None
+    acceleration: float | None = None
+    speed: float | None = None
+    spring_force: float | None = None
+
+    @property
+    def grip(self) -> float | None:
+        """Drag at which the belt slips on the roll (N), if friction and load are stated."""
+        if self.roll_friction is None or self.nip_load is None:
+            return None
+        return self.roll_friction * self.nip_load
+
+
+@dataclass(frozen=True)
+class OperatingPoint:
+    """A named state of the machine: belt speed (m/s) and temperature (K)."""
+
+    name: str
+    speed: float
+    temperature: float
 
 
 @dataclass(frozen=True)
 class Fuser:
-    """Drivetrain of the machine, in SI.
+    """The machine, in SI.
 
     ``stiffness`` (N/m) and ``mass`` (kg) at the belt, ``roll_radius`` (m) at which torque acts on it, and
-    ``stick_speed`` (m/s) below which the belt sticks.
+    ``stick_speed`` (m/s) below which the belt sticks. ``uncertainty`` says how far parameters are known.
     """
 
     stiffness: float
     mass: float
     roll_radius: float
     stick_speed: float
+    limits: Limits = Limits()
+    points: tuple[OperatingPoint, ...] = ()
+    uncertainty: Mapping[str, Spread] = field(default_factory=dict)
 
     @property
     def train(self) -> Drivetrain:
@@ -39,7 +87,10 @@ class Fuser:
 
 
 def read_fuser(path: str | Path) -> Fuser:
-    """Read ``[drivetrain]`` of a TOML file; every value is a string such as ``"11 N/mm"``.
+    """Read ``[drivetrain]``, and ``[limits]``, ``[[points]]`` and ``[uncertainty]`` if they are there.
+
+    Every value is a string such as ``"11 N/mm"``; an uncertainty is ``"10 %"`` or ``"0.1 mm/s to 1 mm/s"``
+    (see `Spread`).
 
     Raises
     ------
@@ -47,40 +98,84 @@ def read_fuser(path: str | Path) -> Fuser:
         Each names the file and the key.
     """
     path = Path(path)
-    try:
-        if path.exists() and not path.is_file():
-            raise MissingFileError(f"{path} is no ordinary file")
-        document = tomllib.loads(path.read_text(encoding="utf-8-sig"))
-    except MissingFileError:
-        raise
-    except FileNotFoundError:
-        raise MissingFileError(f"{path}: there is no such file") from None
-    except OSError as error:
-        raise MissingFileError(f"{path} cannot be read: {error.strerror}") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
-        raise ParameterError(f"{path.name} is not valid TOML: {error}") from None
-    table = document.get("drivetrain")
-    if not isinstance(table, dict):
+    document = read_toml(path)
+    if not isinstance(document.get("drivetrain"), dict):
         raise ParameterError(f"{path.name}: there is no table [drivetrain]")
-    unknown = set(table) - set(_DRIVETRAIN)
+    unknown = sorted(set(document) - set(_TABLES))
     if unknown:
-        raise ParameterError(f"{path.name}: [drivetrain] has no key '{min(unknown)}'")
-    return Fuser(**{key: _value(path.name, table, key, *kind) for key, kind in _DRIVETRAIN.items()})
+        raise ParameterError(f"{path.name}: there is no table '{unknown[0]}': {', '.join(_TABLES)} are known")
+    own = _values(path.name, "drivetrain", document["drivetrain"], _DRIVETRAIN)
+    for key in _DRIVETRAIN:
+        if key not in own:
+            raise ParameterError(f"{path.name}: [drivetrain] lacks '{key}'")
+    limits = _values(path.name, "limits", document.get("limits", {}), _LIMITS)
+    return Fuser(
+        **own,
+        limits=Limits(**limits),
+        points=_points(path.name, document.get("points", [])),
+        uncertainty=_uncertainty(path.name, document.get("uncertainty", {})),
+    )
 
 
-def _value(file: str, table: dict[str, object], key: str, kind: str, low: float, high: float) -> float:
-    text = table.get(key)
-    if text is None:
-        raise ParameterError(f"{file}: [drivetrain] lacks '{key}'")
-    if not isinstance(text, str):
-        raise UnitError(f"{file}: drivetrain.{key} is {text}: write a string with its unit")
-    try:
-        value = parse(kind, text)
-    except UnitError as error:
-        raise UnitError(f"{file}: drivetrain.{key}: {error}") from None
+def _points(file: str, rows: object) -> tuple[OperatingPoint, ...]:
+    if not isinstance(rows, list):
+        raise ParameterError(f"{file}: write each point as a table of its own, [[points]]")
+    points = []
+    for number, row in enumerate(rows, 1):
+        where = f"points {number}"
+        if not isinstance(row, dict):
+            raise ParameterError(f"{file}: {where} is not a table: write [[points]]")
+        name = row.get("name", f"point {number}")
+        if not isinstance(name, str) or not name.strip():
+            raise ParameterError(f"{file}: {where}: name is not a text")
+        values = _values(file, where, {key: v for key, v in row.items() if key != "name"}, _POINT)
+        for key in _POINT:
+            if key not in values:
+                raise ParameterError(f"{file}: {where} lacks '{key}'")
+        points.append(OperatingPoint(name, **values))
+    return tuple(points)
+
+
+def _uncertainty(file: str, table: object) -> dict[str, Spread]:
+    if not isinstance(table, dict):
+        raise ParameterError(f"{file}: uncertainty is not a table: write [uncertainty]")
+    spreads = {}
+    for key, text in table.items():
+        try:
+            spreads[key] = read_spread(key, text)
+        except UnitError as error:
+            raise UnitError(f"{file}: uncertainty.{key}: {error}") from None
+        except ParameterError as error:
+            raise ParameterError(f"{file}: uncertainty.{key}: {error}") from None
+    return spreads
+
+
+def _values(
+    file: str, name: str, table: object, kinds: Mapping[str, tuple[str | None, float, float]]
+) -> dict[str, float]:
+    """The values of a table that are stated, checked."""
+    if not isinstance(table, dict):
+        raise ParameterError(f"{file}: {name} is not a table: write [{name}]")
+    unknown = sorted(set(table) - set(kinds))
+    if unknown:
+        raise ParameterError(f"{file}: [{name}] has no key '{unknown[0]}': {', '.join(kinds)} are known")
+    return {key: _value(file, f"{name}.{key}", text, *kinds[key]) for key, text in table.items()}
+
+
+def _value(file: str, key: str, text: object, kind: str | None, low: float, high: float) -> float:
+    if kind is None:
+        if isinstance(text, bool) or not isinstance(text, int | float):
+            raise ParameterError(f"{file}: {key} is {text!r}: write a number")
+        value, si = float(text), ""
+    else:
+        if not isinstance(text, str):
+            raise UnitError(f"{file}: {key} is {text}: write a string with its unit")
+        try:
+            value, si = parse(kind, text), " " + KINDS[kind][0]
+        except UnitError as error:
+            raise UnitError(f"{file}: {key}: {error}") from None
     if not value > 0:
-        raise ParameterError(f"{file}: drivetrain.{key} is {text}: it must be greater than 0")
+        raise ParameterError(f"{file}: {key} is {text}: it must be greater than 0")
     if not low <= value <= high:
-        si = KINDS[kind][0]
-        raise ParameterError(f"{file}: drivetrain.{key} is {text}: {low:g} to {high:g} {si} is believed")
+        raise ParameterError(f"{file}: {key} is {text}: {low:g} to {high:g}{si} is believed")
     return value

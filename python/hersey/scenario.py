@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,9 +11,10 @@ import numpy as np
 
 from hersey.drag import Drag
 from hersey.ensemble import PARAMETERS, sweep
-from hersey.errors import MissingFileError, ParameterError, UnitError
+from hersey.errors import ParameterError, UnitError
 from hersey.log.torque_log import FloatArray
 from hersey.motion import TOLERANCE, Drivetrain
+from hersey.toml_file import read_toml
 from hersey.units import parse
 
 if TYPE_CHECKING:
@@ -109,14 +109,7 @@ def read_scenario(path: str | Path) -> Scenario:
         Each names the file and the key.
     """
     path = Path(path)
-    try:
-        document = tomllib.loads(path.read_text(encoding="utf-8-sig"))
-    except FileNotFoundError:
-        raise MissingFileError(f"{path}: there is no such file") from None
-    except OSError as error:
-        raise MissingFileError(f"{path} cannot be read: {error.strerror}") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
-        raise ParameterError(f"{path.name} is not valid TOML: {error}") from None
+    document = read_toml(path)
     _refuse_unknown(path.name, "table", document, _TABLES)
     options = _table(path.name, document, "options", required=False)
     given = _table(path.name, document, "parameters", required=True)

@@ -25,6 +25,7 @@ KINDS: dict[str, tuple[str, str]] = {
     "length": ("m", "mm"),
     "belt speed": ("m/s", "mm/s"),
     "force": ("N", "N"),
+    "acceleration": ("m/s^2", "mm/s^2"),
     "translational damping": ("N*s/m", "N*s/m"),
 }
 

@@ -4,7 +4,8 @@
 //! belt sticks, otherwise the moment when belt speed rises through drive speed. The orbit has closed
 //! once two laps in a row start at the same state.
 
-use super::hybrid::{Event, Guard, Motion};
+use super::event::{Event, Guard};
+use super::hybrid::Motion;
 use super::piece::Piece;
 use super::system::{Drivetrain, Integrator, Start, System};
 use crate::drag::{Closure, Drag, Mode};

@@ -3,6 +3,7 @@
 //! The belt is followed in the direction it moves: `direction` is the sign of the belt speed and every
 //! other quantity is mirrored with it, so that speed `u >= 0` here and one set of guards serves both.
 
+use super::event::{Event, Guard};
 use super::piece::{Condition, Path, Phase, Piece};
 use super::polynomial::first_crossing;
 use super::runge_kutta::{Flow, Formula, growth};
@@ -31,52 +32,6 @@ const MAX_EVENTS_AT_ONCE: u32 = 32;
 
 /// Deviation from steady sliding at the transition speed itself, relative, that is lost in rounding.
 const ROUNDING: f64 = 1e-12;
-
-/// The condition whose crossing ends a mode.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Guard {
-    /// Belt speed passes the transition speed `v_t`.
-    TransitionSpeed,
-    /// Belt speed passes the stick speed `v_s`.
-    StickSpeed,
-    /// Spring force passes the force that drag can hold (Eqs. 25-26).
-    HoldingForce,
-    /// Belt speed passes zero.
-    Reversal,
-    /// Belt speed passes a point of a tabulated law; the mode does not change.
-    TablePoint,
-}
-
-impl Guard {
-    /// Name of the guard as documents print it.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::TransitionSpeed => "transition_speed",
-            Self::StickSpeed => "stick_speed",
-            Self::HoldingForce => "holding_force",
-            Self::Reversal => "reversal",
-            Self::TablePoint => "table_point",
-        }
-    }
-}
-
-/// A change of mode.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Event {
-    /// When it happens.
-    pub time: f64,
-    /// Mode before.
-    pub from: Mode,
-    /// Mode after.
-    pub to: Mode,
-    /// The condition that was crossed.
-    pub guard: Guard,
-    /// Spring stretch at the event.
-    pub stretch: f64,
-    /// Belt speed at the event.
-    pub belt_speed: f64,
-}
 
 /// Pull and speed with which a belt that starts below the stick speed first slides faster, if it does.
 pub(crate) fn first_slide(system: &System, start: Start, tolerance: f64) -> Option<(f64, f64)> {

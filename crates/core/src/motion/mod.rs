@@ -8,6 +8,7 @@
 //! | `taylor`      | one slip step as a Taylor series with its own dense output                |
 //! | `runge_kutta` | steps for stiff motion (Radau IIA) and for the second opinion             |
 //! | `piece`       | a stretch of smooth motion: state, conditions and turning points along it |
+//! | `event`       | changes of mode and the conditions that cause them                        |
 //! | `hybrid`      | modes, guards and located events: the motion as a chain of pieces         |
 //! | `trajectory`  | the motion sampled at given times, with its event table and energies      |
 //! | `lanes`       | slip laps of many belts at once, several to a register                    |
@@ -19,6 +20,7 @@
 
 mod cycle;
 mod ensemble;
+mod event;
 mod hybrid;
 pub(crate) mod lanes;
 mod piece;
@@ -31,8 +33,8 @@ mod trajectory;
 
 pub use cycle::{CycleKind, Span, StickSlipCycle, settle, stick_slip};
 pub use ensemble::{Belt, Outcome, ensemble};
+pub use event::{Event, Guard};
 pub(crate) use hybrid::first_slide;
-pub use hybrid::{Event, Guard};
 pub use schedule::{Cubic, Schedule};
 pub use system::{Drive, Drivetrain, Integrator, Start, System};
 pub use trajectory::{Energy, Trajectory, simulate};

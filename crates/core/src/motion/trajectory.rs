@@ -1,6 +1,7 @@
 //! The motion sampled at given times, with its event table and its energies.
 
-use super::hybrid::{Event, Motion};
+use super::event::Event;
+use super::hybrid::Motion;
 use super::piece::{GAUSS, Path, Piece};
 use super::polynomial::{ORDER, fused};
 use super::schedule::Cubic;

@@ -1,0 +1,49 @@
+//! Changes of mode, and the conditions that cause them.
+
+use crate::drag::Mode;
+
+/// The condition whose crossing ends a mode.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Guard {
+    /// Belt speed passes the transition speed `v_t`.
+    TransitionSpeed,
+    /// Belt speed passes the stick speed `v_s`.
+    StickSpeed,
+    /// Spring force passes the force that drag can hold (Eqs. 25-26).
+    HoldingForce,
+    /// Belt speed passes zero.
+    Reversal,
+    /// Belt speed passes a point of a tabulated law; the mode does not change.
+    TablePoint,
+}
+
+impl Guard {
+    /// Name of the guard as documents print it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::TransitionSpeed => "transition_speed",
+            Self::StickSpeed => "stick_speed",
+            Self::HoldingForce => "holding_force",
+            Self::Reversal => "reversal",
+            Self::TablePoint => "table_point",
+        }
+    }
+}
+
+/// A change of mode.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Event {
+    /// When it happens.
+    pub time: f64,
+    /// Mode before.
+    pub from: Mode,
+    /// Mode after.
+    pub to: Mode,
+    /// The condition that was crossed.
+    pub guard: Guard,
+    /// Spring stretch at the event.
+    pub stretch: f64,
+    /// Belt speed at the event.
+    pub belt_speed: f64,
+}
