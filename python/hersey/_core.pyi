@@ -95,6 +95,7 @@ def band(
 def bands(
     parameters: Sequence[_Floats],
     closure: _Closure,
+    lower: bool,
     tolerance: float,
     threads: int,
     progress: Callable[[int, int], object] | None,

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from hersey import _core
 from hersey.axes import crossed, numbers_of, together
@@ -32,6 +32,8 @@ TOLERANCE = 1e-11
 VARIED = PARAMETERS[:-1]
 #: Relative step of the derivatives.
 _STEP = 1e-3
+#: Relative distance of the laps on either side of one, to see which way the drive speed goes.
+_NEAR = 1e-4
 #: Columns of the core.
 _COLUMNS = (
     "lower",
@@ -98,6 +100,21 @@ class HysteresisBand:
             f"From {self.transition:.6g} to {self.upper:.6g} the belt slides if it comes from above "
             "and sticks if it comes from below. Above, it slides."
         )
+
+
+@dataclass(frozen=True)
+class CyclesWithoutSticking:
+    """Swings around steady sliding that never stick: arrays of the same shape, speeds in the units given.
+
+    A lap goes between ``slowest`` and ``fastest`` at ``drive_speed``. Where ``stable`` is false the cycle is
+    the edge between steady sliding and stick-slip: from inside the belt ends sliding, from outside sticking.
+    Numbers are nan where there is no cycle.
+    """
+
+    slowest: FloatArray
+    fastest: FloatArray
+    drive_speed: FloatArray
+    stable: NDArray[np.bool_]
 
 
 def hysteresis(
@@ -183,6 +200,7 @@ def hysteresis_sweep(
     stick_speed: ArrayLike | None = None,
     temperature: ArrayLike | None = None,
     zip: bool = False,  # noqa: A002 - NumPy users know what it means
+    lower: bool = True,
     threads: int = 1,
     tolerance: float = TOLERANCE,
     progress: Callable[[int, int], object] | None = None,
@@ -190,7 +208,8 @@ def hysteresis_sweep(
     """Return the band of each combination of parameters, as `hysteresis` does for one.
 
     Axes, ``zip``, ``threads`` and ``progress`` are those of `sweep`. ``temperature`` (K) is needed if the
-    drag varies with it, and takes the place of the transition force and of all speeds.
+    drag varies with it, and takes the place of the transition force and of all speeds. Without ``lower`` the
+    lower edge is left out (not a number), which takes a tenth of the time.
 
     Returns
     -------
@@ -230,7 +249,7 @@ def hysteresis_sweep(
     shape = next(iter(columns.values())).shape
     if temperature is not None:
         columns = {**columns, **_at_temperatures(drag, columns["temperature"])}
-    numbers, failures = _bands(columns, drag, tolerance, threads, progress)
+    numbers, failures = _bands(columns, drag, tolerance, threads, progress, lower=lower)
     coordinates = {
         name: (axes, columns[name]) if zip and values.ndim else values
         for name, values in given.items()
@@ -251,6 +270,72 @@ def hysteresis_sweep(
     )
 
 
+def cycles_without_sticking(
+    train: Drivetrain,
+    drag: Drag,
+    *,
+    slowest: ArrayLike | None = None,
+    temperature: float | None = None,
+    tolerance: float = TOLERANCE,
+) -> CyclesWithoutSticking:
+    """Return the cycle of each slowest belt speed, and the drive speed that it asks for.
+
+    At the stick speed that drive speed is the fold V* of laps released there (``retained``); from there it
+    falls to the lower edge of the band and rises again to the transition speed, where the swing has shrunk
+    to nothing. Such a swing knows no closure but ``lugre``, whose bristles remember.
+
+    Parameters
+    ----------
+    slowest
+        Least belt speeds of the laps, from the stick speed to below the transition speed, in the units of
+        the drag. Default: 201 between those two, evenly spaced in logarithms, the last 0.1 % below the
+        transition.
+    temperature
+        K; needed if the drag varies with it.
+
+    Raises
+    ------
+    ParameterError
+        If a value is out of range, or the drag is no `Drag` with a falling and a rising branch.
+
+    Examples
+    --------
+    >>> drag = Drag(50, 1, ehl_exponent=-0.7, mixed_exponent=-1.2, stick_speed=0.01)
+    >>> cycles = cycles_without_sticking(Drivetrain(1000, 1), drag, slowest=[0.01, 0.5, 0.9])
+    >>> cycles.drive_speed.round(6).tolist(), cycles.stable.tolist()
+    ([2.173493, 1.008534, 0.988886], [False, False, True])
+    """
+    if not isinstance(drag, Drag) or drag.closure == "lugre":
+        raise ParameterError("cycles without sticking need a Drag, and one without bristles")
+    for name, value in vars(train).items():
+        if not value > 0 or not np.isfinite(value):
+            raise ParameterError(f"{name} is {value}: it must be greater than 0")
+    law = drag.at(temperature)
+    mixed, ehl = 1.0 + law.mixed_exponent, 1.0 + law.ehl_exponent
+    if not mixed < 0.0 < ehl:
+        raise ParameterError("drag that does not fall below the transition and rise above has no cycles")
+    low, high = law.stick_speed, law.transition_speed
+    speeds = np.geomspace(low, 0.999 * high, 201) if slowest is None else numbers_of("slowest", slowest)
+    if not bool(np.all((speeds >= low) & (speeds < high))):
+        raise ParameterError(f"slowest is to lie from the stick speed {low:g} to below {high:g}")
+    damping = law.transition_force / (high * np.sqrt(train.stiffness * train.mass))
+    # a cycle is stable where its drive speed rises with its slowest speed: where a slower drive swings wider
+    laps = (speeds.ravel() / high)[:, None] * [1.0, 1.0 - _NEAR, 1.0 + _NEAR]
+    laps = np.minimum(laps, 0.5 * (1.0 + laps[:, :1])).ravel()
+    forces, falls, rises = (np.full_like(laps, x) for x in (damping, mixed, ehl))
+    drive, top, _ = _core_call(_core.cycles, [forces, laps, falls, rises], float(tolerance))
+    drive, below, above = (high * drive).reshape(-1, 3).T
+    # with so steep a fall the belt cannot swing back from below the transition
+    gone = -mixed * damping >= 2.0
+    shape = speeds.shape
+    return CyclesWithoutSticking(
+        slowest=speeds,
+        fastest=np.where(gone, np.nan, high * top.reshape(-1, 3)[:, 0]).reshape(shape),
+        drive_speed=np.where(gone, np.nan, drive).reshape(shape),
+        stable=(above > below).reshape(shape) & (not gone),
+    )
+
+
 def _at_temperatures(drag: Drag, temperatures: FloatArray) -> dict[str, FloatArray]:
     """The parameters that vary with temperature, at each."""
     values, place = np.unique(temperatures, return_inverse=True)
@@ -266,12 +351,14 @@ def _bands(
     tolerance: float,
     threads: int = 1,
     progress: Callable[[int, int], object] | None = None,
+    *,
+    lower: bool = True,
 ) -> tuple[FloatArray, list[tuple[int, str]]]:
     if threads < 1:
         raise ParameterError(f"threads is {threads}: at least 1 is needed")
     arrays = [np.ascontiguousarray(columns[name].ravel()) for name in VARIED]
     closure = (drag.closure, drag.bristle_stiffness, drag.bristle_damping)
-    return _core_call(_core.bands, arrays, closure, float(tolerance), int(threads), progress)
+    return _core_call(_core.bands, arrays, closure, lower, float(tolerance), int(threads), progress)
 
 
 def _named(numbers: FloatArray) -> dict[str, FloatArray]:

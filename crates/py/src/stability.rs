@@ -12,7 +12,7 @@ use crate::ensemble::in_chunks;
 use crate::value_error;
 
 /// Belts that one thread takes at a time.
-const CHUNK: usize = 256;
+const CHUNK: usize = 64;
 
 /// (lower, transition, upper, speed max, lower accuracy, upper accuracy, by half laps, deeper, laps)
 type BandRow = (f64, f64, f64, f64, f64, f64, bool, bool, usize);
@@ -35,7 +35,8 @@ fn row_of(band: &Band) -> BandRow {
 #[pyfunction]
 pub fn band(py: Python<'_>, train: (f64, f64), drag: &Law, tolerance: f64) -> PyResult<BandRow> {
     let belt = [(Drivetrain::new(train.0, train.1).map_err(value_error)?, drag.0.clone())];
-    let found = py.detach(|| stability::bands(&belt, tolerance)).remove(0).map_err(value_error)?;
+    let found =
+        py.detach(|| stability::bands(&belt, true, tolerance)).remove(0).map_err(value_error)?;
     Ok(row_of(&found))
 }
 
@@ -45,10 +46,12 @@ type Columns<'py> = (Bound<'py, PyArray2<f64>>, Vec<(usize, String)>);
 /// The band of each parameter set: stiffness, mass, transition force, transition speed, EHL exponent, mixed
 /// exponent and stick speed, each of the same length.
 #[pyfunction]
+#[allow(clippy::too_many_arguments)] // the Python layer names them all
 pub fn bands<'py>(
     py: Python<'py>,
     parameters: [PyReadonlyArray1<'py, f64>; 7],
     closure: ClosureArguments<'_>,
+    lower: bool,
     tolerance: f64,
     threads: usize,
     progress: Option<Py<PyAny>>,
@@ -64,7 +67,7 @@ pub fn bands<'py>(
     let belts = (0..sets)
         .map(|i| belt(i).map_err(|error| PyValueError::new_err(format!("set {i}: {error}"))))
         .collect::<PyResult<Vec<_>>>()?;
-    let work = |belts: &[(Drivetrain, Drag)]| Ok(stability::bands(belts, tolerance));
+    let work = |belts: &[(Drivetrain, Drag)]| Ok(stability::bands(belts, lower, tolerance));
     let found = in_chunks(py, &belts, CHUNK, threads, progress, work)?;
     let numbers = PyArray2::<f64>::zeros(py, [9, sets], false);
     let mut failures = Vec::new();

@@ -63,8 +63,9 @@ fn alone(belt: &Belt, span: Span, tolerance: f64) -> Outcome {
     settle(&belt.train, &belt.drag, belt.drive_speed, belt.start, span, tolerance)
 }
 
-/// Swings without sticking after which a belt is followed alone, where its orbit is looked at as a whole.
-const MAX_SWINGS: u32 = 8;
+/// Turns of the speed without sticking after which a belt is followed alone, where its orbit is looked at as a
+/// whole: few below the transition speed, where swings do not die out.
+const MAX_TURNS: (u32, u32) = (8, 200);
 /// Steps without any event after which a belt is followed alone.
 const MAX_STEPS: u32 = 2000;
 /// Pieces of motion off the lanes after which a belt is followed alone.
@@ -125,8 +126,10 @@ struct Rider {
     released: Option<(f64, f64)>,
     whole: Option<(Lap, f64)>,
     laps: usize,
-    swings: u32,
+    turns: u32,
     steps: u32,
+    /// The belt slides with the drive for good.
+    steady: bool,
 }
 
 /// What becomes of a rider.
@@ -175,8 +178,9 @@ impl Rider {
             released: None,
             whole: None,
             laps: 0,
-            swings: 0,
+            turns: 0,
             steps: 0,
+            steady: false,
         }))
     }
 
@@ -202,9 +206,15 @@ impl Rider {
         }
         if met == arrival::TURNING {
             self.lap.add_speed(lanes.speed[l]);
-            self.swings += 1;
+            self.turns += 1;
             self.steps = 0;
-            return if self.swings > MAX_SWINGS { Verdict::Leaves } else { Verdict::Rides };
+            self.steady = matches!(span, Span::UntilClosed) && self.dies_out(lanes, l);
+            let most = if self.drive > 1.0 { MAX_TURNS.1 } else { MAX_TURNS.0 };
+            return match self.steady {
+                true => Verdict::Arrived,
+                false if self.turns > most => Verdict::Leaves,
+                false => Verdict::Rides,
+            };
         }
         self.steps = 0;
         let level = lanes.speed[l];
@@ -214,6 +224,17 @@ impl Rider {
         let rising = met == arrival::UPPER;
         self.at_level(lanes, l, level, rising);
         Verdict::Rides
+    }
+
+    /// Whether the belt has too little energy about steady sliding to leave the EHL branch ever again.
+    fn dies_out(&self, lanes: &Lanes, l: usize) -> bool {
+        let margin = self.drive - 1.0;
+        if margin <= 0.0 {
+            return false;
+        }
+        let steady = self.damping * self.drive.powf(self.exponents.1);
+        let (ahead, off) = (lanes.speed[l] - self.drive, lanes.pull[l] - steady);
+        ahead * ahead + off * off < margin * margin
     }
 
     /// Enter the range of speeds beyond `level`.
@@ -267,7 +288,7 @@ impl Rider {
         if time > self.until {
             return if self.whole.is_some() { Verdict::Arrived } else { Verdict::Leaves };
         }
-        self.swings = 0;
+        self.turns = 0;
         if let Some((pull, speed)) = self.released {
             self.lap.impulse = impulse - self.lap.impulse;
             self.whole = Some((self.lap, time));
@@ -373,6 +394,22 @@ impl Rider {
     }
 
     fn cycle(&self) -> StickSlipCycle {
+        if self.steady {
+            let drive_speed = self.drive * self.scale.speed;
+            let stretch = self.system.drag.force(drive_speed) / self.system.train.stiffness();
+            return StickSlipCycle {
+                kind: CycleKind::SteadySliding,
+                frequency: 0.0,
+                slip_duration: 0.0,
+                stick_duration: 0.0,
+                speed_min: drive_speed,
+                speed_max: drive_speed,
+                stretch_min: stretch,
+                stretch_max: stretch,
+                drag_work: 0.0,
+                laps: self.laps + self.turns as usize / 2,
+            };
+        }
         let (lap, end) = self.whole.unwrap_or((self.lap, self.lap.begin));
         let Scale { time, speed, pull } = self.scale;
         let (duration, stuck) = ((end - lap.begin) * time, lap.stuck * time);

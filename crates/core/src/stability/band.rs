@@ -53,22 +53,28 @@ const NUDGE: f64 = 1e-3;
 /// Greatest drive speed looked at, in transition speeds.
 const FASTEST: f64 = 1e4;
 
-/// The band of each belt.
+/// The band of each belt, without its lower edge (not a number) unless `lower` asks for it: it costs ten times
+/// the fold.
 ///
 /// # Errors
 /// Each belt's may be an error of its own, if its motion cannot be followed.
 #[must_use]
-pub fn bands(belts: &[(Drivetrain, Drag)], tolerance: f64) -> Vec<Result<Band, Error>> {
+pub fn bands(
+    belts: &[(Drivetrain, Drag)],
+    lower: bool,
+    tolerance: f64,
+) -> Vec<Result<Band, Error>> {
     let laps: Vec<Option<SlipLap>> =
         belts.iter().map(|(train, drag)| slip_lap(train, drag)).collect();
     let uppers = half_lap_folds(belts, &laps, tolerance);
     let deeper = deeper_stick_slip(belts, &uppers, tolerance);
-    let lowers = lower_edges(&laps, tolerance);
+    let lowers = if lower { lower_edges(&laps, tolerance) } else { vec![None; belts.len()] };
     (0..belts.len())
         .map(|i| {
             let (train, drag) = &belts[i];
             let transition = drag.transition_speed();
             let (lower, lower_accuracy) = match lowers[i] {
+                _ if !lower => (f64::NAN, f64::NAN),
                 Some(edge) => (edge * transition, MEETING * tolerance),
                 None => (lower_by_simulation(train, drag, tolerance)?, HALVED_LOWER),
             };
