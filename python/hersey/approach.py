@@ -13,7 +13,7 @@ from math import inf, pi, sqrt
 from hersey.drag import AnyDrag
 from hersey.errors import ParameterError
 from hersey.hysteresis import hysteresis
-from hersey.motion import Drivetrain, simulate, stick_slip
+from hersey.motion import Drivetrain, StickSlipCycle, simulate, stick_slip
 from hersey.schedule import Schedule
 
 #: Ramps looked at per period of the free oscillation, and periods up to which they are.
@@ -140,7 +140,7 @@ def disturbance(
     def kicked(loss: float) -> bool:
         start = (drive_speed - loss, force / train.stiffness)
         cycle = stick_slip(train, drag, drive_speed=drive_speed, start=start, temperature=temperature)
-        return cycle.kind == "stick_slip"
+        return _is_rough(cycle, law.stick_speed)
 
     def stepped(fall: float) -> bool:
         return _sticks(train, drag, drive_speed + fall, drive_speed, 0.0, temperature)[0]
@@ -187,4 +187,9 @@ def _sticks(
         return True, min(slowest, *(event.belt_speed for event in run.events))
     end = (float(run.belt_speed[-1]), float(run.stretch[-1]))
     cycle = stick_slip(train, drag, drive_speed=to_speed, start=end, temperature=temperature)
-    return cycle.kind == "stick_slip", slowest
+    return _is_rough(cycle, drag.law_at(temperature).stick_speed), slowest
+
+
+def _is_rough(cycle: StickSlipCycle, stick_speed: float) -> bool:
+    """Whether the belt goes on to slow down to the stick speed, held there or swinging back through zero."""
+    return cycle.kind != "steady_sliding" and cycle.speed_min <= stick_speed * (1 + 1e-9)

@@ -35,8 +35,10 @@ fn row_of(band: &Band) -> BandRow {
 #[pyfunction]
 pub fn band(py: Python<'_>, train: (f64, f64), drag: &Law, tolerance: f64) -> PyResult<BandRow> {
     let belt = [(Drivetrain::new(train.0, train.1).map_err(value_error)?, drag.0.clone())];
-    let found =
-        py.detach(|| stability::bands(&belt, true, tolerance)).remove(0).map_err(value_error)?;
+    let found = py
+        .detach(|| stability::bands(&belt, true, tolerance))
+        .and_then(|mut bands| bands.remove(0))
+        .map_err(value_error)?;
     Ok(row_of(&found))
 }
 
@@ -67,7 +69,7 @@ pub fn bands<'py>(
     let belts = (0..sets)
         .map(|i| belt(i).map_err(|error| PyValueError::new_err(format!("set {i}: {error}"))))
         .collect::<PyResult<Vec<_>>>()?;
-    let work = |belts: &[(Drivetrain, Drag)]| Ok(stability::bands(belts, lower, tolerance));
+    let work = |belts: &[(Drivetrain, Drag)]| stability::bands(belts, lower, tolerance);
     let found = in_chunks(py, &belts, CHUNK, threads, progress, work)?;
     let numbers = PyArray2::<f64>::zeros(py, [9, sets], false);
     let mut failures = Vec::new();

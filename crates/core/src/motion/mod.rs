@@ -36,5 +36,6 @@ pub use ensemble::{Belt, Outcome, ensemble};
 pub use event::{Event, Guard};
 pub(crate) use hybrid::first_slide;
 pub use schedule::{Cubic, Schedule};
+pub(crate) use system::checked_tolerance;
 pub use system::{Drive, Drivetrain, Integrator, Start, System};
 pub use trajectory::{Energy, Trajectory, simulate};

@@ -162,7 +162,7 @@ impl System {
 /// Loosest and tightest relative tolerance that the steps are built for.
 const TOLERANCE_RANGE: (f64, f64) = (1e-14, 1e-3);
 
-pub(super) fn checked_tolerance(tolerance: f64) -> Result<f64, Error> {
+pub(crate) fn checked_tolerance(tolerance: f64) -> Result<f64, Error> {
     above("tolerance", tolerance, TOLERANCE_RANGE.0 * 0.999)?;
     at_most("tolerance", tolerance, TOLERANCE_RANGE.1)
 }

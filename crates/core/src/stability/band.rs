@@ -5,7 +5,8 @@ use super::fold::{Fold, SlipLap, folds};
 use crate::drag::{Closure, Drag};
 use crate::error::Error;
 use crate::motion::{
-    Belt, CycleKind, Drivetrain, Span, Start, System, ensemble, first_slide, settle,
+    Belt, CycleKind, Drivetrain, Span, Start, StickSlipCycle, System, checked_tolerance, ensemble,
+    first_slide, settle,
 };
 
 /// Edges of the behaviour over drive speed, for one belt.
@@ -42,6 +43,8 @@ pub enum Method {
 
 /// Accuracy of edges found by halving.
 const HALVED: f64 = 1e-9;
+/// The same for smooth closures, whose motion takes a hundred times as long.
+const HALVED_SMOOTH: f64 = 1e-6;
 /// The same for the lower edge, where each motion takes long to decide.
 const HALVED_LOWER: f64 = 1e-4;
 /// Accuracy of folds of half laps, in tolerances.
@@ -57,19 +60,19 @@ const FASTEST: f64 = 1e4;
 /// the fold.
 ///
 /// # Errors
-/// Each belt's may be an error of its own, if its motion cannot be followed.
-#[must_use]
+/// If `tolerance` is out of range; each belt's may be an error of its own, if its motion cannot be followed.
 pub fn bands(
     belts: &[(Drivetrain, Drag)],
     lower: bool,
     tolerance: f64,
-) -> Vec<Result<Band, Error>> {
+) -> Result<Vec<Result<Band, Error>>, Error> {
+    checked_tolerance(tolerance)?;
     let laps: Vec<Option<SlipLap>> =
         belts.iter().map(|(train, drag)| slip_lap(train, drag)).collect();
     let uppers = half_lap_folds(belts, &laps, tolerance);
     let deeper = deeper_stick_slip(belts, &uppers, tolerance);
     let lowers = if lower { lower_edges(&laps, tolerance) } else { vec![None; belts.len()] };
-    (0..belts.len())
+    Ok((0..belts.len())
         .map(|i| {
             let (train, drag) = &belts[i];
             let transition = drag.transition_speed();
@@ -83,7 +86,8 @@ pub fn bands(
                 (fold.drive_speed * transition, MEETING * tolerance)
             } else {
                 let from = uppers[i].map_or(1.0, |fold| fold.drive_speed * (1.0 + ABOVE));
-                (upper_by_simulation(train, drag, from * transition, tolerance)?, HALVED)
+                let near = if drag.closure().is_smooth() { HALVED_SMOOTH } else { HALVED };
+                (upper_by_simulation(train, drag, from * transition, near, tolerance)?, near)
             };
             Ok(Band {
                 lower,
@@ -97,7 +101,7 @@ pub fn bands(
                 laps: half.map_or(0, |fold| fold.laps),
             })
         })
-        .collect()
+        .collect())
 }
 
 /// The belt in scaled units, if its drag has two power branches whose force follows the speed at once.
@@ -176,10 +180,15 @@ fn deeper_stick_slip(
         .unzip();
     if let Ok(outcomes) = ensemble(&above, Span::UntilClosed, tolerance) {
         for (place, outcome) in places.into_iter().zip(outcomes) {
-            deeper[place] = outcome.is_ok_and(|cycle| cycle.kind == CycleKind::StickSlip);
+            deeper[place] = outcome.is_ok_and(|cycle| lasts(&cycle, &belts[place].1));
         }
     }
     deeper
+}
+
+/// Whether a motion goes on to slow down to the stick speed, be it held there or swinging back through zero.
+fn lasts(cycle: &StickSlipCycle, drag: &Drag) -> bool {
+    cycle.kind != CycleKind::SteadySliding && cycle.speed_min <= drag.stick_speed() * (1.0 + HALVED)
 }
 
 /// Slowest speeds, over the transition speed, between which the slowest unstable cycle is looked for.
@@ -242,11 +251,12 @@ fn upper_by_simulation(
     train: &Drivetrain,
     drag: &Drag,
     from: f64,
+    accuracy: f64,
     tolerance: f64,
 ) -> Result<f64, Error> {
     let sticks = |drive_speed: f64| -> Result<bool, Error> {
         let cycle = settle(train, drag, drive_speed, Start::REST, Span::UntilClosed, tolerance)?;
-        Ok(cycle.kind == CycleKind::StickSlip)
+        Ok(lasts(&cycle, drag))
     };
     let (mut low, mut high) = (from, from);
     if sticks(from)? {
@@ -264,7 +274,7 @@ fn upper_by_simulation(
             }
         }
     }
-    halved(low, high, HALVED, sticks)
+    halved(low, high, accuracy, sticks)
 }
 
 /// Drive speed below the transition under which a belt nudged from steady sliding comes to stick.
@@ -276,7 +286,7 @@ fn lower_by_simulation(train: &Drivetrain, drag: &Drag, tolerance: f64) -> Resul
             stretch: drag.force(drive_speed) / train.stiffness(),
         };
         let cycle = settle(train, drag, drive_speed, start, Span::UntilClosed, tolerance)?;
-        Ok(cycle.kind == CycleKind::StickSlip)
+        Ok(lasts(&cycle, drag))
     };
     let mut low = 0.9 * transition;
     while !sticks(low)? {

@@ -1,0 +1,259 @@
+"""The band where the past decides: reference folds, every closure, and agreement with the motion itself."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import hersey
+from hersey.errors import ParameterError
+
+TRAIN = hersey.Drivetrain(1000, 1)
+DRAG = hersey.Drag(50, 1, ehl_exponent=-0.7, mixed_exponent=-1.2, stick_speed=0.01)
+
+
+@pytest.mark.parametrize(
+    ("change", "fold"),
+    [
+        ({}, 2.173493478),
+        ({"stiffness": 500}, 2.228999261),
+        ({"stiffness": 2000}, 2.109731216),
+        ({"transition_force": 25}, 2.056026103),
+        ({"transition_force": 100}, 2.241446601),
+        ({"stick_speed": 0.001}, 4.096830996),
+        ({"stick_speed": 0.05}, 1.558597692),
+        ({"closure": "stiction"}, 9.958031686),
+    ],
+)
+def test_folds_of_reference(change: dict[str, float], fold: float) -> None:
+    """The folds of physics.md, section 5."""
+    train = replace(TRAIN, **{k: v for k, v in change.items() if hasattr(TRAIN, k)})
+    drag = replace(DRAG, **{k: v for k, v in change.items() if hasattr(DRAG, k)})
+    band = hersey.hysteresis(train, drag)
+    assert band.upper == pytest.approx(fold, rel=1e-8 if change.get("closure") else 1e-9)
+    assert band.method == "half laps"
+    assert not band.deeper
+    assert band.bistable
+
+
+def test_lower_edge_of_the_paper() -> None:
+    """A swing without sticking survives at 0.99 v_t and not at 0.98 (physics.md, section 5)."""
+    band = hersey.hysteresis(TRAIN, DRAG)
+    assert 0.98 < band.lower < 0.99
+    for factor, kind in ((0.9999, "stick_slip"), (1.0001, "oscillation")):
+        cycle = hersey.stick_slip(TRAIN, DRAG, drive_speed=factor * band.lower, start="steady")
+        assert cycle.kind == kind
+
+
+parameters = st.fixed_dictionaries(
+    {
+        "damping": st.floats(-1.0, 0.6).map(lambda x: 10.0**x),
+        "slowest": st.floats(-3.3, -0.8).map(lambda x: 10.0**x),
+        "ehl": st.floats(-0.85, -0.5),
+        "mixed": st.floats(-1.35, -1.1),
+        "stiffness": st.floats(0.0, 5.0).map(lambda x: 10.0**x),
+        "mass": st.floats(-2.0, 2.0).map(lambda x: 10.0**x),
+        "speed": st.floats(-1.0, 1.0).map(lambda x: 10.0**x),
+    }
+)
+
+
+def belt(p: dict[str, float], closure: str = "retained") -> tuple[hersey.Drivetrain, hersey.Drag]:
+    impedance = np.sqrt(p["stiffness"] * p["mass"])
+    drag = hersey.Drag(
+        p["damping"] * p["speed"] * impedance,
+        p["speed"],
+        ehl_exponent=p["ehl"],
+        mixed_exponent=p["mixed"],
+        stick_speed=p["slowest"] * p["speed"],
+        closure=closure,
+    )
+    return hersey.Drivetrain(p["stiffness"], p["mass"]), drag
+
+
+@settings(max_examples=150, deadline=None)
+@given(parameters, st.sampled_from(["retained", "stiction"]))
+def test_just_below_the_fold_it_sticks_again_and_just_above_it_does_not(
+    p: dict[str, float], closure: str
+) -> None:
+    train, drag = belt(p, closure)
+    band = hersey.hysteresis(train, drag, sensitivity=False)
+    if band.upper == np.inf or not band.bistable:
+        return
+    if band.deeper:
+        start: str | tuple[float, float] = "rest"
+    elif closure == "stiction":
+        start = (0.0, drag.breakaway_force / train.stiffness)
+    else:
+        released = float(drag.force(drag.stick_speed)) / train.stiffness
+        start = (drag.stick_speed, released)
+    for factor, sticks in ((1 - 1e-4, True), (1 + 1e-4, False)):
+        cycle = hersey.stick_slip(train, drag, drive_speed=factor * band.upper, start=start)
+        assert (cycle.kind == "stick_slip") == sticks, (factor, cycle)
+
+
+@settings(max_examples=60, deadline=None)
+@given(parameters)
+def test_only_the_numbers_of_similarity_count(p: dict[str, float]) -> None:
+    """Time by sqrt(m/k), speed by v_t: the same damping number gives the same band."""
+    train, drag = belt(p)
+    plain_train, plain_drag = belt({**p, "stiffness": 1.0, "mass": 1.0, "speed": 1.0})
+    band = hersey.hysteresis(train, drag, sensitivity=False)
+    plain = hersey.hysteresis(plain_train, plain_drag, sensitivity=False)
+    assert band.upper / p["speed"] == pytest.approx(plain.upper, rel=1e-8)
+    assert band.lower / p["speed"] == pytest.approx(plain.lower, rel=1e-8)
+
+
+def test_bands_agree_with_brute_force() -> None:
+    """From below and from above, at drive speeds on either side of each edge."""
+    rng = np.random.default_rng(5)
+    for _ in range(40):
+        p = {
+            "damping": 10 ** rng.uniform(-2.5, 1.2),
+            "slowest": 10 ** rng.uniform(-3.5, -0.5),
+            "ehl": rng.uniform(-0.9, -0.4),
+            "mixed": rng.uniform(-1.4, -1.05),
+            "stiffness": 1.0,
+            "mass": 1.0,
+            "speed": 1.0,
+        }
+        train, drag = belt(p)
+        band = hersey.hysteresis(train, drag, sensitivity=False)
+        speeds = np.array([0.9 * band.lower, 1.002, 0.999 * band.upper, 1.001 * band.upper, 1.5 * band.upper])
+        from_rest = hersey.sweep(train, drag, drive_speed=speeds[speeds < 500])
+        # with weak damping the belt may swing back through zero without being held
+        lasts = (from_rest.kind != "steady_sliding") & (from_rest.speed_min <= drag.stick_speed * (1 + 1e-9))
+        for speed, rough in zip(speeds, lasts.values, strict=False):
+            if speed > 1.001 * band.lower:
+                assert rough == (speed < band.upper), (p, band, speed)
+        nudged = hersey.sweep(train, drag, drive_speed=speeds[:2], start="steady")
+        assert nudged.speed_min[0] <= drag.stick_speed * (1 + 1e-9), (p, band)
+        assert nudged.kind[1] == "steady_sliding", (p, band)
+
+
+@pytest.mark.parametrize("closure", ["stribeck", "lugre"])
+def test_smooth_closures(closure: str) -> None:
+    extra = {"bristle_stiffness": 1e4, "bristle_damping": 30.0} if closure == "lugre" else {}
+    drag = replace(DRAG, closure=closure, **extra)
+    band = hersey.hysteresis(TRAIN, drag)
+    assert band.method == "simulation"
+    assert band.sensitivity == {}
+    for factor, sticks in ((0.999, True), (1.001, False)):
+        cycle = hersey.stick_slip(TRAIN, drag, drive_speed=factor * band.upper)
+        assert (cycle.kind != "steady_sliding") == sticks
+    if closure == "stribeck":  # above the stick speed its drag is that of the others
+        sharp = hersey.hysteresis(TRAIN, DRAG).lower
+        assert band.lower == pytest.approx(sharp, rel=1e-6)
+
+
+def test_a_table_of_the_same_drag_has_the_same_band() -> None:
+    speeds = (0.01, 0.1, 1.0, 10.0)
+    table = hersey.DragTable(speeds, tuple(DRAG.force(speeds).tolist()), stick_speed=0.01)
+    band, reference = hersey.hysteresis(TRAIN, table), hersey.hysteresis(TRAIN, DRAG)
+    assert band.upper == pytest.approx(reference.upper, rel=1e-7)
+    assert band.lower == pytest.approx(reference.lower, rel=2e-4)
+
+
+def test_the_band_moves_with_temperature() -> None:
+    drag = replace(
+        DRAG, reference_temperature=400.0, force_temperature_exponent=-1.0, speed_temperature_exponent=2.0
+    )
+    hot = hersey.hysteresis(TRAIN, drag, temperature=440.0)
+    ratio = 440.0 / 400.0
+    same = replace(
+        DRAG, transition_force=50 / ratio, transition_speed=ratio**2, stick_speed=DRAG.stick_speed * ratio**2
+    )
+    assert hot.upper == pytest.approx(hersey.hysteresis(TRAIN, same).upper, rel=1e-9)
+    grid = hersey.hysteresis_sweep(TRAIN, drag, temperature=[400.0, 440.0], stiffness=[1000.0, 2000.0])
+    assert grid.upper.dims == ("stiffness", "temperature")
+    assert float(grid.upper.sel(stiffness=1000, temperature=440)) == pytest.approx(hot.upper, rel=1e-9)
+    with pytest.raises(ParameterError, match="give temperature"):
+        hersey.hysteresis(TRAIN, drag)
+    with pytest.raises(ParameterError, match="give temperature"):
+        hersey.hysteresis_sweep(TRAIN, drag)
+    with pytest.raises(ParameterError, match="stick_speed follows from the temperature"):
+        hersey.hysteresis_sweep(TRAIN, drag, temperature=400.0, stick_speed=[0.01])
+
+
+def test_strong_damping_leaves_no_band() -> None:
+    """The belt creeps towards the drive and never swings below it."""
+    heavy = replace(DRAG, transition_force=5000)
+    band = hersey.hysteresis(TRAIN, heavy)
+    assert not band.bistable
+    assert band.upper == pytest.approx(1.0, abs=1e-9)
+    assert "No band" in band.verdict()
+    assert hersey.stick_slip(TRAIN, heavy, drive_speed=1.01).kind == "steady_sliding"
+
+
+def test_weak_damping_keeps_a_deeper_stick_slip_alive() -> None:
+    """Released higher than at the stick speed, the belt comes back to be released as high again."""
+    weak = replace(DRAG, transition_force=0.3, stick_speed=0.1)
+    band = hersey.hysteresis(TRAIN, weak, sensitivity=False)
+    assert band.deeper
+    assert band.upper > 1.2 * hersey.hysteresis_sweep(TRAIN, weak, transition_force=5.0).upper
+    below = hersey.stick_slip(TRAIN, weak, drive_speed=0.999 * band.upper)
+    above = hersey.stick_slip(TRAIN, weak, drive_speed=1.001 * band.upper)
+    assert (below.kind, above.kind) == ("stick_slip", "steady_sliding")
+
+
+def test_sensitivities_are_derivatives() -> None:
+    band = hersey.hysteresis(TRAIN, DRAG)
+    for name in ("stick_speed", "transition_force", "mixed_exponent"):
+        value = getattr(DRAG, name)
+        more = hersey.hysteresis(TRAIN, replace(DRAG, **{name: 1.002 * value})).upper
+        less = hersey.hysteresis(TRAIN, replace(DRAG, **{name: 0.998 * value})).upper
+        assert band.derivative(name, value) == pytest.approx((more - less) / (0.004 * value), rel=1e-4)
+    # scaling: doubling k and m leaves the stiffness-to-mass ratio, so each counts half as the drag
+    assert band.sensitivity["stiffness"] == pytest.approx(
+        -0.5 * band.sensitivity["transition_force"], rel=1e-4
+    )
+
+
+def test_intervals_come_from_the_draws() -> None:
+    rng = np.random.default_rng(3)
+    draws = {"stick_speed": 10 ** rng.uniform(-3, -1, 400)}
+    band = hersey.hysteresis(TRAIN, DRAG, samples=draws)
+    ends = [hersey.hysteresis(TRAIN, replace(DRAG, stick_speed=v)).upper for v in (10**-1.05, 10**-2.95)]
+    assert band.interval is not None
+    assert band.interval == pytest.approx(ends, rel=0.02)
+    assert band.share_bistable == 1.0
+    with pytest.raises(ParameterError, match="hardness is not known"):
+        hersey.hysteresis(TRAIN, DRAG, samples={"hardness": [1.0]})
+    with pytest.raises(ParameterError, match="set 1: stick_speed"):
+        hersey.hysteresis(TRAIN, DRAG, samples={"stick_speed": [0.01, 2.0]})
+    with pytest.raises(ParameterError, match="do not fit together"):
+        hersey.hysteresis(TRAIN, DRAG, samples={"stick_speed": [0.01, 0.02], "mass": [1, 2, 3]})
+
+
+def test_same_bits_whatever_the_threads() -> None:
+    axes = {"stiffness": np.linspace(300, 3000, 23), "transition_force": np.linspace(5, 400, 17)}
+    one = hersey.hysteresis_sweep(TRAIN, DRAG, **axes)
+    two = hersey.hysteresis_sweep(TRAIN, DRAG, **axes, threads=2)
+    np.testing.assert_array_equal(one.upper, two.upper)
+    np.testing.assert_array_equal(one.lower, two.lower)
+
+
+def test_a_fold_does_not_depend_on_its_neighbours() -> None:
+    forces = np.geomspace(1, 500, 37)
+    together = hersey.hysteresis_sweep(TRAIN, DRAG, transition_force=forces).upper.values
+    alone = [
+        hersey.hysteresis(TRAIN, replace(DRAG, transition_force=f), sensitivity=False).upper for f in forces
+    ]
+    np.testing.assert_array_equal(together, alone)
+
+
+def test_what_is_out_of_range_is_refused_by_name() -> None:
+    with pytest.raises(ParameterError, match="stiffness"):
+        hersey.hysteresis(hersey.Drivetrain(0, 1), DRAG)
+    with pytest.raises(ParameterError, match="set 1: stick_speed"):
+        hersey.hysteresis_sweep(TRAIN, DRAG, stick_speed=[0.01, 2.0])
+    with pytest.raises(ParameterError, match="threads is 0"):
+        hersey.hysteresis_sweep(TRAIN, DRAG, threads=0)
+    with pytest.raises(ParameterError, match="tolerance"):
+        hersey.hysteresis(TRAIN, DRAG, tolerance=0.0)
+    with pytest.raises(ParameterError, match="tolerance"):
+        hersey.hysteresis_sweep(TRAIN, DRAG, tolerance=float("nan"))
