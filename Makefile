@@ -65,6 +65,7 @@ benchmark: build ## ratios against peers, printed and written to benchmarks/RESU
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt --group benchmark
 	$(BIN)/python benchmarks/read_csv.py
 	$(BIN)/python -m benchmarks.motion
+	$(BIN)/python -m benchmarks.fold
 
 clean: ## remove everything that was built
 	rm -rf .venv build target Cargo.lock

@@ -66,8 +66,10 @@ def _guard(mode, s, v, k, a):  # type: ignore[no-untyped-def]
 
 
 @njit
-def lap(k: float, b0: float, v2: float, duration: float, tolerance: float) -> tuple[float, float, float, int]:
-    """Return frequency, greatest speed and stuck fraction of the last whole lap, and the steps tried."""
+def lap(
+    k: float, b0: float, v2: float, duration: float, tolerance: float
+) -> tuple[float, float, float, int, float]:
+    """Return frequency, greatest speed and stuck share of the last whole lap, steps tried, last release."""
     a = math.e * b0 * V_S**MIXED
     t, s, v, mode = 0.0, 0.0, 0.0, STUCK
     begin, stuck, fastest, steps = -1.0, 0.0, 0.0, 0
@@ -138,7 +140,7 @@ def lap(k: float, b0: float, v2: float, duration: float, tolerance: float) -> tu
             fastest = max(fastest, vm)
         t, s, v = t + h, sn, vn
         h *= grown
-    return frequency, peak, fraction, steps
+    return frequency, peak, fraction, steps, begin
 
 
 @njit
@@ -146,8 +148,24 @@ def laps(k, b0, v2, duration, tolerance):  # type: ignore[no-untyped-def]
     """Return the laps of many sets, shape (sets, 4)."""
     out = np.empty((k.size, 4))
     for i in range(k.size):
-        frequency, peak, fraction, steps = lap(k[i], b0[i], v2[i], duration, tolerance)
+        frequency, peak, fraction, steps, _ = lap(k[i], b0[i], v2[i], duration, tolerance)
         out[i, 0], out[i, 1], out[i, 2], out[i, 3] = frequency, peak, fraction, steps
+    return out
+
+
+@njit
+def folds(k, b0, runs, duration, tolerance):  # type: ignore[no-untyped-def]
+    """Return the fold of each set: the drive speed between 1.01 and 4 is halved ``runs`` times."""
+    out = np.empty(k.size)
+    for i in range(k.size):
+        low, high = 1.01, 4.0
+        for _ in range(runs):
+            middle = 0.5 * (low + high)
+            if lap(k[i], b0[i], middle, duration, tolerance)[4] > 0.5 * duration:
+                low = middle
+            else:
+                high = middle
+        out[i] = 0.5 * (low + high)
     return out
 
 

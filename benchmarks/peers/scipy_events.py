@@ -11,8 +11,8 @@ V_S = 0.01
 
 def lap(
     k: float, b0: float, v2: float, duration: float, method: str, tolerance: float
-) -> tuple[float, float, float]:
-    """Return frequency, greatest speed and stuck fraction of the last whole lap."""
+) -> tuple[float, float, float, float]:
+    """Return frequency, greatest speed and stuck fraction of the last whole lap, and the last release."""
     a = math.e * b0 * V_S**-0.2
     laws = {
         "fast": lambda v: b0 * max(v, 1e-6) ** 0.3,
@@ -24,13 +24,13 @@ def lap(
     held = _event(lambda t, y: abs(k * y[0]) - a * math.exp(-y[1] / V_S), -1)
     ends = {"fast": [down(1.0)], "slow": [up(1.0), down(V_S)], "micro": [up(V_S), held]}
     t, s, v, mode = 0.0, 0.0, 0.0, "stuck"
-    begin, stuck, fastest, last = None, 0.0, 0.0, (0.0, 0.0, 0.0)
+    begin, stuck, fastest, last = None, 0.0, 0.0, (0.0, 0.0, 0.0, 0.0)
     while t < duration:
         if mode == "stuck":
             wait = (a * math.exp(-v / V_S) / k - s) / (v2 - v)
             t, s, stuck = t + wait, s + (v2 - v) * wait, stuck + wait
             if begin is not None and t < duration:
-                last = 1 / (t - begin), fastest, stuck / (t - begin)
+                last = 1 / (t - begin), fastest, stuck / (t - begin), t
             begin, stuck, fastest = t, 0.0, 0.0
             mode = "slow" if v >= V_S else "micro"
             continue

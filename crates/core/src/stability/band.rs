@@ -49,6 +49,8 @@ const HALVED_SMOOTH: f64 = 1e-6;
 const HALVED_LOWER: f64 = 1e-4;
 /// Accuracy of folds of half laps, in tolerances.
 const MEETING: f64 = 30.0;
+/// The same of folds by simulation, which pass slowly by the motion that is about to vanish.
+const PASSING: f64 = 1e4;
 /// How far above the fold the belt is started from rest to see whether some deeper stick-slip lasts.
 const ABOVE: f64 = 1e-4;
 /// Nudge from steady sliding, relative.
@@ -87,7 +89,8 @@ pub fn bands(
             } else {
                 let from = uppers[i].map_or(1.0, |fold| fold.drive_speed * (1.0 + ABOVE));
                 let near = if drag.closure().is_smooth() { HALVED_SMOOTH } else { HALVED };
-                (upper_by_simulation(train, drag, from * transition, near, tolerance)?, near)
+                let upper = upper_by_simulation(train, drag, from * transition, near, tolerance)?;
+                (upper, near.max(PASSING * tolerance))
             };
             Ok(Band {
                 lower,

@@ -318,3 +318,43 @@ impl Search {
         Step::Again
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stability::cycles;
+
+    const BASELINE: SlipLap =
+        SlipLap { damping: 1.581_138_830_084_19, slowest: 0.01, mixed: -0.2, ehl: 0.3 };
+
+    #[test]
+    fn the_fold_of_the_baseline_takes_five_laps() {
+        let fold = cycles(&[BASELINE], 1e-12)[0].unwrap();
+        assert!((fold.drive_speed - 2.173_493_478).abs() < 1e-9);
+        assert!(fold.laps <= 5);
+    }
+
+    #[test]
+    fn a_fold_is_the_same_among_others() {
+        let laps: Vec<SlipLap> =
+            (1..40).map(|i| SlipLap { damping: 0.1 * f64::from(i), ..BASELINE }).collect();
+        let together = cycles(&laps, 1e-9);
+        for (lap, found) in laps.iter().zip(together) {
+            assert_eq!(cycles(&[*lap], 1e-9)[0], found);
+        }
+    }
+
+    #[test]
+    fn cycles_of_small_size_begin_at_the_transition() {
+        let small = SlipLap { slowest: 0.98, ..BASELINE };
+        let drive = cycles(&[small], 1e-10)[0].unwrap().drive_speed;
+        assert!(drive > 0.995 && drive < 1.0, "{drive}");
+    }
+
+    #[test]
+    fn no_belt_swings_below_a_drive_it_creeps_towards() {
+        let heavy = SlipLap { damping: 1e3, ..BASELINE };
+        let fold = cycles(&[heavy], 1e-10)[0].unwrap();
+        assert!((fold.drive_speed - 1.0).abs() < 1e-12);
+    }
+}

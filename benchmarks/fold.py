@@ -1,0 +1,105 @@
+"""Fold maps beside brute force: workload W3, single thread, one run. Writes FOLD.md.
+
+W3: the fold speed V*(k, B0) on 64 x 64 points (k 500 to 2000, B0 25 to 100). Peers halve the drive speed
+between 1.01 and 4 with 15 runs of 5 s each, on some of the points, scaled to all.
+
+Usage: python -m benchmarks.fold
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import hersey
+from benchmarks.motion import DRAG, TRAIN, best_of, machine
+
+SIDE, RUNS, DURATION = 64, 15, 5.0
+
+
+def folds(side: int, tolerance: float) -> Any:
+    """Return hersey's map of folds."""
+    return hersey.hysteresis_sweep(
+        TRAIN,
+        DRAG,
+        stiffness=np.linspace(500, 2000, side),
+        transition_force=np.linspace(25, 100, side),
+        lower=False,
+        tolerance=tolerance,
+    )
+
+
+def measure() -> list[tuple[str, float, int, float]]:
+    """Return (tool, seconds for all points, points run, greatest relative error)."""
+    from benchmarks.peers import numba_dp45, scipy_events
+
+    exact = folds(SIDE, 1e-13)
+    k, b0 = (
+        np.broadcast_to(axis, exact.upper.shape).ravel()
+        for axis in (exact.stiffness.values[:, None], exact.transition_force.values[None, :])
+    )
+    reference = exact.upper.values.ravel()
+    points = reference.size
+    rows = []
+    for tolerance in (3e-10, 1e-11):
+        seconds, grid = best_of(5, lambda t=tolerance: folds(SIDE, t))
+        laps = float(grid.laps.mean())
+        error = float(np.max(np.abs(grid.upper.values.ravel() / reference - 1)))
+        rows.append((f"hersey ({tolerance:g}), {laps:.1f} laps a fold", seconds, points, error))
+
+    numba_dp45.folds(k[:1], b0[:1], 1, DURATION, 1e-6)  # compile
+    for tolerance in (1e-6, 1e-8):
+        some = np.linspace(0, points - 1, 100).astype(int)
+        seconds, found = best_of(
+            1, lambda t=tolerance, i=some: numba_dp45.folds(k[i], b0[i], RUNS, DURATION, t)
+        )
+        error = float(np.max(np.abs(found / reference[some] - 1)))
+        rows.append(
+            (f"numba DP45, {RUNS} runs a fold ({tolerance:g})", seconds / some.size * points, 100, error)
+        )
+
+    def scipy_fold(i: int) -> float:
+        low, high = 1.01, 4.0
+        for _ in range(RUNS):
+            middle = 0.5 * (low + high)
+            if scipy_events.lap(k[i], b0[i], middle, DURATION, "RK45", 1e-6)[3] > 0.5 * DURATION:
+                low = middle
+            else:
+                high = middle
+        return 0.5 * (low + high)
+
+    some = np.linspace(0, points - 1, 3).astype(int)
+    seconds, found = best_of(1, lambda: np.array([scipy_fold(i) for i in some]))
+    error = float(np.max(np.abs(found / reference[some] - 1)))
+    rows.append(
+        (f"scipy RK45 with events, {RUNS} runs a fold (1e-06)", seconds / some.size * points, 3, error)
+    )
+    seconds, _ = best_of(1, lambda: folds(256, 1e-11))
+    rows.append(("hersey, 256 x 256 points (1e-11)", seconds, 256 * 256, np.nan))
+    return rows
+
+
+def table(rows: list[tuple[str, float, int, float]]) -> str:
+    """Return the rows as Markdown, with ratios to the first."""
+    lines = ["| tool (tolerance) | W3 | to hersey | points run | error of V* |", "|---|---|---|---|---|"]
+    for tool, seconds, points, error in rows:
+        ratio = "-" if points > SIDE * SIDE else f"{seconds / rows[0][1]:.3g}"
+        shown = "-" if np.isnan(error) else f"{error:.0e}"
+        lines.append(f"| {tool} | {seconds:.3g} s | {ratio} | {points} | {shown} |")
+    return "\n".join(lines)
+
+
+if __name__ == "__main__":
+    content = f"""# Fold maps beside brute force
+
+{machine()}; single thread; compilation and imports excluded. `python -m benchmarks.fold`.
+
+W3: the fold V* over stiffness (500 to 2000) and drag at the transition (25 to 100), {SIDE} x {SIDE} points.
+hersey's time includes the check whether a deeper stick-slip lasts above each fold.
+
+{table(measure())}
+"""
+    print(content)
+    Path(__file__).with_name("FOLD.md").write_text(content)
