@@ -325,14 +325,14 @@ def cycles_without_sticking(
     forces, falls, rises = (np.full_like(laps, x) for x in (damping, mixed, ehl))
     drive, top, _ = _core_call(_core.cycles, [forces, laps, falls, rises], float(tolerance))
     drive, below, above = (high * drive).reshape(-1, 3).T
-    # with so steep a fall the belt cannot swing back from below the transition
-    gone = -mixed * damping >= 2.0
+    # with so steep a fall no belt swings below the transition: a search that ends there found nothing
+    gone = (-mixed * damping >= 2.0) & (drive <= high * (1.0 + _NEAR**2))
     shape = speeds.shape
     return CyclesWithoutSticking(
         slowest=speeds,
         fastest=np.where(gone, np.nan, high * top.reshape(-1, 3)[:, 0]).reshape(shape),
         drive_speed=np.where(gone, np.nan, drive).reshape(shape),
-        stable=(above > below).reshape(shape) & (not gone),
+        stable=((above > below) & ~gone).reshape(shape),
     )
 
 

@@ -1,4 +1,4 @@
-"""A figure of the paper, its claims, and the verdicts on them."""
+"""A figure of the paper or of our own, its claims, and the verdicts on them."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ ROUNDING = 1e-6
 
 
 class Verdict(StrEnum):
-    """Whether a claim of the paper holds."""
+    """Whether a claim holds."""
 
     HOLDS = "holds"
     IN_DIRECTION = "holds in direction, not in size"
@@ -31,7 +31,7 @@ class Verdict(StrEnum):
 
 @dataclass(frozen=True)
 class Claim:
-    """One claim of the paper, the criterion it is judged by, the verdict, and the numbers behind it."""
+    """One claim, the criterion it is judged by, the verdict, and the numbers behind it."""
 
     source: str
     statement: str
@@ -55,6 +55,35 @@ class PaperFigure:
     def name(self) -> str:
         """Name of its files, without the suffix."""
         return f"figure-{self.number:02d}"
+
+    @property
+    def heading(self) -> str:
+        """What stands over it."""
+        return f"Fig. {self.number}: {self.title}"
+
+
+@dataclass(frozen=True)
+class OwnFigure:
+    """A figure that the paper does not have, under the ``name`` of its files; else as `PaperFigure`."""
+
+    name: str
+    title: str
+    chart: Chart
+    claims: tuple[Claim, ...]
+    data: Mapping[str, tuple[float, ...]]
+
+    @property
+    def number(self) -> None:
+        """It has none in the paper."""
+        return
+
+    @property
+    def heading(self) -> str:
+        """What stands over it."""
+        return f"Beyond the paper: {self.title}"
+
+
+Figure = PaperFigure | OwnFigure
 
 
 def shown(value: float) -> str:

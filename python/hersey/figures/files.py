@@ -10,16 +10,16 @@ from pathlib import Path
 
 from hersey.charts import rendered
 from hersey.errors import OutputError
-from hersey.figures.figure import ABOUT, PaperFigure
+from hersey.figures.figure import ABOUT, Figure
 
-_HEAD = f"""# Figures of the paper, drawn anew
+_HEAD = f"""# Figures of the paper, drawn anew, and figures beyond it
 
-Units are inches, ounces of force and seconds. Every number is computed, but for A of Eq. 29 and the ranges of
-the paper's own sweeps. *About* means within {ABOUT:g} of an exponent, or {ABOUT:.0%} of a value.
+Units are inches, ounces of force and seconds. Every number is computed, but for A of Eq. 29 and the speeds
+and ranges that the paper names. *About* means within {ABOUT:g} of an exponent, or {ABOUT:.0%} of a value.
 """
 
 
-def write(figures: Sequence[PaperFigure], folder: Path, *, overwrite: bool = False) -> list[Path]:
+def write(figures: Sequence[Figure], folder: Path, *, overwrite: bool = False) -> list[Path]:
     """Write each figure as SVG, PNG and PDF, with ``figures.md`` and ``figures.json``; return the paths.
 
     Everything is written aside and moved into place at the end, so that no file is ever half there.
@@ -52,11 +52,11 @@ def write(figures: Sequence[PaperFigure], folder: Path, *, overwrite: bool = Fal
     return paths
 
 
-def markdown(figures: Sequence[PaperFigure]) -> str:
+def markdown(figures: Sequence[Figure]) -> str:
     """Return the figures with their claims as Markdown."""
     lines = [_HEAD]
     for figure in figures:
-        lines += [f"## Fig. {figure.number}: {figure.title}", "", f"![{figure.title}]({figure.name}.svg)", ""]
+        lines += [f"## {figure.heading}", "", f"![{figure.title}]({figure.name}.svg)", ""]
         for claim in figure.claims:
             lines.append(f"- {claim.source}: {claim.statement} **{claim.verdict.capitalize()}.**")
             lines.append(f"  {claim.evidence}")
@@ -65,12 +65,13 @@ def markdown(figures: Sequence[PaperFigure]) -> str:
     return "\n".join(lines)
 
 
-def as_json(figures: Sequence[PaperFigure]) -> str:
+def as_json(figures: Sequence[Figure]) -> str:
     """Return claims and data as JSON text; what is no finite number is null."""
     content = {
         "units": {"length": "in", "force": "ozf", "time": "s"},
         "figures": [
             {
+                "name": figure.name,
                 "number": figure.number,
                 "title": figure.title,
                 "claims": [

@@ -14,6 +14,7 @@ from hersey.figures.judges import Quantity
 from hersey.figures.sweep import Sweep
 from hersey.log.torque_log import FloatArray
 from hersey.motion import Trajectory
+from hersey.schedule import Schedule
 
 INK, BLUE = "#333", "#1f4e9c"
 #: Colour and shape of the three values traced: each alone tells them apart, also in greyscale.
@@ -51,18 +52,31 @@ def trace(
         axis=alt.Axis(minExtent=_AXIS, tickCount=5),
     )
     chart: alt.Chart = (
-        _plot(rows)
+        plot(rows)
         .mark_line(color=color, strokeWidth=1.6, clip=True)
         .encode(x=_time("time:Q", float(time[-1]), timed), y=y)
     )
     return chart
 
 
+def driven(
+    run: Trajectory, drive: Schedule, *, domain: tuple[float, float], timed: bool
+) -> alt.LayerChart | alt.FacetChart:
+    """Belt speed against time, and dashed the drive speed."""
+    end = float(run.time[-1])
+    line = trace(run.time, run.belt_speed, title="Speed (in/s)", domain=domain, timed=timed)
+    points = zip(np.asarray(drive.times).tolist(), np.asarray(drive.values).tolist(), strict=True)
+    corners = [(0.0, drive.first), *((t, v) for t, v in points if 0.0 < t < end), (end, drive.at(end))]
+    rows: list[Row] = [{"time": t, "value": v, "corner": i} for i, (t, v) in enumerate(corners)]
+    dashed = plot(rows).mark_line(color=INK, strokeDash=[5, 3], strokeWidth=1.4)
+    return alt.layer(line, dashed.encode(x=_time("time:Q", end, timed), y="value:Q", order="corner:Q"))
+
+
 def levels(marks: list[tuple[float, str]]) -> list[alt.Chart]:
     """Dashed levels, named to the right of the panel where no trace can cross the words."""
     layers: list[alt.Chart] = []
     for y, name in marks:
-        mark = _plot([{"y": y, "name": name}])
+        mark = plot([{"y": y, "name": name}])
         layers.append(mark.mark_rule(color=INK, strokeDash=[4, 3]).encode(y="y:Q"))
         label = mark.mark_text(align="left", dx=6, color=INK, fontSize=12)
         layers.append(label.encode(x=alt.value(WIDTH), y="y:Q", text="name:N"))
@@ -90,7 +104,7 @@ def mode_strip(run: Trajectory) -> alt.Chart:
         ),
     )
     chart: alt.Chart = (
-        _plot(spans)
+        plot(spans)
         .mark_rect()
         .encode(x=_time("from:Q", end, timed=True), x2="to:Q", color=color)
         .properties(width=WIDTH, height=26)
@@ -135,11 +149,11 @@ def trend_panel(
     color = alt.Color("of:N", scale=alt.Scale(domain=names, range=COLORS), legend=None)
     shape = alt.Shape("of:N", scale=alt.Scale(domain=names, range=list(SHAPES)), legend=None)
     layers = [
-        _plot(compared).mark_line(color=INK, strokeDash=[4, 3], strokeWidth=1).encode(x=x, y=y),
+        plot(compared).mark_line(color=INK, strokeDash=[4, 3], strokeWidth=1).encode(x=x, y=y),
         _name(compared[-1:], stroke="white", strokeWidth=4).encode(x=x, y=y),
         _name(compared[-1:], color=INK).encode(x=x, y=y),
-        _plot(rows).mark_line(color=INK, strokeWidth=1.8).encode(x=x, y=y),
-        _plot(dots).mark_point(filled=True, size=80, opacity=1).encode(x=x, y=y, color=color, shape=shape),
+        plot(rows).mark_line(color=INK, strokeWidth=1.8).encode(x=x, y=y),
+        plot(dots).mark_point(filled=True, size=80, opacity=1).encode(x=x, y=y, color=color, shape=shape),
     ]
     exponent = quantity.trend(sweep).exponent
     heading = alt.Title(f"fitted power: {parameter.symbol}^{exponent:.2f}", fontSize=12, frame="group")
@@ -148,7 +162,7 @@ def trend_panel(
 
 def _name(rows: list[Row], **look: Any) -> alt.Chart:
     """The name of a line beside its end; a white edge keeps grid lines out of the letters."""
-    chart: alt.Chart = _plot(rows).mark_text(align="right", dx=-14, fontSize=12, **look).encode(text="name:N")
+    chart: alt.Chart = plot(rows).mark_text(align="right", dx=-14, fontSize=12, **look).encode(text="name:N")
     return chart
 
 
@@ -183,5 +197,6 @@ def _time(field: str, end: float, timed: bool) -> alt.X:
     return alt.X(field, title="Time (s)" if timed else None, scale=scale, axis=axis)
 
 
-def _plot(rows: list[Row]) -> alt.Chart:
+def plot(rows: list[Row]) -> alt.Chart:
+    """A chart of rows, without marks yet."""
     return alt.Chart(alt.Data(values=rows))
