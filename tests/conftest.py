@@ -51,3 +51,10 @@ def points(log: hersey.TorqueLog) -> hersey.SteadyPoints:
 def document(log: hersey.TorqueLog, points: hersey.SteadyPoints) -> Analysis:
     machine = read_fuser(ROOT / "examples" / "fuser.toml")
     return analyse(log, points, command="hersey report bench.csv", fuser=machine)
+
+
+@pytest.fixture
+def examples_here(tmp_path: Path) -> Path:
+    """Return a fresh directory that holds the examples, to type commands in."""
+    (tmp_path / "examples").symlink_to(ROOT / "examples")
+    return tmp_path

@@ -17,7 +17,7 @@ import typer
 from hersey.cli import app
 from tests.conftest import ROOT
 
-COMMANDS = ["report", "fit", "simulate", "sweep", "figures", "testbench"]
+COMMANDS = ["report", "fit", "simulate", "sweep", "hysteresis", "map", "plan", "figures", "testbench"]
 HERSEY = [sys.executable, "-m", "hersey.cli"]
 
 
@@ -40,10 +40,9 @@ def example(*command: str) -> str:
 
 
 @pytest.mark.parametrize("command", [(), *[(c,) for c in COMMANDS]])
-def test_the_example_in_the_help_works_as_typed(command: tuple[str, ...], tmp_path: Path) -> None:
-    (tmp_path / "examples").symlink_to(ROOT / "examples")
+def test_the_example_in_the_help_works_as_typed(command: tuple[str, ...], examples_here: Path) -> None:
     typed = shlex.split(example(*command))
-    result = run(*typed[1:], cwd=tmp_path)
+    result = run(*typed[1:], cwd=examples_here)
     assert result.returncode == 0, result.stderr
     assert result.stdout
 
@@ -66,6 +65,20 @@ def test_json_goes_to_a_pipe_alone(bench_csv: Path, tmp_path: Path) -> None:
     assert fit["fit"]["coefficients"]["c"] == document["fit"]["coefficients"]["c"]
     cycle = json.loads(run("simulate", "--json", cwd=tmp_path).stdout)
     assert cycle["frequency"] == pytest.approx(3.940314, rel=1e-6)
+
+
+def test_the_band_is_printed_and_piped(tmp_path: Path) -> None:
+    """V* of the baseline, its dependence on each parameter, and the step of the paper's Fig. 14."""
+    steps = ["--drive-speed", "1.2", "--from-speed", "2.5", "--to-speed", "1.2"]
+    text = run("hysteresis", *steps, cwd=tmp_path).stdout
+    assert "upper fold V*     2.1734934" in text
+    assert all(name in text for name in ("stick_speed", "mixed_exponent", "at once it sticks"))
+    band = json.loads(run("hysteresis", *steps, "--json", cwd=tmp_path).stdout)
+    assert band["upper"] == pytest.approx(2.173493478, rel=1e-7)
+    assert band["step"]["sticks"]
+    assert band["disturbance"]["kick"] == pytest.approx(0.902, abs=1e-3)
+    half = run("hysteresis", "--from-speed", "2.5", cwd=tmp_path)
+    assert (half.returncode, half.stderr) == (2, "hersey: a step needs both --from-speed and --to-speed\n")
 
 
 def test_simulation_is_written_as_csv(tmp_path: Path) -> None:

@@ -20,7 +20,7 @@ from hersey.branches import Transition, fit_branches, transition, why_no_transit
 from hersey.drag import Drag
 from hersey.errors import ExtrapolationWarning, InsufficientDataError, ParameterError
 from hersey.estimation import Estimate, Solution, robust, solve
-from hersey.law import FitData, fit_single, log_damping, scaled_temperature, variables
+from hersey.law import FitData, fit_single, hersey_exponent, log_damping, scaled_temperature, variables
 from hersey.log.torque_log import FloatArray
 from hersey.steady import SteadyPoints
 
@@ -95,10 +95,7 @@ class DampingSurface:
             return float("nan")
         if temperature is None or self.reference_temperature is None:
             return self.transition.speed.value
-        ratio = (
-            float(scaled_temperature(np.asarray(temperature), self.temperature_scale))
-            / self.reference_temperature
-        )
+        ratio = self._scaled(temperature) / self.reference_temperature
         return float(self.transition.speed.value * ratio**self.transition.temperature_exponent)
 
     def drag(self, *, roll_radius: float, stick_speed: float, temperature: float | None = None) -> Drag:
@@ -145,9 +142,118 @@ class DampingSurface:
             stick_speed=stick_speed,
         )
 
+    def drag_samples(
+        self,
+        count: int,
+        seed: int,
+        *,
+        roll_radius: float,
+        stick_speed: float,
+        temperature: float | None = None,
+    ) -> dict[str, FloatArray]:
+        """Return draws of the drag that the fit's covariance allows, for `hysteresis` and the like.
+
+        They follow Student's t with the degrees of freedom of the fit, as its intervals do: the normal
+        distribution of the values, widened where few points measure it. The same seed gives draws that
+        go together across temperatures.
+
+        Parameters
+        ----------
+        count
+            Draws, at least 1.
+        seed
+            Of the random draws, at least 0.
+        roll_radius
+            m, as in `drag`.
+        stick_speed
+            m/s at this temperature; a transition speed below it leaves no falling branch.
+        temperature
+            K; needed if the law depends on it.
+
+        Returns
+        -------
+        dict
+            Arrays of shape (count,): ``transition_force`` (N), ``transition_speed`` (m/s), ``ehl_exponent``
+            and ``mixed_exponent``. Draws without a falling and a rising branch are drawn again, with a
+            warning that counts them.
+
+        Raises
+        ------
+        InsufficientDataError
+            If the data show no transition, or if more than half of the draws have none.
+        ParameterError
+            If a value is out of range, with its name.
+        """
+        if self.transition is None:
+            raise InsufficientDataError(f"the data show no falling branch ({self.rejected_transition})")
+        if count < 1 or seed < 0:
+            name, value, least = ("count", count, 1) if count < 1 else ("seed", seed, 0)
+            raise ParameterError(f"{name} is {value}: it must be at least {least}")
+        if (temperature is None) != (self.b is None):
+            reason = "this law depends on temperature: give it one, in K"
+            other = "temperature is given, but this law does not depend on it"
+            raise ParameterError(reason if self.b is not None else other)
+        self.drag(roll_radius=roll_radius, stick_speed=stick_speed, temperature=temperature)
+        x = 0.0
+        if temperature is not None and self.reference_temperature is not None:
+            x = float(np.log(self._scaled(temperature) / self.reference_temperature))
+        slowest = np.log(stick_speed / roll_radius / self.reference_speed)
+        kept, drawn, failed = self._draws(count, seed, x, slowest)
+        if failed:
+            warnings.warn(
+                f"{failed} of {drawn} draws of the fit had no falling branch and were drawn again: "
+                "the intervals hold for fits that have one",
+                stacklevel=2,
+            )
+        level, b, c, change, at = kept.T
+        z = at + _transition_exponents(b, c) * x
+        speed = self.reference_speed * np.exp(z)
+        torque = np.exp(level + b * x + c * z) * speed
+        return {
+            "transition_force": torque / roll_radius,
+            "transition_speed": speed * roll_radius,
+            "ehl_exponent": c,
+            "mixed_exponent": c + change,
+        }
+
+    def _draws(self, count: int, seed: int, x: float, slowest: float) -> tuple[FloatArray, int, int]:
+        """Draws of level, b, c, change and at that have both branches; how many were drawn, and refused."""
+        assert self.transition is not None
+        covariance = self.covariance.copy()
+        # Where the bend is gradual the meeting of the branches is less certain than a corner's.
+        meeting = self.transition.speed.error / self.transition.speed.value
+        covariance[-1, -1] = max(covariance[-1, -1], meeting**2)
+        freedom = max(self.statistics.points - self.statistics.variables, 1)
+        rng = np.random.default_rng(seed)
+        kept, drawn = np.empty((0, 5)), 0
+        while len(kept) < count:
+            values = rng.multivariate_normal(np.zeros(self.values.size), covariance, size=count)
+            values = self.values + values * np.sqrt(freedom / rng.chisquare(freedom, size=(count, 1)))
+            if self.b is None:
+                values = np.insert(values, 1, 0.0, axis=1)
+            _, b, c, change, at = values.T
+            falls = (c > -1.0) & (c + change < -1.0) & (at + _transition_exponents(b, c) * x > slowest)
+            kept, drawn = np.concatenate([kept, values[falls]]), drawn + count
+            if 2 * len(kept) < drawn:
+                raise InsufficientDataError(
+                    f"{drawn - len(kept)} of {drawn} draws of the fit have no falling branch: "
+                    "the data do not prove one; record more dwells below the transition"
+                )
+        return kept[:count], drawn, drawn - len(kept)
+
     def summary(self) -> str:
         """Return the fit as text, in the layout that users of lmfit know."""
         return _summary(self)
+
+    def _scaled(self, temperature: float) -> float:
+        """A temperature (K) in the scale of the law, where its powers have a meaning."""
+        scaled = float(scaled_temperature(np.asarray(temperature, dtype=float), self.temperature_scale))
+        if not (np.isfinite(scaled) and scaled > 0):
+            raise ParameterError(
+                f"temperature is {temperature:g} K: a law in {self.temperature_scale} holds above 0 "
+                f"{self.temperature_scale} only"
+            )
+        return scaled
 
     def _warn_outside(self, name: str, values: FloatArray, limits: tuple[float, float] | None) -> None:
         if limits and (np.any(values < limits[0] * 0.999) or np.any(values > limits[1] * 1.001)):
@@ -183,6 +289,10 @@ def fit(points: SteadyPoints, *, temperature_scale: str = "degC") -> DampingSurf
     if refused:
         return _surface(points, data, single, None, refused)
     return _surface(points, data, branches.solution, transition(data, single, branches), "")
+
+
+def _transition_exponents(b: FloatArray, c: FloatArray) -> FloatArray:
+    return np.array([hersey_exponent(*pair) for pair in zip(b.tolist(), c.tolist(), strict=True)])
 
 
 def _fit_torque(data: FitData, solution: Solution) -> Solution:

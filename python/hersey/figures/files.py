@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
@@ -11,6 +10,7 @@ from pathlib import Path
 from hersey.charts import rendered
 from hersey.errors import OutputError
 from hersey.figures.figure import ABOUT, Figure
+from hersey.json_value import json_value
 
 _HEAD = f"""# Figures of the paper, drawn anew, and figures beyond it
 
@@ -81,17 +81,13 @@ def as_json(figures: Sequence[Figure]) -> str:
                         "criterion": claim.criterion,
                         "verdict": claim.verdict.value,
                         "evidence": claim.evidence,
-                        "numbers": {name: _finite(value) for name, value in claim.numbers.items()},
+                        "numbers": claim.numbers,
                     }
                     for claim in figure.claims
                 ],
-                "data": {name: [_finite(value) for value in column] for name, column in figure.data.items()},
+                "data": figure.data,
             }
             for figure in figures
         ],
     }
-    return json.dumps(content, indent=1, allow_nan=False) + "\n"
-
-
-def _finite(value: float) -> float | None:
-    return value if math.isfinite(value) else None
+    return json.dumps(json_value(content), indent=1, allow_nan=False) + "\n"

@@ -1,0 +1,5 @@
+"""``python -m hersey.cli``."""
+
+from hersey.cli import main
+
+main()

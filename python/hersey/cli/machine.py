@@ -1,0 +1,248 @@
+"""For a machine described in a file: ``hersey map`` and ``hersey plan``."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from hersey.cli.options import AsJson, FitFile, Force, Reading, SomeLogs, reads_logs
+from hersey.cli.shell import app, bar, command, may_write, working
+from hersey.errors import OutputError, ParameterError, WrongKindError
+
+if TYPE_CHECKING:
+    from hersey.drag import Drag
+    from hersey.fuser import Fuser
+    from hersey.log.torque_log import FloatArray
+    from hersey.plan import Plan
+    from hersey.surface import DampingSurface
+
+#: Kinds of file of the figure.
+SUFFIXES = (".png", ".svg", ".pdf")
+#: Draws of the fit from which those of the plan are taken.
+_DRAWS = 4000
+#: Exit code where no profile exists.
+IMPOSSIBLE = 1
+
+
+@app.command(name="map")
+@reads_logs
+def map_(
+    fuser: Annotated[
+        Path, typer.Argument(metavar="FUSER", help="TOML file of the drivetrain and its limits.")
+    ],
+    reading: Reading,
+    logs: SomeLogs = None,
+    fit_file: FitFile = None,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", help="The picture: .html, .png, .svg or .pdf.  [default: map.html]"),
+    ] = None,
+    as_json: AsJson = False,
+    force: Force = False,
+) -> None:
+    """Map where the belt runs smoothly, sticks and slips, or stalls: temperature across, drive speed up.
+
+    Example: [bold]hersey map examples/fuser.toml examples/bench.csv --tare standing[/bold]
+
+    With --json the whole map goes to stdout, and a picture is drawn only if --out is given.
+    """
+    from hersey.fuser import read_fuser
+    from hersey.map_chart import SUFFIXES, map_chart, rendered_map
+    from hersey.operating_map import operating_map
+    from hersey.report import write_atomically
+
+    picture = out or (None if as_json else Path("map.html"))
+    if picture is not None:
+        if picture.suffix not in SUFFIXES:
+            raise OutputError(f"--out {picture}: name a file that ends in {', '.join(SUFFIXES)}")
+        may_write(picture, force, inputs=[fuser, *(logs or []), *([fit_file] if fit_file else [])])
+    machine = read_fuser(fuser)
+    surface = reading.surface(logs, fit_file)
+    with working("finding the bands"):
+        drawn = operating_map(
+            surface,
+            machine.train,
+            roll_radius=machine.roll_radius,
+            stick_speed=machine.stick_speed,
+            limits=machine.limits,
+            points=machine.points,
+            uncertainty=machine.uncertainty,
+            threads=os.cpu_count() or 1,
+        )
+    if picture is not None:
+        with working("drawing the map"):
+            chart = map_chart(drawn, tooltips=picture.suffix == ".html")
+            write_atomically(picture, rendered_map(chart, picture.suffix), overwrite=True)
+    if as_json:
+        print(json.dumps(drawn.document(), indent=1))
+        return
+    print(drawn.summary())
+    for warning in drawn.warnings:
+        print(f"- {warning}")
+    print(f"map: {picture}")
+
+
+@app.command()
+@reads_logs
+def plan(
+    fuser: Annotated[
+        Path, typer.Argument(metavar="FUSER", help="TOML file of the drivetrain, its limits and uncertainty.")
+    ],
+    reading: Reading,
+    logs: SomeLogs = None,
+    fit_file: FitFile = None,
+    target: Annotated[
+        str, typer.Option(help="Target speed of the belt, as '60 mm/s', or of the roll, as '40 rpm'.")
+    ] = "",
+    at: Annotated[str, typer.Option(help="Temperature, as '150 degC'.")] = "",
+    course: Annotated[
+        Path | None,
+        typer.Option(
+            "--course",
+            metavar="CSV",
+            help="Instead: temperature against time, 'time (s),temperature (degC)'.",
+        ),
+    ] = None,
+    confidence: Annotated[
+        float, typer.Option("--confidence", help="Share of the belts that must run smoothly, 0.5 to 0.999.")
+    ] = 0.95,
+    seed: Annotated[int, typer.Option("--seed", help="Of all random draws.", min=0)] = 1,
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="CSV", help="Write the profile for a motor controller.")
+    ] = None,
+    figure: Annotated[
+        Path | None, typer.Option("--figure", help="Draw profile and motion: .png, .svg or .pdf.")
+    ] = None,
+    as_json: AsJson = False,
+    force: Force = False,
+) -> None:
+    """Find the quickest profile of drive speed from rest that ends smooth, and say how surely it does.
+
+    Example: [bold]hersey plan examples/fuser.toml examples/bench.csv --tare standing --target "60 mm/s"
+    --at "150 degC" --out profile.csv --figure plan.png[/bold]
+
+    Exit code 1 says that no profile exists; then nothing is written.
+    """
+    from hersey.course_file import read_course
+    from hersey.fuser import read_fuser
+    from hersey.plan import plan_profile
+    from hersey.report import write_atomically
+
+    inputs = [fuser, *(logs or []), *(path for path in (fit_file, course) if path is not None)]
+    if figure is not None and figure.suffix not in SUFFIXES:
+        raise OutputError(f"--figure {figure}: name a file that ends in {', '.join(SUFFIXES)}")
+    if out is not None and figure is not None and out.absolute() == figure.absolute():
+        raise OutputError(f"--out and --figure both name {out}: name two files")
+    for path in (out, figure):
+        if path is not None:
+            may_write(path, force, inputs=inputs)
+    if at and course is not None:
+        raise ParameterError("give either --at or --course")
+    machine = read_fuser(fuser)
+    wanted = _target(target, machine)
+    kelvin = _kelvin(at)
+    warming = None if course is None else read_course(course)
+    surface = reading.surface(logs, fit_file)
+    drag, samples = _drag(surface, machine, kelvin, seed, course=warming is not None)
+    with bar("planning", unit="profiles") as progress:
+        found = plan_profile(
+            machine.train,
+            drag,
+            target_speed=wanted,
+            temperature=warming,
+            limits=machine.limits,
+            roll_radius=machine.roll_radius,
+            uncertainty=machine.uncertainty,
+            samples=samples,
+            confidence=confidence,
+            seed=seed,
+            progress=progress,
+        )
+    if found.found and figure is not None:
+        from hersey.charts import rendered
+        from hersey.plan_chart import plan_chart
+
+        with working("drawing"):
+            content = rendered(plan_chart(found, temperature=warming))[figure.suffix.removeprefix(".")]
+        write_atomically(figure, content, overwrite=True)
+    if found.found and out is not None:
+        write_atomically(out, found.table(), overwrite=True)
+    if as_json:
+        typer.echo(json.dumps(found.document() | {"command": command()}, indent=1))
+    else:
+        typer.echo(_text(found))
+        for what, written in (("profile", out), ("figure", figure)):
+            if found.found and written is not None:
+                typer.echo(f"{what}: {written}")
+    if not found.found:
+        raise typer.Exit(IMPOSSIBLE)
+
+
+def _target(text: str, machine: Fuser) -> float:
+    from hersey.units import parse
+
+    if not text:
+        raise ParameterError("give the target: --target '60 mm/s'")
+    try:
+        target = parse("belt speed", text)
+    except WrongKindError:
+        target = parse("speed", text) * machine.roll_radius
+    if not target > 0:
+        raise ParameterError(f"--target is {text}: it must be greater than 0")
+    return target
+
+
+def _kelvin(text: str) -> float | None:
+    from hersey.units import parse
+
+    if not text:
+        return None
+    value = parse("temperature", text)
+    if not value > 0:
+        raise ParameterError(f"--at is {text}: it must be above absolute zero")
+    return value
+
+
+def _drag(
+    surface: DampingSurface, machine: Fuser, kelvin: float | None, seed: int, *, course: bool
+) -> tuple[Drag, dict[str, FloatArray]]:
+    """The fitted drag, at one temperature or varying with it, and draws of what the fit leaves open."""
+    import warnings
+
+    if surface.b is not None and kelvin is None and not course:
+        raise ParameterError("the drag varies with temperature: give --at '150 degC' or --course")
+    if surface.b is None and (kelvin is not None or course):
+        raise ParameterError("the log is isothermal: leave out --at and --course")
+    # One stick speed is known, at the law's reference temperature: it goes with the transition speed.
+    drag = surface.drag(roll_radius=machine.roll_radius, stick_speed=machine.stick_speed)
+    if kelvin is not None:
+        drag = drag.at(kelvin)
+    at = drag.reference_temperature if course else kelvin
+    with warnings.catch_warnings():  # the fit's own command says how many draws have no falling branch
+        warnings.simplefilter("ignore")
+        samples = surface.drag_samples(
+            _DRAWS,
+            seed,
+            roll_radius=machine.roll_radius,
+            stick_speed=drag.stick_speed,
+            temperature=at,
+        )
+    return drag, samples
+
+
+def _text(found: Plan) -> str:
+    lines = [found.verdict()]
+    if found.found:
+        lines += [found.proof(), "", f"  {'time (s)':>12s}  {'drive speed (mm/s)':>18s}"]
+        lines += [f"  {time:12.6g}  {1e3 * value:18.6g}" for time, value in found.rows()]
+        lines.append("")
+        lines += [f"{use.name.replace('_', ' ')}: {use.used:.4g} of {use.limit:.4g}" for use in found.uses]
+        lines += [f"- {warning}" for warning in found.warnings]
+        lines += [f"- {number} of {found.draws} draws: {why}" for why, number in found.failures.items()]
+    fold = f"{1e3 * found.fold_speed:.4g}"
+    lines.append(f"nominal transition speed {1e3 * found.transition_speed:.4g} mm/s, V* {fold} mm/s")
+    return "\n".join([*lines, f"seed {found.seed}"])

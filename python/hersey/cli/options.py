@@ -1,0 +1,124 @@
+"""Options that several commands share, and the reading of a log by them."""
+
+from __future__ import annotations
+
+import functools
+import inspect
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
+
+import typer
+
+from hersey.cli.shell import bar, working
+
+if TYPE_CHECKING:
+    from hersey.log import TorqueLog
+    from hersey.steady import SteadyPoints
+    from hersey.surface import DampingSurface
+
+Logs = Annotated[list[Path], typer.Argument(metavar="LOG...", help="Log file, or several of one machine.")]
+SomeLogs = Annotated[
+    list[Path] | None, typer.Argument(metavar="[LOG]...", help="Log file, or several of one machine.")
+]
+FitFile = Annotated[
+    Path | None,
+    typer.Option("--fit", metavar="JSON", help="Instead of a log: what hersey fit --json printed."),
+]
+AsJson = Annotated[bool, typer.Option("--json", help="Print the whole result as JSON.")]
+Force = Annotated[bool, typer.Option("--force", help="Replace files that exist.")]
+
+
+@dataclass(frozen=True)
+class Reading:
+    """The options that say how a log is read and reduced to dwells."""
+
+    torque: Annotated[str, typer.Option(help="Name of the torque column, as 'Tq' or 'Tq (ozf.in)'.")] = ""
+    torque_unit: Annotated[
+        str, typer.Option(help="Unit of torque, may carry a factor: '9.84 mN*m / 100' for %.")
+    ] = ""
+    speed: Annotated[str, typer.Option(help="Name of the speed column.")] = ""
+    speed_unit: Annotated[str, typer.Option(help="Unit of speed, as 'rpm'; '-1 rpm' turns the sign.")] = ""
+    temperature: Annotated[str, typer.Option(help="Name of the temperature column.")] = ""
+    temperature_unit: Annotated[str, typer.Option(help="Unit of temperature, as 'degC'.")] = ""
+    time: Annotated[str, typer.Option(help="Name of the time column.")] = ""
+    time_unit: Annotated[str, typer.Option(help="Unit of time, as 's' or 'ms'.")] = ""
+    isothermal: Annotated[
+        bool, typer.Option("--isothermal", help="Leave temperature out: fit B = a w^c.")
+    ] = False
+    drop_missing: Annotated[
+        bool, typer.Option("--drop-missing", help="Leave out rows in which a number is missing.")
+    ] = False
+    min_dwell: Annotated[str, typer.Option(help="Shortest dwell, with its unit.")] = "2 s"
+    tare: Annotated[str, typer.Option(help="none, or standing: subtract the torque read while standing.")] = (
+        "none"
+    )
+    rotation: Annotated[str, typer.Option(help="both, forward or reverse: dwells to use.")] = "both"
+    temperature_scale: Annotated[str, typer.Option(help="degC or K: scale of T in B = a T^b w^c.")] = "degC"
+
+    def log(self, paths: list[Path]) -> TorqueLog:
+        """Read the files as one log, with a progress bar."""
+        from hersey.log import read
+
+        roles = ("time", "torque", "speed", "temperature")
+        with bar("reading") as progress:
+            return read(
+                paths,
+                channels={role: getattr(self, role) for role in roles if getattr(self, role)},
+                units={
+                    role: getattr(self, f"{role}_unit") for role in roles if getattr(self, f"{role}_unit")
+                },
+                isothermal=self.isothermal,
+                drop_missing=self.drop_missing,
+                progress=progress,
+            )
+
+    def points(self, log: TorqueLog) -> SteadyPoints:
+        """Reduce the log to dwells."""
+        from hersey.units import parse
+
+        return log.steady(min_dwell=parse("time", self.min_dwell), tare=self.tare, rotation=self.rotation)
+
+    def surface(self, paths: list[Path] | None, fit_file: Path | None) -> DampingSurface:
+        """Read a finished fit, or fit the log."""
+        from hersey.errors import ParameterError
+        from hersey.fit_file import read_fit
+        from hersey.surface import fit
+
+        if (fit_file is None) == (not paths):
+            raise ParameterError("give either a LOG or --fit with what 'hersey fit LOG --json' printed")
+        if fit_file is not None:
+            if self != Reading():
+                raise ParameterError(
+                    "--fit holds a finished fit: leave out the options that say how to read a log"
+                )
+            return read_fit(fit_file)
+        log = self.log(paths or [])
+        with working("fitting the surface"):
+            return fit(self.points(log), temperature_scale=self.temperature_scale)
+
+
+def reads_logs(command: Callable[..., None]) -> Callable[..., None]:
+    """Give a command with a parameter ``reading`` the options of `Reading`, before ``--json``."""
+    own = inspect.signature(command, eval_str=True).parameters
+    types = get_type_hints(Reading, include_extras=True)
+    keyword = inspect.Parameter.KEYWORD_ONLY
+    options = [
+        inspect.Parameter(field.name, keyword, default=field.default, annotation=types[field.name])
+        for field in fields(Reading)
+    ]
+    before = [p.replace(kind=keyword) for name, p in own.items() if name not in ("reading", *_LAST)]
+    after = [p.replace(kind=keyword) for name, p in own.items() if name in _LAST]
+
+    @functools.wraps(command)
+    def read(**given: Any) -> None:
+        reading = Reading(**{option.name: given.pop(option.name) for option in options})
+        command(reading=reading, **given)
+
+    read.__signature__ = inspect.Signature([*before, *options, *after])  # type: ignore[attr-defined]
+    return read
+
+
+#: Options at the end of every help.
+_LAST = ("as_json", "force")
