@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 import hersey
 from hersey.errors import ParameterError
+from hersey.spread import Spread
 
 TRAIN = hersey.Drivetrain(1000, 1)
 DRAG = hersey.Drag(50, 1, ehl_exponent=-0.7, mixed_exponent=-1.2, stick_speed=0.01)
@@ -137,14 +138,14 @@ def test_bands_agree_with_brute_force() -> None:
 
 @pytest.mark.parametrize("closure", ["stribeck", "lugre"])
 def test_smooth_closures(closure: str) -> None:
-    extra = {"bristle_stiffness": 1e4, "bristle_damping": 30.0} if closure == "lugre" else {}
+    extra = {"bristle_stiffness": 5e3, "bristle_damping": 30.0} if closure == "lugre" else {}
     drag = replace(DRAG, closure=closure, **extra)
     band = hersey.hysteresis(TRAIN, drag)
     assert band.method == "simulation"
     assert band.sensitivity == {}
     for factor, sticks in ((0.999, True), (1.001, False)):
         cycle = hersey.stick_slip(TRAIN, drag, drive_speed=factor * band.upper)
-        assert (cycle.kind != "steady_sliding") == sticks
+        assert (cycle.kind == "stick_slip") == sticks
     if closure == "stribeck":  # above the stick speed its drag is that of the others
         sharp = hersey.hysteresis(TRAIN, DRAG).lower
         assert band.lower == pytest.approx(sharp, rel=1e-6)
@@ -257,3 +258,19 @@ def test_what_is_out_of_range_is_refused_by_name() -> None:
         hersey.hysteresis(TRAIN, DRAG, tolerance=0.0)
     with pytest.raises(ParameterError, match="tolerance"):
         hersey.hysteresis_sweep(TRAIN, DRAG, tolerance=float("nan"))
+
+
+def test_the_interval_of_a_fit_reaches_the_band(points: hersey.SteadyPoints) -> None:
+    """Draws of the fit's covariance widen V*; those of the stick speed widen it further."""
+    surface = hersey.fit(points)
+    drag = surface.drag(roll_radius=0.015, stick_speed=3e-4).at(453.15)
+    draws = surface.drag_samples(400, 1, roll_radius=0.015, stick_speed=drag.stick_speed, temperature=453.15)
+    train = hersey.Drivetrain(11e3, 11.0)
+    fitted = hersey.hysteresis(train, drag, samples=draws)
+    assert fitted.interval is not None
+    low, high = fitted.interval
+    assert low < fitted.upper < high
+    stick = Spread(share=1.0).draw(np.random.default_rng(2), drag.stick_speed, 400)
+    wider = hersey.hysteresis(train, drag, samples=draws | {"stick_speed": stick}).interval
+    assert wider is not None
+    assert wider[1] - wider[0] > high - low
