@@ -25,7 +25,7 @@ from hersey.schedule import Schedule
 from hersey.spread import Spread
 
 #: Probability with which a profile that passes keeps its confidence: high, for the search tries many.
-_LEVEL = 0.999
+_LEVEL = 0.99
 #: Draws of the search that may fail; none where the confidence asks for thousands of draws.
 _ALLOWED, _STRICT = 2, 0.99
 #: Level of the bound of the share that is stated, and least number of fresh draws behind it.
@@ -33,7 +33,7 @@ _STATED, _FRESH = 0.95, 1000
 #: Profiles verified before giving up; after each the search takes the draws it failed on.
 _VERIFIED = 5
 #: Share of the failures that a verification lets pass which the search allows after one, two...
-_STRICTER = 0.8
+_STRICTER = (0.8, 0.8, 0.7, 0.5)
 #: Tolerance of the verification.
 _TIGHT = 1e-11
 #: Peak speeds are sought up to this many fold speeds (or transition speeds) if the drive has no limit.
@@ -143,7 +143,9 @@ def plan_profile(
             if proof.accepted:
                 facts |= {"tried": search.count, "warnings": _warnings(limits, proof.peak_force)}
                 return _found(nominal, shape, course, proof, reach, facts)
-            share = _STRICTER**number * most_failures(confidence, _LEVEL, proof.draws) / proof.draws
+            if number == _VERIFIED:
+                break
+            share = _STRICTER[number - 1] * most_failures(confidence, _LEVEL, proof.draws) / proof.draws
             known = len(search.trials.machines) + proof.draws
             shape = search.again(proof.machines, math.floor(share * known))
         reasons = obstacles(search, limits, reach, wide, searched=True)

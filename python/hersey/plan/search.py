@@ -30,14 +30,18 @@ _PEAKS = 10
 #: Profiles tried at random below the best found, and steps of the refinement as shares of its duration.
 _RANDOM = 600
 _STEPS = (0.15, 0.06, 0.025, 0.01, 0.004, 0.0015)
-#: Factors by which hold and fall of failed profiles become longer.
-_LONGER = (1.0, 1.1, 1.3, 2.0)
+#: Factors by which rise, hold and fall of failed profiles become longer.
+_LONGER = (1.0, 1.02, 1.05, 1.1, 1.2, 1.4, 2.0)
+#: Profiles of the grid so much slower than the best are starts too, those of them that differ by a share.
+_NEAR, _APART, _STARTS = 1.03, 0.15, 5
+#: Profiles that differ, kept for the search after a failed verification.
+_KEPT = 12
 #: Best profiles refined, others of the grid so much slower at most, steps at random, draws of a step.
-_BEST, _OTHERS, _VALLEYS, _TRIES, _DRAWS = 2, 9, 1.15, 160, 6
+_BEST, _OTHERS, _VALLEYS, _TRIES, _DRAWS = 3, 9, 1.15, 160, 6
 #: Profiles tried for the number that would do, those tried on all machines, and waits among them.
 _PROBES, _PROBED, _FEW_WAITS = 4000, 200, 5
 #: Speeds and durations within this factor are the same, and relative time that a simpler profile may cost.
-_SAME, _SAME_TIME = 1.01, 1e-3
+_SAME, _SAME_TIME = 1.01, 1e-5
 #: Waits of the grid over a course, and share of the profile's duration to which a wait is found.
 _WAITS = 24
 #: Profiles of the grid after each of several waits, and of the slow grid.
@@ -86,6 +90,7 @@ class Search:
         self.best: Shape | None = None
         self.time = math.inf
         self.found: list[tuple[float, Shape]] = []
+        self.known: list[Shape] = []
         self.count = 0
 
     def run(self, *, again: bool = False) -> Shape | None:
@@ -97,27 +102,33 @@ class Search:
         if self.best is None:
             return None
         self._at_random()
-        starts = sorted(self.found, key=_time)[:_BEST]
+        starts = self._apart(_STARTS)
         if not again:
             starts += self._others()
         rng = np.random.default_rng([self.seed, 8])
+        valleys = []
         for i, start in enumerate(starts):
             self._report(i, len(starts))
-            self._wander(start, rng, _TRIES)
-        self._polish(rng)
+            valleys.append(self._wander(start, rng))
+        for valley in sorted(valleys, key=_time)[:_BEST]:
+            self._descend(valley)
+        self._wander((self.time, self.best), rng)
+        self._simplify()
         return self.best
 
     def again(self, machines: Sequence[Machine], allowed: int) -> Shape | None:
         """Return the quickest profile that works on these machines too, all but the allowed."""
         everyone = [*self.trials.machines, *machines]
         self.trials = Trials(everyone, allowed, self.course, self.trials.force_limit)
-        before = [shape for _, shape in sorted(self.found, key=_time)]
+        self.known += [shape for _, shape in self._apart(_KEPT)]
         self.found, self.best, self.time = [], None, math.inf
-        for longer in _LONGER:
-            for shape in before:
-                self.attempt(replace(shape, hold=shape.hold * longer, fall=shape.fall * longer))
-            if self.best is not None:
-                break
+        longer = {
+            replace(shape, rise=shape.rise * up, hold=shape.hold * on, fall=shape.fall * down)
+            for shape in self.known
+            for up, on, down in itertools.product(_LONGER, repeat=3)
+        }
+        for shape in sorted(longer, key=lambda shape: shape.end):
+            self.attempt(shape)
         return self.run(again=True)
 
     def least(self, demand: Callable[[Shape, Outcome], float]) -> tuple[float, Shape] | None:
@@ -189,9 +200,9 @@ class Search:
         time = self.trials.time(shape, below)
         if time >= below:
             return math.inf
+        self.found.append((time, shape))
         if time < self.time:
             self.best, self.time = shape, time
-            self.found.append((time, shape))
         return time
 
     def _report(self, done: int, total: int) -> None:
@@ -220,7 +231,7 @@ class Search:
                 break
             if j % 64 == 0:
                 self._report(done + j, total)
-            self.attempt(moved)
+            self.attempt(moved, self.time * _NEAR)
         return self.time < before
 
     def _may_start(self, wait: float) -> bool:
@@ -287,12 +298,22 @@ class Search:
                 found.append((time, moved))
         return found
 
-    def _wander(self, start: tuple[float, Shape], rng: np.random.Generator, tries: int) -> None:
+    def _apart(self, count: int) -> list[tuple[float, Shape]]:
+        """The quickest of the profiles found that differ from one another."""
+        chosen: list[tuple[float, Shape]] = []
+        for time, shape in sorted(self.found, key=_time):
+            if all(_differ(shape, other) for _, other in chosen):
+                chosen.append((time, shape))
+                if len(chosen) == count:
+                    break
+        return chosen
+
+    def _wander(self, start: tuple[float, Shape], rng: np.random.Generator) -> tuple[float, Shape]:
         """Step at random, far and near, and keep what makes the profile quicker."""
         time, shape = start
         span = max(self.room.speed - self.target, 0.0)
         low, high = np.log(_STEPS[-1]), np.log(2.0 * _STEPS[0])
-        for _ in range(tries):
+        for _ in range(_TRIES):
             moved = shape
             for _ in range(_DRAWS):
                 step = np.exp(rng.uniform(low, high))
@@ -305,15 +326,16 @@ class Search:
             found = self.attempt(moved, time)
             if found < time:
                 time, shape = found, moved
+        return time, shape
 
-    def _polish(self, rng: np.random.Generator) -> None:
-        """Step along every combination of the numbers of the best, ever finer, then at random."""
+    def _descend(self, valley: tuple[float, Shape]) -> None:
+        """Step along every combination of the numbers of a profile, ever finer."""
+        time, shape = valley
         for step in _STEPS:
-            while self._stepped(step):
-                pass
-        assert self.best is not None
-        self._wander((self.time, self.best), rng, _TRIES)
-        self._simplify()
+            moved: tuple[float, Shape] | None = (time, shape)
+            while moved is not None:
+                time, shape = moved
+                moved = self._stepped(time, shape, step)
 
     def _simplify(self) -> None:
         """Leave out what is too short to matter: an overshoot, a hold."""
@@ -329,15 +351,14 @@ class Search:
         if time < self.time * (1.0 + _SAME_TIME):
             self.best, self.time = shape, time
 
-    def _stepped(self, step: float) -> bool:
-        assert self.best is not None
-        shape, span = self.best, step * max(self.room.speed - self.target, 0.0)
-        size = step * shape.ramps
+    def _stepped(self, time: float, shape: Shape, step: float) -> tuple[float, Shape] | None:
+        span, size = step * max(self.room.speed - self.target, 0.0), step * shape.ramps
         for up, rise, hold, fall in itertools.product((0, -1, 1), repeat=4):
             moved = self._moved(shape, up * span, rise * size, hold * size, fall * size, 0.0)
-            if self.attempt(moved) < math.inf:
-                return True
-        return False
+            found = self.attempt(moved, time)
+            if found < time:
+                return found, moved
+        return None
 
     def _moved(self, shape: Shape, up: float, rise: float, hold: float, fall: float, wait: float) -> Shape:
         """The profile with its numbers changed by so much, kept within the room."""
@@ -361,3 +382,8 @@ class Search:
 
 def _time(row: tuple[float, Shape]) -> float:
     return row[0]
+
+
+def _differ(one: Shape, other: Shape) -> bool:
+    pairs = ((one.rise, other.rise), (one.hold, other.hold), (one.fall, other.fall))
+    return max(abs(a - b) for a, b in pairs) > _APART * other.ramps
