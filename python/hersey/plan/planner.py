@@ -25,11 +25,11 @@ from hersey.schedule import Schedule
 from hersey.spread import Spread
 
 #: Probability with which a profile that passes keeps its confidence: high, for the search tries many.
-_LEVEL = 0.99
+_LEVEL = 0.999
 #: Draws of the search that may fail; none where the confidence asks for thousands of draws.
 _ALLOWED, _STRICT = 2, 0.99
 #: Level of the bound of the share that is stated, and least number of fresh draws behind it.
-_STATED, _FRESH = 0.95, 1000
+_STATED, _FRESH = 0.95, 1500
 #: Profiles verified before giving up; after each the search takes the draws it failed on.
 _VERIFIED = 5
 #: Share of the failures that a verification lets pass which the search allows after one, two...
