@@ -17,7 +17,8 @@ import typer
 from hersey.cli import app
 from tests.conftest import ROOT
 
-COMMANDS = ["report", "fit", "simulate", "sweep", "hysteresis", "map", "plan", "figures", "testbench"]
+COMMANDS = ["inspect", "report", "fit", "models", "design", "compare", "cycles"]
+COMMANDS += ["simulate", "sweep", "hysteresis", "map", "plan", "figures", "testbench"]
 HERSEY = [sys.executable, "-m", "hersey.cli"]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -225,3 +226,125 @@ def test_many_files_are_runs_of_one_machine(tmp_path: Path) -> None:
     assert log.files[0].comments == ("a.csv",)
     with pytest.raises(hersey.HerseyError, match="each file once"):
         hersey.read([tmp_path / "a.csv", tmp_path / "a.csv"])
+
+
+def clock(style: str) -> str:
+    """The rows of the table with their times written in another way."""
+    return "".join(
+        f"{style.format(int(10 * float(row.split(',')[0])))},{row.partition(',')[2]}\n"
+        for row in plain().split()
+    )
+
+
+QUIRKS = {
+    "quoted decimal commas": HEADER
+    + "".join(
+        ",".join(f'"{cell}"' for cell in row.replace(".", ",").split(";")) + "\n"
+        for row in plain(";").split()
+    ),
+    "thousands point": HEADER.replace(",", ";").replace("Torque [N.m]", "Torque [uN.m]")
+    + "0,0;500.000,0;60,0;150,0\n0,1;625.000,0;61,5;151,25\n0,2;750.000;63,0;149,5\n",
+    "repeated names": "Time [s],Torque [N.m],Speed [rpm],Temp [degC],Temp [V]\n"
+    + plain().replace("\n", ",7\n"),
+    "summary rows": HEADER + plain() + "Mean,0.6,61,150\nTest completed at 21:02:28\n",
+    "summary behind a blank line": HEADER + plain() + "\nMax,0.75,63,151\n",
+    "nan spellings elsewhere": HEADER.replace("\n", ",Load [N]\n") + "0.0,0.5,60,150,1.#QNAN\n"
+    "0.1,0.625,61.5,151.25,OVERLOAD\n0.2,0.75,63,149.5,-nan(ind)\n",
+    "ISO time": HEADER.replace("Time [s]", "Timestamp") + clock("2024-03-01T23:59:59.{0}00"),
+    "ISO time with a blank and a zone": HEADER.replace("Time [s]", "Time")
+    + clock("2024/03/01 23:59:59.{0}+01:00"),
+    "German time": HEADER.replace("Time [s]", "Zeit") + clock("01.03.2024 23:59:59.{0}"),
+    "time of day": HEADER.replace("Time [s]", "Time [hh:mm:ss]") + clock("8:00:00.{0}"),
+    "seconds since 1970": HEADER.replace("Time [s]", "t") + clock("1709330000.{0}"),
+    "milliseconds since 1970": HEADER.replace("Time [s]", "timestamp") + clock("1709330000{0}00"),
+    "days of Excel": HEADER.replace("Time [s]", "Date time")
+    + "45352.0,0.5,60,150\n45352.000001157407,0.625,61.5,151.25\n45352.000002314815,0.75,63.0,149.5\n",
+    "no-break blanks as thousands mark": HEADER.replace(",", ";").replace("rpm", "1e-3 rpm")
+    + "0,0;0,5;60\u00a0000;150\n0,1;0,625;61\u00a0500;151,25\n0,2;0,75;63\u202f000;149,5\n",
+    "thousands commas": HEADER.replace("rpm", "1e-3 rpm")
+    + '0.0,0.5,"60,000.0",150\n0.1,0.625,"61,500.0",151.25\n0.2,0.75,"63,000.0",149.5\n',
+}
+
+
+@pytest.mark.parametrize(
+    ("encoding", "size"), [("utf-8", 1 << 25), ("utf-8", 100), ("utf-16", 100), ("utf-16-le", 100)]
+)
+@pytest.mark.parametrize("quirk", QUIRKS)
+def test_quirk(quirk: str, encoding: str, size: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(delimited, "BLOCK", size)
+    path = tmp_path / "log.csv"
+    path.write_bytes(QUIRKS[quirk].encode(encoding))
+    log = hersey.read(path)
+    (run,), (file,) = log.runs, log.files
+    assert_same(hersey.TorqueLog((replace(run, time=np.round(run.time - run.time[0], 5)),), log.files))
+    told = {
+        "summary": "below the table",
+        "time": "read in s since",
+        "since": "was read as",
+        "Excel": "was read as",
+    }
+    for word, says in told.items():
+        if word in quirk.split():
+            assert any(says in note for note in file.notes), file.notes
+
+
+def test_a_time_of_day_passes_midnight(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text(
+        HEADER.replace("Time [s]", "Time") + "23:59:59.5,1,60,150\n23:59:59.9,1,60,150\n00:00:00.3,1,60,150\n"
+    )
+    log = hersey.read(path)
+    np.testing.assert_allclose(log.runs[0].time, [0, 0.4, 0.8], atol=1e-9)
+    assert "past midnight 1 time" in log.files[0].notes[0]
+
+
+@pytest.mark.parametrize("code", ["cp1252", "latin-1"])
+def test_western_encodings(code: str, tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_bytes(("# Prüfstand 10 µm\n" + HEADER.replace("degC", "°C") + plain()).encode(code))
+    log = hersey.read(path)
+    assert_same(log)
+    assert log.files[0].comments == ("Prüfstand 10 µm",)
+
+
+def test_a_repeated_name_is_chosen_by_its_place(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text("t [s],Torque [N*m],Speed [rpm],Temp [degC],Torque [N*m]\n0,1,3,4,7\n1,1,3,4,8\n")
+    with pytest.raises(ChannelError, match="'Torque#1' or 'Torque#2'"):
+        hersey.read(path)
+    assert list(hersey.read(path, channels={"torque": "Torque#2"}).runs[0].torque) == [7, 8]
+    with pytest.raises(ChannelError, match="no column 'Torque#3'"):
+        hersey.read(path, channels={"torque": "Torque#3"})
+    assert [name for name, _ in hersey.log.list_channels(path)] == [
+        "t",
+        "Torque#1",
+        "Speed",
+        "Temp",
+        "Torque#2",
+    ]
+
+
+def test_a_stopwatch_is_not_taken_for_excel(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text("Time,Torque [N*m],Speed [rpm],Temp [degC]\n45352,1,3,4\n45353,1,3,4\n")
+    with pytest.raises(UnitError, match="'Time' has no unit"):
+        hersey.read(path)
+
+
+@pytest.mark.parametrize("last", ["0.3,0.5,60", "0.3,0.5,60,", "0.3,0.5,60,-", "0."])
+def test_a_last_row_cut_off_is_left_out(last: str, tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text(HEADER + plain() + last)
+    log = hersey.read(path)
+    np.testing.assert_allclose(log.runs[0].time, [0, 0.1, 0.2])
+    assert log.files[0].cut_off
+    assert f"'{last}', was cut off" in log.files[0].notes[0]
+
+
+def test_a_number_that_reads_in_two_ways_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text(
+        HEADER.replace(",", ";") + "0,0;0,5;60,5;150,5\n0,1;0,5;1.299;150,5\n0,2;0,5;60,5;150,5\n"
+    )
+    with pytest.raises(hersey.HerseyError, match=r"line 3, column 'Speed': '1\.299' is not a number"):
+        hersey.read(path)

@@ -488,12 +488,13 @@ def _regime_part(r: Regime) -> RegimePart:
 def _warnings(
     log: TorqueLog, points: SteadyPoints, surface: DampingSurface, fuser: Fuser | None
 ) -> list[str]:
-    out = []
+    out = [f"Corrected: {correction}." for correction in log.corrections]
     for file, run in zip(log.files, log.runs, strict=True):
         if any("synthetic" in comment.lower() for comment in file.comments):
             out.append(f"{file.name} is synthetic, by its own words: no measurement.")
         if file.cut_off:
-            out.append(f"{file.name}: the last line has no end and is shorter than the one before: cut off?")
+            out.append(f"{file.name}: the file ends before its time.")
+        out += [f"{file.name}: {note}." for note in file.notes]
         if file.missing_rows:
             out.append(f"{file.name}: {file.missing_rows} rows without a number were left out, as asked.")
         if run.gaps():

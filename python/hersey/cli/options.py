@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import inspect
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
 
@@ -44,6 +44,13 @@ class Reading:
     temperature_unit: Annotated[str, typer.Option(help="Unit of temperature, as 'degC'.")] = ""
     time: Annotated[str, typer.Option(help="Name of the time column.")] = ""
     time_unit: Annotated[str, typer.Option(help="Unit of time, as 's' or 'ms'.")] = ""
+    mapping: Annotated[
+        str,
+        typer.Option(
+            metavar="TOML",
+            help="Roles, units and corrections of the channels.  [default: hersey.toml beside the log]",
+        ),
+    ] = ""
     isothermal: Annotated[
         bool, typer.Option("--isothermal", help="Leave temperature out: fit B = a w^c.")
     ] = False
@@ -59,12 +66,13 @@ class Reading:
 
     def log(self, paths: list[Path]) -> TorqueLog:
         """Read the files as one log, with a progress bar."""
-        from hersey.log import read
+        from hersey.log_mapping import read_with_mapping
 
         roles = ("time", "torque", "speed", "temperature")
         with bar("reading") as progress:
-            return read(
+            done = read_with_mapping(
                 paths,
+                mapping=self.mapping or None,
                 channels={role: getattr(self, role) for role in roles if getattr(self, role)},
                 units={
                     role: getattr(self, f"{role}_unit") for role in roles if getattr(self, f"{role}_unit")
@@ -73,6 +81,7 @@ class Reading:
                 drop_missing=self.drop_missing,
                 progress=progress,
             )
+        return replace(done.log, corrections=done.corrections)
 
     def points(self, log: TorqueLog) -> SteadyPoints:
         """Reduce the log to dwells."""

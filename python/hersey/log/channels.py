@@ -13,11 +13,13 @@ from hersey.units import KINDS, Conversion, conversion
 ROLES = ("time", "torque", "speed", "temperature")
 
 _NAMES = {
-    "time": r"t|time.*|.*\btime|zeit|timestamp|elapsed.*|.*seconds",
+    "time": r"t|time.*|.*\btime|.*datetime|.*zeit|timestamp|elapsed.*|.*seconds|epoch.*|unix.*",
     "torque": r".*torque.*|tq.*|.*\btq|.*moment.*|m",
     "speed": r".*speed.*|.*velocity.*|.*rpm.*|.*omega.*|.*drehzahl.*|n|w|ω",
     "temperature": r".*temp.*|.*thermistor.*|.*heater.*|.*thermocouple.*|.*film t.*",
 }
+#: Columns named in a message at the most.
+_SHOWN = 40
 _SETPOINT = re.compile(r"\b(set|cmd|command|commanded|target|demand|reference|soll|nominal)", re.IGNORECASE)
 
 
@@ -53,36 +55,60 @@ def find_channel(
         return None
     if len(candidates) > 1:
         listed = " or ".join(f"'{c}'" for c in candidates)
-        if len({c.name for c in candidates}) == 1:
-            raise ChannelError(
-                f"{file}: {len(candidates)} columns are called '{candidates[0].name}': rename one"
-            )
-        raise ChannelError(f"{file}: {role} could be {listed}: choose with --{role} '{candidates[0].name}'")
+        if len({c.path for c in candidates}) == 1:
+            raise _repeated(role, candidates, file)
+        raise ChannelError(f"{file}: {role} could be {listed}: choose with --{role} '{candidates[0].path}'")
     return _with_unit(role, candidates[0], choice, file)
 
 
 def no_channel(role: str, columns: tuple[Column, ...], file: str) -> ChannelError:
     """Return the error for a role that no column plays."""
-    listed = ", ".join(f"'{c}'" for c in columns)
-    return ChannelError(f"{file}: no {role} column among {listed}: name it with --{role}")
+    return ChannelError(f"{file}: no {role} column among {_listed(columns)}: name it with --{role}")
 
 
 def _named(role: str, columns: tuple[Column, ...], name: str, file: str) -> Column:
     def spellings(c: Column) -> set[str]:
-        return {c.name, str(c), f"{c.name} ({c.unit})"}
+        return {
+            c.name,
+            c.path,
+            str(c),
+            f"{c.path} ({c.unit})",
+            f"{c.name} ({c.unit})",
+            f"{c.name} [{c.unit}]",
+        }
 
     found = [c for c in columns if name in spellings(c)]
     found = found or [c for c in columns if name.lower() in {s.lower() for s in spellings(c)}]
+    repeated = re.fullmatch(r"(.+)#([1-9]\d?)", name)
+    if not found and repeated:  # the second column of a name is name#2
+        found = [c for c in columns if repeated[1].lower() in {s.lower() for s in spellings(c)}]
+        found = found[int(repeated[2]) - 1 : int(repeated[2])]
     if not found:
-        listed = ", ".join(f"'{c}'" for c in columns)
-        raise ChannelError(f"{file}: --{role}: there is no column '{name}'; the file has {listed}")
+        raise ChannelError(f"{file}: --{role}: there is no column '{name}'; the file has {_listed(columns)}")
+    if len(found) > 1 and len({c.path for c in found}) == 1:
+        raise _repeated(role, found, file)
     if len(found) > 1:
-        raise ChannelError(f"{file}: --{role}: {len(found)} columns are called '{name}': rename one")
+        listed = " or ".join(f"'{c}'" for c in found)
+        raise ChannelError(f"{file}: --{role}: '{name}' could be {listed}: say --{role} '{found[0].path}'")
     return found[0]
+
+
+def _repeated(role: str, columns: list[Column], file: str) -> ChannelError:
+    path = columns[0].path
+    listed = " or ".join(f"'{path}#{i + 1}'" for i in range(len(columns)))
+    return ChannelError(f"{file}: {len(columns)} columns are called '{path}': choose with --{role} {listed}")
+
+
+def _listed(columns: tuple[Column, ...]) -> str:
+    """Columns with their units, the first of them where there are very many."""
+    listed = ", ".join(f"'{c}'" for c in columns[:_SHOWN])
+    return listed + (f" and {len(columns) - _SHOWN} more" if len(columns) > _SHOWN else "")
 
 
 def _could_be(role: str, column: Column, surely: bool = False) -> bool:
     """Whether the unit allows the role; one that is missing or unknown does, unless asked to be sure."""
+    if role == "time" and re.search("rad|rev|turn", column.unit):  # angles have no dimension
+        return False
     try:
         return bool(column.unit and conversion(role, column.unit)) or not surely
     except WrongKindError:
@@ -96,10 +122,10 @@ def _with_unit(role: str, column: Column, choice: ChannelChoice, file: str) -> t
     if not unit:
         example = KINDS[role][1]
         raise UnitError(
-            f"{file}: column '{column.name}' has no unit: write '{column.name} [{example}]' in the header, "
+            f"{file}: column '{column.path}' has no unit: write '{column.name} [{example}]' in the header, "
             f"add a row of units, or say --{role}-unit '{example}'"
         )
     try:
         return column, conversion(role, unit)
     except UnitError as error:
-        raise UnitError(f"{file}: column '{column.name}': {error}") from None
+        raise UnitError(f"{file}: column '{column.path}': {error}") from None

@@ -18,13 +18,14 @@ import polars as pl
 
 from hersey.errors import ChannelError, MissingFileError, UnreadableLogError
 from hersey.log.channels import ROLES, ChannelChoice, find_channel, no_channel
-from hersey.log.layout import MISSING, SNIFFED, Column, Layout, find_layout, is_missing, is_number, split
-from hersey.log.torque_log import Channel, FloatArray, LogFile, Run
+from hersey.log.footer import end_of_table
+from hersey.log.layout import SNIFFED, Column, Layout, find_layout, split
+from hersey.log.numbers import MISSING, is_missing
+from hersey.log.stamps import Stamps
+from hersey.log.torque_log import LARGEST, Channel, FloatArray, LogFile, Run
 from hersey.units import Conversion
 
 BLOCK = 1 << 25
-#: No quantity of a drive comes near this, in SI.
-LARGEST = 1e12
 
 Progress = Callable[[int, int], None]
 _NULLS = sorted({s for word in MISSING for s in (word, word.upper(), word.capitalize())} | {"NaN"})
@@ -47,26 +48,43 @@ def read_delimited(
     """
     name = path.name
     try:
-        if path.exists() and not path.is_file():
-            what = "a directory: name the log files in it" if path.is_dir() else "no ordinary file"
-            raise MissingFileError(f"{path} is {what}")
         size = path.stat().st_size
         with path.open("rb") as file:
             layout = find_layout(file.read(SNIFFED), name)
+            end = end_of_table(file, size, layout)
             table = _Table(name, layout, _channels(layout, choices, isothermal, name), drop_missing)
             file.seek(0)
-            table.read(file, size, progress)
-    except MissingFileError:
-        raise
-    except FileNotFoundError:
-        raise MissingFileError(f"{path}: there is no such file") from None
+            table.read(file, end.byte, size, progress)
     except OSError as error:
         raise MissingFileError(f"{path} cannot be read: {error.strerror}") from None
     arrays = table.arrays()
     run = Run(name, arrays["time"], arrays["torque"], arrays["speed"], arrays.get("temperature"))
     channels = tuple(Channel(role, column.name, si.unit) for role, (column, si) in table.found.items())
-    digest, missing = table.digest.hexdigest(), table.missing
-    return run, LogFile(name, digest, size, run.time.size, missing, channels, layout.comments, table.cut_off)
+    log = LogFile(
+        name,
+        table.digest.hexdigest(),
+        size,
+        run.time.size,
+        table.missing,
+        channels,
+        layout.comments,
+        end.cut_off,
+        (*layout.notes, *table.notes(), *end.notes),
+    )
+    return run, log
+
+
+def delimited_columns(path: Path) -> tuple[Column, ...]:
+    """Return the columns of a text file that hold numbers or time stamps.
+
+    Raises
+    ------
+    UnreadableLogError
+        If the file holds no table.
+    """
+    with path.open("rb") as file:
+        layout = find_layout(file.read(SNIFFED), path.name)
+    return tuple(column for column in layout.columns if column.index not in layout.texts)
 
 
 def _channels(
@@ -74,13 +92,14 @@ def _channels(
 ) -> dict[str, tuple[Column, Conversion]]:
     if isothermal and choices["temperature"] != ChannelChoice():
         raise ChannelError("--isothermal leaves temperature out: give no --temperature beside it")
+    used = [role for role in ROLES if not (role == "temperature" and isothermal)]
+    if layout.headless and not all(choices[role].name for role in used):
+        raise UnreadableLogError(layout.headless)
     found: dict[str, tuple[Column, Conversion]] = {}
-    for role in ROLES:
-        if role == "temperature" and isothermal:
-            continue
-        channel = find_channel(role, layout.columns, choices[role], name)
+    for role in sorted(used, key=lambda r: r != "torque"):  # without it the rest is of no use
+        channel = find_channel(role, layout.named, choices[role], name)
         if channel is None:
-            error = no_channel(role, layout.columns, name)
+            error = no_channel(role, layout.named, name)
             if role == "temperature":
                 error.args = (*error.args, "or say --isothermal to leave temperature out")
             raise error
@@ -88,7 +107,7 @@ def _channels(
         if other:
             raise ChannelError(f"{name}: column '{channel[0]}' cannot be both {other} and {role}")
         found[role] = channel
-    return found
+    return {role: found[role] for role in used}
 
 
 @dataclass
@@ -112,23 +131,27 @@ class _Table:
         self.parts: dict[str, list[FloatArray]] = {role: [] for role in found}
         self.digest = hashlib.sha256()
         self.missing = 0
-        self.cut_off = False
+        self.stamps = {i: Stamps(style) for i, style in layout.stamps.items()}
         self.last_time = -np.inf
 
     @property
     def columns(self) -> list[Column]:
         return [column for column, _ in self.found.values()]
 
-    def read(self, file: BinaryIO, size: int, progress: Progress | None) -> None:
-        tail = b""
-        for text, line, done in _blocks(file, self.layout, self.digest.update):
+    def read(self, file: BinaryIO, end: int, size: int, progress: Progress | None) -> None:
+        """Read the table, which ends at byte ``end`` of ``size``."""
+        for text, line, done in _blocks(file, end, self.layout, self.digest.update):
             block = self._cleaned(text, line)
             if block.lines:
                 self._add(block)
             if progress:
                 progress(done, size)
-            tail = (tail + text[-4096:])[-4096:]
-        self.cut_off = _looks_cut_off(tail)
+        self.digest.update(file.read())
+
+    def notes(self) -> list[str]:
+        """What was done to time stamps."""
+        columns = [column for column in self.columns if column.index in self.stamps]
+        return [self.stamps[column.index].note(column.name) for column in columns]
 
     def arrays(self) -> dict[str, FloatArray]:
         arrays = {}
@@ -198,17 +221,20 @@ class _Table:
 
     def _parsed(self, block: _Block) -> list[FloatArray]:
         """The wanted columns as numbers, NaN where a cell stands for a missing value."""
-        if self.layout.decimal_comma and b"." in block.text:  # where one cell would be read in two ways
-            return self._parsed_slowly(block)
         wanted = sorted(column.index for column in self.columns)
+        plain = self.layout.style.is_plain and not self.stamps
+        comma = self.layout.style.decimal_comma and not self.layout.style.thousands
+        fast = plain or (
+            comma and not self.stamps and self.layout.separator != "," and b"." not in block.text
+        )  # a point beside decimal commas is a cell that could be read in two ways
         try:
             frame = pl.read_csv(
                 block.text,
                 has_header=False,
                 columns=wanted,
                 separator=self.layout.separator,
-                decimal_comma=self.layout.decimal_comma,
-                schema_overrides=[pl.Float64] * len(self.layout.columns),
+                decimal_comma=fast and comma,
+                schema_overrides=[pl.Float64 if fast else pl.String] * len(self.layout.columns),
                 null_values=_NULLS,
                 encoding="utf8-lossy",
             )
@@ -217,27 +243,50 @@ class _Table:
         if frame.height != len(block.lines) or frame.width != len(wanted):
             return self._parsed_slowly(block)
         by_index = dict(zip(wanted, frame.get_columns(), strict=True))
-        return [by_index[c.index].cast(pl.Float64).fill_null(np.nan).to_numpy() for c in self.columns]
+        if fast:
+            return [by_index[c.index].cast(pl.Float64).fill_null(np.nan).to_numpy() for c in self.columns]
+        values = [self._values(c, by_index[c.index].fill_null("")) for c in self.columns]
+        found = [v for v in values if v is not None]
+        return found if len(found) == len(values) else self._parsed_slowly(block)
+
+    def _values(self, column: Column, cells: pl.Series) -> FloatArray | None:
+        """Cells of text as numbers or as time stamps in s; None if one of them is neither."""
+        stamps = self.stamps.get(column.index)
+        return stamps.seconds(cells) if stamps else self.layout.style.values(cells)
 
     def _parsed_slowly(self, block: _Block) -> list[FloatArray]:
-        columns, width, comma = self.columns, len(self.layout.columns), self.layout.decimal_comma
-        out = np.full((len(columns), len(block.lines)), np.nan)
+        width = len(self.layout.columns)
+        table: list[list[str]] = []
         for row, text in enumerate(block.text.split(b"\n")[: len(block.lines)]):
             cells = split(text.decode("utf-8", errors="replace").rstrip("\r"), self.layout.separator)
-            line = block.lines[row]
             if any(cells[width:]):
                 raise UnreadableLogError(
-                    f"{self.name}, line {line}: {len(cells)} cells where the header has {width}"
+                    f"{self.name}, line {block.lines[row]}: {len(cells)} cells where the header has {width}"
                 )
-            for i, column in enumerate(columns):
-                cell = cells[column.index] if column.index < len(cells) else ""
-                if is_number(cell, comma):
-                    out[i, row] = float(cell.replace(",", ".") if comma else cell)
-                elif not is_missing(cell):
-                    raise UnreadableLogError(
-                        f"{self.name}, line {line}, column '{column.name}': '{cell[:40]}' is not a number"
-                    )
-        return list(out)
+            table.append(cells + [""] * (width - len(cells)))
+        out = []
+        for column in self.columns:
+            cells = [row[column.index] for row in table]
+            values = self._values(column, pl.Series(cells, dtype=pl.String))
+            if values is None:
+                raise self._no_number(block, column, cells)
+            out.append(values)
+        return out
+
+    def _no_number(self, block: _Block, column: Column, cells: list[str]) -> UnreadableLogError:
+        """The error that names the first cell of a column which is no number."""
+
+        def good(cell: str) -> bool:
+            if column.index not in self.stamps:
+                return is_missing(cell) or self.layout.style.is_number(cell)
+            return self._values(column, pl.Series([cell], dtype=pl.String)) is not None
+
+        row = next(i for i, cell in enumerate(cells) if not good(cell))
+        what = "time stamp" if column.index in self.stamps else "number"
+        return UnreadableLogError(
+            f"{self.name}, line {block.lines[row]}, column '{column.name}': "
+            f"'{cells[row][:40]}' is not a {what}"
+        )
 
     def _missing(self, block: _Block, values: list[FloatArray], row: int) -> UnreadableLogError:
         cells = block.cells(row, self.layout.separator)
@@ -251,32 +300,23 @@ class _Table:
 
 
 def _blocks(
-    file: BinaryIO, layout: Layout, hashed: Callable[[bytes], None]
+    file: BinaryIO, end: int, layout: Layout, hashed: Callable[[bytes], None]
 ) -> Iterator[tuple[bytes, int, int]]:
     """Yield whole lines of UTF-8 text, the line number of the first, and bytes read so far."""
-    decoder = (
-        codecs.getincrementaldecoder("utf-16")(errors="replace") if layout.encoding == "utf-16" else None
-    )
+    plain = layout.encoding == "utf-8-sig"
+    decoder = None if plain else codecs.getincrementaldecoder(layout.encoding)(errors="replace")
     skip, line, rest, done, more = layout.first_line - 1, 1, b"", 0, True
     while more:
-        chunk = file.read(BLOCK)
+        chunk = file.read(min(BLOCK, end - done))
         more = bool(chunk)
         hashed(chunk)
         done += len(chunk)
         text = rest + (decoder.decode(chunk, final=not more).encode() if decoder else chunk)
-        end = text.rfind(b"\n") + 1 if more else len(text)
-        block, rest = text[:end], text[end:]
+        last = text.rfind(b"\n") + 1 if more else len(text)
+        block, rest = text[:last], text[last:]
         while skip and block:
             _, _, block = block.partition(b"\n")
             skip, line = skip - 1, line + 1
         if block and not block.isspace():
             yield block, line, done
         line += block.count(b"\n")
-
-
-def _looks_cut_off(text: bytes) -> bool:
-    """Whether the text stops within a line: no line end, and fewer characters than the line before."""
-    if text.endswith(b"\n"):
-        return False
-    *_, before, last = (b"", *text.split(b"\n"))
-    return 0 < len(last) < len(before.rstrip(b"\r"))

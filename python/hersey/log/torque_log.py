@@ -10,9 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
+    from hersey.corrections import Correction
     from hersey.steady import SteadyPoints
 
 FloatArray = NDArray[np.float64]
+#: No quantity of a drive comes near this, in SI.
+LARGEST = 1e12
 
 
 @dataclass(frozen=True)
@@ -35,7 +38,8 @@ class LogFile:
     missing_rows: int
     channels: tuple[Channel, ...]
     comments: tuple[str, ...]  #: comment lines above the header
-    cut_off: bool = False  #: the last line has no end and looks shorter than the one before
+    cut_off: bool = False  #: the file ends before its time
+    notes: tuple[str, ...] = ()  #: what was done to read it: clocks aligned, time stamps, lines left out
 
 
 @dataclass(frozen=True)
@@ -65,6 +69,7 @@ class TorqueLog:
 
     runs: tuple[Run, ...]
     files: tuple[LogFile, ...]
+    corrections: tuple[Correction, ...] = ()  #: what was corrected, in this order
 
     @property
     def rows(self) -> int:

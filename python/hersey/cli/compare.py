@@ -1,0 +1,37 @@
+"""Two logs against each other: ``hersey compare``."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hersey.cli.options import AsJson, Reading, reads_logs
+from hersey.cli.shell import app, command, working
+
+
+@app.command()
+@reads_logs
+def compare(
+    a: Annotated[Path, typer.Argument(metavar="A", help="Log of one lubricant, age or unit.")],
+    b: Annotated[Path, typer.Argument(metavar="B", help="Log of the other; read in the same way.")],
+    reading: Reading,
+    as_json: AsJson = False,
+) -> None:
+    """Compare two lubricants, ages or units: ratio of damping, change of exponents and of the transition.
+
+    Example: [bold]hersey compare examples/bench.csv examples/bench.csv --tare standing[/bold]
+
+    Both logs are read by the same options; a log against itself shows how small a difference could be seen.
+    """
+    from hersey.compare import compare as compared
+
+    of_a, of_b = (reading.points(reading.log([path])) for path in (a, b))
+    with working("comparing"):
+        found = compared(of_a, of_b, names=(str(a), str(b)))
+    if as_json:
+        print(json.dumps(found.document() | {"command": command()}, indent=1))
+        return
+    print(found.summary())

@@ -1,0 +1,171 @@
+"""From a trace of stick-slip: ``hersey cycles``."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from hersey.cli.options import AsJson, Force
+from hersey.cli.shell import app, command, may_write, working
+from hersey.errors import OutputError, ParameterError, UnitError, WrongKindError
+
+if TYPE_CHECKING:
+    from hersey.trace.trace_file import TraceFile
+
+#: Kinds of file of the figure.
+SUFFIXES = (".png", ".svg", ".pdf")
+#: Kind of unit of each parameter that can be known; exponents have none.
+_KNOWN = {
+    "stiffness": "stiffness",
+    "mass": "mass",
+    "transition_force": "force",
+    "transition_speed": "belt speed",
+    "stick_speed": "belt speed",
+    "ehl_exponent": None,
+    "mixed_exponent": None,
+}
+
+
+@app.command()
+def cycles(
+    trace: Annotated[
+        Path, typer.Argument(metavar="TRACE", help="CSV with a heading 'time (s),force (N)', or MAT file.")
+    ],
+    drive_speed: Annotated[
+        str, typer.Option(help="Speed of the drive, as '20 mm/s', or '3 rpm' with a torque.")
+    ] = "",
+    quantity: Annotated[str, typer.Option(help="force, torque or speed; found by name if left out.")] = "",
+    time: Annotated[str, typer.Option(help="Name of the time column or variable.")] = "",
+    time_unit: Annotated[str, typer.Option(help="Unit of time, as 's' or 'ms'.")] = "",
+    value: Annotated[str, typer.Option(help="Name of the column or variable of the quantity.")] = "",
+    unit: Annotated[str, typer.Option(help="Its unit, as 'N'; 1 for a share of a weight.")] = "",
+    least_drop: Annotated[
+        str, typer.Option(help="Count slips of at least this fall, as '0.5 N' (default: beyond noise).")
+    ] = "",
+    identify: Annotated[
+        bool, typer.Option("--identify", help="Also identify the drive behind the cycles.")
+    ] = False,
+    known: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--known", metavar="NAME=VALUE", help="A known parameter, as 'mass=0.3 kg'; repeatable."
+        ),
+    ] = None,
+    closures: Annotated[
+        str, typer.Option(help="Closures to compare; stribeck may be added and takes minutes.")
+    ] = "retained,stiction",
+    figure: Annotated[
+        Path | None, typer.Option("--figure", help="Draw trace, slips and fit: .png, .svg or .pdf.")
+    ] = None,
+    as_json: AsJson = False,
+    force: Force = False,
+) -> None:
+    """Find the slips of a stick-slip trace, and with --identify the drive that makes them.
+
+    Example: [bold]hersey cycles examples/stick-slip.csv --drive-speed "20 mm/s" --identify[/bold]
+    """
+    from hersey.report import write_atomically
+    from hersey.trace.identification import identify as identify_drive
+    from hersey.trace.record import cycles as find_cycles
+    from hersey.trace.trace_file import read_trace
+
+    if figure is not None:
+        if figure.suffix not in SUFFIXES:
+            raise OutputError(f"--figure {figure}: name a file that ends in {', '.join(SUFFIXES)}")
+        may_write(figure, force, inputs=[trace])
+    given = read_trace(trace, quantity=quantity, time=time, value=value, time_unit=time_unit, unit=unit)
+    speed = _drive_speed(drive_speed, given)
+    if known and not identify:
+        raise ParameterError("--known needs --identify")
+    values = _known(known or [], given)
+    record = find_cycles(
+        given.time,
+        given.value,
+        drive_speed=speed,
+        quantity="speed" if given.quantity == "speed" else "force",
+        least_drop=_least_drop(least_drop, given),
+    )
+    drive = None
+    if identify:
+        with working("identifying the drive"):
+            drive = identify_drive(record, known=values, closures=tuple(closures.replace(" ", "").split(",")))
+    if figure is not None:
+        from hersey.charts import rendered
+        from hersey.trace.trace_chart import trace_chart
+
+        shown = "share of the weight" if given.unit == "1" else given.unit
+        with working("drawing"):
+            drawn = rendered(trace_chart(record, drive, unit=shown))[figure.suffix.removeprefix(".")]
+        write_atomically(figure, drawn, overwrite=True)
+    if as_json:
+        document = record.document() | {"unit": given.unit, "command": command()}
+        if drive is not None:
+            document["drive"] = drive.document()
+        typer.echo(json.dumps(document, indent=1))
+        return
+    typer.echo(record.summary())
+    if drive is not None:
+        typer.echo("\n" + drive.summary())
+    if figure is not None:
+        typer.echo(f"figure: {figure}")
+
+
+def _drive_speed(text: str, given: TraceFile) -> float | None:
+    from hersey.units import parse
+
+    if not text:
+        return None
+    turning = given.quantity == "torque" or given.unit == "rad/s"
+    try:
+        speed = parse("speed" if turning else "belt speed", text)
+    except WrongKindError as error:
+        raise WrongKindError(
+            f"--drive-speed with a trace of {given.quantity} in {given.unit}: {error}"
+        ) from None
+    if not speed > 0:
+        raise ParameterError(f"--drive-speed is {text}: it must be greater than 0")
+    return speed
+
+
+def _least_drop(text: str, given: TraceFile) -> float | None:
+    from hersey.units import parse
+
+    if not text:
+        return None
+    if given.quantity == "speed":
+        raise ParameterError("--least-drop counts falls of a force: leave it out with a trace of speed")
+    if given.unit == "1":
+        return _number("--least-drop", text)
+    try:
+        return parse(given.quantity, text)
+    except UnitError as error:
+        raise UnitError(f"--least-drop: {error}") from None
+
+
+def _known(texts: list[str], given: TraceFile) -> dict[str, float]:
+    from hersey.units import parse
+
+    values = {}
+    for text in texts:
+        name, sign, amount = (part.strip() for part in text.partition("="))
+        if not sign or name not in _KNOWN:
+            raise ParameterError(f"--known '{text}': write NAME=VALUE with one of {', '.join(_KNOWN)}")
+        kind = _KNOWN[name]
+        if kind is None or given.quantity == "torque" or given.unit == "1":
+            values[name] = _number(f"--known {name}", amount)
+            continue
+        try:
+            values[name] = parse(kind, amount)
+        except UnitError as error:
+            raise UnitError(f"--known {name}: {error}") from None
+    return values
+
+
+def _number(where: str, text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise ParameterError(f"{where} is '{text}': write a number, in SI") from None

@@ -1,0 +1,65 @@
+"""What to record next: ``hersey design``."""
+
+from __future__ import annotations
+
+import json
+from typing import Annotated
+
+import typer
+
+from hersey.cli.options import AsJson, Logs, Reading, reads_logs
+from hersey.cli.shell import app, command, working
+from hersey.errors import ParameterError
+
+
+@app.command()
+@reads_logs
+def design(
+    logs: Logs,
+    reading: Reading,
+    quantity: Annotated[
+        str, typer.Option(help="What to know best, as 'transition speed' or 'c'; all if not given.")
+    ] = "",
+    count: Annotated[int, typer.Option("--count", help="Dwells to propose.", min=1)] = 6,
+    speeds: Annotated[str, typer.Option(help="Range of speed that can be run, as '2 to 200 rpm'.")] = "",
+    temperatures: Annotated[str, typer.Option(help="Range of temperature, as '60 to 200 degC'.")] = "",
+    seed: Annotated[int, typer.Option("--seed", help="Of the draws of the fit.", min=0)] = 1,
+    as_json: AsJson = False,
+) -> None:
+    """Propose the next dwells to record: those that make the fitted law, or one quantity, known best.
+
+    Example: [bold]hersey design examples/bench.csv --tare standing --quantity "transition speed"[/bold]
+    """
+    from hersey.design import design as designed
+    from hersey.ladder import compare_models
+
+    points = reading.points(reading.log(logs))
+    with working("fitting the ladder"):
+        fitted = compare_models(points, bootstrap=0, cross_validate=False)
+    found = designed(
+        fitted,
+        count=count,
+        quantity=quantity,
+        speeds=_range("speed", "--speeds", speeds),
+        temperatures=_range("temperature", "--temperatures", temperatures),
+        seed=seed,
+    )
+    if as_json:
+        print(json.dumps(found.document() | {"command": command()}, indent=1))
+        return
+    print(found.summary())
+
+
+def _range(kind: str, flag: str, text: str) -> tuple[float, float] | None:
+    """Two values with one unit, 'low to high unit', in SI."""
+    import re
+
+    from hersey.units import parse
+
+    if not text:
+        return None
+    match = re.fullmatch(r"\s*(\S+)\s+to\s+([-+.\deE]+)\s+(\S.*?)\s*", text)
+    if match is None:
+        raise ParameterError(f"{flag} '{text}' is no range: write it as '2 to 200 rpm' or '60 to 200 degC'")
+    low, high, unit = match.groups()
+    return parse(kind, f"{low} {unit}"), parse(kind, f"{high} {unit}")

@@ -1,0 +1,81 @@
+"""Before a fit: ``hersey inspect``."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hersey.cli.options import AsJson, Force, Logs, Reading, reads_logs
+from hersey.cli.shell import app, may_write, working
+from hersey.errors import OutputError
+
+
+@app.command()
+@reads_logs
+def inspect(
+    logs: Logs,
+    reading: Reading,
+    save_mapping: Annotated[
+        bool,
+        typer.Option(
+            "--save-mapping", help="Write a proposal for the channels as hersey.toml beside the log."
+        ),
+    ] = False,
+    figure: Annotated[
+        Path | None, typer.Option("--figure", help="Draw every channel: .html, .png, .svg or .pdf.")
+    ] = None,
+    as_json: AsJson = False,
+    force: Force = False,
+) -> None:
+    """Show what a log holds before anything is fitted: clocks, channels, their faults, what it can tell.
+
+    Example: [bold]hersey inspect examples/bench.csv --figure channels.svg[/bold]
+
+    It works on logs that cannot be fitted too, and says why they cannot.
+    """
+    from hersey.inspection import inspect as inspected
+    from hersey.inspection.chart import SUFFIXES, inspection_chart
+    from hersey.log_mapping import FILE_NAME, propose_mapping
+    from hersey.map_chart import rendered_map
+    from hersey.report import write_atomically
+    from hersey.units import parse
+
+    inputs = [*logs, *([Path(reading.mapping)] if reading.mapping else [])]
+    kept = logs[0].with_name(FILE_NAME) if save_mapping else None
+    if kept is not None:
+        may_write(kept, force, inputs=inputs)
+    if figure is not None:
+        if figure.suffix not in SUFFIXES:
+            raise OutputError(f"--figure {figure}: name a file that ends in {', '.join(SUFFIXES)}")
+        may_write(figure, force, inputs=inputs)
+    roles = ("time", "torque", "speed", "temperature")
+    channels = {role: name for role in roles if (name := getattr(reading, role))}
+    units = {role: unit for role in roles if (unit := getattr(reading, f"{role}_unit"))}
+    with working("looking at the channels"):
+        found = inspected(
+            logs,
+            mapping=reading.mapping or None,
+            channels=channels,
+            units=units,
+            isothermal=reading.isothermal,
+            drop_missing=reading.drop_missing,
+            min_dwell=parse("time", reading.min_dwell),
+        )
+    if kept is not None:
+        proposal = propose_mapping(logs[0], channels=channels, units=units)
+        write_atomically(kept, proposal, overwrite=True)
+    if figure is not None:
+        with working("drawing the channels"):
+            chart = inspection_chart(logs, found)
+            write_atomically(figure, rendered_map(chart, figure.suffix), overwrite=True)
+    if as_json:
+        print(json.dumps(found.document(), indent=1))
+        return
+    print(found.summary())
+    if kept is not None:
+        print(f"mapping: {kept}")
+    if figure is not None:
+        print(f"figure: {figure}")

@@ -1,0 +1,39 @@
+"""Laws against each other: ``hersey models``."""
+
+from __future__ import annotations
+
+import json
+from typing import Annotated
+
+import typer
+
+from hersey.cli.options import AsJson, Logs, Reading, reads_logs
+from hersey.cli.shell import app, bar, command, working
+
+
+@app.command()
+@reads_logs
+def models(
+    logs: Logs,
+    reading: Reading,
+    bootstrap: Annotated[
+        int, typer.Option("--bootstrap", help="Resampled fits for that interval; 0 leaves it out.", min=0)
+    ] = 300,
+    seed: Annotated[int, typer.Option("--seed", help="Of the resampling.", min=0)] = 1,
+    as_json: AsJson = False,
+) -> None:
+    """Fit every law of the ladder to the same dwells, choose one, and say why; energies and Hersey collapse.
+
+    Example: [bold]hersey models examples/bench.csv --tare standing[/bold]
+    """
+    from hersey.ladder import compare_models
+
+    log = reading.log(logs)
+    with working("reducing to dwells"):
+        points = reading.points(log)
+    with bar("fitting", unit="rungs") as progress:
+        found = compare_models(points, bootstrap=bootstrap, seed=seed, progress=progress)
+    if as_json:
+        print(json.dumps(found.document() | {"command": command()}, indent=1))
+        return
+    print(found.summary())

@@ -1,0 +1,17 @@
+"""What a log holds, shown before anything is fitted.
+
+==========  ================================================================
+module      what it holds
+==========  ================================================================
+raw         every channel of a log as written
+clock       rate, gaps and unevenness of a clock
+faults      step, noise and faults of a channel
+support     what the dwells can tell, in words
+inspecting  all of it: `inspect`
+chart       the channels as a chart
+==========  ================================================================
+"""
+
+from hersey.inspection.inspecting import Inspection, inspect
+
+__all__ = ["Inspection", "inspect"]

@@ -1,0 +1,141 @@
+"""The clock of a log: rate, gaps, unevenness, stamps that stand still or step back."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hersey.log.torque_log import FloatArray
+
+#: Rows are missing where an interval is longer than so many usual ones (of an uneven clock: more).
+GAP, GAP_OF_UNEVEN = 1.5, 5.0
+#: A clock is uneven if more than this share of its intervals are off the usual one by more than this share of
+#: it, beyond what the resolution of its stamps makes. Lost rows alone stay far below.
+UNEVEN_SHARE, UNEVEN = 0.02, 0.10
+#: So few different intervals are those of a clock that counts in steps.
+_FEW = 12
+
+
+@dataclass(frozen=True)
+class Clock:
+    """The times of a log's rows, in s.
+
+    Attributes
+    ----------
+    name
+        Channel that holds them.
+    interval
+        Usual time between rows (median; the mean where stamps repeat).
+    resolution
+        Step in which the stamps count, None where it cannot be told.
+    uneven
+        Share of the intervals that are off the usual one.
+    gaps, longest_gap, lost
+        Intervals in which rows are missing, the longest of them, and their sum beyond the usual interval.
+    back, first_back
+        Steps back in time, and the row (from 0) of the first, or None.
+    repeated
+        Rows with the time of the row before.
+    """
+
+    name: str
+    rows: int
+    missing: int
+    duration: float
+    interval: float
+    resolution: float | None
+    uneven: float
+    gaps: int
+    longest_gap: float
+    lost: float
+    back: int
+    first_back: int | None
+    repeated: int
+
+    @property
+    def is_uneven(self) -> bool:
+        """Whether intervals differ by more than lost rows explain."""
+        return self.uneven > UNEVEN_SHARE
+
+    def findings(self) -> list[str]:
+        """What one must know of this clock, in words."""
+        said = []
+        if self.back:
+            at = "" if self.first_back is None else f", first at row {self.first_back + 1}"
+            said.append(f"time steps back {_times(self.back)}{at}: split or sort the file there")
+        if self.is_uneven:
+            off = f"{self.uneven:.1%} of its intervals are off by over {UNEVEN:.0%}"
+            said.append(f"the clock is uneven: {off}")
+        if self.gaps:
+            said.append(
+                f"rows are missing at {_places(self.gaps)}: {self.lost:.3g} s in all, "
+                f"{self.longest_gap:.3g} s at the longest"
+            )
+        if self.repeated:
+            said.append(f"{self.repeated} rows carry the time of the row before")
+        if self.missing:
+            said.append(f"{self.missing} rows have no time")
+        return said
+
+
+def clock_of(name: str, time: FloatArray) -> Clock:
+    """Return what the times of a log's rows (s, NaN where missing) show of their clock."""
+    known = time[np.isfinite(time)]
+    steps = np.diff(known)
+    if not steps.size:
+        return Clock(name, time.size, time.size - known.size, 0.0, 0.0, None, 0.0, 0, 0.0, 0.0, 0, None, 0)
+    forward = steps[steps > 0]
+    usual = float(np.median(steps))
+    if usual <= 0:
+        usual = float(np.sum(forward)) / max(1, steps.size)
+    resolution = _resolution(known, forward)
+    often = float(np.mean(np.abs(steps - usual) > UNEVEN * usual)) > UNEVEN_SHARE
+    coarse = (resolution or 0.0) if often else 0.0  # rounded stamps alone make intervals one step longer
+    allowed = max(UNEVEN * usual, 1.01 * coarse)
+    gap = max(GAP * usual, usual + 1.5 * coarse)
+    far = np.abs(steps - usual) > allowed
+    whole = np.abs(steps / usual - np.round(steps / usual)) < UNEVEN if usual > 0 else far
+    lost_rows = (steps > gap) & whole
+    uneven = float(np.mean(far & ~lost_rows & (steps > 0)))
+    if uneven > UNEVEN_SHARE:
+        gap = max(gap, GAP_OF_UNEVEN * usual)
+    gaps = steps > gap
+    back = np.flatnonzero(steps < 0)
+    return Clock(
+        name=name,
+        rows=time.size,
+        missing=time.size - known.size,
+        duration=float(known.max() - known.min()),
+        interval=usual,
+        resolution=resolution,
+        uneven=uneven,
+        gaps=int(np.count_nonzero(gaps)),
+        longest_gap=float(steps[gaps].max()) if gaps.any() else 0.0,
+        lost=float(np.sum(steps[gaps] - usual)),
+        back=back.size,
+        first_back=int(np.flatnonzero(np.isfinite(time))[back[0] + 1]) if back.size else None,
+        repeated=int(np.count_nonzero(steps == 0)),
+    )
+
+
+def _resolution(time: FloatArray, forward: FloatArray) -> float | None:
+    """Step in which stamps count: the least interval, if all others are multiples of it."""
+    if not forward.size:
+        return None
+    precision = float(np.spacing(np.abs(time).max()))
+    levels = np.unique(np.round(forward, max(0, int(-np.log10(max(4.0 * precision, 1e-9))))))
+    levels = levels[levels > 0]
+    if not levels.size or levels.size > _FEW:
+        return None
+    step = float(np.min(np.diff(levels, prepend=0.0)))
+    ratio = levels / step
+    return step if step > 0 and np.all(np.abs(ratio - np.round(ratio)) < 0.05) else None
+
+
+def _times(count: int) -> str:
+    return "once" if count == 1 else f"{count} times"
+
+
+def _places(count: int) -> str:
+    return "1 place" if count == 1 else f"{count} places"

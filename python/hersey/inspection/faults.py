@@ -1,0 +1,282 @@
+"""What a channel shows of its sensor by itself: step, noise, refresh, and faults to know before a fit.
+
+Every detector works on the numbers as written, so that steps and plateaus are exact. What honest channels
+show in passing is not called a fault: a held set point is no plateau, a drive that stands no stuck sensor.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hersey.log.torque_log import FloatArray
+
+IndexArray = NDArray[np.intp]
+
+#: Share of the differences between values that must be multiples of a step, and how nearly, for it to be one:
+#: numbers without a step would be that near by chance in a tenth of the cases. So few levels are all steps.
+STEP_SHARE, STEP_TOLERANCE, FEW_LEVELS = 0.98, 0.05, 4
+#: A sensor that is alive shows noise of at least this many of its steps; below, equal values prove nothing.
+DITHER = 0.5
+#: A channel whose neighbours are equal more often than this elsewhere is quiet by nature: held or coarse.
+QUIET = 0.7
+#: A constant stretch is a stuck sensor if it has this many rows and chance makes it this rarely in a log,
+#: unless its value is held more often than so; at most so many are looked at.
+STUCK_ROWS, STUCK_CHANCE, RECURRING, MOST_STRETCHES = 20, 1e-6, 2, 200
+#: Clipped: two plateaus or more of at least so many rows at the extreme, so many rows in all, the extreme so
+#: much more frequent than any other value, and elsewhere noise of so many steps (rounding alone makes 0.3) in
+#: at least this share of the rows.
+PLATEAU_ROWS, CLIPPED_ROWS, CLIPPED_EXCESS, CLIPPED_NOISE, UNCLIPPED = 3, 10, 5.0, 1.0, 0.2
+#: What stands shows less than this share of its greatest value.
+STANDS = 0.005
+#: Neighbours elsewhere are equal in at most this share of a channel whose plateaus mean something.
+PLATEAU_QUIET = 0.2
+#: A spike lies beyond 96 % of the values by so many times their range (a breakaway, or noise with heavy
+#: tails, reaches two), alone or with one other row between ordinary ones; a value so many times as large as
+#: all of them is no reading however long it lasts.
+SPIKE, ABSURD = 3.0, 20.0
+#: A channel that hardly ever changes has spikes only if they are fewer than this share of its rows.
+FLAT_SHARE = 0.005
+#: Zeros are drop-outs if fewer than this share of the rows, and so many rows on either side all keep this
+#: share of their median, and so many of their standard deviations, away from zero.
+DROPOUT_SHARE, BESIDE, DROPOUT_VOID, DROPOUT_JUMP = 0.2, 5, 0.5, 5.0
+#: A sensor is refreshed more slowly than logged if its values are held for at least so many rows.
+REFRESH_ROWS = 3
+#: Second differences of white noise have six times its variance; half of them are below 0.6745 deviations.
+_MEDIAN = 0.6745
+
+
+@dataclass(frozen=True)
+class Fault:
+    """One kind of fault: rows concerned, the first of them (from 0), the value it stands at, and places."""
+
+    kind: str
+    rows: int
+    first: int
+    value: float
+    places: int = 1
+
+
+@dataclass(frozen=True)
+class Traits:
+    """What a channel looks like, in its own unit; ``step`` and ``noise`` are None where they cannot be told.
+
+    ``noise`` is the standard deviation from row to row, ``refresh`` the rows for which values are held.
+    """
+
+    rows: int
+    missing: int
+    low: float
+    high: float
+    median: float
+    step: float | None
+    noise: float | None
+    refresh: int
+    faults: tuple[Fault, ...]
+
+
+def traits(values: FloatArray, *, stands: bool = False) -> Traits:
+    """Return step, noise and faults of a channel, NaN where a value is missing.
+
+    ``stands`` says that zero is a state in which the quantity may stay for long, as a speed does.
+    """
+    known = np.flatnonzero(np.isfinite(values))
+    own = values[known]
+    missing = values.size - own.size
+    if own.size < 2:
+        level = float(own[0]) if own.size else float("nan")
+        return Traits(values.size, missing, level, level, level, None, None, 1, ())
+    low, high, median = float(own.min()), float(own.max()), float(np.median(own))
+    if low == high:
+        fault = Fault("constant", own.size, int(known[0]), low)
+        return Traits(values.size, missing, low, high, median, None, None, 1, (fault,))
+    starts, lengths = equal_runs(own)
+    refresh = _refresh(starts, lengths)
+    alive = own[starts] if refresh > 1 else own
+    step = quantisation_step(own)
+    noise = noise_of(alive)
+    lost = dropouts(own, stands=stands)
+    found = [
+        *lost,
+        *spikes(np.where(own == 0.0, median, own) if lost else own),
+        *clipping(own, step, stands=stands),
+        *([] if refresh > 1 else stuck(own, step, stands=stands)),
+    ]
+    faults = tuple(Fault(f.kind, f.rows, int(known[f.first]), f.value, f.places) for f in found)
+    return Traits(values.size, missing, low, high, median, step, noise, refresh, faults)
+
+
+def equal_runs(values: FloatArray) -> tuple[IndexArray, IndexArray]:
+    """Return where each run of equal neighbours starts, and its length."""
+    starts = np.concatenate([[0], np.flatnonzero(np.diff(values)) + 1])
+    return starts, np.diff(starts, append=values.size)
+
+
+def quantisation_step(values: FloatArray) -> float | None:
+    """Return the step of which all differences between values are multiples, or None if there is none.
+
+    Values that were rounded to decimals after the converter may stray from its steps by those.
+    """
+    levels = np.unique(values)
+    gaps = np.diff(levels)
+    gaps = gaps[gaps > 1e-9 * float(np.max(np.abs(levels)))]
+    if not gaps.size or levels.size > 0.9 * values.size:
+        return None
+    if levels.size <= FEW_LEVELS:
+        return float(f"{gaps.min():.6g}") if values.size > 20 * levels.size else None
+    decimals = _decimals(levels)
+    for candidate in np.quantile(gaps, [0.0, 0.02, 0.1], method="lower"):
+        step = float(np.mean(gaps[gaps < 1.5 * candidate]))
+        tolerance = max(STEP_TOLERANCE, min(0.35, decimals / step)) if gaps.size > 20 else STEP_TOLERANCE
+        ratio = gaps / step
+        near = np.abs(ratio - np.round(ratio)) <= tolerance
+        if np.mean(near) >= STEP_SHARE and float(np.median(ratio)) < 1e4:
+            return float(f"{step:.4g}")
+    return None
+
+
+def _decimals(levels: FloatArray) -> float:
+    """The least decimal place to which all values are rounded, as a number; 0 if there is none above 1e-9."""
+    for places in range(7):
+        if np.allclose(levels, np.round(levels, places), rtol=0.0, atol=1e-9):
+            return float(10.0**-places)
+    return 0.0
+
+
+def noise_of(values: FloatArray) -> float | None:
+    """Return the standard deviation of what changes from row to row, robustly; None for fewer than 8 rows.
+
+    Trends and slow waves cancel in second differences; noise that is correlated over several rows shows less
+    of itself.
+    """
+    if values.size < 8:
+        return None
+    second = values[2:] - 2.0 * values[1:-1] + values[:-2]
+    middle = float(np.median(np.abs(second - np.median(second))))
+    return middle / _MEDIAN / float(np.sqrt(6.0))
+
+
+def spikes(values: FloatArray) -> list[Fault]:
+    """Return isolated values far outside the rest."""
+    low, high = (float(v) for v in np.quantile(values, [0.02, 0.98]))
+    span = high - low
+    out = (values < low - SPIKE * span) | (values > high + SPIKE * span)
+    if not out.any() or (span == 0.0 and np.mean(out) > FLAT_SHARE):
+        return []
+    starts, lengths = _runs_of(out)
+    inside = np.pad(~out, 2, constant_values=False)
+    before, after = starts + 1, starts + lengths + 2
+    alone = (lengths <= 2) & inside[before] & inside[before - 1] & inside[after] & inside[after + 1]
+    single = [np.arange(s, s + n) for s, n in zip(starts[alone], lengths[alone], strict=True)]
+    rows = np.concatenate([np.empty(0, dtype=np.intp), *single])
+    far = ABSURD * max(span, abs(low), abs(high))
+    absurd = np.flatnonzero(np.abs(values) > far) if far > 0 else rows
+    rows = np.union1d(rows, absurd).astype(np.intp)
+    if not rows.size:
+        return []
+    worst = int(rows[np.argmax(np.abs(values[rows] - np.median(values)))])
+    places = 1 + int(np.count_nonzero(np.diff(rows) > 1))
+    return [Fault("spikes", rows.size, int(rows[0]), float(values[worst]), places)]
+
+
+def _runs_of(mask: NDArray[np.bool_]) -> tuple[IndexArray, IndexArray]:
+    """Start and length of each run of true."""
+    edges = np.diff(mask.astype(np.int8), prepend=0, append=0)
+    starts = np.flatnonzero(edges > 0)
+    return starts, np.flatnonzero(edges < 0) - starts
+
+
+def dropouts(values: FloatArray, *, stands: bool = False) -> list[Fault]:
+    """Return zeros between values far from zero, or at an end of a channel that never comes near it."""
+    zero = values == 0.0
+    if not 0 < np.count_nonzero(zero) < DROPOUT_SHARE * values.size:
+        return []
+    others = np.abs(values[~zero])
+    never = not stands and float(np.quantile(others, 0.002)) > DROPOUT_VOID * float(np.median(others))
+    starts, lengths = _runs_of(zero)
+    lost = []
+    for first, rows in zip(starts.tolist(), lengths.tolist(), strict=True):
+        before = values[max(0, first - BESIDE) : first]
+        after = values[first + rows : first + rows + BESIDE]
+        if not before.size or not after.size:
+            abrupt = never and rows > 1  # one row alone is a sensor that was not read yet
+        else:
+            beside = np.concatenate([before, after])
+            level = float(np.median(beside))
+            kept = np.min(beside / level) if level else 0.0
+            abrupt = kept > DROPOUT_VOID and abs(level) > DROPOUT_JUMP * float(np.std(beside))
+            abrupt &= not stands or rows <= BESIDE
+        if abrupt:
+            lost.append((first, rows))
+    if not lost:
+        return []
+    return [Fault("drop-outs", sum(rows for _, rows in lost), lost[0][0], 0.0, len(lost))]
+
+
+def clipping(values: FloatArray, step: float | None, *, stands: bool = False) -> list[Fault]:
+    """Return plateaus at the greatest and least value of a channel that is noisy elsewhere."""
+    starts, lengths = equal_runs(values)
+    _, counts = np.unique(values, return_counts=True)
+    found = []
+    usual = int(counts[1:-1].max(initial=1))
+    standing = STANDS * float(np.max(np.abs(values)))
+    for limit in (float(values.max()), float(values.min())):
+        if stands and abs(limit) <= standing:
+            continue
+        flat = (values[starts] == limit) & (lengths >= PLATEAU_ROWS)
+        rows = int(lengths[flat].sum())
+        away = (values != values.max()) & (values != values.min())
+        few = np.count_nonzero(flat) < 2 or rows < max(CLIPPED_ROWS, CLIPPED_EXCESS * usual)
+        if few or np.mean(away) < UNCLIPPED:
+            continue
+        pairs = away[1:] & away[:-1]
+        same = int(np.count_nonzero((values[1:] == values[:-1]) & pairs))
+        equal = same / max(1, int(np.count_nonzero(pairs)))
+        noise = noise_of(values[away]) or 0.0
+        least = CLIPPED_NOISE * step if step else 1e-9 * float(np.ptp(values))
+        if equal <= PLATEAU_QUIET and noise > least:
+            kind = "clipped above" if limit == values.max() else "clipped below"
+            found.append(Fault(kind, rows, int(starts[flat][0]), limit, int(np.count_nonzero(flat))))
+    return found
+
+
+def stuck(values: FloatArray, step: float | None, *, stands: bool = False) -> list[Fault]:
+    """Return stretches in which a channel that is noisy beside them keeps one value too long for chance.
+
+    A value that is held so again and again is a limit or a set point, no stuck sensor.
+    """
+    starts, lengths = equal_runs(values)
+    held = values[starts]
+    idle = stands & (np.abs(held) <= STANDS * float(np.max(np.abs(values))))
+    candidates = np.flatnonzero((lengths >= STUCK_ROWS) & ~idle)
+    clipped = {fault.value for fault in clipping(values, step, stands=stands)}
+    found = []
+    for run in candidates[np.argsort(-lengths[candidates])][:MOST_STRETCHES]:
+        first, last = int(starts[run]), int(starts[run] + lengths[run])
+        again = np.count_nonzero(held[candidates] == held[run])
+        if again > RECURRING or float(held[run]) in clipped:
+            continue
+        reach = max(10 * STUCK_ROWS, int(lengths[run]))
+        beside = np.concatenate([values[max(0, first - reach) : first], values[last : last + reach]])
+        noise = noise_of(beside)
+        if noise is None or noise <= max(DITHER * (step or 0.0), 1e-9 * float(np.ptp(values))):
+            continue
+        same = float(np.mean(np.diff(beside) == 0.0))
+        likely = max(same, 1.0 / values.size)
+        if same <= QUIET and lengths[run] >= np.log(values.size / STUCK_CHANCE) / -np.log(likely):
+            found.append((first, int(lengths[run])))
+    if not found:
+        return []
+    first = min(found)[0]
+    return [Fault("stuck", sum(rows for _, rows in found), first, float(values[first]), len(found))]
+
+
+def _refresh(starts: IndexArray, lengths: IndexArray) -> int:
+    """Rows for which a value is usually held before the sensor gives the next, 1 if it does so every row."""
+    if starts.size < 20:
+        return 1
+    usual = int(np.median(lengths))
+    regular = np.mean(np.abs(lengths - usual) <= max(1, 0.1 * usual))
+    return usual if usual >= REFRESH_ROWS and regular > 0.8 else 1

@@ -1,0 +1,375 @@
+"""What a log holds, shown before a fit: clocks, channels and their faults, and what it can support."""
+
+from __future__ import annotations
+
+import itertools
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hersey.corrections import Corrected, Correction
+from hersey.errors import HerseyError
+from hersey.inspection.clock import Clock, clock_of
+from hersey.inspection.faults import DITHER, Fault, Traits, traits
+from hersey.inspection.raw import RawChannel, RawLog, raw_channels, roles_of
+from hersey.inspection.support import Support, support_of
+from hersey.json_value import json_value
+from hersey.log.channels import ROLES, ChannelChoice
+from hersey.log.torque_log import FloatArray
+from hersey.log_mapping import LogMapping, mapping_of, read_with_mapping
+from hersey.units import conversion
+
+#: A step of a role's channel matters if it is this share of its small readings (their lowest tenth).
+COARSE = 0.05
+#: Share of the steps of a time that do not go back, even of one that was put together from parts.
+_RUNS_ON = 0.9
+_TIME_UNIT = re.compile(r"[munµμ]?s|sec(onds?)?|min(utes?)?|h(ours?)?|d(ays?)?")
+_SPEED_NAME = re.compile(r"spe?e?d|velocity|rpm|drehzahl", re.IGNORECASE)
+#: More files than this are shown without the tables of their channels.
+_TABLES = 3
+
+
+@dataclass(frozen=True)
+class ChannelReport:
+    """One channel: its name, the role it plays (empty if none), its traits, and findings in words."""
+
+    name: str
+    unit: str
+    role: str
+    clock: str
+    traits: Traits
+    findings: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class FileReport:
+    """One file: clocks, channels, and for each role without a channel the reason."""
+
+    name: str
+    format: str
+    rows: int
+    clocks: tuple[Clock, ...]
+    channels: tuple[ChannelReport, ...]
+    without: Mapping[str, str]
+    notes: tuple[str, ...]
+    cut_off: bool
+
+
+@dataclass(frozen=True)
+class Inspection:
+    """Logs as they came, and together as one log of torque if they can be read so.
+
+    Attributes
+    ----------
+    files
+        One report each.
+    problem
+        Why they cannot be read as a log of torque, or empty.
+    needed
+        Flags without which they could not.
+    dropped
+        Rows left out because a number is missing, by file.
+    corrections
+        What the mapping had corrected.
+    support
+        Dwells and what they can tell, or None if the logs cannot be read.
+    """
+
+    files: tuple[FileReport, ...]
+    problem: str
+    needed: tuple[str, ...]
+    dropped: Mapping[str, int]
+    corrections: tuple[Correction, ...]
+    support: Support | None
+
+    def document(self) -> dict[str, Any]:
+        """Return everything as plain data."""
+        document: dict[str, Any] = json_value(asdict(self))
+        for file, own in zip(document["files"], self.files, strict=True):
+            for clock, of in zip(file["clocks"], own.clocks, strict=True):
+                clock["findings"] = of.findings()
+        return document
+
+    def summary(self) -> str:
+        """Return the inspection as text."""
+        lines: list[str] = []
+        for file in self.files:
+            lines += [*_file_lines(file, table=len(self.files) <= _TABLES), ""]
+        lines += [f"corrected: {correction}" for correction in self.corrections]
+        lines += [
+            f"{rows} rows of {name} are left out: a number is missing" for name, rows in self.dropped.items()
+        ]
+        if self.needed:
+            lines.append(f"readable as a log of torque with {' '.join(self.needed)}")
+        if self.support is None:
+            return "\n".join([*lines, f"No fit is possible: {self._hindrance()}"])
+        lines.append(f"{self.support.dwells} dwells")
+        lines += [f"  not used: {rows} rows, {why}" for why, rows in self.support.rejected.items()]
+        lines += [f"  can tell    {said}" for said in self.support.can]
+        lines += [f"  cannot tell {said}" for said in self.support.cannot]
+        return "\n".join(lines)
+
+    def _hindrance(self) -> str:
+        """Why there can be no fit; a log without torque is told so first."""
+        bare = [
+            file.name
+            for file in self.files
+            if file.channels and file.without.get("torque") == "there is no torque channel"
+        ]
+        if not bare:
+            return self.problem
+        shown = bare[0] if len(bare) == 1 else f"{bare[0]} and {len(bare) - 1} more"
+        return (
+            f"there is no torque channel in {shown}. If a channel is torque, name it with --torque; if one "
+            "is the motor's current, give its motor_constant in a mapping (--save-mapping)"
+        )
+
+    @property
+    def findings(self) -> list[str]:
+        """Every finding on a clock or on a channel that plays a role, behind its file."""
+        said = []
+        for file in self.files:
+            said += [f"{file.name}: {finding}" for clock in file.clocks for finding in clock.findings()]
+            said += [
+                f"{file.name}: {channel.name}: {finding}"
+                for channel in file.channels
+                for finding in channel.findings
+                if channel.role
+            ]
+        return said
+
+
+def inspect(
+    paths: str | Path | Sequence[str | Path],
+    *,
+    mapping: LogMapping | str | Path | None = None,
+    channels: Mapping[str, str] | None = None,
+    units: Mapping[str, str] | None = None,
+    isothermal: bool = False,
+    drop_missing: bool = False,
+    min_dwell: float = 2.0,
+) -> Inspection:
+    """Look at logs before a fit: also at such that cannot be fitted, or have no torque.
+
+    Parameters
+    ----------
+    paths, channels, units, isothermal, drop_missing
+        As for `hersey.read`.
+    mapping
+        As for `hersey.log_mapping.read_with_mapping`.
+    min_dwell
+        Shortest dwell, s.
+
+    Raises
+    ------
+    HerseyError
+        If a file holds no channels at all, or the mapping is wrong.
+
+    Examples
+    --------
+    >>> inspect("examples/bench.csv").support.speeds
+    10
+    """
+    files = [paths] if isinstance(paths, str | Path) else list(paths)
+    chosen = mapping if isinstance(mapping, LogMapping) else mapping_of(files, mapping)
+    choices = {
+        role: ChannelChoice(
+            (channels or {}).get(role) or chosen.channels.get(role, ""),
+            (units or {}).get(role) or chosen.units.get(role, ""),
+        )
+        for role in ROLES
+    }
+    reports = tuple(_file_report(raw_channels(file), choices) for file in files)
+    hopeless = any(set(report.without) - {"temperature"} for report in reports)
+    holes = any(c.role and c.traits.missing for report in reports for c in report.channels)
+    cold = any("temperature" in report.without for report in reports)
+    read, needed, problem = _read(
+        files,
+        chosen,
+        channels,
+        units,
+        isothermal=_tries(isothermal, cold and not hopeless),
+        drop_missing=_tries(drop_missing, holes and not hopeless),
+    )
+    if read is None:
+        return Inspection(reports, problem, (), {}, (), None)
+    dropped = {file.name: file.missing_rows for file in read.log.files if file.missing_rows}
+    support = support_of(read.log, min_dwell=min_dwell)
+    return Inspection(reports, "", needed, dropped, read.corrections, support)
+
+
+def _read(
+    files: Sequence[str | Path],
+    mapping: LogMapping,
+    channels: Mapping[str, str] | None,
+    units: Mapping[str, str] | None,
+    *,
+    isothermal: Sequence[bool],
+    drop_missing: Sequence[bool],
+) -> tuple[Corrected | None, tuple[str, ...], str]:
+    """The log, the flags that it needed beside those given (first in each list), or why it cannot be read."""
+    problem = ""
+    for cold, drop in itertools.product(isothermal, drop_missing):
+        try:
+            log = read_with_mapping(
+                files, mapping=mapping, channels=channels, units=units, isothermal=cold, drop_missing=drop
+            )
+        except HerseyError as error:
+            problem = problem or str(error)
+            continue
+        flags = {"--isothermal": cold != isothermal[0], "--drop-missing": drop != drop_missing[0]}
+        return log, tuple(flag for flag, used in flags.items() if used), ""
+    return None, (), problem
+
+
+def _tries(given: bool, helps: bool) -> tuple[bool, ...]:
+    """A flag as given, and set where that may help."""
+    return (False, True) if helps and not given else (given,)
+
+
+def _file_report(log: RawLog, choices: dict[str, ChannelChoice]) -> FileReport:
+    found, without = roles_of(log, choices)
+    role_of = {column.index: role for role, column in found.items()}
+    clocks, clock_names = _clocks(log, role_of, choices)
+    channels = []
+    for channel in log.channels:
+        role = role_of.get(channel.column.index, "")
+        shown = traits(channel.values, stands=role in ("torque", "speed") or _is_speed(channel))
+        findings = _findings(channel, shown, role) if role != "time" else ()
+        name = clock_names.get(channel.tick, "")
+        channels.append(ChannelReport(channel.column.path, channel.column.unit, role, name, shown, findings))
+    rows = max((channel.values.size for channel in log.channels), default=0)
+    return FileReport(log.name, log.format, rows, clocks, tuple(channels), without, log.notes, log.cut_off)
+
+
+def _clocks(
+    log: RawLog, role_of: dict[int, str], choices: dict[str, ChannelChoice]
+) -> tuple[tuple[Clock, ...], dict[str, str]]:
+    """Each clock of the file once, and its name by tick."""
+    clocks: dict[str, Clock] = {}
+    for channel in log.channels:
+        if channel.tick in clocks:
+            continue
+        if channel.clock is not None:
+            clocks[channel.tick] = clock_of(f"of {channel.column.path}", channel.clock)
+            continue
+        beside = [c for c in log.channels if c.tick == channel.tick]
+        time = next((c for c in beside if role_of.get(c.column.index) == "time"), None)
+        time = time or next((c for c in beside if _is_time(c)), None)
+        if time is not None:
+            unit = choices["time"].unit or time.column.unit
+            seconds = conversion("time", unit).scale * time.values
+            clocks[channel.tick] = clock_of(time.column.path, seconds)
+    return tuple(clocks.values()), {tick: clock.name for tick, clock in clocks.items()}
+
+
+def _is_time(channel: RawChannel) -> bool:
+    """Whether a channel counts a time that runs on."""
+    return bool(_TIME_UNIT.fullmatch(channel.column.unit)) and _runs_on(channel.values)
+
+
+def _is_speed(channel: RawChannel) -> bool:
+    if _SPEED_NAME.search(channel.column.name):
+        return True
+    try:
+        return bool(channel.column.unit and conversion("speed", channel.column.unit))
+    except HerseyError:
+        return False
+
+
+def _runs_on(values: FloatArray) -> bool:
+    return values.size > 1 and float(np.nanmean(np.diff(values) >= 0)) > _RUNS_ON
+
+
+def _findings(channel: RawChannel, shown: Traits, role: str) -> tuple[str, ...]:
+    said = [_in_words(fault, shown, channel.column.unit, role) for fault in shown.faults]
+    if channel.odd:
+        said.append(f"{channel.odd} cells hold no number")
+    if shown.missing > channel.odd:
+        said.append(f"{shown.missing - channel.odd} rows lack a number")
+    if shown.refresh > 1:
+        said.append(f"each value is held for {shown.refresh} rows: the sensor is slower than the log")
+    if role in ("torque", "speed"):
+        said += _coarse(channel.values, shown, channel.column.unit)
+    return tuple(said)
+
+
+def _in_words(fault: Fault, shown: Traits, unit: str, role: str) -> str:
+    value = f"{fault.value:.6g} {unit}".strip()
+    at = f"from row {fault.first + 1}" if fault.places == 1 else f"at {fault.places} places"
+    rows = f"{fault.rows} row{'s' if fault.rows > 1 else ''} ({fault.rows / shown.rows:.2g} of all)"
+    if fault.kind == "constant":
+        return f"{value} throughout: a dead channel, or nothing changed"
+    if fault.kind == "stuck":
+        what = "the sensor is stuck" if role else "held"
+        return f"{what} at {value} for {rows} {at}" if fault.places == 1 else f"{what} for {rows} {at}"
+    if fault.kind == "spikes":
+        return f"spikes in {rows} {at}, as far as {value}"
+    if fault.kind == "drop-outs":
+        return f"drops out to 0 in {rows} {at}"
+    return f"{fault.kind} at {value}: {rows} {at}"
+
+
+def _coarse(values: FloatArray, shown: Traits, unit: str) -> list[str]:
+    """A step that the noise does not blur and that is large beside the small readings."""
+    size = np.abs(values[np.isfinite(values) & (values != 0.0)])
+    if shown.step is None or not size.size or (shown.noise or 0.0) > DITHER * shown.step:
+        return []
+    small = float(np.quantile(size, 0.1))
+    if shown.step < COARSE * small:
+        return []
+    return [f"coarse: its step of {shown.step:.3g} {unit} is {shown.step / small:.0%} of its small readings"]
+
+
+#: Width of a name in the table, and findings of other channels shown at the most.
+_WIDTH, _SHOWN = 26, 30
+
+
+def _file_lines(file: FileReport, *, table: bool) -> list[str]:
+    """A file as a table of its channels, then what was found."""
+    lines = [f"{file.name}: {file.format}, {file.rows} rows{', cut off' if file.cut_off else ''}"]
+    for clock in file.clocks:
+        lines.append(
+            f"  clock '{clock.name}': every {clock.interval:.4g} s ({_rate(clock.interval)}), "
+            f"{clock.duration:.5g} s in all"
+        )
+        lines += [f"  ! {finding}" for finding in clock.findings()]
+    if not file.clocks:
+        lines.append("  ! no channel is a clock: rates and gaps cannot be told; name it with --time")
+    lines += _table(file) if table else []
+    found = [(c, finding) for c in file.channels for finding in c.findings]
+    found.sort(key=lambda pair: not pair[0].role)
+    lines += [f"  {'!' if c.role else '-'} {c.name}: {finding}" for c, finding in found[:_SHOWN]]
+    lines += [f"  - and {len(found) - _SHOWN} more (--json has them)"] if len(found) > _SHOWN else []
+    lines += [f"  ! {role}: {why}" for role, why in file.without.items()]
+    lines += [f"  - {note}" for note in file.notes]
+    return lines
+
+
+def _table(file: FileReport) -> list[str]:
+    lines = [f"  {'channel':{_WIDTH}} {'role':12} {'from':>10} {'to':>10} {'step':>9} {'noise':>9} unit"]
+    for channel in file.channels:
+        t = channel.traits
+        noise = None if channel.role == "time" else t.noise
+        numbers = f"{_short(t.low):>10} {_short(t.high):>10} {_short(t.step):>9} {_short(noise):>9}"
+        lines.append(
+            f"  {_end(channel.name):{_WIDTH}} {channel.role or '-':12} {numbers} {channel.unit or '?'}"
+        )
+    return lines
+
+
+def _end(name: str) -> str:
+    """The end of a long name, where channels of one group differ."""
+    return name if len(name) <= _WIDTH else "…" + name[1 - _WIDTH :]
+
+
+def _short(value: float | None) -> str:
+    return "-" if value is None or not np.isfinite(value) else f"{value:.4g}"
+
+
+def _rate(interval: float) -> str:
+    return "no rate" if interval <= 0 else f"{1.0 / interval:.4g} Hz"

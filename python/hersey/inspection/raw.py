@@ -1,0 +1,166 @@
+"""Every channel of a log as it was written, whether or not the log can be read as one of torque."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import polars as pl
+
+from hersey.errors import HerseyError
+from hersey.log.channels import ROLES, ChannelChoice, find_channel
+from hersey.log.footer import end_of_table
+from hersey.log.formats import opened, opener
+from hersey.log.layout import SNIFFED, Column, Layout, find_layout
+from hersey.log.numbers import MISSING
+from hersey.log.stamps import Stamps, counted_since
+from hersey.log.torque_log import FloatArray
+
+_NULLS = sorted({s for word in MISSING for s in (word, word.upper(), word.capitalize())} | {"NaN"})
+
+
+@dataclass(frozen=True)
+class RawChannel:
+    """One channel in its own unit: shape (rows,), NaN where no number stands.
+
+    ``odd`` counts cells that are neither a number nor a word for a missing one; ``clock`` is the time of each
+    row in s where the format has it, and channels with the same ``tick`` share it.
+    """
+
+    column: Column
+    values: FloatArray
+    odd: int = 0
+    clock: FloatArray | None = None
+    tick: str = ""
+
+
+@dataclass(frozen=True)
+class RawLog:
+    """The channels of one file, the comments above them, and what was done to read it."""
+
+    name: str
+    format: str
+    channels: tuple[RawChannel, ...]
+    comments: tuple[str, ...]
+    notes: tuple[str, ...]
+    cut_off: bool
+
+
+def raw_channels(path: str | Path) -> RawLog:
+    """Return every channel of numbers in a file.
+
+    Raises
+    ------
+    HerseyError
+        If it cannot be read at all.
+    """
+    path = Path(path)
+    reader = opener(path)
+    if reader is None:
+        return _of_text(path)
+    with opened(path, reader) as recording:
+        found = []
+        notes = list(recording.notes)
+        for index, signal in enumerate(recording.signals):
+            column = Column(index, signal.name, signal.unit, signal.group)
+            try:
+                values = np.asarray(signal.load(), dtype=float)
+                clock = None if signal.clock is None else signal.clock()
+            except HerseyError as error:
+                notes.append(f"'{column.path}' cannot be read: {error}")
+                continue
+            unit = "" if signal.unit else counted_since(signal.name, values)[0]
+            column = Column(index, signal.name, signal.unit or unit, signal.group)
+            found.append(RawChannel(column, values, clock=clock, tick=signal.tick or f"{signal.rows} rows"))
+        kind, comments, cut_off = recording.format, recording.comments, recording.cut_off
+        notes += [note for note in recording.notes if note not in notes]
+    return RawLog(path.name, kind, tuple(found), comments, tuple(notes), cut_off)
+
+
+def roles_of(log: RawLog, choices: dict[str, ChannelChoice]) -> tuple[dict[str, Column], dict[str, str]]:
+    """Return the column that plays each role, and for each role without one the reason in words."""
+    columns = tuple(channel.column for channel in log.channels)
+    found: dict[str, Column] = {}
+    without: dict[str, str] = {}
+    for role in ROLES:
+        try:
+            channel = find_channel(role, columns, choices[role], log.name)
+        except HerseyError as error:
+            without[role] = str(error).removeprefix(f"{log.name}: ")
+            continue
+        if channel is None:
+            without[role] = f"there is no {role} channel"
+        else:
+            found[role] = channel[0]
+    return found, without
+
+
+def _of_text(path: Path) -> RawLog:
+    size = path.stat().st_size
+    with path.open("rb") as file:
+        layout = find_layout(file.read(SNIFFED), path.name)
+        end = end_of_table(file, size, layout)
+        file.seek(0)
+        text = file.read(end.byte)
+    if layout.encoding != "utf-8-sig":
+        text = text.decode(layout.encoding, errors="replace").encode()
+    frame = _frame(text, layout)
+    found = [
+        _text_channel(layout, column, frame[f"{column.index}"])
+        for column in layout.named
+        if column.index not in layout.texts and f"{column.index}" in frame.columns
+    ]
+    notes = (*layout.notes, *end.notes)
+    return RawLog(path.name, "text", tuple(found), layout.comments, notes, end.cut_off)
+
+
+def _frame(text: bytes, layout: Layout) -> pl.DataFrame:
+    """The table with a column of numbers where all its cells are plain ones, of text elsewhere."""
+    numbers: dict[str, type[pl.DataType]] = {
+        f"{column.index}": pl.Float64
+        for column in layout.columns
+        if column.index not in layout.texts and column.index not in layout.stamps
+    }
+
+    def read(types: dict[str, type[pl.DataType]]) -> pl.DataFrame:
+        return pl.read_csv(
+            text,
+            has_header=False,
+            skip_lines=layout.first_line - 1,
+            separator=layout.separator,
+            comment_prefix=layout.comment,
+            infer_schema=False,
+            schema_overrides=types,
+            null_values=_NULLS if types else None,
+            encoding="utf8-lossy",
+            truncate_ragged_lines=True,
+            new_columns=[f"{column.index}" for column in layout.columns],
+        )
+
+    if layout.style.is_plain:
+        try:
+            return read(numbers)
+        except pl.exceptions.PolarsError:
+            pass  # padded cells, or words among the numbers: cell by cell, then
+    return read({})
+
+
+def _text_channel(layout: Layout, column: Column, cells: pl.Series) -> RawChannel:
+    if cells.dtype == pl.Float64:
+        numbers = cells.fill_null(np.nan).to_numpy()
+        return RawChannel(column, np.where(np.isfinite(numbers), numbers, np.nan), tick="rows")
+    cells = cells.fill_null("")
+    style = layout.stamps.get(column.index)
+
+    def read(part: pl.Series) -> FloatArray | None:
+        return Stamps(style).seconds(part) if style else layout.style.values(part)
+
+    values = read(cells)
+    if values is not None:
+        return RawChannel(column, values, tick="rows")
+    strange = {cell for cell in cells.unique().to_list() if read(pl.Series([cell], dtype=pl.String)) is None}
+    odd = cells.is_in(sorted(strange))
+    values = read(cells.set(odd, ""))
+    assert values is not None
+    return RawChannel(column, values, odd=int(odd.sum()), tick="rows")

@@ -1,0 +1,171 @@
+"""What the dwells of a log can tell, and what they cannot: said before a fit is tried."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hersey.errors import InsufficientDataError
+from hersey.law import distinct_speeds
+from hersey.log.torque_log import FloatArray, TorqueLog
+from hersey.steady import SteadyPoints, groups_of_temperature, rpm
+from hersey.units import convert
+
+#: Speeds that span less than this factor, and temperatures that span less than so many kelvin, give an
+#: exponent only with a wide interval.
+NARROW_SPEEDS, NARROW_TEMPERATURES = 2.0, 30.0
+#: Speeds at one temperature that two branches and the place where they meet need.
+BRANCH_SPEEDS = 6
+#: Speed and temperature vary together beyond this correlation: their exponents cannot be told apart.
+TOGETHER = 0.95
+#: Speeds at each end of a torque curve from which its slope there is taken.
+_END = 3
+#: Speeds are one if their logarithms differ by less.
+_SAME = 0.03
+
+
+@dataclass(frozen=True)
+class Support:
+    """Dwells of a log and what they support.
+
+    Attributes
+    ----------
+    dwells
+        How many.
+    speeds
+        How many different speeds; ``speed_range`` in rad/s.
+    temperatures
+        Mean of each group of temperatures, K, coldest first.
+    rejected
+        Rows of every other stretch by its reason.
+    can, cannot
+        In words; what cannot be told names what is missing.
+    """
+
+    dwells: int
+    speeds: int
+    speed_range: tuple[float, float] | None
+    temperatures: tuple[float, ...]
+    rejected: dict[str, int]
+    can: tuple[str, ...]
+    cannot: tuple[str, ...]
+
+
+def support_of(log: TorqueLog, *, min_dwell: float = 2.0) -> Support:
+    """Return what a log supports; a log without a dwell supports nothing, and says why."""
+    try:
+        points = log.steady(min_dwell=min_dwell)
+    except InsufficientDataError as error:
+        return Support(0, 0, None, (), {}, (), (str(error),))
+    speed = np.abs(points.column("speed"))
+    kelvin = points.column("temperature") if log.has_temperature else None
+    groups = [] if kelvin is None else list(groups_of_temperature(kelvin))
+    levels = () if kelvin is None else tuple(float(np.mean(kelvin[group])) for group in groups)
+    can: list[str] = []
+    cannot: list[str] = []
+    for says in (
+        _speed(speed),
+        _temperature(levels, points),
+        _branches(points, groups or [np.arange(speed.size)], speed),
+        _approach(points),
+        _tare(points),
+    ):
+        can += says[0]
+        cannot += says[1]
+    rejected: Counter[str] = Counter()
+    for stretch in points.rejected:
+        rejected[stretch.reason.split(":")[0].split(" by ")[0]] += stretch.rows
+    limits = (float(speed.min()), float(speed.max()))
+    return Support(
+        len(points), distinct_speeds(speed), limits, levels, dict(rejected), tuple(can), tuple(cannot)
+    )
+
+
+Said = tuple[list[str], list[str]]
+
+
+def _speed(speed: FloatArray) -> Said:
+    count, low, high = distinct_speeds(speed), float(speed.min()), float(speed.max())
+    span = f"{rpm(low):.3g} to {rpm(high):.3g} rpm"
+    if count < 3:
+        held = f"{rpm(low):.4g} rpm" if count == 1 else span
+        few = "one speed" if count == 1 else "two speeds"
+        return [], [f"exponent c of speed: {few} ({held}); record dwells at three speeds or more"]
+    if high < NARROW_SPEEDS * low:
+        return [], [f"exponent c of speed, well: {count} speeds span only {span}; go beyond a factor of 2"]
+    return [f"exponent c of speed: {count} speeds, {span}"], []
+
+
+def _temperature(levels: tuple[float, ...], points: SteadyPoints) -> Said:
+    if not levels:
+        return [], ["anything of temperature: none was recorded"]
+    shown = _levels(levels)
+    if len(levels) == 1:
+        return [], [f"exponent b of temperature: all dwells are at {shown}; record other temperatures"]
+    kelvin, speed = points.column("temperature"), np.abs(points.column("speed"))
+    if distinct_speeds(speed) > 1 and abs(np.corrcoef(np.log(speed), kelvin)[0, 1]) > TOGETHER:
+        return [], ["b apart from c: speed and temperature vary together; record several speeds at each"]
+    if levels[-1] - levels[0] < NARROW_TEMPERATURES:
+        span = f"only {levels[-1] - levels[0]:.0f} K ({shown})"
+        return [], [f"exponent b of temperature, well: the dwells span {span}; go beyond 30 K"]
+    can, cannot = [f"exponent b of temperature: {len(levels)} temperatures, {shown}"], []
+    laws = "which law of temperature holds (power, Arrhenius, VFT)"
+    if len(levels) > 3:
+        can.append(laws)
+    else:
+        cannot.append(f"{laws}: {len(levels)} temperatures; four or more are needed")
+    return can, cannot
+
+
+def _branches(points: SteadyPoints, groups: list[NDArray[np.intp]], speed: FloatArray) -> Said:
+    counts = [distinct_speeds(speed[group]) for group in groups]
+    most = max(counts)
+    if most < BRANCH_SPEEDS:
+        few = f"at most {most} speed{'s' if most > 1 else ''} at one temperature"
+        return [], [f"a transition: {few}; two branches need {BRANCH_SPEEDS} or more"]
+    torque = np.abs(points.column("torque"))
+    rich = [group for group, count in zip(groups, counts, strict=True) if count >= BRANCH_SPEEDS]
+    slopes = [_end_slopes(speed[group], torque[group]) for group in rich]
+    low, high = rpm(float(speed.min())), rpm(float(speed.max()))
+    falling = [group for group, (slow, fast) in zip(rich, slopes, strict=True) if slow < 0 < fast]
+    if falling:
+        kelvin = points.column("temperature") if points.log.has_temperature else None
+        where = (
+            "" if kelvin is None else " at " + _levels([float(np.mean(kelvin[group])) for group in falling])
+        )
+        return [f"a transition: torque falls at the slow end and rises at the fast end{where}"], []
+    if all(slow > 0 for slow, _ in slopes):
+        return [], [f"a transition: torque rises from {low:.3g} rpm on; one could lie at slower speeds"]
+    return [], [f"a transition: torque does not rise towards {high:.3g} rpm; one could lie at faster speeds"]
+
+
+def _end_slopes(speed: FloatArray, torque: FloatArray) -> tuple[float, float]:
+    """Slope of ln torque against ln speed over the slowest and the fastest speeds."""
+    w, level = np.log(speed), np.log(torque)
+    values = np.sort(w)
+    values = values[np.concatenate([[True], np.diff(values) > _SAME])]
+    ends = (w <= values[_END - 1] + _SAME, w >= values[-_END] - _SAME)
+    slow, fast = (float(np.polyfit(w[end], level[end], 1)[0]) for end in ends)
+    return slow, fast
+
+
+def _levels(kelvin: Sequence[float]) -> str:
+    return ", ".join(f"{convert(level, 'K', 'degC'):.0f}" for level in kelvin[:12]) + " degC"
+
+
+def _approach(points: SteadyPoints) -> Said:
+    ways = Counter(points.table["approach"].to_list())
+    if ways["from below"] > 2 and ways["from above"] > 2:
+        below, above = ways["from below"], ways["from above"]
+        return [f"whether the way up differs from the way down: {below} and {above} dwells"], []
+    return [], ["whether the way up differs from the way down: record speeds up and down"]
+
+
+def _tare(points: SteadyPoints) -> Said:
+    if points.standing_torque is None:
+        return [], ["a tare: the drive never stands for 2 s"]
+    return [f"a tare: torque reads {points.standing_torque * 1e3:.3g} mN m while the drive stands"], []

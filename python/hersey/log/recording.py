@@ -1,0 +1,146 @@
+"""What a file of any format holds before roles are given: named channels, each with its own clock.
+
+A reader of a format is a context manager that opens a file and yields a `Recording`; the numbers of a channel
+are loaded only when they are asked for, while the file is open.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import importlib
+import io
+import logging
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from hersey.errors import UnreadableLogError
+from hersey.log.torque_log import FloatArray
+
+#: Units that a name may end with where the format has no place for a unit: ``torque_Nm``, ``t_s``.
+_ENDINGS = {
+    "s": "s",
+    "ms": "ms",
+    "us": "us",
+    "Nm": "N*m",
+    "N_m": "N*m",
+    "mNm": "mN*m",
+    "Ncm": "N*cm",
+    "rpm": "rpm",
+    "rad_s": "rad/s",
+    "degC": "degC",
+    "degF": "degF",
+    "K": "K",
+}
+
+
+@dataclass(frozen=True)
+class Signal:
+    """One channel as recorded.
+
+    ``load`` returns the numbers in the unit as written, shape (rows,), NaN where a value is missing;
+    ``clock`` the time of each in s on a scale common to the file, or is None where a channel of the group
+    holds the time. ``tick`` names the clock: two signals with the same tick need no alignment.
+    """
+
+    name: str
+    unit: str
+    rows: int
+    load: Callable[[], FloatArray]
+    clock: Callable[[], FloatArray] | None = None
+    tick: str = ""
+    group: str = ""
+
+
+@dataclass
+class Recording:
+    """A file as recorded; ``notes`` grow while channels are loaded, ``cut_off``: its end is missing."""
+
+    format: str
+    signals: tuple[Signal, ...]
+    others: tuple[str, ...] = ()  #: channels that hold no series of numbers, and what they hold
+    comments: tuple[str, ...] = ()
+    notes: list[str] = field(default_factory=list)
+    cut_off: bool = False
+    nothing: str = ""  #: why there are no signals, if the format can tell
+
+
+def library(module: str, reads: str) -> Any:
+    """Return an optional library, imported on first use.
+
+    Raises
+    ------
+    UnreadableLogError
+        If it is not installed.
+    """
+    try:
+        return importlib.import_module(module)
+    except ImportError:
+        raise missing_library(module, reads) from None
+
+
+def missing_library(module: str, reads: str) -> UnreadableLogError:
+    """Return the error for an optional library that is not installed."""
+    return UnreadableLogError(f"reading {reads} needs {module}: pip install 'hersey[formats]'")
+
+
+@contextlib.contextmanager
+def listening(name: str) -> Iterator[list[str]]:
+    """Collect what a library logs, and drop what it prints; yield the list of messages."""
+    heard: list[str] = []
+
+    def keep(record: logging.LogRecord) -> bool:
+        if record.levelno >= logging.WARNING:
+            heard.append(record.getMessage())
+        return False
+
+    loggers = [
+        logging.getLogger(key)
+        for key in [name, *logging.root.manager.loggerDict]
+        if key.split(".")[0] == name
+    ]
+    for logger in loggers:
+        logger.addFilter(keep)
+    try:
+        with contextlib.redirect_stdout(io.StringIO()):
+            yield heard
+    finally:
+        for logger in loggers:
+            logger.removeFilter(keep)
+
+
+def split_unit(name: str) -> tuple[str, str]:
+    """Return name and unit of a channel called ``Torque [N*m]``, ``Torque (N*m)`` or ``torque_Nm``."""
+    from hersey.log.layout import NAME_WITH_UNIT
+
+    match = NAME_WITH_UNIT.fullmatch(name)
+    if match:
+        return match[1].strip(), (match[2] if match[2] is not None else match[3]).strip()
+    for ending, unit in sorted(_ENDINGS.items(), key=lambda e: -len(e[0])):
+        if len(name) > len(ending) + 1 and name.endswith(f"_{ending}"):
+            return name.removesuffix(f"_{ending}"), unit
+    return name, ""
+
+
+def floats(values: Any) -> FloatArray:
+    """Return numbers of any real type as float64, time stamps as seconds since the first."""
+    array = np.ma.filled(values, np.nan) if np.ma.isMaskedArray(values) else np.asarray(values)
+    if array.dtype.kind == "M":
+        return seconds(array)
+    if array.dtype.kind == "m":
+        return np.asarray(array / np.timedelta64(1, "ns") * 1e-9, dtype=float)
+    if array.dtype.kind == "c":
+        raise UnreadableLogError("complex numbers")
+    return np.ascontiguousarray(array, dtype=float)
+
+
+def seconds(stamps: Any, start: Any = None) -> FloatArray:
+    """Return time stamps (datetime64) as seconds since ``start`` or the first, NaN where one is missing."""
+    array = np.asarray(stamps).astype("datetime64[ns]")
+    known = array[~np.isnat(array)]
+    if not known.size:
+        return np.full(array.shape, np.nan)
+    steps = array - (known[0] if start is None else np.datetime64(start, "ns"))
+    return np.where(np.isnat(array), np.nan, steps.astype(np.int64) * 1e-9)
