@@ -8,7 +8,8 @@ import pytest
 
 import hersey
 from hersey import testbench
-from hersey.analysis import Analysis, analyse
+from hersey.analysis import analyse
+from hersey.document import Analysis
 from hersey.fuser import read_fuser
 
 ROOT = Path(__file__).parents[1]

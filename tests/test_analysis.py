@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 import hersey
-from hersey.analysis import Analysis, analyse, load
+from hersey.analysis import analyse, load
+from hersey.document import Analysis
 from hersey.errors import ParameterError
 
 

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from hersey.analysis import Analysis
 from hersey.charts import charts, specification_of, write_figures
+from hersey.document import Analysis
 
 
 def test_every_result_has_its_chart(document: Analysis) -> None:

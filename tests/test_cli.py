@@ -17,7 +17,7 @@ import typer
 from hersey.cli import app
 from tests.conftest import ROOT
 
-COMMANDS = ["inspect", "report", "fit", "models", "design", "compare", "cycles"]
+COMMANDS = ["inspect", "report", "fit", "models", "design", "compare", "cycles", "film"]
 COMMANDS += ["simulate", "sweep", "hysteresis", "map", "plan", "figures", "testbench"]
 HERSEY = [sys.executable, "-m", "hersey.cli"]
 

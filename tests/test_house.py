@@ -22,17 +22,21 @@ PACKAGE = ROOT / "python" / "hersey"
 LAYERS = [
     ("_core", "errors", "json_value"),
     ("units", "toml_file"),
-    ("log",),
-    ("axes", "drag", "schedule", "spread", "steady"),
-    ("corrections", "course_file", "motion"),
+    ("log", "toml_value"),
+    ("axes", "columns", "drag", "reynolds", "schedule", "spread", "steady"),
+    ("corrections", "course_file", "lubricant", "motion", "paper"),
+    ("contact",),
+    ("film", "film_tables"),
     ("ensemble", "estimation", "fuser", "log_mapping", "testbench"),
     ("hysteresis", "law", "scenario"),
     ("approach", "branches", "plan"),
     ("ladder", "surface"),
-    ("compare", "design", "operating_map", "regime"),
+    ("compare", "design", "film_evidence", "operating_map", "regime"),
+    ("document", "film_lint"),
+    ("film_part",),
     ("analysis",),
-    ("charts", "fit_file"),
-    ("map_chart", "plan_chart", "report", "trace"),
+    ("charts", "film_document", "fit_file"),
+    ("film_chart", "map_chart", "plan_chart", "report", "trace"),
     ("figures", "inspection"),
     ("cli",),
 ]
@@ -66,6 +70,9 @@ def test_core_layers() -> None:
     sources = ROOT / "crates" / "core" / "src"
     for path in (sources / "drag").glob("*.rs"):
         assert "crate::motion" not in path.read_text()
+    for path in (sources / "lubrication").glob("*.rs"):
+        for above in ("drag", "motion", "stability"):
+            assert f"crate::{above}" not in path.read_text()
     for path in [*(sources / "drag").glob("*.rs"), *(sources / "motion").glob("*.rs")]:
         assert "crate::stability" not in path.read_text()
     for path in sources.rglob("*.rs"):
@@ -96,8 +103,10 @@ def test_public_functions_are_documented() -> None:
     "module",
     [
         "hersey.approach",
+        "hersey.contact",
         "hersey.drag",
         "hersey.ensemble",
+        "hersey.film",
         "hersey.hysteresis",
         "hersey.inspection.inspecting",
         "hersey.ladder.collapse",
@@ -106,6 +115,7 @@ def test_public_functions_are_documented() -> None:
         "hersey.log_mapping",
         "hersey.motion",
         "hersey.operating_map",
+        "hersey.paper",
         "hersey.plan.planner",
         "hersey.schedule",
         "hersey.spread",

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from hersey.analysis import Analysis
+from hersey.document import Analysis
 from hersey.errors import OutputError
 from hersey.report import render, write_atomically
 

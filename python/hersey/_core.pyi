@@ -7,20 +7,48 @@ import numpy as np
 from numpy.typing import NDArray
 
 __all__ = [
+    "FILM_CONSTANTS",
+    "FILM_SPEED_EXPONENTS",
+    "GAS_CONSTANT",
     "KINDS",
     "MODES",
+    "NIP_RATIO_RANGE",
+    "REGIMES",
     "VERSION",
     "Law",
+    "ViscosityLaw",
     "band",
     "bands",
+    "carreau",
     "cycles",
+    "effective_modulus",
+    "elliptic_film",
+    "ellipticity",
+    "hertz",
+    "inlet_heating",
+    "inlet_length",
+    "layer",
+    "layer_factor",
+    "line_contact",
+    "line_film",
+    "paper",
+    "reduced_radius",
+    "shear_heating",
+    "shear_thinning",
+    "shore_a_modulus",
     "simulate",
+    "starvation",
     "stick_slip",
     "sweep",
 ]
 
+FILM_CONSTANTS: list[tuple[float, float]]
+FILM_SPEED_EXPONENTS: list[float]
+GAS_CONSTANT: float
 KINDS: list[str]
 MODES: list[str]
+NIP_RATIO_RANGE: tuple[float, float]
+REGIMES: list[str]
 VERSION: str
 
 _Floats: TypeAlias = NDArray[np.float64]
@@ -61,6 +89,34 @@ class Law:
     @property
     def transition_speed(self) -> float: ...
 
+@final
+class ViscosityLaw:
+    @staticmethod
+    def arrhenius(points: Sequence[tuple[float, float]]) -> ViscosityLaw: ...
+    @staticmethod
+    def vogel(points: Sequence[tuple[float, float]]) -> ViscosityLaw: ...
+    @staticmethod
+    def walther(points: Sequence[tuple[float, float]], density: float) -> ViscosityLaw: ...
+    def at(self, temperature: _Floats) -> _Floats: ...
+    @property
+    def coefficients(self) -> list[tuple[str, float]]: ...
+
+def carreau(columns: Sequence[_Floats]) -> _Floats: ...
+def effective_modulus(one: tuple[float, float], other: tuple[float, float]) -> float: ...
+def elliptic_film(columns: Sequence[_Floats]) -> _Floats: ...
+def ellipticity(along: float, across: float) -> float: ...
+def hertz(columns: Sequence[_Floats], line: bool) -> _Floats: ...
+def inlet_heating(columns: Sequence[_Floats]) -> _Floats: ...
+def inlet_length(columns: Sequence[_Floats]) -> _Floats: ...
+def layer(columns: Sequence[_Floats]) -> _Floats: ...
+def layer_factor(edge: float, width: float) -> float: ...
+def line_film(columns: Sequence[_Floats]) -> _Floats: ...
+def paper(equation: int, columns: Sequence[_Floats]) -> _Floats: ...
+def reduced_radius(one: float, other: float) -> float: ...
+def shear_heating(columns: Sequence[_Floats]) -> _Floats: ...
+def shear_thinning(columns: Sequence[_Floats]) -> _Floats: ...
+def shore_a_modulus(hardness: float) -> float: ...
+def starvation(columns: Sequence[_Floats]) -> _Floats: ...
 def simulate(
     train: tuple[float, float],
     drag: Law,
@@ -103,3 +159,10 @@ def bands(
 def cycles(
     parameters: Sequence[_Floats], tolerance: float
 ) -> tuple[_Floats, _Floats, NDArray[np.uint32]]: ...
+def line_contact(
+    roll: tuple[float, float, float],
+    layer: tuple[float, float] | None,
+    speeds: tuple[float, float],
+    fluid: tuple[float, float, str, bool],
+    nodes: int,
+) -> tuple[list[_Floats], list[float], list[float], list[float], tuple[int, int]]: ...

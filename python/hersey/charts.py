@@ -13,7 +13,7 @@ import altair as alt
 import numpy as np
 import vl_convert
 
-from hersey.analysis import Analysis, Point, Series
+from hersey.document import Analysis, Point, Series
 from hersey.regime import celsius
 from hersey.steady import rpm
 
@@ -36,6 +36,7 @@ def charts(document: Analysis) -> dict[str, Chart]:
         "surface": surface,
         "residuals": residuals,
         "regime": regime,
+        "film": film,
         "simulation_speed": simulation_speed,
         "simulation_force": simulation_force,
         "timeline_speed": timeline_speed,
@@ -215,6 +216,14 @@ def regime(document: Analysis) -> Chart:
         "Exponent of damping, with 95 % intervals", subtitle="against what each regime predicts"
     )
     return alt.layer(band, line, text, bars, dots).properties(title=title, width=WIDTH, height=HEIGHT)
+
+
+def film(document: Analysis) -> Chart | None:
+    """Which law of film thickness holds in the user's nip."""
+    from hersey.film_chart import regime_chart  # which draws with the sizes above
+
+    part = document.film
+    return None if part is None else regime_chart(part.points, part.dwells, part.layer_factor)
 
 
 def simulation_speed(document: Analysis) -> Chart:

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from hersey.analysis import FitPart, InputFile, Interval, Point, TransitionPart
 from hersey.branches import Transition
+from hersey.document import FitPart, InputFile, Interval, Point, TransitionPart
 from hersey.errors import MissingFileError, ParameterError
 from hersey.estimation import Estimate
 from hersey.law import hersey_exponent

@@ -6,11 +6,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from hersey.contact import Contact
 from hersey.errors import ParameterError, UnitError
+from hersey.film_tables import read_contact, read_lubricant
+from hersey.lubricant import Lubricant
 from hersey.motion import Drivetrain
 from hersey.spread import Spread, read_spread
 from hersey.toml_file import read_toml
-from hersey.units import KINDS, parse
+from hersey.toml_value import values
 
 #: Kind of unit, least and greatest value that a sliding drive could have, in SI.
 _DRIVETRAIN = {
@@ -28,7 +31,7 @@ _LIMITS = {
     "spring_force": ("force", 1e-6, 1e7),
 }
 _POINT = {"speed": ("belt speed", 1e-6, 1e3), "temperature": ("temperature", 150.0, 1000.0)}
-_TABLES = ("drivetrain", "limits", "points", "uncertainty")
+_TABLES = ("drivetrain", "limits", "contact", "lubricant", "points", "uncertainty")
 
 
 @dataclass(frozen=True)
@@ -70,6 +73,7 @@ class Fuser:
 
     ``stiffness`` (N/m) and ``mass`` (kg) at the belt, ``roll_radius`` (m) at which torque acts on it, and
     ``stick_speed`` (m/s) below which the belt sticks. ``uncertainty`` says how far parameters are known.
+    ``contact`` and ``lubricant`` make the film, if they are stated.
     """
 
     stiffness: float
@@ -79,6 +83,8 @@ class Fuser:
     limits: Limits = Limits()
     points: tuple[OperatingPoint, ...] = ()
     uncertainty: Mapping[str, Spread] = field(default_factory=dict)
+    contact: Contact | None = None
+    lubricant: Lubricant | None = None
 
     @property
     def train(self) -> Drivetrain:
@@ -87,7 +93,9 @@ class Fuser:
 
 
 def read_fuser(path: str | Path) -> Fuser:
-    """Read ``[drivetrain]``, and ``[limits]``, ``[[points]]`` and ``[uncertainty]`` if they are there.
+    """Read ``[drivetrain]``, and the other tables if they are there.
+
+    These are ``[limits]``, ``[contact]``, ``[lubricant]``, ``[[points]]`` and ``[uncertainty]``.
 
     Every value is a string such as ``"11 N/mm"``; an uncertainty is ``"10 %"`` or ``"0.1 mm/s to 1 mm/s"``
     (see `Spread`).
@@ -104,16 +112,18 @@ def read_fuser(path: str | Path) -> Fuser:
     unknown = sorted(set(document) - set(_TABLES))
     if unknown:
         raise ParameterError(f"{path.name}: there is no table '{unknown[0]}': {', '.join(_TABLES)} are known")
-    own = _values(path.name, "drivetrain", document["drivetrain"], _DRIVETRAIN)
+    own = values(path.name, "drivetrain", document["drivetrain"], _DRIVETRAIN)
     for key in _DRIVETRAIN:
         if key not in own:
             raise ParameterError(f"{path.name}: [drivetrain] lacks '{key}'")
-    limits = _values(path.name, "limits", document.get("limits", {}), _LIMITS)
+    limits = values(path.name, "limits", document.get("limits", {}), _LIMITS)
     return Fuser(
         **own,
         limits=Limits(**limits),
         points=_points(path.name, document.get("points", [])),
         uncertainty=_uncertainty(path.name, document.get("uncertainty", {})),
+        contact=_contact(path.name, document, own["roll_radius"], limits.get("nip_load")),
+        lubricant=read_lubricant(path.name, document["lubricant"]) if "lubricant" in document else None,
     )
 
 
@@ -128,11 +138,11 @@ def _points(file: str, rows: object) -> tuple[OperatingPoint, ...]:
         name = row.get("name", f"point {number}")
         if not isinstance(name, str) or not name.strip():
             raise ParameterError(f"{file}: {where}: name is not a text")
-        values = _values(file, where, {key: v for key, v in row.items() if key != "name"}, _POINT)
+        stated = values(file, where, {key: v for key, v in row.items() if key != "name"}, _POINT)
         for key in _POINT:
-            if key not in values:
+            if key not in stated:
                 raise ParameterError(f"{file}: {where} lacks '{key}'")
-        points.append(OperatingPoint(name, **values))
+        points.append(OperatingPoint(name, **stated))
     return tuple(points)
 
 
@@ -150,32 +160,8 @@ def _uncertainty(file: str, table: object) -> dict[str, Spread]:
     return spreads
 
 
-def _values(
-    file: str, name: str, table: object, kinds: Mapping[str, tuple[str | None, float, float]]
-) -> dict[str, float]:
-    """The values of a table that are stated, checked."""
-    if not isinstance(table, dict):
-        raise ParameterError(f"{file}: {name} is not a table: write [{name}]")
-    unknown = sorted(set(table) - set(kinds))
-    if unknown:
-        raise ParameterError(f"{file}: [{name}] has no key '{unknown[0]}': {', '.join(kinds)} are known")
-    return {key: _value(file, f"{name}.{key}", text, *kinds[key]) for key, text in table.items()}
-
-
-def _value(file: str, key: str, text: object, kind: str | None, low: float, high: float) -> float:
-    if kind is None:
-        if isinstance(text, bool) or not isinstance(text, int | float):
-            raise ParameterError(f"{file}: {key} is {text!r}: write a number")
-        value, si = float(text), ""
-    else:
-        if not isinstance(text, str):
-            raise UnitError(f"{file}: {key} is {text}: write a string with its unit")
-        try:
-            value, si = parse(kind, text), " " + KINDS[kind][0]
-        except UnitError as error:
-            raise UnitError(f"{file}: {key}: {error}") from None
-    if not value > 0:
-        raise ParameterError(f"{file}: {key} is {text}: it must be greater than 0")
-    if not low <= value <= high:
-        raise ParameterError(f"{file}: {key} is {text}: {low:g} to {high:g}{si} is believed")
-    return value
+def _contact(file: str, document: Mapping[str, object], radius: float, load: float | None) -> Contact | None:
+    """The contact, with radius and load from the other tables where its own does not state them."""
+    if "contact" not in document:
+        return None
+    return read_contact(file, document["contact"], roll_radius=radius, load=load)

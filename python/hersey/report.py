@@ -16,8 +16,8 @@ from typing import Any
 import altair as alt
 import vl_convert
 
-from hersey.analysis import Analysis
 from hersey.charts import charts, specification_of
+from hersey.document import Analysis
 from hersey.errors import OutputError
 
 # Samples that only the charts need: the page carries them once.

@@ -27,6 +27,12 @@ KINDS: dict[str, tuple[str, str]] = {
     "force": ("N", "N"),
     "acceleration": ("m/s^2", "mm/s^2"),
     "translational damping": ("N*s/m", "N*s/m"),
+    "pressure": ("Pa", "MPa"),
+    "viscosity": ("Pa*s", "mPa*s"),
+    "kinematic viscosity": ("m^2/s", "mm^2/s"),
+    "density": ("kg/m^3", "g/cm^3"),
+    "pressure-viscosity coefficient": ("Pa^-1", "GPa^-1"),
+    "thermal conductivity": ("W/m/K", "W/m/K"),
 }
 
 # Spellings of the field that pint does not know, or reads as something else.

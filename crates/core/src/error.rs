@@ -69,6 +69,13 @@ pub enum Error {
         /// Model time at which it happens.
         time: f64,
     },
+    /// A numerical solution is out of reach.
+    NotConverged {
+        /// Name of the quantity that was led to its value step by step.
+        quantity: &'static str,
+        /// The value at which there is no way on.
+        value: f64,
+    },
 }
 
 impl fmt::Display for Error {
@@ -103,6 +110,12 @@ impl fmt::Display for Error {
             }
             Self::Chattering { guard, time } => {
                 write!(f, "the motion switches without end at time {time:e} (guard: {guard})")
+            }
+            Self::NotConverged { quantity, value } => {
+                write!(
+                    f,
+                    "no solution found beyond {quantity} {value:e}: try more nodes, a lighter load or a faster film"
+                )
             }
         }
     }

@@ -3,6 +3,7 @@
 //! | module   | responsibility                                                                     |
 //! |----------|------------------------------------------------------------------------------------|
 //! | `error`  | the closed list of ways an input can be wrong                                      |
+//! | `lubrication` | viscosity, contact, film thickness and the drag that follows                  |
 //! | `drag`   | sliding drag against belt speed: EHL and mixed branches, closure near zero speed   |
 //! | `motion` | spring-driven belt: Taylor steps, located events, trajectories, stick-slip cycles  |
 //!
@@ -12,6 +13,7 @@
 
 pub mod drag;
 pub mod error;
+pub mod lubrication;
 pub mod motion;
 pub mod stability;
 

@@ -4,7 +4,9 @@
 
 mod drag;
 mod ensemble;
+mod lubrication;
 mod motion;
+mod reynolds;
 mod stability;
 
 use pyo3::exceptions::PyValueError;
@@ -21,7 +23,15 @@ mod _core {
     #[pymodule_export]
     use super::ensemble::sweep;
     #[pymodule_export]
+    use super::lubrication::{
+        ViscosityLaw, carreau, effective_modulus, elliptic_film, ellipticity, hertz, inlet_heating,
+        inlet_length, layer, layer_factor, line_film, paper, reduced_radius, shear_heating,
+        shear_thinning, shore_a_modulus, starvation,
+    };
+    #[pymodule_export]
     use super::motion::{simulate, stick_slip};
+    #[pymodule_export]
+    use super::reynolds::line_contact;
     #[pymodule_export]
     use super::stability::{band, bands, cycles};
 
@@ -34,6 +44,11 @@ mod _core {
         let modes = [Mode::Ehl, Mode::Mixed, Mode::Microslip, Mode::Stuck];
         module.add("MODES", modes.map(super::motion::mode_name))?;
         module.add("KINDS", super::ensemble::KINDS)?;
+        module.add("REGIMES", super::lubrication::REGIMES)?;
+        module.add("FILM_CONSTANTS", super::lubrication::FILM_CONSTANTS)?;
+        module.add("FILM_SPEED_EXPONENTS", super::lubrication::speed_exponents())?;
+        module.add("GAS_CONSTANT", hersey_core::lubrication::viscosity::GAS_CONSTANT)?;
+        module.add("NIP_RATIO_RANGE", hersey_core::lubrication::paper::NIP_RATIO_RANGE)?;
         module.add("VERSION", env!("CARGO_PKG_VERSION"))
     }
 }

@@ -146,6 +146,15 @@ function hypotheses() {
     + "move it too. Agreement means that the 95 % interval of c does not exclude the value.", "soft");
 }
 
+async function film() {
+  if (!data.film) return;
+  add(report, "h2", "What film theory says of this nip");
+  add(report, "p", data.film.verdict).id = "film";
+  await chart(report, "film");
+  const notes = add(report, "ul");
+  data.film.notes.forEach((text) => add(notes, "li", text));
+}
+
 function reproduce() {
   add(report, "h2", "How to reproduce this report");
   if (data.command) add(report, "pre", data.command).id = "command";
@@ -177,6 +186,7 @@ async function main() {
       + `near ${digits(data.fit.transition.least_torque_speed * TO_RPM, 3)} rpm; the ${data.fit.transition.gradual ? "bend is gradual: trend lines on either side" : "branches"} `
       + `meet at ${interval(data.fit.transition.speed, TO_RPM, 3)} rpm${at}.`
     : `No falling branch is announced: ${data.fit.no_transition}.`);
+  await film();
   add(report, "h2", "What stick-slip looks like");
   await chart(report, "simulation_speed");
   await chart(report, "simulation_force");

@@ -1,0 +1,300 @@
+//! Limits and invariants of the contact and of the film laws.
+
+use std::f64::consts::PI;
+
+use hersey_core::lubrication::contact::{Solid, effective_modulus, hertz_line};
+use hersey_core::lubrication::correction::{inlet_heating, shear_thinning, starvation};
+use hersey_core::lubrication::film::{LineContact, Regime, layer_factor};
+use hersey_core::lubrication::layer::LayerContact;
+use hersey_core::lubrication::paper::Nip;
+use hersey_core::lubrication::viscosity::{Carreau, TemperatureLaw};
+use proptest::prelude::*;
+
+fn close(value: f64, reference: f64, tolerance: f64) {
+    assert!((value / reference - 1.0).abs() <= tolerance, "{value} is not {reference}");
+}
+
+/// Value at infinite width of a series in t/a, from widths that double.
+fn extrapolated(values: [f64; 4]) -> f64 {
+    let [a, b, c, d] = values;
+    let (ab, bc, cd) = (2.0 * b - a, 2.0 * c - b, 2.0 * d - c);
+    let (abc, bcd) = ((4.0 * bc - ab) / 3.0, (4.0 * cd - bc) / 3.0);
+    (8.0 * bcd - abc) / 7.0
+}
+
+#[test]
+fn a_thick_layer_is_a_half_space() {
+    for nu in [0.0, 0.3, 0.49, 0.5] {
+        let contact = LayerContact::of_width(0.02, nu).unwrap();
+        close(contact.load, PI / 4.0 * 0.02 * 0.02, 1e-3);
+        close(contact.edge, 1.0, 1e-3);
+        close(contact.pressure(0.5), 0.75_f64.sqrt(), 1e-3);
+    }
+}
+
+#[test]
+fn a_thin_compressible_layer_is_a_bed_of_springs() {
+    for nu in [0.0, 0.2, 0.3] {
+        let ratio = |width: f64| {
+            let law = 2.0 / 3.0 * width.powi(3) * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu));
+            LayerContact::of_width(width, nu).unwrap().load * (1.0 / (1.0 - nu * nu)) / law
+        };
+        close(extrapolated([5.0, 10.0, 20.0, 40.0].map(ratio)), 1.0, 1e-3);
+    }
+}
+
+#[test]
+fn a_thin_incompressible_layer_flows() {
+    // w = 2 G a^5/(15 R t^3), G = E/3, E* = 4E/3.
+    let ratio = |width: f64| {
+        LayerContact::of_width(width, 0.5).unwrap().load * (4.0 / 3.0)
+            / (2.0 / 45.0 * width.powi(5))
+    };
+    close(extrapolated([5.0, 10.0, 20.0, 40.0].map(ratio)), 1.0, 1e-3);
+}
+
+#[test]
+fn pressure_carries_the_load() {
+    for (width, nu) in [(0.1, 0.3), (1.0, 0.5), (5.0, 0.49), (20.0, 0.5)] {
+        let contact = LayerContact::of_width(width, nu).unwrap();
+        let panels = 4000;
+        let sum: f64 = (0..panels)
+            .map(|i| {
+                let angle = PI * (f64::from(i) + 0.5) / f64::from(panels);
+                contact.pressure(angle.cos()) * angle.sin()
+            })
+            .sum();
+        // W = w R/(E* t^2) = (a/t)^2/2 times the integral of p over P.
+        close(sum * PI / f64::from(panels) * width * width / 2.0, contact.load, 1e-6);
+        close(contact.pressure(0.0), contact.centre_pressure, 1e-12);
+    }
+}
+
+#[test]
+fn load_gives_the_width_that_gave_it() {
+    for nu in [0.0, 0.45, 0.5] {
+        for width in [1e-4, 0.3, 2.0, 12.0, 39.0] {
+            let contact = LayerContact::of_width(width, nu).unwrap();
+            close(LayerContact::of_load(contact.load, nu).unwrap().half_width, width, 1e-9);
+        }
+        assert!(LayerContact::of_load(1e12, nu).is_err());
+    }
+}
+
+#[test]
+fn the_paper_chain_composes() {
+    let nip = Nip {
+        pressure_viscosity: 2e-8,
+        viscosity: 0.1,
+        speed: 0.1,
+        load: 250.0,
+        length: 0.22,
+        thickness: 3.5e-3,
+        radius: 15e-3,
+        modulus: 2.0e6 / (1.0 - 0.48 * 0.48),
+    };
+    let nip = nip.checked().unwrap();
+    close(nip.torque(), nip.torque_in_full(), 1e-3);
+    close(nip.damping() * nip.speed, nip.torque_in_full(), 1e-12);
+    close(nip.nip_width(), 5.7e-3, 0.01);
+}
+
+#[test]
+fn the_rigid_constants_follow_from_reynolds() {
+    // Rigid cylinder with Reynolds' exit: x = sqrt(2 R h) tan(t), p' = cos^2 - cos^4/cos^2(exit).
+    let steps = 200_000;
+    let (start, step) = (-PI / 2.0, 1e-5);
+    let pressure = |exit: f64| {
+        let (mut p, mut most, mut load, mut t) = (0.0, 0.0_f64, 0.0, start);
+        for _ in 0..steps {
+            let middle = t + 0.5 * step;
+            let c = middle.cos().powi(2);
+            p += step * (c - c * c / exit.cos().powi(2));
+            t += step;
+            most = most.max(p);
+            load += step * p / t.cos().powi(2);
+            if t >= exit {
+                break;
+            }
+        }
+        (p, most, load)
+    };
+    let (mut low, mut high) = (0.3, 0.6);
+    for _ in 0..40 {
+        let middle = 0.5 * (low + high);
+        if pressure(middle).0 > 0.0 { low = middle } else { high = middle }
+    }
+    let (_, most, load) = pressure(low);
+    let contact = LineContact {
+        pressure_viscosity: 2e-8,
+        viscosity: 0.05,
+        speed: 2.0,
+        load: 1e3,
+        radius: 0.01,
+        modulus: 2e11,
+    };
+    let film = contact.film(1.0).unwrap();
+    let martin = 24.0 * load * contact.viscosity * contact.speed * contact.radius / contact.load;
+    close(film.minimum[0], martin, 2e-3);
+    let group = contact.pressure_viscosity * contact.viscosity * contact.speed / contact.radius;
+    let blok = (12.0 * 2.0_f64.sqrt() * most * group).powf(2.0 / 3.0) * contact.radius;
+    close(film.minimum[1], blok, 5e-3);
+}
+
+#[test]
+fn the_hard_central_film_agrees_with_ertel() {
+    // Ertel and Grubin: the inlet of a Hertz gap raises the reduced pressure to 1/alpha at the edge.
+    for (u, g, w) in [(1e-11, 5000.0, 1e-4), (1e-12, 4000.0, 5e-5), (5e-12, 3000.0, 2e-4)] {
+        let modulus = 2e11;
+        let (radius, viscosity) = (0.01, 0.1);
+        let contact = LineContact {
+            pressure_viscosity: g / modulus,
+            viscosity,
+            speed: u * modulus * radius / viscosity,
+            load: w * modulus * radius,
+            radius,
+            modulus,
+        };
+        let a = hertz_line(contact.load, radius, modulus).unwrap().half_width;
+        let reduced = |h: f64| {
+            let (mut sum, ratio) = (0.0, 1.002_f64);
+            let mut x = 1e-7;
+            while x < 50.0 {
+                let next = x * ratio;
+                let s: f64 = 1.0 + 0.5 * (x + next);
+                let root = (s * s - 1.0).sqrt();
+                let gap = a * a / (2.0 * radius) * (s * root - (s + root).ln());
+                sum += (next - x) * a * gap / (gap + h).powi(3);
+                x = next;
+            }
+            12.0 * viscosity * contact.speed * sum
+        };
+        let (mut low, mut high) = (1e-12_f64, 1e-3_f64);
+        for _ in 0..60 {
+            let middle = (low * high).sqrt();
+            if reduced(middle) > 1.0 / contact.pressure_viscosity {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        let film = contact.film(1.0).unwrap();
+        assert_eq!(film.regime, Regime::PiezoviscousElastic);
+        close(film.central[3], low, 0.25);
+        assert!(film.central[3] > film.minimum[3]);
+    }
+}
+
+#[test]
+fn each_regime_has_its_corner() {
+    let film = |alpha: f64, modulus: f64, load: f64| {
+        LineContact {
+            pressure_viscosity: alpha,
+            viscosity: 0.1,
+            speed: 1.0,
+            load,
+            radius: 0.01,
+            modulus,
+        }
+        .film(1.0)
+        .unwrap()
+    };
+    assert_eq!(film(0.0, 1e14, 1e2).regime, Regime::IsoviscousRigid);
+    assert_eq!(film(2e-8, 1e14, 1e5).regime, Regime::PiezoviscousRigid);
+    assert_eq!(film(2e-8, 1e6, 1e3).regime, Regime::IsoviscousElastic);
+    assert_eq!(film(2e-8, 2e11, 1e5).regime, Regime::PiezoviscousElastic);
+    let stiff = film(2e-8, 1e17, 1e5);
+    assert_eq!(stiff.regime, Regime::PiezoviscousRigid);
+}
+
+#[test]
+fn exponents_are_those_of_the_regimes() {
+    let contact = |speed: f64| LineContact {
+        pressure_viscosity: 2e-8,
+        viscosity: 0.05,
+        speed,
+        load: 1e4,
+        radius: 0.01,
+        modulus: 2e11,
+    };
+    let (slow, fast) = (contact(1.0).film(1.0).unwrap(), contact(1.01).film(1.0).unwrap());
+    for (i, regime) in Regime::ALL.into_iter().enumerate() {
+        let exponent = (fast.minimum[i] / slow.minimum[i]).ln() / 1.01_f64.ln();
+        assert!((exponent - regime.speed_exponent()).abs() < 1e-9, "{regime:?}");
+    }
+    close(layer_factor(1.0, 1.0), 1.0, 0.0);
+}
+
+#[test]
+fn corrections_have_their_limits() {
+    close(starvation(1e-3, 1e-6, 3.0).unwrap().factor, 1.0, 1e-6);
+    close(starvation(1e-9, 1e-6, 3.0).unwrap().factor, 1e-3, 1e-6);
+    close(inlet_heating(0.1, 0.03, 0.0, 0.14, 0.0).unwrap().factor, 1.0, 0.0);
+    assert!(!inlet_heating(1.0, 0.03, 10.0, 0.14, 2.0).unwrap().valid);
+    close(shear_thinning(1e-6, 1.0, 0.6, Carreau::NONE).unwrap().factor, 1.0, 1e-12);
+    // Deep in the power law h = h_0 (lambda U/h)^(n (m-1)) is explicit.
+    let thin = shear_thinning(1e-6, 1.0, 0.6, Carreau::new(1.0, 0.5, 0.0).unwrap()).unwrap();
+    close(thin.factor, (1e6_f64).powf(-0.3 / (1.0 - 0.3)), 1e-6);
+    assert!(!thin.valid);
+}
+
+#[test]
+fn viscosity_laws_pass_through_their_points() {
+    let points = [(303.15, 0.153), (333.15, 0.034), (373.15, 0.0091)];
+    let vogel = TemperatureLaw::vogel(points).unwrap();
+    for (t, eta) in points {
+        close(vogel.viscosity(t).unwrap(), eta, 1e-10);
+    }
+    let arrhenius = TemperatureLaw::arrhenius([points[0], points[2]]).unwrap();
+    close(arrhenius.viscosity(373.15).unwrap(), 0.0091, 1e-12);
+    let kinematic = [(313.15, 1e-4), (373.15, 3e-7)];
+    let walther = TemperatureLaw::walther(kinematic, 900.0).unwrap();
+    for (t, nu) in kinematic {
+        close(walther.viscosity(t).unwrap(), 900.0 * nu, 1e-9);
+    }
+    for law in [vogel, arrhenius, walther] {
+        let step = 1e-4;
+        let (up, down) = (
+            law.viscosity(340.0 * (1.0 + step)).unwrap(),
+            law.viscosity(340.0 * (1.0 - step)).unwrap(),
+        );
+        let numeric = (up / down).ln() / ((1.0 + step) / (1.0 - step)).ln();
+        close(law.temperature_exponent(340.0).unwrap(), numeric, 1e-5);
+    }
+    assert!(TemperatureLaw::vogel([(300.0, 1.0), (350.0, 0.5), (400.0, 0.01)]).is_err());
+    assert!(TemperatureLaw::arrhenius([(300.0, 1.0), (350.0, 2.0)]).is_err());
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn whatever_is_passed_nothing_panics_and_answers_are_numbers(
+        values in prop::array::uniform7(prop_oneof![
+            Just(0.0), Just(f64::NAN), Just(f64::INFINITY), Just(-1.0), Just(1e300), Just(1e-300),
+            1e-12..1e12f64,
+        ]),
+    ) {
+        let [pressure_viscosity, viscosity, speed, load, radius, modulus, x] = values;
+        let contact = LineContact { pressure_viscosity, viscosity, speed, load, radius, modulus };
+        if let Ok(film) = contact.film(x) {
+            prop_assert!(film.minimum.iter().all(|h| h.is_finite()));
+        }
+        if let Ok(found) = LayerContact::of_width(x, viscosity) {
+            prop_assert!(found.load.is_finite() && found.edge.is_finite());
+        }
+        if let Ok(found) = LayerContact::of_load(load.min(1e3), 0.5) {
+            prop_assert!(found.half_width.is_finite());
+        }
+        let solid = |modulus| Solid { modulus, poisson_ratio: 0.3 };
+        if let Ok(found) = effective_modulus(solid(modulus), solid(load)) {
+            prop_assert!(found > 0.0);
+        }
+        if let Ok(law) = TemperatureLaw::walther([(speed, load), (radius, modulus)], viscosity) {
+            let _ = law.viscosity(x);
+        }
+        if let Ok(law) = TemperatureLaw::vogel([(speed, load), (radius, modulus), (viscosity, x)]) {
+            let _ = law.viscosity(x);
+        }
+    }
+}

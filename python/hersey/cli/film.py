@@ -1,0 +1,159 @@
+"""For a nip: ``hersey film``."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from hersey.cli.options import AsJson, Force, Reading, reads_logs
+from hersey.cli.shell import app, command, may_write, working
+from hersey.errors import OutputError, ParameterError
+
+if TYPE_CHECKING:
+    from hersey.film import Film
+    from hersey.film_evidence import MeasuredFilm, Verdict
+    from hersey.fuser import Fuser
+
+#: Kinds of file of the figure.
+SUFFIXES = (".png", ".svg", ".pdf")
+
+
+@app.command()
+@reads_logs
+def film(
+    fuser: Annotated[
+        Path, typer.Argument(metavar="FUSER", help="TOML file with the tables contact and lubricant.")
+    ],
+    reading: Reading,
+    log: Annotated[
+        list[Path] | None, typer.Option("--log", help="A log to compare with; may be given again.")
+    ] = None,
+    at: Annotated[
+        str, typer.Option(help="Temperature of the film, as '180 degC', where log or points give none.")
+    ] = "",
+    belt_speed: Annotated[
+        str, typer.Option(help="Speed of the belt, as '120 mm/s', instead of the points of the file.")
+    ] = "",
+    figure: Annotated[
+        Path | None, typer.Option("--figure", help="Draw the regime chart: .png, .svg or .pdf.")
+    ] = None,
+    as_json: AsJson = False,
+    force: Force = False,
+) -> None:
+    """Say how thick the lubricant film is, which regime makes it, and what a log says of both.
+
+    Example: [bold]hersey film examples/fuser.toml --log examples/bench.csv --tare standing[/bold]
+
+    Without a log the film is computed at the points of the file.
+    """
+    from hersey.film_document import film_document
+    from hersey.film_evidence import measured_film, verdict
+    from hersey.film_lint import lint
+    from hersey.fuser import read_fuser
+    from hersey.report import write_atomically
+
+    if figure is not None:
+        if figure.suffix not in SUFFIXES:
+            raise OutputError(f"--figure {figure}: name a file that ends in {', '.join(SUFFIXES)}")
+        may_write(figure, force, inputs=[fuser, *(log or [])])
+    machine = read_fuser(fuser)
+    if machine.contact is None or machine.lubricant is None:
+        missing = "contact" if machine.contact is None else "lubricant"
+        raise ParameterError(f"{fuser.name}: the film needs a table [{missing}]")
+    kelvin = _kelvin(at)
+    if not log and reading != Reading():
+        raise ParameterError("options that say how to read a log need --log")
+    measured, says = None, None
+    if log:
+        from hersey.surface import fit
+
+        points = reading.points(reading.log(log))
+        with working("fitting the surface"):
+            surface = fit(points, temperature_scale=reading.temperature_scale)
+        measured = measured_film(
+            points,
+            surface,
+            machine.contact,
+            machine.lubricant,
+            temperature=kelvin,
+            grip=machine.limits.roll_friction,
+        )
+        says = verdict(measured, surface, machine.contact, machine.lubricant)
+    predicted, names = _predicted(machine, measured, kelvin, belt_speed)
+    notes = lint(machine, predicted, measured)
+    if figure is not None:
+        from hersey.charts import rendered
+        from hersey.film_chart import film_chart
+
+        with working("drawing"):
+            chart = film_chart(predicted, names, measured)
+            content = rendered(chart)[figure.suffix.removeprefix(".")]
+        write_atomically(figure, content, overwrite=True)
+    if as_json:
+        document = film_document(machine, predicted, names, measured, says, notes)
+        print(json.dumps(document | {"command": command()}, indent=1))
+        return
+    print(_text(machine, predicted, names, measured, says, notes))
+    if figure is not None:
+        print(f"figure: {figure}")
+
+
+def _kelvin(text: str) -> float | None:
+    from hersey.units import parse
+
+    if not text:
+        return None
+    value = parse("temperature", text)
+    if not value > 0:
+        raise ParameterError(f"--at is {text}: it must be above absolute zero")
+    return value
+
+
+def _predicted(
+    machine: Fuser, measured: MeasuredFilm | None, kelvin: float | None, belt_speed: str
+) -> tuple[Film, list[str]]:
+    """The film at the points of interest, and their names."""
+    from hersey.film import film_thickness
+    from hersey.units import parse
+
+    assert machine.contact is not None
+    assert machine.lubricant is not None
+    if belt_speed:
+        if kelvin is None:
+            raise ParameterError("--belt-speed needs a temperature: --at '180 degC'")
+        states = [(belt_speed, parse("belt speed", belt_speed), kelvin)]
+        if not states[0][1] > 0:
+            raise ParameterError(f"--belt-speed is {belt_speed}: it must be greater than 0")
+    elif machine.points:
+        states = [(p.name, p.speed, kelvin or p.temperature) for p in machine.points]
+    elif measured is not None:
+        return measured.predicted, [f"dwell {i + 1}" for i in range(measured.speed.size)]
+    else:
+        raise ParameterError("say where: [[points]] in the file, --log, or --belt-speed with --at")
+    film = film_thickness(
+        machine.contact,
+        machine.lubricant,
+        speed=[speed / machine.contact.roll_radius for _, speed, _ in states],
+        temperature=[temperature for _, _, temperature in states],
+    )
+    return film, [name for name, _, _ in states]
+
+
+def _text(
+    machine: Fuser,
+    predicted: Film,
+    names: list[str],
+    measured: MeasuredFilm | None,
+    says: Verdict | None,
+    notes: tuple[str, ...],
+) -> str:
+    from hersey.film_document import film_summary
+
+    lines = [film_summary(machine, predicted, names, measured)]
+    if says is not None:
+        lines += ["", says.text]
+    lines += [f"- {note}" for note in notes]
+    return "\n".join(lines)
