@@ -66,6 +66,7 @@ benchmark: build ## ratios against peers, printed and written to benchmarks/RESU
 	$(BIN)/python benchmarks/read_csv.py
 	$(BIN)/python -m benchmarks.motion
 	$(BIN)/python -m benchmarks.fold
+	$(BIN)/python -m benchmarks.reynolds
 
 clean: ## remove everything that was built
 	rm -rf .venv build target Cargo.lock

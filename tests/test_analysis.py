@@ -78,3 +78,14 @@ def test_foreign_documents_are_refused(document: Analysis) -> None:
     content["schema_version"] = "99"
     with pytest.raises(ParameterError, match="schema_version"):
         load(json.dumps(content))
+
+
+def test_the_film_of_the_nip_is_part_of_it(document: Analysis) -> None:
+    """The verdict names regime and solver; the chart's points are those of the machine and the dwells."""
+    part = document.film
+    assert part is not None
+    assert "isoviscous-elastic" in part.verdict
+    assert "Solved numerically" in part.verdict
+    assert [point.name for point in part.points] == ["full speed", "thick paper"]
+    assert len(part.dwells) == len(document.points)
+    assert any("alpha p" in note for note in part.notes)

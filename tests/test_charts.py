@@ -18,6 +18,7 @@ def test_every_result_has_its_chart(document: Analysis) -> None:
         "surface",
         "residuals",
         "regime",
+        "film",
         "simulation_speed",
         "simulation_force",
         "timeline_speed",

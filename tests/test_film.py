@@ -12,7 +12,7 @@ import pytest
 import hersey
 from hersey.errors import HerseyError, ParameterError, UnitError
 from hersey.film_chart import film_chart
-from hersey.film_evidence import measured_film, verdict
+from hersey.film_evidence import measured_film, solved_exponent, verdict
 from hersey.film_lint import lint
 from hersey.fuser import Fuser, read_fuser
 from hersey.lubricant import EXAMPLES, ShearThinning
@@ -235,3 +235,11 @@ def test_mistakes_of_the_command(examples_here: Path, arguments: list[str], word
     assert len(done.stderr.splitlines()) == 1
     for word in words:
         assert word in done.stderr
+
+
+def test_the_solver_explains_the_exponent(machine: Fuser) -> None:
+    """Solved numerically, the soft nip has the exponent of the soft regime, less what its layer takes off."""
+    assert machine.contact is not None
+    solved = solved_exponent(machine.contact, EXAMPLES["cylinder oil"], speed=8.0, temperature=363.0)
+    assert solved == pytest.approx(-0.58, abs=0.04)
+    assert solved_exponent(machine.contact, EXAMPLES["spindle oil"], speed=1e-9, temperature=363.0) is None

@@ -47,8 +47,8 @@ def regime_chart(points: list[FilmPoint], dwells: list[FilmPoint], layer_factor:
 def _regimes(points: list[Row], dwells: list[Row], layer_factor: float) -> Chart:
     known = [row for row in (*points, *dwells) if row["g_v"] > 0]
     spans = [_span([row["g_v"] for row in known], _LEAST[0]), _span([row["g_e"] for row in known], _LEAST[1])]
-    x = alt.X("g_v:Q", title="viscosity parameter g_V = G W^1.5/U^0.5", scale=_log(spans[0]))
-    y = alt.Y("g_e:Q", title="elasticity parameter g_E = W/U^0.5", scale=_log(spans[1]))
+    x = alt.X("g_v:Q", title="viscosity parameter g_V = G W^1.5/U^0.5 (no unit)", scale=_log(spans[0]))
+    y = alt.Y("g_e:Q", title="elasticity parameter g_E = W/U^0.5 (no unit)", scale=_log(spans[1]))
     cells, labels = _cells(spans, layer_factor)
     shade = alt.Scale(domain=list(REGIMES), range=list(_SHADES))
     area = (

@@ -183,7 +183,7 @@ def read_mapping(path: str | Path) -> LogMapping:
 def find_mapping(path: str | Path) -> Path | None:
     """Return the mapping of a log: ``bench.hersey.toml`` beside it, or `FILE_NAME` in its directory."""
     log = Path(path)
-    beside = (log.with_name(log.stem + _SUFFIX), log.with_name(FILE_NAME))
+    beside = (log.parent / f"{log.stem}{_SUFFIX}", log.parent / FILE_NAME)
     return next((candidate for candidate in beside if candidate.is_file()), None)
 
 
