@@ -67,6 +67,7 @@ benchmark: build ## ratios against peers, printed and written to benchmarks/RESU
 	$(BIN)/python -m benchmarks.motion
 	$(BIN)/python -m benchmarks.fold
 	$(BIN)/python -m benchmarks.reynolds
+	$(BIN)/python -m benchmarks.ladder
 
 clean: ## remove everything that was built
 	rm -rf .venv build target Cargo.lock

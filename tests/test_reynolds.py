@@ -212,3 +212,26 @@ def test_bad_input_is_named(change: dict[str, object], word: str) -> None:
 def test_unknown_exponent_is_named() -> None:
     with pytest.raises(ParameterError, match="wear"):
         exponent("wear", solve(0.1))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("load", [5.0, 20.0, 100.0])
+@pytest.mark.parametrize("material", [5.0, 10.0])
+def test_central_film_of_moes(load: float, material: float) -> None:
+    """Moes' fit to full numerical line contacts (Wear 159 (1992) 57): M, L with the sum velocity."""
+    speed, modulus, radius, viscosity = 1e-11, 2.2e11, 0.01, 0.04
+    solution = solve_line_contact(
+        radius,
+        load * np.sqrt(speed) * modulus * radius,
+        0.5 * speed * modulus * radius / viscosity,
+        viscosity,
+        effective_modulus=modulus,
+        pressure_viscosity=material / speed**0.25 / modulus,
+        nodes=401,
+    )
+    rigid, elastic = 3.0 / load, 2.621 * load**-0.2
+    hard, both = 1.287 * material ** (2 / 3), 1.311 * load**-0.125 * material**0.75
+    s = (7.0 + 8.0 * np.exp(-2.0 * elastic / rigid)) / 5.0
+    fit = (
+        (rigid ** (7 / 3) + elastic ** (7 / 3)) ** (3 * s / 7) + (hard**-3.5 + both**-3.5) ** (-2 * s / 7)
+    ) ** (1 / s)
+    assert solution.central_thickness / radius / np.sqrt(speed) == pytest.approx(fit, rel=0.09)
