@@ -3,45 +3,58 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hersey.cli.options import AsJson, Force
+from hersey.cli.options import AsJson, Force, takes
 from hersey.cli.shell import app, bar, may_write, working
 from hersey.errors import OutputError, ParameterError
 from hersey.json_value import json_value
 
-Stiffness = Annotated[float, typer.Option(help="Spring stiffness k.")]
-Mass = Annotated[float, typer.Option(help="Belt mass m.")]
-TransitionForce = Annotated[float, typer.Option(help="Drag at the transition speed (B0 of the paper).")]
-TransitionSpeed = Annotated[float, typer.Option(help="Speed where the branches meet.")]
-EhlExponent = Annotated[float, typer.Option(help="Damping exponent above it.")]
-MixedExponent = Annotated[float, typer.Option(help="Damping exponent below it.")]
-StickSpeed = Annotated[float, typer.Option(help="Speed below which the belt sticks.")]
-ClosureName = Annotated[
-    str, typer.Option(help="What happens below it: retained, stiction, stribeck or lugre.")
-]
-BristleStiffness = Annotated[
-    float | None, typer.Option(help="Of lugre: force per deflection of the bristles.")
-]
-BristleDamping = Annotated[float | None, typer.Option(help="Of lugre: force per rate of deflection.")]
+if TYPE_CHECKING:
+    from hersey.drag import Drag
+    from hersey.motion import Drivetrain
+
+
+@dataclass(frozen=True)
+class Belt:
+    """The options that describe a belt, its spring and its drag; the defaults are the paper's baseline."""
+
+    stiffness: Annotated[float, typer.Option(help="Spring stiffness k.")] = 1000.0
+    mass: Annotated[float, typer.Option(help="Belt mass m.")] = 1.0
+    transition_force: Annotated[
+        float, typer.Option(help="Drag at the transition speed (B0 of the paper).")
+    ] = 50.0
+    transition_speed: Annotated[float, typer.Option(help="Speed where the branches meet.")] = 1.0
+    ehl_exponent: Annotated[float, typer.Option(help="Damping exponent above it.")] = -0.7
+    mixed_exponent: Annotated[float, typer.Option(help="Damping exponent below it.")] = -1.2
+    stick_speed: Annotated[float, typer.Option(help="Speed below which the belt sticks.")] = 0.01
+    closure: Annotated[
+        str, typer.Option(help="What happens below it: retained, stiction, stribeck or lugre.")
+    ] = "retained"
+    bristle_stiffness: Annotated[
+        float | None, typer.Option(help="Of lugre: force per deflection of the bristles.")
+    ] = None
+    bristle_damping: Annotated[float | None, typer.Option(help="Of lugre: force per rate of deflection.")] = (
+        None
+    )
+
+    def parts(self) -> tuple[Drivetrain, Drag]:
+        """Return drivetrain and drag."""
+        from hersey.drag import Drag
+        from hersey.motion import Drivetrain
+
+        given = asdict(self)
+        return Drivetrain(given.pop("stiffness"), given.pop("mass")), Drag(**given)
 
 
 @app.command()
+@takes(Belt, "belt")
 def simulate(
-    stiffness: Stiffness = 1000.0,
-    mass: Mass = 1.0,
-    transition_force: TransitionForce = 50.0,
-    transition_speed: TransitionSpeed = 1.0,
-    ehl_exponent: EhlExponent = -0.7,
-    mixed_exponent: MixedExponent = -1.2,
-    stick_speed: StickSpeed = 0.01,
-    closure: ClosureName = "retained",
-    bristle_stiffness: BristleStiffness = None,
-    bristle_damping: BristleDamping = None,
+    belt: Belt,
     drive_speed: Annotated[float, typer.Option(help="Speed of the drive.")] = 1.0,
     start: Annotated[str, typer.Option(help="rest, or steady (sliding with the drive).")] = "rest",
     duration: Annotated[float, typer.Option(help="Time simulated, for --csv and --check.")] = 2.0,
@@ -60,22 +73,11 @@ def simulate(
 
     Example: [bold]hersey simulate --stiffness 2000 --drive-speed 1.3[/bold]
     """
-    from hersey import drag as laws
     from hersey import motion
 
     if csv is not None:
         may_write(csv, force)
-    train = motion.Drivetrain(stiffness, mass)
-    drag = laws.Drag(
-        transition_force,
-        transition_speed,
-        ehl_exponent=ehl_exponent,
-        mixed_exponent=mixed_exponent,
-        stick_speed=stick_speed,
-        closure=closure,
-        bristle_stiffness=bristle_stiffness,
-        bristle_damping=bristle_damping,
-    )
+    train, drag = belt.parts()
     cycle = motion.stick_slip(train, drag, drive_speed=drive_speed, start=start)
     run = None
     if csv is not None or check:
@@ -170,17 +172,9 @@ def sweep(
 
 
 @app.command()
+@takes(Belt, "belt")
 def hysteresis(
-    stiffness: Stiffness = 1000.0,
-    mass: Mass = 1.0,
-    transition_force: TransitionForce = 50.0,
-    transition_speed: TransitionSpeed = 1.0,
-    ehl_exponent: EhlExponent = -0.7,
-    mixed_exponent: MixedExponent = -1.2,
-    stick_speed: StickSpeed = 0.01,
-    closure: ClosureName = "retained",
-    bristle_stiffness: BristleStiffness = None,
-    bristle_damping: BristleDamping = None,
+    belt: Belt,
     drive_speed: Annotated[
         float | None, typer.Option(help="Also say how large a kick or step the belt bears that slides at it.")
     ] = None,
@@ -197,22 +191,12 @@ def hysteresis(
 
     Example: [bold]hersey hysteresis --from-speed 2.5 --to-speed 1.2[/bold]
     """
-    from hersey import approach, drag, motion
+    from hersey import approach
     from hersey.hysteresis import hysteresis as band_of
 
     if (from_speed is None) != (to_speed is None):
         raise ParameterError("a step needs both --from-speed and --to-speed")
-    train = motion.Drivetrain(stiffness, mass)
-    law = drag.Drag(
-        transition_force,
-        transition_speed,
-        ehl_exponent=ehl_exponent,
-        mixed_exponent=mixed_exponent,
-        stick_speed=stick_speed,
-        closure=closure,
-        bristle_stiffness=bristle_stiffness,
-        bristle_damping=bristle_damping,
-    )
+    train, law = belt.parts()
     with working("looking for the band"):
         band = band_of(train, law)
         bears = None if drive_speed is None else approach.disturbance(train, law, drive_speed=drive_speed)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hersey.cli.options import AsJson, Force, Reading, reads_logs
+from hersey.cli.options import AsJson, Force, Reading, reads_logs, temperature_of
 from hersey.cli.shell import app, command, may_write, working
 from hersey.errors import OutputError, ParameterError
 
@@ -63,7 +63,7 @@ def film(
     if machine.contact is None or machine.lubricant is None:
         missing = "contact" if machine.contact is None else "lubricant"
         raise ParameterError(f"{fuser.name}: the film needs a table [{missing}]")
-    kelvin = _kelvin(at)
+    kelvin = temperature_of(at)
     if not log and reading != Reading():
         raise ParameterError("options that say how to read a log need --log")
     measured, says = None, None
@@ -99,17 +99,6 @@ def film(
     print(_text(machine, predicted, names, measured, says, notes))
     if figure is not None:
         print(f"figure: {figure}")
-
-
-def _kelvin(text: str) -> float | None:
-    from hersey.units import parse
-
-    if not text:
-        return None
-    value = parse("temperature", text)
-    if not value > 0:
-        raise ParameterError(f"--at is {text}: it must be above absolute zero")
-    return value
 
 
 def _predicted(

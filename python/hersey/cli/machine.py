@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hersey.cli.options import AsJson, FitFile, Force, Reading, SomeLogs, reads_logs
+from hersey.cli.options import AsJson, FitFile, Force, Reading, SomeLogs, reads_logs, temperature_of
 from hersey.cli.shell import app, bar, command, may_write, working
 from hersey.errors import OutputError, ParameterError, WrongKindError
 
@@ -144,7 +144,7 @@ def plan(
         raise ParameterError("give either --at or --course")
     machine = read_fuser(fuser)
     wanted = _target(target, machine)
-    kelvin = _kelvin(at)
+    kelvin = temperature_of(at)
     warming = None if course is None else read_course(course)
     surface = reading.surface(logs, fit_file)
     drag, samples = _drag(surface, machine, kelvin, seed, course=warming is not None)
@@ -194,17 +194,6 @@ def _target(text: str, machine: Fuser) -> float:
     if not target > 0:
         raise ParameterError(f"--target is {text}: it must be greater than 0")
     return target
-
-
-def _kelvin(text: str) -> float | None:
-    from hersey.units import parse
-
-    if not text:
-        return None
-    value = parse("temperature", text)
-    if not value > 0:
-        raise ParameterError(f"--at is {text}: it must be above absolute zero")
-    return value
 
 
 def _drag(

@@ -108,26 +108,44 @@ class Reading:
             return fit(self.points(log), temperature_scale=self.temperature_scale)
 
 
-def reads_logs(command: Callable[..., None]) -> Callable[..., None]:
-    """Give a command with a parameter ``reading`` the options of `Reading`, before ``--json``."""
-    own = inspect.signature(command, eval_str=True).parameters
-    types = get_type_hints(Reading, include_extras=True)
-    keyword = inspect.Parameter.KEYWORD_ONLY
-    options = [
-        inspect.Parameter(field.name, keyword, default=field.default, annotation=types[field.name])
-        for field in fields(Reading)
-    ]
-    before = [p.replace(kind=keyword) for name, p in own.items() if name not in ("reading", *_LAST)]
-    after = [p.replace(kind=keyword) for name, p in own.items() if name in _LAST]
+def temperature_of(text: str) -> float | None:
+    """Return the temperature that ``--at`` names, K; None if it is not given."""
+    from hersey.errors import ParameterError
+    from hersey.units import parse
 
-    @functools.wraps(command)
-    def read(**given: Any) -> None:
-        reading = Reading(**{option.name: given.pop(option.name) for option in options})
-        command(reading=reading, **given)
+    if not text:
+        return None
+    value = parse("temperature", text)
+    if not value > 0:
+        raise ParameterError(f"--at is {text}: it must be above absolute zero")
+    return value
 
-    read.__signature__ = inspect.Signature([*before, *options, *after])  # type: ignore[attr-defined]
-    return read
+
+def takes(group: type, name: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Give a command with a parameter of that name the options of a group, before ``--json``."""
+
+    def decorate(command: Callable[..., None]) -> Callable[..., None]:
+        own = inspect.signature(command, eval_str=True).parameters
+        types = get_type_hints(group, include_extras=True)
+        keyword = inspect.Parameter.KEYWORD_ONLY
+        options = [
+            inspect.Parameter(field.name, keyword, default=field.default, annotation=types[field.name])
+            for field in fields(group)
+        ]
+        before = [p.replace(kind=keyword) for n, p in own.items() if n not in (name, *_LAST)]
+        after = [p.replace(kind=keyword) for n, p in own.items() if n in _LAST]
+
+        @functools.wraps(command)
+        def run(**given: Any) -> None:
+            taken = group(**{option.name: given.pop(option.name) for option in options})
+            command(**given, **{name: taken})
+
+        run.__signature__ = inspect.Signature([*before, *options, *after])  # type: ignore[attr-defined]
+        return run
+
+    return decorate
 
 
 #: Options at the end of every help.
 _LAST = ("as_json", "force")
+reads_logs = takes(Reading, "reading")
