@@ -78,7 +78,7 @@ def test_summary_figure_and_known_values(capsys: pytest.CaptureFixture[str], tmp
     options = ["--drive-speed", "20 mm/s", "--identify", "--closures", "retained"]
     text = shown(capsys, CSV, *options, "--known", "mass=500 g", "--figure", figure)
     assert "stick slip: 110 slips" in text
-    assert "0.5 (given)" in text
+    assert "0.5 kg (given)" in text
     assert figure.read_bytes().startswith(b"\x89PNG")
     with pytest.raises(OutputError, match="say --force"):
         shown(capsys, CSV, "--figure", figure)

@@ -106,9 +106,9 @@ def cycles(
             document["drive"] = drive.document()
         typer.echo(json.dumps(document, indent=1))
         return
-    typer.echo(record.summary())
+    typer.echo(record.summary(given.unit))
     if drive is not None:
-        typer.echo("\n" + drive.summary())
+        typer.echo("\n" + drive.summary(given.unit))
     if figure is not None:
         typer.echo(f"figure: {figure}")
 

@@ -93,19 +93,35 @@ class IdentifiedDrive:
         }
         return {str(key): value for key, value in json_value(found).items()}
 
-    def summary(self) -> str:
-        """Return the result in words, a line each."""
+    def summary(self, unit: str = "") -> str:
+        """Return the result in words, a line each; units where that of the trace is newtons."""
+        units = _UNITS if unit == "N" else {}
         decided = "" if self.decided else " (not decided)"
         ranked = ", ".join(f"{fit.closure} {fit.chi_square:.4g}" for fit in self.closures)
         lines = [f"closure: {self.closure}{decided}; chi-square: {ranked}"]
         for name in PARAMETERS:
             if name in self.known:
-                lines.append(f"{name:18s} {self.known[name]:.5g} (given)")
+                lines.append(f"{name:18s} {self.known[name]:.5g}{units.get(name, '')} (given)")
             else:
-                lines.append(f"{name:18s} {self.estimates.get(name, 'not told by this record')}")
-        lines += [f"{name:18s} {estimate}" for name, estimate in self.derived.items()]
+                told = self.estimates.get(name)
+                shown = "not told by this record" if told is None else f"{told}{units.get(name, '')}"
+                lines.append(f"{name:18s} {shown}")
+        lines += [f"{name:18s} {estimate}{units.get(name, '')}" for name, estimate in self.derived.items()]
         lines.append(f"mean cycle within {self.misfit:.2%} of the drop")
         return "\n".join([*lines, *(f"- {text}" for text in (*self.not_told, *self.notes))])
+
+
+#: Units of what is identified from a force in newtons.
+_UNITS = {
+    "stiffness": " N/m",
+    "mass": " kg",
+    "transition_force": " N",
+    "transition_speed": " m/s",
+    "stick_speed": " m/s",
+    "free_period": " s",
+    "release_force": " N",
+    "drag_at_drive_speed": " N",
+}
 
 
 def identify(

@@ -154,20 +154,26 @@ class CycleRecord:
         typical = {name: Scatter.of(values)._asdict() for name, values in per_cycle.items()}
         return {str(key): value for key, value in json_value(figures | typical).items()}
 
-    def summary(self) -> str:
-        """Return the figures in words, a line each."""
+    def summary(self, unit: str = "") -> str:
+        """Return the figures in words, a line each; ``unit`` is that of the trace, for the words."""
         words = self.kind.replace("_", " ")
         if self.kind == "steady_sliding":
             return "\n".join([f"{words}: no cycles", *(f"- {note}" for note in self.notes)])
         period, drop = Scatter.of(self.period), Scatter.of(self.drop)
         free = f"free period {self.free_period:.4g} s"
-        stiff = "" if self.stiffness is None else f"stiffness     {self.stiffness:.5g} per m (slope / speed)"
+        of = f" {unit}" if unit not in ("", "1") else ""
+        turning = "rad" if unit == "N m" else "m"
+        stiff = (
+            f"stiffness     {self.stiffness:.5g}{of or ' 1'}/{turning} (slope / speed)"
+            if self.stiffness
+            else ""
+        )
         lines = [
             f"{words}: {self.slips} slips",
             f"period        {period.median:.4g} s (scatter {period.deviation:.2g} s); {free}",
-            f"drop          {drop.median:.4g} (scatter {drop.deviation:.2g})",
-            f"force         {np.median(self.force_min):.4g} to {np.median(self.force_max):.4g}",
-            f"loading slope {self.loading_slope:.5g} per s",
+            f"drop          {drop.median:.4g}{of} (scatter {drop.deviation:.2g}{of})",
+            f"force         {np.median(self.force_min):.4g} to {np.median(self.force_max):.4g}{of}",
+            f"loading slope {self.loading_slope:.5g}{of or ' 1'}/s",
             f"stuck         {self.stuck_fraction:.0%} of the time",
             *([stiff] if stiff else []),
             *(f"- {note}" for note in self.notes),
