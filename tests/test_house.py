@@ -21,7 +21,8 @@ PACKAGE = ROOT / "python" / "hersey"
 #: Modules in the order of the computation: each may import only from those before it (and its own folder).
 LAYERS = [
     ("_core", "errors", "json_value"),
-    ("units", "toml_file"),
+    ("text_file", "units"),
+    ("toml_file",),
     ("log", "toml_value"),
     ("axes", "columns", "drag", "reynolds", "schedule", "spread", "steady"),
     ("corrections", "course_file", "lubricant", "motion", "paper"),

@@ -34,6 +34,7 @@ film_chart      the regime chart and the Stribeck curve
 film_tables     the tables of nip and lubricant in fuser.toml
 fuser           what the log cannot tell: drivetrain, nip, limits, operating points, uncertainty
 spread          how far a parameter is known
+text_file       opening a text file
 toml_file       opening a TOML file
 toml_value      its values: strings with units
 course_file     a course of temperature from a CSV file

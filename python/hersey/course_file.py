@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import csv
 import re
+from contextlib import suppress
 from pathlib import Path
 
-from hersey.errors import ChannelError, MissingFileError, ParameterError, UnreadableLogError
+from hersey.errors import ChannelError, ParameterError, UnreadableLogError
 from hersey.schedule import Schedule
+from hersey.text_file import read_text
 from hersey.units import Conversion, conversion
 
 #: Points above which a course is no longer read: it is searched and simulated many times.
@@ -47,18 +49,11 @@ def read_course(path: str | Path) -> Schedule:
 
 
 def _text(path: Path) -> str:
-    try:
+    with suppress(OSError):  # reading it says what is wrong
         if path.is_file() and path.stat().st_size > _MOST_BYTES:
             raise ParameterError(f"{path.name} is too long for a course: {MOST_POINTS} points are possible")
-        if path.exists() and not path.is_file():
-            raise MissingFileError(f"{path} is no ordinary file")
-        return path.read_text(encoding="utf-8-sig")
-    except MissingFileError:
-        raise
-    except FileNotFoundError:
-        raise MissingFileError(f"{path}: there is no such file") from None
-    except OSError as error:
-        raise MissingFileError(f"{path} cannot be read: {error.strerror}") from None
+    try:
+        return read_text(path)
     except UnicodeDecodeError:
         raise UnreadableLogError(f"{path.name} is not text in UTF-8") from None
 

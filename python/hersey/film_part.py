@@ -17,7 +17,7 @@ def film_part(points: SteadyPoints, surface: DampingSurface, fuser: Fuser | None
         return None
     contact, lubricant = fuser.contact, fuser.lubricant
     measured = measured_film(points, surface, contact, lubricant, grip=fuser.limits.roll_friction)
-    film, names = measured.predicted, [""] * measured.speed.size
+    film = measured.predicted
     if fuser.points:
         film = film_thickness(
             contact,
@@ -25,13 +25,11 @@ def film_part(points: SteadyPoints, surface: DampingSurface, fuser: Fuser | None
             speed=[point.speed / contact.roll_radius for point in fuser.points],
             temperature=[point.temperature for point in fuser.points],
         )
-        names = [point.name for point in fuser.points]
-    dwells = film_points(measured.predicted, [""] * measured.speed.size)
     return FilmPart(
         verdict=verdict(measured, surface, contact, lubricant).text,
         notes=list(lint(fuser, film, measured)),
-        points=film_points(film, names) if fuser.points else [],
-        dwells=dwells,
+        points=film_points(film, [point.name for point in fuser.points]),
+        dwells=film_points(measured.predicted, [""] * measured.speed.size),
         layer_factor=film.nip.layer_factor,
     )
 

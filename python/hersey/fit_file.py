@@ -10,10 +10,11 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 from hersey.branches import Transition
 from hersey.document import FitPart, InputFile, Interval, Point, TransitionPart
-from hersey.errors import MissingFileError, ParameterError
+from hersey.errors import ParameterError
 from hersey.estimation import Estimate
 from hersey.law import hersey_exponent
 from hersey.surface import DampingSurface, FitStatistics
+from hersey.text_file import read_text
 
 #: How far a number may be from the one it follows from, relative: JSON keeps all digits.
 _ROUNDING = 1e-9
@@ -42,15 +43,7 @@ def read_fit(path: str | Path) -> DampingSurface:
     """
     path = Path(path)
     try:
-        if path.exists() and not path.is_file():
-            raise MissingFileError(f"{path} is no ordinary file")
-        document = _FitFile.model_validate(json.loads(path.read_text(encoding="utf-8-sig")))
-    except MissingFileError:
-        raise
-    except FileNotFoundError:
-        raise MissingFileError(f"{path}: there is no such file") from None
-    except OSError as error:
-        raise MissingFileError(f"{path} cannot be read: {error.strerror}") from None
+        document = _FitFile.model_validate(json.loads(read_text(path)))
     except ValidationError as error:
         first = error.errors()[0]
         place = ".".join(str(part) for part in first["loc"]) or "document"

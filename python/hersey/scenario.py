@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from hersey import spread
 from hersey.drag import Drag
 from hersey.ensemble import PARAMETERS, sweep
 from hersey.errors import ParameterError, UnitError
@@ -21,16 +22,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 #: What each parameter is, for its unit; none is a plain number.
-KINDS: dict[str, str | None] = {
-    "stiffness": "stiffness",
-    "mass": "mass",
-    "transition_force": "force",
-    "transition_speed": "belt speed",
-    "ehl_exponent": None,
-    "mixed_exponent": None,
-    "stick_speed": "belt speed",
-    "drive_speed": "belt speed",
-}
+KINDS: dict[str, str | None] = {**spread.KINDS, "drive_speed": "belt speed"}
 #: Most parameter sets of one sweep, which fit in some gigabytes.
 MOST_SETS = 20_000_000
 

@@ -6,7 +6,8 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
-from hersey.errors import MissingFileError, ParameterError
+from hersey.errors import ParameterError
+from hersey.text_file import read_text
 
 
 def read_toml(path: str | Path) -> dict[str, Any]:
@@ -21,14 +22,6 @@ def read_toml(path: str | Path) -> dict[str, Any]:
     """
     path = Path(path)
     try:
-        if path.exists() and not path.is_file():
-            raise MissingFileError(f"{path} is no ordinary file")
-        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
-    except MissingFileError:
-        raise
-    except FileNotFoundError:
-        raise MissingFileError(f"{path}: there is no such file") from None
-    except OSError as error:
-        raise MissingFileError(f"{path} cannot be read: {error.strerror}") from None
+        return tomllib.loads(read_text(path))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
         raise ParameterError(f"{path.name} is not valid TOML: {error}") from None
