@@ -326,3 +326,31 @@ def test_correlations_are_listed_strongest_first() -> None:
     lines = surface.summary().splitlines()
     heading = lines.index("[[Correlations]] (unreported are below 0.1)")
     assert lines[heading + 1 :] == [row for _, row in sorted(expected)]
+
+
+def test_the_summary_of_two_branches() -> None:
+    w = np.geomspace(0.4, 15, 12)
+    bent = np.where(w > 2, (w / 2) ** 0.3, (w / 2) ** -0.2)
+    surface = hersey.fit(points_of(w, bent, error=0.01))
+    assert surface.transition is not None
+    lines = surface.summary().splitlines()
+    assert lines[1] == "    B = a w^c    (B in N m s/rad, w in rad/s)"
+    assert "    below w_t the exponent is c_mixed" in lines
+    (mixed,) = (row for row in lines if row.startswith("    c_mixed "))
+    assert float(mixed.split()[1]) == pytest.approx(surface.transition.mixed_exponent.value, rel=1e-6)
+    (at,) = (row for row in lines if row.startswith("    w_t "))
+    assert float(at.split()[1]) == pytest.approx(surface.transition.speed.value, rel=1e-6)
+    assert at.endswith("]  rad/s")
+    assert "varies as" not in surface.summary()
+
+
+def test_the_summary_of_two_branches_says_where_they_move() -> None:
+    w, t = grid(np.geomspace(0.5, 15, 12), TEMPERATURES)
+    at = 1.5 * (t / 150) ** 3.0
+    torque = np.where(w > at, (w / at) ** 0.3, (w / at) ** -0.2)
+    surface = hersey.fit(points_of(w, torque, t, error=1e-3))
+    assert surface.transition is not None
+    text = surface.summary()
+    assert "B = a T^b w^c    (B in N m s/rad, T in degC, w in rad/s)" in text
+    assert f"]  rad/s at {surface.reference_temperature:.4g} degC" in text
+    assert f"w_t varies as T^{surface.transition.temperature_exponent:.3g} (fixed Hersey number)" in text
