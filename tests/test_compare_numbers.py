@@ -46,7 +46,7 @@ def both() -> tuple[ModelComparison, ModelComparison, LogComparison]:
     """Two bent logs of different ranges, references and numbers of dwells, and their comparison."""
     a = dwells(BENT, [0.1, 2.8, -0.7, -1.2, -0.9])
     b = dwells(BENT, [0.2, 2.6, -0.68, -1.2, -0.7], seed=2)
-    a = between(a, SPEEDS[0], SPEEDS[7])
+    a = between(a, SPEEDS[0], SPEEDS[6])
     b = about(between(b, SPEEDS[1], SPEEDS[8]), 2.0, 415.0)
     first, second = (compare_models(d, bootstrap=0, cross_validate=False) for d in (a, b))
     return first, second, compare(a, b, names=("new", "aged"))
@@ -98,7 +98,7 @@ def test_the_law_for_both_has_the_least_sum_of_aicc() -> None:
 
 def test_the_range_is_what_both_measured() -> None:
     _, _, found = both()
-    assert found.speeds == pytest.approx(np.geomspace(SPEEDS[1], SPEEDS[7], 9), rel=1e-9)
+    assert found.speeds == pytest.approx(np.geomspace(SPEEDS[1], SPEEDS[6], 9), rel=1e-9)
     assert found.temperatures == pytest.approx(np.linspace(TEMPERATURES[0], TEMPERATURES[-1], 4))
     assert found.ratio.shape == found.low.shape == found.high.shape == (4, 9)
 
@@ -107,6 +107,7 @@ def test_the_ratio_is_that_of_the_laws_with_scheffes_limits() -> None:
     _, _, found = both()
     y, covariance, freedom = difference()
     p = fits()[0].values.size
+    assert fits()[0].freedom < fits()[1].freedom
     assert found.ratio.ravel() == pytest.approx(np.exp(y), rel=1e-9)
     reach = np.sqrt(p * stats.f.ppf(0.95, p, freedom) * np.diag(covariance))
     assert np.log(found.high / found.ratio).ravel() == pytest.approx(reach, rel=2e-3)
@@ -171,6 +172,24 @@ def test_changes_by_hand_corrected_as_holm_has_it() -> None:
         )
         assert e.error == pytest.approx(error * (e.value if change.is_ratio else 1.0), rel=1e-4)
     assert len({round(c.p_value, 12) for c in found.changes}) > 1
+
+
+def test_no_p_value_is_less_than_that_of_a_greater_change() -> None:
+    """Of three changes by chance alone the least, times one, would be less than the one before it."""
+    law, values = Law(None, FREE), [0.1, -0.7, -1.2, -0.9]
+    a, b = (dwells(law, values, temperatures=None, seed=seed) for seed in (1, 2))
+    found = {c.name: c for c in compare(a, b).changes}
+    assert set(found) == {"c", "c below the transition", "transition speed"}
+    raw = {}
+    for name, change in found.items():
+        e = change.change
+        ratio = np.log(e.value) * e.value / e.error if change.is_ratio else e.value / e.error
+        raw[name] = 2 * float(stats.t.sf(abs(ratio), len(a) - 4))
+    order = sorted(raw, key=lambda name: raw[name])
+    holm = [min(1.0, raw[name] * (3 - rank)) for rank, name in enumerate(order)]
+    assert holm != sorted(holm)
+    for rank, name in enumerate(order):
+        assert found[name].p_value == pytest.approx(max(holm[: rank + 1]), rel=1e-4)
 
 
 def test_a_change_is_real_at_five_percent() -> None:
@@ -259,17 +278,17 @@ def test_no_difference_is_bounded() -> None:
 def test_what_each_alone_would_be_given_is_noted() -> None:
     straight = isothermal(0.1, -0.7)
     bent = dwells(Law(None, FREE), [0.1, -0.7, -1.2, -0.9], temperatures=None, seed=2)
-    for a, b, name in ((straight, bent, "A"), (bent, straight, "B")):
+    alone, given = (
+        compare_models(d, bootstrap=0, cross_validate=False).chosen.rung.name for d in (straight, bent)
+    )
+    for a, b, shown in (
+        (straight, bent, {"A": alone, "B": given}),
+        (bent, straight, {"A": given, "B": alone}),
+    ):
         found = compare(a, b)
-        alone = compare_models(straight, bootstrap=0, cross_validate=False).chosen.rung.name
-        given = compare_models(bent, bootstrap=0, cross_validate=False).chosen.rung.name
-        shown = {"A": alone, "B": given} if name == "A" else {"A": given, "B": alone}
-        lost = [f"{n} alone would be given {r}." for n, r in shown.items() if r != found.rung]
-        assert list(found.notes) == [
-            *lost,
-            "Only one of the two shows a falling branch within its range.",
-        ]
+        lost = [f"{n} alone would be given {rung}." for n, rung in shown.items() if rung != found.rung]
         assert lost
+        assert found.notes == (*lost, "Only one of the two shows a falling branch within its range.")
 
 
 def test_speeds_are_shared_from_a_factor_of_1_2_on() -> None:
