@@ -31,6 +31,14 @@ def bent() -> ModelComparison:
 
 
 @pytest.fixture(scope="module")
+def vague() -> ModelComparison:
+    """A bend hardly known: draws of it differ so much that their mean gain is another than their median."""
+    law = Law(Thermal(ARRHENIUS, REFERENCE), HELD)
+    data = dwells(law, [0.1, 2.8, -0.7, -1.2, -0.9], scatter=0.1, twice=1, seed=3)
+    return compare_models(data, rungs=(Rung(ARRHENIUS, HELD),), bootstrap=0, cross_validate=False)
+
+
+@pytest.fixture(scope="module")
 def isothermal() -> ModelComparison:
     data = dwells(Law(None, ONE), [0.1, -0.7], temperatures=None)
     return compare_models(data, rungs=(Rung(None, ONE),), bootstrap=0, cross_validate=False)
@@ -104,12 +112,12 @@ def draws_of(comparison: ModelComparison, seed: int) -> np.ndarray:
     return np.vstack([fit.values, random.multivariate_normal(fit.values, fit.covariance, 40)])
 
 
-def test_where_the_law_bends_the_gain_is_that_of_most_draws(bent: ModelComparison) -> None:
-    found = design(bent, count=3, seed=4)
-    known = [information(bent, values) for values in draws_of(bent, 4)]
+def test_where_the_law_bends_the_gain_is_that_of_most_draws(vague: ModelComparison) -> None:
+    found = design(vague, count=5, seed=4)
+    known = [information(vague, values) for values in draws_of(vague, 4)]
     totals, rows = np.array([total for total, _ in known]), np.array([row for _, row in known])
     start = np.linalg.slogdet(totals)[1]
-    for place, point in zip(where(found, bent), found.points, strict=True):
+    for place, point in zip(where(found, vague), found.points, strict=True):
         inverse = np.linalg.inv(totals)
         gains = [
             np.median([np.log(1 + rows[k, n] @ inverse[k] @ rows[k, n]) for k in range(41)])
