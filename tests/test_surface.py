@@ -19,25 +19,33 @@ def points_of(
     speed: np.ndarray,
     torque: np.ndarray,
     celsius: np.ndarray | None = None,
-    error: float = 0.0,
+    error: np.ndarray | float = 0.0,
+    *,
+    speed_error: np.ndarray | float = 0.0,
+    temperature_error: np.ndarray | float = 0.0,
+    tare_error: float = 0.0,
 ) -> SteadyPoints:
-    """Steady points as `TorqueLog.steady` would leave them; ``error`` is relative."""
-    count = speed.size
+    """Steady points as `TorqueLog.steady` would leave them.
+
+    ``error`` of torque and ``speed_error`` are relative; ``temperature_error`` in K, ``tare_error`` in N m.
+    """
+    whole = np.ones(speed.size)
     kelvin = None if celsius is None else celsius + 273.15
     empty = np.zeros(2)
     run = Run("run", empty, empty, empty, None if celsius is None else empty)
     log = TorqueLog((run,), (LogFile("run", "0", 0, 2, 0, (), ()),))
     table = pl.DataFrame(
         {
+            "run": np.zeros(speed.size, dtype=np.int64),
             "speed": speed,
-            "speed_error": np.zeros(count),
+            "speed_error": speed_error * np.abs(speed),
             "torque": torque,
             "torque_error": error * np.abs(torque),
             "temperature": kelvin,
-            "temperature_error": None if celsius is None else np.zeros(count),
+            "temperature_error": None if celsius is None else temperature_error * whole,
         }
     )
-    return SteadyPoints(table, (), 0.0, None, log)
+    return SteadyPoints(table, (), 0.0, None, log, tare_error)
 
 
 def grid(speeds: np.ndarray, temperatures: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
