@@ -13,9 +13,7 @@ from hersey.ladder.thermal import ARRHENIUS, KELVIN, Thermal
 from tests.test_ladder import REFERENCE, dwells
 
 
-def by_hand(
-    x: np.ndarray, y: np.ndarray, group: np.ndarray, fitted: int = 0
-) -> tuple[float, float, float]:
+def by_hand(x: np.ndarray, y: np.ndarray, group: np.ndarray, fitted: int = 0) -> tuple[float, float, float]:
     """Deviation, scatter and p-value, the common curve as hat functions on its knots."""
     knots = np.quantile(x, np.linspace(0, 1, min(max(x.size // 4, 2), 8)))
     common = np.column_stack([np.interp(x, knots, row) for row in np.eye(knots.size)])
@@ -57,7 +55,9 @@ def overlap_by_hand(x: np.ndarray, group: np.ndarray) -> float:
     return inside / x.size
 
 
-@pytest.mark.parametrize(("off", "scatter", "collapses"), [(0.0, 0.05, True), (0.3, 0.05, False), (0.02, 0.03, True)])
+@pytest.mark.parametrize(
+    ("off", "scatter", "collapses"), [(0.0, 0.05, True), (0.3, 0.05, False), (0.02, 0.03, True)]
+)
 @pytest.mark.parametrize("count", [5, 12])
 def test_known_hersey_numbers_are_judged_by_an_f_test(
     off: float, scatter: float, collapses: bool, count: int
@@ -93,9 +93,7 @@ def near(p: float) -> HerseyCollapse:
     low, high = 0.0, 3.0
     for _ in range(60):
         middle = 0.5 * (low + high)
-        low, high = (
-            (middle, high) if by_hand(x, y + middle * (off - flat), group)[2] > p else (low, middle)
-        )
+        low, high = (middle, high) if by_hand(x, y + middle * (off - flat), group)[2] > p else (low, middle)
     return hersey_collapse(x, y + low * (off - flat), group)
 
 
@@ -204,9 +202,7 @@ def test_what_is_too_little_is_refused() -> None:
         InsufficientDataError, match=r"^one curve alone cannot collapse: record other temperatures or loads$"
     ):
         hersey_collapse(x, x, np.zeros(6))
-    with pytest.raises(
-        InsufficientDataError, match=r"^a curve has fewer than 3 points: record more speeds$"
-    ):
+    with pytest.raises(InsufficientDataError, match=r"^a curve has fewer than 3 points: record more speeds$"):
         hersey_collapse(x, x, [0, 0, 0, 0, 1, 1])
     # six points, a line each and none to spare: 6 - 4 = 2 is enough, with a kink more it is not
     found = hersey_collapse(x, x**2, [0, 0, 0, 1, 1, 1])
@@ -214,7 +210,9 @@ def test_what_is_too_little_is_refused() -> None:
     cold = dwells(Law(Thermal(KELVIN, REFERENCE), ONE), [0.1, -2.0, -0.7], temperatures=np.array([400.0]))
     with pytest.raises(InsufficientDataError, match="one curve alone"):
         temperature_collapse(cold)
-    one = dwells(Law(Thermal(KELVIN, REFERENCE), ONE), [0.1, -2.0, -0.7], temperatures=np.array([390.0, 410.0]))
+    one = dwells(
+        Law(Thermal(KELVIN, REFERENCE), ONE), [0.1, -2.0, -0.7], temperatures=np.array([390.0, 410.0])
+    )
     few = one.take(np.array([0, 4, 8, 18, 22, 26]))
     with pytest.raises(
         InsufficientDataError, match=r"^too few points to tell curves from scatter: record more speeds$"

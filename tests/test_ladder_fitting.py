@@ -55,7 +55,9 @@ def tared(data: Observations) -> Observations:
 
 
 def expected_psi() -> float:
-    total, _ = integrate.quad(lambda u: min(abs(u), 2.5) ** 2 * stats.norm.pdf(u), -12, 12, points=[-2.5, 2.5])
+    total, _ = integrate.quad(
+        lambda u: min(abs(u), 2.5) ** 2 * stats.norm.pdf(u), -12, 12, points=[-2.5, 2.5]
+    )
     return float(total)
 
 

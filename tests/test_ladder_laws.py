@@ -73,10 +73,7 @@ def by_hand(
 
 
 CASES = [
-    (kind, groups, branches)
-    for kind in (None, *KINDS)
-    for groups in (1, 3)
-    for branches in (ONE, HELD, FREE)
+    (kind, groups, branches) for kind in (None, *KINDS) for groups in (1, 3) for branches in (ONE, HELD, FREE)
 ] + [(kind, 1, NO_SPEED) for kind in KINDS]
 
 
@@ -240,9 +237,7 @@ def test_stribeck_s_curve_is_its_formula() -> None:
     assert cold.names == ("level", "stick", "viscous", "at")
     assert cold.index("viscous") == 2
     assert not cold.broken
-    expected = [
-        level + log(1 + exp(stick - exp(2 * (z - at))) + exp(viscous) * exp(z - at)) for z in SPEED
-    ]
+    expected = [level + log(1 + exp(stick - exp(2 * (z - at))) + exp(viscous) * exp(z - at)) for z in SPEED]
     assert cold.predict(np.delete(STRIBECK, 1), AT) == pytest.approx(expected, abs=1e-12)
 
 

@@ -45,9 +45,7 @@ def fit(data: Observations) -> LawFit:
     return fit_law(STRAIGHT, data)
 
 
-def test_intervals_by_covariance_and_clusters_have_their_own_freedom(
-    data: Observations, fit: LawFit
-) -> None:
+def test_intervals_by_covariance_and_clusters_have_their_own_freedom(data: Observations, fit: LawFit) -> None:
     found = estimates(fit, data, profile=False)
     assert [p.name for p in found] == ["damping at reference", "b", "c"]
     for method, covariance, freedom in (
@@ -134,7 +132,9 @@ def open_to(data: Observations, fit: LawFit, aside: float, share: float, cost: f
 
 
 def test_an_open_profile_says_to_which_side(data: Observations, fit: LawFit) -> None:
-    said = "not determined: the likelihood is open to {}: record more temperatures and slower and faster speeds"
+    said = (
+        "not determined: the likelihood is open to {}: record more temperatures and slower and faster speeds"
+    )
     # eight steps of a hundredth of an error raise the cost by next to nothing
     assert open_to(data, fit, 0.0, 0.01, fit.cost) == said.format("either side")
     # from one error below, two errors up reach one above: a rise of 1; two down reach a rise of 9
@@ -155,10 +155,14 @@ def test_what_is_quoted_is_the_profile_else_the_covariance() -> None:
     assert METHODS == ("covariance", "clustered", "profile", "bootstrap")
 
 
-def named(law: Law | StribeckLaw, values: list[float], data: Observations) -> dict[str, tuple[str, float, str]]:
+def named(
+    law: Law | StribeckLaw, values: list[float], data: Observations
+) -> dict[str, tuple[str, float, str]]:
     """Quantities by name: unit, value, and which parameter."""
     fit = hand_fit(law, values, points=len(data))
-    return {q.name: (q.unit, q.of(values[q.parameter]), law.names[q.parameter]) for q in quantities(fit, data)}
+    return {
+        q.name: (q.unit, q.of(values[q.parameter]), law.names[q.parameter]) for q in quantities(fit, data)
+    }
 
 
 def test_quantities_of_a_broken_law_by_hand() -> None:
@@ -198,7 +202,12 @@ def test_quantities_of_exponents_per_temperature_by_hand() -> None:
     data = dwells(law, values)
     found = named(law, values, data)
     by_heat = {name: value for name, (_, value, _) in found.items() if name.startswith("c at")}
-    assert by_heat == {"c at 90 degC": -0.6, "c at 120 degC": -0.65, "c at 150 degC": -0.7, "c at 180 degC": -0.75}
+    assert by_heat == {
+        "c at 90 degC": -0.6,
+        "c at 120 degC": -0.65,
+        "c at 150 degC": -0.7,
+        "c at 180 degC": -0.75,
+    }
     assert "exponent of the transition speed in temperature" not in found
     alone = Law(None, FREE)
     found = named(alone, [0.1, -0.7, -1.2, -0.9], dwells(alone, [0.1, -0.7, -1.2, -0.9], temperatures=None))

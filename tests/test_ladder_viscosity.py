@@ -26,9 +26,7 @@ def test_energy_of_an_arrhenius_table_is_that_of_a_line() -> None:
     error = R * fit.scatter / np.sqrt(np.sum((1 / KELVIN - np.mean(1 / KELVIN)) ** 2))
     assert energy.error == pytest.approx(error, rel=1e-6)
     reach = stats.t.ppf(0.975, 11) * error
-    assert (energy.low, energy.high) == pytest.approx(
-        (R * slope - reach, R * slope + reach), rel=1e-6
-    )
+    assert (energy.low, energy.high) == pytest.approx((R * slope - reach, R * slope + reach), rel=1e-6)
     assert found.refused == ()
     # one law with a residual of a leave-one-out line
     missed = by_key["arrhenius/viscosity"].left_out
@@ -36,7 +34,9 @@ def test_energy_of_an_arrhenius_table_is_that_of_a_line() -> None:
     for i in (0, 6, 12):
         kept = np.arange(13) != i
         line = np.polyfit(1 / KELVIN[kept], (4200.0 / KELVIN + off)[kept], 1)
-        assert missed[i] == pytest.approx((4200.0 / KELVIN + off)[i] - np.polyval(line, 1 / KELVIN[i]), abs=1e-5)
+        assert missed[i] == pytest.approx(
+            (4200.0 / KELVIN + off)[i] - np.polyval(line, 1 / KELVIN[i]), abs=1e-5
+        )
 
 
 def test_an_error_that_is_stated_leaves_no_scatter() -> None:
@@ -84,7 +84,9 @@ def test_repeats_of_a_temperature_are_left_out_together() -> None:
 
 
 def test_what_is_no_table_is_refused() -> None:
-    with pytest.raises(ParameterError, match=r"^kelvin and viscosity must be one-dimensional and of one length$"):
+    with pytest.raises(
+        ParameterError, match=r"^kelvin and viscosity must be one-dimensional and of one length$"
+    ):
         viscosity_laws(KELVIN, np.ones(12))
     with pytest.raises(ParameterError, match="one-dimensional"):
         viscosity_laws(KELVIN.reshape(1, 13), np.ones((1, 13)))
