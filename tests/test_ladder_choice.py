@@ -312,7 +312,7 @@ def test_a_comparison_is_what_its_parts_are() -> None:
     bare = compare_models(DATA, rungs=ladder[:1], bootstrap=0, cross_validate=False)
     assert all("bootstrap" not in p.intervals for p in bare.parameters)
     assert bare.rungs[0].cross_validation is None
-    assert bare.reasons == found.reasons[:1] + ("BIC puts the same rung first.",)
+    assert bare.reasons == (*found.reasons[:1], "BIC puts the same rung first.")
     plain = compare_models(DATA, rungs=ladder[:1], cross_validate=False)
     assert (plain.bootstrap, plain.seed) == (300, 1)
     assert plain.rungs[0].left_out is None
@@ -327,8 +327,8 @@ def test_a_comparison_refuses_what_it_cannot_do() -> None:
     assert all(rung.refused(few) for rung in all_rungs())
     with pytest.raises(
         InsufficientDataError,
-        match=r"^no law can be fitted: no temperature x power of speed, one branch 2 parameters need 5 dwells, "
-        r"the log has 4$",
+        match=r"^no law can be fitted: no temperature x power of speed, one branch 2 parameters need 5 "
+        r"dwells, the log has 4$",
     ):
         compare_models(few)
     cold = dwells(Law(None, ONE), [0.1, -0.7], temperatures=None)
@@ -339,7 +339,6 @@ def test_a_comparison_refuses_what_it_cannot_do() -> None:
 
 def test_a_comparison_as_text_line_by_line() -> None:
     found = made()
-    best, chosen, third = found.rungs
     turn = 30.0 / np.pi  # rpm in a rad/s
     header = "    " + "rung".ljust(66) + "numbers".rjust(8) + "dAICc".rjust(9) + "dBIC".rjust(9)
     header += "left out".rjust(10) + "scatter".rjust(9)
@@ -384,7 +383,7 @@ def test_a_comparison_as_text_line_by_line() -> None:
 def test_a_comparison_as_plain_data() -> None:
     found = made()
     plain = found.document()
-    best, chosen, _ = found.rungs
+    _, chosen, _ = found.rungs
     assert plain["hersey_version"] == "1.2.3"
     assert plain["dwells"] == 72
     assert plain["clustered_by"] == "level"

@@ -184,7 +184,8 @@ def test_energies_are_printed_in_kilojoules_and_calories() -> None:
         "viscosity, from torque and its exponent",
         "viscosity, from the transition speed",
     )
-    for line, name, energy in zip(lines, names, (found.torque, found.viscosity, found.transition)):
+    energies = (found.torque, found.viscosity, found.transition)
+    for line, name, energy in zip(lines[:3], names, energies, strict=True):
         assert energy is not None
         v, low, high = energy.value, energy.low, energy.high
         assert line == (

@@ -84,9 +84,7 @@ def test_a_straight_law_is_weighted_least_squares(data: Observations, fit: LawFi
     assert fit.tare == 0.0
 
 
-def test_the_deviance_is_that_of_its_residuals_and_the_tare(
-    data: Observations, fit: LawFit, tared: Observations
-) -> None:
+def test_the_deviance_is_that_of_its_residuals_and_the_tare(fit: LawFit, tared: Observations) -> None:
     norm = 2 * integrate.quad(lambda u: np.exp(-0.5 * u**2), 0, 2.5)[0] + 2 * np.exp(-0.5 * 2.5**2) / 2.5
 
     def least(found: LawFit) -> float:

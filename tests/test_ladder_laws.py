@@ -1,4 +1,4 @@
-"""Laws of torque by hand, point by point, and their derivatives by differences, on either side of a corner."""
+"""Laws of torque by hand, point by point; their derivatives by differences on either side of a corner."""
 
 from __future__ import annotations
 
@@ -184,7 +184,7 @@ def test_a_law_of_temperature_is_its_formula(kind: str) -> None:
 @pytest.mark.parametrize("kelvin", [363.0, 400.0, 440.0])
 def test_apparent_energies_by_hand(kelvin: float) -> None:
     r = 8.314462618
-    assert GAS_CONSTANT == r
+    assert r == GAS_CONSTANT
     assert Thermal(KELVIN, REFERENCE).energy(kelvin) == pytest.approx(-r * kelvin, rel=1e-12)
     assert Thermal(ARRHENIUS, REFERENCE).energy(kelvin) == pytest.approx(r * 400.0, rel=1e-12)
     celsius = -r * kelvin**2 / (kelvin - 273.15)
@@ -310,24 +310,23 @@ def test_a_broken_law_starts_from_linear_fits_at_transitions_it_could_have(
         linear = weighted_fit(design, y, weights)
         return float(np.sum(weights * (y - design @ linear) ** 2)), linear
 
-    tried: list[tuple[float, float, float, np.ndarray]] = []
+    tried: list[tuple[float, np.ndarray, float, float]] = []
     for _ in range(2):
         for d in moves:
             reach = np.sort(z - d * s)
             for at in np.linspace(reach[2], reach[-3], 14):
-                tried.append((*solved(d, at), d, at))  # type: ignore[arg-type]
-        cost, linear, d, _at = min(tried, key=lambda t: t[0])  # type: ignore[misc]
+                tried.append((*solved(d, at), d, at))
+        linear = min(tried, key=lambda t: t[0])[1]
         if kind:
-            mean = float(np.mean(linear[first : first + groups]))  # type: ignore[index]
-            moves = {-linear[1] / max(1.0 + (mean - 1.0) * 1.0, 0.05)}  # type: ignore[index]
+            moves = {-linear[1] / max(np.mean(linear[first : first + groups]), 0.05)}
     expected = sorted(tried, key=lambda t: t[0])[:3]
-    for start, (_, linear, d, at) in zip(starts, expected, strict=True):  # type: ignore[assignment]
-        exponents = linear[first : first + groups] - 1.0  # type: ignore[index]
+    for start, (_, linear, d, at) in zip(starts, expected, strict=True):
+        exponents = linear[first : first + groups] - 1.0
         by_name = dict(zip(law.names, start, strict=True))
-        assert by_name["level"] == pytest.approx(linear[0], rel=1e-6)  # type: ignore[index]
+        assert by_name["level"] == pytest.approx(linear[0], rel=1e-6)
         assert [v for n, v in by_name.items() if n[0] == "c" and n != "c_mixed"] == pytest.approx(exponents)
         # below the transition the slope is that above it and what the fit adds
-        assert by_name["c_mixed"] == pytest.approx(np.mean(exponents) + linear[-1], rel=1e-6)  # type: ignore[index]
+        assert by_name["c_mixed"] == pytest.approx(np.mean(exponents) + linear[-1], rel=1e-6)
         assert by_name["at"] == pytest.approx(at, rel=1e-6)
         if kind and branches == FREE:
             assert by_name["d"] == pytest.approx(d, rel=1e-6)

@@ -1,4 +1,4 @@
-"""The robust likelihood: Huber's loss by hand, its density by quadrature, scatter and deviance by definition."""
+"""The robust likelihood: Huber's loss by hand, density by quadrature, scatter and deviance by definition."""
 
 from __future__ import annotations
 
@@ -186,7 +186,10 @@ def test_deviance_is_twice_the_negative_log_likelihood_at_its_least(limit: float
 
     def minus_twice_log(scatter: float) -> float:
         sigma = np.sqrt(ERRORS**2 + scatter**2)
-        each = [loss_by_hand(u, limit) + 2 * np.log(total * s) for u, s in zip(RESIDUALS / sigma, sigma)]
+        each = [
+            loss_by_hand(u, limit) + 2 * np.log(total * s)
+            for u, s in zip(RESIDUALS / sigma, sigma, strict=True)
+        ]
         return float(np.sum(each))
 
     slow = optimize.minimize_scalar(minus_twice_log, bounds=(0.005, 0.3), options={"xatol": 1e-9})

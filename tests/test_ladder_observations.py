@@ -32,13 +32,12 @@ def points(*, run: list[int] = RUN, temperature: bool = True, speed: list[float]
             "temperature_error": np.linspace(0.1, 0.5, 9),
         }
     )
-    made = SimpleNamespace(
+    return SimpleNamespace(  # type: ignore[return-value]
         table=table,
         tare_error=0.002,
         log=SimpleNamespace(has_temperature=temperature),
         column=lambda name: table[name].to_numpy(),
     )
-    return made  # type: ignore[return-value]
 
 
 def test_dwells_in_logarithms_by_hand() -> None:
@@ -101,8 +100,8 @@ def test_without_temperature_there_is_one_group() -> None:
 def test_two_speeds_are_refused_by_their_revolutions() -> None:
     speed = [10.0, 20.0, 10.1, 20.1, 10.0, 20.0, 10.0, 20.0, 20.0]
     said = (
-        r"^the steady points are all at 95\.49 rpm and 96\.45 rpm: no law of speed can be fitted or compared; "
-        r"record dwells at three speeds or more$"
+        r"^the steady points are all at 95\.49 rpm and 96\.45 rpm: no law of speed can be fitted or "
+        r"compared; record dwells at three speeds or more$"
     )
     with pytest.raises(InsufficientDataError, match=said):
         Observations.of(points(speed=speed))
