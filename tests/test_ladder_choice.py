@@ -148,6 +148,8 @@ def test_likelier_laws_that_were_not_chosen_are_accounted_for() -> None:
         f"{NAMES[HELD]}, with 2 more numbers, has an AICc better by 1.9: the data do not tell the two apart.",
         f"BIC puts {NAMES[HELD]} first (by 3.2).",
     ]
+    worse = replace(entry(7.0, branches=FREE), fit=entry(7.0).fit)
+    assert said([best, worse], chosen)[2] == f"Next is {NAMES[FREE]}: its AICc is worse by 2.7."
     one_more = replace(entry(2.0, branches=HELD), delta_aicc=3.0)
     free = entry(0.9, branches=FREE)
     assert said([free], one_more)[1] == (

@@ -159,8 +159,8 @@ def test_search_holds_a_parameter_and_expects_a_tare(tared: Observations) -> Non
 
 def test_without_a_tare_there_is_no_disturbance(data: Observations) -> None:
     sigma = np.full(len(data), 0.02)
-    found = search(STRAIGHT, data, sigma, np.array([0.1, -2.4, -0.7, 0.0]))
-    assert found.values[-1] == 0.0
+    found = search(STRAIGHT, data, sigma, np.array([0.1, -2.4, -0.7, 0.3]))
+    assert found.values[-1] == 0.3  # nothing shows it, so it is not searched
     assert found.jacobian[-1] == pytest.approx([0.0, 0.0, 0.0, 1.0], abs=0)
     assert found.jacobian.shape == (len(data) + 1, 4)
 
@@ -218,6 +218,28 @@ def test_clustered_errors_are_those_of_a_jackknife(data: Observations, count: in
         moved = in_terms_of(solved(x[kept], grouped.log_torque[kept], fit.sigma[kept])) - fit.values
         total += np.outer(moved, moved)
     assert fit.clustered == pytest.approx((count - 1) / count * total, rel=1e-5, abs=1e-10)
+
+
+def test_clustered_errors_hold_the_tare(tared: Observations) -> None:
+    fit = fit_law(STRAIGHT, tared)
+    x = np.column_stack([columns(tared), tared.tare])
+
+    def refit(kept: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        rows = np.vstack([x[kept] / fit.sigma[kept, None], [0.0, 0.0, 0.0, 1.0]])
+        y = np.append(tared.log_torque[kept] / fit.sigma[kept], 0.0)
+        bread = np.linalg.inv(rows.T @ rows)
+        return bread @ rows.T @ y, bread
+
+    full, bread = refit(np.ones(len(tared), dtype=bool))
+    labels = np.unique(tared.cluster)
+    moved = np.array([refit(tared.cluster != label)[0] - full for label in labels])
+    share = (labels.size - 1) / labels.size
+    # what the dwells say and what the prior of the tare adds; the factor is one of 36 clusters
+    expected = share * moved.T @ moved + np.outer(bread[3], bread[3])
+    ratio = np.sqrt(np.diag(fit.clustered) / np.diag(expected[:3, :3]))
+    assert ratio == pytest.approx(np.ones(3), abs=0.015)
+    within = share * moved.T @ moved
+    assert np.max(np.sqrt(np.diag(expected)[:3] / np.diag(within)[:3])) > 1.1
 
 
 def test_resampled_fits_are_explicit_refits_to_the_clusters_drawn(data: Observations, fit: LawFit) -> None:
@@ -393,7 +415,13 @@ def test_a_corner_needs_two_speeds_on_either_side() -> None:
         (0.5 * (z[-1] + z[-2]), {"at", "c", "level"}),
     ):
         fit = hand_fit(law, [0.1, -0.7, -1.2, float(here)], points=27, covariance=1e-6 * np.eye(4))
-        assert set(not_identified(fit, data)) == lost
+        found = not_identified(fit, data)
+        assert set(found) == lost
+        if lost:
+            where, what = ("below", "slower") if "c_mixed" in lost else ("above", "faster")
+            assert found["at"] == (
+                f"only 3 dwells lie {where} the transition: record dwells at {what} speeds"
+            )
 
 
 def test_an_error_of_a_quarter_of_the_speeds_is_no_transition() -> None:

@@ -273,3 +273,29 @@ def test_likelihood_ratio_is_an_f_test_by_hand() -> None:
     assert likelihood_ratio(small, large) == pytest.approx(stats.f.sf(ratio, 3, 8), rel=1e-10)
     worse = replace(large, deviance=-59.0)
     assert likelihood_ratio(small, worse) == 1.0
+
+
+@pytest.mark.parametrize("seed", [1, 5])
+def test_profile_of_a_corner_ends_at_its_last_crossing(seed: int) -> None:
+    """Against a scan of the cost in small steps from either side, each step a fit from several starts."""
+    law, values = Law(None, FREE), [0.1, -0.7, -1.2, -0.5]
+    data = dwells(law, values, temperatures=None, scatter=0.0)
+    noise = 0.08 * np.random.default_rng(seed).choice([-1.0, 1.0], len(data))
+    data = replace(data, log_torque=data.log_torque + noise)
+    fit = fit_law(law, data)
+    found = profile_interval(fit, data, 3)
+    error = float(np.sqrt(fit.covariance[3, 3]))
+    target = stats.t.ppf(0.975, len(data) - 4) ** 2
+    z, y = data.inputs.log_speed, data.log_torque
+
+    def rise(at: float) -> float:
+        """Linear least squares at a fixed corner: no residual of these is beyond Huber's limit."""
+        x = np.column_stack([np.ones_like(z), np.maximum(z - at, 0.0), np.minimum(z - at, 0.0)])
+        u = (y - x @ np.linalg.lstsq(x / fit.sigma[:, None], y / fit.sigma, rcond=None)[0]) / fit.sigma
+        assert np.max(np.abs(u)) < 2.5
+        return float(np.sum(u**2)) - fit.cost
+
+    for end, side in zip(found, (-1.0, 1.0), strict=True):
+        steps = np.arange(0.0, abs(end - fit.values[3]) / error + 1.4, 0.01)
+        inside = [s for s in steps if rise(fit.values[3] + side * s * error) < target]
+        assert abs(end - fit.values[3]) / error == pytest.approx(max(inside), abs=0.04)
