@@ -175,6 +175,18 @@ def test_there_is_no_scatter_where_the_errors_are_enough() -> None:
     assert scatter_beyond(np.full(10, 0.1), np.full(10, 0.1), 11, np.inf) == 0.0
     above = scatter_beyond(np.full(10, 0.1), np.full(10, 0.1), 8, np.inf)
     assert above == pytest.approx(0.1 * np.sqrt(10 / 8 - 1), rel=1e-8)
+    hardly = scatter_beyond(np.full(10, 0.1), np.full(10, 0.1), 9.5, np.inf)
+    assert hardly == pytest.approx(0.1 * np.sqrt(10 / 9.5 - 1), rel=1e-6)
+
+
+def test_neither_scatter_nor_deviance_asks_for_a_sign() -> None:
+    for limit in (1.2, 2.5, np.inf):
+        aside = RESIDUALS - 0.1
+        assert np.sum(aside) < 0 < np.sum(-aside)
+        one, other = (scatter_beyond(r, ERRORS, 8, limit) for r in (aside, -aside))
+        assert one == pytest.approx(other, rel=1e-12)
+        assert one > 0.05
+        assert deviance(aside, ERRORS, limit) == pytest.approx(deviance(-aside, ERRORS, limit), rel=1e-12)
 
 
 @pytest.mark.parametrize("limit", [1.2, 2.5, np.inf])
