@@ -351,3 +351,9 @@ def test_stribeck_s_curve_starts_near_itself() -> None:
         cost = [float(np.sum((data.log_torque - law.predict(v, data.inputs)) ** 2)) for v in starts]
         assert cost == sorted(cost)
         assert cost[1] > 1e-6
+
+
+def test_parts_of_stribeck_s_curve_that_do_not_show_start_at_three_per_cent() -> None:
+    law, data = StribeckLaw(None), dwells(StribeckLaw(None), [0.0, -40.0, -40.0, 0.0], temperatures=None)
+    for start in law.starts(data.inputs, np.full(len(data), 0.7), np.ones(len(data))):
+        assert start[:3] == pytest.approx([0.7, log(0.03), log(0.03)], abs=1e-9)
