@@ -357,3 +357,9 @@ def test_parts_of_stribeck_s_curve_that_do_not_show_start_at_three_per_cent() ->
     law, data = StribeckLaw(None), dwells(StribeckLaw(None), [0.0, -40.0, -40.0, 0.0], temperatures=None)
     for start in law.starts(data.inputs, np.full(len(data), 0.7), np.ones(len(data))):
         assert start[:3] == pytest.approx([0.7, log(0.03), log(0.03)], abs=1e-9)
+
+
+def test_vft_without_a_pole_is_straight() -> None:
+    law, kelvin = Thermal(VFT, REFERENCE), np.array(HOT)
+    assert law.shape(kelvin)[0] == pytest.approx(1.0 - kelvin / 400.0, abs=1e-14)
+    assert law.energy(380.0) == pytest.approx(8.314462618 * 380.0**2 / 400.0, rel=1e-12)
