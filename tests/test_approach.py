@@ -111,9 +111,9 @@ def test_a_belt_warms_the_same_way_in_all_answers() -> None:
     )
     kelvin = 440.0
     law = warm.at(kelvin)
-    assert hersey.safe_step(TRAIN, warm, from_speed=2.5, to_speed=1.2, temperature=kelvin) == hersey.safe_step(
-        TRAIN, law, from_speed=2.5, to_speed=1.2
-    )
+    assert hersey.safe_step(
+        TRAIN, warm, from_speed=2.5, to_speed=1.2, temperature=kelvin
+    ) == hersey.safe_step(TRAIN, law, from_speed=2.5, to_speed=1.2)
     hot, same = (
         hersey.disturbance(TRAIN, d, drive_speed=1.2, temperature=t) for d, t in ((warm, kelvin), (law, None))
     )

@@ -165,7 +165,12 @@ def test_exponents_stand_against_what_each_regime_predicts(document: Analysis) -
     c = document.fit.coefficients["c"]
     expected.append((c.value, c.low, c.high))
     assert [(r["value"], r["low"], r["high"]) for r in rows(bars)] == expected
-    named = {r["name"]: (r["low"], r["high"]) for layer in layers for r in rows(layer) if "name" in r and "low" in r}
+    named = {
+        r["name"]: (r["low"], r["high"])
+        for layer in layers
+        for r in rows(layer)
+        if "name" in r and "low" in r
+    }
     for hypothesis in document.regime.hypotheses:
         low = -1.4 if hypothesis.low is None else hypothesis.low
         assert named[hypothesis.name] == (low, hypothesis.high)

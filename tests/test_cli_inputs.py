@@ -5,17 +5,23 @@ from __future__ import annotations
 import json
 import shutil
 from pathlib import Path
+from typing import Any
 
 import pytest
+import typer
 
 import hersey
-from hersey.cli.logs import report
+from hersey.cli import app
 from hersey.cli.machine import _drag
-from hersey.cli.options import Reading
 from hersey.errors import OutputError
 from hersey.fuser import read_fuser
 from tests.conftest import ROOT
 from tests.test_cli import run
+
+
+def typed(*arguments: str | Path) -> None:
+    """Run a command here, so that its error comes out as it is."""
+    typer.main.get_command(app).main(list(map(str, arguments)), standalone_mode=False)
 
 
 def test_a_report_never_replaces_what_it_reads(bench_csv: Path, tmp_path: Path) -> None:
@@ -26,23 +32,32 @@ def test_a_report_never_replaces_what_it_reads(bench_csv: Path, tmp_path: Path) 
     for path in (machine, log):
         before = path.read_bytes()
         with pytest.raises(OutputError, match="is an input: name another file for the output$"):
-            report(logs=[log], reading=Reading(tare="standing"), out=path, fuser=machine, force=True)
+            typed("report", log, "--tare", "standing", "--fuser", machine, "--out", path, "--force")
         assert path.read_bytes() == before
 
 
 def test_a_map_and_a_plan_never_replace_what_they_read(bench_csv: Path, tmp_path: Path) -> None:
-    from hersey.cli.machine import map_, plan
-
     fit = tmp_path / "fit.html"
     fit.write_text("{}")
     with pytest.raises(OutputError, match=r"fit\.html is an input"):
-        map_(fuser=ROOT / "examples" / "fuser.toml", reading=Reading(), fit_file=fit, out=fit, force=True)
+        typed("map", ROOT / "examples" / "fuser.toml", "--fit", fit, "--out", fit, "--force")
     machine, course = tmp_path / "fuser.toml", tmp_path / "course.csv"
     shutil.copy(ROOT / "examples" / "fuser.toml", machine)
     course.write_text("time (s),temperature (degC)\n0,150\n")
     for path in (machine, course, bench_csv):
         with pytest.raises(OutputError, match="is an input"):
-            plan(fuser=machine, reading=Reading(), logs=[bench_csv], course=course, out=path, force=True)
+            typed(
+                "plan",
+                machine,
+                bench_csv,
+                "--target",
+                "40 mm/s",
+                "--course",
+                course,
+                "--out",
+                path,
+                "--force",
+            )
 
 
 def test_the_stick_speed_moves_with_the_temperature_asked_for(points: hersey.SteadyPoints) -> None:
@@ -68,7 +83,28 @@ def test_the_stick_speed_moves_with_the_temperature_asked_for(points: hersey.Ste
     assert samples["transition_speed"].tolist() == at_reference["transition_speed"].tolist()
 
 
-def test_a_plan_for_a_hot_machine_says_its_speeds(tmp_path: Path, bench_csv: Path, points: hersey.SteadyPoints) -> None:
+def test_draws_are_asked_for_at_the_stick_speed_of_their_temperature(
+    points: hersey.SteadyPoints, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It decides which draws are refused for having no falling branch."""
+    surface = hersey.fit(points)
+    machine = read_fuser(ROOT / "examples" / "fuser.toml")
+    asked: list[float] = []
+    draw = type(surface).drag_samples
+
+    def watched(self: Any, *given: int, **named: Any) -> Any:
+        asked.append(named["stick_speed"])
+        return draw(self, *given, **named)
+
+    monkeypatch.setattr(type(surface), "drag_samples", watched)
+    _drag(surface, machine, 453.15, 3, course=False)
+    whole = surface.drag(roll_radius=0.015, stick_speed=machine.stick_speed)
+    assert asked == [whole.at(453.15).stick_speed]
+
+
+def test_a_plan_for_a_hot_machine_says_its_speeds(
+    tmp_path: Path, bench_csv: Path, points: hersey.SteadyPoints
+) -> None:
     """The printed transition speed and V* are those of the drag at the temperature asked for."""
     machine = read_fuser(ROOT / "examples" / "fuser.toml")
     done = run(
@@ -81,4 +117,8 @@ def test_a_plan_for_a_hot_machine_says_its_speeds(tmp_path: Path, bench_csv: Pat
     band = hersey.hysteresis(machine.train, drag, sensitivity=False)
     assert document["fold_speed"] == pytest.approx(band.upper, rel=1e-9)
     assert document["transition_speed"] == pytest.approx(band.transition, rel=1e-9)
-    assert (document["target_speed"], document["seed"], document["confidence"]) == (pytest.approx(0.02), 9, 0.95)
+    assert (document["target_speed"], document["seed"], document["confidence"]) == (
+        pytest.approx(0.02),
+        9,
+        0.95,
+    )

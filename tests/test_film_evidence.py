@@ -162,7 +162,11 @@ def test_probabilities_near_the_level(
 ) -> None:
     """A damping exponent 1.9 and 2.1 errors from a prediction, and 1.5 above -1, where one side counts."""
     freedom = surface.statistics.points - surface.statistics.variables
-    for value, name in ((-0.62, "isoviscous-elastic"), (-0.541, "isoviscous-elastic"), (-0.985, "mixed or boundary")):
+    for value, name in (
+        (-0.62, "isoviscous-elastic"),
+        (-0.541, "isoviscous-elastic"),
+        (-0.985, "mixed or boundary"),
+    ):
         c = Estimate(value, 0.01, value - 0.02, value + 0.02)
         found = verdict(measured, replace(surface, c=c), contact, oil)
         p = next(p.p_value for p in found.predictions if p.name == name)
@@ -228,7 +232,9 @@ def test_a_verdict_that_agrees_with_nothing(
         assert verdict(measured, replace(surface, b=b), contact, oil).text.endswith(words)
 
 
-def film_at(contact: Contact, oil: Lubricant, *, speed: float = 5.0, kelvin: float | list[float] = 350.0) -> Film:
+def film_at(
+    contact: Contact, oil: Lubricant, *, speed: float = 5.0, kelvin: float | list[float] = 350.0
+) -> Film:
     return film_thickness(contact, oil, speed=speed, temperature=kelvin)
 
 
@@ -309,9 +315,15 @@ def test_what_is_said_of_the_lubricant(machine: Fuser, contact: Contact, oil: Lu
     hard = replace(oil, pressure_viscosity=((300.0, 0.11 / contact.nip.pressure_max),))
     notes = lint(replace(machine, lubricant=hard), film_at(contact, hard))
     assert not [n for n in notes if n.startswith("alpha p")]
-    flagged = replace(film, corrections={"starvation": Correction(np.array([0.5, 0.25]), np.array([True, False]))})
-    assert "starvation: the factor (down to 0.25) is outside the validity of its rule" in lint(machine, flagged)
-    fine = replace(film, corrections={"starvation": Correction(np.array([0.5, 0.25]), np.array([True, True]))})
+    flagged = replace(
+        film, corrections={"starvation": Correction(np.array([0.5, 0.25]), np.array([True, False]))}
+    )
+    assert "starvation: the factor (down to 0.25) is outside the validity of its rule" in lint(
+        machine, flagged
+    )
+    fine = replace(
+        film, corrections={"starvation": Correction(np.array([0.5, 0.25]), np.array([True, True]))}
+    )
     assert not [n for n in lint(machine, fine) if n.startswith("starvation")]
 
 
@@ -413,6 +425,8 @@ def test_the_regime_chart_in_numbers(contact: Contact, oil: Lubricant, measured:
     with_log = film_chart(film, ["slow", "fast"], measured).to_dict(validate=False)["vconcat"][0]
     assert len(with_log["layer"][2]["data"]["values"]) == measured.speed.size
     bare = replace(oil, pressure_viscosity=())
-    hidden = film_chart(film_thickness(contact, bare, speed=1.0, temperature=320.0), ["one"]).to_dict(validate=False)
+    hidden = film_chart(film_thickness(contact, bare, speed=1.0, temperature=320.0), ["one"]).to_dict(
+        validate=False
+    )
     assert hidden["layer"][3]["data"]["values"] == []
     assert hidden["title"]["subtitle"][0].endswith(" No point is shown: alpha is not known, g_V = 0.")

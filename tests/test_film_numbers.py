@@ -163,9 +163,7 @@ def test_the_inlet_is_short_up_to_a_quarter() -> None:
 def test_each_correction_by_hand() -> None:
     thinning = ShearThinning(relaxation_time=2e-6, exponent=0.6, limit=0.1)
     oil = replace(OIL, thinning=thinning, conductivity=0.13)
-    film = film_thickness(
-        ROLL, oil, speed=40.0, temperature=373.15, supply=3e-6, starvation_sharpness=4.0
-    )
+    film = film_thickness(ROLL, oil, speed=40.0, temperature=373.15, supply=3e-6, starvation_sharpness=4.0)
     u, eta, centre = 0.5 * 40.0 * 15e-3, 26.8e-3, float(film.central)
     assert float(film.viscosity) == pytest.approx(eta, rel=1e-9)  # unsheared
     fall = -float(OIL.temperature_exponent(373.15)) / 373.15
@@ -248,7 +246,7 @@ def test_walther_is_a_law_of_kinematic_viscosity() -> None:
     cst = np.array([500.0, 47.0])
     w = np.log10(np.log10(cst + 0.7))
     slope = (w[0] - w[1]) / np.log10(373.15 / 313.15)
-    middle = 10 ** 10 ** (w[0] - slope * np.log10(343.15 / 313.15)) - 0.7
+    middle = 10**10 ** (w[0] - slope * np.log10(343.15 / 313.15)) - 0.7
     assert float(oil.viscosity(343.15)) == pytest.approx(1e-6 * middle * 900.0, rel=1e-6)
     step = 1.0 + np.array([-1e-5, 1e-5])
     numeric = np.diff(np.log(oil.viscosity(343.15 * step)))[0] / np.diff(np.log(step))[0]

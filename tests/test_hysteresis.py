@@ -279,11 +279,11 @@ def test_the_interval_of_a_fit_reaches_the_band(points: hersey.SteadyPoints) -> 
 def test_a_band_counts_only_beyond_its_accuracy() -> None:
     band = hersey.hysteresis(TRAIN, DRAG, sensitivity=False)
     for over, accuracy, bistable in ((1e-9, 1e-8, False), (1e-7, 1e-8, True), (-1e-3, 0.0, False)):
-        near = replace(
-            band, transition=2.0, lower=1.9, upper=2.0 * (1 + over), upper_accuracy=accuracy
-        )
+        near = replace(band, transition=2.0, lower=1.9, upper=2.0 * (1 + over), upper_accuracy=accuracy)
         assert near.bistable == bistable
-        assert near.verdict().startswith("No band: stick-slip ends at 2" if over > 0 else "No band") != bistable
+        assert (
+            near.verdict().startswith("No band: stick-slip ends at 2" if over > 0 else "No band") != bistable
+        )
     none = replace(band, transition=2.0, upper=1.5)
     assert none.verdict() == (
         "No band: stick-slip ends at 1.5, not above the transition speed 2, so the past does not matter."
@@ -312,15 +312,19 @@ def test_intervals_are_draws_of_the_sorted_folds() -> None:
 
 def test_sensitivities_of_the_lower_edge_are_derivatives_too() -> None:
     band = hersey.hysteresis(TRAIN, DRAG)
-    assert set(band.lower_sensitivity) == set(band.sensitivity) == {
-        "stiffness",
-        "mass",
-        "transition_force",
-        "transition_speed",
-        "ehl_exponent",
-        "mixed_exponent",
-        "stick_speed",
-    }
+    assert (
+        set(band.lower_sensitivity)
+        == set(band.sensitivity)
+        == {
+            "stiffness",
+            "mass",
+            "transition_force",
+            "transition_speed",
+            "ehl_exponent",
+            "mixed_exponent",
+            "stick_speed",
+        }
+    )
     for name, own in (("mass", TRAIN), ("transition_speed", DRAG), ("ehl_exponent", DRAG)):
         value = getattr(own, name)
         ends = []
@@ -375,9 +379,7 @@ def test_a_sweep_over_temperature_takes_force_and_all_speeds() -> None:
         assert (swept.lower[i], swept.upper[i]) == (one.lower, one.upper)
         assert hersey.hysteresis(TRAIN, warm, temperature=t, sensitivity=False).upper == one.upper
     assert "stick_speed" not in swept.coords
-    zipped = hersey.hysteresis_sweep(
-        TRAIN, warm, temperature=kelvin, stiffness=[900.0, 1100.0], zip=True
-    )
+    zipped = hersey.hysteresis_sweep(TRAIN, warm, temperature=kelvin, stiffness=[900.0, 1100.0], zip=True)
     assert zipped.upper.dims == ("set",)
     stiff = hersey.hysteresis(hersey.Drivetrain(1100.0, 1), warm.at(380.0), sensitivity=False)
     assert zipped.upper.values[1] == stiff.upper
@@ -423,5 +425,7 @@ def test_cycles_without_sticking_come_back_to_themselves() -> None:
     assert not default.stable[: lowest - 1].any()
     assert default.stable[lowest + 1 :].all()
     for wrong in (0.009, 0.9):
-        with pytest.raises(ParameterError, match=r"slowest is to lie from the stick speed 0\.01 to below 0\.9"):
+        with pytest.raises(
+            ParameterError, match=r"slowest is to lie from the stick speed 0\.01 to below 0\.9"
+        ):
             hersey.cycles_without_sticking(train, drag, slowest=[wrong])

@@ -72,7 +72,9 @@ def middle(values: np.ndarray) -> list[float]:
     return [ordered[math.ceil(share * values.size) - 1] for share in (0.025, 0.975)]
 
 
-def test_edges_are_the_bands_at_each_temperature(few: OperatingMap, fuser: Fuser, surface: DampingSurface) -> None:
+def test_edges_are_the_bands_at_each_temperature(
+    few: OperatingMap, fuser: Fuser, surface: DampingSurface
+) -> None:
     drag = drag_of(surface)
     for i, t in enumerate(KELVIN):
         band = hysteresis(fuser.train, drag.at(t), sensitivity=False)
@@ -94,11 +96,20 @@ def test_intervals_are_those_of_the_draws(few: OperatingMap, fuser: Fuser, surfa
     for i, t in enumerate(KELVIN):
         law = drag.at(t)
         many = surface.drag_samples(1000, 5, roll_radius=0.015, stick_speed=law.stick_speed, temperature=t)
-        assert few.transition_interval[:, i].tolist() == pytest.approx(middle(many["transition_speed"]), rel=1e-12)
+        assert few.transition_interval[:, i].tolist() == pytest.approx(
+            middle(many["transition_speed"]), rel=1e-12
+        )
         some = surface.drag_samples(20, 5, roll_radius=0.015, stick_speed=law.stick_speed, temperature=t)
         moved = np.minimum(stick * law.stick_speed / drag.stick_speed, 0.999 * some["transition_speed"])
         folds = hysteresis_sweep(
-            fuser.train, law, **some, stiffness=stiffness, stick_speed=moved, zip=True, lower=False, tolerance=1e-13
+            fuser.train,
+            law,
+            **some,
+            stiffness=stiffness,
+            stick_speed=moved,
+            zip=True,
+            lower=False,
+            tolerance=1e-13,
         ).upper.values
         assert few.upper_interval[:, i].tolist() == pytest.approx(middle(folds), rel=1e-9)
     assert few.uncertain == ("stiffness", "stick_speed")
@@ -140,7 +151,9 @@ def test_stall_and_contours_by_hand(few: OperatingMap) -> None:
         slow, fast = few.contour(0.9 * 0.015 * law.transition_force)
         assert (slow[i], fast[i]) == pytest.approx((law.transition_speed, law.transition_speed), rel=1e-12)
         slow, fast = few.contour(1.2 * 0.015 * law.transition_force)
-        assert slow[i] == pytest.approx(law.transition_speed * 1.2 ** (1 / (1 + law.mixed_exponent)), rel=1e-9)
+        assert slow[i] == pytest.approx(
+            law.transition_speed * 1.2 ** (1 / (1 + law.mixed_exponent)), rel=1e-9
+        )
         assert fast[i] == pytest.approx(law.transition_speed * 1.2 ** (1 / (1 + law.ehl_exponent)), rel=1e-9)
 
 
@@ -162,7 +175,9 @@ def test_default_axes(surface: DampingSurface, fuser: Fuser, isothermal: Damping
     for limit, top in ((2.5 * fast, 1.25 * max(high, 2.5 * fast)), (3.5 * fast, 1.25 * high)):
         shown = operating_map(surface, fuser.train, **AT, draws=1, limits=Limits(speed=limit))
         assert shown.speed[-1] == pytest.approx(top)
-    freezing = operating_map(surface, fuser.train, **AT, draws=1, points=[OperatingPoint("ice", 0.01, 275.15)])
+    freezing = operating_map(
+        surface, fuser.train, **AT, draws=1, points=[OperatingPoint("ice", 0.01, 275.15)]
+    )
     assert freezing.temperature is not None
     assert freezing.temperature[0] == pytest.approx(cold - 0.5 * (cold - 273.15)) or freezing.temperature[
         0
@@ -202,7 +217,9 @@ def test_states_and_torques_go_with_their_temperatures(few: OperatingMap) -> Non
     for state, t, v in zip(many, kelvin, speed, strict=True):
         assert state == few.state_at(float(t), float(v))
     assert few.states(kelvin[:, None], speed).shape == (3, 3)
-    words = {s: few.look_up(467.0, v)[0].verdict() for s, v in (("slow", 0.01), ("band", 0.045), ("fast", 0.3))}
+    words = {
+        s: few.look_up(467.0, v)[0].verdict() for s, v in (("slow", 0.01), ("band", 0.045), ("fast", 0.3))
+    }
     assert words == {
         "slow": "Stick-slip is certain.",
         "band": "Smooth only if it comes from above; from rest it sticks and slips.",
@@ -226,7 +243,9 @@ def test_every_sentence_of_a_map(few: OperatingMap, surface: DampingSurface) -> 
     )
 
 
-def test_sentences_of_a_map_that_knows_little(surface: DampingSurface, isothermal: DampingSurface, fuser: Fuser) -> None:
+def test_sentences_of_a_map_that_knows_little(
+    surface: DampingSurface, isothermal: DampingSurface, fuser: Fuser
+) -> None:
     points = [OperatingPoint("fast", 0.5, 440.0)]
     bare = operating_map(
         surface, fuser.train, **AT, draws=1, temperatures=KELVIN, points=points, limits=Limits(speed=0.4)
@@ -345,16 +364,12 @@ def test_lines_of_the_picture_are_those_of_the_map(few: OperatingMap) -> None:
     (fold,) = lines(few, [7.0, 4.0], 1.8)
     same(fold, along(KELVIN, few.upper, shown))
     dotted = lines(few, [1.5, 3.5], 1.3)
-    expected = [
-        along(KELVIN, edge, edge > 1.01 * few.transition_interval[1]) for edge in few.upper_interval
-    ]
+    expected = [along(KELVIN, edge, edge > 1.01 * few.transition_interval[1]) for edge in few.upper_interval]
     for one, other in zip(dotted, [e for e in expected if len(e) > 1], strict=True):
         same(one, other)
     (limit,) = lines(few, [10.0, 3.0, 2.0, 3.0], 1.3)
     same(limit, along(KELVIN, np.full(3, 0.4)))
-    shade = next(
-        rows(layer) for layer in layers(few) if layer.get("mark", {}).get("opacity") == 0.35
-    )
+    shade = next(rows(layer) for layer in layers(few) if layer.get("mark", {}).get("opacity") == 0.35)
     same([row["y"] for row in shade], 1e3 * few.transition_interval[0])
     same([row["top"] for row in shade], 1e3 * few.transition_interval[1])
 
@@ -365,9 +380,7 @@ def test_contours_of_the_picture_are_lines_of_their_torque(few: OperatingMap) ->
     assert len(drawn) >= 3
     levels = []
     for layer in drawn:
-        torques = [
-            0.015 * float(few.drag.at(row["x"] + 273.15).force(row["y"] / 1e3)) for row in rows(layer)
-        ]
+        torques = [0.015 * float(few.drag.at(row["x"] + 273.15).force(row["y"] / 1e3)) for row in rows(layer)]
         assert max(torques) == pytest.approx(min(torques), rel=1e-6)
         levels.append(torques[0])
     steps = np.diff(sorted(levels))
@@ -395,7 +408,10 @@ def test_regions_lie_between_the_edges(few: OperatingMap) -> None:
         if part in found:
             floor = np.clip(np.clip(bottom, low, high), below, above)
             same([row["y"] for row in found[part]], 1e3 * floor)
-            same([row["top"] for row in found[part]], 1e3 * np.maximum(np.clip(np.clip(top, low, high), below, above), floor))
+            same(
+                [row["top"] for row in found[part]],
+                1e3 * np.maximum(np.clip(np.clip(top, low, high), below, above), floor),
+            )
             same([row["x"] for row in found[part]], KELVIN - 273.15)
     assert {"stick_slip 0", "bistable 0", "smooth 0"} <= set(found)
     assert {row["region"] for row in found["bistable 0"]} == {"bistable: smooth only from above"}
@@ -449,16 +465,16 @@ def test_hatches_lie_outside_the_frame(few: OperatingMap) -> None:
         across, up = 0.5 * (x + x2), 0.5 * (y + y2)
         assert not (left + 1 < across < right - 1 and bottom + 1 < up < top - 1)
         assert -1e-6 <= x < x2 <= 680 + 1e-6
-        assert (x - y + 450) % 9 == pytest.approx(0, abs=1e-6) or (x - y + 450) % 9 == pytest.approx(9, abs=1e-6)
+        assert (x - y + 450) % 9 == pytest.approx(0, abs=1e-6) or (x - y + 450) % 9 == pytest.approx(
+            9, abs=1e-6
+        )
         length += x2 - x
     outside = 680 * 450 - (right - left) * (top - bottom)
     assert length == pytest.approx(outside / 9, rel=0.03)
 
 
 def test_points_and_the_cells_under_the_pointer(few: OperatingMap) -> None:
-    marks = next(
-        rows(layer) for layer in layers(few) if layer.get("mark", {}).get("shape") == "diamond"
-    )
+    marks = next(rows(layer) for layer in layers(few) if layer.get("mark", {}).get("shape") == "diamond")
     assert [row["name"] for row in marks] == ["full speed", "thick paper"]
     for row, point in zip(marks, few.points, strict=True):
         assert row["x"] == pytest.approx(point.temperature - 273.15)
@@ -482,7 +498,10 @@ def test_points_and_the_cells_under_the_pointer(few: OperatingMap) -> None:
 
 def test_points_outside_the_window_are_left_out(few: OperatingMap) -> None:
     away = replace(
-        few, points=tuple(replace(p, temperature=p.temperature + d) for p, d in zip(few.points, (40.0, 0.0), strict=True))
+        few,
+        points=tuple(
+            replace(p, temperature=p.temperature + d) for p, d in zip(few.points, (40.0, 0.0), strict=True)
+        ),
     )
     marks = next(rows(layer) for layer in layers(away) if layer.get("mark", {}).get("shape") == "diamond")
     assert [row["name"] for row in marks] == ["thick paper"]
@@ -495,9 +514,16 @@ def test_both_axes_of_speed_say_the_same(few: OperatingMap) -> None:
     right = second["encoding"]["y"]["scale"]["domain"]
     assert left == pytest.approx([1e3 * few.speed[0], 1e3 * few.speed[-1]])
     assert right == pytest.approx([v / 0.015 / RPM for v in (few.speed[0], few.speed[-1])])
-    assert main["layer"][0]["encoding"]["x"]["scale"]["domain"] == pytest.approx([KELVIN[0] - 273.15, KELVIN[-1] - 273.15])
-    for domain, axis in ((left, main["layer"][0]["encoding"]["y"]["axis"]), (right, second["encoding"]["y"]["axis"])):
-        decades = [m * 10.0**p for p in range(-3, 6) for m in (1, 2, 5) if domain[0] <= m * 10.0**p <= domain[1]]
+    assert main["layer"][0]["encoding"]["x"]["scale"]["domain"] == pytest.approx(
+        [KELVIN[0] - 273.15, KELVIN[-1] - 273.15]
+    )
+    for domain, axis in (
+        (left, main["layer"][0]["encoding"]["y"]["axis"]),
+        (right, second["encoding"]["y"]["axis"]),
+    ):
+        decades = [
+            m * 10.0**p for p in range(-3, 6) for m in (1, 2, 5) if domain[0] <= m * 10.0**p <= domain[1]
+        ]
         assert axis["values"] == pytest.approx(decades)
     assert spec["title"]["subtitle"] == [
         "solid: transition speed, shaded its 95 % interval; dashed: V*, dotted its 95 % interval (fit, stiffness, "
@@ -513,7 +539,11 @@ def test_labels_stand_at_what_they_name(few: OperatingMap) -> None:
         for sub in layer.get("layer", [])
         for row in rows(sub)
     }
-    for text, state in (("smooth", "smooth"), ("stick-slip", "stick_slip"), ("smooth only from above", "bistable")):
+    for text, state in (
+        ("smooth", "smooth"),
+        ("stick-slip", "stick_slip"),
+        ("smooth only from above", "bistable"),
+    ):
         if text in texts:
             assert few.state_at(*texts[text]).state == state
     assert {"smooth", "stick-slip"} <= set(texts)

@@ -72,7 +72,13 @@ def test_a_course_by_hand() -> None:
     assert course.arguments(4.0, 273.0) == ([-9.0, 1.0, 6.0, 16.0], [27.0, 47.0, 37.0, 77.0], None)
     assert course.arguments(4.0, 0.0) == ([-9.0, 1.0, 6.0, 16.0], [300.0, 320.0, 310.0, 350.0], None)
     none = Course(None)
-    assert (none.end, none.levels, none.at(3.0), none.after(1.0), none.arguments(1.0, 0.0)) == (0.0, (), None, [None], None)
+    assert (none.end, none.levels, none.at(3.0), none.after(1.0), none.arguments(1.0, 0.0)) == (
+        0.0,
+        (),
+        None,
+        [None],
+        None,
+    )
     assert Course(330.0).after(3.0) == [330.0]
 
 
@@ -143,7 +149,11 @@ def test_what_comes_after_a_profile_counts() -> None:
 
 def test_draws_of_machines() -> None:
     spreads = {"mass": Spread(share=0.2), "stick_speed": Spread(limits=(0.005, 0.02))}
-    samples = {"transition_force": [40.0, 60.0, 70.0], "transition_speed": [0.9, 1.1, 1.2], "mass": [1.0, 2.0, 3.0]}
+    samples = {
+        "transition_force": [40.0, 60.0, 70.0],
+        "transition_speed": [0.9, 1.1, 1.2],
+        "mass": [1.0, 2.0, 3.0],
+    }
     machines = drawn(TRAIN, DRAG, spreads, samples, np.random.default_rng(4), 30)
     rng = np.random.default_rng(4)
     stick = spreads["stick_speed"].draw(rng, 0.01, 30)  # mass is among the samples, which hold
@@ -166,7 +176,15 @@ def test_neighbours_differ_in_one_number_by_a_thousandth() -> None:
         changed = {k: v for k, v in {**vars(machine.train), **vars(machine.drag)}.items() if v != own[k]}
         ((name, value),) = changed.items()
         seen.append((name, round(value / own[name] - 1, 9)))
-    names = ["stiffness", "mass", "transition_force", "transition_speed", "ehl_exponent", "mixed_exponent", "stick_speed"]
+    names = [
+        "stiffness",
+        "mass",
+        "transition_force",
+        "transition_speed",
+        "ehl_exponent",
+        "mixed_exponent",
+        "stick_speed",
+    ]
     assert sorted(seen) == sorted((name, by) for name in names for by in (-1e-3, 1e-3))
 
 
@@ -213,7 +231,9 @@ def test_a_proof_counts_its_failures() -> None:
     assert proof.accepted == (lower_bound(round(1500 * proof.share), 1500, 0.999) >= 0.8)
     forces = sorted(o.peak_force for o in found)
     assert forces[140] < proof.peak_force < forces[-1] * 1.2
-    alone = Unknown(TRAIN, DRAG, {}, {}, 3).verify(Shape(1.9, 3.0, 0.3, 0.4, 0.5), 1.25, course, math.inf, 0.8, 1)
+    alone = Unknown(TRAIN, DRAG, {}, {}, 3).verify(
+        Shape(1.9, 3.0, 0.3, 0.4, 0.5), 1.25, course, math.inf, 0.8, 1
+    )
     assert (alone.draws, alone.share, alone.share_low, alone.accepted) == (1, 1.0, 1.0, True)
     assert Unknown(TRAIN, DRAG, {}, {}, 3).verify(shape, 0.1, course, math.inf, 0.8, 1).accepted is False
 
@@ -250,7 +270,12 @@ def test_reach_of_a_drive() -> None:
         ("motor_torque", pytest.approx(2.0), pytest.approx(1.6)),
     ]
     free = Reach.of(Limits(), None)
-    assert (free.speed, free.acceleration, free.force, free.uses(shape, 80.0)) == (math.inf, math.inf, math.inf, [])
+    assert (free.speed, free.acceleration, free.force, free.uses(shape, 80.0)) == (
+        math.inf,
+        math.inf,
+        math.inf,
+        [],
+    )
     assert (speed_text(0.0254), speed_text(1.5)) == ("25.4 mm/s", "1.5 m/s")
 
 
@@ -264,7 +289,9 @@ def search_of(course: Course, drag: hersey.Drag = DRAG, room: Room | None = None
 def test_the_room_makes_ramps_as_long_as_they_must_be() -> None:
     room = Room(4.0, 10.0)
     shape = room.shape(1.9, 3.0, 0.1, 0.2, 0.05, 1.5)
-    assert (shape.peak, shape.rise, shape.hold, shape.fall, shape.wait) == pytest.approx((3.0, 0.4, 0.2, 0.16, 1.5))
+    assert (shape.peak, shape.rise, shape.hold, shape.fall, shape.wait) == pytest.approx(
+        (3.0, 0.4, 0.2, 0.16, 1.5)
+    )
     assert room.allows(Shape(1.9, 4.0, 0.4, 0.0, 0.21))
     assert not room.allows(Shape(1.9, 4.0, 0.399, 0.0, 0.21))
     assert not room.allows(Shape(1.9, 4.0, 0.4, 0.0, 0.2))
@@ -390,9 +417,7 @@ def test_what_forbids_a_plan_in_numbers() -> None:
     )
     assert low.obstacles[0].needed == pytest.approx(1.02, abs=0.005)
     assert (low.obstacles[0].limit, low.obstacles[0].given) == ("target_speed", 0.9)
-    hot = hersey.plan_profile(
-        TRAIN, WARM, target_speed=0.9, temperature=Schedule([0.0, 5.0], [380.0, 400.0])
-    )
+    hot = hersey.plan_profile(TRAIN, WARM, target_speed=0.9, temperature=Schedule([0.0, 5.0], [380.0, 400.0]))
     assert "1.001 m/s at the temperature in which the course ends, where steady" in hot.obstacles[0].text
     assert (hot.temperature, hot.share, hot.draws, hot.kind) == (400.0, 0.0, 0, "impossible")
     assert math.isnan(hot.duration)
@@ -417,13 +442,26 @@ def test_the_chart_of_a_plan_in_numbers(plan: Plan) -> None:
     end = plan.response.time[-1]
     drive = [(r["time"], r["value"]) for r in data if r["line"] == "drive"]
     np.testing.assert_allclose(drive, [*plan.rows(), (end, 1.9)])
-    marks = {r["name"]: r["value"] for layer in speeds["layer"] for r in rows(layer) if "name" in r and "value" in r}
+    marks = {
+        r["name"]: r["value"]
+        for layer in speeds["layer"]
+        for r in rows(layer)
+        if "name" in r and "value" in r
+    }
     assert marks == {"v_t": 1.0, "V*": pytest.approx(plan.fold_speed)}
-    ready = [r["time"] for panel in (speeds, force) for layer in panel["layer"] for r in rows(layer) if "good" in r.get("name", "")]
+    ready = [
+        r["time"]
+        for panel in (speeds, force)
+        for layer in panel["layer"]
+        for r in rows(layer)
+        if "good" in r.get("name", "")
+    ]
     assert set(ready) == {plan.duration}
     spring = next(rows(layer) for layer in force["layer"] if len(rows(layer)) > 100)
     np.testing.assert_allclose([r["value"] for r in spring], plan.response.spring_force)
-    limits = {r["name"]: r["value"] for layer in force["layer"] for r in rows(layer) if "value" in r and "name" in r}
+    limits = {
+        r["name"]: r["value"] for layer in force["layer"] for r in rows(layer) if "value" in r and "name" in r
+    }
     assert limits == {"limit": pytest.approx(500.0), "motor limit": pytest.approx(400.0)}
     axes = next(layer for layer in speeds["layer"] if len(rows(layer)) > 100)["encoding"]
     assert axes["x"]["scale"]["domain"] == pytest.approx([0.0, end])
@@ -434,7 +472,9 @@ def test_the_chart_of_a_plan_in_numbers(plan: Plan) -> None:
 def test_a_chart_with_a_wait_and_a_course(plan: Plan) -> None:
     course = Schedule([-4.0, 5.0, 30.0], [300.0, 390.0, 400.0])
     assert plan.schedule is not None
-    moved = Schedule([0.0, *(np.asarray(plan.schedule.times) + 7.0)], [0.0, *np.asarray(plan.schedule.values)])
+    moved = Schedule(
+        [0.0, *(np.asarray(plan.schedule.times) + 7.0)], [0.0, *np.asarray(plan.schedule.values)]
+    )
     waits = replace(plan, wait=7.0, duration=plan.duration + 7.0, schedule=moved, target_speed=0.5)
     speeds, _, heat = plan_chart(waits, temperature=course).to_dict(validate=False)["vconcat"]
     assert waits.response is not None

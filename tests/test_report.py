@@ -49,7 +49,7 @@ class _Disk:
     """A file on a disk that fills up half way."""
 
     def __init__(self, descriptor: int) -> None:
-        self._file = open(descriptor, "wb")  # noqa: SIM115, PTH123 (it is closed on exit, and has no path)
+        self._file = open(descriptor, "wb")  # noqa: SIM115 (it is closed on exit, and has no path)
 
     def __enter__(self) -> _Disk:
         return self

@@ -115,7 +115,9 @@ def test_smooth_without_overshoot() -> None:
     assert cubics is not None
     for i, row in enumerate(cubics):  # coefficients from the constant up, from the start of each piece
         x = 0.4 * (times[i + 1] - times[i])
-        assert sum(c * x**k for k, c in enumerate(row)) == pytest.approx(float(truth(times[i] + x)), rel=1e-12)
+        assert sum(c * x**k for k, c in enumerate(row)) == pytest.approx(
+            float(truth(times[i] + x)), rel=1e-12
+        )
 
 
 def test_shifted_values() -> None:

@@ -63,13 +63,21 @@ def test_a_block_of_missing_stamps_changes_nothing() -> None:
             [0.0, 0.75],
             "an ISO date: read in s since 2026-03-01 23:59:59",
         ),
-        (("2026/3/1T12:00:00", "2026/3/1T12:01:00"), [0.0, 60.0], "an ISO date: read in s since 2026-03-01 12:00:00"),
+        (
+            ("2026/3/1T12:00:00", "2026/3/1T12:01:00"),
+            [0.0, 60.0],
+            "an ISO date: read in s since 2026-03-01 12:00:00",
+        ),
         (
             ("2026-03-01T12:00:00+01:00", "2026-03-01T12:00:00Z", "2026-03-01T12:00:00 -0130"),
             [0.0, 3600.0, 9000.0],
             "an ISO date: read in s since 2026-03-01 11:00:00",
         ),
-        (("1.3.2026 12:00:00", "02.03.2026 12:00:01"), [0.0, 86401.0], "a German date: read in s since 2026-03-01 12:00:00"),
+        (
+            ("1.3.2026 12:00:00", "02.03.2026 12:00:01"),
+            [0.0, 86401.0],
+            "a German date: read in s since 2026-03-01 12:00:00",
+        ),
     ],
 )
 def test_dates(cells: tuple[str, ...], times: list[float], note: str) -> None:

@@ -93,7 +93,11 @@ def columns(**stand: object) -> tuple[np.ndarray, ...]:
     return tuple(table[c].to_numpy() for c in testbench.COLUMNS)
 
 
-SMALL: dict[str, object] = {"temperatures_degC": (150.0,), "speeds_rpm": (20.0, 60.0), "sampling_interval": 0.1}
+SMALL: dict[str, object] = {
+    "temperatures_degC": (150.0,),
+    "speeds_rpm": (20.0, 60.0),
+    "sampling_interval": 0.1,
+}
 
 
 def test_the_staircase_goes_up_and_down() -> None:
@@ -118,7 +122,9 @@ def test_each_disturbance_is_as_large_as_it_says() -> None:
     speed, moving = rpm * RPM, rpm > 0
     truth = Truth().torque(speed, celsius)
     np.testing.assert_allclose(quiet, truth, atol=1e-3)  # temperatures are rounded
-    assert columns(**SMALL, torque_offset=0.25)[1] - quiet == pytest.approx(np.full(time.size, 0.25), abs=2e-4)
+    assert columns(**SMALL, torque_offset=0.25)[1] - quiet == pytest.approx(
+        np.full(time.size, 0.25), abs=2e-4
+    )
     coarse = columns(**SMALL, torque_step=0.05)[1]
     assert np.abs(coarse / 0.05 - np.round(coarse / 0.05)).max() < 1e-9
     assert np.abs(coarse - quiet).max() <= 0.0251
@@ -227,7 +233,9 @@ def test_a_stribeck_curve_by_hand() -> None:
 
 
 def test_the_stretch_of_stick_slip_is_that_of_the_drive() -> None:
-    given = QUIET | SMALL | {"stick_slip": True, "speeds_rpm": (8.0, 60.0), "temperatures_degC": (120.0, 180.0)}
+    given = (
+        QUIET | SMALL | {"stick_slip": True, "speeds_rpm": (8.0, 60.0), "temperatures_degC": (120.0, 180.0)}
+    )
     stand = Stand(**given)  # type: ignore[arg-type]
     table = testbench.run(stand=stand).table
     torque, rpm = (table[c].to_numpy() for c in testbench.COLUMNS[1:3])
@@ -243,7 +251,12 @@ def test_the_stretch_of_stick_slip_is_that_of_the_drive() -> None:
         stick_speed=3e-4,
     )
     motion = hersey.simulate(
-        hersey.Drivetrain(11_000.0, 1.0), drag, drive_speed=4.0 * RPM * 0.015, duration=32.0, samples=320, tolerance=1e-8
+        hersey.Drivetrain(11_000.0, 1.0),
+        drag,
+        drive_speed=4.0 * RPM * 0.015,
+        duration=32.0,
+        samples=320,
+        tolerance=1e-8,
     )
     np.testing.assert_allclose(torque[-320:], 0.015 * motion.spring_force, atol=1e-4)
     assert rpm[-321] == 8.0

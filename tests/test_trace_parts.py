@@ -25,7 +25,9 @@ TRAIN = hersey.Drivetrain(1000, 1)
 DRAG = hersey.Drag(50, 1, ehl_exponent=-0.7, mixed_exponent=-1.2, stick_speed=0.01)
 
 
-def saw(*, teeth: int = 40, rise: int = 140, fall: int = 60, height: float = 10.0, step: float = 0.01) -> tuple[np.ndarray, np.ndarray]:
+def saw(
+    *, teeth: int = 40, rise: int = 140, fall: int = 60, height: float = 10.0, step: float = 0.01
+) -> tuple[np.ndarray, np.ndarray]:
     """Time and force of straight rises and falls of so many samples."""
     one = np.concatenate([np.arange(rise) / rise, 1 - np.arange(fall) / fall])
     value = 5.0 + height * np.concatenate([np.tile(one, teeth), one[: rise // 2]])
@@ -49,7 +51,9 @@ def test_figures_of_a_saw() -> None:
     steep = 0.48 / (2 * np.arcsin(0.8) / np.pi)
     assert np.median(record.steep_duration) == pytest.approx(steep, rel=0.1)
     assert record.free_period == pytest.approx(2 * np.median(record.steep_duration), rel=1e-12)
-    angle = stick_angle(float(np.median(record.drop)), float(np.median(record.fall_duration)), record.loading_slope)
+    angle = stick_angle(
+        float(np.median(record.drop)), float(np.median(record.fall_duration)), record.loading_slope
+    )
     slips = float(np.median(record.fall_duration)) * (2 - 2 * angle / np.pi)
     assert record.stuck_fraction == pytest.approx(1 - slips / 2.0, rel=1e-9)
     assert record.samples.interval == pytest.approx(0.01)
@@ -133,7 +137,9 @@ def test_small_slips_are_said_and_left_out() -> None:
         f"{count} of {record.slips} slips fall by less than half the median: their number depends on the least "
         "fall counted, "
     )
-    assert cycles(3.0 + 0.01 * np.arange(both.size), both, least_drop=5.0).slips == 19  # the last is not followed by such a rise
+    assert (
+        cycles(3.0 + 0.01 * np.arange(both.size), both, least_drop=5.0).slips == 19
+    )  # the last is not followed by such a rise
     assert cycles(3.0 + 0.01 * np.arange(both.size), both, least_drop=5.0).least_drop == 5.0
 
 
@@ -209,7 +215,9 @@ def test_samples_on_even_times() -> None:
     assert noise == pytest.approx([0.01, 0.1], rel=0.2)
     stairs = even_samples(time, np.round(np.sin(time / 5) * 20) / 20)
     assert stairs.noise == pytest.approx(0.05 / np.sqrt(12), rel=1e-6)
-    with pytest.raises(InsufficientDataError, match="^29 samples of force: at least 30 are needed to see a cycle$"):
+    with pytest.raises(
+        InsufficientDataError, match="^29 samples of force: at least 30 are needed to see a cycle$"
+    ):
         even_samples(time[:29], value[:29])
     assert even_samples(time[:30], value[:30]).value.size == 30
     with pytest.raises(ParameterError, match="^time of sample 7 is not a number$"):
@@ -304,7 +312,9 @@ def test_the_mean_lap_and_its_error() -> None:
     assert float(lap.at(np.array([0.0]))[0]) == pytest.approx(half, rel=1e-9)
     before, after = lap.at(np.array([-1e-3, 1e-3]))
     assert before > half > after  # the middle of the fall
-    np.testing.assert_allclose(lap.at(np.array([0.01, 0.01 + lap.period])), lap.at(np.array([0.01]))[0], rtol=1e-6)
+    np.testing.assert_allclose(
+        lap.at(np.array([0.01, 0.01 + lap.period])), lap.at(np.array([0.01]))[0], rtol=1e-6
+    )
 
 
 def test_a_drift_is_taken_off_the_laps() -> None:
@@ -339,7 +349,9 @@ def test_intervals_are_t_times_the_error(drive: IdentifiedDrive) -> None:
 
 def test_what_is_derived_follows_from_the_best_fit(drive: IdentifiedDrive) -> None:
     own = drive.values
-    assert drive.derived["free_period"].value == pytest.approx(2 * np.pi * np.sqrt(own["mass"] / own["stiffness"]))
+    assert drive.derived["free_period"].value == pytest.approx(
+        2 * np.pi * np.sqrt(own["mass"] / own["stiffness"])
+    )
     assert drive.derived["release_force"].value == pytest.approx(float(drive.drag.force(own["stick_speed"])))
     assert drive.derived["drag_at_drive_speed"].value == pytest.approx(float(drive.drag.force(1.0)))
     assert drive.train == hersey.Drivetrain(own["stiffness"], own["mass"])
@@ -357,7 +369,9 @@ def test_what_is_derived_follows_from_the_best_fit(drive: IdentifiedDrive) -> No
 def test_errors_of_a_known_record_are_those_of_its_noise(drive: IdentifiedDrive) -> None:
     """Four times the noise, four times the error; the estimates of many seeds scatter as the error says."""
     known = dict(drive.known) | {"mixed_exponent": -1.2, "transition_force": 50.0}
-    found = [identify(record_of(seed, seconds=12.0), known=known, closures=("retained",)) for seed in range(6)]
+    found = [
+        identify(record_of(seed, seconds=12.0), known=known, closures=("retained",)) for seed in range(6)
+    ]
     values = np.array([f.estimates["stiffness"].value for f in found])
     errors = np.array([f.estimates["stiffness"].error for f in found])
     assert 0.35 < values.std(ddof=1) / np.median(errors) < 2.0
@@ -433,7 +447,9 @@ def test_the_chart_of_a_trace_in_numbers(drive: IdentifiedDrive) -> None:
         f"stick slip: {record.slips} slips, period {np.median(record.period):.4g} s; dots: where the slip is half done",
         f"fitted motion: closure retained, within {100 * drive.misfit:.2g} % of the drop",
     ]
-    undecided = trace_chart(record, replace(drive, decided=False)).to_dict(validate=False)["title"]["subtitle"][1]
+    undecided = trace_chart(record, replace(drive, decided=False)).to_dict(validate=False)["title"][
+        "subtitle"
+    ][1]
     assert "closure retained (not decided), within" in undecided
     quiet = cycles(record.samples.time, np.random.default_rng(0).normal(size=record.samples.value.size))
     assert len(trace_chart(quiet).to_dict(validate=False)["vconcat"]) == 1
