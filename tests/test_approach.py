@@ -123,9 +123,9 @@ def test_a_belt_warms_the_same_way_in_all_answers() -> None:
 def test_a_disturbance_names_its_drive_speed_and_refuses_nonsense() -> None:
     assert hersey.disturbance(TRAIN, DRAG, drive_speed=0.95).drive_speed == 0.95
     for wrong in (0.0, -1.0, inf):
-        with pytest.raises(ParameterError, match="^drive_speed is .*: it must be greater than 0$"):
+        with pytest.raises(ParameterError, match=r"^drive_speed is .*: it must be greater than 0$"):
             hersey.disturbance(TRAIN, DRAG, drive_speed=wrong)
-        with pytest.raises(ParameterError, match="^from_speed is .*: it must be greater than 0$"):
+        with pytest.raises(ParameterError, match=r"^from_speed is .*: it must be greater than 0$"):
             hersey.safe_step(TRAIN, DRAG, from_speed=wrong, to_speed=1.0)
 
 

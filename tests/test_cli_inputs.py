@@ -31,7 +31,7 @@ def test_a_report_never_replaces_what_it_reads(bench_csv: Path, tmp_path: Path) 
     shutil.copy(bench_csv, log)
     for path in (machine, log):
         before = path.read_bytes()
-        with pytest.raises(OutputError, match="is an input: name another file for the output$"):
+        with pytest.raises(OutputError, match=r"is an input: name another file for the output$"):
             typed("report", log, "--tare", "standing", "--fuser", machine, "--out", path, "--force")
         assert path.read_bytes() == before
 

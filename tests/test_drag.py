@@ -30,7 +30,7 @@ def test_both_branches() -> None:
 
 
 def test_what_a_belt_at_rest_bears() -> None:
-    """Eq. 29: the transition force times exp(-(1 + n)) of the mixed branch, not what the branch has at rest."""
+    """Eq. 29."""
     peak = float(PLAIN.force(PLAIN.stick_speed))
     assert peak == pytest.approx(50 * (0.01 / 2) ** -0.3, rel=1e-9)
     assert PLAIN.breakaway_force >= peak * (1 - 1e-9)
@@ -61,9 +61,9 @@ def test_temperature_is_given_where_it_is_needed() -> None:
     assert WARM.warms
     assert not PLAIN.warms
     assert PLAIN.at(None) is PLAIN
-    with pytest.raises(ParameterError, match="^the drag varies with temperature: give temperature$"):
+    with pytest.raises(ParameterError, match=r"^the drag varies with temperature: give temperature$"):
         WARM.at(None)
-    with pytest.raises(ParameterError, match="^temperature is given, but the drag does not vary with it$"):
+    with pytest.raises(ParameterError, match=r"^temperature is given, but the drag does not vary with it$"):
         PLAIN.at(400.0)
 
 
@@ -78,7 +78,7 @@ def test_drag_of_a_roll() -> None:
     )
     assert (drag.transition_force, drag.transition_speed) == (50.0, 0.4)
     assert drag.stick_speed == 0.003
-    with pytest.raises(ParameterError, match="^roll_radius is 0: it must be greater than 0$"):
+    with pytest.raises(ParameterError, match=r"^roll_radius is 0: it must be greater than 0$"):
         Drag.rotational(transition_torque=2.0, transition_speed=10.0, roll_radius=0)
     train = Drivetrain.rotational(stiffness=2.0, inertia=4e-4, roll_radius=0.04)
     assert (train.stiffness, train.mass) == (pytest.approx(1250.0), pytest.approx(0.25))

@@ -359,7 +359,8 @@ def test_what_is_said_of_a_log(machine: Fuser, measured: MeasuredFilm) -> None:
     assert notes(grip=0.25) == alone
     for value, said in ((3.1, True), (2.9, False), (0.3, True), (0.35, False)):
         text = (
-            f"measured torque is {value:.3g} times the predicted one: viscosity, nip or what the torque holds "
+            f"measured torque is {value:.3g} times the predicted one: viscosity, nip or what the torque "
+            f"holds "
             "besides the film is not as stated; exponents are unaffected"
         )
         assert (text in notes(calibration=Estimate(value, 0.1, value, value))) == said

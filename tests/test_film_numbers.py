@@ -84,13 +84,13 @@ def test_shore_a_by_gent() -> None:
 
 @pytest.mark.parametrize("name", ["roll_radius", "rubber_thickness", "modulus", "length", "load"])
 def test_contacts_that_cannot_be(name: str) -> None:
-    with pytest.raises(ParameterError, match=f"^{name} is -1: it must be greater than 0$"):
+    with pytest.raises(ParameterError, match=rf"^{name} is -1: it must be greater than 0$"):
         replace(ROLL, **{name: -1.0})  # type: ignore[arg-type]
 
 
 def test_roughness_and_uncertainty_of_a_contact_are_checked() -> None:
     for name in ("roughness", "nip_uncertainty"):
-        with pytest.raises(ParameterError, match=f"^{name} is 0: it must be greater than 0$"):
+        with pytest.raises(ParameterError, match=rf"^{name} is 0: it must be greater than 0$"):
             replace(ROLL, **{name: 0.0})  # type: ignore[arg-type]
     with pytest.raises(ParameterError, match="it must be less than roll_radius"):
         replace(ROLL, rubber_thickness=15e-3)

@@ -384,11 +384,11 @@ def test_a_sweep_over_temperature_takes_force_and_all_speeds() -> None:
     stiff = hersey.hysteresis(hersey.Drivetrain(1100.0, 1), warm.at(380.0), sensitivity=False)
     assert zipped.upper.values[1] == stiff.upper
     for name in ("transition_force", "transition_speed", "stick_speed"):
-        with pytest.raises(ParameterError, match=f"^{name} follows from the temperature: give one of them$"):
+        with pytest.raises(ParameterError, match=rf"^{name} follows from the temperature: give one of them$"):
             hersey.hysteresis_sweep(TRAIN, warm, temperature=kelvin, **{name: [1.0]})  # type: ignore[arg-type]
-    for law, given in ((warm, None), (DRAG, kelvin)):
+    for law, asked in ((warm, None), (DRAG, kelvin)):
         with pytest.raises(ParameterError, match="temperature"):
-            hersey.hysteresis_sweep(TRAIN, law, temperature=given)
+            hersey.hysteresis_sweep(TRAIN, law, temperature=asked)
 
 
 def test_the_tolerance_of_a_band_is_that_asked_for() -> None:

@@ -234,7 +234,8 @@ def test_every_sentence_of_a_map(few: OperatingMap, surface: DampingSurface) -> 
     low, high = (np.interp(453.15, KELVIN, edge) for edge in few.upper_interval)
     assert low < 0.045 < high
     assert few.warnings == (
-        f"V* depends on the stick speed, 0.3 mm/s at {hot - 273.15:.0f} degC here, which nobody measures; its "
+        f"V* depends on the stick speed, 0.3 mm/s at {hot - 273.15:.0f} degC here, which nobody "
+        f"measures; its "
         "interval counts the fit and stiffness and stick speed",
         "stall counts steady sliding beyond 2.7 N m (roll friction); a belt at rest can bear "
         f"{rest:.3g} N m before it starts",
@@ -267,7 +268,8 @@ def test_sentences_of_a_map_that_knows_little(
     near = operating_map(isothermal, fuser.train, **AT, draws=1, points=[OperatingPoint("edge", at, 400.0)])
     low, high = (1e3 * edge[0] for edge in near.transition_interval)
     assert near.warnings[-1] == (
-        f"edge: within the 95 % interval of the transition speed ({low:.3g} to {high:.3g} mm/s), so the verdict "
+        f"edge: within the 95 % interval of the transition speed ({low:.3g} to {high:.3g} mm/s), so the "
+        f"verdict "
         "is not certain"
     )
 
@@ -283,7 +285,8 @@ def test_what_the_fit_says_of_its_draws_is_said_by_the_map(surface: DampingSurfa
     drawn = operating_map(wide, fuser.train, **AT, draws=2, temperatures=[450.0, 451.0])
     said = str(caught[0].message)
     assert said.endswith(
-        "draws of the fit had no falling branch and were drawn again: the intervals hold for fits that have one"
+        "draws of the fit had no falling branch and were drawn again: the intervals hold for fits that "
+        "have one"
     )
     assert said in drawn.warnings
     assert len(set(drawn.warnings)) == len(drawn.warnings)
@@ -526,9 +529,11 @@ def test_both_axes_of_speed_say_the_same(few: OperatingMap) -> None:
         ]
         assert axis["values"] == pytest.approx(decades)
     assert spec["title"]["subtitle"] == [
-        "solid: transition speed, shaded its 95 % interval; dashed: V*, dotted its 95 % interval (fit, stiffness, "
+        "solid: transition speed, shaded its 95 % interval; dashed: V*, dotted its 95 % interval (fit, "
+        "stiffness, "
         "stick speed)",
-        "thin: drag torque; frame: range of the dwells; hatched: extrapolated; stall beyond 2.7 N·m (roll friction)",
+        "thin: drag torque; frame: range of the dwells; hatched: extrapolated; stall beyond 2.7 N·m "
+        "(roll friction)",
     ]
 
 

@@ -373,7 +373,8 @@ def test_numbers_of_a_plan_belong_together(plan: Plan) -> None:
     steepest = max(plan.peak_speed / plan.rise, (plan.peak_speed - 1.9) / plan.fall if plan.fall else 0.0)
     assert uses["acceleration"] == (10.0, pytest.approx(steepest))
     assert plan.warnings == (
-        f"the spring force reaches {plan.peak_force:.4g} N, more than the grip of the roll, 60 N: the belt may "
+        f"the spring force reaches {plan.peak_force:.4g} N, more than the grip of the roll, 60 N: the "
+        f"belt may "
         "slip on the roll, which is not in the model",
     )
     assert plan.response is not None
@@ -388,7 +389,8 @@ def test_what_a_plan_says(plan: Plan) -> None:
     )
     drawn_often = replace(plan, draws=1500, share=0.97, share_low=0.96178)
     assert drawn_often.proof() == (
-        "Smooth and within the limits in 97.0 % of 1500 fresh draws (more than 96.1 % at the 95 % level; asked "
+        "Smooth and within the limits in 97.0 % of 1500 fresh draws (more than 96.1 % at the 95 % "
+        "level; asked "
         "for 90 %)."
     )
     waits = replace(plan, kind="direct", wait=3.0, rise=0.0, target_speed=0.05)

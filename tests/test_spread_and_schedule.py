@@ -82,9 +82,9 @@ def test_a_range_in_the_wrong_unit() -> None:
 
 def test_either_share_or_limits() -> None:
     for given in ({}, {"share": 0.1, "limits": (1.0, 2.0)}):
-        with pytest.raises(ParameterError, match="^give either a share or limits$"):
+        with pytest.raises(ParameterError, match=r"^give either a share or limits$"):
             Spread(**given)  # type: ignore[arg-type]
-    with pytest.raises(ParameterError, match="^share is 0: it must be greater than 0$"):
+    with pytest.raises(ParameterError, match=r"^share is 0: it must be greater than 0$"):
         Spread(share=0)
     with pytest.raises(ParameterError, match="share is 100"):
         Spread(share=100.0)

@@ -127,14 +127,15 @@ def test_other_notes_of_a_record() -> None:
 
 
 def test_small_slips_are_said_and_left_out() -> None:
-    time, force = saw(teeth=20)
+    _, force = saw(teeth=20)
     _, small = saw(teeth=8, rise=30, fall=20, height=2.0)
     both = np.concatenate([force[:4000], small])
     record = cycles(3.0 + 0.01 * np.arange(both.size), both)
     count = int(np.sum(record.drop < 0.5 * np.median(record.drop)))
     assert count >= 6
     assert record.notes[-1].startswith(
-        f"{count} of {record.slips} slips fall by less than half the median: their number depends on the least "
+        f"{count} of {record.slips} slips fall by less than half the median: their number depends on "
+        f"the least "
         "fall counted, "
     )
     assert (
@@ -160,7 +161,8 @@ def test_figures_in_words() -> None:
     period, drop = Scatter.of(record.period), Scatter.of(record.drop)
     assert record.summary("N").splitlines() == [
         "stick slip: 40 slips",
-        f"period        {period.median:.4g} s (scatter {period.deviation:.2g} s); free period {record.free_period:.4g} s",
+        f"period        {period.median:.4g} s (scatter {period.deviation:.2g} s); free period "
+        f"{record.free_period:.4g} s",
         f"drop          {drop.median:.4g} N (scatter {drop.deviation:.2g} N)",
         f"force         {np.median(record.force_min):.4g} to {np.median(record.force_max):.4g} N",
         f"loading slope {record.loading_slope:.5g} N/s",
@@ -216,13 +218,13 @@ def test_samples_on_even_times() -> None:
     stairs = even_samples(time, np.round(np.sin(time / 5) * 20) / 20)
     assert stairs.noise == pytest.approx(0.05 / np.sqrt(12), rel=1e-6)
     with pytest.raises(
-        InsufficientDataError, match="^29 samples of force: at least 30 are needed to see a cycle$"
+        InsufficientDataError, match=r"^29 samples of force: at least 30 are needed to see a cycle$"
     ):
         even_samples(time[:29], value[:29])
     assert even_samples(time[:30], value[:30]).value.size == 30
-    with pytest.raises(ParameterError, match="^time of sample 7 is not a number$"):
+    with pytest.raises(ParameterError, match=r"^time of sample 7 is not a number$"):
         even_samples(np.where(np.arange(400) == 7, np.nan, time), value)
-    with pytest.raises(ParameterError, match="^time does not ascend at sample 9$"):
+    with pytest.raises(ParameterError, match=r"^time does not ascend at sample 9$"):
         even_samples(np.where(np.arange(400) == 9, 0.0, time), value)
 
 
@@ -401,7 +403,8 @@ def test_directions_are_those_of_the_covariance() -> None:
     names = ("mass", "ehl_exponent", "stick_speed")
     three = np.ones(3) / np.sqrt(3)
     assert in_words(names, 4.0 * np.outer(three, three) + 1e-6 * np.eye(3)) == [
-        "mass, ehl exponent and stick speed only together: they can change at once and leave the record as it is"
+        "mass, ehl exponent and stick speed only together: they can change at once and leave the record "
+        "as it is"
     ]
     both = np.diag([4.0, 4.1, 1e-6]) + 0.0
     both[0, 1] = both[1, 0] = 0.5
@@ -444,7 +447,8 @@ def test_the_chart_of_a_trace_in_numbers(drive: IdentifiedDrive) -> None:
     assert {r["line"] for r in fitted} == {"fitted motion"}
     heading = trace_chart(record, drive).to_dict(validate=False)["title"]["subtitle"]
     assert heading == [
-        f"stick slip: {record.slips} slips, period {np.median(record.period):.4g} s; dots: where the slip is half done",
+        f"stick slip: {record.slips} slips, period {np.median(record.period):.4g} s; dots: where the "
+        f"slip is half done",
         f"fitted motion: closure retained, within {100 * drive.misfit:.2g} % of the drop",
     ]
     undecided = trace_chart(record, replace(drive, decided=False)).to_dict(validate=False)["title"][
