@@ -238,6 +238,14 @@ def test_a_proof_counts_its_failures() -> None:
     assert Unknown(TRAIN, DRAG, {}, {}, 3).verify(shape, 0.1, course, math.inf, 0.8, 1).accepted is False
 
 
+def test_a_high_confidence_takes_more_fresh_draws() -> None:
+    unknown = Unknown(TRAIN, DRAG, {"mass": Spread(share=0.5)}, {}, 3)
+    proof = unknown.verify(Shape(1.9, 1.9, 0.3), 1.2, Course(None), math.inf, 0.995, 1)
+    assert (proof.draws, proof.share, proof.share_low) == (2000, 0.0, 0.0)
+    assert dict(proof.failures) == {"stick-slip": 2000}
+    assert not proof.accepted
+
+
 def test_trials_let_so_many_fail() -> None:
     masses = [1.0, 1.05, 0.95, 4.0]
     shape, course = Shape(1.9, 3.0, 0.3, 0.4, 0.5), Course(None)
