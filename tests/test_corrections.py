@@ -183,6 +183,94 @@ def test_records_pile_up_and_the_log_given_stays_as_it_was() -> None:
     assert done.log.files == log.files
 
 
+def test_an_effect_is_largest_rms_and_share_of_the_median() -> None:
+    """A sine of an offset: its root mean square is 1/sqrt(2) of its height, its mean absolute 2/pi."""
+    speed = 3.0 + 2.0 * np.sin(2 * np.pi * TIME / 20.0)
+    done = corrections.inertia(log_of(np.full(TIME.size, -0.4), speed), moment_of_inertia=0.5)
+    (effect,) = done.corrections[-1].effects
+    height = 0.5 * 2.0 * 2 * np.pi / 20.0  # the ends of the derivative are a little off
+    assert effect.role == "torque"
+    assert effect.largest == pytest.approx(height, rel=5e-3)
+    assert effect.typical == pytest.approx(height / np.sqrt(2), rel=1e-3)
+    assert effect.share == pytest.approx(height / np.sqrt(2) / 0.4, rel=1e-3)
+    assert str(effect) == "torque by 0.315 N m at most, 0.222 N m rms, 55 % of its median"
+    np.testing.assert_allclose(
+        torque_of(done), -0.4 - height * np.cos(2 * np.pi * TIME / 20.0), atol=1e-2 * height
+    )
+
+
+def test_a_share_needs_something_to_be_a_share_of() -> None:
+    done = corrections.tare(log_of(np.zeros(TIME.size), np.full(TIME.size, 3.0)), torque=0.25)
+    (effect,) = done.corrections[-1].effects
+    assert (effect.largest, effect.typical, effect.share) == (0.25, 0.25, None)
+    assert str(effect) == "torque by 0.25 N m at most, 0.25 N m rms"
+    warmed = corrections.temperature_offset(
+        log_of(np.ones(TIME.size), np.ones(TIME.size), np.full(TIME.size, 400.0)), offset=-3.0
+    )
+    (effect,) = warmed.corrections[-1].effects
+    assert str(effect) == "temperature by 3 K at most, 3 K rms"
+    assert str(warmed.corrections[-1]) == (
+        "temperature offset (offset -3 K): changed temperature by 3 K at most, 3 K rms"
+    )
+
+
+def test_gears_by_hand_in_both_directions() -> None:
+    speed = np.where(TIME < 30.0, 4.0, -4.0)
+    log = log_of(np.full(TIME.size, 0.5), speed)
+    done = corrections.at_roll(log, torque_ratio=3.0, speed_ratio=2.0, efficiency=0.8)
+    driving = TIME < 30.0
+    np.testing.assert_allclose(torque_of(done)[driving], 0.5 * 3.0 * 0.8, rtol=1e-12)
+    np.testing.assert_allclose(torque_of(done)[~driving], 0.5 * 3.0 / 0.8, rtol=1e-12)
+    np.testing.assert_allclose(done.log.runs[0].speed, speed / 2.0, rtol=1e-12)
+    assert done.corrections[-1].note == f"in {int(np.sum(~driving))} rows the roll drives the motor"
+    assert not corrections.at_roll(log, torque_ratio=3.0).corrections[-1].note
+
+
+def test_the_no_load_curve_is_held_beyond_its_dwells() -> None:
+    idle = log_of(0.1 + 0.02 * staircase(2.0, 4.0, 6.0), staircase(2.0, 4.0, 6.0))
+    speed = np.where(TIME < 20.0, 1.0, np.where(TIME < 40.0, -3.0, 8.0))
+    done = corrections.no_load(log_of(np.sign(speed) * 1.0, speed), torque=idle)
+    expected = np.where(TIME < 20.0, 1.0 - 0.14, np.where(TIME < 40.0, -1.0 + 0.16, 1.0 - 0.22))
+    np.testing.assert_allclose(torque_of(done), expected, rtol=1e-6)
+    beyond = int(np.sum((TIME < 20.0) | (TIME >= 40.0)))
+    assert done.corrections[-1].note == (
+        f"{beyond} rows move slower or faster than its dwells: the nearest was used"
+    )
+
+
+def test_a_current_becomes_a_torque_and_says_so() -> None:
+    done = corrections.torque_from_current(
+        log_of(np.where(TIME < 20.0, 2.0, -4.0), np.ones(TIME.size)), motor_constant=0.05
+    )
+    np.testing.assert_allclose(torque_of(done), np.where(TIME < 20.0, 0.1, -0.2), rtol=1e-12)
+    assert str(done.corrections[-1]) == (
+        "torque from current (motor_constant 0.05 N m/A); the torque channel was a current in A; the median "
+        "torque is now 0.2 N m"
+    )
+
+
+def test_a_lag_is_undone_by_tau_times_the_rate() -> None:
+    temperature = 350.0 + 0.5 * TIME
+    log = log_of(np.ones(TIME.size), np.ones(TIME.size), temperature)
+    done = corrections.thermal_lag(log, time_constant=8.0)
+    np.testing.assert_allclose(done.log.runs[0].temperature, temperature + 4.0, rtol=1e-9)
+    assert done.corrections[-1].parameters == (("time_constant", "8 s"), ("window", "2 s"))
+    short = corrections.thermal_lag(log, time_constant=1.0)
+    assert short.corrections[-1].parameters == (("time_constant", "1 s"), ("window", "0.5 s"))
+
+
+def test_samples_alone_between_gaps_are_left_and_counted() -> None:
+    time = np.concatenate([np.arange(0, 10, STEP), [15.0, 15.0 + STEP], 20 + np.arange(0, 10, STEP)])
+    log = log_of(np.ones(time.size), 2.0 + 0.3 * time, time=time)
+    done = corrections.inertia(log, moment_of_inertia=0.5)
+    alone = np.isin(time, [15.0, 15.0 + STEP])
+    np.testing.assert_allclose(torque_of(done)[alone], 1.0, rtol=1e-12)
+    np.testing.assert_allclose(torque_of(done)[~alone], 1.0 - 0.5 * 0.3, rtol=1e-9)
+    assert done.corrections[-1].note == (
+        "2 rows stand alone between gaps, where no derivative can be had: left as they were"
+    )
+
+
 BAD = {
     "tare is inf": lambda log: corrections.tare(log, torque=np.inf),
     "efficiency is 1.2": lambda log: corrections.at_roll(log, efficiency=1.2),

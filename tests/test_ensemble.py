@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -135,3 +137,72 @@ def test_what_cannot_be_swept_is_refused_by_name(change: dict[str, object], says
     arguments: dict[str, object] = {"drive_speed": 1.0}
     with pytest.raises(ParameterError, match=says):
         hersey.sweep(TRAIN, DRAG, **(arguments | change))  # type: ignore[arg-type]
+
+
+def test_each_parameter_of_a_sweep_is_the_one_it_is_called() -> None:
+    train = hersey.Drivetrain(1200, 1.5)
+    drag = hersey.Drag(40, 0.8, ehl_exponent=-0.65, mixed_exponent=-1.3, stick_speed=0.02)
+    changes = {
+        "stiffness": 800.0,
+        "mass": 2.5,
+        "transition_force": 60.0,
+        "transition_speed": 1.2,
+        "ehl_exponent": -0.5,
+        "mixed_exponent": -1.15,
+        "stick_speed": 0.005,
+    }
+    for name, value in changes.items():
+        swept = hersey.sweep(train, drag, drive_speed=0.5, **{name: [value]})
+        changed = replace(train if hasattr(train, name) else drag, **{name: value})
+        pair = (changed, drag) if hasattr(train, name) else (train, changed)
+        one = hersey.stick_slip(*pair, drive_speed=0.5)
+        assert str(swept.kind.values[0]) == one.kind == "stick_slip"
+        for number in (*NUMBERS, "slip_duration", "stick_duration"):
+            assert float(swept[number][0]) == pytest.approx(getattr(one, number), rel=1e-7), (name, number)
+        assert swept[name].values.tolist() == [value]
+        for other in changes:
+            if other != name:
+                own = getattr(train, other) if hasattr(train, other) else getattr(drag, other)
+                assert float(swept[other]) == own
+    assert dict(swept.sizes) == {"stick_speed": 1}
+
+
+def test_coordinates_of_zipped_sets_are_those_given() -> None:
+    sets = draws(5)
+    grid = hersey.sweep(TRAIN, DRAG, **sets, zip=True)
+    for name, values in sets.items():
+        np.testing.assert_array_equal(grid[name], values)
+    i = 3
+    alone = hersey.stick_slip(
+        hersey.Drivetrain(sets["stiffness"][i], 1),
+        replace(DRAG, transition_force=sets["transition_force"][i]),
+        drive_speed=sets["drive_speed"][i],
+    )
+    assert str(grid.kind.values[i]) == alone.kind
+    assert float(grid.frequency[i]) == pytest.approx(alone.frequency, rel=1e-7)
+
+
+def test_the_steady_start_is_that_of_the_single_motion() -> None:
+    grid = hersey.sweep(TRAIN, DRAG, drive_speed=[0.985, 0.99], start="steady")
+    for i, speed in enumerate((0.985, 0.99)):
+        one = hersey.stick_slip(TRAIN, DRAG, drive_speed=speed, start="steady")
+        assert one.kind == "oscillation"
+        assert float(grid.speed_max[i]) == pytest.approx(one.speed_max, rel=1e-6)
+    assert grid.attrs["start"] == "steady"
+
+
+def test_tolerance_and_duration_reach_the_motion() -> None:
+    rough, usual = (hersey.sweep(TRAIN, DRAG, drive_speed=1.0, tolerance=t) for t in (1e-3, 1e-9))
+    assert float(rough.frequency) != float(usual.frequency)
+    assert float(rough.frequency) == pytest.approx(float(usual.frequency), rel=2e-2)
+    assert (rough.attrs["tolerance"], usual.attrs["closure"]) == (1e-3, "retained")
+    laps = [int(hersey.sweep(TRAIN, DRAG, drive_speed=1.0, duration=t).laps) for t in (5.0, 10.0)]
+    assert laps[1] - laps[0] == pytest.approx(5 * 3.94, abs=1)
+
+
+def test_bristles_reach_the_lanes() -> None:
+    soft, stiff = (
+        replace(DRAG, closure="lugre", bristle_stiffness=k, bristle_damping=30.0) for k in (1e4, 3e4)
+    )
+    found = [float(hersey.sweep(TRAIN, d, drive_speed=1.0, duration=1.0).frequency) for d in (soft, stiff)]
+    assert found[0] != pytest.approx(found[1], rel=1e-5)

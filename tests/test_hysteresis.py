@@ -274,3 +274,158 @@ def test_the_interval_of_a_fit_reaches_the_band(points: hersey.SteadyPoints) -> 
     wider = hersey.hysteresis(train, drag, samples=draws | {"stick_speed": stick}).interval
     assert wider is not None
     assert wider[1] - wider[0] > high - low
+
+
+def test_a_band_counts_only_beyond_its_accuracy() -> None:
+    band = hersey.hysteresis(TRAIN, DRAG, sensitivity=False)
+    for over, accuracy, bistable in ((1e-9, 1e-8, False), (1e-7, 1e-8, True), (-1e-3, 0.0, False)):
+        near = replace(band, transition=2.0, lower=1.9, upper=2.0 * (1 + over), upper_accuracy=accuracy)
+        assert near.bistable == bistable
+        assert (
+            near.verdict().startswith("No band: stick-slip ends at 2" if over > 0 else "No band") != bistable
+        )
+    none = replace(band, transition=2.0, upper=1.5)
+    assert none.verdict() == (
+        "No band: stick-slip ends at 1.5, not above the transition speed 2, so the past does not matter."
+    )
+    assert replace(band, lower=1.9, transition=2.0, upper=2.5).verdict() == (
+        "Stick-slip is certain below 1.9. From 2 to 2.5 the belt slides if it comes from above and sticks if "
+        "it comes from below. Above, it slides."
+    )
+
+
+def test_intervals_are_draws_of_the_sorted_folds() -> None:
+    """Of 80 draws the 2nd and the 78th, of both edges; the share is that of draws with a band."""
+    draws = {"transition_force": np.geomspace(1.0, 3e3, 80), "mass": np.full(80, 2.0)}
+    band = hersey.hysteresis(TRAIN, DRAG, samples=draws, sensitivity=False)
+    each = [
+        hersey.hysteresis(replace(TRAIN, mass=2.0), replace(DRAG, transition_force=f), sensitivity=False)
+        for f in draws["transition_force"]
+    ]
+    upper, lower = np.sort([b.upper for b in each]), np.sort([b.lower for b in each])
+    assert band.interval == (upper[1], upper[77])
+    assert band.lower_interval == (lower[1], lower[77])
+    share = np.mean([b.upper > b.transition for b in each])
+    assert 0 < share < 1
+    assert band.share_bistable == share
+
+
+def test_sensitivities_of_the_lower_edge_are_derivatives_too() -> None:
+    band = hersey.hysteresis(TRAIN, DRAG)
+    assert (
+        set(band.lower_sensitivity)
+        == set(band.sensitivity)
+        == {
+            "stiffness",
+            "mass",
+            "transition_force",
+            "transition_speed",
+            "ehl_exponent",
+            "mixed_exponent",
+            "stick_speed",
+        }
+    )
+    for name, own in (("mass", TRAIN), ("transition_speed", DRAG), ("ehl_exponent", DRAG)):
+        value = getattr(own, name)
+        ends = []
+        for factor in (1.001, 0.999):
+            changed = replace(own, **{name: factor * value})
+            pair = (changed, DRAG) if own is TRAIN else (TRAIN, changed)
+            ends.append(hersey.hysteresis(*pair, sensitivity=False))
+        for edge, found in (("upper", band.sensitivity), ("lower", band.lower_sensitivity)):
+            slope = np.log(getattr(ends[0], edge) / getattr(ends[1], edge)) / 0.002
+            assert found[name] == pytest.approx(slope, rel=1e-3, abs=1e-6), (name, edge)
+    assert hersey.hysteresis(TRAIN, DRAG, sensitivity=False).sensitivity == {}
+
+
+def test_each_parameter_of_a_sweep_is_the_one_it_is_called() -> None:
+    train = hersey.Drivetrain(1200, 1.5)
+    drag = hersey.Drag(40, 0.8, ehl_exponent=-0.65, mixed_exponent=-1.3, stick_speed=0.02)
+    changes = {
+        "stiffness": 800.0,
+        "mass": 2.5,
+        "transition_force": 60.0,
+        "transition_speed": 1.2,
+        "ehl_exponent": -0.5,
+        "mixed_exponent": -1.15,
+        "stick_speed": 0.005,
+    }
+    for name, value in changes.items():
+        swept = hersey.hysteresis_sweep(train, drag, **{name: [value]})  # type: ignore[arg-type]
+        if hasattr(train, name):
+            one = hersey.hysteresis(replace(train, **{name: value}), drag, sensitivity=False)
+        else:
+            one = hersey.hysteresis(train, replace(drag, **{name: value}), sensitivity=False)
+        for edge in ("lower", "transition", "upper", "speed_max", "lower_accuracy", "upper_accuracy"):
+            assert swept[edge].values.tolist() == [getattr(one, edge)], (name, edge)
+        assert swept[name].values.tolist() == [value]
+        assert (bool(swept.half_laps[0]), bool(swept.deeper[0])) == (one.method == "half laps", one.deeper)
+        assert int(swept.laps[0]) == one.laps
+    assert np.isnan(hersey.hysteresis_sweep(train, drag, lower=False).lower)
+
+
+def test_a_sweep_over_temperature_takes_force_and_all_speeds() -> None:
+    warm = replace(
+        DRAG,
+        reference_temperature=400.0,
+        force_temperature_exponent=-2.0,
+        speed_temperature_exponent=0.5,
+        temperature_zero=273.15,
+    )
+    kelvin = [420.0, 380.0]
+    swept = hersey.hysteresis_sweep(TRAIN, warm, temperature=kelvin)
+    for i, t in enumerate(kelvin):
+        one = hersey.hysteresis(TRAIN, warm.at(t), sensitivity=False)
+        assert (swept.lower[i], swept.upper[i]) == (one.lower, one.upper)
+        assert hersey.hysteresis(TRAIN, warm, temperature=t, sensitivity=False).upper == one.upper
+    assert "stick_speed" not in swept.coords
+    zipped = hersey.hysteresis_sweep(TRAIN, warm, temperature=kelvin, stiffness=[900.0, 1100.0], zip=True)
+    assert zipped.upper.dims == ("set",)
+    stiff = hersey.hysteresis(hersey.Drivetrain(1100.0, 1), warm.at(380.0), sensitivity=False)
+    assert zipped.upper.values[1] == stiff.upper
+    for name in ("transition_force", "transition_speed", "stick_speed"):
+        with pytest.raises(ParameterError, match=rf"^{name} follows from the temperature: give one of them$"):
+            hersey.hysteresis_sweep(TRAIN, warm, temperature=kelvin, **{name: [1.0]})  # type: ignore[arg-type]
+    for law, asked in ((warm, None), (DRAG, kelvin)):
+        with pytest.raises(ParameterError, match="temperature"):
+            hersey.hysteresis_sweep(TRAIN, law, temperature=asked)
+
+
+def test_the_tolerance_of_a_band_is_that_asked_for() -> None:
+    rough, usual = (
+        hersey.hysteresis(TRAIN, DRAG, tolerance=tolerance, sensitivity=False) for tolerance in (1e-5, 1e-11)
+    )
+    assert rough.upper != usual.upper
+    assert rough.upper == pytest.approx(usual.upper, rel=1e-3)
+    swept = hersey.hysteresis_sweep(TRAIN, DRAG, tolerance=1e-5)
+    assert float(swept.upper) == rough.upper
+    assert swept.attrs["tolerance"] == 1e-5
+
+
+def test_cycles_without_sticking_come_back_to_themselves() -> None:
+    """One lap of the motion from the slowest point ends there, and its greatest speed is the fastest."""
+    train = hersey.Drivetrain(1300.0, 1.4)
+    drag = hersey.Drag(55, 0.9, ehl_exponent=-0.7, mixed_exponent=-1.2, stick_speed=0.01)
+    found = hersey.cycles_without_sticking(train, drag, slowest=[0.02, 0.3, 0.7])
+    for slow, fast, drive in zip(found.slowest, found.fastest, found.drive_speed, strict=True):
+        pull = float(drag.force(slow)) / train.stiffness
+        run = hersey.simulate(
+            train, drag, drive_speed=float(drive), duration=0.5, samples=50_001, start=(float(slow), pull)
+        )
+        assert run.belt_speed.max() == pytest.approx(fast, rel=1e-5)
+        again = int(np.argmax(run.belt_speed))
+        assert run.belt_speed[again:].min() == pytest.approx(slow, abs=1e-4)
+    edge = hersey.cycles_without_sticking(train, drag, slowest=[drag.stick_speed])
+    band = hersey.hysteresis(train, drag, sensitivity=False)
+    assert edge.drive_speed[0] == pytest.approx(band.upper, rel=1e-7)
+    default = hersey.cycles_without_sticking(train, drag)
+    np.testing.assert_allclose(default.slowest, np.geomspace(0.01, 0.999 * 0.9, 201), rtol=1e-12)
+    assert default.drive_speed.min() == pytest.approx(band.lower, rel=1e-4)
+    lowest = int(np.argmin(default.drive_speed))
+    assert not default.stable[: lowest - 1].any()
+    assert default.stable[lowest + 1 :].all()
+    for wrong in (0.009, 0.9):
+        with pytest.raises(
+            ParameterError, match=r"slowest is to lie from the stick speed 0\.01 to below 0\.9"
+        ):
+            hersey.cycles_without_sticking(train, drag, slowest=[wrong])
