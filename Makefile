@@ -26,7 +26,7 @@ build: .venv/built ## make .venv with hersey in it
 
 demo: build ## run the main job on the shipped log
 	mkdir -p build/demo
-	$(BIN)/hersey report examples/bench.csv --fuser examples/fuser.toml --tare standing \
+	$(BIN)/hersey report examples/bench.csv --machine examples/machine.toml --tare standing \
 	  --out build/demo/report.html --figures build/demo/figures --force
 
 test: lint typecheck test-rust test-python ## everything: lint, types, Rust and Python tests, the page in a browser
@@ -67,7 +67,7 @@ benchmark: build ## ratios against peers, printed and written to benchmarks/RESU
 	$(BIN)/python -m benchmarks.motion
 	$(BIN)/python -m benchmarks.fold
 	$(BIN)/python -m benchmarks.reynolds
-	$(BIN)/python -m benchmarks.ladder
+	$(BIN)/python -m benchmarks.candidates
 
 clean: ## remove everything that was built
 	rm -rf .venv build target Cargo.lock

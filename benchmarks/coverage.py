@@ -2,7 +2,7 @@
 
 Every log is written by the virtual test stand, read and reduced to dwells as a user's would be. Coverage:
 the share of logs whose 95 % interval of a parameter holds the truth, by method, in the regular setting
-(four temperatures, ten speeds up and down). Choice: the share of logs of each rung on which that rung is
+(four temperatures, ten speeds up and down). Choice: the share of logs of each candidate on which it is
 chosen, or tied with the one chosen (AICc within 2).
 
 Usage: python -m benchmarks.coverage [--logs 500] [--first 0] [--choice 100] [--processes 2]
@@ -22,53 +22,57 @@ import numpy as np
 
 import hersey
 from hersey import testbench
-from hersey.ladder import Observations, compare_models
-from hersey.ladder.branched import FREE, HELD, ONE
-from hersey.ladder.comparison import TIED
-from hersey.ladder.fitting import fit_law
-from hersey.ladder.intervals import METHODS, bootstrap_draws, estimates
-from hersey.ladder.rungs import Rung
-from hersey.ladder.thermal import ARRHENIUS, CELSIUS, GAS_CONSTANT, KELVIN, VFT
+from hersey.damping.candidates import Observations, compare_models
+from hersey.damping.candidates.branched import FREE, HELD, ONE
+from hersey.damping.candidates.candidate import Candidate
+from hersey.damping.candidates.comparison import TIED
+from hersey.damping.candidates.fitting import fit_law
+from hersey.damping.candidates.intervals import METHODS, bootstrap_draws, estimates
+from hersey.damping.candidates.thermal import ARRHENIUS, CELSIUS, GAS_CONSTANT, KELVIN, VFT
 
 #: Apparent activation energy of torque of the truths, J/mol: that of `Truth` at 150 degC.
 ENERGY = 0.9 * GAS_CONSTANT * 423.15**2 / 150.0
 STAND = testbench.Stand(stick_slip=False)
 BELOW_ALL_SPEEDS = 1e-6
 
-TRUTHS: dict[Rung, testbench.Truth] = {
-    Rung(CELSIUS, ONE): testbench.ThermalTruth(
+TRUTHS: dict[Candidate, testbench.Truth] = {
+    Candidate(CELSIUS, ONE): testbench.ThermalTruth(
         law="degC", activation_energy=ENERGY, transition_speed_rpm=BELOW_ALL_SPEEDS
     ),
-    Rung(KELVIN, ONE): testbench.ThermalTruth(
+    Candidate(KELVIN, ONE): testbench.ThermalTruth(
         law="K", activation_energy=ENERGY, transition_speed_rpm=BELOW_ALL_SPEEDS
     ),
-    Rung(ARRHENIUS, ONE): testbench.ThermalTruth(
+    Candidate(ARRHENIUS, ONE): testbench.ThermalTruth(
         law="Arrhenius", activation_energy=ENERGY, transition_speed_rpm=BELOW_ALL_SPEEDS
     ),
-    Rung(VFT, ONE): testbench.ThermalTruth(
+    Candidate(VFT, ONE): testbench.ThermalTruth(
         law="VFT",
         activation_energy=ENERGY,
         vogel_temperature=200.0,
         transition_speed_rpm=BELOW_ALL_SPEEDS,
     ),
-    Rung(CELSIUS, HELD): testbench.Truth(),
-    Rung(KELVIN, HELD): testbench.ThermalTruth(law="K", activation_energy=ENERGY),
-    Rung(ARRHENIUS, HELD): testbench.ThermalTruth(law="Arrhenius", activation_energy=ENERGY),
-    Rung(VFT, HELD): testbench.ThermalTruth(law="VFT", activation_energy=ENERGY, vogel_temperature=200.0),
-    Rung(CELSIUS, FREE): testbench.ThermalTruth(law="degC", activation_energy=ENERGY, transition_share=0.5),
-    Rung(ARRHENIUS, FREE): testbench.ThermalTruth(
+    Candidate(CELSIUS, HELD): testbench.Truth(),
+    Candidate(KELVIN, HELD): testbench.ThermalTruth(law="K", activation_energy=ENERGY),
+    Candidate(ARRHENIUS, HELD): testbench.ThermalTruth(law="Arrhenius", activation_energy=ENERGY),
+    Candidate(VFT, HELD): testbench.ThermalTruth(
+        law="VFT", activation_energy=ENERGY, vogel_temperature=200.0
+    ),
+    Candidate(CELSIUS, FREE): testbench.ThermalTruth(
+        law="degC", activation_energy=ENERGY, transition_share=0.5
+    ),
+    Candidate(ARRHENIUS, FREE): testbench.ThermalTruth(
         law="Arrhenius", activation_energy=ENERGY, transition_share=0.5
     ),
-    Rung(VFT, FREE): testbench.ThermalTruth(
+    Candidate(VFT, FREE): testbench.ThermalTruth(
         law="VFT", activation_energy=ENERGY, vogel_temperature=200.0, transition_share=0.5
     ),
-    Rung(ARRHENIUS, ONE, per_temperature=True): testbench.ThermalTruth(
+    Candidate(ARRHENIUS, ONE, per_temperature=True): testbench.ThermalTruth(
         law="Arrhenius",
         activation_energy=ENERGY,
         transition_speed_rpm=BELOW_ALL_SPEEDS,
         exponent_drift=1e-3,
     ),
-    Rung(ARRHENIUS, ONE, stribeck=True): testbench.StribeckTruth(
+    Candidate(ARRHENIUS, ONE, stribeck=True): testbench.StribeckTruth(
         law="Arrhenius", activation_energy=ENERGY, transition_speed_rpm=25.0
     ),
 }
@@ -100,7 +104,7 @@ def covered(seed: int) -> dict[tuple[str, str], bool]:
     """Return for each parameter and method whether its interval holds the truth, on one log."""
     truth = testbench.Truth()
     data = observed(seed, truth)
-    fit = fit_law(Rung(CELSIUS, HELD).law(data), data)
+    fit = fit_law(Candidate(CELSIUS, HELD).law(data), data)
     found = estimates(fit, data, draws=bootstrap_draws(fit, data, 200, seed))
     known = truths_of(data, truth)
     held = {}
@@ -112,12 +116,12 @@ def covered(seed: int) -> dict[tuple[str, str], bool]:
 
 
 def chosen(number: int, seed: int) -> tuple[str, str, bool]:
-    """Return the true rung, the rung chosen, and whether they are one or tied."""
-    rung, truth = list(TRUTHS.items())[number]
+    """Return the true candidate, the candidate chosen, and whether they are one or tied."""
+    candidate, truth = list(TRUTHS.items())[number]
     found = compare_models(observed(10_000 + seed, truth), bootstrap=0, cross_validate=False)
-    right = found.rung(rung.key)
+    right = found.candidate(candidate.key)
     gap = right.fit.aicc - found.chosen.fit.aicc
-    return rung.key, found.chosen.rung.key, right is found.chosen or abs(gap) < TIED
+    return candidate.key, found.chosen.candidate.key, right is found.chosen or abs(gap) < TIED
 
 
 def _report_coverage(results: list[dict[tuple[str, str], bool]]) -> None:
@@ -132,16 +136,16 @@ def _report_coverage(results: list[dict[tuple[str, str], bool]]) -> None:
 
 def _report_choice(results: list[tuple[str, str, bool]]) -> None:
     found: dict[str, list[tuple[str, bool]]] = defaultdict(list)
-    for rung, picked, right in results:
-        found[rung].append((picked, right))
+    for candidate, picked, right in results:
+        found[candidate].append((picked, right))
     print("\n| truth | logs | chosen | chosen or tied | most often instead |")
     print("|---|---|---|---|---|")
-    for rung, each in found.items():
-        exactly = np.mean([picked == rung for picked, _ in each])
+    for candidate, each in found.items():
+        exactly = np.mean([picked == candidate for picked, _ in each])
         others = [picked for picked, right in each if not right]
         worst = max(set(others), key=others.count) if others else "-"
         either = np.mean([right for _, right in each])
-        print(f"| {rung} | {len(each)} | {exactly:.0%} | {either:.0%} | {worst} |")
+        print(f"| {candidate} | {len(each)} | {exactly:.0%} | {either:.0%} | {worst} |")
     print(f"\nall: chosen or tied {np.mean([right for _, _, right in results]):.1%}")
 
 
@@ -150,7 +154,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--logs", type=int, default=500)
     parser.add_argument("--first", type=int, default=0)
-    parser.add_argument("--choice", type=int, default=100, help="logs of each rung")
+    parser.add_argument("--choice", type=int, default=100, help="logs of each candidate")
     parser.add_argument("--processes", type=int, default=2)
     given = parser.parse_args()
     began = time.perf_counter()

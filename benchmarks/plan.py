@@ -19,13 +19,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 import hersey
-from hersey.fuser import Limits
-from hersey.plan import Plan, plan_profile
-from hersey.plan.draws import drawn
-from hersey.plan.obstacles import Reach
-from hersey.plan.planner import Unknown
-from hersey.plan.trial import Course, Shape, rounded
-from hersey.spread import Spread
+from hersey.machine.machine import Limits
+from hersey.machine.uncertainty import Uncertainty
+from hersey.stability.plan import Plan, plan_profile
+from hersey.stability.plan.draws import drawn
+from hersey.stability.plan.obstacles import Reach
+from hersey.stability.plan.planner import Unknown
+from hersey.stability.plan.trial import Shape, TemperatureProfile, rounded
 
 CONFIDENCE = 0.95
 FRESH = 1000
@@ -41,7 +41,7 @@ class Case:
     target: float
     limits: Limits
     temperature: hersey.Schedule | None
-    uncertainty: dict[str, Spread]
+    uncertainty: dict[str, Uncertainty]
 
 
 def case(number: int) -> Case:
@@ -82,10 +82,10 @@ def case(number: int) -> Case:
         spring_force=drag.breakaway_force * between(1.25, 2.0) if rng.uniform() < 0.4 else None,
     )
     uncertainty = {
-        "stiffness": Spread(share=rng.uniform(0.05, 0.15)),
-        "transition_force": Spread(share=rng.uniform(0.03, 0.1)),
-        "transition_speed": Spread(share=rng.uniform(0.01, 0.05)),
-        "stick_speed": Spread(share=rng.uniform(0.1, 1.0)),
+        "stiffness": Uncertainty(share=rng.uniform(0.05, 0.15)),
+        "transition_force": Uncertainty(share=rng.uniform(0.03, 0.1)),
+        "transition_speed": Uncertainty(share=rng.uniform(0.01, 0.05)),
+        "stick_speed": Uncertainty(share=rng.uniform(0.1, 1.0)),
     }
     if rng.uniform() < 0.15:
         uncertainty = {}
@@ -152,7 +152,7 @@ def fresh_share(given: Case, plan: Plan, draws: int = FRESH, seed: int = 990_001
 
 def brute_force(given: Case, plan: Plan, seed: int) -> tuple[float, Shape | None]:
     """Return the time of the quickest profile of a grid that is quicker than the plan, or the plan's."""
-    course = Course(given.temperature)
+    course = TemperatureProfile(given.temperature)
     unknown = Unknown(given.train, given.drag, given.uncertainty, {}, seed)
     trials = unknown.trials(CONFIDENCE, course, Reach.of(given.limits, None).force)
     lap = trials.machines[0].lap

@@ -16,7 +16,7 @@ import numpy as np
 from scipy.optimize import root
 
 from benchmarks.motion import best_of, machine
-from hersey.reynolds import LineContactSolution, solve_line_contact
+from hersey.lubrication.reynolds import LineContactSolution, solve_line_contact
 
 RADIUS, LOAD, VISCOSITY, MODULUS = 0.015, 1000.0, 0.1, 2e6
 

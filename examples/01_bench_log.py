@@ -10,8 +10,8 @@ import sys
 from pathlib import Path
 
 import hersey
-from hersey.analysis import analyse
-from hersey.charts import charts
+from hersey.charts.analysis import charts
+from hersey.document.assembly import analyse
 
 HERE = Path(__file__).parent
 FOLDER = Path(sys.argv[1] if len(sys.argv) > 1 else "build/examples")

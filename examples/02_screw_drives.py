@@ -18,9 +18,10 @@ import sys
 from pathlib import Path
 
 import hersey
-from hersey.analysis import analyse
-from hersey.charts import charts
-from hersey.report import render, write_atomically
+from hersey.charts.analysis import charts
+from hersey.document.assembly import analyse
+from hersey.files.writing import write_atomically
+from hersey.report.page import render
 
 DATA = Path(__file__).parents[2] / "shared" / "data" / "friction" / "tro2021_screw_drives"
 FOLDER = Path(sys.argv[1] if len(sys.argv) > 1 else "build/examples")

@@ -8,9 +8,9 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from hersey.trace import cycles, identify
-from hersey.trace.trace_chart import trace_chart
-from hersey.trace.trace_file import read_trace
+from hersey.charts.cycles import trace_chart
+from hersey.identification import cycles, identify
+from hersey.identification.trace_file import read_trace
 
 HERE = Path(__file__).parent
 FOLDER = Path(sys.argv[1] if len(sys.argv) > 1 else "build/examples")

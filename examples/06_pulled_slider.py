@@ -18,9 +18,9 @@ from pathlib import Path
 
 import numpy as np
 
-from hersey.trace import cycles
-from hersey.trace.trace_chart import trace_chart
-from hersey.trace.trace_file import read_trace
+from hersey.charts.cycles import trace_chart
+from hersey.identification import cycles
+from hersey.identification.trace_file import read_trace
 
 DATA = Path(__file__).parents[2] / "shared" / "data" / "stick-slip"
 FOLDER = Path(sys.argv[1] if len(sys.argv) > 1 else "build/examples")

@@ -8,9 +8,9 @@ import pytest
 
 import hersey
 from hersey import testbench
-from hersey.analysis import analyse
-from hersey.document import Analysis
-from hersey.fuser import read_fuser
+from hersey.document.assembly import analyse
+from hersey.document.parts import Analysis
+from hersey.machine.machine import read_machine
 
 ROOT = Path(__file__).parents[1]
 SHARED = ROOT.parent / "shared"
@@ -50,8 +50,8 @@ def points(log: hersey.TorqueLog) -> hersey.SteadyPoints:
 
 @pytest.fixture(scope="session")
 def document(log: hersey.TorqueLog, points: hersey.SteadyPoints) -> Analysis:
-    machine = read_fuser(ROOT / "examples" / "fuser.toml")
-    return analyse(log, points, command="hersey report bench.csv", fuser=machine)
+    machine = read_machine(ROOT / "examples" / "machine.toml")
+    return analyse(log, points, command="hersey report bench.csv", machine=machine)
 
 
 @pytest.fixture

@@ -1,97 +1,115 @@
 """From a torque log to the lubrication state of a sliding drive.
 
+Rooms, in the order in which data passes through them; each says in its own header what it holds.
+
 ==============  ==============================================================================
-log             reading files into a `TorqueLog`
-log_mapping     which channel plays which role, kept beside the data
-corrections     what lies between sensor and film, taken off with a record
-steady          dwells, reduced to steady points with honest errors
-estimation      weighted least squares with an unknown scatter
-law             B = a T^b w^c in logarithms, and the data it is fitted to
-branches        two branches of the law: whether, and where they meet
-surface         the fitted damping surface
+errors          the closed table of what can go wrong
+units           the one door for units
+arrays          numbers or arrays as arguments
+result          what every result can do
+files           text, TOML with units, writing whole or not at all
+log             a `TorqueLog` from any file
+motion          drag against speed, schedules, the motion of the belt, sweeps
+damping         dwells, the damping surface, candidate laws, comparison, design of tests
 inspection      what a log holds, before a fit
-ladder          every law fitted to the same dwells, one chosen, with intervals and energies
-compare         two logs against each other
-design          which dwells to record next
-regime          what the exponents say about lubrication
-schedule        drive speed, torque or temperature against time
-drag            drag laws: force against belt speed and temperature
-motion          stick-slip motion of the belt
-ensemble        thousands of motions in one call
-axes            parameters given as arrays, and the axes they span
-hysteresis      the band of drive speeds where the past decides
-approach        steps, ramps and kicks: how one comes to a speed
-columns         calling the core over arrays
-lubricant       viscosity against temperature, pressure and shear rate
-paper           Eqs. 5-10 of the paper
-contact         the nip: moduli, width, pressure
-film            film thickness and drag by every law, and which holds
-film_evidence   the film that a log measures, and what its exponents speak for
-film_lint       what in the numbers of a nip cannot be
-film_part       the film of a nip, for the analysis document
-film_document   the film as text and JSON
-film_chart      the regime chart and the Stribeck curve
-film_tables     the tables of nip and lubricant in fuser.toml
-fuser           what the log cannot tell: drivetrain, nip, limits, operating points, uncertainty
-spread          how far a parameter is known
-text_file       opening a text file
-toml_file       opening a TOML file
-toml_value      its values: strings with units
-course_file     a course of temperature from a CSV file
-json_value      results as JSON can hold them
-operating_map   what the belt does at each temperature and drive speed
+lubrication     lubricant, contact, film, the paper's equations, the numerical line contact
+machine         the machine's file: drivetrain, nip, limits, uncertainty, operating points
+verdict         what exponents and film say together
+identification  the cycles of a trace, and the drive behind them
+stability       hysteresis, disturbances, the operating map, drive profiles
 document        the analysis document: the contract with the page
-analysis        from a log to the document
-plan            the quickest drive profile that ends smooth, or what forbids it
-fit_file        a fit read back from its JSON
 charts          one chart per result
-map_chart       the operating map as a chart
-plan_chart      a drive profile and the motion as a chart
-report          the page that shows both
-figures         the paper's figures anew, each claim judged
-trace           cycles of a stick-slip trace, and the drive behind them
-reynolds        the line contact solved numerically: pressure, film, friction
-scenario        a sweep described by a file
+report          the page
+paper_figures   the paper's figures anew, each claim judged
 testbench       the virtual test stand
-units, errors   the one unit registry; the closed table of errors
-cli             the commands
+cli             one file per verb
 ==============  ==============================================================================
 
 SI inside, always; units are read and written at the door. Every interval is at 95 %. Nothing flows
-backwards: a log knows no fit, a fit knows no motion.
+backwards: a log knows no fit, a fit knows no motion. Names are loaded when they are used.
 """
 
-from hersey._core import VERSION as __version__
-from hersey.approach import Disturbance, SafeStep, disturbance, safe_step
-from hersey.branches import Transition
-from hersey.contact import Contact, nip_width
-from hersey.drag import Drag, DragTable
-from hersey.ensemble import sweep
-from hersey.errors import HerseyError
-from hersey.estimation import Estimate
-from hersey.film import Film, drag_torque, film_thickness
-from hersey.film_evidence import MeasuredFilm, measured_film
-from hersey.hysteresis import (
-    CyclesWithoutSticking,
-    HysteresisBand,
-    cycles_without_sticking,
-    hysteresis,
-    hysteresis_sweep,
-)
-from hersey.inspection import Inspection, inspect
-from hersey.ladder import ModelComparison, compare_models, hersey_collapse, viscosity_laws
-from hersey.log import TorqueLog, read
-from hersey.log_mapping import read_with_mapping
-from hersey.lubricant import Lubricant, ShearThinning
-from hersey.motion import Drivetrain, StickSlipCycle, Trajectory, simulate, stick_slip
-from hersey.operating_map import OperatingMap, operating_map
-from hersey.plan import Plan, plan_profile
-from hersey.regime import Regime, regime
-from hersey.reynolds import LineContactSolution, solve_line_contact
-from hersey.schedule import Schedule
-from hersey.steady import SteadyPoints
-from hersey.surface import DampingSurface, fit
-from hersey.trace import CycleRecord, IdentifiedDrive, cycles, identify
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from hersey._core import VERSION as __version__
+    from hersey.damping.branches import Transition
+    from hersey.damping.candidates import ModelComparison, compare_models, hersey_collapse, viscosity_laws
+    from hersey.damping.compare import LogComparison, compare
+    from hersey.damping.design import TestDesign, design
+    from hersey.damping.dwells import SteadyPoints
+    from hersey.damping.estimation import Estimate
+    from hersey.damping.surface import DampingSurface, fit
+    from hersey.errors import HerseyError
+    from hersey.identification import CycleRecord, IdentifiedDrive, cycles, identify
+    from hersey.inspection import Inspection, inspect
+    from hersey.log import TorqueLog, read
+    from hersey.log.mapping import read_with_mapping
+    from hersey.lubrication.contact import Contact, nip_width
+    from hersey.lubrication.film import Film, drag_torque, film_thickness
+    from hersey.lubrication.lubricant import Lubricant, ShearThinning
+    from hersey.lubrication.reynolds import LineContactSolution, solve_line_contact
+    from hersey.machine import (
+        Limits,
+        Machine,
+        OperatingPoint,
+        Uncertainty,
+        read_machine,
+        read_temperature_profile,
+    )
+    from hersey.motion.drag import Drag, DragTable
+    from hersey.motion.schedule import Schedule
+    from hersey.motion.simulation import Drivetrain, StickSlipCycle, Trajectory, simulate, stick_slip
+    from hersey.motion.sweep import sweep
+    from hersey.stability.disturbance import Disturbance, SafeStep, disturbance, safe_step
+    from hersey.stability.hysteresis import (
+        CyclesWithoutSticking,
+        HysteresisBand,
+        cycles_without_sticking,
+        hysteresis,
+        hysteresis_sweep,
+    )
+    from hersey.stability.operating_map import OperatingMap, operating_map
+    from hersey.stability.plan import Plan, plan_profile
+    from hersey.verdict.evidence import MeasuredFilm, measured_film
+    from hersey.verdict.regime import Regime, regime
+
+#: Where each public name lives.
+_HOMES = {
+    "errors": "HerseyError",
+    "log": "TorqueLog read",
+    "log.mapping": "read_with_mapping",
+    "motion.schedule": "Schedule",
+    "motion.drag": "Drag DragTable",
+    "motion.simulation": "Drivetrain StickSlipCycle Trajectory simulate stick_slip",
+    "motion.sweep": "sweep",
+    "damping.dwells": "SteadyPoints",
+    "damping.estimation": "Estimate",
+    "damping.branches": "Transition",
+    "damping.surface": "DampingSurface fit",
+    "damping.candidates": "ModelComparison compare_models hersey_collapse viscosity_laws",
+    "damping.compare": "LogComparison compare",
+    "damping.design": "TestDesign design",
+    "inspection": "Inspection inspect",
+    "lubrication.lubricant": "Lubricant ShearThinning",
+    "lubrication.contact": "Contact nip_width",
+    "lubrication.film": "Film drag_torque film_thickness",
+    "lubrication.reynolds": "LineContactSolution solve_line_contact",
+    "machine": "Limits Machine OperatingPoint Uncertainty read_machine read_temperature_profile",
+    "verdict.regime": "Regime regime",
+    "verdict.evidence": "MeasuredFilm measured_film",
+    "identification": "CycleRecord IdentifiedDrive cycles identify",
+    "stability.hysteresis": (
+        "CyclesWithoutSticking HysteresisBand cycles_without_sticking hysteresis hysteresis_sweep"
+    ),
+    "stability.disturbance": "Disturbance SafeStep disturbance safe_step",
+    "stability.operating_map": "OperatingMap operating_map",
+    "stability.plan": "Plan plan_profile",
+}
+_HOME_OF = {name: module for module, names in _HOMES.items() for name in names.split()}
 
 __all__ = [
     "Contact",
@@ -108,11 +126,15 @@ __all__ = [
     "HysteresisBand",
     "IdentifiedDrive",
     "Inspection",
+    "Limits",
     "LineContactSolution",
+    "LogComparison",
     "Lubricant",
+    "Machine",
     "MeasuredFilm",
     "ModelComparison",
     "OperatingMap",
+    "OperatingPoint",
     "Plan",
     "Regime",
     "SafeStep",
@@ -120,13 +142,17 @@ __all__ = [
     "ShearThinning",
     "SteadyPoints",
     "StickSlipCycle",
+    "TestDesign",
     "TorqueLog",
     "Trajectory",
     "Transition",
+    "Uncertainty",
     "__version__",
+    "compare",
     "compare_models",
     "cycles",
     "cycles_without_sticking",
+    "design",
     "disturbance",
     "drag_torque",
     "film_thickness",
@@ -141,6 +167,8 @@ __all__ = [
     "operating_map",
     "plan_profile",
     "read",
+    "read_machine",
+    "read_temperature_profile",
     "read_with_mapping",
     "regime",
     "safe_step",
@@ -150,3 +178,20 @@ __all__ = [
     "sweep",
     "viscosity_laws",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """Load a public name when it is first used."""
+    if name == "__version__":
+        from hersey._core import VERSION
+
+        return VERSION
+    if name not in _HOME_OF:
+        raise AttributeError(f"module 'hersey' has no attribute '{name}'")
+    value = getattr(importlib.import_module(f"hersey.{_HOME_OF[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -6,7 +6,9 @@ import math
 import re
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
+import numpy as np
 import pint
 
 from hersey.errors import UnitError, WrongKindError
@@ -14,6 +16,8 @@ from hersey.errors import UnitError, WrongKindError
 registry: pint.UnitRegistry[float] = pint.UnitRegistry(autoconvert_offset_to_baseunit=True, cache_folder=None)
 registry.define("rev = revolution")
 
+#: 0 degC, K.
+ZERO_CELSIUS = 273.15
 #: SI unit and an example of each kind of quantity that a log or a command carries.
 KINDS: dict[str, tuple[str, str]] = {
     "time": ("s", "s"),
@@ -141,6 +145,47 @@ def parse(kind: str, text: str) -> float:
     return value
 
 
+def si(kind: str, value: Any) -> Any:
+    """Return an argument in SI, whatever way it was given.
+
+    Parameters
+    ----------
+    kind
+        A key of `KINDS`.
+    value
+        A number or array in SI, which is returned as it is; a string with its unit (``"400 rpm"``); a pint
+        quantity; or a list or tuple of strings or quantities, which becomes an array.
+
+    Raises
+    ------
+    UnitError
+        If a string or a quantity has no unit, or one of another kind.
+
+    Examples
+    --------
+    >>> si("temperature", "150 degC"), si("belt speed", 0.1)
+    (423.15, 0.1)
+    """
+    if isinstance(value, str):
+        return parse(kind, value)
+    if isinstance(value, list | tuple) and any(isinstance(v, str) or hasattr(v, "magnitude") for v in value):
+        return np.array([si(kind, item) for item in value], dtype=float)
+    if hasattr(value, "magnitude") and hasattr(value, "units"):
+        line = conversion(kind, f"{value.units:~C}" or str(value.units))
+        return line.scale * value.magnitude + line.offset
+    return value
+
+
 def convert(value: float, si: str, unit: str) -> float:
     """Return an SI value (given its SI unit) in ``unit``."""
     return float(registry.Quantity(value, si).to(unit).magnitude)
+
+
+def rpm(speed: float) -> float:
+    """Return a speed in rad/s as revolutions per minute, for people."""
+    return convert(speed, "rad/s", "rpm")
+
+
+def celsius(kelvin: float) -> float:
+    """Return a temperature in K as degC, for people."""
+    return convert(kelvin, "K", "degC")

@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
 
-from hersey.charts import charts
-from hersey.document import Analysis
-from hersey.report import render
+from hersey.charts.analysis import charts
+from hersey.document.parts import Analysis
+from hersey.report.page import render
 
 ARGUMENTS = ["--no-sandbox", "--disable-gpu", "--disable-background-networking", "--disable-component-update"]
 

@@ -11,11 +11,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from hersey import _core, paper
-from hersey.columns import rows
-from hersey.contact import Contact, nip_width
-from hersey.film import drag_torque, film_thickness
-from hersey.lubricant import EXAMPLES, Lubricant
+from hersey import _core
+from hersey.arrays import rows
+from hersey.lubrication import paper
+from hersey.lubrication.contact import Contact, nip_width
+from hersey.lubrication.film import drag_torque, film_thickness
+from hersey.lubrication.lubricant import EXAMPLES, Lubricant
 from hersey.units import registry
 from tests.conftest import shared
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from tests.cli.test_cli import run
 from tests.conftest import shared
-from tests.test_cli import run
 
 
 def test_a_motor_dynamometer_with_a_units_row(tmp_path: Path) -> None:

@@ -14,8 +14,8 @@ import pytest
 
 import hersey
 from hersey.log.torque_log import TorqueLog
+from tests.cli.test_cli import run
 from tests.conftest import shared
-from tests.test_cli import run
 
 RPM = np.pi / 30
 UNITS = {"torque": "-9.84 mN*m / 100", "speed": "-1 rpm"}

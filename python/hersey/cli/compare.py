@@ -8,11 +8,15 @@ from typing import Annotated
 
 import typer
 
-from hersey.cli.options import AsJson, Reading, reads_logs
-from hersey.cli.shell import app, command, working
+from hersey.cli.options import (
+    AsJson,
+    Reading,
+    reads_logs,
+)
+from hersey.cli.outputs import command
+from hersey.cli.progress import working
 
 
-@app.command()
 @reads_logs
 def compare(
     a: Annotated[Path, typer.Argument(metavar="A", help="Log of one lubricant, age or unit.")],
@@ -26,7 +30,7 @@ def compare(
 
     Both logs are read by the same options; a log against itself shows how small a difference could be seen.
     """
-    from hersey.compare import compare as compared
+    from hersey.damping.compare import compare as compared
 
     of_a, of_b = (reading.points(reading.log([path])) for path in (a, b))
     with working("comparing"):

@@ -8,28 +8,18 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hersey.cli.options import AsJson, Force
-from hersey.cli.shell import app, command, may_write, working
-from hersey.errors import OutputError, ParameterError, UnitError, WrongKindError
+from hersey.cli.options import (
+    AsJson,
+    Force,
+)
+from hersey.cli.outputs import command, may_draw
+from hersey.cli.progress import working
+from hersey.errors import ParameterError, UnitError, WrongKindError
 
 if TYPE_CHECKING:
-    from hersey.trace.trace_file import TraceFile
-
-#: Kinds of file of the figure.
-SUFFIXES = (".png", ".svg", ".pdf")
-#: Kind of unit of each parameter that can be known; exponents have none.
-_KNOWN = {
-    "stiffness": "stiffness",
-    "mass": "mass",
-    "transition_force": "force",
-    "transition_speed": "belt speed",
-    "stick_speed": "belt speed",
-    "ehl_exponent": None,
-    "mixed_exponent": None,
-}
+    from hersey.identification.trace_file import TraceFile
 
 
-@app.command()
 def cycles(
     trace: Annotated[
         Path, typer.Argument(metavar="TRACE", help="CSV with a heading 'time (s),force (N)', or MAT file.")
@@ -67,15 +57,13 @@ def cycles(
 
     Example: [bold]hersey cycles examples/stick-slip.csv --drive-speed "20 mm/s" --identify[/bold]
     """
-    from hersey.report import write_atomically
-    from hersey.trace.identification import identify as identify_drive
-    from hersey.trace.record import cycles as find_cycles
-    from hersey.trace.trace_file import read_trace
+    from hersey.files.writing import write_atomically
+    from hersey.identification.cycle_record import cycles as find_cycles
+    from hersey.identification.identified_drive import identify as identify_drive
+    from hersey.identification.trace_file import read_trace
 
     if figure is not None:
-        if figure.suffix not in SUFFIXES:
-            raise OutputError(f"--figure {figure}: name a file that ends in {', '.join(SUFFIXES)}")
-        may_write(figure, force, inputs=[trace])
+        may_draw(figure, force, inputs=[trace])
     given = read_trace(trace, quantity=quantity, time=time, value=value, time_unit=time_unit, unit=unit)
     speed = _drive_speed(drive_speed, given)
     if known and not identify:
@@ -93,8 +81,8 @@ def cycles(
         with working("identifying the drive"):
             drive = identify_drive(record, known=values, closures=tuple(closures.replace(" ", "").split(",")))
     if figure is not None:
-        from hersey.charts import rendered
-        from hersey.trace.trace_chart import trace_chart
+        from hersey.charts.cycles import trace_chart
+        from hersey.charts.render import rendered
 
         shown = "share of the weight" if given.unit == "1" else given.unit
         with working("drawing"):
@@ -146,14 +134,15 @@ def _least_drop(text: str, given: TraceFile) -> float | None:
 
 
 def _known(texts: list[str], given: TraceFile) -> dict[str, float]:
+    from hersey.motion.parameters import KINDS, OF_THE_BELT
     from hersey.units import parse
 
     values = {}
     for text in texts:
         name, sign, amount = (part.strip() for part in text.partition("="))
-        if not sign or name not in _KNOWN:
-            raise ParameterError(f"--known '{text}': write NAME=VALUE with one of {', '.join(_KNOWN)}")
-        kind = _KNOWN[name]
+        if not sign or name not in OF_THE_BELT:
+            raise ParameterError(f"--known '{text}': write NAME=VALUE with one of {', '.join(OF_THE_BELT)}")
+        kind = KINDS[name]
         if kind is None or given.quantity == "torque" or given.unit == "1":
             values[name] = _number(f"--known {name}", amount)
             continue

@@ -7,12 +7,17 @@ from typing import Annotated
 
 import typer
 
-from hersey.cli.options import AsJson, Logs, Reading, reads_logs
-from hersey.cli.shell import app, command, working
+from hersey.cli.options import (
+    AsJson,
+    Logs,
+    Reading,
+    reads_logs,
+)
+from hersey.cli.outputs import command
+from hersey.cli.progress import working
 from hersey.errors import ParameterError
 
 
-@app.command()
 @reads_logs
 def design(
     logs: Logs,
@@ -30,11 +35,11 @@ def design(
 
     Example: [bold]hersey design examples/bench.csv --tare standing --quantity "transition speed"[/bold]
     """
-    from hersey.design import design as designed
-    from hersey.ladder import compare_models
+    from hersey.damping.candidates import compare_models
+    from hersey.damping.design import design as designed
 
     points = reading.points(reading.log(logs))
-    with working("fitting the ladder"):
+    with working("fitting the candidates"):
         fitted = compare_models(points, bootstrap=0, cross_validate=False)
     found = designed(
         fitted,

@@ -8,24 +8,27 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hersey.cli.options import AsJson, Force, Reading, reads_logs, temperature_of
-from hersey.cli.shell import app, command, may_write, working
-from hersey.errors import OutputError, ParameterError
+from hersey.cli.options import (
+    AsJson,
+    Force,
+    Reading,
+    reads_logs,
+    temperature_of,
+)
+from hersey.cli.outputs import command, may_draw
+from hersey.cli.progress import working
+from hersey.errors import ParameterError
 
 if TYPE_CHECKING:
-    from hersey.film import Film
-    from hersey.film_evidence import MeasuredFilm, Verdict
-    from hersey.fuser import Fuser
-
-#: Kinds of file of the figure.
-SUFFIXES = (".png", ".svg", ".pdf")
+    from hersey.lubrication.film import Film
+    from hersey.machine.machine import Machine
+    from hersey.verdict.evidence import MeasuredFilm, Verdict
 
 
-@app.command()
 @reads_logs
 def film(
-    fuser: Annotated[
-        Path, typer.Argument(metavar="FUSER", help="TOML file with the tables contact and lubricant.")
+    machine_file: Annotated[
+        Path, typer.Argument(metavar="MACHINE", help="TOML file with the tables contact and lubricant.")
     ],
     reading: Reading,
     log: Annotated[
@@ -45,30 +48,28 @@ def film(
 ) -> None:
     """Say how thick the lubricant film is, which regime makes it, and what a log says of both.
 
-    Example: [bold]hersey film examples/fuser.toml --log examples/bench.csv --tare standing[/bold]
+    Example: [bold]hersey film examples/machine.toml --log examples/bench.csv --tare standing[/bold]
 
     Without a log the film is computed at the points of the file.
     """
-    from hersey.film_document import film_document
-    from hersey.film_evidence import measured_film, verdict
-    from hersey.film_lint import lint
-    from hersey.fuser import read_fuser
-    from hersey.report import write_atomically
+    from hersey.document.film_document import film_document
+    from hersey.files.writing import write_atomically
+    from hersey.machine.machine import read_machine
+    from hersey.verdict.checks import check_film
+    from hersey.verdict.evidence import measured_film, verdict
 
     if figure is not None:
-        if figure.suffix not in SUFFIXES:
-            raise OutputError(f"--figure {figure}: name a file that ends in {', '.join(SUFFIXES)}")
-        may_write(figure, force, inputs=[fuser, *(log or [])])
-    machine = read_fuser(fuser)
+        may_draw(figure, force, inputs=[machine_file, *(log or [])])
+    machine = read_machine(machine_file)
     if machine.contact is None or machine.lubricant is None:
         missing = "contact" if machine.contact is None else "lubricant"
-        raise ParameterError(f"{fuser.name}: the film needs a table [{missing}]")
+        raise ParameterError(f"{machine_file.name}: the film needs a table [{missing}]")
     kelvin = temperature_of(at)
     if not log and reading != Reading():
         raise ParameterError("options that say how to read a log need --log")
     measured, says = None, None
     if log:
-        from hersey.surface import fit
+        from hersey.damping.surface import fit
 
         points = reading.points(reading.log(log))
         with working("fitting the surface"):
@@ -83,10 +84,10 @@ def film(
         )
         says = verdict(measured, surface, machine.contact, machine.lubricant)
     predicted, names = _predicted(machine, measured, kelvin, belt_speed)
-    notes = lint(machine, predicted, measured)
+    notes = check_film(machine, predicted, measured)
     if figure is not None:
-        from hersey.charts import rendered
-        from hersey.film_chart import film_chart
+        from hersey.charts.film import film_chart
+        from hersey.charts.render import rendered
 
         with working("drawing"):
             chart = film_chart(predicted, names, measured)
@@ -102,10 +103,10 @@ def film(
 
 
 def _predicted(
-    machine: Fuser, measured: MeasuredFilm | None, kelvin: float | None, belt_speed: str
+    machine: Machine, measured: MeasuredFilm | None, kelvin: float | None, belt_speed: str
 ) -> tuple[Film, list[str]]:
     """The film at the points of interest, and their names."""
-    from hersey.film import film_thickness
+    from hersey.lubrication.film import film_thickness
     from hersey.units import parse
 
     assert machine.contact is not None
@@ -132,14 +133,14 @@ def _predicted(
 
 
 def _text(
-    machine: Fuser,
+    machine: Machine,
     predicted: Film,
     names: list[str],
     measured: MeasuredFilm | None,
     says: Verdict | None,
     notes: tuple[str, ...],
 ) -> str:
-    from hersey.film_document import film_summary
+    from hersey.document.film_document import film_summary
 
     lines = [film_summary(machine, predicted, names, measured)]
     if says is not None:

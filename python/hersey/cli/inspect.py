@@ -8,12 +8,17 @@ from typing import Annotated
 
 import typer
 
-from hersey.cli.options import AsJson, Force, Logs, Reading, reads_logs
-from hersey.cli.shell import app, may_write, working
-from hersey.errors import OutputError
+from hersey.cli.options import (
+    AsJson,
+    Force,
+    Logs,
+    Reading,
+    reads_logs,
+)
+from hersey.cli.outputs import PICTURES, may_draw, may_write
+from hersey.cli.progress import working
 
 
-@app.command()
 @reads_logs
 def inspect(
     logs: Logs,
@@ -36,11 +41,11 @@ def inspect(
 
     It works on logs that cannot be fitted too, and says why they cannot.
     """
+    from hersey.charts.inspection import inspection_chart
+    from hersey.charts.operating_map import rendered_map
+    from hersey.files.writing import write_atomically
     from hersey.inspection import inspect as inspected
-    from hersey.inspection.chart import SUFFIXES, inspection_chart
-    from hersey.log_mapping import FILE_NAME, propose_mapping
-    from hersey.map_chart import rendered_map
-    from hersey.report import write_atomically
+    from hersey.log.mapping import FILE_NAME, propose_mapping
     from hersey.units import parse
 
     inputs = [*logs, *([Path(reading.mapping)] if reading.mapping else [])]
@@ -48,9 +53,7 @@ def inspect(
     if kept is not None:
         may_write(kept, force, inputs=inputs)
     if figure is not None:
-        if figure.suffix not in SUFFIXES:
-            raise OutputError(f"--figure {figure}: name a file that ends in {', '.join(SUFFIXES)}")
-        may_write(figure, force, inputs=inputs)
+        may_draw(figure, force, inputs, suffixes=PICTURES)
     roles = ("time", "torque", "speed", "temperature")
     channels = {role: name for role in roles if (name := getattr(reading, role))}
     units = {role: unit for role in roles if (unit := getattr(reading, f"{role}_unit"))}

@@ -7,11 +7,16 @@ from typing import Annotated
 
 import typer
 
-from hersey.cli.options import AsJson, Logs, Reading, reads_logs
-from hersey.cli.shell import app, bar, command, working
+from hersey.cli.options import (
+    AsJson,
+    Logs,
+    Reading,
+    reads_logs,
+)
+from hersey.cli.outputs import command
+from hersey.cli.progress import bar, working
 
 
-@app.command()
 @reads_logs
 def models(
     logs: Logs,
@@ -22,16 +27,16 @@ def models(
     seed: Annotated[int, typer.Option("--seed", help="Of the resampling.", min=0)] = 1,
     as_json: AsJson = False,
 ) -> None:
-    """Fit every law of the ladder to the same dwells, choose one, and say why; energies and Hersey collapse.
+    """Fit every candidate law to the same dwells, choose one, and say why; energies and Hersey collapse.
 
     Example: [bold]hersey models examples/bench.csv --tare standing[/bold]
     """
-    from hersey.ladder import compare_models
+    from hersey.damping.candidates import compare_models
 
     log = reading.log(logs)
     with working("reducing to dwells"):
         points = reading.points(log)
-    with bar("fitting", unit="rungs") as progress:
+    with bar("fitting", unit="candidates") as progress:
         found = compare_models(points, bootstrap=bootstrap, seed=seed, progress=progress)
     if as_json:
         print(json.dumps(found.document() | {"command": command()}, indent=1))

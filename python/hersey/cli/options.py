@@ -5,18 +5,20 @@ from __future__ import annotations
 import functools
 import inspect
 from collections.abc import Callable
-from dataclasses import dataclass, fields, replace
+from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
 
 import typer
 
-from hersey.cli.shell import bar, working
+from hersey.cli.progress import bar, working
 
 if TYPE_CHECKING:
+    from hersey.damping.dwells import SteadyPoints
+    from hersey.damping.surface import DampingSurface
     from hersey.log import TorqueLog
-    from hersey.steady import SteadyPoints
-    from hersey.surface import DampingSurface
+    from hersey.motion.drag import Drag
+    from hersey.motion.simulation import Drivetrain
 
 Logs = Annotated[list[Path], typer.Argument(metavar="LOG...", help="Log file, or several of one machine.")]
 SomeLogs = Annotated[
@@ -25,6 +27,10 @@ SomeLogs = Annotated[
 FitFile = Annotated[
     Path | None,
     typer.Option("--fit", metavar="JSON", help="Instead of a log: what hersey fit --json printed."),
+]
+MachineFile = Annotated[
+    Path | None,
+    typer.Option("--machine", metavar="TOML", help="Drivetrain of the machine, for the simulation."),
 ]
 AsJson = Annotated[bool, typer.Option("--json", help="Print the whole result as JSON.")]
 Force = Annotated[bool, typer.Option("--force", help="Replace files that exist.")]
@@ -66,7 +72,7 @@ class Reading:
 
     def log(self, paths: list[Path]) -> TorqueLog:
         """Read the files as one log, with a progress bar."""
-        from hersey.log_mapping import read_with_mapping
+        from hersey.log.mapping import read_with_mapping
 
         roles = ("time", "torque", "speed", "temperature")
         with bar("reading") as progress:
@@ -91,9 +97,9 @@ class Reading:
 
     def surface(self, paths: list[Path] | None, fit_file: Path | None) -> DampingSurface:
         """Read a finished fit, or fit the log."""
+        from hersey.damping.surface import fit
+        from hersey.document.saved_fit import read_fit
         from hersey.errors import ParameterError
-        from hersey.fit_file import read_fit
-        from hersey.surface import fit
 
         if (fit_file is None) == (not paths):
             raise ParameterError("give either a LOG or --fit with what 'hersey fit LOG --json' printed")
@@ -106,6 +112,38 @@ class Reading:
         log = self.log(paths or [])
         with working("fitting the surface"):
             return fit(self.points(log), temperature_scale=self.temperature_scale)
+
+
+@dataclass(frozen=True)
+class Belt:
+    """The options that describe a belt, its spring and its drag; the defaults are the paper's baseline."""
+
+    stiffness: Annotated[float, typer.Option(help="Spring stiffness k.")] = 1000.0
+    mass: Annotated[float, typer.Option(help="Belt mass m.")] = 1.0
+    transition_force: Annotated[
+        float, typer.Option(help="Drag at the transition speed (B0 of the paper).")
+    ] = 50.0
+    transition_speed: Annotated[float, typer.Option(help="Speed where the branches meet.")] = 1.0
+    ehl_exponent: Annotated[float, typer.Option(help="Damping exponent above it.")] = -0.7
+    mixed_exponent: Annotated[float, typer.Option(help="Damping exponent below it.")] = -1.2
+    stick_speed: Annotated[float, typer.Option(help="Speed below which the belt sticks.")] = 0.01
+    closure: Annotated[
+        str, typer.Option(help="What happens below it: retained, stiction, stribeck or lugre.")
+    ] = "retained"
+    bristle_stiffness: Annotated[
+        float | None, typer.Option(help="Of lugre: force per deflection of the bristles.")
+    ] = None
+    bristle_damping: Annotated[float | None, typer.Option(help="Of lugre: force per rate of deflection.")] = (
+        None
+    )
+
+    def parts(self) -> tuple[Drivetrain, Drag]:
+        """Return drivetrain and drag."""
+        from hersey.motion.drag import Drag
+        from hersey.motion.simulation import Drivetrain
+
+        given = asdict(self)
+        return Drivetrain(given.pop("stiffness"), given.pop("mass")), Drag(**given)
 
 
 def temperature_of(text: str) -> float | None:

@@ -8,7 +8,6 @@ clock       rate, gaps and unevenness of a clock
 faults      step, noise and faults of a channel
 support     what the dwells can tell, in words
 inspecting  all of it: `inspect`
-chart       the channels as a chart
 ==========  ================================================================
 """
 

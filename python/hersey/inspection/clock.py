@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hersey.log.torque_log import FloatArray
+from hersey.arrays import FloatArray
 
 #: Rows are missing where an interval is longer than so many usual ones (of an uneven clock: more).
 GAP, GAP_OF_UNEVEN = 1.5, 5.0

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hersey.log.torque_log import FloatArray
+from hersey.arrays import FloatArray
 
 IndexArray = NDArray[np.intp]
 

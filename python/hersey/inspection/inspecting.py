@@ -11,16 +11,17 @@ from typing import Any
 
 import numpy as np
 
-from hersey.corrections import Corrected, Correction
+from hersey.arrays import FloatArray
 from hersey.errors import HerseyError
 from hersey.inspection.clock import Clock, clock_of
 from hersey.inspection.faults import DITHER, Fault, Traits, traits
 from hersey.inspection.raw import RawChannel, RawLog, raw_channels, roles_of
 from hersey.inspection.support import Support, support_of
-from hersey.json_value import json_value
 from hersey.log.channels import ROLES, ChannelChoice
-from hersey.log.torque_log import FloatArray
-from hersey.log_mapping import LogMapping, mapping_of, read_with_mapping
+from hersey.log.corrections import Corrected
+from hersey.log.mapping import LogMapping, mapping_of, read_with_mapping
+from hersey.log.torque_log import Correction
+from hersey.result import json_value
 from hersey.units import conversion
 
 #: A step of a role's channel matters if it is this share of its small readings (their lowest tenth).
@@ -160,7 +161,7 @@ def inspect(
     paths, channels, units, isothermal, drop_missing
         As for `hersey.read`.
     mapping
-        As for `hersey.log_mapping.read_with_mapping`.
+        As for `hersey.log.mapping.read_with_mapping`.
     min_dwell
         Shortest dwell, s.
 

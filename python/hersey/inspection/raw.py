@@ -8,14 +8,14 @@ from pathlib import Path
 import numpy as np
 import polars as pl
 
+from hersey.arrays import FloatArray
 from hersey.errors import HerseyError
 from hersey.log.channels import ROLES, ChannelChoice, find_channel
-from hersey.log.footer import end_of_table
 from hersey.log.formats import opened, opener
-from hersey.log.layout import SNIFFED, Column, Layout, find_layout
-from hersey.log.numbers import MISSING
-from hersey.log.stamps import Stamps, counted_since
-from hersey.log.torque_log import FloatArray
+from hersey.log.text.footer import end_of_table
+from hersey.log.text.layout import SNIFFED, Column, Layout, find_layout
+from hersey.log.text.numbers import MISSING
+from hersey.log.text.stamps import Stamps, counted_since
 
 _NULLS = sorted({s for word in MISSING for s in (word, word.upper(), word.capitalize())} | {"NaN"})
 

@@ -9,11 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from hersey.arrays import FloatArray
+from hersey.damping.dwells import SteadyPoints, groups_of_temperature
+from hersey.damping.law import distinct_speeds
 from hersey.errors import InsufficientDataError
-from hersey.law import distinct_speeds
-from hersey.log.torque_log import FloatArray, TorqueLog
-from hersey.steady import SteadyPoints, groups_of_temperature, rpm
-from hersey.units import convert
+from hersey.log.torque_log import TorqueLog
+from hersey.units import convert, rpm
 
 #: Speeds that span less than this factor, and temperatures that span less than so many kelvin, give an
 #: exponent only with a wide interval.

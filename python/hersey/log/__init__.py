@@ -1,147 +1,23 @@
-"""Reading files, and frames in memory, into a `TorqueLog`.
+"""A `TorqueLog` from any file, or from frames in memory.
 
-=============  ==================================================================
-torque_log     `TorqueLog`: channels in SI, with where they came from
-numbers        how a text file writes numbers
-stamps         how a text file writes times
-layout         where the table starts in a text file, and what its columns are
-footer         where it ends
-channels       which column plays which role
-delimited      CSV and its relatives
-recording      what a file of any other format holds: channels with clocks of their own
-assembly       from a recording to a run on the clock of the torque
-formats        which reader opens a file
-lvm tdms mdf matlab hdf5 parquet frame      one reader each, with matrices, matlab_tags, mdf_worker
-=============  ==================================================================
+===========  =======================================================================
+torque_log   `TorqueLog`: channels in SI, with where they came from
+text         CSV and its relatives
+recording    what a file of any other format holds: channels with clocks of their own
+formats      one reader per format, and which one opens a file
+channels     which column plays which role
+assembly     from a recording to a run on the clock of the torque
+reading      `read`: from files to a log
+corrections  what lies between sensor and film, taken off with a record
+mapping      which channel plays which role, kept beside the data
+===========  =======================================================================
 
 A further format is one more context manager that yields a `Recording`, entered in `formats.READERS`.
 """
 
-from __future__ import annotations
-
-from collections.abc import Iterable
-from pathlib import Path
-from typing import Any
-
-from hersey.errors import ParameterError
-from hersey.log.assembly import Assembly, Source, columns, file_source, nothing_to_read
-from hersey.log.channels import ROLES, ChannelChoice
-from hersey.log.delimited import Progress, delimited_columns, read_delimited
-from hersey.log.formats import READERS, opened, opener
-from hersey.log.frame import frame_recording, is_frame
+from hersey.log.channels import ChannelChoice
+from hersey.log.formats import READERS
+from hersey.log.reading import list_channels, read
 from hersey.log.torque_log import Channel, LogFile, Run, TorqueLog
 
 __all__ = ["READERS", "Channel", "ChannelChoice", "LogFile", "Run", "TorqueLog", "list_channels", "read"]
-
-
-def read(
-    paths: Any,
-    *,
-    channels: dict[str, str] | None = None,
-    units: dict[str, str] | None = None,
-    isothermal: bool = False,
-    drop_missing: bool = False,
-    progress: Progress | None = None,
-) -> TorqueLog:
-    """Read one log, or several of one machine, each a run of its own.
-
-    Parameters
-    ----------
-    paths
-        File or files (text, LVM, TDMS, MDF, MATLAB, HDF5, Parquet), or polars or pandas frames in memory.
-    channels
-        Column name by role (``time``, ``torque``, ``speed``, ``temperature``), where names and units
-        in the file do not settle it; ``name#2`` is the second column of a name, ``group/name`` one of a
-        part of the file, ``#2`` the second column of a table without a header.
-    units
-        Unit by role, where the file has none or a wrong one; may carry a factor or sign.
-    isothermal
-        Leave temperature out.
-    drop_missing
-        Leave out rows in which a number is missing, and count them, instead of refusing them.
-    progress
-        Called with bytes done and bytes in all.
-
-    Raises
-    ------
-    HerseyError
-        One of its kinds, naming file, line and column.
-
-    Examples
-    --------
-    >>> import hersey
-    >>> log = hersey.read("examples/bench.csv")
-    >>> log.rows > 10_000
-    True
-    """
-    files = _listed(paths)
-    if not files:
-        raise ParameterError("no log file was named")
-    for role in [*(channels or {}), *(units or {})]:
-        if role not in ROLES:
-            raise ParameterError(f"'{role}' is no role of a channel: they are {', '.join(ROLES)}")
-    choices = {r: ChannelChoice((channels or {}).get(r, ""), (units or {}).get(r, "")) for r in ROLES}
-    runs: list[Run] = []
-    logs: list[LogFile] = []
-    for number, file in enumerate(files, start=1):
-        if is_frame(file):
-            recording, digest, size = frame_recording(file)
-            name = "frame" if len(files) == 1 else f"frame {number}"
-            assembly = Assembly(recording, choices, Source(name, digest, size), isothermal=isothermal)
-            run, log = assembly.run(drop_missing=drop_missing)
-        elif reader := opener(path := Path(file)):
-            source = file_source(path)
-            with opened(path, reader) as recording:
-                assembly = Assembly(recording, choices, source, isothermal=isothermal)
-            run, log = assembly.run(drop_missing=drop_missing)
-        else:
-            run, log = read_delimited(
-                path, choices, isothermal=isothermal, drop_missing=drop_missing, progress=progress
-            )
-        if any(log.sha256 == other.sha256 for other in logs):
-            raise ParameterError(f"{log.name} holds the same bytes as a file before it: name each file once")
-        runs.append(run)
-        logs.append(log)
-    return TorqueLog(tuple(runs), tuple(logs))
-
-
-def list_channels(path: Any) -> list[tuple[str, str]]:
-    """Return name and unit, as written, of every channel of numbers in a file or frame.
-
-    The unit is empty where the file has none. Names are those that `read` understands in ``channels=``.
-
-    Raises
-    ------
-    HerseyError
-        If the file cannot be read.
-
-    Examples
-    --------
-    >>> from hersey.log import list_channels
-    >>> list_channels("examples/bench.csv")[1]
-    ('Drive torque', 'N*m')
-    """
-    if is_frame(path):
-        found = columns(frame_recording(path)[0])
-    elif reader := opener(path := Path(path)):
-        with opened(path, reader) as recording:
-            found = columns(recording)
-            if not found and recording.nothing:
-                raise nothing_to_read(recording, path.name)
-    else:
-        found = delimited_columns(path)
-    names = [column.path for column in found]
-    return [
-        (f"{name}#{names[:i].count(name) + 1}" if names.count(name) > 1 else name, column.unit)
-        for i, (name, column) in enumerate(zip(names, found, strict=True))
-    ]
-
-
-def _listed(paths: Any) -> list[Any]:
-    if is_frame(paths) or isinstance(paths, str | Path):
-        return [paths]
-    if not isinstance(paths, Iterable):
-        raise ParameterError(
-            f"a {type(paths).__name__} is no log: name a file, or give a polars or pandas frame"
-        )
-    return list(paths)

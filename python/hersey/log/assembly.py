@@ -8,12 +8,13 @@ from pathlib import Path
 
 import numpy as np
 
+from hersey.arrays import FloatArray
 from hersey.errors import ChannelError, UnreadableLogError
 from hersey.log.channels import ROLES, ChannelChoice, find_channel, no_channel
-from hersey.log.layout import Column
 from hersey.log.recording import Recording, Signal
-from hersey.log.stamps import counted_since, is_clock_name
-from hersey.log.torque_log import LARGEST, Channel, FloatArray, LogFile, Run
+from hersey.log.text.layout import Column
+from hersey.log.text.stamps import counted_since, is_clock_name
+from hersey.log.torque_log import LARGEST, Channel, LogFile, Run
 from hersey.units import Conversion
 
 

@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass
 
 from hersey.errors import ChannelError, UnitError, WrongKindError
-from hersey.log.layout import Column
+from hersey.log.text.layout import Column
 from hersey.units import KINDS, Conversion, conversion
 
 #: Roles of a log's columns, in the order in which they are asked for.

@@ -16,8 +16,8 @@ from typing import Any
 
 import numpy as np
 
+from hersey.arrays import FloatArray
 from hersey.errors import UnreadableLogError
-from hersey.log.torque_log import FloatArray
 
 #: Units that a name may end with where the format has no place for a unit: ``torque_Nm``, ``t_s``.
 _ENDINGS = {
@@ -113,7 +113,7 @@ def listening(name: str) -> Iterator[list[str]]:
 
 def split_unit(name: str) -> tuple[str, str]:
     """Return name and unit of a channel called ``Torque [N*m]``, ``Torque (N*m)`` or ``torque_Nm``."""
-    from hersey.log.layout import NAME_WITH_UNIT
+    from hersey.log.text.layout import NAME_WITH_UNIT
 
     match = NAME_WITH_UNIT.fullmatch(name)
     if match:

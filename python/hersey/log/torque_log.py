@@ -7,15 +7,18 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+
+from hersey.arrays import FloatArray
 
 if TYPE_CHECKING:
-    from hersey.corrections import Correction
-    from hersey.steady import SteadyPoints
+    from hersey.damping.dwells import SteadyPoints
 
-FloatArray = NDArray[np.float64]
+#: SI unit of each channel that can be corrected.
+CHANNEL_UNITS = {"torque": "N m", "speed": "rad/s", "temperature": "K"}
 #: No quantity of a drive comes near this, in SI.
 LARGEST = 1e12
+#: Slower than this, rad/s (a fiftieth of a revolution a minute), the drive stands.
+STANDING = 0.002
 
 
 @dataclass(frozen=True)
@@ -64,6 +67,46 @@ class Run:
 
 
 @dataclass(frozen=True)
+class Effect:
+    """How far a correction moved a role: its largest and root mean square change, SI, and the latter's share.
+
+    ``share`` is of the median of the absolute values before, or None where that is zero.
+    """
+
+    role: str
+    largest: float
+    typical: float
+    share: float | None
+
+    def __str__(self) -> str:
+        """Return it in words."""
+        unit = CHANNEL_UNITS[self.role]
+        share = (
+            ""
+            if self.share is None or self.role == "temperature"
+            else f", {100.0 * self.share:.2g} % of its median"
+        )
+        return f"{self.role} by {self.largest:.3g} {unit} at most, {self.typical:.3g} {unit} rms{share}"
+
+
+@dataclass(frozen=True)
+class Correction:
+    """Record of one correction: its parameters as written with units, its effects, and what it left alone."""
+
+    name: str
+    parameters: tuple[tuple[str, str], ...]
+    effects: tuple[Effect, ...]
+    note: str = ""
+
+    def __str__(self) -> str:
+        """Return it as one line."""
+        stated = ", ".join(f"{key} {value}" for key, value in self.parameters)
+        changed = "; ".join(str(effect) for effect in self.effects)
+        moved = f": changed {changed}" if changed else ""
+        return f"{self.name} ({stated}){moved}{'; ' + self.note if self.note else ''}"
+
+
+@dataclass(frozen=True)
 class TorqueLog:
     """One or more runs on the same machine; `hersey.read` makes it."""
 
@@ -82,7 +125,7 @@ class TorqueLog:
         return all(run.temperature is not None for run in self.runs)
 
     def steady(self, *, min_dwell: float = 2.0, tare: str = "none", rotation: str = "both") -> SteadyPoints:
-        """Reduce the log to its steady points: see `hersey.steady.steady_points`."""
-        from hersey.steady import steady_points
+        """Reduce the log to its steady points: see `hersey.damping.dwells.steady_points`."""
+        from hersey.damping.dwells import steady_points
 
         return steady_points(self, min_dwell=min_dwell, tare=tare, rotation=rotation)

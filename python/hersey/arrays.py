@@ -1,0 +1,66 @@
+"""Arrays as arguments: numbers or arrays, the axes that they span, and calling the core over them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hersey.errors import ParameterError
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.intp]
+BoolArray = NDArray[np.bool_]
+
+
+def numbers_of(name: str, value: ArrayLike) -> FloatArray:
+    """Return a parameter as an array of numbers; refuse anything else by its name."""
+    try:
+        numbers = np.asarray(value, dtype=float)
+    except (TypeError, ValueError):
+        raise ParameterError(f"{name} is not a number or an array of numbers") from None
+    if numbers.size == 0:
+        raise ParameterError(f"{name} is empty")
+    return numbers
+
+
+def crossed(given: dict[str, FloatArray]) -> tuple[list[str], dict[str, FloatArray]]:
+    """One axis per array, in the order of the core."""
+    for name, numbers in given.items():
+        if numbers.ndim > 1:
+            raise ParameterError(
+                f"{name} has {numbers.ndim} dimensions: say zip=True to take arrays together"
+            )
+    axes = [name for name, numbers in given.items() if numbers.ndim]
+    grids = np.meshgrid(*(np.atleast_1d(given[name]) for name in given), indexing="ij")
+    shape = [given[name].size for name in axes]
+    return axes, {name: grid.reshape(shape) for name, grid in zip(given, grids, strict=True)}
+
+
+def together(given: dict[str, FloatArray]) -> tuple[list[str], dict[str, FloatArray]]:
+    """NumPy's rules of broadcasting."""
+    try:
+        arrays = np.broadcast_arrays(*given.values())
+    except ValueError:
+        shapes = ", ".join(f"{name} {numbers.shape}" for name, numbers in given.items() if numbers.ndim)
+        raise ParameterError(f"the arrays do not fit together: {shapes}") from None
+    dimensions = arrays[0].ndim
+    axes = ["set"] if dimensions == 1 else [f"dim_{i}" for i in range(dimensions)]
+    return axes[:dimensions], dict(zip(given, arrays, strict=True))
+
+
+def rows(function: Callable[[Sequence[FloatArray]], FloatArray], *given: ArrayLike) -> FloatArray:
+    """Return the rows of a core function of columns, each of the shape that the arguments span together.
+
+    Raises
+    ------
+    ParameterError
+        With the core's words, which name the quantity.
+    """
+    arrays = np.broadcast_arrays(*(np.asarray(value, dtype=float) for value in given))
+    try:
+        found = function([np.ascontiguousarray(array).ravel() for array in arrays])
+    except ValueError as error:
+        raise ParameterError(str(error)) from None
+    return np.asarray(found.reshape(-1, *arrays[0].shape))

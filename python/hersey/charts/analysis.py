@@ -1,0 +1,431 @@
+"""One chart per result, as Vega-Lite specifications: the same in the page, in a notebook and as a file.
+
+Every chart takes the analysis document. Units of people appear here: rpm, degC, mN m.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import altair as alt
+import numpy as np
+
+from hersey.charts.film import regime_chart
+from hersey.charts.render import rendered
+from hersey.charts.style import HEIGHT, INK, WIDTH, Chart, Row, plot, ramp, tip, zoom
+from hersey.document.parts import Analysis, Point, Series
+from hersey.units import celsius, rpm
+
+#: Cells of a surface overlap a little: seams would shine through otherwise.
+_OVERLAP = 1.004
+#: Width kept for the axis of charts that share a time axis, so that they line up.
+_AXIS = 42
+_SHAPES = ("circle", "square", "triangle-up", "diamond", "cross", "triangle-down")
+
+
+def charts(document: Analysis) -> dict[str, Chart]:
+    """Return every chart of a document by name, in the order of the report."""
+    makers: dict[str, Callable[[Analysis], Chart | None]] = {
+        "torque": torque,
+        "damping": damping,
+        "surface": surface,
+        "residuals": residuals,
+        "regime": regime,
+        "film": film,
+        "simulation_speed": simulation_speed,
+        "simulation_force": simulation_force,
+        "timeline_speed": timeline_speed,
+        "timeline_torque": timeline_torque,
+        "timeline_temperature": timeline_temperature,
+    }
+    made = {name: make(document) for name, make in makers.items()}
+    return {name: chart for name, chart in made.items() if chart is not None}
+
+
+def torque(document: Analysis) -> Chart:
+    """Torque against speed per temperature, with the fitted law (the paper's Fig. 2)."""
+    scale, unit = _torque_unit(document)
+    subtitle = "points are dwells with two standard errors; lines are the fitted law"
+    title = alt.Title("Drag torque against speed", subtitle=subtitle)
+    return _against_speed(document, "torque", f"Torque ({unit})", scale).properties(title=title)
+
+
+def damping(document: Analysis) -> Chart:
+    """Damping against speed per temperature (Figs. 3 and 7)."""
+    scale, unit = _torque_unit(document)
+    title = alt.Title(
+        "Damping against speed", subtitle="dashed: slope -1, where torque does not depend on speed"
+    )
+    chart = _against_speed(document, "damping", f"Damping ({unit}·s/rad)", scale)
+    layers = alt.layer(_slope_of_minus_one(document, scale), chart)
+    return layers.properties(title=title, width=WIDTH, height=HEIGHT)
+
+
+def surface(document: Analysis) -> Chart:
+    """The fitted surface over temperature and speed, with the dwells on it (Fig. 4)."""
+    scale, unit = _torque_unit(document)
+    hot = document.fit.temperature_range is not None
+    cells = [
+        {
+            "from": rpm(c.speed_low),
+            "to": rpm(c.speed_high) * _OVERLAP,
+            "low": 0.0 if c.temperature_low is None else celsius(c.temperature_low),
+            "high": 1.0 if c.temperature_high is None else celsius(c.temperature_high * _OVERLAP ** (1 / 8)),
+            "damping": c.damping * scale,
+        }
+        for c in document.fit.cells
+    ]
+    low, high = (rpm(v) for v in document.fit.speed_range)
+    x = _speed("from:Q", [low * 0.93, high * 1.07])
+    shade = alt.Scale(type="log", scheme="viridis", nice=False)
+    cell = (
+        plot(cells)
+        .mark_rect(strokeWidth=0, clip=True)
+        .encode(
+            x=x,
+            x2="to:Q",
+            y=alt.Y(
+                "low:Q",
+                title="Temperature (°C)" if hot else None,
+                scale=alt.Scale(zero=False, nice=False, padding=8),
+                axis=alt.Axis() if hot else None,
+            ),
+            y2="high:Q",
+            color=alt.Color("damping:Q", title=f"B ({unit}·s/rad)", scale=shade),
+            tooltip=[tip("damping", f"fitted damping ({unit}·s/rad)")],
+        )
+    )
+    line = [{"from": rpm(t.speed), "low": celsius(t.temperature)} for t in document.fit.transition_curve]
+    rows = [r | {"from": r["speed"], "low": r["temperature"]} for r in _point_rows(document)] if hot else []
+    bend = (
+        plot(line)
+        .mark_line(color="white", strokeDash=[6, 4], strokeWidth=2)
+        .encode(x=x, y="low:Q", order="low:Q")
+    )
+    dots = (
+        plot(rows)
+        .mark_point(filled=True, fill="white", stroke="#222", strokeWidth=1, size=40, opacity=1)
+        .encode(x=x, y="low:Q", tooltip=_point_tips(document))
+    )
+    subtitle = document.fit.law + ("; circles: the dwells" if rows else "")
+    subtitle += "; dashed: transition speed" if line else ""
+    title = alt.Title("Fitted damping surface", subtitle=subtitle)
+    layers = [cell, *([bend] if line else []), *([dots] if rows else [])]
+    return alt.layer(*layers).properties(title=title, width=WIDTH, height=HEIGHT if hot else 80)
+
+
+def residuals(document: Analysis) -> Chart:
+    """Residuals against speed, by direction of approach."""
+    rows = _point_rows(document)
+    zero = plot([{"y": 0}]).mark_rule(color=INK).encode(y="y:Q")
+    dots = (
+        plot(rows)
+        .mark_point(filled=True, size=55, opacity=0.85)
+        .encode(
+            x=_speed("speed:Q"),
+            y=alt.Y("residual:Q", title="measured / fitted - 1 (%)"),
+            color=_temperature_channels(document)[0],
+            shape=alt.Shape(
+                "approach:N",
+                title="approached",
+                scale=alt.Scale(
+                    domain=["from below", "from above", "start"],
+                    range=["triangle-up", "triangle-down", "circle"],
+                ),
+            ),
+            tooltip=_point_tips(document),
+        )
+        .add_params(zoom())
+    )
+    title = alt.Title(
+        "Residuals", subtitle="up and down triangles apart mean hysteresis; a bend means a wrong law"
+    )
+    return alt.layer(zero, dots).properties(title=title, width=WIDTH, height=220)
+
+
+def regime(document: Analysis) -> Chart:
+    """Exponent of damping per temperature and branch with its interval, against the named hypotheses."""
+    rows: list[Row] = [
+        {
+            "where": "all" if b.temperature is None else f"{celsius(b.temperature):.0f} °C",
+            "order": b.temperature or 0.0,
+            "branch": {"ehl": "rising torque", "mixed": "falling torque", "all": "all speeds"}[b.branch],
+            "value": b.exponent.value,
+            "low": b.exponent.low,
+            "high": b.exponent.high,
+            "speeds": f"{rpm(b.speed_low):.3g} to {rpm(b.speed_high):.3g} rpm, {b.points} dwells",
+        }
+        for b in document.regime.exponents
+    ]
+    c = document.fit.coefficients["c"]
+    rows.append(
+        {
+            "where": "surface",
+            "order": 1e6,
+            "branch": "rising torque" if document.fit.transition else "all speeds",
+            "value": c.value,
+            "low": c.low,
+            "high": c.high,
+            "speeds": f"{document.fit.points} dwells together",
+        }
+    )
+    named: list[Row] = [
+        {"name": h.name, "low": h.low if h.low is not None else -1.4, "high": h.high}
+        for h in document.regime.hypotheses
+    ]
+    bands = [h for h in named if h["high"] != h["low"]]
+    lines = [h for h in named if h["high"] == h["low"]]
+    least = min([-1.3, *(r["low"] for r in rows)])
+    scale = alt.Scale(domain=[least - 0.05, max([0.1, *(r["high"] for r in rows)])], nice=False)
+    y = alt.Y("value:Q", title="exponent of damping in speed", scale=scale)
+    band = (
+        plot(bands)
+        .mark_rect(color="#bbb", opacity=0.5, clip=True)
+        .encode(y=alt.Y("low:Q", scale=scale), y2="high:Q")
+    )
+    line = plot(lines).mark_rule(color=INK, strokeDash=[4, 3]).encode(y=alt.Y("low:Q", scale=scale))
+    labels = [{"name": h["name"], "y": (max(h["low"], least) + h["high"]) / 2} for h in named]
+    text = (
+        plot(labels)
+        .mark_text(align="left", dx=6, color=INK)
+        .encode(x=alt.value(WIDTH), y=alt.Y("y:Q", scale=scale), text="name:N")
+    )
+    x = alt.X("where:N", title=None, sort=alt.SortField("order"), axis=alt.Axis(labelAngle=0))
+    tips = [tip("value", "exponent"), tip("low", "95 % from"), tip("high", "to"), alt.Tooltip("speeds:N")]
+    kinds = ["rising torque", "falling torque", "all speeds"]
+    kinds = [k for k in kinds if any(r["branch"] == k for r in rows)]
+    looks = {
+        "rising torque": ("#1f4e9c", "circle"),
+        "falling torque": ("#d9730d", "square"),
+        "all speeds": ("#555", "diamond"),
+    }
+    legend = alt.Legend(orient="top", title=None)
+    colors = alt.Scale(domain=kinds, range=[looks[k][0] for k in kinds])
+    shapes = alt.Scale(domain=kinds, range=[looks[k][1] for k in kinds])
+    color = alt.Color("branch:N", scale=colors, legend=legend)
+    shape = alt.Shape("branch:N", scale=shapes, legend=legend)
+    base = plot(rows)
+    bars = base.mark_rule(strokeWidth=3).encode(x=x, y=alt.Y("low:Q", scale=scale), y2="high:Q", color=color)
+    dots = base.mark_point(filled=True, size=90).encode(x=x, y=y, color=color, shape=shape, tooltip=tips)
+    title = alt.Title(
+        "Exponent of damping, with 95 % intervals", subtitle="against what each regime predicts"
+    )
+    return alt.layer(band, line, text, bars, dots).properties(title=title, width=WIDTH, height=HEIGHT)
+
+
+def film(document: Analysis) -> Chart | None:
+    """Which law of film thickness holds in the user's nip."""
+    part = document.film
+    return None if part is None else regime_chart(part.points, part.dwells, part.layer_factor)
+
+
+def simulation_speed(document: Analysis) -> Chart:
+    """Belt speed of the simulation (Fig. 9)."""
+    s = document.simulation
+    scale, unit = (1e3, "mm/s") if s.speed_unit == "m/s" else (1.0, s.speed_unit)
+    rows = [{"time": t, "value": v * scale} for t, v in zip(s.time, s.belt_speed, strict=True)]
+    marks = [(s.transition_speed * scale, "transition speed", WIDTH, "right")]
+    marks += (
+        [(s.drive_speed * scale, "drive speed", 4, "left")] if s.drive_speed != s.transition_speed else []
+    )
+    line = _trace(rows, f"Belt speed ({unit})")
+    layers: list[alt.Chart] = []
+    for y, name, at, align in marks:
+        mark = plot([{"y": y, "name": name}])
+        layers.append(mark.mark_rule(color=INK, strokeDash=[4, 3]).encode(y="y:Q"))
+        label = mark.mark_text(align=align, dy=-7, color=INK)  # type: ignore[arg-type]  # left or right
+        layers.append(label.encode(x=alt.value(at), y="y:Q", text="name:N"))
+    what = {"stick_slip": f"stick-slip at {s.frequency:.4g} Hz, stuck {s.stuck_fraction:.1%} of the time"}
+    title = alt.Title(s.title, subtitle=what.get(s.kind, s.kind.replace("_", " ")))
+    return alt.layer(line, *layers).properties(title=title, width=WIDTH, height=220)
+
+
+def simulation_force(document: Analysis) -> Chart:
+    """Spring force of the simulation."""
+    s = document.simulation
+    rows = [{"time": t, "value": f} for t, f in zip(s.time, s.spring_force, strict=True)]
+    return alt.layer(_trace(rows, f"Spring force ({s.force_unit})")).properties(width=WIDTH, height=160)
+
+
+def timeline_speed(document: Analysis) -> Chart:
+    """Speed over the log, dwells shaded."""
+    return _timeline(document, document.timeline.speed, "Speed (rpm)", rpm, "The log: dwells used are shaded")
+
+
+def timeline_torque(document: Analysis) -> Chart:
+    """Torque over the log, dwells shaded."""
+    scale, unit = _torque_unit(document)
+    return _timeline(document, document.timeline.torque, f"Torque ({unit})", lambda v: v * scale, None)
+
+
+def timeline_temperature(document: Analysis) -> Chart | None:
+    """Temperature over the log, dwells shaded; None if not recorded."""
+    series = document.timeline.temperature
+    return None if series is None else _timeline(document, series, "Temperature (°C)", celsius, None)
+
+
+def write_figures(document: Analysis, folder: Path) -> list[Path]:
+    """Write every chart as SVG, PNG and PDF and return the paths."""
+    folder.mkdir(parents=True, exist_ok=True)
+    written = []
+    for name, chart in charts(document).items():
+        for suffix, content in rendered(chart).items():
+            path = folder / f"{name}.{suffix}"
+            path.write_bytes(content)
+            written.append(path)
+    return written
+
+
+def _torque_unit(document: Analysis) -> tuple[float, str]:
+    """Factor from N m, and the unit in which the torques of a document read best."""
+    largest = max(abs(p.torque) for p in document.points)
+    return (1.0, "N·m") if largest >= 1.0 else (1e3, "mN·m")
+
+
+def _against_speed(document: Analysis, quantity: str, title: str, scale: float) -> Chart:
+    rows = _point_rows(document)
+    for row, point in zip(rows, document.points, strict=True):
+        value, error = abs(getattr(point, quantity)) * scale, 2 * abs(point.torque_error / point.torque)
+        row |= {"y": value, "low": value * (1 - error), "high": value * (1 + error)}
+    curves = [
+        {
+            "speed": rpm(v),
+            "y": scale * b * (v if quantity == "torque" else 1.0),
+            "level": _level(c.temperature),
+        }
+        for c in document.fit.curves
+        for v, b in zip(c.speed, c.damping, strict=True)
+    ]
+    y = alt.Y("y:Q", title=title, scale=alt.Scale(type="log", nice=False, padding=12))
+    color, shape = _temperature_channels(document)
+    line = (
+        plot(curves)
+        .mark_line(strokeWidth=1.8)
+        .encode(x=_speed("speed:Q"), y=y, color=color, detail="level:N")
+    )
+    base = plot(rows)
+    bars = base.mark_rule(strokeWidth=1.5).encode(x=_speed("speed:Q"), y="low:Q", y2="high:Q", color=color)
+    dots = (
+        base.mark_point(filled=True, size=55, opacity=0.9)
+        .encode(x=_speed("speed:Q"), y=y, color=color, shape=shape, tooltip=_point_tips(document))
+        .add_params(zoom())
+    )
+    return alt.layer(line, bars, dots).properties(width=WIDTH, height=HEIGHT)
+
+
+def _slope_of_minus_one(document: Analysis, scale: float) -> alt.Chart:
+    """From the upper left corner of the data down, as far as they reach."""
+    top = max(p.damping for p in document.points) * scale
+    bottom = min(p.damping for p in document.points) * scale
+    low, high = (rpm(v) for v in document.fit.speed_range)
+    end = min(high, low * top / bottom)
+    rows = [{"speed": low, "y": top}, {"speed": end, "y": top * low / end}]
+    chart: alt.Chart = (
+        plot(rows)
+        .mark_line(color=INK, strokeDash=[4, 3], strokeWidth=1)
+        .encode(x=_speed("speed:Q"), y=alt.Y("y:Q", scale=alt.Scale(type="log", nice=False)))
+    )
+    return chart
+
+
+def _point_rows(document: Analysis) -> list[Row]:
+    scale, _ = _torque_unit(document)
+    return [_point_row(p, scale) for p in document.points]
+
+
+def _point_row(p: Point, scale: float) -> Row:
+    return {
+        "speed": rpm(abs(p.speed)),
+        "temperature": None if p.temperature is None else celsius(p.temperature),
+        "level": _level(p.group_temperature),
+        "torque_shown": abs(p.torque) * scale,
+        "damping_shown": p.damping * scale,
+        "residual": 100.0 * float(np.expm1(p.residual)),
+        "approach": p.approach,
+        "from_to": f"{p.start:.1f} to {p.end:.1f} s",
+    }
+
+
+def _level(kelvin: float | None) -> float:
+    """Temperature as legends name it; 0 where none was recorded."""
+    return 0.0 if kelvin is None else float(round(celsius(kelvin)))
+
+
+def _temperature_channels(document: Analysis) -> tuple[alt.Color, alt.Shape]:
+    """Colour by lightness and shape, so that temperatures survive greyscale."""
+    levels = sorted({_level(p.group_temperature) for p in document.points})
+    legend = alt.Legend(title="°C") if document.fit.temperature_range else None
+    shapes = [_SHAPES[i % len(_SHAPES)] for i in range(len(levels))]
+    return (
+        alt.Color("level:N", scale=alt.Scale(domain=levels, range=ramp(len(levels))), legend=legend),
+        alt.Shape("level:N", scale=alt.Scale(domain=levels, range=shapes), legend=legend),
+    )
+
+
+def _speed(field: str, domain: list[float] | None = None) -> alt.X:
+    scale = (
+        alt.Scale(type="log", nice=False, padding=12)
+        if domain is None
+        else alt.Scale(type="log", domain=domain)
+    )
+    return alt.X(field, title="Drive speed (rpm)", scale=scale)
+
+
+def _point_tips(document: Analysis) -> list[alt.Tooltip]:
+    _, unit = _torque_unit(document)
+    hot = [tip("temperature", "temperature (°C)")] if document.fit.temperature_range else []
+    return [
+        tip("speed", "speed (rpm)"),
+        *hot,
+        tip("torque_shown", f"torque ({unit})"),
+        tip("damping_shown", f"damping ({unit}·s/rad)"),
+        tip("residual", "measured / fitted - 1 (%)"),
+        alt.Tooltip("approach:N", title="approached"),
+        alt.Tooltip("from_to:N", title="dwell"),
+    ]
+
+
+def _trace(rows: list[Row], title: str) -> alt.Chart:
+    chart: alt.Chart = (
+        plot(rows)
+        .mark_line(color="#1f4e9c", strokeWidth=1.5)
+        .encode(
+            x=alt.X("time:Q", title="Time (s)", scale=alt.Scale(nice=False)),
+            y=alt.Y("value:Q", title=title, axis=alt.Axis(minExtent=_AXIS)),
+            tooltip=[tip("time", "time (s)"), tip("value", title)],
+        )
+        .add_params(zoom())
+    )
+    return chart
+
+
+def _timeline(
+    document: Analysis, series: Series, title: str, shown: Callable[[float], float], heading: str | None
+) -> Chart:
+    values = [float(f"{shown(v):.5g}") for v in series.value]
+    rows = [{"time": t, "value": v} for t, v in zip(series.time, values, strict=True)]
+    starts = document.timeline.starts
+    dwells = [{"from": starts[p.run] + p.start, "to": starts[p.run] + p.end} for p in document.points]
+    several = len(document.files) > 1
+    shade = (
+        plot(dwells)
+        .mark_rect(color="#f2c14e", opacity=0.55)
+        .encode(x="from:Q", x2="to:Q", y=alt.value(0), y2=alt.value(110))
+    )
+    line = (
+        plot(rows)
+        .mark_line(color="#1f4e9c", strokeWidth=0.9)
+        .encode(
+            x=alt.X(
+                "time:Q",
+                title="Time (s), files one after another" if several else "Time (s)",
+                scale=alt.Scale(nice=False),
+            ),
+            y=alt.Y("value:Q", title=title, scale=alt.Scale(zero=False), axis=alt.Axis(minExtent=_AXIS)),
+            tooltip=[tip("time", "time (s)"), tip("value", title)],
+        )
+        .add_params(zoom())
+    )
+    chart = alt.layer(shade, line).properties(width=WIDTH, height=110)
+    return chart.properties(title=heading) if heading else chart

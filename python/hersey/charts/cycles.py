@@ -1,0 +1,112 @@
+"""A trace with its slips, and the mean cycle with the fitted motion, as a chart."""
+
+from __future__ import annotations
+
+import altair as alt
+import numpy as np
+
+from hersey.charts.style import WIDTH, Chart, Row, plot
+from hersey.identification.cycle_record import CycleRecord, Scatter
+from hersey.identification.identified_drive import IdentifiedDrive
+
+_INK, _BLUE, _ORANGE = "#333", "#1f4e9c", "#d9730d"
+#: The trace is shown over this many typical periods in the middle of it, and at least this many samples.
+_PERIODS, _SAMPLES = 8.0, 400
+#: Points drawn of the trace, at most.
+_DRAWN = 4000
+
+
+def trace_chart(record: CycleRecord, drive: IdentifiedDrive | None = None, *, unit: str = "") -> Chart:
+    """Return the chart of a record: part of the trace, the fall of each slip, and the fitted cycle.
+
+    Parameters
+    ----------
+    unit
+        Of the trace, for the axes.
+    """
+    label = {"force": "Force", "speed": "Stretch"}[record.quantity] + (f" ({unit})" if unit else "")
+    panels: list[alt.Chart | Chart] = [_trace(record, label)]
+    if record.slips:
+        panels.append(_slips(record, label))
+    if drive is not None:
+        panels.append(_cycle(drive, label))
+    title = alt.Title("Cycles of the trace", subtitle=_heading(record, drive))
+    panels_together = alt.vconcat(*panels, spacing=16).resolve_scale(color="independent")
+    stacked: Chart = panels_together.properties(title=title)
+    return stacked
+
+
+def _heading(record: CycleRecord, drive: IdentifiedDrive | None) -> list[str]:
+    words = record.kind.replace("_", " ")
+    if not record.slips:
+        return [words]
+    period = Scatter.of(record.period)
+    lines = [
+        f"{words}: {record.slips} slips, period {period.median:.4g} s; dots: where the slip is half done"
+    ]
+    if drive is not None:
+        decided = "" if drive.decided else " (not decided)"
+        lines.append(
+            f"fitted motion: closure {drive.closure}{decided}, within {100 * drive.misfit:.2g} % of the drop"
+        )
+    return lines
+
+
+def _window(record: CycleRecord) -> tuple[int, int]:
+    samples = record.samples
+    size = samples.value.size
+    lap = float(np.median(record.period)) if record.period.size else size * samples.interval
+    reach = int(max(_PERIODS * lap / samples.interval, _SAMPLES)) // 2
+    return max(0, size // 2 - reach), min(size, size // 2 + reach)
+
+
+def _trace(record: CycleRecord, label: str) -> Chart:
+    first, last = _window(record)
+    step = max(1, (last - first) // _DRAWN)
+    samples = record.samples
+    rows = _rows(time=samples.time[first:last:step], force=samples.value[first:last:step])
+    inside = (record.slip_time >= samples.time[first]) & (record.slip_time <= samples.time[last - 1])
+    middle = 0.5 * (record.force_max + record.force_min)
+    marks = _rows(time=record.slip_time[inside], force=middle[inside])
+    x = alt.X("time:Q", title="Time (s), part of the trace", scale=alt.Scale(nice=False, zero=False))
+    y = alt.Y("force:Q", title=label, scale=alt.Scale(zero=False))
+    line = plot(rows).mark_line(color=_BLUE, strokeWidth=1, clip=True).encode(x=x, y=y, order="index:Q")
+    dots = plot(marks).mark_point(color=_ORANGE, filled=True, size=40).encode(x=x, y=y)
+    return alt.layer(line, dots).properties(width=WIDTH, height=220)
+
+
+def _slips(record: CycleRecord, label: str) -> alt.Chart:
+    step = max(1, record.slips // _DRAWN)
+    rows = _rows(time=record.slip_time[::step], drop=record.drop[::step])
+    chart: alt.Chart = (
+        plot(rows)
+        .mark_point(color=_BLUE, filled=True, size=14, opacity=0.7)
+        .encode(
+            x=alt.X("time:Q", title="Time (s), whole trace", scale=alt.Scale(nice=False, zero=False)),
+            y=alt.Y("drop:Q", title=label.replace("Force", "Fall", 1)),
+        )
+        .properties(width=WIDTH, height=120)
+    )
+    return chart
+
+
+def _cycle(drive: IdentifiedDrive, label: str) -> Chart:
+    wave = drive.waveform
+    rows = _rows(time=1e3 * wave.offset, force=wave.force, line=["mean of the laps"] * wave.offset.size)
+    fitted = _rows(time=1e3 * wave.offset, force=drive.fitted, line=["fitted motion"] * wave.offset.size)
+    names = alt.Scale(domain=["mean of the laps", "fitted motion"], range=[_ORANGE, _BLUE])
+    legend = alt.Legend(title=None, orient="bottom-right", fillColor="white", padding=4)
+    x = alt.X("time:Q", title="Time from the middle of the slip (ms)", scale=alt.Scale(nice=False))
+    y = alt.Y("force:Q", title=label, scale=alt.Scale(zero=False))
+    color = alt.Color("line:N", scale=names, legend=legend)
+    dots = plot(rows).mark_point(filled=True, size=24).encode(x=x, y=y, color=color)
+    line = plot(fitted).mark_line(strokeWidth=1.5).encode(x=x, y=y, color=color, order="index:Q")
+    return alt.layer(line, dots).properties(width=WIDTH, height=220)
+
+
+def _rows(**columns: object) -> list[Row]:
+    lists = {
+        name: column.tolist() if isinstance(column, np.ndarray) else column
+        for name, column in columns.items()
+    }
+    return [dict(zip(lists, values, strict=True)) for values in zip(*lists.values(), strict=True)]

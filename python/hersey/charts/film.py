@@ -1,0 +1,207 @@
+"""The regime chart of a nip and, with a log, its Stribeck curve."""
+
+from __future__ import annotations
+
+import altair as alt
+import numpy as np
+
+from hersey import _core
+from hersey.arrays import rows
+from hersey.charts.style import HEIGHT, WIDTH, Chart, Row, plot
+from hersey.document.film_part import film_points
+from hersey.document.parts import FilmPoint
+from hersey.lubrication.film import REGIMES, Film
+from hersey.units import celsius
+from hersey.verdict.evidence import MeasuredFilm
+
+#: Shades of the regimes that stay apart in grey.
+_SHADES = ("#f4f1de", "#e8b4a0", "#b7d3e9", "#8fae8b")
+_INK = "#222"
+#: Cells of the chart to a side, and decades shown beyond the points.
+_CELLS, _MARGIN = 90, 1.5
+#: The chart shows at least this.
+_LEAST = ((-2.0, 4.0), (-1.0, 3.0))
+#: Speed parameter at which the chart is computed: the regimes depend on g_V and g_E alone.
+_U = 1e-10
+
+
+def film_chart(film: Film, names: list[str], measured: MeasuredFilm | None = None) -> Chart:
+    """Return the regime chart with the points of a film on it, over the Stribeck curve if there is a log."""
+    dwells = []
+    if measured is not None and measured.predicted is not film:
+        dwells = film_points(measured.predicted, [""] * measured.speed.size)
+    chart = regime_chart(film_points(film, names), dwells, film.nip.layer_factor)
+    if measured is None:
+        return chart
+    stacked: Chart = alt.vconcat(chart, _stribeck(measured), spacing=24).resolve_scale(
+        color="independent", shape="independent"
+    )
+    return stacked
+
+
+def regime_chart(points: list[FilmPoint], dwells: list[FilmPoint], layer_factor: float) -> Chart:
+    """Return the regime chart with named points of the machine and the dwells of a log on it."""
+    return _regimes([_row(point) for point in points], [_row(dwell) for dwell in dwells], layer_factor)
+
+
+def _regimes(points: list[Row], dwells: list[Row], layer_factor: float) -> Chart:
+    known = [row for row in (*points, *dwells) if row["g_v"] > 0]
+    spans = [_span([row["g_v"] for row in known], _LEAST[0]), _span([row["g_e"] for row in known], _LEAST[1])]
+    x = alt.X("g_v:Q", title="viscosity parameter g_V = G W^1.5/U^0.5 (no unit)", scale=_log(spans[0]))
+    y = alt.Y("g_e:Q", title="elasticity parameter g_E = W/U^0.5 (no unit)", scale=_log(spans[1]))
+    cells, labels = _cells(spans, layer_factor)
+    shade = alt.Scale(domain=list(REGIMES), range=list(_SHADES))
+    area = (
+        plot(cells)
+        .mark_rect(clip=True, strokeWidth=0)
+        .encode(x=x, x2="g_v2:Q", y=y, y2="g_e2:Q", color=alt.Color("regime:N", scale=shade, legend=None))
+    )
+    names_of = (
+        plot(labels).mark_text(color=_INK, fontSize=12, fontStyle="italic").encode(x=x, y=y, text="regime:N")
+    )
+    dots = (
+        plot([row for row in dwells if row["g_v"] > 0])
+        .mark_point(color=_INK, size=14, opacity=0.6, clip=True)
+        .encode(x=x, y=y)
+    )
+    marks = (
+        plot([row for row in points if row["g_v"] > 0])
+        .mark_point(filled=True, fill="white", stroke=_INK, strokeWidth=1.5, size=70, opacity=1, clip=True)
+        .encode(
+            x=x, y=y, tooltip=["name:N", "regime:N", alt.Tooltip("h:Q", title="h_min (um)", format=".3~g")]
+        )
+    )
+    text = (
+        plot([row for row in points if row["g_v"] > 0] if len(points) <= 8 else [])
+        .mark_text(align="left", dx=9, color=_INK, fontSize=11)
+        .encode(x=x, y=y, text="name:N")
+    )
+    hidden = "" if known else " No point is shown: alpha is not known, g_V = 0."
+    subtitle = [
+        "U = eta u/(E'R) with the mean speed u, W = w/(E'R), G = alpha E'; colour: the law that holds."
+        + hidden
+    ]
+    if dwells:
+        subtitle.append("Large: points of the machine. Small: dwells of the log.")
+    title = alt.Title("Regimes of the film", subtitle=subtitle)
+    chart: Chart = alt.layer(area, names_of, dots, marks, text)
+    return chart.properties(width=WIDTH, height=HEIGHT, title=title)
+
+
+def _stribeck(measured: MeasuredFilm) -> Chart:
+    points = [
+        {
+            "hersey": float(measured.hersey_number[i]) * 1e6,
+            "friction": float(measured.friction[i]),
+            "temperature": f"{5 * round(celsius(measured.temperature[i]) / 5)} °C",
+        }
+        for i in range(measured.speed.size)
+    ]
+    scale = measured.friction / measured.torque
+    order = np.argsort(measured.hersey_number)
+    film = [
+        {
+            "hersey": float(measured.hersey_number[i]) * 1e6,
+            "friction": float(measured.predicted_torque[i] * scale[i] * measured.calibration.value),
+        }
+        for i in order
+    ]
+    x = alt.X(
+        "hersey:Q",
+        title="Hersey number eta U/p (um), p the mean pressure of the nip, U the sliding speed",
+        scale=alt.Scale(type="log", nice=False, padding=12),
+    )
+    y = alt.Y(
+        "friction:Q",
+        title="friction coefficient T/(R N)",
+        scale=alt.Scale(type="log", nice=False, padding=12),
+    )
+    temperatures = [f"{t} °C" for t in sorted({5 * round(celsius(t) / 5) for t in measured.temperature})]
+    colours = alt.Scale(domain=temperatures, scheme="viridis")
+    dots = (
+        plot(points)
+        .mark_point(filled=True, size=45, opacity=0.9)
+        .encode(
+            x=x,
+            y=y,
+            color=alt.Color("temperature:N", scale=colours, legend=alt.Legend(title=None)),
+            shape=alt.Shape(
+                "temperature:N", scale=alt.Scale(domain=temperatures), legend=alt.Legend(title=None)
+            ),
+        )
+    )
+    line = plot(film).mark_line(color=_INK, strokeDash=[6, 4], strokeWidth=1.5).encode(x=x, y=y)
+    layers: list[alt.Chart] = [line, dots]
+    if measured.grip is not None:
+        rule = [{"friction": measured.grip, "text": "the belt slips on the roll: stall"}]
+        layers.append(plot(rule).mark_rule(color="#a33", strokeWidth=1.5).encode(y=y))
+        layers.append(
+            plot(rule)
+            .mark_text(align="left", baseline="bottom", dx=4, dy=-3, color="#a33")
+            .encode(x=alt.value(0), y=y, text="text:N")
+        )
+    subtitle = (
+        f"dashed: film of the governing law times {measured.calibration.value:.3g}, the one factor that "
+        "brings it to the data"
+    )
+    title = alt.Title("Stribeck curve", subtitle=subtitle)
+    return alt.layer(*layers).properties(width=WIDTH, height=HEIGHT, title=title)
+
+
+def _row(point: FilmPoint) -> Row:
+    return {
+        "name": point.name,
+        "g_v": point.viscosity_parameter,
+        "g_e": point.elasticity_parameter,
+        "regime": point.regime,
+        "h": 1e6 * point.minimum_thickness,
+    }
+
+
+def _span(values: list[float], least: tuple[float, float]) -> tuple[float, float]:
+    """Decades to show."""
+    if not values:
+        return least
+    logs = np.log10(values)
+    return min(least[0], float(logs.min()) - _MARGIN), max(least[1], float(logs.max()) + _MARGIN)
+
+
+def _log(span: tuple[float, float]) -> alt.Scale:
+    return alt.Scale(type="log", domain=[10.0 ** span[0], 10.0 ** span[1]], nice=False)
+
+
+def _cells(spans: list[tuple[float, float]], softness: float) -> tuple[list[Row], list[Row]]:
+    """Cells of the chart with their regime, and each regime's name at the middle of its cells."""
+    edges = [np.linspace(low, high, _CELLS + 1) for low, high in spans]
+    middle = [0.5 * (edge[1:] + edge[:-1]) for edge in edges]
+    v, e = np.meshgrid(*middle, indexing="ij")
+    g_v, g_e = 10.0**v, 10.0**e
+    w = g_e * np.sqrt(_U)
+    found = rows(_core.line_film, g_v * np.sqrt(_U) / w**1.5, _U, 1.0, w, 1.0, 1.0, softness)
+    regime = found[10].astype(int)
+    cells = []
+    for i in range(_CELLS):
+        # Neighbours of one regime are one cell.
+        start = 0
+        for j in range(1, _CELLS + 1):
+            if j == _CELLS or regime[i, j] != regime[i, start]:
+                cells.append(
+                    {
+                        "g_v": 10.0 ** edges[0][i],
+                        "g_v2": 10.0 ** (edges[0][i + 1] + 0.004),
+                        "g_e": 10.0 ** edges[1][start],
+                        "g_e2": 10.0 ** edges[1][j],
+                        "regime": REGIMES[regime[i, start]],
+                    }
+                )
+                start = j
+    labels = [
+        {
+            "g_v": 10.0 ** v[regime == k].mean(),
+            "g_e": 10.0 ** np.quantile(e[regime == k], 0.12),
+            "regime": REGIMES[k],
+        }
+        for k in range(len(REGIMES))
+        if (regime == k).mean() > 0.03
+    ]
+    return cells, labels

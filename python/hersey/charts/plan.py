@@ -1,0 +1,179 @@
+"""A drive profile as a chart: drive and belt speed, spring force and, over a course, temperature."""
+
+from __future__ import annotations
+
+import altair as alt
+import numpy as np
+
+from hersey.charts.style import WIDTH, Chart, Row, plot, tip
+from hersey.errors import InsufficientDataError
+from hersey.motion.schedule import Schedule
+from hersey.stability.plan.result import Plan
+from hersey.units import celsius
+
+_INK, _BLUE, _ORANGE = "#333", "#1f4e9c", "#d9730d"
+#: Width kept for the axes, so that the panels line up.
+_AXIS = 46
+_KEY = "V*: above it stick-slip dies out by itself. v_t: below it steady sliding is unstable."
+#: Share of the time shown that lies before the drive starts, if it waits.
+_BEFORE = 0.06
+#: The fold is drawn up to this many greatest speeds.
+_SHOWN = 1.5
+
+
+def plan_chart(plan: Plan, *, temperature: Schedule | None = None) -> Chart:
+    """Return the chart of a plan, and the course of ``temperature`` (K) if there is one.
+
+    Raises
+    ------
+    InsufficientDataError
+        If there is no profile to draw.
+    """
+    if plan.response is None or plan.schedule is None:
+        raise InsufficientDataError("there is no profile to draw: " + plan.verdict())
+    end = plan.wait + float(plan.response.time[-1])
+    start = max(0.0, plan.wait - _BEFORE * (end - plan.wait)) if plan.wait > 0 else 0.0
+    window = (start, end)
+    panels: list[alt.Chart | Chart] = [_speeds(plan, window), _force(plan, window)]
+    if temperature is not None:
+        panels.append(_temperature(plan, temperature))
+    heading = plan.verdict().split(". ")
+    title = alt.Title("Drive profile", subtitle=[*_sentences(heading), plan.proof(), _KEY])
+    stacked: Chart = alt.vconcat(*panels, spacing=14).properties(title=title)
+    return stacked
+
+
+def _sentences(parts: list[str]) -> list[str]:
+    return [part if part.endswith(".") else part + "." for part in parts]
+
+
+def _speeds(plan: Plan, window: tuple[float, float]) -> Chart:
+    assert plan.response is not None
+    assert plan.schedule is not None
+    scale, unit = (1e3, "mm/s") if plan.target_speed < 1.0 else (1.0, "m/s")
+    top = max(plan.peak_speed, float(plan.response.belt_speed.max()))
+    times = np.asarray(plan.schedule.times, dtype=float)
+    drive = [
+        {"time": max(t, window[0]), "value": v * scale, "line": "drive"}
+        for t, v in zip(times.tolist(), np.asarray(plan.schedule.values).tolist(), strict=True)
+        if t >= window[0] or t == times[times <= window[0]].max()
+    ]
+    drive.append({"time": window[1], "value": plan.target_speed * scale, "line": "drive"})
+    belt = _rows(plan, plan.response.belt_speed * scale, "belt, nominal parameters")
+    legend = alt.Legend(title=None, orient="top-right", fillColor="white", padding=4, symbolSize=500)
+    names = ["drive", "belt, nominal parameters"]
+    y = alt.Y(
+        "value:Q",
+        title=f"Speed ({unit})",
+        scale=alt.Scale(
+            domain=[min(0.0, 1.05 * scale * float(plan.response.belt_speed.min())), 1.08 * top * scale]
+        ),
+        axis=alt.Axis(minExtent=_AXIS),
+    )
+    lines = (
+        plot([*belt, *drive])
+        .mark_line(strokeWidth=2, clip=True)
+        .encode(
+            x=_x(window, title=False),
+            y=y,
+            order="index:Q",
+            color=alt.Color("line:N", scale=alt.Scale(domain=names, range=[_ORANGE, _BLUE]), legend=legend),
+            strokeDash=alt.StrokeDash(
+                "line:N", scale=alt.Scale(domain=names, range=[[7, 3], [1, 0]]), legend=legend
+            ),
+            tooltip=[tip("time", "time (s)"), tip("value", f"speed ({unit})")],
+        )
+    )
+    rules = _mark(plan.transition_speed * scale, "v_t", above=False)
+    if plan.fold_speed < _SHOWN * top:
+        rules += _mark(plan.fold_speed * scale, "V*", above=True)
+    return alt.layer(*rules, lines, *_ready(plan)).properties(width=WIDTH, height=260)
+
+
+def _force(plan: Plan, window: tuple[float, float]) -> Chart:
+    assert plan.response is not None
+    line = (
+        plot(_rows(plan, plan.response.spring_force, "spring"))
+        .mark_line(color=_BLUE, strokeWidth=1.5, clip=True)
+        .encode(
+            x=_x(window),
+            y=alt.Y("value:Q", title="Spring force (N)", axis=alt.Axis(minExtent=_AXIS)),
+            order="index:Q",
+            tooltip=[tip("time", "time (s)"), tip("value", "spring force (N)")],
+        )
+    )
+    labels = {
+        "spring_force": "limit",
+        "motor_torque": "motor limit",
+    }
+    rules = []
+    for use in plan.uses:
+        if use.name in labels:
+            force = use.limit * plan.peak_force / use.used
+            rules += _mark(force, labels[use.name], above=False)
+    return alt.layer(*rules, line, *_ready(plan, named=False)).properties(width=WIDTH, height=150)
+
+
+def _temperature(plan: Plan, course: Schedule) -> Chart:
+    """The whole course, with the moment at which the drive starts."""
+    times = np.asarray(course.times, dtype=float)
+    last = max(float(times[-1]), plan.duration)
+    at = np.unique(np.concatenate([np.linspace(0.0, last, 200), times[times >= 0], [plan.duration]]))
+    rows = [{"time": t, "value": celsius(course.at(t)), "index": i} for i, t in enumerate(at.tolist())]
+    line = (
+        plot(rows)
+        .mark_line(color=_BLUE, strokeWidth=1.5)
+        .encode(
+            x=alt.X("time:Q", title="Time (s), the whole course", scale=alt.Scale(nice=False)),
+            y=alt.Y(
+                "value:Q",
+                title="Temperature (°C)",
+                scale=alt.Scale(zero=False),
+                axis=alt.Axis(minExtent=_AXIS),
+            ),
+            order="index:Q",
+            tooltip=[tip("time", "time (s)"), tip("value", "temperature (°C)")],
+        )
+    )
+    start = plot([{"time": plan.wait, "name": "drive starts"}])
+    rule = start.mark_rule(color=_ORANGE, strokeDash=[7, 3]).encode(x="time:Q")
+    near_end = plan.wait > 0.8 * last
+    text = start.mark_text(
+        align="right" if near_end else "left", dx=-5 if near_end else 5, color=_INK, baseline="bottom"
+    ).encode(x="time:Q", y=alt.value(112), text="name:N")
+    return alt.layer(line, rule, text).properties(width=WIDTH, height=120)
+
+
+def _rows(plan: Plan, values: np.ndarray, line: str) -> list[Row]:
+    assert plan.response is not None
+    times = plan.wait + plan.response.time
+    pairs = enumerate(zip(times.tolist(), values.tolist(), strict=True))
+    rows: list[Row] = [{"time": t, "value": v, "line": line, "index": i} for i, (t, v) in pairs]
+    if plan.wait > 0:
+        rows.insert(0, {"time": 0.0, "value": 0.0, "line": line, "index": -1})
+    return rows
+
+
+def _ready(plan: Plan, *, named: bool = True) -> list[alt.Chart]:
+    """The moment from which the belt slides for good."""
+    mark = plot([{"time": plan.duration, "name": "slides for good from here"}])
+    rule = mark.mark_rule(color=_INK, strokeWidth=1).encode(x="time:Q")
+    text = mark.mark_text(align="left", dx=5, baseline="top", color=_INK)
+    label = text.encode(x="time:Q", y=alt.value(62), text="name:N")
+    return [rule, label] if named else [rule]
+
+
+def _mark(value: float, name: str, *, above: bool) -> list[alt.Chart]:
+    """A level across the chart, named right of it."""
+    mark = plot([{"value": value, "name": name}])
+    rule = mark.mark_rule(color=_INK, strokeDash=[3, 3], strokeWidth=1).encode(y="value:Q")
+    place = mark.mark_text(align="left", dx=5, dy=-4 if above else 4, color=_INK)
+    return [rule, place.encode(x=alt.value(WIDTH), y="value:Q", text="name:N")]
+
+
+def _x(window: tuple[float, float], *, title: bool = True) -> alt.X:
+    return alt.X(
+        "time:Q",
+        title="Time (s)" if title else None,
+        scale=alt.Scale(domain=list(window), nice=False),
+    )

@@ -1,0 +1,36 @@
+"""What all charts share: sizes, colours, and the smallest pieces."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import altair as alt
+import numpy as np
+
+WIDTH, HEIGHT = 680, 340
+INK = "#333"
+Row = dict[str, Any]
+Chart = alt.LayerChart | alt.FacetChart | alt.VConcatChart
+
+
+def plot(rows: list[Row]) -> alt.Chart:
+    """Return a chart of rows, to which marks and channels are given."""
+    return alt.Chart(alt.Data(values=rows))
+
+
+def ramp(count: int) -> list[str]:
+    """Dark blue (cold) to orange (hot), lightness rising evenly (anchors of the plasma scale)."""
+    anchors = np.array([[13, 8, 135], [126, 3, 168], [203, 70, 121], [240, 135, 60]], dtype=float)
+    at = np.linspace(0, 3, count) if count > 1 else np.array([0.0])
+    channels = [np.interp(at, range(4), anchors[:, i]) for i in range(3)]
+    return [f"#{int(r):02x}{int(g):02x}{int(b):02x}" for r, g, b in zip(*channels, strict=True)]
+
+
+def zoom() -> alt.Parameter:
+    """Return zooming by the wheel while Shift is held, and moving by the mouse."""
+    return alt.selection_interval(bind="scales", zoom="wheel![event.shiftKey]")
+
+
+def tip(field: str, title: str) -> alt.Tooltip:
+    """Return a number of a tooltip, to four digits."""
+    return alt.Tooltip(f"{field}:Q", title=title, format=".4~g")

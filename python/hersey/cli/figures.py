@@ -1,0 +1,43 @@
+"""The paper's figures drawn anew: ``hersey figures``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hersey.cli.options import (
+    AsJson,
+    Force,
+)
+from hersey.cli.outputs import may_write_folder
+from hersey.cli.progress import working
+
+
+def figures(
+    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder for the figures.")] = Path(
+        "figures"
+    ),
+    as_json: AsJson = False,
+    force: Force = False,
+) -> None:
+    """Draw the paper's Figs. 9-14 anew and two of our own; say of each claim whether it holds and how well.
+
+    Example: [bold]hersey figures --out figures[/bold]
+    """
+    from hersey import paper_figures as paper
+
+    may_write_folder(out, force, flag="--out")
+    with working("simulating"):
+        drawn = paper.all_figures()
+    with working("drawing"):
+        paper.write(drawn, out, overwrite=force)
+    if as_json:
+        print(paper.as_json(drawn))
+        return
+    for figure in drawn:
+        print(figure.heading)
+        for claim in figure.claims:
+            print(f"  {claim.verdict.value}: {claim.statement} ({claim.evidence})")
+    print(f"figures: {out}")

@@ -1,0 +1,77 @@
+"""Where the belt runs smoothly: ``hersey map``."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hersey.cli.options import (
+    AsJson,
+    FitFile,
+    Force,
+    Reading,
+    SomeLogs,
+    reads_logs,
+)
+from hersey.cli.outputs import PICTURES, may_draw
+from hersey.cli.progress import working
+
+
+@reads_logs
+def map_(
+    machine_file: Annotated[
+        Path, typer.Argument(metavar="MACHINE", help="TOML file of the drivetrain and its limits.")
+    ],
+    reading: Reading,
+    logs: SomeLogs = None,
+    fit_file: FitFile = None,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", help="The picture: .html, .png, .svg or .pdf.  [default: map.html]"),
+    ] = None,
+    as_json: AsJson = False,
+    force: Force = False,
+) -> None:
+    """Map where the belt runs smoothly, sticks and slips, or stalls: temperature across, drive speed up.
+
+    Example: [bold]hersey map examples/machine.toml examples/bench.csv --tare standing[/bold]
+
+    With --json the whole map goes to stdout, and a picture is drawn only if --out is given.
+    """
+    from hersey.charts.operating_map import map_chart, rendered_map
+    from hersey.files.writing import write_atomically
+    from hersey.machine.machine import read_machine
+    from hersey.stability.operating_map import operating_map
+
+    picture = out or (None if as_json else Path("map.html"))
+    if picture is not None:
+        inputs = [machine_file, *(logs or []), *([fit_file] if fit_file else [])]
+        may_draw(picture, force, inputs, flag="--out", suffixes=PICTURES)
+    machine = read_machine(machine_file)
+    surface = reading.surface(logs, fit_file)
+    with working("finding the bands"):
+        drawn = operating_map(
+            surface,
+            machine.train,
+            roll_radius=machine.roll_radius,
+            stick_speed=machine.stick_speed,
+            limits=machine.limits,
+            points=machine.points,
+            uncertainty=machine.uncertainty,
+            threads=os.cpu_count() or 1,
+        )
+    if picture is not None:
+        with working("drawing the map"):
+            chart = map_chart(drawn, tooltips=picture.suffix == ".html")
+            write_atomically(picture, rendered_map(chart, picture.suffix), overwrite=True)
+    if as_json:
+        print(json.dumps(drawn.document(), indent=1))
+        return
+    print(drawn.summary())
+    for warning in drawn.warnings:
+        print(f"- {warning}")
+    print(f"map: {picture}")

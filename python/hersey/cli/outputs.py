@@ -1,0 +1,73 @@
+"""Files that a command writes: refused early, never replaced unasked."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+import typer
+
+from hersey.errors import OutputError
+
+#: Kinds of file of a figure, and of a picture that may also be a page.
+FIGURES = (".png", ".svg", ".pdf")
+PICTURES = (".html", *FIGURES)
+
+
+def command() -> str:
+    """Return the command as the user could type it again."""
+    return " ".join(["hersey", *(shlex.quote(part) for part in sys.argv[1:])])
+
+
+def may_write(path: Path, force: bool, inputs: Sequence[Path] = ()) -> None:
+    """Refuse early what cannot be written, and ask before replacing anything."""
+    try:
+        exists = os.path.lexists(path)
+        if path.is_dir():
+            raise OutputError(f"{path} is a directory: name a file in it")
+        if not path.parent.is_dir():
+            raise OutputError(f"{path}: there is no directory {path.parent}")
+        if exists and (path.is_symlink() or not path.is_file()):
+            raise OutputError(f"{path} is no ordinary file: name another")
+        if any(exists and other.exists() and path.samefile(other) for other in inputs):
+            raise OutputError(f"{path} is an input: name another file for the output")
+    except OSError as error:
+        if isinstance(error, OutputError):
+            raise
+        raise OutputError(f"{path} cannot be written: {error.strerror}") from None
+    if exists and not force:
+        asked = sys.stdin.isatty() and typer.confirm(f"{path} exists. Replace it?", err=True)
+        if not asked:
+            raise OutputError(f"{path} exists: say --force to replace it, or name another file")
+
+
+def may_write_folder(folder: Path, force: bool, flag: str = "--figures") -> None:
+    """Refuse early a folder that cannot take the figures, or that holds something."""
+    try:
+        if folder.exists() and not folder.is_dir():
+            raise OutputError(f"{folder} is a file: {flag} needs a directory")
+        if folder.is_dir() and any(folder.iterdir()) and not force:
+            raise OutputError(f"{folder} is not empty: say --force to write the figures into it")
+        if not folder.parent.is_dir():
+            raise OutputError(f"{folder}: there is no directory {folder.parent}")
+    except OSError as error:
+        if isinstance(error, OutputError):
+            raise
+        raise OutputError(f"{folder} cannot be written: {error.strerror}") from None
+
+
+def may_draw(
+    path: Path,
+    force: bool,
+    inputs: Sequence[Path] = (),
+    *,
+    flag: str = "--figure",
+    suffixes: Sequence[str] = FIGURES,
+) -> None:
+    """Refuse early a figure of an unknown kind, or one that cannot be written."""
+    if path.suffix not in suffixes:
+        raise OutputError(f"{flag} {path}: name a file that ends in {', '.join(suffixes)}")
+    may_write(path, force, inputs)

@@ -1,0 +1,187 @@
+"""A drive profile that ends smooth: ``hersey plan``."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from hersey.cli.options import (
+    AsJson,
+    FitFile,
+    Force,
+    Reading,
+    SomeLogs,
+    reads_logs,
+    temperature_of,
+)
+from hersey.cli.outputs import command, may_draw, may_write
+from hersey.cli.progress import bar, working
+from hersey.errors import OutputError, ParameterError, WrongKindError
+
+if TYPE_CHECKING:
+    from hersey.arrays import FloatArray
+    from hersey.damping.surface import DampingSurface
+    from hersey.machine.machine import Machine
+    from hersey.motion.drag import Drag
+    from hersey.stability.plan import Plan
+
+
+#: Draws of the fit from which those of the plan are taken.
+_DRAWS = 4000
+#: Exit code where no profile exists.
+IMPOSSIBLE = 1
+
+
+@reads_logs
+def plan(
+    machine_file: Annotated[
+        Path,
+        typer.Argument(metavar="MACHINE", help="TOML file of the drivetrain, its limits and uncertainty."),
+    ],
+    reading: Reading,
+    logs: SomeLogs = None,
+    fit_file: FitFile = None,
+    target: Annotated[
+        str, typer.Option(help="Target speed of the belt, as '60 mm/s', or of the roll, as '40 rpm'.")
+    ] = "",
+    at: Annotated[str, typer.Option(help="Temperature, as '150 degC'.")] = "",
+    course: Annotated[
+        Path | None,
+        typer.Option(
+            "--temperature-profile",
+            metavar="CSV",
+            help="Instead: temperature against time, 'time (s),temperature (degC)'.",
+        ),
+    ] = None,
+    confidence: Annotated[
+        float, typer.Option("--confidence", help="Share of the belts that must run smoothly, 0.5 to 0.999.")
+    ] = 0.95,
+    seed: Annotated[int, typer.Option("--seed", help="Of all random draws.", min=0)] = 1,
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="CSV", help="Write the profile for a motor controller.")
+    ] = None,
+    figure: Annotated[
+        Path | None, typer.Option("--figure", help="Draw profile and motion: .png, .svg or .pdf.")
+    ] = None,
+    as_json: AsJson = False,
+    force: Force = False,
+) -> None:
+    """Find the quickest profile of drive speed from rest that ends smooth, and say how surely it does.
+
+    Example: [bold]hersey plan examples/machine.toml examples/bench.csv --tare standing --target "60 mm/s"
+    --at "150 degC" --out profile.csv --figure plan.png[/bold]
+
+    Exit code 1 says that no profile exists; then nothing is written.
+    """
+    from hersey.files.writing import write_atomically
+    from hersey.machine.machine import read_machine
+    from hersey.machine.temperature_profile import read_temperature_profile
+    from hersey.stability.plan import plan_profile
+
+    inputs = [machine_file, *(logs or []), *(path for path in (fit_file, course) if path is not None)]
+    if out is not None and figure is not None and out.absolute() == figure.absolute():
+        raise OutputError(f"--out and --figure both name {out}: name two files")
+    if figure is not None:
+        may_draw(figure, force, inputs)
+    if out is not None:
+        may_write(out, force, inputs)
+    if at and course is not None:
+        raise ParameterError("give either --at or --temperature-profile")
+    machine = read_machine(machine_file)
+    wanted = _target(target, machine)
+    kelvin = temperature_of(at)
+    warming = None if course is None else read_temperature_profile(course)
+    surface = reading.surface(logs, fit_file)
+    drag, samples = _drag(surface, machine, kelvin, seed, course=warming is not None)
+    with bar("planning", unit="profiles") as progress:
+        found = plan_profile(
+            machine.train,
+            drag,
+            target_speed=wanted,
+            temperature=warming,
+            limits=machine.limits,
+            roll_radius=machine.roll_radius,
+            uncertainty=machine.uncertainty,
+            samples=samples,
+            confidence=confidence,
+            seed=seed,
+            progress=progress,
+        )
+    if found.found and figure is not None:
+        from hersey.charts.plan import plan_chart
+        from hersey.charts.render import rendered
+
+        with working("drawing"):
+            content = rendered(plan_chart(found, temperature=warming))[figure.suffix.removeprefix(".")]
+        write_atomically(figure, content, overwrite=True)
+    if found.found and out is not None:
+        write_atomically(out, found.table(), overwrite=True)
+    if as_json:
+        typer.echo(json.dumps(found.document() | {"command": command()}, indent=1))
+    else:
+        typer.echo(_text(found))
+        for what, written in (("profile", out), ("figure", figure)):
+            if found.found and written is not None:
+                typer.echo(f"{what}: {written}")
+    if not found.found:
+        raise typer.Exit(IMPOSSIBLE)
+
+
+def _target(text: str, machine: Machine) -> float:
+    from hersey.units import parse
+
+    if not text:
+        raise ParameterError("give the target: --target '60 mm/s'")
+    try:
+        target = parse("belt speed", text)
+    except WrongKindError:
+        target = parse("speed", text) * machine.roll_radius
+    if not target > 0:
+        raise ParameterError(f"--target is {text}: it must be greater than 0")
+    return target
+
+
+def _drag(
+    surface: DampingSurface, machine: Machine, kelvin: float | None, seed: int, *, course: bool
+) -> tuple[Drag, dict[str, FloatArray]]:
+    """The fitted drag, at one temperature or varying with it, and draws of what the fit leaves open."""
+    import warnings
+
+    if surface.b is not None and kelvin is None and not course:
+        raise ParameterError(
+            "the drag varies with temperature: give --at '150 degC' or --temperature-profile"
+        )
+    if surface.b is None and (kelvin is not None or course):
+        raise ParameterError("the log is isothermal: leave out --at and --temperature-profile")
+    # One stick speed is known, at the law's reference temperature: it goes with the transition speed.
+    drag = surface.drag(roll_radius=machine.roll_radius, stick_speed=machine.stick_speed)
+    if kelvin is not None:
+        drag = drag.at(kelvin)
+    at = drag.reference_temperature if course else kelvin
+    with warnings.catch_warnings():  # the fit's own command says how many draws have no falling branch
+        warnings.simplefilter("ignore")
+        samples = surface.drag_samples(
+            _DRAWS,
+            seed,
+            roll_radius=machine.roll_radius,
+            stick_speed=drag.stick_speed,
+            temperature=at,
+        )
+    return drag, samples
+
+
+def _text(found: Plan) -> str:
+    lines = [found.verdict()]
+    if found.found:
+        lines += [found.proof(), "", f"  {'time (s)':>12s}  {'drive speed (mm/s)':>18s}"]
+        lines += [f"  {time:12.6g}  {1e3 * value:18.6g}" for time, value in found.rows()]
+        lines.append("")
+        lines += [f"{use.name.replace('_', ' ')}: {use.used:.4g} of {use.limit:.4g}" for use in found.uses]
+        lines += [f"- {warning}" for warning in found.warnings]
+        lines += [f"- {number} of {found.draws} draws: {why}" for why, number in found.failures.items()]
+    fold = f"{1e3 * found.fold_speed:.4g}"
+    lines.append(f"nominal transition speed {1e3 * found.transition_speed:.4g} mm/s, V* {fold} mm/s")
+    return "\n".join([*lines, f"seed {found.seed}"])

@@ -1,0 +1,75 @@
+"""A page from a log: ``hersey report``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hersey.cli.options import (
+    AsJson,
+    Force,
+    Logs,
+    MachineFile,
+    Reading,
+    reads_logs,
+)
+from hersey.cli.outputs import command, may_write, may_write_folder
+from hersey.cli.progress import working
+
+
+@reads_logs
+def report(
+    logs: Logs,
+    reading: Reading,
+    out: Annotated[
+        Path | None, typer.Option("--out", help="The page to write.  [default: report.html]")
+    ] = None,
+    figures: Annotated[
+        Path | None,
+        typer.Option("--figures", metavar="DIR", help="Also write each chart as SVG, PNG and PDF."),
+    ] = None,
+    machine_file: MachineFile = None,
+    as_json: AsJson = False,
+    force: Force = False,
+) -> None:
+    """Write a report: regime, damping surface, data quality and a stick-slip simulation, in one HTML page.
+
+    Example: [bold]hersey report examples/bench.csv --machine examples/machine.toml --tare standing[/bold]
+
+    With --json the analysis document goes to stdout, and a page is written only if --out is given.
+    """
+    from hersey.document.assembly import analyse
+    from hersey.files.writing import write_atomically
+    from hersey.machine.machine import read_machine
+    from hersey.report.page import render
+
+    page = out or (None if as_json else Path("report.html"))
+    if page is not None:
+        may_write(page, force, inputs=[*logs, *([machine_file] if machine_file else [])])
+    if figures is not None:
+        may_write_folder(figures, force)
+    machine = None if machine_file is None else read_machine(machine_file)
+    log = reading.log(logs)
+    with working("fitting the surface"):
+        points = reading.points(log)
+        document = analyse(
+            log, points, command=command(), temperature_scale=reading.temperature_scale, machine=machine
+        )
+    if page is not None:
+        with working("drawing the page"):
+            write_atomically(page, render(document), overwrite=True)
+    if figures is not None:
+        from hersey.charts.analysis import write_figures
+
+        with working("writing the figures"):
+            write_figures(document, figures)
+    if as_json:
+        print(document.model_dump_json(indent=1))
+        return
+    print(document.regime.verdict)
+    for warning in document.warnings:
+        print(f"- {warning}")
+    print(document.fit.summary)
+    print(f"report: {page}")

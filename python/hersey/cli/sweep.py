@@ -1,0 +1,59 @@
+"""What every combination of parameters settles to: ``hersey sweep``."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hersey.cli.options import (
+    AsJson,
+    Force,
+)
+from hersey.cli.outputs import may_write
+from hersey.cli.progress import bar, working
+from hersey.errors import OutputError
+
+
+def sweep(
+    scenario: Annotated[Path, typer.Argument(metavar="SCENARIO", help="TOML file that describes the sweep.")],
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="FILE", help="Write every set as a row: .parquet or .csv.")
+    ] = None,
+    threads: Annotated[
+        int, typer.Option("--threads", help="Threads to use; the result is the same for any number.", min=1)
+    ] = 1,
+    as_json: AsJson = False,
+    force: Force = False,
+) -> None:
+    """Find what every combination of parameters settles to, and count the outcomes.
+
+    Example: [bold]hersey sweep examples/scenario.toml --out sweep.parquet --threads 2[/bold]
+    """
+    from hersey.files.writing import write_atomically
+    from hersey.motion.scenario import read_scenario, rows, summary
+
+    if out is not None:
+        if out.suffix not in (".parquet", ".csv"):
+            raise OutputError(f"--out {out}: name a file that ends in .parquet or .csv")
+        may_write(out, force, inputs=[scenario])
+    described = read_scenario(scenario)
+    with bar("simulating", unit="sets") as progress:
+        result = described.run(threads=threads, progress=progress)
+    if out is not None:
+        with working("writing the rows"):
+            write_atomically(out, rows(result, out.suffix), overwrite=True)
+    counted = summary(result)
+    if as_json:
+        print(json.dumps(counted, indent=1))
+        return
+    for kind, share in counted["kinds"].items():
+        print(f"{kind.replace('_', ' '):16s}{share}")
+    for name, (low, high) in counted["stick_slip"].items():
+        print(f"  {name.replace('_', ' '):16s}{low:.6g} to {high:.6g}")
+    for failure in counted["failures"]:
+        print(f"- {failure}")
+    if out is not None:
+        print(f"sweep: {out}")

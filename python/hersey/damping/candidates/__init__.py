@@ -1,0 +1,44 @@
+"""Candidate laws: all fitted to the same dwells in the same likelihood, and one chosen.
+
+====================  ===============================================================================
+observations          dwells in logarithms, with the errors of torque, speed and temperature
+thermal               laws of temperature: power, Arrhenius, VFT
+branched              laws of speed and temperature with one or two branches
+stribeck              the Stribeck curve
+candidate             which laws there are, and which the data cannot carry
+likelihood            robust likelihood and its least-squares solution
+fitting               one law fitted; left-out and resampled fits; what is not identified
+errors_in_variables   the same fit by orthogonal distance regression
+intervals             each parameter's interval by covariance, clusters, profile and bootstrap
+energy                activation energies of torque and viscosity, and whether they agree
+collapse              whether curves fall onto one against the Hersey number
+model_comparison      all candidates of a log, the one chosen: the result and its words
+comparison            fitting every candidate, the choice and its reasons
+viscosity             laws of viscosity for a table of a lubricant
+====================  ===============================================================================
+
+Speeds rad/s, torque N m, temperature K. Residuals are logarithms: relative errors.
+"""
+
+from hersey.damping.candidates.candidate import Candidate
+from hersey.damping.candidates.collapse import HerseyCollapse, hersey_collapse, temperature_collapse
+from hersey.damping.candidates.comparison import compare_models
+from hersey.damping.candidates.intervals import Band, ParameterEstimate
+from hersey.damping.candidates.model_comparison import CandidateFit, ModelComparison
+from hersey.damping.candidates.observations import Observations
+from hersey.damping.candidates.viscosity import ViscosityLaws, viscosity_laws
+
+__all__ = [
+    "Band",
+    "Candidate",
+    "CandidateFit",
+    "HerseyCollapse",
+    "ModelComparison",
+    "Observations",
+    "ParameterEstimate",
+    "ViscosityLaws",
+    "compare_models",
+    "hersey_collapse",
+    "temperature_collapse",
+    "viscosity_laws",
+]

@@ -1,0 +1,218 @@
+"""Laws with one branch or two: torque in speed and temperature, each with its derivatives.
+
+With z = ln(w/w_ref) and e s(T) from `thermal`, one branch is
+
+    ln torque = level + e s(T) + (1 + c) z
+
+and two branches add (c_mixed - c) min(z - z_t(T), 0). The transition z_t sits at one Hersey number,
+z_t = at - e s(T)/(1 + c) because torque varies as viscosity^(1 + c), or moves freely, z_t = at + d s(T).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from hersey.arrays import FloatArray
+from hersey.damping.candidates.observations import Inputs
+from hersey.damping.candidates.thermal import Thermal
+
+#: Least 1 + c by which a transition at one Hersey number is computed; nearer 0 torque tells no viscosity.
+LEAST_POWER = 0.05
+
+NO_SPEED, ONE, HELD, FREE = "no speed", "one branch", "two branches, one Hersey number", "two branches, free"
+
+
+@dataclass(frozen=True)
+class Law:
+    """A candidate about reference values.
+
+    ``branches`` is one of the constants above; ``groups`` is how many temperatures have an exponent of
+    their own, 1 if it is common.
+    """
+
+    thermal: Thermal | None
+    branches: str
+    groups: int = 1
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """Names of the parameters, in order."""
+        exponents = [f"c{i + 1}" for i in range(self.groups)] if self.groups > 1 else ["c"]
+        return (
+            "level",
+            *(self.thermal.names if self.thermal else ()),
+            *(exponents if self.branches != NO_SPEED else ()),
+            *(("c_mixed", "at") if self.broken else ()),
+            *(("d",) if self.branches == FREE and self.thermal else ()),
+        )
+
+    @property
+    def broken(self) -> bool:
+        """Whether there are two branches."""
+        return self.branches in (HELD, FREE)
+
+    def index(self, name: str) -> int:
+        """Return where a parameter stands."""
+        return self.names.index(name)
+
+    def predict(self, values: FloatArray, inputs: Inputs) -> FloatArray:
+        """Return ln torque."""
+        return self._evaluate(values, inputs)[0]
+
+    def jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
+        """Return its derivatives with respect to the parameters, shape (points, parameters)."""
+        return self._evaluate(values, inputs, derivatives=True)[1]
+
+    def slopes(self, values: FloatArray, inputs: Inputs) -> tuple[FloatArray, FloatArray]:
+        """Return its derivatives with respect to ln w and to T (1/K)."""
+        _, _, speed, temperature = self._evaluate(values, inputs, derivatives=True)
+        return speed, temperature
+
+    def transition(self, values: FloatArray, inputs: Inputs) -> FloatArray:
+        """Return ln(w_t/w_ref) at the temperatures of the inputs."""
+        e, s, _, _ = self._thermal_term(values, inputs)
+        return self._transition(values, e, s)
+
+    def starts(self, inputs: Inputs, log_torque: FloatArray, weights: FloatArray) -> list[FloatArray]:
+        """Return where to search from, the most promising first: linear fits at fixed transitions."""
+        z, root = inputs.log_speed, np.sqrt(weights)
+        e_row, q = [], []
+        if self.thermal:
+            q = self.thermal.start()[1:]
+            shape, _, _ = self._shape(inputs, *q)
+            e_row = [shape]
+        speeds = [] if self.branches == NO_SPEED else list((self._one_hot(inputs) * z[:, None]).T)
+        plain = [np.ones_like(z), *e_row, *speeds]
+        one, *_ = np.linalg.lstsq(np.column_stack(plain) * root[:, None], log_torque * root, rcond=None)
+        if not self.broken:
+            return [self._assembled(one, q, [])]
+        found: list[tuple[float, FloatArray]] = []
+        for _ in range(2):  # where the points part depends on how the transition moves
+            tried = found[0][1] if found else None
+            for d in self._moves(one if tried is None else tried, first=tried is None):
+                reach = z - d * e_row[0] if e_row else z
+                for at in _corners(reach):
+                    below = np.minimum(reach - at, 0.0)
+                    design = np.column_stack([*plain, below])
+                    linear, *_ = np.linalg.lstsq(design * root[:, None], log_torque * root, rcond=None)
+                    cost = float(np.sum(weights * (log_torque - design @ linear) ** 2))
+                    found.append((cost, self._broken_start(linear, q, at, d)))
+            found.sort(key=lambda f: f[0])
+        return [values for _, values in found[:3]]
+
+    def _moves(self, values: FloatArray, *, first: bool) -> list[float]:
+        """Exponents of the transition in s(T) that a search begins with."""
+        if not self.thermal:
+            return [0.0]
+        e = float(values[1])
+        c = float(np.mean(values[2 : 2 + self.groups] - 1.0)) if first else self._mean_exponent(values)
+        held = -e / max(1.0 + c, LEAST_POWER)
+        return [held, 3.3 * -e] if first else [held]
+
+    def _assembled(self, linear: FloatArray, q: list[float], rest: list[float]) -> FloatArray:
+        thermal = [float(linear[1]), *q] if self.thermal else []
+        first = 2 if self.thermal else 1
+        exponents = [float(v) - 1.0 for v in linear[first : first + self.groups]]
+        return np.array(
+            [float(linear[0]), *thermal, *([] if self.branches == NO_SPEED else exponents), *rest]
+        )
+
+    def _broken_start(self, linear: FloatArray, q: list[float], at: float, d: float) -> FloatArray:
+        one = self._assembled(linear[:-1], q, [])
+        mixed = self._mean_exponent(one) + float(linear[-1])
+        free = [d] if self.branches == FREE and self.thermal else []
+        return np.append(one, [mixed, at, *free])
+
+    def _mean_exponent(self, values: FloatArray) -> float:
+        first = 1 + (len(self.thermal.names) if self.thermal else 0)
+        return float(np.mean(values[first : first + self.groups]))
+
+    def _one_hot(self, inputs: Inputs) -> FloatArray:
+        if self.groups == 1:
+            return np.ones((inputs.log_speed.size, 1))
+        return np.asarray(inputs.group[:, None] == np.arange(self.groups)[None, :], dtype=np.float64)
+
+    def _shape(self, inputs: Inputs, q: float = 0.0) -> tuple[FloatArray, FloatArray, FloatArray]:
+        if self.thermal is None or inputs.kelvin is None:
+            nothing = np.zeros_like(inputs.log_speed)
+            return nothing, nothing, nothing
+        return self.thermal.shape(inputs.kelvin, q)
+
+    def _thermal_term(
+        self, values: FloatArray, inputs: Inputs
+    ) -> tuple[float, FloatArray, FloatArray, FloatArray]:
+        if self.thermal is None:
+            return 0.0, *self._shape(inputs)
+        q = float(values[2]) if "q" in self.thermal.names else 0.0
+        return float(values[1]), *self._shape(inputs, q)
+
+    def _transition(self, values: FloatArray, e: float, s: FloatArray) -> FloatArray:
+        at = float(values[self.index("at")])
+        if self.branches == FREE:
+            return np.asarray(at + (float(values[-1]) * s if self.thermal else 0.0 * s))
+        return np.asarray(at - e * s / max(1.0 + self._mean_exponent(values), LEAST_POWER))
+
+    def _evaluate(
+        self, values: FloatArray, inputs: Inputs, *, derivatives: bool = False
+    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Return ln torque and its derivatives: parameters, ln w, T."""
+        z = inputs.log_speed
+        e, s, ds_dt, ds_dq = self._thermal_term(values, inputs)
+        if self.branches == NO_SPEED:
+            law, c = values[0] + e * s, np.zeros_like(z)
+        else:
+            first = self.index("c1" if self.groups > 1 else "c")
+            c = values[first : first + self.groups][inputs.group if self.groups > 1 else 0] + 0.0 * z
+            law = values[0] + e * s + (1.0 + c) * z
+        if not self.broken:
+            empty = np.empty((z.size, 0))
+            if not derivatives:
+                return law, empty, z, z
+            columns = [np.ones_like(z), *([s] if self.thermal else [])]
+            if self.thermal and "q" in self.thermal.names:
+                columns.append(e * ds_dq)
+            if self.branches == NO_SPEED:
+                return law, np.column_stack(columns), z * 0.0, e * ds_dt
+            spread = self._one_hot(inputs) * z[:, None]
+            return law, np.column_stack([*columns, spread]), 1.0 + c, e * ds_dt
+        return self._evaluate_broken(values, inputs, law, c, derivatives)
+
+    def _evaluate_broken(
+        self, values: FloatArray, inputs: Inputs, law: FloatArray, c: FloatArray, derivatives: bool
+    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        z = inputs.log_speed
+        e, s, ds_dt, ds_dq = self._thermal_term(values, inputs)
+        at = self._transition(values, e, s)
+        reach = np.minimum(z - at, 0.0)
+        change = values[self.index("c_mixed")] - c
+        law = law + change * reach
+        if not derivatives:
+            return law, np.empty((z.size, 0)), z, z
+        drop = change * (z < at)  # times minus the derivative of the transition
+        power = 1.0 + self._mean_exponent(values)
+        held = self.branches == HELD
+        # one Hersey number: d = -e/(1 + c), as long as that is not bounded
+        d = -e / max(power, LEAST_POWER) if held else (float(values[-1]) if self.thermal else 0.0)
+        moved_by_e = -1.0 / max(power, LEAST_POWER) if held else 0.0
+        moved_by_c = e / power**2 / self.groups if held and power > LEAST_POWER else 0.0
+        columns = [np.ones_like(z)]
+        if self.thermal:
+            columns.append(s - drop * moved_by_e * s)
+            if "q" in self.thermal.names:
+                columns.append(e * ds_dq - drop * d * ds_dq)
+        spread = self._one_hot(inputs) * (z - reach)[:, None] - (drop * moved_by_c * s)[:, None]
+        columns += [*spread.T, reach, -drop]
+        if self.branches == FREE and self.thermal:
+            columns.append(-drop * s)
+        temperature = e * ds_dt - drop * d * ds_dt
+        return law, np.column_stack(columns), 1.0 + c + change * (z < at), temperature
+
+
+def _corners(reach: FloatArray, count: int = 14) -> FloatArray:
+    """Return transitions to try: within the speeds, two points or more on either side."""
+    ordered = np.sort(reach)
+    margin = min(2, (ordered.size - 1) // 2)
+    return np.linspace(ordered[margin], ordered[-1 - margin], count)

@@ -1,0 +1,108 @@
+"""Which candidates there are, what each is called, and which a set of dwells cannot carry."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hersey.damping.candidates.branched import FREE, HELD, NO_SPEED, ONE, Law
+from hersey.damping.candidates.observations import Observations
+from hersey.damping.candidates.stribeck import StribeckLaw
+from hersey.damping.candidates.thermal import ARRHENIUS, CELSIUS, KELVIN, VFT, Thermal
+from hersey.damping.law import distinct_speeds
+from hersey.units import convert
+
+#: Degrees of freedom that a fit must leave.
+LEAST_FREEDOM = 3
+#: Distinct speeds that one branch and two branches need.
+SPEEDS_OF_ONE, SPEEDS_OF_TWO = 3, 5
+_WORDS = {CELSIUS: "power-degC", KELVIN: "power-K", ARRHENIUS: "arrhenius", VFT: "vft", None: "isothermal"}
+_BRANCH_WORDS = {NO_SPEED: "viscosity", ONE: "one", HELD: "two-hersey", FREE: "two-free"}
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """One law, before it is fitted."""
+
+    thermal: str | None
+    branches: str
+    per_temperature: bool = False
+    stribeck: bool = False
+
+    @property
+    def key(self) -> str:
+        """A short name, as ``arrhenius/two-hersey``."""
+        if self.stribeck:
+            return "stribeck" if self.thermal else "isothermal/stribeck"
+        each = "/each" if self.per_temperature else ""
+        return f"{_WORDS[self.thermal]}/{_BRANCH_WORDS[self.branches]}{each}"
+
+    @property
+    def name(self) -> str:
+        """The law in words."""
+        heat = self.thermal or "no temperature"
+        if self.stribeck:
+            return f"Stribeck curve, {heat} viscosity" if self.thermal else "Stribeck curve, no temperature"
+        if self.branches == NO_SPEED:
+            return heat
+        each = ", exponents per temperature" if self.per_temperature else ""
+        return f"{heat} x power of speed, {self.branches}{each}"
+
+    def law(self, data: Observations) -> Law | StribeckLaw:
+        """Return the law about the reference values of the data."""
+        thermal = None
+        if self.thermal is not None and data.reference_kelvin is not None:
+            thermal = Thermal(self.thermal, data.reference_kelvin)
+        if self.stribeck:
+            return StribeckLaw(thermal)
+        return Law(thermal, self.branches, data.temperatures.size if self.per_temperature else 1)
+
+    def refused(self, data: Observations) -> str:
+        """Return why the data cannot carry this candidate; empty if they can."""
+        levels = data.temperatures.size
+        if self.thermal is not None:
+            needed = 3 if self.thermal == VFT else 2
+            if data.inputs.kelvin is None:
+                return "the log has no temperature"
+            if levels < needed:
+                return f"needs {needed} temperatures, the log has {_listed(data)}"
+            if self.thermal == CELSIUS and np.min(data.inputs.kelvin) <= convert(0.0, "degC", "K"):
+                return "T^b has no meaning at or below 0 degC"
+        if self.per_temperature:
+            for group in range(levels):
+                speeds = distinct_speeds(data.speed[data.inputs.group == group])
+                if speeds < SPEEDS_OF_ONE:
+                    at = convert(float(data.temperatures[group]), "K", "degC")
+                    return f"needs {SPEEDS_OF_ONE} speeds at each temperature; {at:.0f} degC has {speeds}"
+        if self.branches in (HELD, FREE) or self.stribeck:
+            speeds = distinct_speeds(data.speed)
+            if speeds < SPEEDS_OF_TWO:
+                return f"needs {SPEEDS_OF_TWO} speeds, the log has {speeds}"
+        parameters = len(self.law(data).names)
+        if len(data) < parameters + LEAST_FREEDOM:
+            return (
+                f"{parameters} parameters need {parameters + LEAST_FREEDOM} dwells, the log has {len(data)}"
+            )
+        return ""
+
+
+def all_candidates() -> tuple[Candidate, ...]:
+    """Return the candidates, the simplest first."""
+    heats = (None, CELSIUS, KELVIN, ARRHENIUS, VFT)
+    one = [Candidate(heat, ONE) for heat in heats]
+    held = [Candidate(heat, HELD) for heat in heats[1:]]
+    free = [Candidate(heat, FREE) for heat in heats]
+    each = [Candidate(heat, kind, per_temperature=True) for heat in heats[1:] for kind in (ONE, FREE)]
+    curves = [Candidate(None, ONE, stribeck=True), Candidate(ARRHENIUS, ONE, stribeck=True)]
+    return (*one, *free[:1], *curves[:1], *held, *free[1:], *each, *curves[1:])
+
+
+def viscosity_candidates() -> tuple[Candidate, ...]:
+    """Return the laws of temperature alone, for a table of viscosities."""
+    return tuple(Candidate(heat, NO_SPEED) for heat in (CELSIUS, KELVIN, ARRHENIUS, VFT))
+
+
+def _listed(data: Observations) -> str:
+    shown = ", ".join(f"{convert(float(t), 'K', 'degC'):.0f}" for t in data.temperatures)
+    return f"{data.temperatures.size} ({shown} degC)"

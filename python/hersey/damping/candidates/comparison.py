@@ -1,0 +1,212 @@
+"""Every candidate fitted to the same dwells, one chosen, and the reasons in words.
+
+Among the candidates whose parameters the data determine, the simplest within `EVIDENCE` AICc of the
+likeliest is
+chosen, as for a second branch of the surface: a larger law must be beyond doubt. With some twenty laws in
+competition, the best of those that are too large beats the right one by 2 AICc in one log of ten.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from hersey.damping.branches import EVIDENCE
+from hersey.damping.candidates.candidate import Candidate, all_candidates
+from hersey.damping.candidates.collapse import HerseyCollapse, temperature_collapse
+from hersey.damping.candidates.energy import ActivationEnergies, activation_energies, usable_for_transition
+from hersey.damping.candidates.errors_in_variables import orthogonal_fit
+from hersey.damping.candidates.fitting import LawFit, fit_law, left_out, not_identified
+from hersey.damping.candidates.intervals import (
+    bootstrap_draws,
+    estimates,
+)
+from hersey.damping.candidates.model_comparison import CandidateFit, ModelComparison
+from hersey.damping.candidates.observations import Observations
+from hersey.damping.candidates.thermal import ARRHENIUS
+from hersey.damping.dwells import SteadyPoints
+from hersey.errors import InsufficientDataError, ParameterError
+
+#: AICc by which candidates differ at most when the data do not tell them apart.
+TIED = 2.0
+
+
+def compare_models(
+    points: SteadyPoints | Observations,
+    *,
+    candidates: tuple[Candidate, ...] | None = None,
+    bootstrap: int = 300,
+    seed: int = 1,
+    cross_validate: bool = True,
+    progress: Callable[[int, int], None] | None = None,
+) -> ModelComparison:
+    """Fit every candidate to the same dwells and choose one.
+
+    Parameters
+    ----------
+    points
+        From `TorqueLog.steady`.
+    candidates
+        Those to fit; all if not given.
+    bootstrap
+        Resampled fits of the candidate chosen; 0 leaves that interval out.
+    seed
+        Of the resampling.
+    cross_validate
+        Whether to predict dwells from the others.
+    progress
+        Called with candidates done and candidates in all.
+
+    Raises
+    ------
+    InsufficientDataError
+        If no candidate can be fitted: fewer than three speeds, or too few dwells.
+
+    Examples
+    --------
+    >>> import hersey
+    >>> points = hersey.read("examples/bench.csv").steady(tare="standing")
+    >>> found = compare_models(points, bootstrap=0, cross_validate=False)
+    >>> found.chosen.candidate.branches
+    'two branches, one Hersey number'
+    """
+    if bootstrap < 0 or seed < 0:
+        name, value = ("bootstrap", bootstrap) if bootstrap < 0 else ("seed", seed)
+        raise ParameterError(f"{name} is {value}: it must be at least 0")
+    data = points if isinstance(points, Observations) else Observations.of(points)
+    candidates = candidates or all_candidates()
+    refused = [(candidate.name, why) for candidate in candidates if (why := candidate.refused(data))]
+    carried = [candidate for candidate in candidates if not candidate.refused(data)]
+    if not carried:
+        raise InsufficientDataError(f"no law can be fitted: {refused[0][0]} {refused[0][1]}")
+    fits = []
+    for done, candidate in enumerate(carried):
+        if progress:
+            progress(done, len(carried))
+        fits.append((candidate, fit_law(candidate.law(data), data)))
+    by_aicc = ranked(fits, data, cross_validate)
+    chosen = choose(by_aicc)
+    draws = bootstrap_draws(chosen.fit, data, bootstrap, seed) if bootstrap else None
+    return ModelComparison(
+        candidates=by_aicc,
+        refused=tuple(refused),
+        chosen=chosen,
+        reasons=_reasons(by_aicc, chosen, data),
+        parameters=estimates(chosen.fit, data, draws=draws),
+        energies=_energies(by_aicc, chosen, data),
+        collapse=_collapse(data),
+        orthogonal=orthogonal_fit(chosen.fit, data),
+        data=data,
+        bootstrap=bootstrap,
+        seed=seed,
+    )
+
+
+def choose(candidates: tuple[CandidateFit, ...]) -> CandidateFit:
+    """Return the simplest candidate that the likeliest does not beat beyond doubt, of those identified."""
+    sound = [r for r in candidates if not r.not_identified] or list(candidates)
+    least = min(r.fit.aicc for r in sound)
+    near = [r for r in sound if r.fit.aicc <= least + EVIDENCE]
+    return min(near, key=lambda r: (r.fit.parameters, r.fit.aicc))
+
+
+def ranked(
+    fits: list[tuple[Candidate, LawFit]], data: Observations, cross_validate: bool
+) -> tuple[CandidateFit, ...]:
+    """Return fits by AICc, with what is not determined and the errors of dwells left out."""
+    least_aicc, least_bic = min(f.aicc for _, f in fits), min(f.bic for _, f in fits)
+    weights = np.array([np.exp(-0.5 * (f.aicc - least_aicc)) for _, f in fits])
+    weights /= weights.sum()
+    out = []
+    for (candidate, fit), weight in zip(fits, weights.tolist(), strict=True):
+        missed = left_out(fit, data) if cross_validate else None
+        usable = missed is not None and bool(np.all(np.isfinite(missed)))
+        out.append(
+            CandidateFit(
+                candidate,
+                fit,
+                not_identified(fit, data),
+                fit.aicc - least_aicc,
+                fit.bic - least_bic,
+                weight,
+                float(np.sqrt(np.mean(missed**2))) if usable and missed is not None else None,
+                missed if usable else None,
+            )
+        )
+    return tuple(sorted(out, key=lambda r: r.delta_aicc))
+
+
+def _reasons(ranked: tuple[CandidateFit, ...], chosen: CandidateFit, data: Observations) -> tuple[str, ...]:
+    """Return why this candidate, and what may be said for the others."""
+    said = [
+        f"Chosen: {chosen.candidate.name}, with {chosen.fit.parameters} numbers fitted to {len(data)} dwells."
+    ]
+    for other in ranked:
+        if other.delta_aicc >= chosen.delta_aicc or other is chosen:
+            continue
+        better = chosen.delta_aicc - other.delta_aicc
+        if other.not_identified:
+            reason = next(iter(other.not_identified.values()))
+            said.append(
+                f"{other.candidate.name} has an AICc better by {better:.1f}, but is not determined: {reason}."
+            )
+        else:
+            more = other.fit.parameters - chosen.fit.parameters
+            price = f"{more} more number{'s' if more > 1 else ''}"
+            doubt = "the data do not tell the two apart" if better < TIED else f"{EVIDENCE:g} are asked"
+            said.append(f"{other.candidate.name}, with {price}, has an AICc better by {better:.1f}: {doubt}.")
+    worse = [r for r in ranked if r.delta_aicc > chosen.delta_aicc and not r.not_identified]
+    if worse:
+        next_best = worse[0]
+        gap = next_best.delta_aicc - chosen.delta_aicc
+        tie = "; the data do not tell the two apart" if gap < TIED else ""
+        said.append(f"Next is {next_best.candidate.name}: its AICc is worse by {gap:.1f}{tie}.")
+    best = min(ranked, key=lambda r: r.fit.bic)
+    said.append(
+        "BIC puts the same candidate first."
+        if best is chosen
+        else f"BIC puts {best.candidate.name} first (by {chosen.delta_bic:.1f})."
+    )
+    return (*said, *_by_cross_validation(ranked, chosen, data))
+
+
+def _by_cross_validation(
+    ranked: tuple[CandidateFit, ...], chosen: CandidateFit, data: Observations
+) -> tuple[str, ...]:
+    tried = [r for r in ranked if r.cross_validation is not None]
+    if chosen.left_out is None or not tried:
+        return ()
+    best = min(tried, key=lambda r: float(r.cross_validation or 0.0))
+    what = f"leaving out one {data.clustered_by} at a time"
+    error = f"the chosen candidate predicts the dwells left out to {chosen.cross_validation:.2%}"
+    if best is chosen or best.left_out is None:
+        return (f"Cross-validation, {what}: {error}, the best of all.",)
+    gain = chosen.left_out**2 - best.left_out**2
+    chance = float(np.std(gain, ddof=1) * np.sqrt(gain.size))
+    apart = "beyond chance" if float(np.sum(gain)) > 2 * chance else "within chance"
+    other = f"{best.candidate.name} does so to {best.cross_validation:.2%}, {apart}"
+    return (f"Cross-validation, {what}: {error}; {other}.",)
+
+
+def _energies(
+    ranked: tuple[CandidateFit, ...], chosen: CandidateFit, data: Observations
+) -> ActivationEnergies:
+    arrhenius = [
+        r
+        for r in ranked
+        if r.candidate.thermal == ARRHENIUS and not r.candidate.stribeck and not r.candidate.per_temperature
+    ]
+    sound = [r for r in arrhenius if not r.not_identified] or arrhenius
+    free = next((r.fit for r in sound if usable_for_transition(r.fit) and not r.not_identified), None)
+    best = sound[0] if sound else None
+    if best is not None and not best.fit.law.broken:
+        free = None
+    return activation_energies(None if best is None else best.fit, free, chosen.fit, data)
+
+
+def _collapse(data: Observations) -> HerseyCollapse | None:
+    try:
+        return temperature_collapse(data)
+    except InsufficientDataError:
+        return None

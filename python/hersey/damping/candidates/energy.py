@@ -1,0 +1,168 @@
+"""Activation energies: of torque, of the viscosity behind it, and of the transition speed.
+
+Torque that varies as exp(E/(R T)) at one speed has the apparent activation energy E. As torque varies as
+viscosity to the power 1 + c, the viscosity's own is E/(1 + c). A transition at one Hersey number moves as
+one over the viscosity, and so carries the viscosity's energy too: whether the two agree is a test.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import stats
+
+from hersey.arrays import FloatArray
+from hersey.damping.candidates.branched import FREE, LEAST_POWER, Law
+from hersey.damping.candidates.fitting import LawFit
+from hersey.damping.candidates.observations import Observations
+from hersey.damping.estimation import Estimate, quantile
+
+#: Joules in a thermochemical calorie.
+CALORIE = 4.184
+#: p-value below which two energies disagree.
+_DISAGREE = 0.05
+
+
+@dataclass(frozen=True)
+class ActivationEnergies:
+    """Energies in J/mol from the Arrhenius candidate, and what they say of each other.
+
+    ``local`` holds the chosen law's apparent energy of torque at the coldest, the reference and the hottest
+    temperature, K: equal if the law is Arrhenius.
+    """
+
+    torque: Estimate | None
+    power: Estimate | None  #: 1 + c, by which torque varies with viscosity
+    viscosity: Estimate | None
+    transition: Estimate | None
+    p_value: float | None  #: of the transition's energy being the viscosity's
+    verdict: str
+    local: tuple[tuple[float, float], ...] = ()
+
+    def lines(self) -> list[str]:
+        """Return the energies as text, in kJ/mol and cal/mol."""
+        shown = []
+        named = (
+            ("torque, apparent", self.torque),
+            ("viscosity, from torque and its exponent", self.viscosity),
+            ("viscosity, from the transition speed", self.transition),
+        )
+        for name, energy in named:
+            if energy is not None:
+                kj, cal = scaled(energy, 1e-3), scaled(energy, 1.0 / CALORIE)
+                shown.append(f"{name}: {kj} kJ/mol = {cal.value:.0f} [{cal.low:.0f}, {cal.high:.0f}] cal/mol")
+        return [*shown, self.verdict]
+
+
+def scaled(energy: Estimate, factor: float) -> Estimate:
+    """Return an energy in another unit."""
+    return Estimate(*(factor * v for v in (energy.value, energy.error, energy.low, energy.high)))
+
+
+def activation_energies(
+    best: LawFit | None, free: LawFit | None, chosen: LawFit, data: Observations
+) -> ActivationEnergies:
+    """Return the energies.
+
+    Parameters
+    ----------
+    best
+        The likeliest Arrhenius candidate with common exponents.
+    free
+        The Arrhenius candidate whose transition moves freely; None if there is none, or nothing shows it.
+    chosen
+        The candidate chosen, for its local energies.
+    """
+    if best is None or data.reference_kelvin is None or best.law.thermal is None:
+        return ActivationEnergies(
+            None, None, None, None, None, "No activation energy: the log holds fewer than two temperatures."
+        )
+    per_unit = best.law.thermal.energy(data.reference_kelvin)
+    torque = _linear(best, {"e": per_unit})
+    power = _linear(best, {"c": 1.0}, offset=1.0)
+    viscosity = None
+    if power.low > LEAST_POWER:
+        viscosity = _ratio(best, per_unit)
+    transition = p_value = None
+    if free is not None:
+        transition = _linear(free, {"d": -per_unit})
+        p_value = _disagreement(free)
+    verdict = _verdict(viscosity, transition, p_value, power)
+    return ActivationEnergies(torque, power, viscosity, transition, p_value, verdict, _local(chosen, data))
+
+
+def _linear(fit: LawFit, share: dict[str, float], offset: float = 0.0) -> Estimate:
+    weights = np.array([share.get(name, 0.0) for name in fit.law.names])
+    value = offset + float(weights @ fit.values)
+    return _with_error(value, float(np.sqrt(weights @ fit.covariance @ weights)), fit.freedom)
+
+
+def _with_error(value: float, error: float, freedom: int) -> Estimate:
+    reach = quantile(freedom) * error
+    return Estimate(value, error, value - reach, value + reach)
+
+
+def _ratio(fit: LawFit, per_unit: float) -> Estimate:
+    """E/(1 + c), its interval symmetric in the logarithm where it is positive."""
+    e, c = (fit.values[fit.law.index(name)] for name in ("e", "c"))
+    value = per_unit * float(e / (1.0 + c))
+    slopes = _gradient(fit, e=per_unit / (1.0 + c), c=-per_unit * e / (1.0 + c) ** 2)
+    error = float(np.sqrt(slopes @ fit.covariance @ slopes))
+    reach = quantile(fit.freedom) * error
+    if value > 2 * error:
+        spread = float(np.exp(reach / value))
+        return Estimate(value, error, value / spread, value * spread)
+    return Estimate(value, error, value - reach, value + reach)
+
+
+def _disagreement(fit: LawFit) -> float:
+    """p-value of d = -e/(1 + c), by the delta method."""
+    e, c, d = (fit.values[fit.law.index(name)] for name in ("e", "c", "d"))
+    slopes = _gradient(fit, e=1.0 / (1.0 + c), c=-e / (1.0 + c) ** 2, d=1.0)
+    error = float(np.sqrt(slopes @ fit.covariance @ slopes))
+    return float(2.0 * stats.t.sf(abs(d + e / (1.0 + c)) / max(error, 1e-300), fit.freedom))
+
+
+def _gradient(fit: LawFit, **share: float) -> FloatArray:
+    return np.array([share.get(name, 0.0) for name in fit.law.names])
+
+
+def _local(fit: LawFit, data: Observations) -> tuple[tuple[float, float], ...]:
+    law = fit.law
+    if not isinstance(law, Law) or law.thermal is None or data.reference_kelvin is None:
+        return ()
+    q = float(fit.values[law.index("q")]) if "q" in law.names else 0.0
+    e = float(fit.values[law.index("e")])
+    hots = (float(data.temperatures[0]), data.reference_kelvin, float(data.temperatures[-1]))
+    return tuple((hot, e * law.thermal.energy(hot, q)) for hot in hots)
+
+
+def _verdict(
+    viscosity: Estimate | None, transition: Estimate | None, p_value: float | None, power: Estimate
+) -> str:
+    if viscosity is None:
+        return (
+            f"Torque varies as viscosity to the power {power}, not told from zero: torque gives no energy of "
+            "viscosity; record faster speeds, where it rises with speed."
+        )
+    if transition is None or p_value is None:
+        return (
+            "The transition does not move measurably of its own: there is nothing to check the energy of "
+            "torque against; record speeds around the transition at more temperatures."
+        )
+    both = f"{transition.value / 1e3:.3g} and {viscosity.value / 1e3:.3g} kJ/mol, p = {p_value:.2g}"
+    if p_value < _DISAGREE:
+        return (
+            f"The energies of viscosity from the transition speed and from torque disagree ({both}): the "
+            "transition is not at one Hersey number, or the exponent is not that of viscosity."
+        )
+    return (
+        f"The energies of viscosity from the transition speed and from torque agree ({both}): the "
+        "transition sits at one Hersey number as far as these data tell."
+    )
+
+
+def usable_for_transition(fit: LawFit) -> bool:
+    """Whether a candidate carries a transition of its own and common exponents."""
+    return isinstance(fit.law, Law) and fit.law.branches == FREE and fit.law.groups == 1

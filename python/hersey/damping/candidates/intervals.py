@@ -1,0 +1,252 @@
+"""Intervals of what was fitted, by four methods, and none where the data determine nothing.
+
+covariance
+    Student's t times the standard error, of the model's own covariance.
+clustered
+    The same with a covariance that holds whatever the dwells of a cluster have in common.
+profile
+    Every value at which the rest can be refitted so that the cost rises by less than t^2. It follows the
+    corner in the likelihood of a transition, where a standard error does not (Venzon and Moolgavkar, Appl.
+    Stat. 37 (1988) 87).
+bootstrap
+    Clusters drawn with replacement; percentiles about the fit, widened for the parameters it took.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy import stats
+
+from hersey.arrays import FloatArray
+from hersey.damping.candidates.branched import FREE, Law
+from hersey.damping.candidates.fitting import LawFit, not_identified, resampled, search
+from hersey.damping.candidates.observations import Inputs, Observations
+from hersey.damping.candidates.thermal import ARRHENIUS, VFT
+from hersey.damping.estimation import CONFIDENCE, quantile
+from hersey.units import convert
+
+Ends = tuple[float, float]
+
+#: Steps of a profile, in standard errors, and how far it is followed.
+_STEP, _FARTHEST = 0.25, 8.0
+METHODS = ("covariance", "clustered", "profile", "bootstrap")
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """What a parameter says, as a monotone function of it."""
+
+    name: str
+    unit: str
+    parameter: int
+    of: Callable[[float], float]
+
+
+@dataclass(frozen=True)
+class ParameterEstimate:
+    """A quantity with its intervals at 95 %, by method; neither error nor interval if not identified."""
+
+    name: str
+    unit: str
+    value: float
+    error: float | None
+    intervals: dict[str, Ends] = field(default_factory=dict)
+    not_identified: str = ""
+
+    @property
+    def interval(self) -> Ends | None:
+        """The interval to quote: by profile, else by covariance."""
+        return self.intervals.get("profile") or self.intervals.get("covariance")
+
+    def __str__(self) -> str:
+        """Return value and interval, or why there is none."""
+        if self.interval is None:
+            return f"not determined: {self.not_identified}"
+        low, high = self.interval
+        return f"{self.value:.5g} [{low:.5g}, {high:.5g}]"
+
+
+@dataclass(frozen=True)
+class Band:
+    """Torque, N m, with 95 % limits: of the law, and of one further dwell."""
+
+    torque: FloatArray
+    confidence: tuple[FloatArray, FloatArray]
+    prediction: tuple[FloatArray, FloatArray]
+
+
+def quantities(law_fit: LawFit, data: Observations) -> tuple[Quantity, ...]:
+    """Return what the parameters of a fit are called, in which units, and their values."""
+    law, w, kelvin = law_fit.law, data.reference_speed, data.reference_kelvin
+    names = {name: index for index, name in enumerate(law.names)}
+    found = []
+
+    def add(parameter: str, name: str, unit: str, of: Callable[[float], float]) -> None:
+        if parameter in names:
+            found.append(Quantity(name, unit, names[parameter], of))
+
+    torque = "Coulomb torque" if not isinstance(law, Law) else "damping at reference"
+    add(
+        "level",
+        torque,
+        "N m s/rad" if isinstance(law, Law) else "N m",
+        (lambda v: _exp(v) / w) if isinstance(law, Law) else _exp,
+    )
+    if law.thermal and kelvin is not None:
+        if law.thermal.kind in (ARRHENIUS, VFT):
+            per_unit = law.thermal.energy(kelvin) / 1e3
+            of_what = "torque" if isinstance(law, Law) else "viscosity"
+            add("e", f"activation energy of {of_what}", "kJ/mol", lambda v: per_unit * v)
+        else:
+            add("e", "b", "", float)
+        add("q", "T0", "K", lambda v: kelvin - 1.0 / v)
+    add("c", "c", "", float)
+    for i, hot in enumerate(data.temperatures):
+        add(f"c{i + 1}", f"c at {convert(float(hot), 'K', 'degC'):.0f} degC", "", float)
+    add("c_mixed", "c below the transition", "", float)
+    add("stick", "ln(Stribeck peak / Coulomb)", "", float)
+    add("viscous", "ln(viscous torque at the Stribeck speed / Coulomb)", "", float)
+    speed = "transition speed" if isinstance(law, Law) else "Stribeck speed"
+    add("at", speed, "rad/s", lambda v: w * _exp(v))
+    if law.thermal and kelvin is not None and isinstance(law, Law) and law.branches == FREE:
+        if law.thermal.kind in (ARRHENIUS, VFT):
+            by_d = -law.thermal.energy(kelvin) / 1e3
+            add("d", "activation energy of the transition speed", "kJ/mol", lambda v: by_d * v)
+        else:
+            add("d", "exponent of the transition speed in temperature", "", float)
+    return tuple(found)
+
+
+def estimates(
+    fit: LawFit, data: Observations, *, draws: FloatArray | None = None, profile: bool = True
+) -> tuple[ParameterEstimate, ...]:
+    """Return every quantity of a fit with its intervals.
+
+    Parameters
+    ----------
+    draws
+        Values of resampled fits, from `resampled`; without them there is no bootstrap interval.
+    profile
+        Whether to follow the profile likelihood.
+    """
+    lost = not_identified(fit, data)
+    out = []
+    for q in quantities(fit, data):
+        name, value = fit.law.names[q.parameter], float(fit.values[q.parameter])
+        if name in lost:
+            out.append(ParameterEstimate(q.name, q.unit, q.of(value), None, {}, lost[name]))
+            continue
+        raw = _intervals(fit, data, q.parameter, draws, profile)
+        if "profile" in raw and not np.all(np.isfinite(raw["profile"])):
+            out.append(ParameterEstimate(q.name, q.unit, q.of(value), None, {}, _open(raw["profile"])))
+            continue
+        error = float(np.sqrt(fit.covariance[q.parameter, q.parameter]))
+        step = 1e-4 * max(error, 1e-12)
+        slope = abs(q.of(value + step) - q.of(value - step)) / (2 * step)
+        ends = {method: _mapped(q.of, limits) for method, limits in raw.items()}
+        out.append(ParameterEstimate(q.name, q.unit, q.of(value), slope * error, ends))
+    return tuple(out)
+
+
+def profile_interval(fit: LawFit, data: Observations, parameter: int) -> Ends:
+    """Return where the profile of the cost crosses t^2 on either side; infinite where it never does."""
+    target = quantile(fit.freedom) ** 2
+    error = float(np.sqrt(fit.covariance[parameter, parameter]))
+    below, above = (_crossing(fit, data, parameter, side * error, target) for side in (-1.0, 1.0))
+    return below, above
+
+
+def bootstrap_draws(fit: LawFit, data: Observations, count: int = 400, seed: int = 1) -> FloatArray:
+    """Return values of fits to resampled clusters, shape (count, parameters)."""
+    return resampled(fit, data, count, seed)
+
+
+def band(fit: LawFit, inputs: Inputs) -> Band:
+    """Return the torque of a law at inputs, the median of what one would measure, with its limits."""
+    slopes = fit.law.jacobian(fit.values, inputs)
+    centre = fit.law.predict(fit.values, inputs)
+    variance = np.einsum("ij,jk,ik->i", slopes, fit.covariance, slopes)
+    dwell = fit.scatter**2 + float(np.median(fit.errors)) ** 2
+    reach = quantile(fit.freedom)
+    of_law, of_dwell = reach * np.sqrt(variance), reach * np.sqrt(variance + dwell)
+    return Band(
+        np.exp(centre),
+        (np.exp(centre - of_law), np.exp(centre + of_law)),
+        (np.exp(centre - of_dwell), np.exp(centre + of_dwell)),
+    )
+
+
+def _intervals(
+    fit: LawFit, data: Observations, parameter: int, draws: FloatArray | None, profile: bool
+) -> dict[str, Ends]:
+    value, reach = float(fit.values[parameter]), quantile(fit.freedom)
+    out = {}
+    clusters = np.unique(data.cluster).size
+    by = (
+        ("covariance", fit.covariance, reach),
+        (
+            "clustered",
+            fit.clustered,
+            quantile(clusters - fit.values.size),
+        ),
+    )
+    for method, covariance, width in by:
+        error = float(np.sqrt(max(covariance[parameter, parameter], 0.0)))
+        out[method] = value - width * error, value + width * error
+    if profile:
+        out["profile"] = profile_interval(fit, data, parameter)
+    if draws is not None:
+        low, high = np.quantile(draws[:, parameter], [0.5 - CONFIDENCE / 2, 0.5 + CONFIDENCE / 2])
+        widened = np.sqrt(clusters / max(clusters - fit.values.size, 1))
+        widened *= quantile(clusters - fit.values.size) / float(stats.norm.ppf(0.5 + CONFIDENCE / 2))
+        out["bootstrap"] = value - widened * (value - float(low)), value + widened * (float(high) - value)
+    return out
+
+
+def _crossing(fit: LawFit, data: Observations, parameter: int, error: float, target: float) -> float:
+    """Follow the profile outward in steps; the last crossing within reach, interpolated."""
+    value = float(fit.values[parameter])
+    start = np.append(fit.values, fit.tare)
+    kinked = fit.law.broken and fit.law.names[parameter] == "at"
+    warm, inside, outside = start, 0.0, None
+    before, rise_before = 0.0, 0.0
+    for step in np.arange(_STEP, _FARTHEST * quantile(fit.freedom) / 2.0, _STEP):
+        found = search(fit.law, data, fit.sigma, warm, held=(parameter, value + step * error), precision=1e-7)
+        rise = found.cost - fit.cost
+        if rise < target:
+            inside, outside = step, None
+        elif outside is None:
+            outside = before + _STEP * (np.sqrt(target) - rise_before) / max(
+                np.sqrt(rise) - rise_before, 1e-12
+            )
+        if outside is not None and (not kinked or step > inside + 1.5):
+            return value + error * float(outside)
+        warm, before, rise_before = found.values, float(step), float(np.sqrt(max(rise, 0.0)))
+    return float(np.sign(error) * np.inf)
+
+
+def _exp(value: float) -> float:
+    """Exponential that ends at the largest number."""
+    return float(np.exp(np.minimum(value, 700.0)))
+
+
+def _open(ends: Ends) -> str:
+    side = "either side" if not np.any(np.isfinite(ends)) else ("above" if np.isinf(ends[1]) else "below")
+    return f"the likelihood is open to {side}: record more temperatures and slower and faster speeds"
+
+
+def _mapped(of: Callable[[float], float], ends: Ends) -> Ends:
+    mapped = sorted(of(end) for end in ends)
+    return mapped[0], mapped[1]
+
+
+def likelihood_ratio(smaller: LawFit, larger: LawFit) -> float:
+    """Return the p-value of a law against one that contains it, by an F test on the larger's scatter."""
+    more = larger.values.size - smaller.values.size
+    gain = max(smaller.deviance - larger.deviance, 0.0)
+    n = larger.residuals.size
+    ratio = np.expm1(gain / n) * larger.freedom / max(more, 1)
+    return float(stats.f.sf(ratio, more, larger.freedom))

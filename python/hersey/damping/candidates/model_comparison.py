@@ -1,0 +1,231 @@
+"""All candidates fitted to one log, the one chosen, and what follows: the result and its words."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hersey import _core
+from hersey.arrays import FloatArray
+from hersey.damping.candidates.candidate import Candidate
+from hersey.damping.candidates.collapse import HerseyCollapse
+from hersey.damping.candidates.energy import CALORIE, ActivationEnergies, scaled
+from hersey.damping.candidates.errors_in_variables import OrthogonalFit
+from hersey.damping.candidates.fitting import LawFit
+from hersey.damping.candidates.intervals import METHODS, Band, Ends, ParameterEstimate, band
+from hersey.damping.candidates.observations import Observations
+from hersey.damping.estimation import Estimate
+from hersey.errors import ParameterError
+from hersey.result import json_value
+from hersey.units import convert
+
+#: Units in which people read a quantity, by the unit it is kept in.
+_SHOWN = {"rad/s": "rpm"}
+#: Candidates listed beside the one chosen.
+RUNNERS_UP = 3
+
+
+@dataclass(frozen=True)
+class CandidateFit:
+    """A candidate as fitted to the data of a comparison."""
+
+    candidate: Candidate
+    fit: LawFit
+    not_identified: dict[str, str]
+    delta_aicc: float  #: to the least of all candidates
+    delta_bic: float
+    weight: float  #: Akaike weight
+    cross_validation: float | None  #: relative error of dwells left out, root mean square
+    left_out: FloatArray | None  #: ln(measured/predicted) of each dwell from the others
+
+
+@dataclass(frozen=True)
+class ModelComparison:
+    """All candidates by AICc, those refused and why, the one chosen, and what follows from it."""
+
+    candidates: tuple[CandidateFit, ...]
+    refused: tuple[tuple[str, str], ...]  #: name and reason
+    chosen: CandidateFit
+    reasons: tuple[str, ...]
+    parameters: tuple[ParameterEstimate, ...]  #: of the candidate chosen
+    energies: ActivationEnergies
+    collapse: HerseyCollapse | None
+    orthogonal: OrthogonalFit
+    data: Observations
+    bootstrap: int
+    seed: int
+    version: str = _core.VERSION
+
+    @property
+    def runners_up(self) -> tuple[CandidateFit, ...]:
+        """The candidates next in AICc."""
+        return tuple(r for r in self.candidates if r is not self.chosen)[:RUNNERS_UP]
+
+    def candidate(self, key: str) -> CandidateFit:
+        """Return a candidate by its key, as ``arrhenius/two-hersey``."""
+        for candidate in self.candidates:
+            if candidate.candidate.key == key:
+                return candidate
+        known = ", ".join(r.candidate.key for r in self.candidates)
+        raise ParameterError(f"no candidate '{key}' was fitted; there are {known}")
+
+    def predict(self, speed: FloatArray | float, temperature: FloatArray | float | None = None) -> Band:
+        """Return torque (N m) with its bands at speeds (rad/s) and temperatures (K), broadcast together."""
+        speeds = np.atleast_1d(np.asarray(speed, dtype=np.float64))
+        if self.chosen.fit.law.thermal is not None and temperature is None:
+            raise ParameterError("this law depends on temperature: give it one, in K")
+        hot = None
+        if temperature is not None:
+            speeds, hot = np.broadcast_arrays(speeds, np.asarray(temperature, dtype=np.float64))
+        return band(self.chosen.fit, self.data.at(speeds, hot))
+
+    def summary(self) -> str:
+        """Return the comparison as text."""
+        return _summary(self)
+
+    def document(self) -> dict[str, object]:
+        """Return the comparison as plain data."""
+        found = json_value(_document(self))
+        assert isinstance(found, dict)
+        return found
+
+
+def _summary(found: ModelComparison) -> str:
+    """Return the table of candidates, the choice with its reasons, and what follows."""
+    data = found.data
+    lines = [
+        "[[Candidates]]  (same dwells, same robust likelihood of ln torque; numbers include the scatter)",
+        f"    {'candidate':<66} {'numbers':>7} {'dAICc':>8} {'dBIC':>8} {'left out':>9} {'scatter':>8}",
+    ]
+    lines += [_row(r, chosen=r is found.chosen) for r in found.candidates]
+    lines += [f"    not fitted: {name}: {why}" for name, why in found.refused]
+    lines += ["[[Choice]]", *(f"    {reason}" for reason in found.reasons)]
+    lines.append("[[Parameters]]  95 % intervals")
+    for parameter in found.parameters:
+        lines += _parameter_lines(parameter)
+    counted = f"{found.bootstrap} resampled fits by {data.clustered_by}, seed {found.seed}"
+    lines.append(f"    (bootstrap: {counted if found.bootstrap else 'not asked for'})")
+    lines.append(f"    {found.orthogonal.verdict}")
+    if data.inputs.kelvin is not None:
+        lines += ["[[Activation energy]]", *(f"    {line}" for line in found.energies.lines())]
+        lines += [_local(kelvin, energy) for kelvin, energy in found.energies.local]
+    if found.collapse is not None:
+        lines += ["[[Hersey collapse]]", f"    {found.collapse.verdict}"]
+    return "\n".join(lines)
+
+
+def _document(found: ModelComparison) -> dict[str, object]:
+    """Return everything as plain data; energies in J/mol, angles in rad."""
+    return {
+        "hersey_version": found.version,
+        "dwells": len(found.data),
+        "clustered_by": found.data.clustered_by,
+        "reference_speed": found.data.reference_speed,
+        "reference_temperature": found.data.reference_kelvin,
+        "temperatures": found.data.temperatures,
+        "candidates": [_candidate_document(r) for r in found.candidates],
+        "refused": [{"name": name, "reason": why} for name, why in found.refused],
+        "chosen": found.chosen.candidate.key,
+        "reasons": found.reasons,
+        "parameters": [_parameter_document(p) for p in found.parameters],
+        "bootstrap": {"draws": found.bootstrap, "seed": found.seed},
+        "errors_in_variables": {
+            "share": found.orthogonal.share,
+            "largest_shift": found.orthogonal.largest_shift,
+            "converged": found.orthogonal.converged,
+            "verdict": found.orthogonal.verdict,
+        },
+        "activation_energy": _energy_document(found.energies),
+        "hersey_collapse": None if found.collapse is None else _collapse_document(found.collapse),
+    }
+
+
+def _row(r: CandidateFit, *, chosen: bool) -> str:
+    missed = "-" if r.cross_validation is None else f"{r.cross_validation:.2%}"
+    mark = "*" if chosen else " "
+    lost = "  not determined" if r.not_identified else ""
+    return (
+        f"  {mark} {r.candidate.name:<66} {r.fit.parameters:>7} {r.delta_aicc:>8.1f} {r.delta_bic:>8.1f} "
+        f"{missed:>9} {r.fit.scatter:>8.2%}{lost}"
+    )
+
+
+def _parameter_lines(p: ParameterEstimate) -> list[str]:
+    unit = _SHOWN.get(p.unit, p.unit)
+    if p.not_identified:
+        return [f"    {p.name}: not determined: {p.not_identified}"]
+    lines = [f"    {p.name} = {_in(p.value, p):.6g} {unit}".rstrip()]
+    for method in METHODS:
+        if method in p.intervals:
+            low, high = (_in(end, p) for end in p.intervals[method])
+            lines.append(f"        {method:<11} [{low:.6g}, {high:.6g}]")
+    return lines
+
+
+def _in(value: float, p: ParameterEstimate) -> float:
+    return convert(value, p.unit, _SHOWN[p.unit]) if p.unit in _SHOWN else value
+
+
+def _local(kelvin: float, energy: float) -> str:
+    return (
+        f"    chosen law, apparent energy of torque at {convert(kelvin, 'K', 'degC'):.0f} degC: "
+        f"{energy / 1e3:.4g} kJ/mol = {energy / CALORIE:.0f} cal/mol"
+    )
+
+
+def _candidate_document(r: CandidateFit) -> dict[str, object]:
+    return {
+        "key": r.candidate.key,
+        "name": r.candidate.name,
+        "parameters": dict(zip(r.fit.law.names, r.fit.values.tolist(), strict=True)),
+        "not_identified": r.not_identified,
+        "aicc": r.fit.aicc,
+        "bic": r.fit.bic,
+        "delta_aicc": r.delta_aicc,
+        "delta_bic": r.delta_bic,
+        "akaike_weight": r.weight,
+        "cross_validation": r.cross_validation,
+        "scatter": r.fit.scatter,
+    }
+
+
+def _parameter_document(p: ParameterEstimate) -> dict[str, object]:
+    intervals: dict[str, Ends] = p.intervals
+    return {
+        "name": p.name,
+        "unit": p.unit,
+        "value": None if p.not_identified else p.value,
+        "error": p.error,
+        "intervals": intervals,
+        "not_identified": p.not_identified,
+    }
+
+
+def _energy_document(e: ActivationEnergies) -> dict[str, object]:
+    def each(energy: Estimate | None) -> dict[str, object] | None:
+        if energy is None:
+            return None
+        return {"J/mol": vars(energy), "cal/mol": vars(scaled(energy, 1.0 / CALORIE))}
+
+    return {
+        "torque": each(e.torque),
+        "power": None if e.power is None else vars(e.power),
+        "viscosity": each(e.viscosity),
+        "transition": each(e.transition),
+        "p_value": e.p_value,
+        "verdict": e.verdict,
+        "local": [{"temperature": kelvin, "J/mol": energy} for kelvin, energy in e.local],
+    }
+
+
+def _collapse_document(c: HerseyCollapse) -> dict[str, object]:
+    return {
+        "collapses": c.collapses,
+        "deviation": c.deviation,
+        "scatter": c.scatter,
+        "p_value": c.p_value,
+        "overlap": c.overlap,
+        "log_viscosity": c.shifts,
+        "verdict": c.verdict,
+    }

@@ -1,0 +1,129 @@
+"""What the laws are fitted to: dwells in logarithms, with the errors of torque, speed and temperature."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from hersey.arrays import FloatArray, IntArray
+from hersey.damping.dwells import SteadyPoints, groups_of_temperature
+from hersey.damping.law import SAME_SPEED, distinct_speeds
+from hersey.errors import InsufficientDataError
+from hersey.units import rpm
+
+#: Runs from which on they are resampled and left out whole; fewer say too little of their spread.
+MANY_RUNS = 8
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """Where a law is evaluated."""
+
+    log_speed: FloatArray  #: ln(w/w_ref), shape (points,)
+    kelvin: FloatArray | None  #: K, shape (points,); None if the log has no temperature
+    group: IntArray  #: index of the temperature, coldest first, shape (points,)
+
+    def take(self, index: IntArray) -> Inputs:
+        """Return the inputs at an index."""
+        kelvin = None if self.kelvin is None else self.kelvin[index]
+        return Inputs(self.log_speed[index], kelvin, self.group[index])
+
+
+@dataclass(frozen=True)
+class Observations:
+    """Dwells: logarithm of torque about nothing, in N m, at inputs, with relative standard errors."""
+
+    inputs: Inputs
+    log_torque: FloatArray  #: ln(torque / N m)
+    torque_error: FloatArray  #: relative
+    speed_error: FloatArray  #: relative
+    temperature_error: FloatArray  #: K
+    tare: FloatArray  #: what one standard error of the tare does to ``log_torque``; zeros if there is none
+    cluster: IntArray  #: points that share it are left out and resampled together
+    clustered_by: str  #: ``run`` or ``level``
+    reference_speed: float  #: rad/s
+    reference_kelvin: float | None
+    temperatures: FloatArray  #: K, mean of each group, shape (groups,)
+
+    @classmethod
+    def of(cls, points: SteadyPoints) -> Observations:
+        """Return the observations that steady points are."""
+        speed, torque = np.abs(points.column("speed")), np.abs(points.column("torque"))
+        if distinct_speeds(speed) < 3:
+            held = " and ".join(f"{rpm(float(v)):.4g} rpm" for v in np.unique(np.round(speed, 2))[:2])
+            raise InsufficientDataError(
+                f"the steady points are all at {held}: no law of speed can be fitted or compared; "
+                "record dwells at three speeds or more"
+            )
+        kelvin = points.column("temperature") if points.log.has_temperature else None
+        group, means = _groups(kelvin, speed.size)
+        run = points.column("run").astype(np.intp)
+        by_run = np.unique(run).size >= MANY_RUNS
+        zero = np.zeros_like(speed)
+        reference = float(np.exp(np.mean(np.log(speed))))
+        return cls(
+            inputs=Inputs(np.log(speed / reference), kelvin, group),
+            log_torque=np.log(torque),
+            torque_error=points.column("torque_error") / torque,
+            speed_error=points.column("speed_error") / speed,
+            temperature_error=zero if kelvin is None else points.column("temperature_error"),
+            tare=points.tare_error / torque,
+            cluster=run if by_run else _levels(run, group, speed),
+            clustered_by="run" if by_run else "level",
+            reference_speed=reference,
+            reference_kelvin=None if kelvin is None else float(1.0 / np.mean(1.0 / kelvin)),
+            temperatures=means,
+        )
+
+    def __len__(self) -> int:
+        """Return how many dwells there are."""
+        return int(self.log_torque.size)
+
+    @property
+    def speed(self) -> FloatArray:
+        """Speeds, rad/s."""
+        return np.asarray(self.reference_speed * np.exp(self.inputs.log_speed))
+
+    def take(self, index: IntArray) -> Observations:
+        """Return the observations at an index, repeats allowed, about the same reference."""
+        return replace(
+            self,
+            inputs=self.inputs.take(index),
+            log_torque=self.log_torque[index],
+            torque_error=self.torque_error[index],
+            speed_error=self.speed_error[index],
+            temperature_error=self.temperature_error[index],
+            tare=self.tare[index],
+            cluster=self.cluster[index],
+        )
+
+    def at(self, speed: FloatArray, kelvin: FloatArray | None) -> Inputs:
+        """Return inputs at other speeds (rad/s) and temperatures (K), grouped with the nearest measured."""
+        speeds = np.atleast_1d(np.asarray(speed, dtype=np.float64))
+        z = np.log(speeds / self.reference_speed)
+        if self.inputs.kelvin is None or kelvin is None:
+            return Inputs(z, None, np.zeros(z.size, dtype=np.intp))
+        hot = np.broadcast_to(np.asarray(kelvin, dtype=np.float64), z.shape).copy()
+        nearest = np.argmin(np.abs(hot[:, None] - self.temperatures[None, :]), axis=1)
+        return Inputs(z, hot, nearest.astype(np.intp))
+
+
+def _groups(kelvin: FloatArray | None, count: int) -> tuple[IntArray, FloatArray]:
+    group = np.zeros(count, dtype=np.intp)
+    if kelvin is None:
+        return group, np.empty(0)
+    means = []
+    for index, members in enumerate(groups_of_temperature(kelvin)):
+        group[members] = index
+        means.append(float(np.mean(kelvin[members])))
+    return group, np.array(means)
+
+
+def _levels(run: IntArray, group: IntArray, speed: FloatArray) -> IntArray:
+    """Dwells of one run at one temperature and one speed, whatever the order in which they were held."""
+    order = np.argsort(speed, kind="stable")
+    step = np.empty(speed.size, dtype=np.intp)
+    step[order] = np.cumsum(np.append(0, np.diff(np.log(speed[order])) > SAME_SPEED))
+    _, level = np.unique(np.column_stack([run, group, step]), axis=0, return_inverse=True)
+    return np.asarray(level, dtype=np.intp)

@@ -1,0 +1,329 @@
+"""Two logs against each other: two lubricants, ages or units.
+
+Both are given the candidate that describes them best together (least sum of AICc, the simplest unless a
+larger law is beyond doubt). The ratio of damping, B over A, is taken where both were measured; its interval
+is simultaneous over that range (Scheffe), so that a verdict of a difference anywhere in it is wrong in 5 %
+of cases at most.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy import stats
+
+from hersey.arrays import FloatArray
+from hersey.damping.branches import EVIDENCE
+from hersey.damping.candidates.branched import Law
+from hersey.damping.candidates.comparison import compare_models
+from hersey.damping.candidates.intervals import quantities
+from hersey.damping.candidates.model_comparison import CandidateFit, ModelComparison
+from hersey.damping.candidates.observations import Inputs, Observations
+from hersey.damping.dwells import SteadyPoints
+from hersey.damping.estimation import CONFIDENCE, Estimate
+from hersey.errors import InsufficientDataError
+from hersey.result import json_value
+from hersey.units import convert, rpm
+
+#: Speeds and temperatures at which the ratio is taken.
+SPEEDS, TEMPERATURES = 9, 4
+#: Least share of the ranges that two logs must have in common: a factor of speed.
+LEAST_SPAN = 1.2
+_QUOTED = ("b", "c", "c below the transition", "transition speed", "Stribeck speed", "T0")
+
+
+@dataclass(frozen=True)
+class Change:
+    """How a quantity differs: B minus A, or B over A for a speed.
+
+    ``p_value`` is that of no difference, corrected for all the quantities compared (Holm, Scand. J. Stat. 6
+    (1979) 65); the interval of the change is its own.
+    """
+
+    name: str
+    of_a: float
+    of_b: float
+    change: Estimate
+    is_ratio: bool
+    p_value: float
+
+    @property
+    def real(self) -> bool:
+        """Whether it differs at the 5 % level."""
+        return self.p_value < 1.0 - CONFIDENCE
+
+
+@dataclass(frozen=True)
+class LogComparison:
+    """Damping of B over that of A, and what else differs; arrays of shape (temperatures, speeds)."""
+
+    candidate: str
+    speeds: FloatArray  #: rad/s
+    temperatures: FloatArray  #: K; empty if the law has none
+    ratio: FloatArray
+    low: FloatArray  #: simultaneous 95 % limits
+    high: FloatArray
+    mean_ratio: Estimate  #: geometric mean over the range
+    changes: tuple[Change, ...]
+    verdict: str
+    notes: tuple[str, ...]
+    names: tuple[str, str]
+
+    def summary(self) -> str:
+        """Return the comparison as text."""
+        a, b = self.names
+        lines = [f"A: {a}", f"B: {b}", f"law for both: {self.candidate}", self.verdict]
+        lines.append(f"damping of B over A, mean over the shared range: {self.mean_ratio}")
+        for row, kelvin in enumerate(self.temperatures if self.temperatures.size else [None]):
+            hot = "" if kelvin is None else f"{convert(float(kelvin), 'K', 'degC'):.0f} degC: "
+            shown = []
+            for i in (0, self.speeds.size // 2, self.speeds.size - 1):
+                ends = f"[{self.low[row, i]:.3f}, {self.high[row, i]:.3f}]"
+                shown.append(f"{rpm(float(self.speeds[i])):.3g} rpm {self.ratio[row, i]:.3f} {ends}")
+            lines.append(f"  {hot}{'; '.join(shown)}")
+        for change in self.changes:
+            how = "B/A" if change.is_ratio else "B - A"
+            lines.append(
+                f"  {change.name}: {_value(change, change.of_a)} and {_value(change, change.of_b)}, "
+                f"{how} = {change.change}, p = {change.p_value:.2g}"
+            )
+        return "\n".join([*lines, *(f"- {note}" for note in self.notes)])
+
+    def document(self) -> dict[str, object]:
+        """Return the comparison as plain data, SI units."""
+        found = json_value(
+            {
+                "a": self.names[0],
+                "b": self.names[1],
+                "candidate": self.candidate,
+                "verdict": self.verdict,
+                "notes": self.notes,
+                "mean_ratio": vars(self.mean_ratio),
+                "speeds": self.speeds,
+                "temperatures": self.temperatures,
+                "ratio": self.ratio,
+                "low": self.low,
+                "high": self.high,
+                "changes": [{**vars(c), "change": vars(c.change), "real": c.real} for c in self.changes],
+            }
+        )
+        assert isinstance(found, dict)
+        return found
+
+
+def compare(
+    a: SteadyPoints | Observations, b: SteadyPoints | Observations, *, names: tuple[str, str] = ("A", "B")
+) -> LogComparison:
+    """Compare the dwells of two logs.
+
+    Parameters
+    ----------
+    a, b
+        From `TorqueLog.steady`.
+    names
+        What to call them.
+
+    Raises
+    ------
+    InsufficientDataError
+        If the two share no range of speed or temperature, or no law fits both.
+    """
+    data = [points if isinstance(points, Observations) else Observations.of(points) for points in (a, b)]
+    speeds, temperatures = _shared(*data)
+    first, second = (compare_models(each, bootstrap=0, cross_validate=False) for each in data)
+    of_a, of_b = _common_candidate(first, second)
+    if of_a.fit.law.thermal is None:
+        temperatures = np.empty(0)
+    flat = _flat(speeds, temperatures)
+    (y_a, g_a), (y_b, g_b) = (_law_at(r, found.data, *flat) for r, found in ((of_a, first), (of_b, second)))
+    difference = y_b - y_a
+    covariance = g_a @ of_a.fit.covariance @ g_a.T + g_b @ of_b.fit.covariance @ g_b.T
+    freedom = min(of_a.fit.freedom, of_b.fit.freedom)
+    rank = of_a.fit.values.size
+    reach = np.sqrt(rank * stats.f.ppf(CONFIDENCE, rank, freedom)) * np.sqrt(np.diag(covariance))
+    shape = (max(temperatures.size, 1), speeds.size)
+    mean = _mean(difference, covariance, freedom)
+    changes = _changes(of_a, of_b, first.data, second.data, freedom)
+    ratio, low, high = (
+        np.exp(v).reshape(shape) for v in (difference, difference - reach, difference + reach)
+    )
+    return LogComparison(
+        candidate=of_a.candidate.name,
+        speeds=speeds,
+        temperatures=temperatures,
+        ratio=ratio,
+        low=low,
+        high=high,
+        mean_ratio=mean,
+        changes=changes,
+        verdict=_verdict(mean, low, high, changes, names),
+        notes=_notes(first, second, of_a),
+        names=names,
+    )
+
+
+def _shared(a: Observations, b: Observations) -> tuple[FloatArray, FloatArray]:
+    slow, fast = max(a.speed.min(), b.speed.min()), min(a.speed.max(), b.speed.max())
+    if fast < LEAST_SPAN * slow:
+        raise InsufficientDataError(
+            "the logs share no range of speed: "
+            f"A has {rpm(a.speed.min()):.3g} to {rpm(a.speed.max()):.3g} rpm, "
+            f"B {rpm(b.speed.min()):.3g} to {rpm(b.speed.max()):.3g} rpm"
+        )
+    speeds = np.geomspace(slow, fast, SPEEDS)
+    if a.inputs.kelvin is None or b.inputs.kelvin is None:
+        if (a.inputs.kelvin is None) != (b.inputs.kelvin is None):
+            raise InsufficientDataError(
+                "only one of the logs has a temperature: compare both with --isothermal, at one temperature"
+            )
+        return speeds, np.empty(0)
+    cold = max(float(a.inputs.kelvin.min()), float(b.inputs.kelvin.min()))
+    hot = min(float(a.inputs.kelvin.max()), float(b.inputs.kelvin.max()))
+    if hot < cold - 3.0:
+        raise InsufficientDataError(
+            f"the logs share no temperature: one ends at {convert(hot, 'K', 'degC'):.0f} degC, the other "
+            f"begins at {convert(cold, 'K', 'degC'):.0f} degC"
+        )
+    return speeds, np.linspace(min(cold, hot), max(cold, hot), TEMPERATURES)
+
+
+def _common_candidate(a: ModelComparison, b: ModelComparison) -> tuple[CandidateFit, CandidateFit]:
+    """The candidate with the least sum of AICc, of those determined in both logs."""
+    pairs = []
+    for one in a.candidates:
+        other = next((r for r in b.candidates if r.candidate == one.candidate), None)
+        if other is not None and not one.not_identified and not other.not_identified:
+            pairs.append((one.fit.aicc + other.fit.aicc, one, other))
+    if not pairs:
+        raise InsufficientDataError("no law is determined by both logs: record more dwells of each")
+    least = min(total for total, _, _ in pairs)
+    tied = [p for p in pairs if p[0] <= least + EVIDENCE]
+    _, one, other = min(tied, key=lambda p: (p[1].fit.parameters, p[0]))
+    return one, other
+
+
+def _flat(speeds: FloatArray, temperatures: FloatArray) -> tuple[FloatArray, FloatArray | None]:
+    if not temperatures.size:
+        return speeds, None
+    both = np.meshgrid(speeds, temperatures)
+    return both[0].ravel(), both[1].ravel()
+
+
+def _law_at(
+    candidate: CandidateFit, data: Observations, speed: FloatArray, kelvin: FloatArray | None
+) -> tuple[FloatArray, FloatArray]:
+    hot = kelvin
+    if hot is None and data.inputs.kelvin is not None:
+        hot = np.full(speed.size, float(np.mean(data.inputs.kelvin)))
+    inputs: Inputs = data.at(speed, hot)
+    return candidate.fit.law.predict(candidate.fit.values, inputs), candidate.fit.law.jacobian(
+        candidate.fit.values, inputs
+    )
+
+
+def _mean(difference: FloatArray, covariance: FloatArray, freedom: int) -> Estimate:
+    share = np.full(difference.size, 1.0 / difference.size)
+    centre, error = float(share @ difference), float(np.sqrt(share @ covariance @ share))
+    reach = float(stats.t.ppf(0.5 + CONFIDENCE / 2, freedom)) * error
+    ratio = float(np.exp(centre))
+    return Estimate(ratio, ratio * error, float(np.exp(centre - reach)), float(np.exp(centre + reach)))
+
+
+def _changes(
+    a: CandidateFit, b: CandidateFit, of_a: Observations, of_b: Observations, freedom: int
+) -> tuple[Change, ...]:
+    """Differences of what does not depend on the reference; speeds at the reference of A."""
+    out = []
+    in_a = {q.name: q for q in quantities(a.fit, of_a)}
+    in_b = {q.name: q for q in quantities(b.fit, of_b)}
+    for name in in_a.keys() & in_b.keys():
+        energy = name.startswith("activation energy")
+        if not energy and name not in _QUOTED and not name.startswith("c at"):
+            continue
+        p, q = in_a[name], in_b[name]
+        u, v = float(a.fit.values[p.parameter]), float(b.fit.values[q.parameter])
+        is_ratio = name.endswith("speed")
+        values = p.of(u), q.of(v)
+        error = math.hypot(
+            *(
+                float(np.sqrt(r.fit.covariance[k.parameter, k.parameter])) * _slope(k.of, w, is_ratio)
+                for r, k, w in ((a, p, u), (b, q, v))
+            )
+        )
+        if is_ratio:
+            values = values[0], values[1] * _moved(b, of_b, of_a.reference_kelvin)
+        size = float(np.log(values[1] / values[0])) if is_ratio else values[1] - values[0]
+        p_value = float(2 * stats.t.sf(abs(size) / max(error, 1e-300), freedom))
+        reach = float(stats.t.ppf(0.5 + CONFIDENCE / 2, freedom)) * error
+        ends = size - reach, size + reach
+        change = Estimate(size, error, *ends)
+        if is_ratio:
+            ratio = float(np.exp(size))
+            change = Estimate(ratio, ratio * error, *(float(np.exp(end)) for end in ends))
+        out.append(Change(name, *values, change, is_ratio, p_value))
+    return _corrected(out)
+
+
+def _corrected(changes: list[Change]) -> tuple[Change, ...]:
+    """Holm's p-values, in the order of the names."""
+    corrected, least = [], 0.0
+    for rank, change in enumerate(sorted(changes, key=lambda c: c.p_value)):
+        least = max(least, min(1.0, change.p_value * (len(changes) - rank)))
+        corrected.append(replace(change, p_value=least))
+    return tuple(sorted(corrected, key=lambda c: c.name))
+
+
+def _moved(candidate: CandidateFit, data: Observations, kelvin: float | None) -> float:
+    """Transition at another temperature over that at the reference of the data."""
+    law = candidate.fit.law
+    if kelvin is None or data.reference_kelvin is None or law.thermal is None or not isinstance(law, Law):
+        return 1.0
+    if not law.broken:
+        return 1.0
+    inputs = data.at(np.full(2, data.reference_speed), np.array([kelvin, data.reference_kelvin]))
+    there, here = law.transition(candidate.fit.values, inputs)
+    return float(np.exp(there - here))
+
+
+def _slope(of: Callable[[float], float], value: float, logarithmic: bool) -> float:
+    step = 1e-6 * max(abs(value), 1e-3)
+    ends = of(value + step), of(value - step)
+    return abs(float(np.log(ends[0] / ends[1])) if logarithmic else ends[0] - ends[1]) / (2 * step)
+
+
+def _verdict(
+    mean: Estimate, low: FloatArray, high: FloatArray, changes: tuple[Change, ...], names: tuple[str, str]
+) -> str:
+    a, b = names
+    higher, lower = bool(np.any(low > 1.0)), bool(np.any(high < 1.0))
+    if higher and lower:
+        said = f"{b} drags more than {a} in one part of the shared range and less in another"
+    elif higher or lower:
+        sign = "more" if higher else "less"
+        share = np.mean(low > 1.0) if higher else np.mean(high < 1.0)
+        where = "throughout" if share == 1.0 else f"over {share:.0%} of"
+        said = f"{b} drags {sign} than {a} {where} the shared range, {mean.value - 1.0:+.1%} on the mean"
+    else:
+        widest = max(float(np.max(high)) - 1.0, 1.0 - float(np.min(low)))
+        said = f"No difference of damping is proven: any there is stays within {widest:.1%}"
+    real = [c.name for c in changes if c.real]
+    if real:
+        said += f"; also different: {', '.join(real)}"
+    return said + "."
+
+
+def _notes(a: ModelComparison, b: ModelComparison, common: CandidateFit) -> tuple[str, ...]:
+    notes = []
+    for name, found in (("A", a), ("B", b)):
+        if found.chosen.candidate != common.candidate:
+            notes.append(f"{name} alone would be given {found.chosen.candidate.name}.")
+    if a.chosen.fit.law.broken != b.chosen.fit.law.broken:
+        notes.append("Only one of the two shows a falling branch within its range.")
+    return tuple(notes)
+
+
+def _value(change: Change, value: float) -> str:
+    return f"{rpm(value):.4g} rpm" if change.is_ratio else f"{value:.4g}"

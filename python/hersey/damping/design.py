@@ -1,0 +1,213 @@
+"""Which dwells to record next: those that make a fitted law known best.
+
+D-optimal points make the volume of the joint confidence region of all parameters least; c-optimal points make
+the variance of one quantity least. Points are added one at a time, each the best given those before it
+(Fedorov's exchange, additions only). As a law with a corner is not smooth in where it bends, the gain is
+averaged over draws of the fit.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hersey.arrays import FloatArray
+from hersey.damping.candidates.intervals import Quantity, quantities
+from hersey.damping.candidates.model_comparison import ModelComparison
+from hersey.damping.candidates.observations import Inputs
+from hersey.errors import InsufficientDataError, ParameterError
+from hersey.result import json_value
+from hersey.units import convert, rpm
+
+#: Speeds of the candidate grid, and draws of the fit over which the gain is averaged.
+SPEEDS, DRAWS = 25, 40
+
+
+@dataclass(frozen=True)
+class DesignPoint:
+    """A dwell to record, and what is known of the quantity after it and those before it."""
+
+    speed: float  #: rad/s
+    kelvin: float | None  #: K
+    error: float | None  #: standard error of the quantity asked for; None for all parameters
+    volume: float  #: of the confidence region of all parameters, over that of today
+
+
+@dataclass(frozen=True)
+class TestDesign:
+    """The next dwells, in the order of their worth."""
+
+    __test__ = False  # no test of pytest's
+
+    quantity: str  #: what is to be known better; empty for all parameters
+    unit: str
+    error_now: float | None
+    points: tuple[DesignPoint, ...]
+    law: str
+    seed: int
+
+    def summary(self) -> str:
+        """Return the points as text."""
+        what = f"to know the {self.quantity} best" if self.quantity else "to know all parameters best"
+        lines = [f"Next dwells {what} (law: {self.law}; seed {self.seed}):"]
+        if self.error_now is not None:
+            lines.append(f"  today's standard error: {self._shown(self.error_now)}")
+        for number, point in enumerate(self.points, 1):
+            hot = "" if point.kelvin is None else f" at {convert(point.kelvin, 'K', 'degC'):.0f} degC"
+            then = (
+                f"region of all parameters {point.volume:.0%} of today's"
+                if point.error is None
+                else f"standard error {self._shown(point.error)}"
+            )
+            lines.append(f"  {number}. {rpm(point.speed):.3g} rpm{hot}: then {then}")
+        return "\n".join(lines)
+
+    def document(self) -> dict[str, object]:
+        """Return the points as plain data, rad/s and K."""
+        found = json_value(
+            {
+                "quantity": self.quantity,
+                "unit": self.unit,
+                "error_now": self.error_now,
+                "law": self.law,
+                "seed": self.seed,
+                "points": [vars(point) for point in self.points],
+            }
+        )
+        assert isinstance(found, dict)
+        return found
+
+    def _shown(self, error: float) -> str:
+        if self.unit == "rad/s":
+            return f"{rpm(error):.3g} rpm"
+        return f"{error:.3g} {self.unit}".rstrip()
+
+
+def design(
+    comparison: ModelComparison,
+    *,
+    count: int = 6,
+    quantity: str = "",
+    speeds: tuple[float, float] | None = None,
+    temperatures: tuple[float, float] | None = None,
+    seed: int = 1,
+) -> TestDesign:
+    """Return the next dwells to record, by the law that a comparison chose.
+
+    Parameters
+    ----------
+    count
+        How many.
+    quantity
+        Name, or its beginning, of the parameter to know best, as ``transition speed``; all if not given.
+    speeds, temperatures
+        Ranges that can be run, rad/s and K; those measured if not given.
+    seed
+        Of the draws of the fit.
+
+    Raises
+    ------
+    ParameterError
+        If no parameter has that name, or a range is not ascending.
+    InsufficientDataError
+        If the data leave the law so open that no gain can be computed.
+    """
+    if count < 1:
+        raise ParameterError(f"count is {count}: it must be at least 1")
+    fit, data = comparison.chosen.fit, comparison.data
+    wanted = _wanted(comparison, quantity)
+    candidates = _dwells_to_try(comparison, speeds, temperatures)
+    values = _draws(comparison, seed)
+    sigma = float(np.sqrt(fit.scatter**2 + np.median(fit.errors) ** 2 + 1e-20))
+    rows = np.stack([fit.law.jacobian(v, candidates) / sigma for v in values])
+    measured = np.stack([fit.law.jacobian(v, data.inputs) / fit.sigma[:, None] for v in values])
+    information = np.einsum("kni,knj->kij", measured, measured)
+    scale = np.sqrt(np.diag(fit.covariance))
+    if not np.all(np.isfinite(scale)) or np.any(scale <= 0):
+        raise InsufficientDataError("the law is not determined by these data: record more of them first")
+    rows, information = rows * scale, information * np.outer(scale, scale)
+    start = np.linalg.slogdet(information)[1]
+    picked: list[DesignPoint] = []
+    for _ in range(count):
+        inverse = np.linalg.pinv(information, hermitian=True)
+        leverage = np.einsum("kni,kij,knj->kn", rows, inverse, rows)
+        if wanted is None:
+            gain = np.median(np.log1p(leverage), axis=0)
+        else:
+            reach = np.einsum("kni,ki->kn", rows, inverse[:, :, wanted.parameter])
+            share = reach**2 / (1.0 + leverage) / inverse[:, wanted.parameter, wanted.parameter][:, None]
+            gain = np.mean(share, axis=0)
+        best = int(np.argmax(gain))
+        information = information + np.einsum("ki,kj->kij", rows[:, best], rows[:, best])
+        volume = float(np.exp(-0.5 * np.median(np.linalg.slogdet(information)[1] - start)))
+        error = None if wanted is None else _error(comparison, wanted, information, scale)
+        kelvin = None if candidates.kelvin is None else float(candidates.kelvin[best])
+        speed = float(data.reference_speed * np.exp(candidates.log_speed[best]))
+        picked.append(DesignPoint(speed, kelvin, error, volume))
+    now = None
+    if wanted is not None:
+        now = float(np.sqrt(fit.covariance[wanted.parameter, wanted.parameter])) * _slope(comparison, wanted)
+    name, unit = (wanted.name, wanted.unit) if wanted else ("", "")
+    return TestDesign(name, unit, now, tuple(picked), comparison.chosen.candidate.name, seed)
+
+
+def _wanted(comparison: ModelComparison, quantity: str) -> Quantity | None:
+    if not quantity:
+        return None
+    known = quantities(comparison.chosen.fit, comparison.data)
+    exact = [q for q in known if q.name == quantity]
+    found = exact or [q for q in known if q.name.lower().startswith(quantity.lower())]
+    if len(found) != 1:
+        listed = ", ".join(f"'{q.name}'" for q in known)
+        raise ParameterError(
+            f"'{quantity}' names {len(found) or 'no'} parameters of this law: take one of {listed}"
+        )
+    return found[0]
+
+
+def _dwells_to_try(
+    comparison: ModelComparison,
+    speeds: tuple[float, float] | None,
+    temperatures: tuple[float, float] | None,
+) -> Inputs:
+    data = comparison.data
+    slow, fast = speeds or (float(data.speed.min()), float(data.speed.max()))
+    if not 0 < slow < fast:
+        raise ParameterError(f"speeds are {slow:g} to {fast:g} rad/s: they must ascend from above 0")
+    grid = np.geomspace(slow, fast, SPEEDS)
+    if data.inputs.kelvin is None or comparison.chosen.fit.law.thermal is None:
+        return data.at(grid, None if data.inputs.kelvin is None else data.temperatures[0])
+    hots = data.temperatures
+    if temperatures is not None:
+        cold, hot = temperatures
+        if not 0 < cold < hot:
+            raise ParameterError(f"temperatures are {cold:g} to {hot:g} K: they must ascend from above 0")
+        hots = np.linspace(cold, hot, 7)
+    both = np.meshgrid(grid, hots)
+    return data.at(both[0].ravel(), both[1].ravel())
+
+
+def _draws(comparison: ModelComparison, seed: int) -> FloatArray:
+    """The fit, and draws of it where the law has a corner."""
+    fit = comparison.chosen.fit
+    if not fit.law.broken:
+        return fit.values[None, :]
+    random = np.random.default_rng(seed)
+    return np.vstack([fit.values, random.multivariate_normal(fit.values, fit.covariance, DRAWS)])
+
+
+def _error(
+    comparison: ModelComparison, wanted: Quantity, information: FloatArray, scale: FloatArray
+) -> float:
+    """Standard error of a quantity, from today's and the share of its variance that is left."""
+    inverse = np.linalg.pinv(information, hermitian=True)
+    variance = float(np.median(inverse[:, wanted.parameter, wanted.parameter]))
+    return float(np.sqrt(variance)) * float(scale[wanted.parameter]) * _slope(comparison, wanted)
+
+
+def _slope(comparison: ModelComparison, wanted: Quantity) -> float:
+    """How much a quantity changes with its parameter."""
+    value = float(comparison.chosen.fit.values[wanted.parameter])
+    step = 1e-6 * max(abs(value), 1e-3)
+    return abs(wanted.of(value + step) - wanted.of(value - step)) / (2 * step)

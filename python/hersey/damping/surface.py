@@ -1,0 +1,439 @@
+"""The damping surface B = a T^b w^c (Eq. 4 of the paper), with a falling branch where the data show one.
+
+The fit is weighted least squares in ln B about reference values, where the coefficients are well
+conditioned. The same law is fitted in torque space, where errors are absolute, for comparison.
+
+Where torque falls with speed (c < -1) below a transition speed, a second branch with an exponent of its own
+meets the first there. The transition sits at a fixed Hersey number, so that it moves with temperature.
+"""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from hersey import _core
+from hersey.arrays import FloatArray
+from hersey.damping.branches import Transition, fit_branches, transition, why_no_transition
+from hersey.damping.dwells import SteadyPoints
+from hersey.damping.estimation import Estimate, Solution, robust, solve
+from hersey.damping.law import (
+    FitData,
+    fit_single,
+    hersey_exponent,
+    log_damping,
+    scaled_temperature,
+    variables,
+)
+from hersey.errors import ExtrapolationWarning, InsufficientDataError, ParameterError
+from hersey.motion.drag import Drag
+
+
+@dataclass(frozen=True)
+class FitStatistics:
+    """How well the law describes the points."""
+
+    points: int
+    variables: int
+    chi_square: float
+    reduced_chi_square: float
+    scatter: float  #: relative, between dwells, beyond the standard errors of their means
+    aicc: float
+    r_squared_damping: float
+    r_squared_torque: float
+
+
+@dataclass(frozen=True)
+class DampingSurface:
+    """A fitted law B = a T^b w^c; T in ``temperature_scale``, w in rad/s, B in N m s/rad.
+
+    ``b`` is None for isothermal data. ``covariance`` is that of ``variables``, the numbers fitted, about
+    ``reference_speed`` (rad/s) and ``reference_temperature`` (in the scale). ``torque_space`` holds a, b, c
+    of the fit to torque. ``speed_range`` and ``temperature_range`` (SI) bound the data.
+    """
+
+    a: Estimate
+    b: Estimate | None
+    c: Estimate
+    transition: Transition | None
+    temperature_scale: str
+    reference_speed: float
+    reference_temperature: float | None
+    variables: tuple[str, ...]
+    values: FloatArray
+    covariance: FloatArray
+    torque_space: dict[str, Estimate]
+    statistics: FitStatistics
+    speed_range: tuple[float, float]
+    temperature_range: tuple[float, float] | None
+    residuals: FloatArray  #: ln(measured/fitted), shape (points,)
+    rejected_transition: str  #: why a second branch is not announced, empty if it is
+    data_sha256: tuple[str, ...]
+    version: str = field(default=_core.VERSION)
+
+    def damping(self, speed: ArrayLike, temperature: ArrayLike | None = None) -> FloatArray:
+        """Return damping in N m s/rad at speeds (rad/s) and temperatures (K), broadcast together.
+
+        Warns with `ExtrapolationWarning` outside the range of the data.
+        """
+        speeds = np.abs(np.asarray(speed, dtype=float))
+        self._warn_outside("speed", speeds, self.speed_range)
+        z = np.log(speeds / self.reference_speed)
+        if self.b is None or self.reference_temperature is None or temperature is None:
+            if self.b is not None:
+                raise ParameterError("this law depends on temperature: give it one, in K")
+            x = np.zeros(())
+        else:
+            temperatures = np.asarray(temperature, dtype=float)
+            self._warn_outside("temperature", temperatures, self.temperature_range)
+            x = np.log(scaled_temperature(temperatures, self.temperature_scale) / self.reference_temperature)
+        return np.asarray(np.exp(log_damping(self.values, x, z, self.b is not None)))
+
+    def torque(self, speed: ArrayLike, temperature: ArrayLike | None = None) -> FloatArray:
+        """Return drag torque in N m, with the sign of the speed (rad/s); temperature in K."""
+        return np.asarray(self.damping(speed, temperature) * np.asarray(speed, dtype=float))
+
+    def transition_speed(self, temperature: float | None = None) -> float:
+        """Return the transition speed in rad/s at a temperature (K); NaN where the data show none."""
+        if self.transition is None:
+            return float("nan")
+        if temperature is None or self.reference_temperature is None:
+            return self.transition.speed.value
+        ratio = self._scaled(temperature) / self.reference_temperature
+        return float(self.transition.speed.value * ratio**self.transition.temperature_exponent)
+
+    def drag(self, *, roll_radius: float, stick_speed: float, temperature: float | None = None) -> Drag:
+        """Return the drag on the belt surface, at one temperature or varying with it.
+
+        Parameters
+        ----------
+        roll_radius
+            Radius at which torque acts on the belt, m.
+        stick_speed
+            Belt speed below which the belt sticks, m/s; no steady log can show it.
+        temperature
+            K; without it the drag of a thermal law keeps its dependence on temperature: forces vary as
+            T^(b + (1 + c) d) and speeds, the stick speed among them, as T^d, which is the fitted law.
+
+        Raises
+        ------
+        InsufficientDataError
+            If the data show no transition: without a falling branch there is no stick-slip to compute.
+        """
+        if self.transition is None:
+            raise InsufficientDataError(f"the data show no falling branch ({self.rejected_transition})")
+        if temperature is None and self.b is not None and self.reference_temperature is not None:
+            zero = 0.0 if self.temperature_scale == "K" else 273.15
+            reference = self.reference_temperature + zero
+            at_reference = self.drag(roll_radius=roll_radius, stick_speed=stick_speed, temperature=reference)
+            exponent = self.transition.temperature_exponent
+            return replace(
+                at_reference,
+                reference_temperature=reference,
+                force_temperature_exponent=self.b.value + (1.0 + self.c.value) * exponent,
+                speed_temperature_exponent=exponent,
+                temperature_zero=zero,
+            )
+        speed = self.transition_speed(temperature)
+        with warnings.catch_warnings():  # the transition may lie below the slowest dwell at this temperature
+            warnings.simplefilter("ignore", ExtrapolationWarning)
+            torque = float(self.torque(speed, temperature))
+        return Drag(
+            transition_force=torque / roll_radius,
+            transition_speed=speed * roll_radius,
+            ehl_exponent=self.c.value,
+            mixed_exponent=self.transition.mixed_exponent.value,
+            stick_speed=stick_speed,
+        )
+
+    def drag_samples(
+        self,
+        count: int,
+        seed: int,
+        *,
+        roll_radius: float,
+        stick_speed: float,
+        temperature: float | None = None,
+    ) -> dict[str, FloatArray]:
+        """Return draws of the drag that the fit's covariance allows, for `hysteresis` and the like.
+
+        They follow Student's t with the degrees of freedom of the fit, as its intervals do: the normal
+        distribution of the values, widened where few points measure it. The same seed gives draws that
+        go together across temperatures.
+
+        Parameters
+        ----------
+        count
+            Draws, at least 1.
+        seed
+            Of the random draws, at least 0.
+        roll_radius
+            m, as in `drag`.
+        stick_speed
+            m/s at this temperature; a transition speed below it leaves no falling branch.
+        temperature
+            K; needed if the law depends on it.
+
+        Returns
+        -------
+        dict
+            Arrays of shape (count,): ``transition_force`` (N), ``transition_speed`` (m/s), ``ehl_exponent``
+            and ``mixed_exponent``. Draws without a falling and a rising branch are drawn again, with a
+            warning that counts them.
+
+        Raises
+        ------
+        InsufficientDataError
+            If the data show no transition, or if more than half of the draws have none.
+        ParameterError
+            If a value is out of range, with its name.
+        """
+        if self.transition is None:
+            raise InsufficientDataError(f"the data show no falling branch ({self.rejected_transition})")
+        if count < 1 or seed < 0:
+            name, value, least = ("count", count, 1) if count < 1 else ("seed", seed, 0)
+            raise ParameterError(f"{name} is {value}: it must be at least {least}")
+        if (temperature is None) != (self.b is None):
+            reason = "this law depends on temperature: give it one, in K"
+            other = "temperature is given, but this law does not depend on it"
+            raise ParameterError(reason if self.b is not None else other)
+        self.drag(roll_radius=roll_radius, stick_speed=stick_speed, temperature=temperature)
+        x = 0.0
+        if temperature is not None and self.reference_temperature is not None:
+            x = float(np.log(self._scaled(temperature) / self.reference_temperature))
+        slowest = np.log(stick_speed / roll_radius / self.reference_speed)
+        kept, drawn, failed = self._draws(count, seed, x, slowest)
+        if failed:
+            warnings.warn(
+                f"{failed} of {drawn} draws of the fit had no falling branch and were drawn again: "
+                "the intervals hold for fits that have one",
+                stacklevel=2,
+            )
+        level, b, c, change, at = kept.T
+        z = at + _transition_exponents(b, c) * x
+        speed = self.reference_speed * np.exp(z)
+        torque = np.exp(level + b * x + c * z) * speed
+        return {
+            "transition_force": torque / roll_radius,
+            "transition_speed": speed * roll_radius,
+            "ehl_exponent": c,
+            "mixed_exponent": c + change,
+        }
+
+    def _draws(self, count: int, seed: int, x: float, slowest: float) -> tuple[FloatArray, int, int]:
+        """Draws of level, b, c, change and at that have both branches; how many were drawn, and refused."""
+        assert self.transition is not None
+        covariance = self.covariance.copy()
+        # Where the bend is gradual the meeting of the branches is less certain than a corner's.
+        meeting = self.transition.speed.error / self.transition.speed.value
+        covariance[-1, -1] = max(covariance[-1, -1], meeting**2)
+        freedom = max(self.statistics.points - self.statistics.variables, 1)
+        rng = np.random.default_rng(seed)
+        kept, drawn = np.empty((0, 5)), 0
+        while len(kept) < count:
+            values = rng.multivariate_normal(np.zeros(self.values.size), covariance, size=count)
+            values = self.values + values * np.sqrt(freedom / rng.chisquare(freedom, size=(count, 1)))
+            if self.b is None:
+                values = np.insert(values, 1, 0.0, axis=1)
+            _, b, c, change, at = values.T
+            falls = (c > -1.0) & (c + change < -1.0) & (at + _transition_exponents(b, c) * x > slowest)
+            kept, drawn = np.concatenate([kept, values[falls]]), drawn + count
+            if 2 * len(kept) < drawn:
+                raise InsufficientDataError(
+                    f"{drawn - len(kept)} of {drawn} draws of the fit have no falling branch: "
+                    "the data do not prove one; record more dwells below the transition"
+                )
+        return kept[:count], drawn, drawn - len(kept)
+
+    def summary(self) -> str:
+        """Return the fit as text, in the layout that users of lmfit know."""
+        return _summary(self)
+
+    def _scaled(self, temperature: float) -> float:
+        """A temperature (K) in the scale of the law, where its powers have a meaning."""
+        scaled = float(scaled_temperature(np.asarray(temperature, dtype=float), self.temperature_scale))
+        if not (np.isfinite(scaled) and scaled > 0):
+            raise ParameterError(
+                f"temperature is {temperature:g} K: a law in {self.temperature_scale} holds above 0 "
+                f"{self.temperature_scale} only"
+            )
+        return scaled
+
+    def _warn_outside(self, name: str, values: FloatArray, limits: tuple[float, float] | None) -> None:
+        if limits and (np.any(values < limits[0] * 0.999) or np.any(values > limits[1] * 1.001)):
+            unit = "rad/s" if name == "speed" else "K"
+            warnings.warn(
+                f"{name} outside the measured {limits[0]:.4g} to {limits[1]:.4g} {unit}: extrapolated",
+                ExtrapolationWarning,
+                stacklevel=3,
+            )
+
+
+def fit(points: SteadyPoints, *, temperature_scale: str = "degC") -> DampingSurface:
+    """Fit the damping surface to steady points.
+
+    Parameters
+    ----------
+    points
+        From `TorqueLog.steady`.
+    temperature_scale
+        ``degC`` (as the paper) or ``K``: a and b depend on it.
+
+    Raises
+    ------
+    InsufficientDataError
+        If the points hold fewer than three speeds, or a temperature that does not vary.
+    """
+    data = FitData.of(points, temperature_scale)
+    single = fit_single(data)
+    branches = fit_branches(data, single)
+    if branches is None:
+        return _surface(points, data, single, None, "too few points for a second branch")
+    refused = why_no_transition(data, single, branches)
+    if refused:
+        return _surface(points, data, single, None, refused)
+    return _surface(points, data, branches.solution, transition(data, single, branches), "")
+
+
+def _transition_exponents(b: FloatArray, c: FloatArray) -> FloatArray:
+    return np.array([hersey_exponent(*pair) for pair in zip(b.tolist(), c.tolist(), strict=True)])
+
+
+def _fit_torque(data: FitData, solution: Solution) -> Solution:
+    """The same law fitted to torque, errors absolute; a transition stays where ln B put it."""
+    held = solution.values[-1:] if _branched(data, solution) else np.empty(0)
+    start = solution.values[: solution.values.size - held.size]
+    tare = np.full(data.torque.size, data.tare_error)
+
+    def residual(values: FloatArray) -> FloatArray:
+        law = log_damping(np.append(values, held), data.temperatures, data.z, data.thermal)
+        return np.asarray(data.torque - data.speed * np.exp(law))
+
+    return robust(solve(residual, start, data.torque_error, tare), tare)
+
+
+def _branched(data: FitData, solution: Solution) -> bool:
+    return solution.values.size > 2 + data.thermal
+
+
+def _coefficients(data: FitData, solution: Solution) -> dict[str, Estimate]:
+    """a, b and c as Eq. 4 has them, from values about the reference point."""
+
+    def combined(**share: float) -> Estimate:
+        return solution.estimate(data.pick(**share)[: solution.values.size])
+
+    speed, temperature = np.log(data.reference_speed), np.log(data.reference_temperature or 1.0)
+    log_a = combined(level=1.0, b=-float(temperature), c=-float(speed))
+    a = float(np.exp(log_a.value))
+    out = {"a": Estimate(a, a * log_a.error, float(np.exp(log_a.low)), float(np.exp(log_a.high)))}
+    if data.thermal:
+        out["b"] = combined(b=1.0)
+    out["c"] = combined(c=1.0)
+    return out
+
+
+def _surface(
+    points: SteadyPoints, data: FitData, solution: Solution, found: Transition | None, refused: str
+) -> DampingSurface:
+    coefficients = _coefficients(data, solution)
+    fitted = np.exp(data.y - solution.residuals)
+    count, size = data.y.size, solution.values.size
+    chi_square = solution.chi_square(data.error)
+    statistics = FitStatistics(
+        points=count,
+        variables=size,
+        chi_square=chi_square,
+        reduced_chi_square=chi_square / (count - size),
+        scatter=solution.scatter,
+        aicc=solution.aicc(data.error),
+        r_squared_damping=_r_squared(np.exp(data.y), fitted),
+        r_squared_torque=_r_squared(data.torque, fitted * data.speed),
+    )
+    labels = {"level": "ln B_ref", "change": "c_mixed - c", "at": "ln(w_t/w_ref)"}
+    names = variables(data.thermal, _branched(data, solution))
+    kelvin = points.column("temperature") if data.thermal else None
+    return DampingSurface(
+        a=coefficients["a"],
+        b=coefficients.get("b"),
+        c=coefficients["c"],
+        transition=found,
+        temperature_scale=data.scale,
+        reference_speed=data.reference_speed,
+        reference_temperature=data.reference_temperature,
+        variables=tuple(labels.get(name, name) for name in names),
+        values=solution.values,
+        covariance=solution.covariance,
+        torque_space=_coefficients(data, _fit_torque(data, solution)),
+        statistics=statistics,
+        speed_range=(float(data.speed.min()), float(data.speed.max())),
+        temperature_range=None if kelvin is None else (float(kelvin.min()), float(kelvin.max())),
+        residuals=solution.residuals,
+        rejected_transition=refused,
+        data_sha256=tuple(file.sha256 for file in points.log.files),
+    )
+
+
+def _r_squared(measured: FloatArray, fitted: FloatArray) -> float:
+    """Share of the variance explained; 0 where there is none to explain."""
+    total = float(np.sum((measured - measured.mean()) ** 2))
+    return 1.0 - float(np.sum((measured - fitted) ** 2)) / total if total > 0 else 0.0
+
+
+def _summary(s: DampingSurface) -> str:
+    law = "B = a T^b w^c" if s.b else "B = a w^c"
+    unit = f"T in {s.temperature_scale}, " if s.b else ""
+    st = s.statistics
+    lines = [
+        "[[Model]]",
+        f"    {law}    (B in N m s/rad, {unit}w in rad/s)",
+        "[[Fit Statistics]]",
+        "    # fitting method   = weighted least squares in ln B, absolute standard errors of the dwells",
+        f"    # scatter added    = {st.scatter:.3%} between dwells, beyond the errors of their means",
+        f"    # data points      = {st.points}",
+        f"    # variables        = {st.variables}",
+        f"    chi-square         = {st.chi_square:.6g}  (against the errors of the means alone)",
+        f"    reduced chi-square = {st.reduced_chi_square:.6g}  (1 if these errors explained it all)",
+        f"    Akaike (AICc)      = {st.aicc:.6g}",
+        f"    R-squared, torque  = {st.r_squared_torque:.6f}",
+        f"    R-squared, damping = {st.r_squared_damping:.6f}  (division by speed spreads the values:",
+        "                         nearer 1, yet it tells no more)",
+        "[[Variables]]                                        95 % interval",
+    ]
+    lines += [_variable("a", s.a), *([_variable("b", s.b)] if s.b else []), _variable("c", s.c)]
+    if s.transition:
+        at = (
+            ""
+            if s.reference_temperature is None
+            else f" at {s.reference_temperature:.4g} {s.temperature_scale}"
+        )
+        lines += [
+            _variable("c_mixed", s.transition.mixed_exponent),
+            _variable("w_t", s.transition.speed) + f"  rad/s{at}",
+        ]
+        if s.b:
+            lines.append(f"    w_t varies as T^{s.transition.temperature_exponent:.3g} (fixed Hersey number)")
+        lines.append("    below w_t the exponent is c_mixed")
+    lines += ["[[Fitted in torque space, errors absolute]]"]
+    lines += [_variable(name, estimate) for name, estimate in s.torque_space.items()]
+    lines += ["[[Correlations]] (unreported are below 0.1)", *_correlations(s)]
+    return "\n".join(lines)
+
+
+def _variable(name: str, e: Estimate) -> str:
+    share = f"({abs(e.error / e.value):.2%})" if e.value else ""
+    return f"    {name:8s} {e.value: .7g} +/- {e.error:.3g} {share:10s} [{e.low:.6g}, {e.high:.6g}]"
+
+
+def _correlations(s: DampingSurface) -> list[str]:
+    deviation = np.sqrt(np.diag(s.covariance))
+    pairs = []
+    for i, first in enumerate(s.variables):
+        for j in range(i + 1, len(s.variables)):
+            spread = deviation[i] * deviation[j]
+            r = float(s.covariance[i, j] / spread) if spread else 0.0
+            if abs(r) >= 0.1:
+                pairs.append((-abs(r), f"    C({first}, {s.variables[j]}) = {r:+.4f}"))
+    return [text for _, text in sorted(pairs)]

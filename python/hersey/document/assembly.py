@@ -1,0 +1,492 @@
+"""From a log and its steady points to the analysis document: fit, judge, simulate."""
+
+from __future__ import annotations
+
+import itertools
+import warnings
+from collections.abc import Sequence
+from typing import Literal
+
+import numpy as np
+from tsdownsample import MinMaxLTTBDownsampler
+
+from hersey import _core
+from hersey.arrays import FloatArray
+from hersey.damping.dwells import SteadyPoints, groups_of_temperature
+from hersey.damping.estimation import Estimate
+from hersey.damping.surface import DampingSurface, fit
+from hersey.document.film_part import film_part
+from hersey.document.parts import (
+    Analysis,
+    BranchPart,
+    Cell,
+    ChannelUse,
+    Curve,
+    FitPart,
+    HypothesisPart,
+    InputFile,
+    Interval,
+    Point,
+    Quality,
+    RegimePart,
+    RejectedStretch,
+    Series,
+    SimulationPart,
+    Timeline,
+    TransitionAt,
+    TransitionPart,
+)
+from hersey.errors import ExtrapolationWarning, ParameterError
+from hersey.log import TorqueLog
+from hersey.log.torque_log import Run
+from hersey.machine.machine import Machine
+from hersey.motion.drag import Drag
+from hersey.motion.simulation import Drivetrain, simulate, stick_slip
+from hersey.units import celsius, rpm
+from hersey.verdict.regime import Regime, regime
+
+#: Samples kept of each channel for display; extremes survive the thinning.
+DISPLAYED_SAMPLES = 2000
+#: A difference between directions counts as one beyond this share and this many standard errors.
+NOTABLE_DIFFERENCE, SIGNIFICANT = 0.02, 3.0
+#: A tare beyond this share of the least torque is asked about.
+LARGE_TARE = 0.1
+#: Drive speed of the simulation of the user's machine, as a share of its transition speed.
+SIMULATED_SPEED = 0.8
+
+
+def analyse(
+    log: TorqueLog,
+    points: SteadyPoints,
+    *,
+    command: str = "",
+    temperature_scale: str = "degC",
+    machine: Machine | None = None,
+) -> Analysis:
+    """Fit, judge and simulate, and return the document.
+
+    Raises
+    ------
+    InsufficientDataError
+        If the points cannot determine the surface.
+    """
+    surface = fit(points, temperature_scale=temperature_scale)
+    found = regime(points, surface)
+    return Analysis(
+        hersey_version=_core.VERSION,
+        title=_title(log),
+        command=command,
+        warnings=_warnings(log, points, surface, machine),
+        files=[_file(log, i) for i in range(len(log.files))],
+        quality=_quality(log, points),
+        points=_points(points, surface),
+        fit=_fit_part(points, surface),
+        regime=_regime_part(found),
+        film=film_part(points, surface, machine),
+        simulation=_simulation(surface, machine),
+        timeline=_timeline(log),
+    )
+
+
+def _title(log: TorqueLog) -> str:
+    first = log.files[0].name
+    return first if len(log.files) == 1 else f"{first} and {len(log.files) - 1} more"
+
+
+def _interval(e: Estimate) -> Interval:
+    return Interval(value=e.value, error=e.error, low=e.low, high=e.high)
+
+
+def _file(log: TorqueLog, index: int) -> InputFile:
+    file, run = log.files[index], log.runs[index]
+    return InputFile(
+        name=file.name,
+        sha256=file.sha256,
+        bytes=file.bytes,
+        rows=file.rows,
+        missing_rows=file.missing_rows,
+        duration=float(run.time[-1] - run.time[0]),
+        sampling_interval=run.sampling_interval,
+        gaps=run.gaps(),
+        channels=[ChannelUse(role=c.role, name=c.name, unit=c.unit) for c in file.channels],
+        comments=list(file.comments),
+    )
+
+
+def _quality(log: TorqueLog, points: SteadyPoints) -> Quality:
+    return Quality(
+        rows=log.rows,
+        rows_used=int(points.table["rows"].sum()),
+        rows_settling=int(points.table["settling_rows"].sum()),
+        rows_rejected=sum(r.rows for r in points.rejected),
+        standing_torque=points.standing_torque,
+        tare=points.tare,
+        rejected=[
+            RejectedStretch(run=r.run, start=r.start, end=r.end, rows=r.rows, reason=r.reason)
+            for r in points.rejected
+        ],
+    )
+
+
+def _points(points: SteadyPoints, surface: DampingSurface) -> list[Point]:
+    out = []
+    levels = _group_temperatures(points)
+    rows = zip(points.table.iter_rows(named=True), surface.residuals, levels, strict=True)
+    for row, residual, level in rows:
+        damping = row["torque"] / row["speed"]
+        fitted = damping * float(np.exp(-residual))
+        out.append(
+            Point(
+                **row,
+                group_temperature=level,
+                damping=damping,
+                damping_fitted=fitted,
+                residual=float(residual),
+            )
+        )
+    return out
+
+
+def _group_temperatures(points: SteadyPoints) -> list[float | None]:
+    if not points.log.has_temperature:
+        return [None] * len(points)
+    kelvin = points.column("temperature")
+    levels = np.empty_like(kelvin)
+    for group in groups_of_temperature(kelvin):
+        levels[group] = np.mean(kelvin[group])
+    return [float(level) for level in levels]
+
+
+def _curves(points: SteadyPoints, s: DampingSurface) -> list[Curve]:
+    out = []
+    speed, levels = np.abs(points.column("speed")), _group_temperatures(points)
+    for level in dict.fromkeys(levels):
+        own = speed[[other == level for other in levels]]
+        kelvin = None if s.b is None else level
+        at = s.transition_speed(kelvin)
+        grid = np.geomspace(own.min(), own.max(), 25)
+        grid = np.sort(np.append(grid, at)) if own.min() < at < own.max() else grid
+        out.append(Curve(temperature=kelvin, speed=grid.tolist(), damping=_damping(s, grid, kelvin)))
+    return out
+
+
+def _cells(s: DampingSurface) -> list[Cell]:
+    edges = np.geomspace(*s.speed_range, 41)
+    middles = np.sqrt(edges[:-1] * edges[1:])
+    hot = s.temperature_range if s.b else None
+    levels = np.linspace(*hot, 21) if hot else np.zeros(2)
+    out = []
+    for cold, warm in itertools.pairwise(levels.tolist()):
+        kelvin = (cold + warm) / 2 if hot else None
+        values = zip(itertools.pairwise(edges.tolist()), _damping(s, middles, kelvin), strict=True)
+        for (low, high), damping in values:
+            out.append(
+                Cell(
+                    speed_low=low,
+                    speed_high=high,
+                    temperature_low=cold if hot else None,
+                    temperature_high=warm if hot else None,
+                    damping=damping,
+                )
+            )
+    return out
+
+
+def _transition_curve(s: DampingSurface) -> list[TransitionAt]:
+    if s.transition is None or s.temperature_range is None:
+        return []
+    levels = np.linspace(*s.temperature_range, 41).tolist()
+    curve = [TransitionAt(temperature=t, speed=s.transition_speed(t)) for t in levels]
+    return [at for at in curve if s.speed_range[0] <= at.speed <= s.speed_range[1]]
+
+
+def _damping(s: DampingSurface, speed: FloatArray, kelvin: float | None) -> list[float]:
+    with warnings.catch_warnings():  # the mean of a group of temperatures may graze the edge of the range
+        warnings.simplefilter("ignore", ExtrapolationWarning)
+        return [float(f"{b:.6g}") for b in s.damping(speed, kelvin)]
+
+
+def _fit_part(points: SteadyPoints, s: DampingSurface) -> FitPart:
+    transition = None
+    if s.transition:
+        transition = TransitionPart(
+            speed=_interval(s.transition.speed),
+            least_torque_speed=s.transition.least_torque_speed,
+            mixed_exponent=_interval(s.transition.mixed_exponent),
+            temperature_exponent=s.transition.temperature_exponent,
+            evidence=s.transition.evidence,
+            gradual=s.transition.gradual,
+        )
+    coefficients = {"a": s.a, **({"b": s.b} if s.b else {}), "c": s.c}
+    return FitPart(
+        law="B = a T^b w^c" if s.b else "B = a w^c",
+        temperature_scale="K" if s.temperature_scale == "K" else "degC",
+        reference_speed=s.reference_speed,
+        reference_temperature=s.reference_temperature,
+        coefficients={name: _interval(e) for name, e in coefficients.items()},
+        torque_space={name: _interval(e) for name, e in s.torque_space.items()},
+        transition=transition,
+        no_transition=s.rejected_transition,
+        variables=list(s.variables),
+        values=s.values.tolist(),
+        covariance=s.covariance.tolist(),
+        points=s.statistics.points,
+        chi_square=s.statistics.chi_square,
+        reduced_chi_square=s.statistics.reduced_chi_square,
+        scatter=s.statistics.scatter,
+        aicc=s.statistics.aicc,
+        r_squared_damping=s.statistics.r_squared_damping,
+        r_squared_torque=s.statistics.r_squared_torque,
+        speed_range=s.speed_range,
+        temperature_range=s.temperature_range,
+        summary=s.summary(),
+        curves=_curves(points, s),
+        cells=_cells(s),
+        transition_curve=_transition_curve(s),
+    )
+
+
+def _regime_part(r: Regime) -> RegimePart:
+    return RegimePart(
+        verdict=r.verdict,
+        hypotheses=[
+            HypothesisPart(
+                name=h.name,
+                low=None if np.isinf(h.low) else h.low,
+                high=h.high,
+                meaning=h.meaning,
+                p_value=h.p_value,
+                consistent=h.consistent,
+            )
+            for h in r.hypotheses
+        ],
+        exponents=[
+            BranchPart(
+                temperature=e.temperature,
+                branch=e.branch,
+                points=e.points,
+                speed_low=e.speed_low,
+                speed_high=e.speed_high,
+                exponent=_interval(e.exponent),
+            )
+            for e in r.exponents
+        ],
+    )
+
+
+def _warnings(
+    log: TorqueLog, points: SteadyPoints, surface: DampingSurface, machine: Machine | None
+) -> list[str]:
+    out = [f"Corrected: {correction}." for correction in log.corrections]
+    for file, run in zip(log.files, log.runs, strict=True):
+        if any("synthetic" in comment.lower() for comment in file.comments):
+            out.append(f"{file.name} is synthetic, by its own words: no measurement.")
+        if file.cut_off:
+            out.append(f"{file.name}: the file ends before its time.")
+        out += [f"{file.name}: {note}." for note in file.notes]
+        if file.missing_rows:
+            out.append(f"{file.name}: {file.missing_rows} rows without a number were left out, as asked.")
+        if run.gaps():
+            share = 1.0 - run.time.size * run.sampling_interval / max(float(run.time[-1] - run.time[0]), 1e-9)
+            out.append(
+                f"{file.name}: rows are missing at {run.gaps()} places ({max(share, 0):.1%} of the time)."
+            )
+    out += _tare_warning(points)
+    swinging = [r for r in points.rejected if "stick-slip" in r.reason]
+    if swinging:
+        out.append(
+            f"Stick-slip was recorded: {len(swinging)} "
+            f"{'stretch' if len(swinging) == 1 else 'stretches'} of held speed, left out of the fit."
+        )
+    out += _direction_warnings(points, surface)
+    out += _fit_warnings(surface)
+    if surface.transition is None or machine is None:
+        missing = "the data show no transition" if surface.transition is None else "no machine.toml was given"
+        out.append(f"The simulation shows the paper's baseline, not this machine: {missing}.")
+    return out
+
+
+def _tare_warning(points: SteadyPoints) -> list[str]:
+    standing = points.standing_torque
+    if standing is None:
+        return []
+    least = float(np.min(np.abs(points.column("torque"))))
+    if points.tare:
+        if abs(points.tare) < LARGE_TARE * least:
+            return []
+        return [
+            f"The tare, {points.tare * 1e3:.3g} mN m, is {abs(points.tare) / least:.0%} of the least dwell: "
+            "is it the sensor's offset, and did the drive stand free?"
+        ]
+    if abs(standing) < 0.001 * least:
+        return []
+    return [
+        f"While the drive stood, torque read {standing * 1e3:.3g} mN m, {abs(standing) / least:.1%} of the "
+        "least dwell. It is not subtracted; if it is the sensor's offset, say --tare standing."
+    ]
+
+
+def _direction_warnings(points: SteadyPoints, surface: DampingSurface) -> list[str]:
+    out = []
+    forward = points.column("speed") > 0
+    approach = np.asarray(points.table["approach"].to_list())
+    pairs: Sequence[tuple[FloatArray, FloatArray, str, str]] = (
+        (surface.residuals[forward], surface.residuals[~forward], "forward", "reverse rotation"),
+        (
+            surface.residuals[approach == "from below"],
+            surface.residuals[approach == "from above"],
+            "dwells approached from below",
+            "from above",
+        ),
+    )
+    for first, second, name, other in pairs:
+        if first.size > 2 and second.size > 2:
+            difference = float(first.mean() - second.mean())
+            error = float(np.hypot(first.std() / first.size**0.5, second.std() / second.size**0.5))
+            if abs(difference) > max(NOTABLE_DIFFERENCE, SIGNIFICANT * error):
+                advice = "; fit one alone with --rotation" if name == "forward" else ""
+                out.append(
+                    f"Torque differs by {np.expm1(difference):+.1%} between {name} and {other}: "
+                    f"one surface does not describe both{advice}."
+                )
+    return out
+
+
+def _fit_warnings(surface: DampingSurface) -> list[str]:
+    out = []
+    for name, estimate in surface.torque_space.items():
+        own = {"a": surface.a, "b": surface.b, "c": surface.c}[name]
+        if (
+            own
+            and name != "a"
+            and abs(own.value - estimate.value) > max(0.005, 2.0 * np.hypot(own.error, estimate.error))
+        ):
+            out.append(
+                f"Exponent {name} is {own.value:.3f} fitted in logarithms but {estimate.value:.3f} fitted in "
+                "torque: the power law does not hold over the whole range."
+            )
+    if surface.temperature_range:
+        low, high = (celsius(t) for t in surface.temperature_range)
+        if high - low < 30.0:
+            out.append(
+                f"Temperature spans only {low:.0f} to {high:.0f} degC: a and b are strongly correlated, and "
+                "the law must not be used far outside."
+            )
+    if surface.statistics.scatter > 0.05:
+        out.append(
+            f"Dwells scatter by {surface.statistics.scatter:.0%} about the surface, more than their noise "
+            "explains."
+        )
+    return out
+
+
+def _simulation(surface: DampingSurface, machine: Machine | None) -> SimulationPart:
+    if surface.transition is None or machine is None:
+        train, drag, speed = Drivetrain(1000.0, 1.0), _paper_drag(), 1.0
+        title = "The paper's baseline: k = 1000, B0 = 50, m = 1, drive speed 1 (inches, ounces, seconds)"
+        return _simulated(train, drag, speed, title, "paper", "in/s", "ozf")
+    kelvin = surface.temperature_range[1] if surface.temperature_range else None
+    drag = surface.drag(roll_radius=machine.roll_radius, stick_speed=machine.stick_speed, temperature=kelvin)
+    at = "" if kelvin is None else f" at {celsius(kelvin):.0f} °C"
+    slow = SIMULATED_SPEED * surface.transition_speed(kelvin)
+    share = f"{100 * SIMULATED_SPEED:.0f} % of its transition speed"
+    title = f"This machine{at}, driven at {rpm(slow):.3g} rpm, {share}"
+    return _simulated(machine.train, drag, slow * machine.roll_radius, title, "fit", "m/s", "N")
+
+
+def _paper_drag() -> Drag:
+    return Drag(50.0, 1.0, ehl_exponent=-0.7, mixed_exponent=-1.2, stick_speed=0.01)
+
+
+def _simulated(
+    train: Drivetrain,
+    drag: Drag,
+    speed: float,
+    title: str,
+    source: Literal["paper", "fit"],
+    speed_unit: str,
+    force_unit: str,
+) -> SimulationPart:
+    cycle = stick_slip(train, drag, drive_speed=speed)
+    period = 1.0 / cycle.frequency if cycle.frequency else 10.0 * (train.mass / train.stiffness) ** 0.5
+    first = drag.breakaway_force / train.stiffness / speed
+    run = simulate(train, drag, drive_speed=speed, duration=first + 6.0 * period, samples=4001)
+    kept = MinMaxLTTBDownsampler().downsample(run.time, run.belt_speed, n_out=1500)
+    return SimulationPart(
+        title=title,
+        source=source,
+        units="inches, ounces of force, seconds" if source == "paper" else "SI: N/m, kg, N, m/s",
+        speed_unit=speed_unit,
+        force_unit=force_unit,
+        parameters={
+            "stiffness": train.stiffness,
+            "mass": train.mass,
+            "transition_force": drag.transition_force,
+            "transition_speed": drag.transition_speed,
+            "ehl_exponent": drag.ehl_exponent,
+            "mixed_exponent": drag.mixed_exponent,
+            "stick_speed": drag.stick_speed,
+            "closure": drag.closure,
+        },
+        kind=cycle.kind,
+        frequency=cycle.frequency,
+        stuck_fraction=cycle.stuck_fraction,
+        speed_max=cycle.speed_max,
+        time=run.time[kept].tolist(),
+        belt_speed=run.belt_speed[kept].tolist(),
+        spring_force=run.spring_force[kept].tolist(),
+        transition_speed=drag.transition_speed,
+        drive_speed=speed,
+    )
+
+
+def _timeline(log: TorqueLog) -> Timeline:
+    starts, begin = [], 0.0
+    for run in log.runs:
+        starts.append(begin - float(run.time[0]))
+        begin += float(run.time[-1] - run.time[0]) + run.sampling_interval
+    each = max(DISPLAYED_SAMPLES // len(log.runs), 60)
+
+    def series(name: str) -> Series:
+        times: list[float] = []
+        values: list[float] = []
+        for run, start in zip(log.runs, starts, strict=True):
+            kept = _thinned(run, name, each)
+            times += np.round(run.time[kept] + start, 4).tolist()
+            values += [float(f"{v:.6g}") for v in getattr(run, name)[kept]]
+        return Series(time=times, value=values)
+
+    return Timeline(
+        speed=series("speed"),
+        torque=series("torque"),
+        temperature=series("temperature") if log.has_temperature else None,
+        starts=starts,
+    )
+
+
+def _thinned(run: Run, name: str, count: int) -> np.ndarray[tuple[int], np.dtype[np.integer]]:
+    values = getattr(run, name)
+    if values.size <= count:
+        return np.arange(values.size)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # unevenly spaced times are fine for display
+        kept = MinMaxLTTBDownsampler().downsample(np.ascontiguousarray(values), n_out=count)
+    return np.asarray(kept).astype(np.intp)
+
+
+def load(text: str) -> Analysis:
+    """Read a document back from its JSON text.
+
+    Raises
+    ------
+    ParameterError
+        If it is not a document of this schema.
+    """
+    from pydantic import ValidationError
+
+    try:
+        return Analysis.model_validate_json(text)
+    except ValidationError as error:
+        first = error.errors()[0]
+        place = ".".join(str(part) for part in first["loc"]) or "document"
+        raise ParameterError(f"not an analysis document: {place}: {first['msg']}") from None

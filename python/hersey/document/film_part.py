@@ -1,0 +1,48 @@
+"""The film of the user's nip, for the document."""
+
+from __future__ import annotations
+
+from hersey.damping.dwells import SteadyPoints
+from hersey.damping.surface import DampingSurface
+from hersey.document.parts import FilmPart, FilmPoint
+from hersey.lubrication.film import REGIMES, Film, film_thickness
+from hersey.machine.machine import Machine
+from hersey.verdict.checks import check_film
+from hersey.verdict.evidence import measured_film, verdict
+
+
+def film_part(points: SteadyPoints, surface: DampingSurface, machine: Machine | None) -> FilmPart | None:
+    """Return what theory says of the nip; None if nip, lubricant or temperatures are not known."""
+    if machine is None or machine.contact is None or machine.lubricant is None or surface.b is None:
+        return None
+    contact, lubricant = machine.contact, machine.lubricant
+    measured = measured_film(points, surface, contact, lubricant, grip=machine.limits.roll_friction)
+    film = measured.predicted
+    if machine.points:
+        film = film_thickness(
+            contact,
+            lubricant,
+            speed=[point.speed / contact.roll_radius for point in machine.points],
+            temperature=[point.temperature for point in machine.points],
+        )
+    return FilmPart(
+        verdict=verdict(measured, surface, contact, lubricant).text,
+        notes=list(check_film(machine, film, measured)),
+        points=film_points(film, [point.name for point in machine.points]),
+        dwells=film_points(measured.predicted, [""] * measured.speed.size),
+        layer_factor=film.nip.layer_factor,
+    )
+
+
+def film_points(film: Film, names: list[str]) -> list[FilmPoint]:
+    """Return the states of a film on the regime chart; names of shape (points,)."""
+    return [
+        FilmPoint(
+            name=name,
+            viscosity_parameter=float(film.g_v.ravel()[i]),
+            elasticity_parameter=float(film.g_e.ravel()[i]),
+            regime=REGIMES[int(film.regime.ravel()[i])],
+            minimum_thickness=float(film.minimum.ravel()[i]),
+        )
+        for i, name in enumerate(names)
+    ]

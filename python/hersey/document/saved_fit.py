@@ -1,0 +1,174 @@
+"""`fit.json`: a fit as ``hersey fit LOG --json`` prints it, read back into a `DampingSurface`."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from hersey.damping.branches import Transition
+from hersey.damping.estimation import Estimate
+from hersey.damping.law import hersey_exponent
+from hersey.damping.surface import DampingSurface, FitStatistics
+from hersey.document.parts import FitPart, InputFile, Interval, Point, TransitionPart
+from hersey.errors import ParameterError
+from hersey.files.text import read_text
+
+#: How far a number may be from the one it follows from, relative: JSON keeps all digits.
+_ROUNDING = 1e-9
+
+
+class _FitFile(BaseModel):
+    """What a fit needs of the document; the rest of it (regime, timeline ...) is left alone."""
+
+    model_config = ConfigDict(frozen=True, extra="ignore", allow_inf_nan=False)
+
+    hersey_version: str
+    fit: FitPart
+    points: list[Point] = []
+    files: list[InputFile] = []
+
+
+def read_fit(path: str | Path) -> DampingSurface:
+    """Read a fit back from what ``hersey fit LOG --json`` or ``hersey report LOG --json`` printed.
+
+    Raises
+    ------
+    MissingFileError
+        If there is no such file, or it cannot be read.
+    ParameterError
+        If it is no such document, naming the file and the field.
+    """
+    path = Path(path)
+    try:
+        document = _FitFile.model_validate(json.loads(read_text(path)))
+    except ValidationError as error:
+        first = error.errors()[0]
+        place = ".".join(str(part) for part in first["loc"]) or "document"
+        raise _broken(path, place, first["msg"]) from None
+    except (ValueError, RecursionError) as error:
+        raise _broken(path, "document", f"not valid JSON ({error})") from None
+    _check(path, document)
+    return _surface(document)
+
+
+def _broken(path: Path, field: str, reason: str) -> ParameterError:
+    return ParameterError(
+        f"{path.name}: {field}: {reason}; write it anew: hersey fit LOG --json > {path.name}"
+    )
+
+
+def _check(path: Path, document: _FitFile) -> None:
+    """Refuse what the schema allows and no fit can be."""
+    fit = document.fit
+    thermal = "b" in fit.coefficients
+    size = 2 + thermal + 2 * (fit.transition is not None)
+    covariance = np.array(fit.covariance) if {len(row) for row in fit.covariance} == {size} else np.zeros(0)
+    speed = None if fit.transition is None else fit.transition.speed
+    ranges = [("speed_range", fit.speed_range), ("temperature_range", fit.temperature_range)]
+    rules = [
+        ("coefficients", {"a", "c"} <= set(fit.coefficients) <= {"a", "b", "c"}, "a, c and, if thermal, b"),
+        ("torque_space", set(fit.torque_space) == set(fit.coefficients), "the names of the coefficients"),
+        ("reference_speed", fit.reference_speed > 0, "greater than 0"),
+        ("reference_temperature", (fit.reference_temperature is not None) == thermal, "there if b is"),
+        ("reference_temperature", (fit.reference_temperature or 1.0) > 0, "greater than 0"),
+        ("temperature_range", (fit.temperature_range is not None) == thermal, "there if b is"),
+        *((name, r is None or 0 < r[0] <= r[1], "ascending, greater than 0") for name, r in ranges),
+        ("values", len(fit.values) == size, f"{size} numbers"),
+        ("variables", len(fit.variables) == size, f"{size} names"),
+        ("covariance", covariance.shape == (size, size), f"{size} rows of {size} numbers"),
+        ("points", fit.points > size, f"more than the {size} variables"),
+        (
+            "transition.speed",
+            speed is None or 0 < speed.low <= speed.value <= speed.high,
+            "within its interval",
+        ),
+        (
+            "no_transition",
+            (fit.transition is None) == bool(fit.no_transition),
+            "the reason, if there is none",
+        ),
+    ]
+    for field, holds, asked in rules:
+        if not holds:
+            raise _broken(path, f"fit.{field}", f"it must be {asked}")
+    if not _is_covariance(covariance):
+        raise _broken(path, "fit.covariance", "it is not symmetric with no negative variance")
+    for field, value, expected in _derived(fit):
+        if not np.isclose(value, expected, rtol=_ROUNDING):
+            raise _broken(path, f"fit.{field}", "it differs from fit.values, so one of them was changed")
+
+
+def _derived(fit: FitPart) -> list[tuple[str, float, float]]:
+    """Numbers that stand in the file twice: the field, its value, and what follows from ``values``."""
+    thermal = "b" in fit.coefficients
+    b, c = (fit.values[1] if thermal else 0.0), fit.values[1 + thermal]
+    found = [("coefficients.c", fit.coefficients["c"].value, c)]
+    if thermal:
+        found.append(("coefficients.b", fit.coefficients["b"].value, b))
+    if fit.transition is not None:
+        change, at = fit.values[-2:]
+        speed = fit.reference_speed * float(np.exp(at))
+        found += [
+            ("transition.speed", fit.transition.speed.value, speed),
+            ("transition.mixed_exponent", fit.transition.mixed_exponent.value, c + change),
+            ("transition.temperature_exponent", fit.transition.temperature_exponent, hersey_exponent(b, c)),
+        ]
+    return found
+
+
+def _is_covariance(matrix: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> bool:
+    top = float(np.max(np.abs(matrix)))
+    symmetric = bool(np.allclose(matrix, matrix.T, rtol=0.0, atol=_ROUNDING * top))
+    return symmetric and float(np.linalg.eigvalsh(matrix).min()) >= -_ROUNDING * top
+
+
+def _estimate(part: Interval) -> Estimate:
+    return Estimate(part.value, part.error, part.low, part.high)
+
+
+def _transition(part: TransitionPart) -> Transition:
+    return Transition(
+        speed=_estimate(part.speed),
+        least_torque_speed=part.least_torque_speed,
+        mixed_exponent=_estimate(part.mixed_exponent),
+        temperature_exponent=part.temperature_exponent,
+        evidence=part.evidence,
+        gradual=part.gradual,
+    )
+
+
+def _surface(document: _FitFile) -> DampingSurface:
+    fit = document.fit
+    coefficients = {name: _estimate(part) for name, part in fit.coefficients.items()}
+    return DampingSurface(
+        a=coefficients["a"],
+        b=coefficients.get("b"),
+        c=coefficients["c"],
+        transition=None if fit.transition is None else _transition(fit.transition),
+        temperature_scale=fit.temperature_scale,
+        reference_speed=fit.reference_speed,
+        reference_temperature=fit.reference_temperature,
+        variables=tuple(fit.variables),
+        values=np.array(fit.values),
+        covariance=np.array(fit.covariance),
+        torque_space={name: _estimate(part) for name, part in fit.torque_space.items()},
+        statistics=FitStatistics(
+            points=fit.points,
+            variables=len(fit.values),
+            chi_square=fit.chi_square,
+            reduced_chi_square=fit.reduced_chi_square,
+            scatter=fit.scatter,
+            aicc=fit.aicc,
+            r_squared_damping=fit.r_squared_damping,
+            r_squared_torque=fit.r_squared_torque,
+        ),
+        speed_range=fit.speed_range,
+        temperature_range=fit.temperature_range,
+        residuals=np.array([point.residual for point in document.points]),
+        rejected_transition=fit.no_transition,
+        data_sha256=tuple(file.sha256 for file in document.files),
+        version=document.hersey_version,
+    )

@@ -1,0 +1,23 @@
+"""Stick-slip in a measured trace: cycles, and the drive behind them.
+
+================  ======================================================================
+sampling          a trace on even times: gaps, spikes and noise
+turning_points    where the force turns, by more than noise
+detection         slips: falls beyond noise, and how long they last
+slip_shape        the slip between two sticks as half a free oscillation
+cycle_record      cycles of a trace, their figures and kind
+waveform          the mean cycle of a trace, and of the model
+independence      which parameters a trace tells apart, in words
+drive_fit         the drive that makes the mean cycle, and others that do nearly as well
+identified_drive  closure, parameters and intervals from the fits
+trace_file        a trace read from CSV or MAT
+================  ======================================================================
+
+A trace is the force of the spring (or the torque of a torsional spring) against time at one constant drive
+speed, or the belt speed.
+"""
+
+from hersey.identification.cycle_record import CycleRecord, Scatter, cycles
+from hersey.identification.identified_drive import IdentifiedDrive, identify
+
+__all__ = ["CycleRecord", "IdentifiedDrive", "Scatter", "cycles", "identify"]

@@ -1,0 +1,277 @@
+"""The drive behind a stick-slip record: parameters that make the exact model run through the mean cycle."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from hersey.arrays import FloatArray
+from hersey.damping.estimation import Estimate, quantile
+from hersey.errors import InsufficientDataError, ParameterError
+from hersey.identification.cycle_record import CycleRecord
+from hersey.identification.drive_fit import EXPONENTS, DriveFit
+from hersey.identification.independence import TOLD, in_words
+from hersey.identification.waveform import Waveform, mean_waveform
+from hersey.motion.drag import Drag
+from hersey.motion.parameters import OF_THE_BELT
+from hersey.motion.simulation import Drivetrain
+from hersey.result import json_value
+
+#: Closures that a record can be compared with, and those that are unless told otherwise: `stribeck` takes
+#: minutes.
+CLOSURES = ("retained", "stiction", "stribeck")
+COMPARED = ("retained", "stiction")
+#: Closures whose chi-square differs by less (over the misfit of the best) are not told apart.
+UNDECIDED = 10.0
+#: A fit is called poor if its mean cycle is off by more than this share of the drop (root mean square).
+POOR = 0.05
+#: What needs no single parameter: the free period 2 pi sqrt(m/k), s, the force at which a held belt is
+#: released, and the drag at the drive speed.
+DERIVED = ("free_period", "release_force", "drag_at_drive_speed")
+
+
+@dataclass(frozen=True)
+class ClosureFit:
+    """The best drive with one closure: chi-square of its mean cycle, and misfit as a share of the drop."""
+
+    closure: str
+    chi_square: float
+    misfit: float
+
+
+@dataclass(frozen=True)
+class IdentifiedDrive:
+    """A drive identified from a record.
+
+    ``estimates`` holds every parameter that the record tells, with its 95 % interval; ``values`` all that
+    make the best fit, told or not (those in ``known`` as given). ``derived`` are quantities that need no
+    single parameter. ``closure`` is the best; ``decided`` whether the others are worse by more than chance.
+    ``not_told`` says in words what the record leaves open.
+    """
+
+    closure: str
+    decided: bool
+    estimates: Mapping[str, Estimate]
+    values: Mapping[str, float]
+    known: Mapping[str, float]
+    derived: Mapping[str, Estimate]
+    not_told: tuple[str, ...]
+    closures: tuple[ClosureFit, ...]
+    misfit: float
+    drive_speed: float
+    waveform: Waveform
+    fitted: FloatArray
+    notes: tuple[str, ...]
+
+    @property
+    def train(self) -> Drivetrain:
+        """Drivetrain of the best fit."""
+        return Drivetrain(self.values["stiffness"], self.values["mass"])
+
+    @property
+    def drag(self) -> Drag:
+        """Drag of the best fit."""
+        names = OF_THE_BELT[2:]
+        return Drag(**{name: self.values[name] for name in names}, closure=self.closure)
+
+    def document(self) -> dict[str, Any]:
+        """Return the result as JSON can hold it."""
+        found = {
+            "closure": self.closure,
+            "closure_decided": self.decided,
+            "closures": [vars(fit) for fit in self.closures],
+            "estimates": {name: vars(estimate) for name, estimate in self.estimates.items()},
+            "known": dict(self.known),
+            "best_fit": dict(self.values),
+            "derived": {name: vars(estimate) for name, estimate in self.derived.items()},
+            "not_told": list(self.not_told),
+            "misfit": self.misfit,
+            "drive_speed": self.drive_speed,
+            "notes": list(self.notes),
+        }
+        return {str(key): value for key, value in json_value(found).items()}
+
+    def summary(self, unit: str = "") -> str:
+        """Return the result in words, a line each; units where that of the trace is newtons."""
+        units = _UNITS if unit == "N" else {}
+        decided = "" if self.decided else " (not decided)"
+        ranked = ", ".join(f"{fit.closure} {fit.chi_square:.4g}" for fit in self.closures)
+        lines = [f"closure: {self.closure}{decided}; chi-square: {ranked}"]
+        for name in OF_THE_BELT:
+            if name in self.known:
+                lines.append(f"{name:18s} {self.known[name]:.5g}{units.get(name, '')} (given)")
+            else:
+                told = self.estimates.get(name)
+                shown = "not told by this record" if told is None else f"{told}{units.get(name, '')}"
+                lines.append(f"{name:18s} {shown}")
+        lines += [f"{name:18s} {estimate}{units.get(name, '')}" for name, estimate in self.derived.items()]
+        lines.append(f"mean cycle within {self.misfit:.2%} of the drop")
+        return "\n".join([*lines, *(f"- {text}" for text in (*self.not_told, *self.notes))])
+
+
+#: Units of what is identified from a force in newtons.
+_UNITS = {
+    "stiffness": " N/m",
+    "mass": " kg",
+    "transition_force": " N",
+    "transition_speed": " m/s",
+    "stick_speed": " m/s",
+    "free_period": " s",
+    "release_force": " N",
+    "drag_at_drive_speed": " N",
+}
+
+
+def identify(
+    record: CycleRecord,
+    *,
+    known: Mapping[str, float] | None = None,
+    closures: tuple[str, ...] = COMPARED,
+) -> IdentifiedDrive:
+    """Identify the drive from the cycles of a trace of force at known drive speed.
+
+    Weighted least squares of the mean cycle and the period, with the exact motion of the model; errors from
+    the scatter of the laps (sandwich: the Jacobian turns each lap into a change of the parameters), widened
+    where the model does not run through the mean cycle.
+
+    Parameters
+    ----------
+    known
+        Parameters that need no fit, such as ``{"mass": 0.03}``; names as in `OF_THE_BELT`.
+    closures
+        Those to compare.
+
+    Raises
+    ------
+    InsufficientDataError
+        If the belt does not stick and slip, or there are too few laps.
+    ParameterError
+        If the drive speed or a name is missing or unknown.
+    """
+    given = dict(known or {})
+    _check(record, given, closures)
+    assert record.drive_speed is not None
+    wave = mean_waveform(record)
+    fits: list[DriveFit] = []
+    for closure in closures:
+        start = fits[-1].values if closure == "stribeck" and fits else None
+        fits.append(DriveFit(wave, record, given, closure, start))
+    fits.sort(key=lambda fit: fit.chi_square)
+    best = fits[0]
+    if best.lap is None:
+        raise InsufficientDataError(
+            "no drive of the model makes such a cycle: give known parameters, or check the units"
+        )
+    freedom = max(wave.offset.size + 1 - len(best.names), 1)
+    scale = max(1.0, best.chi_square / freedom)
+    near = [fit for fit in fits if (fit.chi_square - best.chi_square) / scale <= UNDECIDED]
+    decided = len(near) == 1
+    covariances = [fit.covariance(scale) for fit in near]
+    intervals = _intervals(near, covariances, scale, wave.number)
+    not_told = in_words(best.names, covariances[0])
+    not_told += _lost(best, covariances[0], intervals)
+    misfit = best.misfit
+    notes = []
+    if misfit > POOR:
+        notes.append(f"the model misses the mean cycle by {misfit:.0%} of the drop: take parameters as rough")
+    if not decided:
+        alike = " and ".join(fit.closure for fit in near)
+        notes.append(f"the closures {alike} fit alike: the record does not decide between them")
+    return IdentifiedDrive(
+        closure=best.closure,
+        decided=decided,
+        estimates={name: each for name, each in intervals.items() if name in OF_THE_BELT},
+        values=best.parameters(best.values),
+        known=given,
+        derived={name: each for name, each in intervals.items() if name in DERIVED},
+        not_told=tuple(not_told),
+        closures=tuple(ClosureFit(f.closure, f.chi_square, f.misfit) for f in fits),
+        misfit=misfit,
+        drive_speed=record.drive_speed,
+        waveform=wave,
+        fitted=best.curve(best.values),
+        notes=tuple(notes),
+    )
+
+
+def _check(record: CycleRecord, known: Mapping[str, float], closures: tuple[str, ...]) -> None:
+    if record.quantity != "force":
+        raise ParameterError("a trace of speed tells no force: identify needs a trace of the spring force")
+    if record.kind != "stick_slip":
+        kind = record.kind.replace("_", " ")
+        raise InsufficientDataError(f"the record shows {kind}: a drive is identified from stick-slip")
+    if record.drive_speed is None:
+        raise ParameterError("the drive speed is needed to identify a drive: give drive_speed to cycles()")
+    for name, value in known.items():
+        if name not in OF_THE_BELT:
+            raise ParameterError(f"known parameter '{name}': only {', '.join(OF_THE_BELT)} are known")
+        if not np.isfinite(value) or (name not in EXPONENTS and not value > 0):
+            raise ParameterError(f"known {name} is {value}: it must be greater than 0")
+    unknown = [closure for closure in closures if closure not in CLOSURES]
+    if unknown or not closures:
+        raise ParameterError(f"closures {', '.join(unknown) or 'none'}: choose from {', '.join(CLOSURES)}")
+
+
+def _intervals(
+    near: list[DriveFit], covariances: list[FloatArray], scale: float, laps: int
+) -> dict[str, Estimate]:
+    """Every quantity that the record tells: over all closures and drives that fit alike."""
+    names = (*near[0].names, *DERIVED)
+    reach = quantile(laps - 1)
+    lows, highs = [], []
+    for fit, covariance in zip(near, covariances, strict=True):
+        gradient = _gradient(fit)
+        errors = np.sqrt(np.maximum(np.diag(gradient @ covariance @ gradient.T), 0.0))
+        drives = [fit.values, *fit.alternatives(covariance, scale)]
+        found = np.array([_quantities(fit, values[:-1]) for values in drives])
+        lows.append(np.min(found, axis=0) - reach * errors)
+        highs.append(np.max(found, axis=0) + reach * errors)
+    low, high = np.min(lows, axis=0), np.max(highs, axis=0)
+    middle = _quantities(near[0], near[0].values[:-1])
+    bound = [fit.at_bound(index) for index in range(len(near[0].names)) for fit in near[:1]] + [False] * len(
+        DERIVED
+    )
+    return {
+        name: _estimate(name, middle[i], low[i], high[i], reach)
+        for i, name in enumerate(names)
+        if high[i] - low[i] < 2.0 * reach * TOLD and not bound[i]
+    }
+
+
+def _estimate(name: str, value: float, low: float, high: float, reach: float) -> Estimate:
+    error = 0.5 * (high - low) / reach
+    if name in EXPONENTS:
+        return Estimate(float(value), float(error), float(low), float(high))
+    number = float(np.exp(value))
+    return Estimate(number, number * float(error), float(np.exp(low)), float(np.exp(high)))
+
+
+def _quantities(fit: DriveFit, values: FloatArray) -> FloatArray:
+    """Fitted parameters (logarithms, exponents themselves) and the logarithms of `DERIVED`."""
+    own = fit.parameters(np.append(values, 0.0))
+    drag = Drag(**{name: own[name] for name in OF_THE_BELT[2:]}, closure=fit.closure)
+    free = 2.0 * np.pi * np.sqrt(own["mass"] / own["stiffness"])
+    held = float(drag.force(own["stick_speed"])) if fit.closure == "retained" else drag.breakaway_force
+    return np.concatenate([values, np.log([free, held, float(drag.force(fit.drive_speed))])])
+
+
+def _gradient(fit: DriveFit) -> FloatArray:
+    values, step = fit.values[:-1], 1e-4
+    columns = []
+    for index in range(values.size):
+        change = step * (np.arange(values.size) == index)
+        columns.append((_quantities(fit, values + change) - _quantities(fit, values - change)) / (2.0 * step))
+    return np.stack(columns, axis=1)
+
+
+def _lost(best: DriveFit, covariance: FloatArray, told: Mapping[str, Estimate]) -> list[str]:
+    """Parameters that look told by the fit alone, but are not."""
+    errors = best.errors(covariance)
+    lost = [name for i, name in enumerate(best.names) if name not in told and errors[i] < TOLD]
+    if not lost:
+        return []
+    words = ", ".join(name.replace("_", " ") for name in lost)
+    return [f"{words}: differ too much between drives that fit alike"]

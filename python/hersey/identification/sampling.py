@@ -1,0 +1,132 @@
+"""A trace on even times: gaps bridged and marked, spikes removed, noise measured."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy import ndimage
+
+from hersey.arrays import FloatArray
+from hersey.errors import InsufficientDataError, ParameterError
+
+#: Fewest samples in which a cycle could be seen three times.
+FEWEST = 30
+#: Samples farther apart than this many sampling intervals are a gap.
+GAP = 1.5
+#: A grid may have this many times the samples that were given.
+_SPARSEST = 5.0
+#: A spike departs from the median of its surroundings by this many deviations of the noise,
+_SPIKE = 6.0
+#: and by this share of the range: what is smaller does no harm, and may be a corner of the force.
+_VISIBLE = 0.02
+#: Samples on which that median is taken: a spike lasts for two at most.
+_SURROUNDINGS = 5
+#: What departs more often than this is no spike.
+_RARE = 0.03
+#: Median absolute deviation of a normal variable of deviation 1.
+_MAD = 0.6744897501960817
+
+
+@dataclass(frozen=True)
+class Samples:
+    """A trace at equal intervals, s; ``bridged`` marks samples interpolated across a gap.
+
+    ``noise`` is the standard deviation of what no neighbour explains, ``spikes`` the number of samples
+    replaced.
+    """
+
+    start: float
+    interval: float
+    value: FloatArray
+    bridged: NDArray[np.bool_]
+    noise: float
+    spikes: int
+    missing: int
+
+    @property
+    def time(self) -> FloatArray:
+        """Time of each sample, s."""
+        return np.asarray(self.start + self.interval * np.arange(self.value.size), dtype=float)
+
+
+def even_samples(time: ArrayLike, value: ArrayLike, *, name: str = "force") -> Samples:
+    """Return a trace on even times.
+
+    A ``value`` that is not a number is a missing sample. Times must ascend.
+
+    Raises
+    ------
+    ParameterError
+        If shapes differ or times do not ascend, with the first such sample.
+    InsufficientDataError
+        If there are too few samples, or gaps are most of the trace.
+    """
+    times, values = np.asarray(time, dtype=float), np.asarray(value, dtype=float)
+    if times.ndim != 1 or times.shape != values.shape:
+        raise ParameterError(
+            f"time has the shape {times.shape} and {name} {values.shape}: give equal lengths"
+        )
+    if not np.all(np.isfinite(times)):
+        raise ParameterError(f"time of sample {int(np.argmin(np.isfinite(times)))} is not a number")
+    whole = np.isfinite(values)
+    times_whole, values_whole = times[whole], values[whole]
+    if values_whole.size < FEWEST:
+        raise InsufficientDataError(
+            f"{values_whole.size} samples of {name}: at least {FEWEST} are needed to see a cycle"
+        )
+    steps = np.diff(times_whole)
+    if not np.all(steps > 0):
+        raise ParameterError(f"time does not ascend at sample {int(np.argmin(np.diff(times) > 0)) + 1}")
+    interval = float(np.median(steps))
+    count = round(float(times_whole[-1] - times_whole[0]) / interval) + 1
+    if count > _SPARSEST * values_whole.size:
+        raise InsufficientDataError(
+            f"gaps are most of the trace: {values_whole.size} samples at {interval:g} s would take "
+            f"{interval * values_whole.size:g} s, and it lasts {times_whole[-1] - times_whole[0]:g} s"
+        )
+    grid = times_whole[0] + interval * np.arange(count)
+    if count == values_whole.size and np.all(np.abs(times_whole - grid) < 0.05 * interval):
+        even, bridged = values_whole.copy(), np.zeros(count, dtype=bool)
+    else:
+        even = np.interp(grid, times_whole, values_whole)
+        bridged = _bridged(grid, times_whole, interval)
+    even, spikes = _despiked(even, _noise(even))
+    missing = max(int(np.sum(bridged)), int(np.sum(~whole)))
+    return Samples(float(times_whole[0]), interval, even, bridged, _noise(even), spikes, missing)
+
+
+def _bridged(grid: FloatArray, times: FloatArray, interval: float) -> NDArray[np.bool_]:
+    after = np.clip(np.searchsorted(times, grid), 1, times.size - 1)
+    wide = times[after] - times[after - 1] > GAP * interval
+    apart = np.minimum(np.abs(grid - times[after - 1]), np.abs(times[after] - grid))
+    return np.asarray(wide & (apart > 0.5 * interval))
+
+
+def _noise(value: FloatArray) -> float:
+    """Deviation of white noise, from differences of order 2 to 4: what is smooth cancels in one of them."""
+    found: list[float] = []
+    difference = np.diff(value)
+    for gain in (6.0, 20.0, 70.0):  # sum of the squares of binomial coefficients
+        difference = np.diff(difference)
+        found.append(float(np.median(np.abs(difference))) / (_MAD * gain**0.5))
+    return max(min(found), _step(value) / float(np.sqrt(12.0)))
+
+
+def _step(value: FloatArray) -> float:
+    """Step of a quantised trace; 0 if it is not quantised."""
+    levels = np.unique(value[: 20 * FEWEST])
+    if levels.size > value[: 20 * FEWEST].size // 2:
+        return 0.0
+    return float(np.median(np.diff(levels))) if levels.size > 1 else 0.0
+
+
+def _despiked(value: FloatArray, noise: float) -> tuple[FloatArray, int]:
+    middle = ndimage.median_filter(value, _SURROUNDINGS, mode="nearest")
+    low, high = np.percentile(middle, (1, 99))
+    spiky = np.abs(value - middle) > max(_SPIKE * noise, _VISIBLE * float(high - low))
+    number = int(np.sum(spiky))
+    if number > _RARE * value.size:
+        return value, 0
+    return np.where(spiky, middle, value), number

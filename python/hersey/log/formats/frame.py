@@ -1,0 +1,101 @@
+"""Tables in memory: polars and pandas frames."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+import numpy as np
+import polars as pl
+
+from hersey.arrays import FloatArray
+from hersey.errors import ParameterError, UnreadableLogError
+from hersey.log.recording import Recording, Signal, floats, seconds, split_unit
+
+
+def is_frame(thing: object) -> bool:
+    """Return whether a thing is a polars or pandas frame."""
+    return isinstance(thing, pl.DataFrame | pl.LazyFrame) or (
+        type(thing).__module__.split(".")[0] == "pandas" and type(thing).__name__ == "DataFrame"
+    )
+
+
+def frame_recording(frame: Any) -> tuple[Recording, str, int]:
+    """Return a frame as a recording, the SHA-256 of its numbers, and their size in bytes.
+
+    Units stand in the names of the columns, or in ``frame.attrs["units"]`` (pandas) by column. An index of
+    time stamps, or with a name, counts as a column.
+    """
+    columns = _columns(frame)
+    attributes = getattr(frame, "attrs", None)
+    units = attributes.get("units", {}) if isinstance(attributes, dict) else {}
+    if not isinstance(units, dict):
+        raise ParameterError("frame.attrs['units'] is no dictionary of units by column")
+    digest, size = hashlib.sha256(), 0
+    signals, others = [], []
+    for name, series in columns:
+        kind = series.dtype
+        if not (kind.is_numeric() or kind.is_temporal() or kind == pl.Boolean):
+            others.append(f"'{name}' ({kind})")
+            continue
+        numbers = np.ascontiguousarray(series.to_physical().to_numpy())
+        digest.update(name.encode() + numbers.tobytes())
+        size += numbers.nbytes
+        signals.append(
+            column_signal(name, kind, len(series), partial(_same, series), str(units.get(name, "")))
+        )
+    return Recording("frame", tuple(signals), tuple(others)), digest.hexdigest(), size
+
+
+def column_signal(
+    name: str, kind: pl.DataType, rows: int, load: Callable[[], pl.Series], unit: str = ""
+) -> Signal:
+    """Return a column as a signal; time stamps and durations come in s."""
+    plain, found = (name, unit) if unit else split_unit(name)
+
+    def numbers() -> FloatArray:
+        series = load()
+        if len(series) != rows:
+            raise UnreadableLogError(f"column '{name}' has {len(series)} of {rows} values")
+        if kind.is_temporal():
+            if kind == pl.Duration or kind == pl.Time:
+                return floats(series.to_physical().cast(pl.Float64).fill_null(np.nan)) * _tick(kind)
+            return seconds(series.cast(pl.Datetime("ns")).to_numpy())
+        return floats(series.cast(pl.Float64).fill_null(np.nan).to_numpy())
+
+    return Signal(plain, "s" if kind.is_temporal() else found, rows, numbers)
+
+
+def _same(series: pl.Series) -> pl.Series:
+    return series
+
+
+def _tick(kind: pl.DataType) -> float:
+    """Seconds in one unit of the physical numbers of a duration or a time of day."""
+    return {"ms": 1e-3, "us": 1e-6}.get(str(getattr(kind, "time_unit", "ns")), 1e-9)
+
+
+def _columns(frame: Any) -> list[tuple[str, pl.Series]]:
+    if isinstance(frame, pl.LazyFrame):
+        frame = frame.collect()
+    if isinstance(frame, pl.DataFrame):
+        return [(series.name, series) for series in frame.get_columns()]
+    named = [(" ".join(map(str, c)) if isinstance(c, tuple) else str(c)) for c in frame.columns]
+    columns = [(name, frame.iloc[:, i]) for i, name in enumerate(named)]
+    if getattr(frame.index.dtype, "kind", "O") in "Mm" or frame.index.name:
+        columns.insert(0, (str(frame.index.name or "time"), frame.index.to_series()))
+    return [(name, _series(name, column)) for name, column in columns]
+
+
+def _series(name: str, column: Any) -> pl.Series:
+    kind = getattr(column.dtype, "kind", "O")
+    if kind == "M" and getattr(column.dtype, "tz", None) is not None:
+        column = column.dt.tz_convert("UTC").dt.tz_localize(None)
+    if kind in "iufb":  # also the kinds that can say that a value is missing
+        return pl.Series(name, column.to_numpy(dtype=float, na_value=np.nan))
+    values = column.to_numpy()
+    if values.dtype == object:
+        return pl.Series(name, [str(v) for v in values], dtype=pl.String)
+    return pl.Series(name, values)

@@ -1,0 +1,78 @@
+"""HDF5 files, and MATLAB v7.3 which is HDF5, through h5py."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hersey.errors import UnreadableLogError
+from hersey.log.formats.matrices import array_signals
+from hersey.log.recording import Recording, Signal, library
+
+MAGIC = b"\x89HDF\r\n\x1a\n"
+_UNITS = ("units", "unit", "Units", "Unit", "UNITS", "UNIT")
+#: MATLAB keeps the contents of cells and objects here.
+_HIDDEN = ("#refs#", "#subsystem#")
+
+
+def is_hdf5(path: Path) -> bool:
+    """Return whether a file starts as HDF5 does, at byte 0 or behind the 512 bytes of MATLAB."""
+    with path.open("rb") as file:
+        start = file.read(512 + len(MAGIC))
+    return start.startswith(MAGIC) or start[512:] == MAGIC
+
+
+@contextmanager
+def open_hdf5(path: Path) -> Iterator[Recording]:
+    """Open an HDF5 file: data sets of one or two dimensions, units in their attributes."""
+    h5py = library("h5py", "HDF5 files")
+    with h5py.File(path, "r") as file:
+        signals: list[Signal] = []
+        others: list[str] = []
+        seen: list[Any] = []
+
+        def visit(name: str, item: Any) -> None:
+            if not isinstance(item, h5py.Dataset) or name.startswith(_HIDDEN) or item.id in seen:
+                return
+            seen.append(item.id)
+            _check_kind(h5py, name, item)
+            found = list(_data_set(name, item))
+            signals.extend(found)
+            if not found:
+                others.append(f"'{name}' ({item.dtype}, {'x'.join(map(str, item.shape or ()))})")
+
+        file.visititems(visit)
+        comments = tuple(f"{key}: {_text(value)}"[:200] for key, value in file.attrs.items())[:5]
+        yield Recording("HDF5", tuple(signals), tuple(others), comments)
+
+
+def _data_set(path: str, item: Any) -> Iterator[Signal]:
+    group, _, name = path.rpartition("/")
+    shape = tuple(int(n) for n in item.shape or ())
+    unit = next((_text(item.attrs[key]) for key in _UNITS if key in item.attrs), "")
+    if item.dtype.names:
+        for field in item.dtype.names:
+            if item.dtype[field].kind in "iufb" and not item.dtype[field].shape:
+                yield from array_signals(field, shape, _column(item, field), group=path)
+    elif item.dtype.kind in "iufb" and shape:
+        yield from array_signals(name, shape, lambda: item[()], unit, group)
+
+
+def _check_kind(h5py: Any, path: str, item: Any) -> None:
+    """Numbers of a kind that no machine has come from a damaged description: they would be read wrongly."""
+    if item.dtype.kind in "iuf" and not item.id.get_type().equal(h5py.h5t.py_create(item.dtype)):
+        raise UnreadableLogError(f"data set '{path}' holds numbers of an unusual kind: the file is damaged")
+
+
+def _column(item: Any, field: str) -> Callable[[], Any]:
+    return lambda: item[field]
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, np.ndarray):
+        value = value.reshape(-1)[0] if value.size == 1 else ""
+    return value.decode("utf-8", errors="replace") if isinstance(value, bytes) else str(value)

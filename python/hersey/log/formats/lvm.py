@@ -1,0 +1,232 @@
+"""LabVIEW measurement files (LVM): text in segments, each with a header that says start, rate and units."""
+
+from __future__ import annotations
+
+import datetime
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+import polars as pl
+
+from hersey.arrays import FloatArray
+from hersey.errors import UnreadableLogError
+from hersey.log.recording import Recording, Signal, split_unit
+from hersey.log.text.layout import encoding_of
+from hersey.log.text.numbers import NumberStyle, is_missing
+
+_END = "***End_of_Header***"
+_X = "X_Value"
+#: A segment starts with one of these where no blank line stands before it.
+_HEADS = ("Channels",)
+
+
+@dataclass
+class _Segment:
+    """One block: its header by key, the names of its columns, its rows and the line of the first."""
+
+    header: dict[str, list[str]]
+    names: list[str]
+    line: int
+    rows: list[list[str]] = field(default_factory=list)
+
+    def start(self, channel: int) -> datetime.datetime | None:
+        """Absolute time at which a channel starts, if the header says it."""
+        date, time = (self._cell(key, channel) for key in ("Date", "Time"))
+        match = re.fullmatch(r"(\d\d:\d\d:\d\d)[.,]?(\d*)", time)
+        try:
+            day = datetime.datetime.fromisoformat(f"{date.replace('/', '-')}T{match[1]}" if match else "")
+        except ValueError:
+            return None
+        assert match is not None
+        return day + datetime.timedelta(seconds=float(f"0.{match[2] or 0}"))
+
+    def number(self, key: str, channel: int, style: NumberStyle) -> float | None:
+        """A number of the header that belongs to a channel."""
+        cell = self._cell(key, channel)
+        return next((s.value(cell) for s in (style, NumberStyle()) if s.is_number(cell)), None)
+
+    def unit(self, channel: int) -> str:
+        return self._cell("Y_Unit_Label", channel)
+
+    def _cell(self, key: str, channel: int) -> str:
+        cells = self.header.get(key, [])
+        return cells[channel] if channel < len(cells) else ""
+
+
+@contextmanager
+def open_lvm(path: Path) -> Iterator[Recording]:
+    """Open an LVM file; segments follow one another on the clock of their start times."""
+    data = path.read_bytes()
+    text = data.decode(encoding_of(data, path.name), errors="replace")
+    lines = [line.rstrip("\r") for line in text.split("\n")]
+    separator = _separator(lines, path.name)
+    recording = Recording("LVM", ())
+    if lines[-1].strip():
+        recording.cut_off = True
+        recording.notes.append(f"line {len(lines)} has no end: it was left out")
+    general, segments = _segments(lines[:-1], separator, path.name)
+    style = _style(general, segments)
+    names = [segment.names for segment in segments]
+    if any(other != names[0] for other in names):
+        raise UnreadableLogError(
+            f"line {segments[-1].line}: a segment has other channels: split the file there"
+        )
+    for number, segment in enumerate(segments, start=1):
+        promised = segment.number("Samples", 0, style)
+        if promised and len(segment.rows) < promised:
+            recording.notes.append(
+                f"segment {number} of {len(segments)} holds {len(segment.rows)} of {promised:.0f} samples"
+            )
+    recording.comments = tuple(f"{k}: {v[0]}"[:200] for k, v in general.items() if v and v[0])[:5]
+    table = _Table(segments, style, path.name)
+    recording.signals = tuple(table.signals())
+    yield recording
+
+
+def _separator(lines: list[str], file: str) -> str:
+    for line in lines[:60]:
+        match = re.match(r"Separator\W(Tab|Comma)", line)
+        if match:
+            return "\t" if match[1] == "Tab" else ","
+    raise UnreadableLogError(f"{file}: its header names no separator (Tab or Comma)")
+
+
+def _segments(lines: list[str], separator: str, file: str) -> tuple[dict[str, list[str]], list[_Segment]]:
+    """The header of the file and its segments."""
+    cells = [[cell.strip() for cell in line.split(separator)] for line in lines]
+    ends = [i for i, row in enumerate(cells) if row[0] == _END]
+    if not ends:
+        raise UnreadableLogError(f"{file}: no line '{_END}': the header is cut off")
+    general = {row[0]: row[1:] for row in cells[: ends[0]] if row[0]}
+    segments: list[_Segment] = []
+    header: dict[str, list[str]] = {}
+    open_segment: _Segment | None = None
+    after_end = len(ends) == 1
+    for i, row in enumerate(cells[ends[0] + 1 :], start=ends[0] + 1):
+        if not any(row):
+            continue
+        if row[0] in _HEADS and open_segment is not None:
+            open_segment, header = None, {}
+        if open_segment is not None:
+            open_segment.rows.append(row)
+        elif row[0] == _END:
+            after_end = True
+        elif after_end:
+            open_segment = _Segment(header, _names(row), i + 2)
+            segments.append(open_segment)
+            after_end = False
+        else:
+            header[row[0]] = row[1:]
+    segments = [segment for segment in segments if segment.rows]
+    if not segments:
+        raise UnreadableLogError(f"{file} has a header but no rows of numbers below it")
+    return general, segments
+
+
+def _names(row: list[str]) -> list[str]:
+    names = row[: row.index("Comment")] if "Comment" in row else row
+    while names and not names[-1]:
+        names = names[:-1]
+    return names
+
+
+def _style(general: dict[str, list[str]], segments: list[_Segment]) -> NumberStyle:
+    mark = (general.get("Decimal_Separator") or [""])[0]
+    if mark not in (".", ","):
+        cells = [cell for row in segments[0].rows[:50] for cell in row]
+        mark = "," if sum("," in cell for cell in cells) > sum("." in cell for cell in cells) else "."
+    return NumberStyle(decimal_comma=mark == ",")
+
+
+class _Table:
+    """The channels of all segments, one after another."""
+
+    def __init__(self, segments: list[_Segment], style: NumberStyle, file: str) -> None:
+        self.segments, self.style, self.file = segments, style, file
+        names = segments[0].names
+        self.columns = [i for i, name in enumerate(names) if name != _X]
+        self.names = [names[i] for i in self.columns]
+
+    def signals(self) -> Iterator[Signal]:
+        for channel, column in enumerate(self.columns):
+            unit = self.segments[0].unit(channel)
+            name, ending = (self.names[channel], unit) if unit else split_unit(self.names[channel])
+            rows = [self._rows(segment, column) for segment in self.segments]
+            yield Signal(
+                name,
+                ending,
+                sum(rows),
+                lambda column=column, rows=rows: self._values(column, rows),  # type: ignore[misc]
+                lambda channel=channel, rows=rows: self._clock(channel, rows),  # type: ignore[misc]
+                repr((rows, self._x(column), [self._step(s, channel) for s in self.segments])),
+            )
+
+    def _rows(self, segment: _Segment, column: int) -> int:
+        """Rows up to the last that is not empty: channels of other rates have fewer."""
+        return next(
+            (
+                i + 1
+                for i in reversed(range(len(segment.rows)))
+                if segment.rows[i][column : column + 1] > [""]
+            ),
+            0,
+        )
+
+    def _values(self, column: int, rows: list[int]) -> FloatArray:
+        parts = [self._numbers(s, column, n) for s, n in zip(self.segments, rows, strict=True)]
+        return np.concatenate(parts)
+
+    def _numbers(self, segment: _Segment, column: int, rows: int) -> FloatArray:
+        cells = [row[column] if column < len(row) else "" for row in segment.rows[:rows]]
+        values = self.style.values(pl.Series(cells, dtype=pl.String))
+        if values is None:
+            bad = next(i for i, c in enumerate(cells) if not (is_missing(c) or self.style.is_number(c)))
+            raise UnreadableLogError(
+                f"{self.file}, line {segment.line + bad}, column '{segment.names[column]}': "
+                f"'{cells[bad][:40]}' is not a number"
+            )
+        return values
+
+    def _x(self, column: int) -> int | None:
+        """The column with the times of a channel, if the file has one."""
+        before = [i for i, name in enumerate(self.segments[0].names[:column]) if name == _X]
+        filled = any(row[i : i + 1] > [""] for i in before[-1:] for row in self.segments[0].rows)
+        return before[-1] if before and filled else None
+
+    def _step(self, segment: _Segment, channel: int) -> tuple[object, ...]:
+        numbers = (segment.number(key, channel, self.style) for key in ("X0", "Delta_X"))
+        return (segment.start(channel), *numbers)
+
+    def _times(self, segment: _Segment, channel: int, column: int | None, count: int) -> FloatArray:
+        """Times within a segment."""
+        if column is not None:
+            return self._numbers(segment, column, count)
+        _, zero, step = self._step(segment, channel)
+        if not isinstance(step, float) or step <= 0:
+            raise UnreadableLogError(
+                f"{self.file}: channel '{self.names[channel]}' has neither a column {_X} nor Delta_X"
+            )
+        return np.asarray((zero if isinstance(zero, float) else 0.0) + step * np.arange(count), dtype=float)
+
+    def _clock(self, channel: int, rows: list[int]) -> FloatArray:
+        column = self._x(self.columns[channel])
+        starts = [segment.start(channel) for segment in self.segments]
+        known = [start for start in (s.start(0) for s in self.segments) if start is not None]
+        parts: list[FloatArray] = []
+        last = -np.inf
+        for number, (segment, count, start) in enumerate(zip(self.segments, rows, starts, strict=True), 1):
+            part = self._times(segment, channel, column, count)
+            if start is not None and len(known) == len(self.segments):
+                part = part + (start - known[0]).total_seconds()
+            if part.size and part[0] <= last:
+                raise UnreadableLogError(
+                    f"{self.file}, line {segment.line}: segment {number} starts at {part[0]:.6g} s, "
+                    f"before the one above it ends at {last:.6g} s: split the file there"
+                )
+            last = float(part[-1]) if part.size else last
+            parts.append(part)
+        return np.concatenate(parts)

@@ -1,0 +1,84 @@
+"""MATLAB files: v4 to v7.2 through scipy.io; v7.3 is HDF5 and goes through h5py."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.io import loadmat
+
+from hersey.errors import UnreadableLogError
+from hersey.log.formats.hdf5 import is_hdf5, open_hdf5
+from hersey.log.formats.matlab_tags import check_tags
+from hersey.log.formats.matrices import array_signals
+from hersey.log.recording import Recording, Signal
+
+_DATA = ("data", "values", "value", "signal", "samples")
+_UNITS = ("unit", "units", "Unit", "Units")
+#: Structs within structs are followed to this depth.
+_DEPTH = 4
+
+
+@contextmanager
+def open_matlab(path: Path) -> Iterator[Recording]:
+    """Open a MATLAB file: vectors, columns of matrices, and fields of structs."""
+    if is_hdf5(path):
+        with open_hdf5(path) as recording:
+            recording.format = "MATLAB v7.3"
+            yield recording
+        return
+    data = path.read_bytes()
+    if data[126:128] in (b"IM", b"MI"):
+        check_tags(data, path.name)
+    signals: list[Signal] = []
+    others: list[str] = []
+    with warnings.catch_warnings(record=True) as heard:
+        warnings.simplefilter("always")
+        found = loadmat(path, chars_as_strings=True)
+    for name, value in found.items():
+        if not name.startswith("__"):
+            _walk(name, value, "", signals, others, 0)
+    objects = [o for o in others if "object" in o]
+    nothing = (
+        f"{', '.join(objects)}: tables and timetables can be opened by MATLAB alone; save them as "
+        "s = table2struct(T, 'ToScalar', true)"
+    )
+    notes = [f"scipy warns: {str(warning.message)[:160]}" for warning in heard]
+    yield Recording("MATLAB", tuple(signals), tuple(others), notes=notes, nothing=nothing if objects else "")
+
+
+def _walk(name: str, value: Any, group: str, signals: list[Signal], others: list[str], depth: int) -> None:
+    shown = f"'{group}/{name}'" if group else f"'{name}'"
+    if not isinstance(value, np.ndarray) or type(value).__name__ == "MatlabOpaque":
+        others.append(f"{shown} (object of MATLAB)")
+    elif value.dtype.names and value.size == 1 and depth < _DEPTH:
+        _walk_struct(name, value.reshape(-1)[0], group, signals, others, depth)
+    elif value.dtype.kind in "iufb":
+        found = array_signals(name, value.shape, lambda: value, group=group)
+        signals.extend(found)
+        if not found:
+            others.append(f"{shown} ({'x'.join(map(str, value.shape))})")
+    else:
+        what = {"O": "cells", "U": "text", "S": "text", "c": "complex"}.get(value.dtype.kind, "structs")
+        others.append(f"{shown} ({what})")
+
+
+def _walk_struct(
+    name: str, struct: Any, group: str, signals: list[Signal], others: list[str], depth: int
+) -> None:
+    """A struct is a group; one with data and unit is a channel."""
+    fields = {str(field): struct[field] for field in struct.dtype.names}
+    data = next((fields[k] for k in _DATA if k in fields and fields[k].dtype.kind in "iufb"), None)
+    unit = next((fields[k] for k in _UNITS if k in fields and fields[k].dtype.kind == "U"), None)
+    path = f"{group}/{name}" if group else name
+    if data is not None and unit is not None:
+        if unit.size != 1:
+            raise UnreadableLogError(f"the unit of '{path}' is no word")
+        signals.extend(array_signals(name, data.shape, lambda: data, str(unit.reshape(-1)[0]), group))
+        return
+    for field, value in fields.items():
+        _walk(field, value, path, signals, others, depth + 1)

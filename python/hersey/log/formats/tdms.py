@@ -1,0 +1,118 @@
+"""LabVIEW TDMS files, through nptdms: scalings, and start and rate of each channel."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hersey.arrays import FloatArray
+from hersey.errors import UnreadableLogError
+from hersey.log.recording import Recording, Signal, floats, library, listening, split_unit
+
+#: Scalings that nptdms applies; it reads a channel with any other one raw.
+_SCALES = {
+    *("Polynomial", "Linear", "RTD", "Strain", "Table", "Thermistor", "Thermocouple"),
+    *("Add", "Subtract", "AdvancedAPI"),
+}
+_UNITS = ("unit_string", "NI_UnitDescription", "Unit", "unit", "units")
+
+
+@contextmanager
+def open_tdms(path: Path) -> Iterator[Recording]:
+    """Open a TDMS file; channels with ``wf_increment`` carry their own clock."""
+    nptdms = library("nptdms", "TDMS files")
+    with (
+        listening("nptdms") as heard,
+        path.open("rb") as stream,
+        nptdms.TdmsFile.open(stream) as file,
+    ):
+        channels = [channel for group in file.groups() for channel in group.channels()]
+        several = len({channel.group_name for channel in channels}) > 1
+        numeric = [channel for channel in channels if _is_numeric(channel) and len(channel)]
+        starts = [_start(channel) for channel in numeric if _has_clock(channel)]
+        known = [start for start in starts if start is not None]
+        first = min(known) if known and len(known) == len(starts) else None
+        recording = Recording(
+            "TDMS",
+            tuple(_signal(file, channel, first, several) for channel in numeric),
+            tuple(
+                f"'{channel.name}' ({'empty' if not len(channel) else 'no numbers'})"
+                for channel in channels
+                if not (_is_numeric(channel) and len(channel))
+            ),
+            tuple(f"{key}: {value}"[:200] for key, value in file.properties.items())[:5],
+        )
+        if starts and known and first is None:
+            recording.notes.append("some channels say when they started and some do not: all start at 0 s")
+        if file.file_status.incomplete_final_segment or any("segment" in words for words in heard):
+            recording.cut_off = True
+            recording.notes.append("the last segment of the file is incomplete: what is there was read")
+        recording.notes.extend(f"nptdms warns: {words[:160]}" for words in dict.fromkeys(heard))
+        yield recording
+
+
+def _signal(file: Any, channel: Any, first: Any, several: bool) -> Signal:
+    unit = next((str(channel.properties[key]) for key in _UNITS if channel.properties.get(key)), "")
+    name, ending = (channel.name, unit) if unit else split_unit(channel.name)
+    group = channel.group_name if several else ""
+    stamps = channel.dtype.kind == "M"
+
+    def load() -> FloatArray:
+        unknown = _scales(channel.properties) or _scales(file[channel.group_name].properties)
+        if unknown := unknown or _scales(file.properties):
+            raise UnreadableLogError(
+                f"channel '{channel.name}' is scaled by {unknown}, which cannot be applied: write scaled data"
+            )
+        values = channel[:]
+        if len(values) != len(channel):
+            raise UnreadableLogError(f"channel '{channel.name}' has {len(values)} of {len(channel)} values")
+        return floats(values)
+
+    if not _has_clock(channel):
+        return Signal(name, "s" if stamps else ending, len(channel), load, group=group)
+    offset, step = _offset(channel, first), float(channel.properties["wf_increment"])
+
+    def clock() -> FloatArray:
+        if not (np.isfinite(offset) and 0 < step < np.inf):
+            raise UnreadableLogError(
+                f"channel '{channel.name}': wf_increment is {step:g} s, which is no interval of a clock"
+            )
+        return np.asarray(offset + step * np.arange(len(channel)), dtype=float)
+
+    return Signal(name, ending, len(channel), load, clock, f"{offset!r} {step!r} {len(channel)}", group)
+
+
+def _is_numeric(channel: Any) -> bool:
+    kind = channel.dtype.kind if channel.dtype is not None else "V"
+    return kind in "iufbM"
+
+
+def _has_clock(channel: Any) -> bool:
+    """Whether the clock is in the properties; LabVIEW writes an increment of 0 or 1 where there is none."""
+    step = channel.properties.get("wf_increment")
+    return isinstance(step, int | float) and step != 0 and channel.dtype.kind != "M"
+
+
+def _start(channel: Any) -> Any:
+    start = channel.properties.get("wf_start_time")
+    # 1904 is LabVIEW's zero: no start was written
+    return start if isinstance(start, np.datetime64) and start > np.datetime64("1905-01-01") else None
+
+
+def _offset(channel: Any, first: Any) -> float:
+    offset = float(channel.properties.get("wf_start_offset", 0.0))
+    start = _start(channel)
+    return offset if first is None else offset + float((start - first) / np.timedelta64(1, "ns")) * 1e-9
+
+
+def _scales(properties: dict[str, Any]) -> str:
+    """Scalings among the properties that are not known."""
+    if properties.get("NI_Scaling_Status") == "scaled":
+        return ""
+    kinds = {str(v) for k, v in properties.items() if re.fullmatch(r"NI_Scale\[\d+\]_Scale_Type", k)}
+    return ", ".join(f"'{kind}'" for kind in sorted(kinds - _SCALES))

@@ -1,0 +1,307 @@
+"""Where the table starts in a delimited text file, and how its numbers are written."""
+
+from __future__ import annotations
+
+import codecs
+import csv
+import re
+from collections import Counter
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from hersey.errors import UnitError, UnreadableLogError, WrongKindError
+from hersey.log.text.numbers import NumberStyle, is_missing, looks_numeric, style_of
+from hersey.log.text.stamps import StampStyle, counted_since, is_stamp, stamp_style
+from hersey.units import KINDS, conversion
+
+#: Bytes looked at; preambles of data loggers are far shorter.
+SNIFFED = 1 << 17
+_COMMENTS = ("#", "~", "//")
+_NOT_CP1252 = (b"\x81", b"\x8d", b"\x8f", b"\x90", b"\x9d")
+#: ``Torque [N*m]`` or ``Torque (N*m)``.
+NAME_WITH_UNIT = re.compile(r"(.*?)\s*(?:\[([^\]]*)\]|\(([^)]*)\))\s*")
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of the file: position from 0, name and unit as written (unit empty if none).
+
+    ``group`` is the part of the file in which the column stands, where there are several.
+    """
+
+    index: int
+    name: str
+    unit: str
+    group: str = ""
+
+    @property
+    def path(self) -> str:
+        """Name behind its group."""
+        return f"{self.group}/{self.name}" if self.group else self.name
+
+    def __str__(self) -> str:
+        """Return name and unit as a header would show them."""
+        return f"{self.path} [{self.unit}]" if self.unit else self.path
+
+
+@dataclass(frozen=True)
+class Layout:
+    """How to read the table: ``first_line`` is the line of the first row, counted from 1.
+
+    ``stamps`` tells how time stamps are written, by index of the column that holds them; ``texts`` are the
+    columns that hold words; ``headless`` is why the columns have no names, or empty.
+    """
+
+    encoding: str
+    separator: str
+    style: NumberStyle
+    comment: str
+    columns: tuple[Column, ...]
+    first_line: int
+    comments: tuple[str, ...]
+    stamps: dict[int, StampStyle]
+    texts: frozenset[int] = frozenset()
+    notes: tuple[str, ...] = ()
+    headless: str = ""
+
+    @property
+    def named(self) -> tuple[Column, ...]:
+        """The columns without those that have neither a name nor numbers."""
+        return tuple(c for c in self.columns if not (c.name.startswith("#") and c.index in self.texts))
+
+
+def find_layout(start: bytes, name: str) -> Layout:
+    """Return the layout of a text file from its first `SNIFFED` bytes.
+
+    Raises
+    ------
+    UnreadableLogError
+        If the bytes are no text, or hold no header followed by rows of numbers.
+    """
+    encoding = encoding_of(start, name)
+    text = start.decode(encoding, errors="replace")
+    if "\r" in text and "\n" not in text:
+        raise UnreadableLogError(f"{name}: its lines end with CR alone: save it with ordinary line ends")
+    lines = [line.rstrip("\r") for line in text.split("\n")]
+    if len(start) >= SNIFFED:
+        lines = lines[:-1]
+        if not any(line.strip() for line in lines):
+            raise UnreadableLogError(f"{name} holds no table: its first line has over {SNIFFED} characters")
+    comment = next((c for c in _COMMENTS if any(line.startswith(c) for line in lines)), "#")
+    numbered = [
+        (number, line)
+        for number, line in enumerate(lines, start=1)
+        if line.strip() and not line.lstrip().startswith(comment)
+    ]
+    if not numbered:
+        raise UnreadableLogError(f"{name} is empty: a header and rows of numbers are needed")
+    table = max((_table(numbered, separator) for separator in ";\t,|"), key=lambda t: t.score)
+    if table.score == 0:
+        raise UnreadableLogError(
+            f"{name} has a header but no rows of numbers below it"
+            if _looks_like_header(numbered[-1][1])
+            else f"{name} holds no table of numbers with at least two columns"
+        )
+    rows = [split(line, table.separator) for _, line in numbered[table.first :]]
+    rows = [row for row in rows if len(row) == table.width]
+    headless = _headless(table, numbered, name, comment)
+    columns = _columns(table, numbered, name) if not headless else _numbered_columns(table.width)
+    columns, stamps = _with_stamps(columns, rows)
+    style = style_of([cell for row in rows for cell in row])
+    columns, notes = _with_epochs(columns, rows, style)
+    texts = frozenset(c.index for c in columns if c.index not in stamps and _holds_words(rows, c.index))
+    first_line = numbered[table.first][0]
+    above = lines[: first_line - 1]
+    comments = tuple(li.strip("# ~/")[:200] for li in above if li.startswith(comment))[:5]
+    return Layout(
+        encoding,
+        table.separator,
+        style,
+        comment,
+        columns,
+        first_line,
+        comments,
+        stamps,
+        texts,
+        notes,
+        headless,
+    )
+
+
+@dataclass(frozen=True)
+class _Table:
+    separator: str
+    width: int
+    first: int
+    score: int
+
+
+def split(line: str, separator: str) -> list[str]:
+    """Return the cells of a line, without surrounding blanks."""
+    try:
+        return [cell.strip() for cell in next(csv.reader([line], delimiter=separator), [])]
+    except csv.Error:  # a cell beyond the limit of the csv module
+        return [cell.strip() for cell in line.split(separator)]
+
+
+def encoding_of(start: bytes, name: str) -> str:
+    """Return the encoding of a text file from its first bytes.
+
+    Raises
+    ------
+    UnreadableLogError
+        If the bytes are no text.
+    """
+    if start.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return "utf-16"
+    if b"\0" in start:
+        odd, even = start[1::2].count(0), start[::2].count(0)
+        if max(odd, even) > 0.4 * len(start) and not min(odd, even):  # every other byte of plain text
+            return "utf-16-le" if odd else "utf-16-be"
+        raise UnreadableLogError(
+            f"{name} is a binary file of a kind that is not known: export the channels as text"
+        )
+    try:
+        codecs.getincrementaldecoder("utf-8")().decode(start)
+    except UnicodeDecodeError:
+        return "cp1252" if not any(code in start for code in _NOT_CP1252) else "latin-1"
+    return "utf-8-sig"
+
+
+def _table(numbered: list[tuple[int, str]], separator: str) -> _Table:
+    """The longest reading of the lines as rows of numbers with this separator."""
+    cells = [split(line, separator) for _, line in numbered]
+    widths = Counter(len(row) for row in cells if len(row) > 1)
+    best = _Table(separator, 0, 0, 0)
+    for width in widths:
+        rows = [len(row) == width and _mostly_numbers(row) for row in cells]
+        count = sum(rows)
+        if count and count * width > best.score:
+            best = _Table(separator, width, _first_of_block(rows), count * width)
+    return best
+
+
+def _mostly_numbers(row: list[str]) -> bool:
+    filled = [cell for cell in row if not is_missing(cell)]
+    numbers = sum(looks_numeric(cell) or is_stamp(cell) for cell in filled)
+    return (numbers > 0 and 2 * numbers > len(filled)) or (not filled and any(row))
+
+
+def _first_of_block(rows: list[bool]) -> int:
+    """Index of the first row of the table: preambles too have a line of numbers here and there."""
+    first = next(i for i, row in enumerate(rows) if row)
+    while (
+        gap := next((i for i in range(first, min(first + 3, len(rows))) if not rows[i]), None)
+    ) is not None:
+        later = next((i for i in range(gap, len(rows)) if rows[i]), None)
+        if later is None or sum(rows[later:]) < sum(rows[first:gap]):
+            break
+        first = later
+    return first
+
+
+def _looks_like_header(line: str) -> bool:
+    return any(len(split(line, separator)) > 1 for separator in ";\t,|")
+
+
+def _headless(table: _Table, numbered: list[tuple[int, str]], file: str, comment: str) -> str:
+    """Why the columns have no names, or nothing if a header stands above the rows."""
+    above = numbered[table.first - 1][1] if table.first else ""
+    if table.first and not all(
+        looks_numeric(cell) or is_missing(cell) for cell in re.split(r"[;,|\s]+", above)
+    ):
+        return ""
+    return (
+        f"{file}, line {numbered[table.first][0]}: no header stands above the numbers; "
+        "put a line with name and unit of each column there, such as 'Torque [N*m]' "
+        f"(and without '{comment}' before it), or name the columns by number, such as --torque '#2'"
+    )
+
+
+def _numbered_columns(width: int) -> tuple[Column, ...]:
+    return tuple(Column(index, f"#{index + 1}", "") for index in range(width))
+
+
+def _with_stamps(
+    columns: tuple[Column, ...], rows: list[list[str]]
+) -> tuple[tuple[Column, ...], dict[int, StampStyle]]:
+    """Columns of time stamps, which are read in s whatever unit the header gives them."""
+    stamps: dict[int, StampStyle] = {}
+    for column in columns:
+        style = stamp_style([row[column.index] for row in rows[:1000] if not is_missing(row[column.index])])
+        if style is not None:
+            stamps[column.index] = style
+    return tuple(replace(c, unit="s") if c.index in stamps else c for c in columns), stamps
+
+
+def _holds_words(rows: list[list[str]], index: int) -> bool:
+    cells = [row[index] for row in rows[:1000] if not is_missing(row[index])]
+    return not cells or 2 * sum(looks_numeric(cell) for cell in cells) < len(cells)
+
+
+def _with_epochs(
+    columns: tuple[Column, ...], rows: list[list[str]], style: NumberStyle
+) -> tuple[tuple[Column, ...], tuple[str, ...]]:
+    """Clocks without unit that count since 1970 or in days of Excel."""
+    out, notes = [], []
+    for column in columns:
+        cells = [row[column.index] for row in rows[:1000]] if not column.unit else []
+        numbers = np.array([style.value(cell) for cell in cells if style.is_number(cell)])
+        unit, meaning = counted_since(column.name, numbers)
+        if unit:
+            notes.append(f"'{column.name}' has no unit and was read as {meaning}")
+        out.append(replace(column, unit=unit or column.unit))
+    return tuple(out), tuple(notes)
+
+
+def _columns(table: _Table, numbered: list[tuple[int, str]], file: str) -> tuple[Column, ...]:
+    above = [split(line, table.separator) for _, line in numbered[: table.first]]
+    line, header = numbered[table.first - 1][0], above[-1]
+    units: list[str] = []
+    if len(above) > 1 and len(above[-2]) == len(header) and _is_units_row(header):
+        line, units, header = numbered[table.first - 2][0], header, above[-2]
+    _require_width(table, numbered, header, line, file)
+    columns = []
+    for index in range(table.width):
+        name = header[index] if index < len(header) and header[index] else f"#{index + 1}"
+        unit = units[index].strip("[]() ") if index < len(units) else ""
+        match = NAME_WITH_UNIT.fullmatch(name)
+        if match and not unit:
+            name, unit = match[1] or f"#{index + 1}", match[2] if match[2] is not None else match[3]
+        columns.append(Column(index, name, unit.strip()))
+    return tuple(columns)
+
+
+def _require_width(
+    table: _Table, numbered: list[tuple[int, str]], header: list[str], line: int, file: str
+) -> None:
+    """A header with fewer or more names than the rows have cells would shift every column."""
+    rows = [split(text, table.separator) for _, text in numbered[table.first :]]
+    beyond = any(any(row[len(header) :]) for row in rows if len(row) == table.width)
+    if beyond or any(header[table.width :]):
+        raise UnreadableLogError(
+            f"{file}, line {line}: the header has {len(header)} cells where the rows have {table.width}: "
+            "give every column a name"
+        )
+
+
+def _is_units_row(row: list[str]) -> bool:
+    """Units of at least half of the cells that are not blank; no number, no name with a unit of its own."""
+    filled = [cell.strip("[]() ") for cell in row if cell.strip()]
+    if any(looks_numeric(cell) for cell in filled) or any(
+        NAME_WITH_UNIT.fullmatch(c) for c in row if c[:1] not in "[("
+    ):
+        return False
+    return bool(filled) and 2 * sum(_is_unit(cell) for cell in filled) >= len(filled)
+
+
+def _is_unit(cell: str) -> bool:
+    for kind in KINDS:
+        try:
+            return bool(conversion(kind, cell))
+        except WrongKindError:
+            return True
+        except UnitError:
+            continue
+    return False

@@ -1,0 +1,127 @@
+"""Times as text files write them: ISO and German dates, times of day, seconds since 1970, days of Excel."""
+
+from __future__ import annotations
+
+import datetime
+import re
+from dataclasses import dataclass
+
+import numpy as np
+import polars as pl
+
+from hersey.arrays import FloatArray
+from hersey.log.text.numbers import is_missing
+
+_CLOCK = r"\d{1,2}:\d\d:\d\d([.,]\d{1,9})?"
+_DAY = 86400.0
+#: Units of a count since 1970 by its size, between 2001 and 2049.
+_EPOCHS = ((1e9, "s"), (1e12, "ms"), (1e15, "us"), (1e18, "ns"))
+_EPOCH_NAME = re.compile(r"t|.*time.*|.*epoch.*|.*unix.*|zeit", re.IGNORECASE)
+_DAYS_NAME = re.compile(r".*(date|datum|excel|serial).*", re.IGNORECASE)
+
+
+@dataclass(frozen=True)
+class StampStyle:
+    """One way to write a time: ``format`` reads it once its separators are those of ISO."""
+
+    name: str
+    pattern: str
+    format: str
+
+    def stamps(self, cells: pl.Series) -> pl.Series:
+        """Return cells as time stamps in ns, null where one is missing or is none."""
+        text = cells.str.strip_chars().str.replace(",", ".", literal=True)
+        if self.name != "a German date":
+            text = text.str.replace_all("/", "-", literal=True).str.replace("T", " ", literal=True)
+        if self.name == "a time of day":
+            text = "2000-01-01 " + text
+        if self.format.endswith("%z"):
+            text = text.str.replace("Z$", "+0000").str.replace(r" ?([+-]\d\d):?(\d\d)$", "$1$2")
+        found = text.str.to_datetime(self.format, time_unit="ns", strict=False)
+        return found.dt.replace_time_zone(None) if self.format.endswith("%z") else found
+
+
+_ISO = r"\d{4}[-/]\d{1,2}[-/]\d{1,2}[T ]"
+_STYLES = (
+    StampStyle("an ISO date", _ISO + _CLOCK, "%Y-%m-%d %H:%M:%S%.f"),
+    StampStyle("an ISO date", _ISO + _CLOCK + r"( ?Z| ?[+-]\d\d:?\d\d)", "%Y-%m-%d %H:%M:%S%.f%z"),
+    StampStyle("a German date", r"\d{1,2}\.\d{1,2}\.\d{4} " + _CLOCK, "%d.%m.%Y %H:%M:%S%.f"),
+    StampStyle("a time of day", _CLOCK, "%Y-%m-%d %H:%M:%S%.f"),
+)
+
+
+def is_stamp(cell: str) -> bool:
+    """Return whether a cell is a time stamp."""
+    return ":" in cell and any(re.fullmatch(style.pattern, cell) for style in _STYLES)
+
+
+def stamp_style(cells: list[str]) -> StampStyle | None:
+    """Return how a column writes its time stamps, or None if most of its cells are none."""
+    for style in _STYLES:
+        count = sum(re.fullmatch(style.pattern, cell) is not None for cell in cells)
+        if 2 * count > len(cells):
+            return style
+    return None
+
+
+class Stamps:
+    """The time stamps of one column as s since the first of them, block after block."""
+
+    def __init__(self, style: StampStyle) -> None:
+        self.style = style
+        self.first: int | None = None
+        self.midnights = 0
+        self._last = -np.inf
+
+    def seconds(self, cells: pl.Series) -> FloatArray | None:
+        """Return the times, NaN where one is missing, or None if a cell is no time stamp."""
+        stamps = self.style.stamps(cells)
+        missing = np.array([cell is None or is_missing(cell.strip()) for cell in cells]) | False
+        gone = stamps.is_null().to_numpy()
+        if (gone & ~missing).any():
+            return None
+        ticks = stamps.dt.timestamp("ns").fill_null(0).to_numpy()
+        if self.first is None and not gone.all():
+            self.first = int(ticks[~gone][0])
+        times = np.where(gone, np.nan, (ticks - (self.first or 0)) * 1e-9)
+        return self._past_midnight(times) if self.style.name == "a time of day" else times
+
+    def note(self, column: str) -> str:
+        """What was done, for the notes of the log."""
+        first = datetime.datetime(1970, 1, 1) + datetime.timedelta(microseconds=(self.first or 0) // 1000)
+        shown = first.strftime("%H:%M:%S" if self.style.name == "a time of day" else "%Y-%m-%d %H:%M:%S")
+        passed = f", past midnight {self.midnights} time(s)" if self.midnights else ""
+        return f"'{column}' holds {self.style.name}: read in s since {shown}{passed}"
+
+    def _past_midnight(self, times: FloatArray) -> FloatArray:
+        """A time of day that falls by more than half a day has passed midnight."""
+        known = np.flatnonzero(np.isfinite(times))
+        if known.size:
+            steps = np.diff(times[known], prepend=self._last)
+            nights = self.midnights + np.cumsum(steps < -_DAY / 2)
+            self._last, self.midnights = float(times[known[-1]]), int(nights[-1])
+            times[known] += _DAY * nights
+        return times
+
+
+def is_clock_name(name: str) -> bool:
+    """Return whether a column so called could hold a count since 1970 or days of Excel."""
+    return bool(_EPOCH_NAME.fullmatch(name) or _DAYS_NAME.fullmatch(name))
+
+
+def counted_since(name: str, numbers: FloatArray) -> tuple[str, str]:
+    """Return unit and meaning of a clock without unit that counts from a known day, or two empty words.
+
+    Counts since 1970 show by their size. Days of Excel are believed only of a column whose name speaks of a
+    date, because a stopwatch in ms shows such numbers too.
+    """
+    known = numbers[np.isfinite(numbers)]
+    if not known.size or not is_clock_name(name):
+        return "", ""
+    low, high = float(known.min()), float(known.max())
+    for scale, unit in _EPOCHS:
+        if scale <= low and high < 2.5 * scale:
+            return unit, f"{unit} since 1970"
+    if _DAYS_NAME.fullmatch(name) and low > 3e4 and high < 7e4:
+        return "d", "days of Excel"
+    return "", ""

@@ -1,0 +1,10 @@
+"""The film between belt and roll, as theory has it.
+
+=========  ======================================================
+lubricant  viscosity against temperature, pressure and shear rate
+paper      Eqs. 5-10 of the paper
+contact    the nip: moduli, width, pressure
+film       film thickness and drag by every law, and which holds
+reynolds   the line contact solved numerically
+=========  ======================================================
+"""

@@ -1,0 +1,332 @@
+"""Film thickness and drag of a nip: every law beside the others, which holds, and what else thins the film.
+
+Conventions: ``speed`` is the angular speed of the roll (rad/s); the belt moves at U = speed roll_radius over
+a heater at rest, so the entrainment speed is u = U/2 (the MEAN) and the sliding speed U. E' = 2 E/(1 - nu^2).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hersey import _core
+from hersey.arrays import FloatArray, rows
+from hersey.errors import ParameterError
+from hersey.lubrication import paper
+from hersey.lubrication.contact import Contact, Nip
+from hersey.lubrication.lubricant import Lubricant
+
+#: Regimes of a line contact, in the order of the core.
+REGIMES = tuple(_core.REGIMES)
+#: Laws a film can be computed by: that which holds, one of the regimes', or Eq. 5 of the paper.
+LAWS = ("governing", *REGIMES, "paper")
+#: Both walls slide past each other at U while the mean speed is U/2: slide-to-roll ratio of a heater at rest.
+SLIDE_TO_ROLL = 2.0
+#: The inlet must be this much shorter than layer and half-width for the soft law of a layer.
+_SHORT = 0.25
+
+
+@dataclass(frozen=True)
+class Constant:
+    """A number in a law, with the convention that it belongs to."""
+
+    law: str
+    formula: str
+    convention: str
+    source: str
+
+
+_LOW = [low for low, _ in _core.FILM_CONSTANTS]
+_MID = [mid for _, mid in _core.FILM_CONSTANTS]
+_MEAN = (
+    "mean speed u = (u1 + u2)/2, E' = 2/sum[(1-nu^2)/E], H = h/R, U = eta u/(E'R), W = w/(E'R), G = alpha E'"
+)
+#: The laws, as printed beside their results.
+CONSTANTS: tuple[Constant, ...] = (
+    Constant(REGIMES[0], f"h = {_LOW[0]:g} eta u R/w", _MEAN, "Martin 1916; 4.895 by integration"),
+    Constant(REGIMES[1], f"H = {_LOW[1]:g} (G U)^(2/3)", _MEAN, "Blok 1950; 1.666 by integration"),
+    Constant(
+        REGIMES[2],
+        f"(H_min, H_centre) = ({_LOW[2]:.3g}, {_MID[2]:.3g}) U^0.6 W^-0.2, times the factor of the layer",
+        _MEAN,
+        "Herrebrugh 1968, Hooke 1977; numerical solutions 3.05 and 3.78",
+    ),
+    Constant(
+        REGIMES[3],
+        f"H_min = {_LOW[3]:g} U^0.70 G^0.54 W^-0.13, H_centre = {_MID[3]:g} U^0.69 G^0.56 W^-0.10",
+        _MEAN,
+        "Dowson and Higginson 1966; Dowson and Toyoda 1978",
+    ),
+    Constant(
+        "paper", "delta = 1.6 alpha^0.6 R^0.43 E'^0.03 (eta u)^0.7 (N/L)^-0.13", _MEAN, "NIP31 (2015), Eq. 5"
+    ),
+)
+
+
+@dataclass(frozen=True)
+class Correction:
+    """A factor on the film, and where the rule behind it holds; arrays of the shape of the film."""
+
+    factor: FloatArray
+    valid: NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Film:
+    """The film at operating points; arrays of one shape.
+
+    ``speed`` (rad/s), ``temperature`` (K), ``viscosity`` (Pa s, unsheared), ``g_v`` and ``g_e`` (the axes of
+    the regime chart), ``regime`` (index into `REGIMES`), ``minimum`` and ``central`` (m) by the governing
+    law, flooded, isothermal and Newtonian, before ``corrections``; ``minima`` and ``centres`` hold them by
+    each law (Eq. 5 under ``paper``, where alpha is known). ``inlet_short`` says whether the soft law of a
+    layer holds.
+    """
+
+    speed: FloatArray
+    temperature: FloatArray
+    entrainment_speed: FloatArray
+    viscosity: FloatArray
+    g_v: FloatArray
+    g_e: FloatArray
+    regime: NDArray[np.intp]
+    minimum: FloatArray
+    central: FloatArray
+    minima: Mapping[str, FloatArray]
+    centres: Mapping[str, FloatArray]
+    inlet_short: NDArray[np.bool_]
+    nip: Nip
+    corrections: Mapping[str, Correction] = field(default_factory=dict)
+
+    @property
+    def factor(self) -> FloatArray:
+        """Product of the corrections, those outside the validity of their rules too."""
+        product = np.ones_like(self.central)
+        for correction in self.corrections.values():
+            product = product * correction.factor
+        return product
+
+    def lambda_ratio(self, roughness: float) -> FloatArray:
+        """Corrected minimum film over composite rms roughness (m)."""
+        return np.asarray(self.minimum * self.factor / roughness)
+
+    def regime_names(self) -> list[str]:
+        """Return the regime of each point, flattened."""
+        return [REGIMES[i] for i in self.regime.ravel()]
+
+
+def film_thickness(
+    contact: Contact,
+    lubricant: Lubricant,
+    *,
+    speed: ArrayLike,
+    temperature: ArrayLike,
+    supply: float | None = None,
+    starvation_sharpness: float = 3.0,
+) -> Film:
+    """Return the film of a nip by all laws at operating points, and the law that holds.
+
+    Parameters
+    ----------
+    contact, lubricant
+        The nip and what is in it. A lubricant without a pressure-viscosity coefficient counts as one that
+        pressure does not thicken.
+    speed, temperature
+        Of the roll (rad/s) and of the film (K), broadcast together.
+    supply
+        Thickness of the layer on the inlet side, m; a flooded inlet if not given.
+    starvation_sharpness
+        Rounds the corner between flooded and starved, 2 to 5.
+
+    Raises
+    ------
+    ParameterError
+        If a speed is zero or a value impossible.
+
+    Examples
+    --------
+    >>> from hersey.lubrication.lubricant import EXAMPLES
+    >>> roll = Contact(roll_radius=15e-3, rubber_thickness=3.5e-3, modulus=1e6, poisson_ratio=0.48,
+    ...                length=0.22, load=250.0)
+    >>> film = film_thickness(roll, EXAMPLES["cylinder oil"], speed=4.0, temperature=373.15)
+    >>> print(film.regime_names()[0], f"{1e6 * film.central:.1f} um")
+    isoviscous-elastic 2.2 um
+    """
+    speeds, temperatures = np.broadcast_arrays(
+        np.abs(np.asarray(speed, dtype=float)), np.asarray(temperature, dtype=float)
+    )
+    nip = contact.nip
+    viscosity = lubricant.viscosity(temperatures)
+    alpha = lubricant.alpha(temperatures) if lubricant.pressure_viscosity else np.zeros_like(viscosity)
+    entrainment = 0.5 * speeds * contact.roll_radius
+    laws = rows(
+        _core.line_film,
+        alpha,
+        viscosity,
+        entrainment,
+        contact.load_per_length,
+        contact.reduced_radius,
+        contact.effective_modulus,
+        nip.layer_factor,
+    )
+    minima = dict(zip(REGIMES, laws[2:6], strict=True))
+    centres = dict(zip(REGIMES, laws[6:10], strict=True))
+    if np.all(alpha > 0):
+        minima["paper"] = centres["paper"] = paper.film_thickness(
+            pressure_viscosity=alpha,
+            viscosity=viscosity,
+            entrainment_speed=entrainment,
+            load=contact.load,
+            length=contact.length,
+            radius=contact.reduced_radius,
+            effective_modulus=contact.effective_modulus,
+        )
+    regime = laws[10].astype(np.intp)
+    inlet = rows(
+        _core.inlet_length,
+        viscosity,
+        entrainment,
+        contact.reduced_radius,
+        contact.effective_modulus,
+        nip.edge,
+        nip.half_width,
+    )[0]
+    central = np.choose(regime, laws[6:10])
+    film = Film(
+        speed=speeds,
+        temperature=temperatures,
+        entrainment_speed=entrainment,
+        viscosity=viscosity,
+        g_v=laws[0],
+        g_e=laws[1],
+        regime=regime,
+        minimum=np.choose(regime, laws[2:6]),
+        central=central,
+        minima=minima,
+        centres=centres,
+        inlet_short=np.asarray(inlet < _SHORT * min(contact.rubber_thickness, nip.half_width)),
+        nip=nip,
+    )
+    corrections = _corrections(film, lubricant, supply, starvation_sharpness)
+    return Film(**{**vars(film), "corrections": corrections})
+
+
+def _corrections(
+    film: Film, lubricant: Lubricant, supply: float | None, sharpness: float
+) -> dict[str, Correction]:
+    corrections = {}
+    if lubricant.thinning is not None:
+        carreau = lubricant.thinning
+        exponent = np.asarray(_core.FILM_SPEED_EXPONENTS)[film.regime]
+        answer = rows(
+            _core.shear_thinning,
+            film.central,
+            2.0 * film.entrainment_speed,
+            exponent,
+            carreau.relaxation_time,
+            carreau.exponent,
+            carreau.limit,
+        )
+        corrections["shear thinning"] = _correction(answer)
+    if lubricant.conductivity is not None:
+        fall = -lubricant.temperature_exponent(film.temperature) / film.temperature
+        answer = rows(
+            _core.inlet_heating,
+            film.viscosity,
+            fall,
+            film.entrainment_speed,
+            lubricant.conductivity,
+            SLIDE_TO_ROLL,
+        )
+        corrections["inlet heating"] = _correction(answer)
+    if supply is not None:
+        corrections["starvation"] = _correction(rows(_core.starvation, supply, film.central, sharpness))
+    return corrections
+
+
+def _correction(answer: FloatArray) -> Correction:
+    return Correction(answer[0], answer[1] > 0.5)
+
+
+def drag_torque(
+    contact: Contact,
+    lubricant: Lubricant,
+    *,
+    speed: ArrayLike,
+    temperature: ArrayLike,
+    law: str = "governing",
+    supply: float | None = None,
+) -> FloatArray:
+    """Return the torque (N m) on the roll that shears the film: (eta U/h_c) nip L R, Eq. 7.
+
+    Parameters
+    ----------
+    contact, lubricant, speed, temperature, supply
+        As in `film_thickness`.
+    law
+        ``governing``: the film of the regime that holds, on the nip of a bonded layer, with all corrections;
+        the name of a regime: its film on that nip; ``paper``: Eq. 9.
+
+    Raises
+    ------
+    ParameterError
+        If the law is not known, or the paper's asked for without a pressure-viscosity coefficient.
+
+    Examples
+    --------
+    >>> from hersey.lubrication.lubricant import EXAMPLES
+    >>> roll = Contact(roll_radius=15e-3, rubber_thickness=3.5e-3, modulus=1e6, poisson_ratio=0.48,
+    ...                length=0.22, load=250.0)
+    >>> torque = drag_torque(roll, EXAMPLES["cylinder oil"], speed=[4.0, 8.0], temperature=373.15)
+    >>> print(f"torque grows as speed to the power {np.log2(torque[1] / torque[0]):.2f}")
+    torque grows as speed to the power 0.40
+    """
+    if law not in LAWS:
+        raise ParameterError(f"law '{law}' is not known: {', '.join(LAWS)}")
+    if law == "paper":
+        kelvin = np.asarray(temperature, dtype=float)
+        return paper.torque(
+            pressure_viscosity=lubricant.alpha(kelvin),
+            viscosity=lubricant.viscosity(kelvin),
+            entrainment_speed=0.5 * np.abs(np.asarray(speed, dtype=float)) * contact.roll_radius,
+            load=contact.load,
+            length=contact.length,
+            rubber_thickness=contact.rubber_thickness,
+            radius=contact.reduced_radius,
+            effective_modulus=contact.effective_modulus,
+        )
+    film = film_thickness(contact, lubricant, speed=speed, temperature=temperature, supply=supply)
+    if law == "governing":
+        thickness = film.central * film.factor
+        rate = 2.0 * film.entrainment_speed / thickness
+        viscosity = lubricant.viscosity(film.temperature, rate)
+    else:
+        thickness, viscosity = film.centres[law], film.viscosity
+        if np.any(thickness <= 0):
+            raise ParameterError(f"law '{law}' needs the pressure-viscosity coefficient of {lubricant.name}")
+    return paper.torque_of_film(
+        viscosity=viscosity,
+        sliding_speed=2.0 * film.entrainment_speed,
+        film_thickness=thickness,
+        nip_width=film.nip.width,
+        length=contact.length,
+        radius=contact.roll_radius,
+    )
+
+
+def shear_heating(lubricant: Lubricant, *, sliding_speed: ArrayLike, temperature: ArrayLike) -> FloatArray:
+    """Return the greatest rise of temperature in a sheared film between walls of one temperature, K.
+
+    It is eta U^2/(8 k).
+
+    Raises
+    ------
+    ParameterError
+        If the conductivity of the lubricant is not known.
+    """
+    if lubricant.conductivity is None:
+        raise ParameterError(f"the thermal conductivity of {lubricant.name} is not known: state it")
+    viscosity = lubricant.viscosity(temperature)
+    return np.asarray(rows(_core.shear_heating, viscosity, sliding_speed, lubricant.conductivity)[0])

@@ -1,0 +1,182 @@
+"""Lubricants: viscosity against temperature, pressure and shear rate."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from hersey import _core
+from hersey.arrays import FloatArray, rows
+from hersey.errors import ParameterError
+
+#: Laws of viscosity against temperature, and how many points each takes.
+MODELS = {"arrhenius": 2, "vogel": 3, "walther": 2}
+#: Temperature of ice, K.
+_ICE = 273.15
+
+
+@dataclass(frozen=True)
+class ShearThinning:
+    """Carreau's law: eta/eta_0 = limit + (1 - limit) [1 + (relaxation_time rate)^2]^((exponent - 1)/2).
+
+    ``relaxation_time`` in s; ``exponent`` is 1 for a Newtonian lubricant; ``limit`` is the share of
+    viscosity left at the highest rates.
+    """
+
+    relaxation_time: float
+    exponent: float
+    limit: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Check the values."""
+        self.share(1.0)
+
+    def share(self, rate: ArrayLike) -> FloatArray:
+        """Return the share of viscosity left at shear rates (1/s)."""
+        return np.asarray(rows(_core.carreau, rate, self.relaxation_time, self.exponent, self.limit)[0])
+
+
+@dataclass(frozen=True)
+class Lubricant:
+    """A lubricant through the points of its data sheet.
+
+    Parameters
+    ----------
+    model
+        ``arrhenius`` (two points, eta = A exp(Ea/(R T))), ``vogel`` (three points, Vogel-Fulcher-Tammann,
+        eta = A exp(B/(T - T0))) or ``walther`` (two points, ASTM D341; needs a density).
+    points
+        (temperature in K, dynamic viscosity in Pa s), in ascending temperature.
+    density
+        kg/m^3; needed by ``walther`` alone, whose law is one of kinematic viscosity.
+    pressure_viscosity
+        (temperature in K, alpha in 1/Pa): one for all temperatures, or several, joined by straight lines and
+        held beyond the ends. Empty if not known.
+    thinning
+        Shear thinning; none for a Newtonian lubricant.
+    conductivity
+        Thermal conductivity, W/(m K), for heating by shear.
+    uncertainty
+        Share by which viscosity may be off: 0.2 says that it lies within a factor 1.2, at 95 %.
+    source
+        Where the numbers come from.
+
+    Raises
+    ------
+    ParameterError
+        If the points do not fit the law, or a value is impossible.
+    """
+
+    model: str
+    points: tuple[tuple[float, float], ...]
+    density: float | None = None
+    pressure_viscosity: tuple[tuple[float, float], ...] = ()
+    thinning: ShearThinning | None = None
+    conductivity: float | None = None
+    uncertainty: float | None = None
+    name: str = "lubricant"
+    source: str = ""
+    _law: _core.ViscosityLaw = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        """Check the points against the law."""
+        if self.model not in MODELS:
+            raise ParameterError(f"viscosity model '{self.model}' is not known: {', '.join(MODELS)} are")
+        if len(self.points) != MODELS[self.model]:
+            raise ParameterError(
+                f"viscosity model '{self.model}' takes {MODELS[self.model]} points, not {len(self.points)}"
+            )
+        if self.model == "walther" and self.density is None:
+            raise ParameterError("viscosity model 'walther' is one of kinematic viscosity: give the density")
+        for value in (self.density, self.conductivity, self.uncertainty):
+            if value is not None and not value > 0:
+                raise ParameterError(f"density, conductivity and uncertainty must be above 0, not {value:g}")
+        temperatures = [t for t, _ in self.pressure_viscosity]
+        if temperatures != sorted(set(temperatures)) or any(a < 0 for _, a in self.pressure_viscosity):
+            raise ParameterError(
+                "pressure-viscosity coefficients must not be negative, and ascend in temperature"
+            )
+        object.__setattr__(self, "_law", self._through_points())
+
+    def _through_points(self) -> _core.ViscosityLaw:
+        try:
+            if self.model == "walther" and self.density is not None:
+                kinematic = [(t, eta / self.density) for t, eta in self.points]
+                return _core.ViscosityLaw.walther(kinematic, self.density)
+            law = _core.ViscosityLaw.vogel if self.model == "vogel" else _core.ViscosityLaw.arrhenius
+            return law(self.points)
+        except ValueError as error:
+            raise ParameterError(f"viscosities of {self.name}: {error}") from None
+
+    def viscosity(self, temperature: ArrayLike, shear_rate: ArrayLike = 0.0) -> FloatArray:
+        """Return dynamic viscosity, Pa s, at temperatures (K) and shear rates (1/s)."""
+        still = self._at(temperature)[0]
+        return still if self.thinning is None else np.asarray(still * self.thinning.share(shear_rate))
+
+    def temperature_exponent(self, temperature: ArrayLike) -> FloatArray:
+        """Return d ln eta/d ln T, T in K."""
+        return self._at(temperature)[1]
+
+    def activation_energy(self, temperature: ArrayLike) -> FloatArray:
+        """Return the local activation energy of viscosity, J/mol: R T^2 times its fall in logarithm."""
+        kelvin = np.asarray(temperature, dtype=float)
+        return np.asarray(-_core.GAS_CONSTANT * kelvin * self.temperature_exponent(kelvin))
+
+    def alpha(self, temperature: ArrayLike) -> FloatArray:
+        """Return the pressure-viscosity coefficient, 1/Pa, at temperatures (K).
+
+        Raises
+        ------
+        ParameterError
+            If it is not known.
+        """
+        if not self.pressure_viscosity:
+            raise ParameterError(f"the pressure-viscosity coefficient of {self.name} is not known: state it")
+        known = np.array(self.pressure_viscosity)
+        return np.asarray(np.interp(np.asarray(temperature, dtype=float), known[:, 0], known[:, 1]))
+
+    @property
+    def temperature_range(self) -> tuple[float, float]:
+        """Temperatures (K) between which viscosity is interpolated."""
+        return self.points[0][0], self.points[-1][0]
+
+    def coefficients(self) -> dict[str, float]:
+        """Return the coefficients of the law, SI."""
+        return dict(self._law.coefficients)
+
+    def _at(self, temperature: ArrayLike) -> tuple[FloatArray, FloatArray]:
+        try:
+            viscosity, exponent = rows(self._law_of_columns, temperature)
+        except ParameterError as error:
+            raise ParameterError(f"viscosity of {self.name}: {error}") from None
+        return viscosity, exponent
+
+    def _law_of_columns(self, columns: Sequence[FloatArray]) -> FloatArray:
+        return self._law.at(columns[0])
+
+
+_BATCHELOR = "Stachowiak and Batchelor, Engineering Tribology, Table 2.3"
+
+
+def _oil(name: str, viscosities: tuple[float, ...], alphas: tuple[float, ...]) -> Lubricant:
+    """An oil of the table: mPa s, and alpha in 1e-9/Pa, at 30, 60 and 100 degC."""
+    kelvin = tuple(_ICE + t for t in (30.0, 60.0, 100.0))
+    return Lubricant(
+        "vogel",
+        tuple(zip(kelvin, (1e-3 * eta for eta in viscosities), strict=True)),
+        pressure_viscosity=tuple(zip(kelvin, (1e-9 * alpha for alpha in alphas), strict=True)),
+        name=name,
+        source=_BATCHELOR,
+    )
+
+
+#: Lubricants with published numbers, to compute with where no data sheet is at hand.
+EXAMPLES: dict[str, Lubricant] = {
+    "spindle oil": _oil("spindle oil", (18.6, 6.3, 2.4), (20.0, 16.0, 13.0)),
+    "light machine oil": _oil("light machine oil", (45.0, 12.0, 3.9), (28.0, 20.0, 16.0)),
+    "heavy machine oil": _oil("heavy machine oil", (153.0, 34.0, 9.1), (23.7, 20.5, 15.8)),
+    "cylinder oil": _oil("cylinder oil", (810.0, 135.0, 26.8), (34.0, 28.0, 22.0)),
+}

@@ -1,0 +1,260 @@
+"""The film of a lubricated line contact, solved numerically: the judge of the film formulas.
+
+Reynolds' equation with cavitation, the elastic surface and the load balance are solved together by Newton's
+method (docs/reynolds.md). Conventions: ``entrainment_speed`` is the mean u of the two surface speeds, not
+their sum; ``effective_modulus`` is E' = 2/[(1-nu1^2)/E1 + (1-nu2^2)/E2], so 2E/(1-nu^2) for one soft body
+against a rigid one. E* = E'/2 is the contact modulus.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from hersey import _core
+from hersey.arrays import FloatArray
+from hersey.errors import ParameterError
+
+#: Nodes between inlet and outlet.
+NODES = 201
+#: What an exponent can be asked of.
+Quantity = Literal["damping", "torque", "minimum_thickness", "central_thickness", "base_traction"]
+#: Shares of a layer's thickness and of its roll's radius beyond which linear elasticity is a sketch.
+_INDENTATION, _HALF_WIDTH = 0.15, 0.3
+#: Error of the least film that asks for more nodes.
+_GRID_ERROR = 0.01
+#: Pressure above which Barus' law overstates viscosity, Pa.
+_BARUS = 0.4e9
+
+
+@dataclass(frozen=True)
+class LineExponents:
+    """Exponents of the power laws that touch a solution: derivatives of logarithms.
+
+    ``roll_traction`` is that of the force on the roll, hence of the drive torque. A traction that changes
+    sign has no exponent: nan.
+    """
+
+    central_thickness: float
+    minimum_thickness: float
+    roll_traction: float
+    base_traction: float
+
+
+@dataclass(frozen=True, eq=False)
+class LineContactSolution:
+    """Pressure, film and friction of a line contact, SI.
+
+    Parameters
+    ----------
+    x
+        Places of the nodes from the axis of the roll, downstream positive, m.
+    pressure, film_thickness
+        Pa and m at the nodes. Beyond ``outlet`` (m) the film is broken and pressure is zero.
+    central_thickness, minimum_thickness
+        Film under the axis of the roll and least film, m.
+    greatest_pressure
+        Pa.
+    couette, poiseuille
+        Shear by sliding, and half the integral of film thickness times pressure gradient, N/m.
+    roll_traction, base_traction
+        Shear force per length on the roll and on what it runs against, along the motion, N/m:
+        ``-couette - poiseuille`` and ``couette - poiseuille``. The broken film is not counted.
+    friction
+        Magnitude of ``roll_traction`` over the load.
+    offset
+        Film less parabola and deflection, m: for a layer minus the approach of roll and base; for a half
+        space it belongs to the unit ``length`` (m) of the logarithm.
+    by_speed, by_load
+        Exponents of speed (both surfaces alike) and of load.
+    load_residual, flow_residual
+        Relative errors of the load balance and of the flow that remain.
+    grid_error
+        Relative error of the least film estimated from two grids.
+    iterations, stations
+        Newton steps in all, and solutions on the way from a rigid roll.
+    cautions
+        What the model does not hold for, or could be resolved better.
+    """
+
+    x: FloatArray
+    pressure: FloatArray
+    film_thickness: FloatArray
+    central_thickness: float
+    minimum_thickness: float
+    couette: float
+    poiseuille: float
+    roll_traction: float
+    base_traction: float
+    greatest_pressure: float
+    outlet: float
+    offset: float
+    length: float
+    load_residual: float
+    flow_residual: float
+    grid_error: float
+    by_speed: LineExponents
+    by_load: LineExponents
+    friction: float
+    iterations: int
+    stations: int
+    cautions: tuple[str, ...]
+
+
+def solve_line_contact(
+    radius: float,
+    load: float,
+    entrainment_speed: float,
+    viscosity: float,
+    *,
+    effective_modulus: float,
+    thickness: float | None = None,
+    poisson: float | None = None,
+    sliding_speed: float | None = None,
+    pressure_viscosity: float = 0.0,
+    thickening: Literal["roelands", "barus"] = "roelands",
+    compressible: bool = False,
+    nodes: int = NODES,
+) -> LineContactSolution:
+    """Return pressure, film and friction of a roll on an elastic surface, fully flooded and isothermal.
+
+    Parameters
+    ----------
+    radius
+        Radius of the roll, or reduced radius 1/(1/R1 + 1/R2), m.
+    load
+        Load per length, N/m.
+    entrainment_speed
+        Mean u of the surface speeds, m/s.
+    viscosity
+        At zero pressure, Pa s. The lubricant is Newtonian.
+    effective_modulus
+        E' = 2/[(1-nu1^2)/E1 + (1-nu2^2)/E2], Pa; of a soft layer alone 2E/(1-nu^2).
+    thickness, poisson
+        Thickness (m) and Poisson ratio (up to 0.5) of an elastic layer bonded to a rigid base. Default:
+        a half space.
+    sliding_speed
+        Speed of the roll less that of what it runs against, m/s. Default: 2u, the other surface at rest.
+    pressure_viscosity
+        Coefficient alpha at zero pressure, 1/Pa; 0 in a rubber nip.
+    thickening
+        Law that alpha belongs to: ``roelands`` (pole at 6.31e-5 Pa s and -0.196 GPa) or ``barus``.
+    compressible
+        Whether the density follows Dowson and Higginson.
+    nodes
+        50 to 4001. The error of the film falls with their square.
+
+    Raises
+    ------
+    ParameterError
+        If a value is out of range, or no solution is found; with its name.
+
+    Examples
+    --------
+    >>> layer = {"effective_modulus": 2.63e6, "thickness": 3.5e-3, "poisson": 0.49}
+    >>> nip = solve_line_contact(0.015, 1136, 0.1, 0.1, **layer)
+    >>> round(nip.minimum_thickness * 1e6, 1), round(exponent("damping", nip), 2)  # um
+    (8.0, -0.55)
+    """
+    if (thickness is None) != (poisson is None):
+        missing = "poisson" if poisson is None else "thickness"
+        raise ParameterError(f"{missing} is not given: a layer needs its thickness and its Poisson ratio")
+    slide = 2.0 * entrainment_speed if sliding_speed is None else sliding_speed
+    layer = None if thickness is None or poisson is None else (float(thickness), float(poisson))
+    try:
+        profiles, numbers, by_speed, by_load, (iterations, stations) = _core.line_contact(
+            (float(radius), 0.5 * float(effective_modulus), float(load)),
+            layer,
+            (float(entrainment_speed), float(slide)),
+            (float(viscosity), float(pressure_viscosity), thickening, bool(compressible)),
+            max(int(nodes), 0),
+        )
+    except (ValueError, OverflowError) as error:
+        message = str(error).replace("contact_modulus", "effective_modulus/2")
+        raise ParameterError(message) from error
+    central, minimum, couette, poiseuille, roll, base, top, outlet, offset, length, *residuals = numbers
+    load_residual, flow_residual, grid_error = residuals
+    for profile in profiles:
+        profile.setflags(write=False)
+    return LineContactSolution(
+        x=profiles[0],
+        pressure=profiles[1],
+        film_thickness=profiles[2],
+        central_thickness=central,
+        minimum_thickness=minimum,
+        couette=couette,
+        poiseuille=poiseuille,
+        roll_traction=roll,
+        base_traction=base,
+        greatest_pressure=top,
+        outlet=outlet,
+        offset=offset,
+        length=length,
+        load_residual=load_residual,
+        flow_residual=flow_residual,
+        grid_error=grid_error,
+        by_speed=LineExponents(*by_speed),
+        by_load=LineExponents(*by_load),
+        friction=abs(roll) / load,
+        iterations=iterations,
+        stations=stations,
+        cautions=_cautions(
+            radius, thickness, offset, outlet, grid_error, top if thickening == "barus" else 0.0
+        ),
+    )
+
+
+def exponent(quantity: Quantity, solution: LineContactSolution) -> float:
+    """Return the exponent of entrainment speed of a quantity, at the speed of a solution.
+
+    Parameters
+    ----------
+    quantity
+        ``damping``: B = torque / angular speed, so that of ``torque`` less 1; ``torque``: of the force on the
+        roll; ``base_traction``; ``minimum_thickness``; ``central_thickness``.
+    solution
+        From `solve_line_contact`. The derivative is that of the discrete equations, by their Jacobian; both
+        surface speeds grow alike.
+
+    Raises
+    ------
+    ParameterError
+        If the quantity is not known.
+    """
+    own = solution.by_speed
+    known = {
+        "damping": own.roll_traction - 1.0,
+        "torque": own.roll_traction,
+        "base_traction": own.base_traction,
+        "minimum_thickness": own.minimum_thickness,
+        "central_thickness": own.central_thickness,
+    }
+    if quantity not in known:
+        raise ParameterError(f"quantity {quantity!r} is not known: {', '.join(known)}")
+    return known[quantity]
+
+
+def _cautions(
+    radius: float,
+    thickness: float | None,
+    offset: float,
+    outlet: float,
+    grid_error: float,
+    barus_pressure: float,
+) -> tuple[str, ...]:
+    """What a reader must know before the numbers are used."""
+    found = []
+    if thickness is not None and -offset > _INDENTATION * thickness:
+        found.append(
+            f"the layer is indented by {-offset / thickness:.0%} of its thickness: linear elasticity, meant "
+            f"for up to {_INDENTATION:.0%}, is a sketch there"
+        )
+    if outlet > _HALF_WIDTH * radius:
+        found.append(
+            f"the contact reaches {outlet / radius:.0%} of the radius from the axis: the roll is no parabola"
+        )
+    if grid_error > _GRID_ERROR:
+        found.append(f"the least film is good to {grid_error:.1%} on this grid: take more nodes")
+    if barus_pressure > _BARUS:
+        found.append(f"Barus' law overstates viscosity at {barus_pressure / 1e9:.2g} GPa: use roelands")
+    return tuple(found)

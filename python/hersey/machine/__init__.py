@@ -1,0 +1,23 @@
+"""The machine's file: what the log cannot tell, each value with its unit.
+
+===================  ==============================================================
+machine              `Machine` and the file as a whole; limits and operating points
+nip                  the tables of contact and lubricant
+uncertainty          how far a parameter is known
+temperature_profile  temperature against time, from a CSV file
+===================  ==============================================================
+"""
+
+from hersey.machine.machine import Limits, Machine, OperatingPoint, read_machine
+from hersey.machine.temperature_profile import read_temperature_profile
+from hersey.machine.uncertainty import Uncertainty, read_uncertainty
+
+__all__ = [
+    "Limits",
+    "Machine",
+    "OperatingPoint",
+    "Uncertainty",
+    "read_machine",
+    "read_temperature_profile",
+    "read_uncertainty",
+]

@@ -1,0 +1,11 @@
+"""The motion of the belt: names, units and results over the core's physics.
+
+==========  =====================================================
+schedule    drive speed, torque or temperature against time
+drag        drag laws: force against belt speed and temperature
+simulation  stick-slip motion of the belt, and what it settles to
+parameters  names of the parameters, and the kinds of their units
+sweep       what thousands of belts settle to, in one call
+scenario    a sweep described by a file
+==========  =====================================================
+"""

@@ -1,0 +1,179 @@
+"""Drag laws: force against belt speed and temperature, as names over the core's physics."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from hersey import _core
+from hersey.arrays import FloatArray
+from hersey.errors import ParameterError
+
+#: What the belt does near zero speed; see docs/closures.md.
+CLOSURES = ("retained", "stiction", "stribeck", "lugre")
+
+
+class AnyDrag:
+    """What every drag law has."""
+
+    #: Zero of the temperature scale of the law, K.
+    temperature_zero: float = 0.0
+
+    def law(self) -> _core.Law:
+        """Return the law as the core holds it."""
+        raise NotImplementedError
+
+    @property
+    def warms(self) -> bool:
+        """Whether the law varies with temperature."""
+        return False
+
+    def law_at(self, temperature: float | None) -> _core.Law:
+        """Return the law at one temperature, K; none for a law that does not vary."""
+        if self.warms != (temperature is not None):
+            reason = "the drag varies with temperature: give temperature"
+            other = "temperature is given, but the drag does not vary with it"
+            raise ParameterError(reason if self.warms else other)
+        return self.law() if temperature is None else self.law().at(temperature - self.temperature_zero)
+
+    @property
+    def breakaway_force(self) -> float:
+        """The drag A that a belt at rest can bear (Eq. 29)."""
+        return self.law().breakaway_force
+
+    def force(self, speed: ArrayLike, temperature: float | None = None) -> FloatArray:
+        """Return the drag force in steady sliding at each speed, with its sign."""
+        speeds = np.asarray(speed, dtype=float)
+        law = self.law_at(temperature) if self.warms else self.law()
+        return law.force(np.ascontiguousarray(speeds.ravel())).reshape(speeds.shape)
+
+
+@dataclass(frozen=True)
+class Drag(AnyDrag):
+    """Drag force against belt speed (Eqs. 17-30), and temperature if a ``reference_temperature`` is given.
+
+    ``F = F_t (v/v_t)^(1+n)`` with n the damping exponent of the branch: ``ehl_exponent`` above the
+    transition speed v_t, ``mixed_exponent`` below; below ``stick_speed`` the ``closure`` holds:
+    ``retained`` (the paper's rule, Eqs. 24-27: a belt that sticks keeps its small speed), ``stiction``
+    (stops dead), ``stribeck`` (smooth) or ``lugre`` (bristles, of ``bristle_stiffness`` and
+    ``bristle_damping``).
+
+    With temperature all forces vary as (T/T_ref)^force_temperature_exponent and all speeds as
+    (T/T_ref)^speed_temperature_exponent, T counted from ``temperature_zero`` (273.15 for degC).
+
+    Raises
+    ------
+    ParameterError
+        If a force or speed is not positive, or the stick speed is not below the transition speed.
+    """
+
+    transition_force: float
+    transition_speed: float
+    ehl_exponent: float
+    mixed_exponent: float
+    stick_speed: float
+    closure: str = "retained"
+    bristle_stiffness: float | None = None
+    bristle_damping: float | None = None
+    reference_temperature: float | None = None
+    force_temperature_exponent: float = 0.0
+    speed_temperature_exponent: float = 0.0
+    temperature_zero: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Let the core check the values."""
+        try:
+            self.law()
+        except ValueError as error:
+            raise ParameterError(str(error)) from None
+
+    @classmethod
+    def rotational(
+        cls, *, transition_torque: float, transition_speed: float, roll_radius: float, **rest: float | str
+    ) -> Drag:
+        """Return the drag at the surface of a roll, from a torque (N m) and an angular speed (rad/s).
+
+        ``stick_speed`` and what else the law takes are at the surface.
+        """
+        if not roll_radius > 0:
+            raise ParameterError(f"roll_radius is {roll_radius}: it must be greater than 0")
+        return cls(transition_torque / roll_radius, transition_speed * roll_radius, **rest)  # type: ignore[arg-type]
+
+    @property
+    def warms(self) -> bool:
+        """Whether the law varies with temperature."""
+        return self.reference_temperature is not None
+
+    def at(self, temperature: float | None) -> Drag:
+        """Return the law at one temperature, K, as one that does not vary; itself if it does not vary."""
+        law = self.law_at(temperature)
+        if not self.warms:
+            return self
+        return replace(
+            self,
+            transition_force=float(law.force(np.array([law.transition_speed]))[0]),
+            transition_speed=law.transition_speed,
+            stick_speed=law.stick_speed,
+            reference_temperature=None,
+            force_temperature_exponent=0.0,
+            speed_temperature_exponent=0.0,
+            temperature_zero=0.0,
+        )
+
+    def law(self) -> _core.Law:
+        """Return the law as the core holds it."""
+        law = _core.Law(
+            (float(self.transition_force), float(self.transition_speed)),
+            float(self.ehl_exponent),
+            float(self.mixed_exponent),
+            float(self.stick_speed),
+            (self.closure, self.bristle_stiffness, self.bristle_damping),
+        )
+        if self.reference_temperature is None:
+            return law
+        reference = self.reference_temperature - self.temperature_zero
+        return law.warmed(
+            reference, float(self.force_temperature_exponent), float(self.speed_temperature_exponent)
+        )
+
+
+@dataclass(frozen=True)
+class DragTable(AnyDrag):
+    """Drag through measured points: straight lines between them in logarithmic scales, monotone therefore.
+
+    Beyond the points the outer lines go on; the transition is the point of least force.
+
+    Raises
+    ------
+    ParameterError
+        If there are fewer than two points, speeds do not ascend, or a value is not positive.
+
+    Examples
+    --------
+    >>> table = DragTable((0.01, 0.1, 1.0, 3.0), (120.0, 80.0, 50.0, 70.0), stick_speed=0.01)
+    >>> float(table.force(1.0))
+    50.0
+    """
+
+    speeds: tuple[float, ...]
+    forces: tuple[float, ...]
+    stick_speed: float
+    closure: str = "retained"
+    bristle_stiffness: float | None = None
+    bristle_damping: float | None = None
+
+    def __post_init__(self) -> None:
+        """Let the core check the values."""
+        object.__setattr__(self, "speeds", tuple(float(v) for v in self.speeds))
+        object.__setattr__(self, "forces", tuple(float(f) for f in self.forces))
+        try:
+            self.law()
+        except ValueError as error:
+            raise ParameterError(str(error)) from None
+
+    def law(self) -> _core.Law:
+        """Return the law as the core holds it."""
+        closure = (self.closure, self.bristle_stiffness, self.bristle_damping)
+        return _core.Law.tabulated(list(self.speeds), list(self.forces), float(self.stick_speed), closure)

@@ -1,0 +1,334 @@
+"""Motion of the belt: names, units and results over the core's physics.
+
+Arguments are in SI, or in any consistent set of units (the paper's baseline is in inches, ounces and
+seconds). A rotor driven by a torque is the same equation (Eq. 11): inertia for mass, torsional stiffness
+for stiffness, angular speed for belt speed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple, ParamSpec, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hersey import _core
+from hersey.arrays import FloatArray
+from hersey.errors import ParameterError
+from hersey.motion.drag import AnyDrag
+from hersey.motion.schedule import Schedule
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+#: Relative tolerance of the steps.
+TOLERANCE = 1e-9
+#: Share of the drive speed by which a steady start is off.
+NUDGE = 1e-3
+
+
+@dataclass(frozen=True)
+class Drivetrain:
+    """Spring (gear train, roll core and rubber) of ``stiffness`` and moving ``mass``."""
+
+    stiffness: float
+    mass: float
+
+    @classmethod
+    def rotational(cls, *, stiffness: float, inertia: float, roll_radius: float) -> Drivetrain:
+        """Return the drivetrain at the surface of a roll: k = K/r^2, m = J/r^2.
+
+        Parameters
+        ----------
+        stiffness
+            Torsional stiffness K, N m/rad.
+        inertia
+            Moment of inertia J, kg m^2.
+        roll_radius
+            m.
+
+        Examples
+        --------
+        >>> Drivetrain.rotational(stiffness=2.0, inertia=4e-4, roll_radius=0.02).mass
+        1.0
+        """
+        for name, value in (("stiffness", stiffness), ("inertia", inertia), ("roll_radius", roll_radius)):
+            if not value > 0 or not np.isfinite(value):
+                raise ParameterError(f"{name} is {value}: it must be greater than 0")
+        return cls(stiffness / roll_radius**2, inertia / roll_radius**2)
+
+    @property
+    def _arguments(self) -> tuple[float, float]:
+        return float(self.stiffness), float(self.mass)
+
+
+class Event(NamedTuple):
+    """A change of mode: when, from and to which, the condition crossed, and the state there."""
+
+    time: float
+    from_mode: str
+    to_mode: str
+    guard: str
+    stretch: float
+    belt_speed: float
+
+
+@dataclass(frozen=True)
+class Energy:
+    """Where the work of the drive went over a run: each figure is its own integral.
+
+    ``residual`` is what is missing (work less dissipated less stored) as a share of all energy turned over.
+    """
+
+    work: float
+    dissipated: float
+    stored: float
+    residual: float
+
+
+@dataclass(frozen=True)
+class SelfCheck:
+    """The same run by another integrator.
+
+    ``speed_difference`` and ``stretch_difference`` are the greatest differences at the samples, as a share of
+    the greatest value; ``same_events`` tells whether both saw the same changes of mode in the same order.
+    ``note`` says why there are no figures, if the other integrator could not finish.
+    """
+
+    integrator: str
+    speed_difference: float | None
+    stretch_difference: float | None
+    same_events: bool
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """Motion at equally spaced times: arrays of shape (samples,), every change of mode, and the energies.
+
+    ``stretch`` is drive position minus belt position; with a torque drive, the position of the mass (zero
+    without a spring). ``spring_force`` is stiffness times stretch.
+    """
+
+    time: FloatArray
+    belt_speed: FloatArray
+    stretch: FloatArray
+    spring_force: FloatArray
+    mode_index: NDArray[np.uint8]
+    events: tuple[Event, ...]
+    energy: Energy
+    steps: int
+    check: SelfCheck | None = None
+
+    @cached_property
+    def mode(self) -> NDArray[np.str_]:
+        """The mode at each sample: ``ehl``, ``mixed``, ``microslip`` or ``stuck``."""
+        return np.array(_core.MODES)[self.mode_index]
+
+
+@dataclass(frozen=True)
+class StickSlipCycle:
+    """What the motion settles to.
+
+    ``kind`` is ``steady_sliding``, ``oscillation`` (without sticking), ``stick_slip``, or ``unsettled`` if
+    no orbit closed within the laps allowed. Frequency is in laps per unit of time, 0 in steady sliding;
+    ``drag_work`` is the work against drag per lap, likewise. With a smooth closure, which never holds the
+    belt, the belt counts as stuck while it creeps below the stick speed.
+    """
+
+    kind: str
+    frequency: float
+    slip_duration: float
+    stick_duration: float
+    speed_min: float
+    speed_max: float
+    stretch_min: float
+    stretch_max: float
+    drag_work: float
+    laps: int
+
+    @property
+    def stuck_fraction(self) -> float:
+        """Share of a lap during which the belt sticks."""
+        return self.stick_duration * self.frequency
+
+
+def simulate(
+    train: Drivetrain,
+    drag: AnyDrag,
+    *,
+    drive_speed: float | Schedule | None = None,
+    drive_torque: float | Schedule | None = None,
+    temperature: float | Schedule | None = None,
+    duration: float,
+    samples: int = 2001,
+    start: str | tuple[float, float] = "rest",
+    tolerance: float = TOLERANCE,
+    check: bool = False,
+) -> Trajectory:
+    """Return the motion over ``duration``, its events located to rounding.
+
+    Parameters
+    ----------
+    drive_speed
+        Speed at the far end of the spring (Eqs. 12-16).
+    drive_torque
+        Instead of it: force on the mass, or torque on the rotor, which a spring holds to the ground (Eq. 11);
+        only here the stiffness may be zero.
+    temperature
+        K; needed if the drag varies with it.
+    start
+        ``rest`` (belt at rest, spring slack), ``steady`` (sliding with the drive as it is at time 0), or a
+        pair of belt speed and stretch.
+    check
+        Also integrate with Dormand and Prince's Runge-Kutta pair and report the difference.
+
+    Raises
+    ------
+    ParameterError
+        If a value is out of range, with its name.
+
+    Examples
+    --------
+    >>> from hersey import Drag
+    >>> drag = Drag(50, 1, ehl_exponent=-0.7, mixed_exponent=-1.2, stick_speed=0.01)
+    >>> run = simulate(Drivetrain(1000, 1), drag, drive_speed=1.0, duration=1.0, check=True)
+    >>> run.events[0].guard, round(run.events[0].time, 6)
+    ('holding_force', 0.341401)
+    >>> abs(run.energy.residual) < 1e-8, run.check.same_events
+    (True, True)
+    """
+    if samples < 2:
+        raise ParameterError(f"samples is {samples}: at least 2 are needed")
+    if (drive_speed is None) == (drive_torque is None):
+        raise ParameterError("give either drive_speed or drive_torque")
+    if drag.warms and temperature is None:
+        raise ParameterError("the drag varies with temperature: give temperature")
+    if temperature is not None and not drag.warms:
+        raise ParameterError("temperature is given, but the drag does not vary with it")
+    given = drive_speed if drive_speed is not None else drive_torque
+    drive = Schedule.of(given if given is not None else 0.0)
+    course = None if temperature is None else Schedule.of(temperature).shifted(-drag.temperature_zero)
+    law = _core_call(drag.law)
+    state = _start(train, law, drive, course, start, is_torque=drive_speed is None)
+
+    def run(integrator: str) -> _core._TrajectoryColumns:
+        return _core_call(
+            _core.simulate,
+            train._arguments,
+            law,
+            ("speed" if drive_speed is not None else "torque", drive.arguments),
+            None if course is None else course.arguments,
+            state,
+            float(duration),
+            int(samples),
+            float(tolerance),
+            integrator,
+        )
+
+    time, speed, stretch, mode, events, energy, steps = run("adaptive")
+    checked = _self_check(lambda: run("dormand-prince"), speed, stretch, events) if check else None
+    rows = tuple(map(Event._make, events))
+    force = train.stiffness * stretch
+    return Trajectory(time, speed, stretch, force, mode, rows, Energy(*energy), steps, checked)
+
+
+def _self_check(
+    run: Callable[[], _core._TrajectoryColumns],
+    speed: FloatArray,
+    stretch: FloatArray,
+    events: list[_core._EventRow],
+) -> SelfCheck:
+    name = "Dormand-Prince 5(4)"
+    try:
+        _, other_speed, other_stretch, _, other_events, _, _ = run()
+    except ParameterError as error:
+        return SelfCheck(name, None, None, False, str(error))
+    same = [event[1:4] for event in events] == [event[1:4] for event in other_events]
+    return SelfCheck(name, _difference(speed, other_speed), _difference(stretch, other_stretch), same)
+
+
+def _difference(one: FloatArray, two: FloatArray) -> float:
+    greatest = float(np.max(np.abs(one)))
+    return float(np.max(np.abs(one - two))) / greatest if greatest > 0 else float(np.max(np.abs(two)))
+
+
+def stick_slip(
+    train: Drivetrain,
+    drag: AnyDrag,
+    *,
+    drive_speed: float,
+    temperature: float | None = None,
+    start: str | tuple[float, float] = "rest",
+    tolerance: float = TOLERANCE,
+) -> StickSlipCycle:
+    """Return what the motion settles to at constant drive speed, coming from ``start``.
+
+    Between the transition speed and the fold both sliding and stick-slip exist, and the start decides.
+    ``steady`` starts sliding with the drive but for a nudge of 0.1 % in speed, since an unstable balance is
+    nothing that a belt can keep; a pair is the belt speed and the stretch to start from.
+
+    Raises
+    ------
+    ParameterError
+        If a value is out of range, with its name.
+
+    Examples
+    --------
+    >>> from hersey import Drag
+    >>> drag = Drag(50, 1, ehl_exponent=-0.7, mixed_exponent=-1.2, stick_speed=0.01)
+    >>> cycle = stick_slip(Drivetrain(1000, 1), drag, drive_speed=1.0)
+    >>> cycle.kind, round(cycle.frequency, 5)
+    ('stick_slip', 3.94031)
+    """
+    law = _core_call(drag.law_at, temperature)
+    state = _start(train, law, Schedule.of(drive_speed), None, start, is_torque=False)
+    if start == "steady":
+        state = state[0] * (1.0 + NUDGE), state[1]
+    return StickSlipCycle(
+        *_core_call(
+            _core.stick_slip,
+            train._arguments,
+            law,
+            float(drive_speed),
+            state,
+            None,
+            float(tolerance),
+        )
+    )
+
+
+def _start(
+    train: Drivetrain,
+    law: _core.Law,
+    drive: Schedule,
+    temperature: Schedule | None,
+    start: str | tuple[float, float],
+    *,
+    is_torque: bool,
+) -> tuple[float, float]:
+    if not isinstance(start, str):
+        speed, stretch = start
+        return float(speed), float(stretch)
+    if start == "rest":
+        return 0.0, 0.0
+    if start != "steady":
+        raise ParameterError(f"start '{start}' is not known: rest, steady, or (belt speed, stretch)")
+    if is_torque:
+        raise ParameterError("start 'steady' needs a drive_speed")
+    if not train.stiffness > 0:
+        raise ParameterError(f"stiffness is {train.stiffness}: it must be greater than 0")
+    speed = drive.first
+    now = law if temperature is None else _core_call(law.at, temperature.first)
+    return speed, float(now.force(np.array([speed]))[0]) / train.stiffness
+
+
+def _core_call(function: Callable[P, R], *args: P.args, **kwargs: P.kwargs) -> R:
+    """Call the core; what it refuses is a mistake of the user's."""
+    try:
+        return function(*args, **kwargs)
+    except ValueError as error:
+        raise ParameterError(str(error)) from None

@@ -1,0 +1,49 @@
+"""The page: one self-contained HTML file that shows an analysis document and its charts.
+
+Document and charts go in as JSON, the page's script puts them on screen as text; the Vega runtime is taken
+from vl-convert and inlined, so the file works offline and nothing foreign is kept in the repository.
+"""
+
+from __future__ import annotations
+
+import json
+from importlib import resources
+from typing import Any
+
+import altair as alt
+import vl_convert
+
+from hersey.charts.analysis import charts
+from hersey.charts.render import specification_of
+from hersey.document.parts import Analysis
+
+# Samples that only the charts need: the page carries them once.
+_DRAWN: Any = {
+    "timeline": True,
+    "fit": {"curves", "cells", "transition_curve"},
+    "simulation": {"time", "belt_speed", "spring_force"},
+}
+
+
+def render(document: Analysis) -> str:
+    """Return the page as HTML text."""
+    page = resources.files("hersey.report") / "static"
+    specifications = {name: specification_of(chart) for name, chart in charts(document).items()}
+    version = alt.SCHEMA_VERSION.removeprefix("v").rsplit(".", 1)[0]
+    parts = {
+        "css": (page / "page.css").read_text(encoding="utf-8"),
+        "document": _embedded(document.model_dump(mode="json", exclude=_DRAWN)),
+        "charts": _embedded(specifications),
+        "runtime": vl_convert.javascript_bundle("window.vegaEmbed = vegaEmbed;", vl_version=version).replace(
+            "</script", "<\\/script"
+        ),
+        "script": (page / "page.js").read_text(encoding="utf-8"),
+    }
+    pieces = (page / "page.html").read_text(encoding="utf-8").split("@@")
+    return "".join(parts[piece] if i % 2 else piece for i, piece in enumerate(pieces))
+
+
+def _embedded(content: object) -> str:
+    """JSON that no browser can take for markup."""
+    text = json.dumps(content, ensure_ascii=True, separators=(",", ":"), allow_nan=False)
+    return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")

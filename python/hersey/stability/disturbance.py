@@ -1,0 +1,195 @@
+"""How one comes to a drive speed, and what a sliding belt bears: steps, ramps and kicks.
+
+Between the transition speed and the fold a belt slides on only if nothing throws it out of the unstable
+cycle around steady sliding. Each question here is answered by the exact motion itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import inf, pi, sqrt
+
+from hersey.errors import ParameterError
+from hersey.motion.drag import AnyDrag
+from hersey.motion.schedule import Schedule
+from hersey.motion.simulation import Drivetrain, StickSlipCycle, simulate, stick_slip
+from hersey.stability.hysteresis import hysteresis
+
+#: Ramps looked at per period of the free oscillation, and periods up to which they are.
+_PER_PERIOD, _PERIODS = 20, 8
+#: Halvings of a ramp time or of a kick.
+_HALVINGS = 30
+#: Periods for which the belt is watched after a ramp before what it settles to is asked.
+_WATCHED = 10
+
+
+@dataclass(frozen=True)
+class SafeStep:
+    """A change of drive speed from steady sliding.
+
+    ``sticks`` tells whether the belt sticks after a sudden step, ``slowest`` its least speed then.
+    ``ramp_time`` is the shortest ramp from which on every longer one keeps the belt from sticking: 0 if a
+    sudden step does, infinite if none does.
+    """
+
+    from_speed: float
+    to_speed: float
+    sticks: bool
+    slowest: float
+    ramp_time: float
+
+
+@dataclass(frozen=True)
+class Disturbance:
+    """What throws a belt that slides at ``drive_speed`` into stick-slip.
+
+    ``kick`` is the greatest sudden loss of belt speed that it bears, ``step`` the greatest sudden fall of the
+    drive speed that ends at ``drive_speed``. Each is infinite where none is too large (a kick: down to a dead
+    stop), and 0 where steady sliding itself does not last.
+    """
+
+    drive_speed: float
+    kick: float
+    step: float
+
+
+def safe_step(
+    train: Drivetrain,
+    drag: AnyDrag,
+    *,
+    from_speed: float,
+    to_speed: float,
+    temperature: float | None = None,
+) -> SafeStep:
+    """Return whether a sudden change of drive speed makes a sliding belt stick, and the ramp that does not.
+
+    Ramps are looked at 20 to the period of the free oscillation, up to 8 periods; the shortest safe one is
+    then halved down. ``temperature`` in K, if the drag varies with it.
+
+    Raises
+    ------
+    ParameterError
+        If a speed is not positive, or steady sliding at ``from_speed`` does not last.
+
+    Examples
+    --------
+    >>> from hersey import Drag
+    >>> drag = Drag(50, 1, ehl_exponent=-0.7, mixed_exponent=-1.2, stick_speed=0.01)
+    >>> step = safe_step(Drivetrain(1000, 1), drag, from_speed=2.5, to_speed=1.2)
+    >>> step.sticks, step.ramp_time < 0.1
+    (True, True)
+    """
+    for name, speed in (("from_speed", from_speed), ("to_speed", to_speed)):
+        if not 0 < speed < inf:
+            raise ParameterError(f"{name} is {speed}: it must be greater than 0")
+    band = hysteresis(train, drag, temperature=temperature, sensitivity=False)
+    if from_speed < band.transition:
+        raise ParameterError(
+            f"from_speed is {from_speed}: below the transition speed {band.transition:.6g} "
+            "steady sliding does not last"
+        )
+    sticks, slowest = _sticks(train, drag, from_speed, to_speed, 0.0, temperature)
+    if to_speed < band.lower:
+        return SafeStep(from_speed, to_speed, sticks, slowest, inf)
+    period = 2 * pi * sqrt(train.mass / train.stiffness)
+    times = [period * i / _PER_PERIOD for i in range(_PER_PERIOD * _PERIODS + 1)]
+    unsafe = [t for t in times if _sticks(train, drag, from_speed, to_speed, t, temperature)[0]]
+    if not unsafe:
+        return SafeStep(from_speed, to_speed, sticks, slowest, 0.0)
+    if unsafe[-1] == times[-1]:
+        return SafeStep(from_speed, to_speed, sticks, slowest, inf)
+    low, high = unsafe[-1], unsafe[-1] + period / _PER_PERIOD
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        if _sticks(train, drag, from_speed, to_speed, middle, temperature)[0]:
+            low = middle
+        else:
+            high = middle
+    return SafeStep(from_speed, to_speed, sticks, slowest, high)
+
+
+def disturbance(
+    train: Drivetrain, drag: AnyDrag, *, drive_speed: float, temperature: float | None = None
+) -> Disturbance:
+    """Return how large a kick or step a belt bears that slides at ``drive_speed``.
+
+    Raises
+    ------
+    ParameterError
+        If a value is out of range, with its name.
+
+    Examples
+    --------
+    >>> from hersey import Drag
+    >>> drag = Drag(50, 1, ehl_exponent=-0.7, mixed_exponent=-1.2, stick_speed=0.01)
+    >>> small = disturbance(Drivetrain(1000, 1), drag, drive_speed=1.2)
+    >>> 1.2 < 1.2 + small.step < 2.5  # from 2.5 down to 1.2 at once is too much
+    True
+    """
+    if not 0 < drive_speed < inf:
+        raise ParameterError(f"drive_speed is {drive_speed}: it must be greater than 0")
+    band = hysteresis(train, drag, temperature=temperature, sensitivity=False)
+    if drive_speed < band.transition:
+        return Disturbance(drive_speed, 0.0, 0.0)
+    if drive_speed > band.upper:
+        return Disturbance(drive_speed, inf, inf)
+    law = drag.law_at(temperature)
+    force = float(drag.force(drive_speed, temperature))
+
+    def kicked(loss: float) -> bool:
+        start = (drive_speed - loss, force / train.stiffness)
+        cycle = stick_slip(train, drag, drive_speed=drive_speed, start=start, temperature=temperature)
+        return _is_rough(cycle, law.stick_speed)
+
+    def stepped(fall: float) -> bool:
+        return _sticks(train, drag, drive_speed + fall, drive_speed, 0.0, temperature)[0]
+
+    kick = _threshold(kicked, drive_speed) if kicked(drive_speed) else inf
+    farthest = 4.0 * (band.upper if band.upper < inf else 10 * law.transition_speed)
+    step = _threshold(stepped, farthest) if stepped(farthest) else inf
+    return Disturbance(drive_speed, kick, step)
+
+
+def _threshold(too_large: Callable[[float], bool], largest: float) -> float:
+    """The greatest size that is not too large, below one that is."""
+    low, high = 0.0, largest
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        if too_large(middle):
+            high = middle
+        else:
+            low = middle
+    return low
+
+
+def _sticks(
+    train: Drivetrain,
+    drag: AnyDrag,
+    from_speed: float,
+    to_speed: float,
+    ramp_time: float,
+    temperature: float | None,
+) -> tuple[bool, float]:
+    """Whether the belt sticks in a ramp or after it, and its least speed."""
+    watched = ramp_time + _WATCHED * 2 * pi * sqrt(train.mass / train.stiffness)
+    run = simulate(
+        train,
+        drag,
+        drive_speed=Schedule([0.0, ramp_time], [from_speed, to_speed]),
+        temperature=temperature,
+        duration=watched,
+        samples=401,
+        start=(from_speed, float(drag.force(from_speed, temperature)) / train.stiffness),
+    )
+    slowest = float(run.belt_speed.min())
+    if any(event.to_mode in ("stuck", "microslip") for event in run.events):
+        return True, min(slowest, *(event.belt_speed for event in run.events))
+    end = (float(run.belt_speed[-1]), float(run.stretch[-1]))
+    cycle = stick_slip(train, drag, drive_speed=to_speed, start=end, temperature=temperature)
+    return _is_rough(cycle, drag.law_at(temperature).stick_speed), slowest
+
+
+def _is_rough(cycle: StickSlipCycle, stick_speed: float) -> bool:
+    """Whether the belt goes on to slow down to the stick speed, held there or swinging back through zero."""
+    return cycle.kind != "steady_sliding" and cycle.speed_min <= stick_speed * (1 + 1e-9)

@@ -1,0 +1,408 @@
+"""The band of drive speeds where the past decides: steady sliding from above, stick-slip from below.
+
+Three speeds divide the behaviour (Figs. 13-14 of the paper). Below ``lower`` every start ends in
+stick-slip. Between there and the transition speed a small swing without sticking survives. Between the
+transition speed and ``upper``, the fold V*, a belt that slides goes on sliding and one that sticks goes on
+sticking; above, stick-slip dies out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hersey import _core
+from hersey.arrays import FloatArray, crossed, numbers_of, together
+from hersey.errors import ParameterError
+from hersey.motion.drag import AnyDrag, Drag
+from hersey.motion.parameters import OF_THE_BELT
+from hersey.motion.simulation import Drivetrain, _core_call
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+#: Relative tolerance of the steps: the fold asks for more digits than a trajectory.
+TOLERANCE = 1e-11
+#: Relative step of the derivatives.
+_STEP = 1e-3
+#: Relative distance of the laps on either side of one, to see which way the drive speed goes.
+_NEAR = 1e-4
+#: Columns of the core.
+_COLUMNS = (
+    "lower",
+    "transition",
+    "upper",
+    "speed_max",
+    "lower_accuracy",
+    "upper_accuracy",
+    "half_laps",
+    "deeper",
+    "laps",
+)
+#: Those that are no decimal numbers.
+_WHOLE = {"half_laps": bool, "deeper": bool, "laps": int}
+
+
+@dataclass(frozen=True)
+class HysteresisBand:
+    """Drive speeds that divide the behaviour, and how far to trust them.
+
+    ``lower_accuracy`` and ``upper_accuracy`` are relative. ``method`` is ``half laps`` (slip laps forward
+    and back in time that meet) or ``simulation`` (from rest, halving the interval). With ``deeper`` the
+    stick-slip that lasts longest is released higher than at the stick speed (docs/hysteresis.md).
+    ``sensitivity`` holds the relative change of ``upper`` per relative change of each parameter, and
+    ``lower_sensitivity`` the same of ``lower``; both are empty if not asked for. ``interval`` and
+    ``lower_interval`` enclose 95 % of the folds of the samples given, ``share_bistable`` is the share of them
+    that have a band. ``upper`` is infinite beyond 10,000 transition speeds.
+    """
+
+    lower: float
+    transition: float
+    upper: float
+    closure: str
+    method: str
+    lower_accuracy: float
+    upper_accuracy: float
+    deeper: bool
+    speed_max: float | None
+    laps: int
+    sensitivity: Mapping[str, float] = field(default_factory=dict)
+    lower_sensitivity: Mapping[str, float] = field(default_factory=dict)
+    interval: tuple[float, float] | None = None
+    lower_interval: tuple[float, float] | None = None
+    share_bistable: float | None = None
+
+    @property
+    def bistable(self) -> bool:
+        """Whether there is a band: drive speeds with both steady sliding and stick-slip."""
+        return self.upper > self.transition * (1.0 + self.upper_accuracy)
+
+    def derivative(self, parameter: str, value: float) -> float:
+        """Return the derivative of ``upper`` to a parameter, at the value of that parameter."""
+        return self.sensitivity[parameter] * self.upper / value
+
+    def verdict(self) -> str:
+        """Return what the band means, in a sentence or two."""
+        if not self.bistable:
+            return (
+                f"No band: stick-slip ends at {self.upper:.6g}, not above the transition speed "
+                f"{self.transition:.6g}, so the past does not matter."
+            )
+        return (
+            f"Stick-slip is certain below {self.lower:.6g}. "
+            f"From {self.transition:.6g} to {self.upper:.6g} the belt slides if it comes from above "
+            "and sticks if it comes from below. Above, it slides."
+        )
+
+
+@dataclass(frozen=True)
+class CyclesWithoutSticking:
+    """Swings around steady sliding that never stick: arrays of the same shape, speeds in the units given.
+
+    A lap goes between ``slowest`` and ``fastest`` at ``drive_speed``. Where ``stable`` is false the cycle is
+    the edge between steady sliding and stick-slip: from inside the belt ends sliding, from outside sticking.
+    Numbers are nan where there is no cycle.
+    """
+
+    slowest: FloatArray
+    fastest: FloatArray
+    drive_speed: FloatArray
+    stable: NDArray[np.bool_]
+
+
+def hysteresis(
+    train: Drivetrain,
+    drag: AnyDrag,
+    *,
+    temperature: float | None = None,
+    samples: Mapping[str, ArrayLike] | None = None,
+    sensitivity: bool | None = None,
+    tolerance: float = TOLERANCE,
+) -> HysteresisBand:
+    """Return the band of drive speeds where the past decides whether the belt sticks.
+
+    Parameters
+    ----------
+    temperature
+        K; needed if the drag varies with it: the band is that at this temperature.
+    samples
+        Draws of uncertain parameters (any of ``stiffness``, ``mass``, ``transition_force``,
+        ``transition_speed``, ``ehl_exponent``, ``mixed_exponent``, ``stick_speed``), arrays of equal length
+        that go together, for example from `DampingSurface.drag_samples`. They give the intervals.
+    sensitivity
+        Whether to compute the change of the band with each parameter. Default: where that takes
+        milliseconds, that is for a `Drag` with ``retained`` or ``stiction``.
+
+    Raises
+    ------
+    ParameterError
+        If a value is out of range, with its name.
+
+    Examples
+    --------
+    >>> drag = Drag(50, 1, ehl_exponent=-0.7, mixed_exponent=-1.2, stick_speed=0.01)
+    >>> band = hysteresis(Drivetrain(1000, 1), drag)
+    >>> round(band.lower, 6), band.transition, round(band.upper, 8)
+    (0.981793, 1.0, 2.17349348)
+    >>> round(band.sensitivity["stick_speed"], 3)  # one per cent on v_s moves V* by a quarter of a per cent
+    -0.233
+    """
+    law = _core_call(drag.law_at, temperature)
+    lower, transition, upper, top, low_error, error, half, deeper, laps = _core_call(
+        _core.band, train._arguments, law, float(tolerance)
+    )
+    plain = drag.at(temperature) if isinstance(drag, Drag) else None
+    closure = str(getattr(drag, "closure", "retained"))
+    if sensitivity is None:
+        sensitivity = plain is not None and half
+    changes = _sensitivities(train, plain, tolerance) if sensitivity else ({}, {})
+    interval, lower_interval, share = None, None, None
+    if samples is not None:
+        edges = _sampled(train, plain, samples, tolerance)
+        interval, lower_interval = _middle(edges["upper"]), _middle(edges["lower"])
+        share = float(np.mean(edges["upper"] > edges["transition"]))
+    return HysteresisBand(
+        lower=lower,
+        transition=transition,
+        upper=upper,
+        closure=closure,
+        method="half laps" if half else "simulation",
+        lower_accuracy=low_error,
+        upper_accuracy=error,
+        deeper=deeper,
+        speed_max=None if np.isnan(top) else top,
+        laps=laps,
+        sensitivity=changes[0],
+        lower_sensitivity=changes[1],
+        interval=interval,
+        lower_interval=lower_interval,
+        share_bistable=share,
+    )
+
+
+def hysteresis_sweep(
+    train: Drivetrain,
+    drag: Drag,
+    *,
+    stiffness: ArrayLike | None = None,
+    mass: ArrayLike | None = None,
+    transition_force: ArrayLike | None = None,
+    transition_speed: ArrayLike | None = None,
+    ehl_exponent: ArrayLike | None = None,
+    mixed_exponent: ArrayLike | None = None,
+    stick_speed: ArrayLike | None = None,
+    temperature: ArrayLike | None = None,
+    zip: bool = False,  # noqa: A002 - NumPy users know what it means
+    lower: bool = True,
+    threads: int = 1,
+    tolerance: float = TOLERANCE,
+    progress: Callable[[int, int], object] | None = None,
+) -> xr.Dataset:
+    """Return the band of each combination of parameters, as `hysteresis` does for one.
+
+    Axes, ``zip``, ``threads`` and ``progress`` are those of `sweep`. ``temperature`` (K) is needed if the
+    drag varies with it, and takes the place of the transition force and of all speeds. Without ``lower`` the
+    lower edge is left out (not a number), which takes a tenth of the time.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``lower``, ``transition``, ``upper``, ``speed_max``, accuracies, ``half_laps``, ``deeper``, ``laps``.
+
+    Examples
+    --------
+    >>> drag = Drag(50, 1, ehl_exponent=-0.7, mixed_exponent=-1.2, stick_speed=0.01)
+    >>> hysteresis_sweep(Drivetrain(1000, 1), drag, stiffness=[500, 2000]).upper.round(6).values.tolist()
+    [2.228999, 2.109731]
+    """
+    import xarray as xr
+
+    if not isinstance(drag, Drag):
+        raise ParameterError("a sweep needs a Drag")
+    if drag.warms != (temperature is not None):
+        _core_call(drag.law_at, None if temperature is None else 300.0)
+    varied: dict[str, ArrayLike | None] = {
+        "stiffness": stiffness,
+        "mass": mass,
+        "transition_force": transition_force,
+        "transition_speed": transition_speed,
+        "ehl_exponent": ehl_exponent,
+        "mixed_exponent": mixed_exponent,
+        "stick_speed": stick_speed,
+    }
+    if temperature is not None:
+        clash = [n for n in ("transition_force", "transition_speed", "stick_speed") if varied[n] is not None]
+        if clash:
+            raise ParameterError(f"{clash[0]} follows from the temperature: give one of them")
+    own = {**vars(train), **vars(drag)}
+    given = {name: numbers_of(name, own[name] if value is None else value) for name, value in varied.items()}
+    if temperature is not None:
+        given["temperature"] = numbers_of("temperature", temperature)
+    axes, columns = together(given) if zip else crossed(given)
+    shape = next(iter(columns.values())).shape
+    if temperature is not None:
+        columns = {**columns, **_at_temperatures(drag, columns["temperature"])}
+    numbers, failures = _bands(columns, drag, tolerance, threads, progress, lower=lower)
+    coordinates = {
+        name: (axes, columns[name]) if zip and values.ndim else values
+        for name, values in given.items()
+        if temperature is None or name not in ("transition_force", "transition_speed", "stick_speed")
+    }
+    return xr.Dataset(
+        {
+            name: (axes, row.reshape(shape).astype(_WHOLE.get(name, float)))
+            for name, row in _named(numbers).items()
+        },
+        coords=coordinates,
+        attrs={
+            "closure": drag.closure,
+            "tolerance": tolerance,
+            "hersey_version": _core.VERSION,
+            "failures": [f"set {index}: {message}" for index, message in failures],
+        },
+    )
+
+
+def cycles_without_sticking(
+    train: Drivetrain,
+    drag: Drag,
+    *,
+    slowest: ArrayLike | None = None,
+    temperature: float | None = None,
+    tolerance: float = TOLERANCE,
+) -> CyclesWithoutSticking:
+    """Return the cycle of each slowest belt speed, and the drive speed that it asks for.
+
+    At the stick speed that drive speed is the fold V* of laps released there (``retained``); from there it
+    falls to the lower edge of the band and rises again to the transition speed, where the swing has shrunk
+    to nothing. Such a swing knows no closure but ``lugre``, whose bristles remember.
+
+    Parameters
+    ----------
+    slowest
+        Least belt speeds of the laps, from the stick speed to below the transition speed, in the units of
+        the drag. Default: 201 between those two, evenly spaced in logarithms, the last 0.1 % below the
+        transition.
+    temperature
+        K; needed if the drag varies with it.
+
+    Raises
+    ------
+    ParameterError
+        If a value is out of range, or the drag is no `Drag` with a falling and a rising branch.
+
+    Examples
+    --------
+    >>> drag = Drag(50, 1, ehl_exponent=-0.7, mixed_exponent=-1.2, stick_speed=0.01)
+    >>> cycles = cycles_without_sticking(Drivetrain(1000, 1), drag, slowest=[0.01, 0.5, 0.9])
+    >>> cycles.drive_speed.round(6).tolist(), cycles.stable.tolist()
+    ([2.173493, 1.008534, 0.988886], [False, False, True])
+    """
+    if not isinstance(drag, Drag) or drag.closure == "lugre":
+        raise ParameterError("cycles without sticking need a Drag, and one without bristles")
+    for name, value in vars(train).items():
+        if not value > 0 or not np.isfinite(value):
+            raise ParameterError(f"{name} is {value}: it must be greater than 0")
+    law = drag.at(temperature)
+    mixed, ehl = 1.0 + law.mixed_exponent, 1.0 + law.ehl_exponent
+    if not mixed < 0.0 < ehl:
+        raise ParameterError("drag that does not fall below the transition and rise above has no cycles")
+    low, high = law.stick_speed, law.transition_speed
+    speeds = np.geomspace(low, 0.999 * high, 201) if slowest is None else numbers_of("slowest", slowest)
+    if not bool(np.all((speeds >= low) & (speeds < high))):
+        raise ParameterError(f"slowest is to lie from the stick speed {low:g} to below {high:g}")
+    damping = law.transition_force / (high * np.sqrt(train.stiffness * train.mass))
+    # a cycle is stable where its drive speed rises with its slowest speed: where a slower drive swings wider
+    laps = (speeds.ravel() / high)[:, None] * [1.0, 1.0 - _NEAR, 1.0 + _NEAR]
+    laps = np.minimum(laps, 0.5 * (1.0 + laps[:, :1])).ravel()
+    forces, falls, rises = (np.full_like(laps, x) for x in (damping, mixed, ehl))
+    drive, top, _ = _core_call(_core.cycles, [forces, laps, falls, rises], float(tolerance))
+    drive, below, above = (high * drive).reshape(-1, 3).T
+    # with so steep a fall no belt swings below the transition: a search that ends there found nothing
+    gone = (-mixed * damping >= 2.0) & (drive <= high * (1.0 + _NEAR**2))
+    shape = speeds.shape
+    return CyclesWithoutSticking(
+        slowest=speeds,
+        fastest=np.where(gone, np.nan, high * top.reshape(-1, 3)[:, 0]).reshape(shape),
+        drive_speed=np.where(gone, np.nan, drive).reshape(shape),
+        stable=((above > below) & ~gone).reshape(shape),
+    )
+
+
+def _at_temperatures(drag: Drag, temperatures: FloatArray) -> dict[str, FloatArray]:
+    """The parameters that vary with temperature, at each."""
+    values, place = np.unique(temperatures, return_inverse=True)
+    laws = [drag.at(float(t)) for t in values]
+    names = ("transition_force", "transition_speed", "stick_speed")
+    place = place.reshape(temperatures.shape)
+    return {name: np.array([getattr(law, name) for law in laws])[place] for name in names}
+
+
+def _bands(
+    columns: Mapping[str, FloatArray],
+    drag: Drag,
+    tolerance: float,
+    threads: int = 1,
+    progress: Callable[[int, int], object] | None = None,
+    *,
+    lower: bool = True,
+) -> tuple[FloatArray, list[tuple[int, str]]]:
+    if threads < 1:
+        raise ParameterError(f"threads is {threads}: at least 1 is needed")
+    arrays = [np.ascontiguousarray(columns[name].ravel()) for name in OF_THE_BELT]
+    closure = (drag.closure, drag.bristle_stiffness, drag.bristle_damping)
+    return _core_call(_core.bands, arrays, closure, lower, float(tolerance), int(threads), progress)
+
+
+def _named(numbers: FloatArray) -> dict[str, FloatArray]:
+    return dict(zip(_COLUMNS, numbers, strict=True))
+
+
+def _sensitivities(
+    train: Drivetrain, drag: Drag | None, tolerance: float
+) -> tuple[dict[str, float], dict[str, float]]:
+    """Relative change of the edges per relative change of each parameter, by central differences."""
+    if drag is None:
+        raise ParameterError("sensitivity needs a Drag: a table has no parameters to vary")
+    own = {**vars(train), **vars(drag)}
+    base = np.array([float(own[name]) for name in OF_THE_BELT])
+    factors = np.vstack([1 + _STEP * np.eye(len(OF_THE_BELT)), 1 - _STEP * np.eye(len(OF_THE_BELT))])
+    columns = dict(zip(OF_THE_BELT, (base * factors).T, strict=True))
+    numbers, failures = _bands(columns, drag, tolerance)
+    if failures:
+        raise ParameterError(failures[0][1])
+    edges = _named(numbers)
+
+    def change(edge: str) -> dict[str, float]:
+        up, down = np.log(edges[edge]).reshape(2, -1)
+        return dict(zip(OF_THE_BELT, ((up - down) / (2 * _STEP)).tolist(), strict=True))
+
+    return change("upper"), change("lower")
+
+
+def _sampled(
+    train: Drivetrain, drag: Drag | None, samples: Mapping[str, ArrayLike], tolerance: float
+) -> dict[str, FloatArray]:
+    if drag is None:
+        raise ParameterError("samples need a Drag: a table has no parameters to draw")
+    unknown = sorted(set(samples) - set(OF_THE_BELT))
+    if unknown:
+        raise ParameterError(f"samples: {unknown[0]} is not known: {', '.join(OF_THE_BELT)}")
+    own = {**vars(train), **vars(drag)}
+    given = {name: numbers_of(name, samples.get(name, own[name])) for name in OF_THE_BELT}
+    _, columns = together(given)
+    numbers, failures = _bands(columns, drag, tolerance)
+    if failures:
+        index, message = failures[0]
+        raise ParameterError(f"samples: draw {index}: {message}")
+    return _named(numbers)
+
+
+def _middle(values: FloatArray) -> tuple[float, float]:
+    """The interval that leaves 2.5 % of the draws on either side."""
+    low, high = np.quantile(values, [0.025, 0.975], method="inverted_cdf")
+    return float(low), float(high)

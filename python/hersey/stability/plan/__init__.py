@@ -1,0 +1,23 @@
+"""The quickest drive-speed profile from rest that ends in steady sliding, with its own proof.
+
+Between the transition speed and the fold both sliding and stick-slip exist: a drive that comes straight up
+may end in stick-slip, one that comes from above the fold slides. The search decides between coming
+straight up, overshooting, and waiting for another temperature; draws it has not seen say how often the answer
+works.
+
+========= ==================================================================
+module    what it holds
+========= ==================================================================
+trial     one profile on one machine: shape, temperature profile, outcome
+draws     machines drawn from what is not known of one, and what must hold
+search    the quickest profile that works on all but a few of them
+obstacles why there is none: the limit, and the number that would do
+result    the plan, its table and its words
+planner   the whole way: search, proof on fresh draws, plan
+========= ==================================================================
+"""
+
+from hersey.stability.plan.planner import plan_profile
+from hersey.stability.plan.result import LimitUse, Plan
+
+__all__ = ["LimitUse", "Plan", "plan_profile"]

@@ -1,0 +1,141 @@
+"""Machines drawn from what is not known of one, and the rule by which a profile works on them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.stats import beta
+
+from hersey.arrays import FloatArray
+from hersey.errors import ParameterError
+from hersey.machine.uncertainty import Uncertainty
+from hersey.motion.drag import AnyDrag
+from hersey.motion.parameters import OF_THE_BELT
+from hersey.motion.simulation import Drivetrain
+from hersey.stability.plan.trial import MachineSample, Shape, TemperatureProfile
+
+#: Relative distance that a profile for known parameters keeps from failure, in each of them.
+_EDGE = 1e-3
+
+
+def needed(confidence: float, level: float, failures: int) -> int:
+    """Return the least number of draws whose bound exceeds the confidence with so many failures."""
+    low, high = failures + 1, 2
+    while lower_bound(high - failures, high, level) < confidence:
+        high *= 2
+    while low < high:
+        middle = (low + high) // 2
+        if lower_bound(middle - failures, middle, level) >= confidence:
+            high = middle
+        else:
+            low = middle + 1
+    return low
+
+
+def most_failures(confidence: float, level: float, count: int) -> int:
+    """Return the greatest number of failures among so many draws whose bound still exceeds the confidence."""
+    failures = 0
+    while lower_bound(count - failures - 1, count, level) >= confidence:
+        failures += 1
+    return failures
+
+
+def lower_bound(good: int, count: int, level: float) -> float:
+    """Return the bound (Clopper and Pearson) that the true share exceeds with probability ``level``."""
+    return float(beta.ppf(1.0 - level, good, count - good + 1)) if good > 0 else 0.0
+
+
+def drawn(
+    train: Drivetrain,
+    drag: AnyDrag,
+    uncertainty: Mapping[str, Uncertainty],
+    samples: Mapping[str, ArrayLike],
+    rng: np.random.Generator,
+    count: int,
+) -> list[MachineSample]:
+    """Return machines drawn from what is not known of one.
+
+    ``samples`` holds draws that go together (of equal length): rows of it are taken at random. Where it and
+    ``uncertainty`` name the same parameter, the samples hold.
+    """
+    own = {**vars(train), **vars(drag)}
+    columns: dict[str, FloatArray] = {}
+    for name in [*uncertainty, *samples]:
+        if name not in OF_THE_BELT or name not in own:
+            known = ", ".join(key for key in OF_THE_BELT if key in own)
+            raise ParameterError(f"uncertainty: '{name}' is no parameter of this drive: {known}")
+    for name in sorted(set(uncertainty) - set(samples)):
+        columns[name] = uncertainty[name].draw(rng, float(own[name]), count)
+    if samples:
+        rows = {name: np.asarray(values, dtype=float).ravel() for name, values in samples.items()}
+        sizes = {values.size for values in rows.values()}
+        if len(sizes) != 1 or 0 in sizes:
+            raise ParameterError("samples: the arrays differ in length, or are empty")
+        picked = rng.integers(0, sizes.pop(), count)
+        columns |= {name: values[picked] for name, values in rows.items()}
+    return [_machine(train, drag, {n: float(v[i]) for n, v in columns.items()}) for i in range(count)]
+
+
+def neighbours(train: Drivetrain, drag: AnyDrag) -> list[MachineSample]:
+    """Return the machine, and those with one parameter a little off: no profile may stand on the edge."""
+    own = {name: float(v) for name, v in {**vars(train), **vars(drag)}.items() if name in OF_THE_BELT}
+    moved = [{name: value * (1.0 + by)} for name, value in own.items() for by in (-_EDGE, _EDGE)]
+    return [MachineSample(train, drag), *(_machine(train, drag, values) for values in moved)]
+
+
+def _machine(train: Drivetrain, drag: AnyDrag, values: Mapping[str, float]) -> MachineSample:
+    of_train = {name: value for name, value in values.items() if hasattr(train, name)}
+    of_drag = {name: value for name, value in values.items() if name not in of_train}
+    try:
+        changed: AnyDrag = replace(drag, **of_drag) if of_drag else drag  # type: ignore[type-var]
+    except ParameterError as error:
+        raise ParameterError(f"uncertainty: a draw is impossible: {error}") from None
+    return MachineSample(replace(train, **of_train), changed)
+
+
+class Trials:
+    """Machines on which a profile must work, all but ``allowed`` of them."""
+
+    def __init__(
+        self,
+        machines: Sequence[MachineSample],
+        allowed: int,
+        thermal: TemperatureProfile,
+        force_limit: float,
+    ) -> None:
+        """Keep the machines; those that fail come to the front, so that bad profiles fail soon."""
+        self.machines = list(machines)
+        self.allowed, self.thermal, self.force_limit = allowed, thermal, force_limit
+        self.count = 0
+
+    def time(self, shape: Shape, best: float = math.inf) -> float:
+        """Return the time at which all but the allowed machines are ready, infinite if not below ``best``."""
+        ready, late = [], []
+        for i, machine in enumerate(self.machines):
+            self.count += 1
+            found = machine.trial(shape, self.thermal, self.force_limit).ready
+            ready.append(found)
+            if found >= best:
+                late.append(i)
+                if len(late) > self.allowed:
+                    self._to_front(late)
+                    return math.inf
+        return self.kept(ready)
+
+    def peak(self, shape: Shape) -> float:
+        """Return the spring force that all but the allowed machines keep below; infinite if it fails."""
+        found = [m.trial(shape, self.thermal, force=True) for m in self.machines]
+        return self.kept([f.peak_force if f.ready < math.inf else math.inf for f in found])
+
+    def kept(self, values: Sequence[float]) -> float:
+        """Return the value that all but the allowed machines keep below."""
+        return sorted(values)[len(values) - 1 - self.allowed]
+
+    def _to_front(self, late: list[int]) -> None:
+        hard = set(late)
+        rest = [m for i, m in enumerate(self.machines) if i not in hard]
+        self.machines = [self.machines[i] for i in late] + rest

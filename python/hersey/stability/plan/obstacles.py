@@ -1,0 +1,210 @@
+"""Why there is no profile: the limit that forbids it, and the number that would do."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from hersey.errors import ParameterError
+from hersey.machine.machine import Limits
+from hersey.stability.plan.draws import Trials
+from hersey.stability.plan.search import Room, Search
+from hersey.stability.plan.trial import MachineSample, Shape
+
+#: Digits of the number that would do, rounded up.
+_DIGITS = 3
+#: Names and units of the limits, as people read them.
+_NAMES = {
+    "speed": ("drive speed", "m/s"),
+    "acceleration": ("acceleration", "m/s^2"),
+    "spring_force": ("spring force", "N"),
+    "motor_torque": ("motor torque", "N m"),
+    "target_speed": ("target speed", "m/s"),
+}
+
+
+@dataclass(frozen=True)
+class Obstacle:
+    """A limit that forbids every profile.
+
+    ``limit`` is its name, ``given`` its value (SI), ``needed`` one that would do if no other changed (None if
+    none alone would), ``text`` says it in words.
+    """
+
+    limit: str
+    given: float
+    needed: float | None
+    text: str
+
+
+@dataclass(frozen=True)
+class Reach:
+    """The limits as the search takes them; ``forces`` holds the spring force (N) each stands for, by name.
+
+    The factor of a limit leads from the spring force to its own unit.
+    """
+
+    speed: float
+    acceleration: float
+    forces: Mapping[str, float]
+    factors: Mapping[str, float]
+
+    @classmethod
+    def of(cls, limits: Limits, roll_radius: float | None) -> Reach:
+        """Return the reach of a drive; the torque acts at ``roll_radius`` (m)."""
+        factors = {"spring_force": 1.0}
+        given = {"spring_force": limits.spring_force}
+        if limits.motor_torque is not None:
+            if roll_radius is None or not (math.isfinite(roll_radius) and roll_radius > 0):
+                raise ParameterError("a limit of motor_torque needs the roll_radius, greater than 0")
+            factors["motor_torque"] = roll_radius
+            given["motor_torque"] = limits.motor_torque / roll_radius
+        forces = {name: value for name, value in given.items() if value is not None}
+        return cls(limits.speed or math.inf, limits.acceleration or math.inf, forces, factors)
+
+    @property
+    def force(self) -> float:
+        """The least of the forces, infinite without a limit."""
+        return min(self.forces.values(), default=math.inf)
+
+    def uses(self, shape: Shape, force: float) -> list[tuple[str, float, float]]:
+        """Return name, limit and use of every limit that is given."""
+        rows = [("speed", self.speed, shape.peak), ("acceleration", self.acceleration, shape.acceleration)]
+        rows += [(n, f * self.factors[n], force * self.factors[n]) for n, f in self.forces.items()]
+        return [row for row in rows if row[1] < math.inf]
+
+
+def obstacles(
+    search: Search, limits: Limits, reach: Reach, greatest: float, *, searched: bool
+) -> tuple[Obstacle, ...]:
+    """Return what forbids every profile; before the search only what is certain without it.
+
+    Without a limit of speed, peak speeds up to ``greatest`` (m/s) are sought.
+    """
+    trials, target = search.trials, search.target
+    if limits.speed is not None and limits.speed < target:
+        return (_obstacle("speed", limits.speed, target),)
+    lowest = _lowest_target(trials, target)
+    if lowest >= target:
+        where = (
+            ""
+            if search.thermal.schedule is None
+            else " at the temperature in which the temperature profile ends"
+        )
+        text = (
+            f"the target speed {speed_text(target)} is not above the transition speed {speed_text(lowest)}"
+            f"{where}, "
+            "where steady sliding is unstable: a target above it would do"
+        )
+        return (Obstacle("target_speed", target, _up(lowest * 1.01), text),)
+    if not searched and _least_force(trials, target) <= reach.force:
+        return ()
+    found = [*_of_force(search, reach), *(_of_room(search, reach, greatest) if searched else [])]
+    return tuple(found) or (_together(search, limits),)
+
+
+def _lowest_target(trials: Trials, target: float) -> float:
+    """The transition speed where temperature ends that all but the allowed machines keep below."""
+    end = trials.thermal.at(trials.thermal.end)
+    return trials.kept([machine.at(end, target)[0] for machine in trials.machines])
+
+
+def _least_force(trials: Trials, target: float) -> float:
+    """The force without which the belt neither breaks away nor slides where temperature ends."""
+    thermal = trials.thermal
+    times = np.linspace(0.0, thermal.end, 50).tolist() if thermal.schedule is not None else [0.0]
+    spread = trials.machines
+    sample = spread[:: max(1, len(spread) // 100)] if len(times) > 1 else spread
+    off = [min(_breakaway(m, thermal.at(t)) for t in times) for m in sample]
+    sliding = [machine.at(thermal.at(thermal.end), target)[1] for machine in spread]
+    share = min(trials.allowed * len(sample) // len(spread) + 1, len(off))
+    return max(sorted(off)[-share], trials.kept(sliding))
+
+
+def _breakaway(machine: MachineSample, temperature: float | None) -> float:
+    return machine.drag.law_at(temperature).breakaway_force
+
+
+def _of_force(search: Search, reach: Reach) -> list[Obstacle]:
+    """Obstacles of force, if a profile works without any limit of force."""
+    if not reach.forces:
+        return []
+    free = _relaxed(search, search.room, math.inf)
+    found = free.least(lambda _, outcome: outcome.peak_force)
+    if found is None:
+        return []
+    force = free.trials.peak(found[1])
+    short = {name: limit for name, limit in reach.forces.items() if limit < force}
+    return [
+        _obstacle(name, limit * reach.factors[name], force * reach.factors[name])
+        for name, limit in short.items()
+    ]
+
+
+def _of_room(search: Search, reach: Reach, greatest: float) -> list[Obstacle]:
+    """Obstacles of speed and of acceleration, each if a profile works without it."""
+    found = []
+    if reach.speed < math.inf:
+        free = _relaxed(
+            search, replace(search.room, speed=max(greatest, reach.speed)), search.trials.force_limit
+        )
+        least = free.least(lambda shape, _: shape.peak)
+        if least is not None and (peak := free.slower(least[1]).peak) > reach.speed:
+            found.append(_obstacle("speed", reach.speed, peak))
+    if reach.acceleration < math.inf:
+        free = _relaxed(search, replace(search.room, acceleration=math.inf), search.trials.force_limit)
+        least = free.least(lambda shape, _: shape.acceleration)
+        if least is not None and reach.acceleration < least[0] < math.inf:
+            found.append(_obstacle("acceleration", reach.acceleration, least[0]))
+    return found
+
+
+def _relaxed(search: Search, room: Room, force: float) -> Search:
+    trials = Trials(search.trials.machines, search.trials.allowed, search.thermal, force)
+    return Search(
+        search.nominal,
+        trials,
+        search.thermal,
+        search.target,
+        room,
+        seed=search.seed,
+        progress=search.progress,
+    )
+
+
+def _obstacle(name: str, given: float, needed: float) -> Obstacle:
+    label, unit = _NAMES[name]
+    enough = _up(needed)
+    least, most = (_written(value, unit) for value in (enough, given))
+    return Obstacle(name, given, enough, f"the {label} is limited to {most}: {least} would do")
+
+
+def speed_text(value: float) -> str:
+    """Return a speed as people write it."""
+    return _written(value, "m/s")
+
+
+def _written(value: float, unit: str) -> str:
+    if unit.startswith("m/s") and abs(value) < 1.0:
+        return f"{1e3 * value:.4g} m{unit}"
+    return f"{value:.4g} {unit}"
+
+
+def _together(search: Search, limits: Limits) -> Obstacle:
+    given = [_NAMES[name][0] for name, value in vars(limits).items() if value is not None and name in _NAMES]
+    if given:
+        text = f"no limit alone forbids it: relax several of {', '.join(given)} together"
+        return Obstacle("several", math.nan, None, text)
+    text = (
+        f"none up to {search.room.speed:.4g} m/s works on enough of the belts drawn: "
+        "know the parameters better, or ask for less confidence"
+    )
+    return Obstacle("uncertainty", math.nan, None, text)
+
+
+def _up(value: float) -> float:
+    unit = 10.0 ** (math.floor(math.log10(value)) - _DIGITS + 1)
+    return float(f"{math.ceil(value / unit * (1.0 - 1e-9)) * unit:.{_DIGITS}g}")

@@ -1,0 +1,319 @@
+"""From what is asked and known to a plan: search, proof on draws not seen before, or what forbids it."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from hersey.errors import ParameterError
+from hersey.machine.machine import Limits
+from hersey.machine.uncertainty import Uncertainty
+from hersey.motion.drag import AnyDrag
+from hersey.motion.schedule import Schedule
+from hersey.motion.simulation import Drivetrain, simulate
+from hersey.stability.hysteresis import hysteresis
+from hersey.stability.plan.draws import Trials, drawn, lower_bound, most_failures, needed, neighbours
+from hersey.stability.plan.obstacles import Reach, obstacles
+from hersey.stability.plan.result import LimitUse, Plan
+from hersey.stability.plan.search import Progress, Room, Search
+from hersey.stability.plan.trial import ROUNDING, MachineSample, Outcome, Shape, TemperatureProfile, rounded
+
+#: Probability with which a profile that passes keeps its confidence: high, for the search tries many.
+_LEVEL = 0.999
+#: Draws of the search that may fail; none where the confidence asks for thousands of draws.
+_ALLOWED, _STRICT = 2, 0.99
+#: Level of the bound of the share that is stated, and least number of fresh draws behind it.
+_STATED, _FRESH = 0.95, 1500
+#: Profiles verified before giving up; after each the search takes the draws it failed on.
+_VERIFIED = 5
+#: Share of the failures that a verification lets pass which the search allows after one, two...
+_STRICTER = (0.8, 0.8, 0.7, 0.5)
+#: Tolerance of the verification.
+_TIGHT = 1e-11
+#: Peak speeds are sought up to this many fold speeds (or transition speeds) if the drive has no limit.
+_FOLDS, _TRANSITIONS = 3.0, 20.0
+#: Draws followed to the end of the temperature profile, and laps for which that is still quick.
+_LONG, _LONG_LAPS = 10, 20_000
+#: Samples of the response.
+_SAMPLES = 2001
+_CONFIDENCES = (0.5, 0.999)
+_CLOSURES = ("retained", "stiction")
+
+
+def plan_profile(
+    train: Drivetrain,
+    drag: AnyDrag,
+    *,
+    target_speed: float,
+    temperature: float | Schedule | None = None,
+    limits: Limits | None = None,
+    roll_radius: float | None = None,
+    uncertainty: Mapping[str, Uncertainty] | None = None,
+    samples: Mapping[str, ArrayLike] | None = None,
+    confidence: float = 0.95,
+    seed: int = 1,
+    progress: Progress | None = None,
+) -> Plan:
+    """Return the quickest profile of drive speed from rest after which the belt slides at the target.
+
+    Parameters
+    ----------
+    target_speed
+        m/s, as all speeds here.
+    temperature
+        K, or its profile from the moment at which the drive could start; needed if the drag varies
+        with it.
+    limits
+        Checked over the whole profile and after it: ``speed`` and ``acceleration`` of the drive, and the
+        spring force of the simulated motion against ``spring_force`` and ``motor_torque`` over
+        ``roll_radius`` (the inertia of the drive itself is not in the model). Above the grip
+        ``roll_friction * nip_load`` the plan warns: slip on the roll is not in the model.
+    roll_radius
+        m; needed with a limit of torque.
+    uncertainty
+        How far parameters are known, by name; without it the plan is that of the nominal parameters.
+    samples
+        Draws that go together, arrays of equal length by parameter (`DampingSurface.drag_samples`), for a
+        drag that varies with temperature at its reference temperature. They come before ``uncertainty``.
+    confidence
+        Share of the belts that must be smooth and keep the limits, 0.5 to 0.999.
+    seed
+        Of all random draws, at least 0.
+    progress
+        Called with (done, all) of a stage; what it raises ends the plan.
+
+    Raises
+    ------
+    ParameterError
+        If a value is out of range, with its name.
+
+    Examples
+    --------
+    >>> from hersey import Drag
+    >>> drag = Drag(50, 1, ehl_exponent=-0.7, mixed_exponent=-1.2, stick_speed=0.01)
+    >>> limits = Limits(speed=4, acceleration=10)
+    >>> plan = plan_profile(Drivetrain(1000, 1), drag, target_speed=1.2, limits=limits)
+    >>> plan.kind, plan.share
+    ('overshoot', 1.0)
+    """
+    limits = Limits() if limits is None else limits
+    _check(drag, target_speed, limits, confidence, seed)
+    thermal = TemperatureProfile(temperature)
+    nominal = MachineSample(train, drag)
+    nominal.at(thermal.at(thermal.end), target_speed)  # refuses a temperature missing or not wanted
+    unknown = Unknown(train, drag, dict(uncertainty or {}), dict(samples or {}), seed)
+    reach = Reach.of(limits, roll_radius)
+    band = hysteresis(train, drag, temperature=thermal.at(thermal.end), sensitivity=False)
+    wide = max(_FOLDS * min(band.upper, _TRANSITIONS * band.transition), 2.0 * target_speed)
+    greatest = limits.speed or wide
+    trials = unknown.trials(confidence, thermal, reach.force)
+    search = Search(
+        nominal,
+        trials,
+        thermal,
+        target_speed,
+        Room(greatest, reach.acceleration),
+        seed=seed,
+        progress=progress,
+    )
+    facts: dict[str, Any] = {
+        "target_speed": target_speed,
+        "confidence": confidence,
+        "seed": seed,
+        "fold_speed": band.upper,
+        "transition_speed": band.transition,
+        "temperature": thermal.at(thermal.end),
+        "greatest_speed": greatest,
+    }
+    reasons = obstacles(search, limits, reach, wide, searched=False)
+    if not reasons:
+        shape = search.run()
+        for number in range(1, _VERIFIED + 1):
+            if shape is None:
+                break
+            duration = max(rounded(search.time, up=True), shape.end)
+            if search.time <= shape.end:
+                duration = float(shape.points()[0][-1])
+            proof = unknown.verify(shape, duration, thermal, reach.force, confidence, number)
+            if proof.accepted:
+                facts |= {"tried": search.count, "warnings": _warnings(limits, proof.peak_force)}
+                return _found(nominal, shape, thermal, proof, reach, facts)
+            if number == _VERIFIED:
+                break
+            share = _STRICTER[number - 1] * most_failures(confidence, _LEVEL, proof.draws) / proof.draws
+            known = len(search.trials.machines) + proof.draws
+            shape = search.again(proof.machines, math.floor(share * known))
+        reasons = obstacles(search, limits, reach, wide, searched=True)
+    return Plan(**facts, **_NOTHING, obstacles=reasons, tried=search.count)
+
+
+#: What a plan without a profile has.
+_NOTHING: dict[str, Any] = {
+    "kind": "impossible",
+    "schedule": None,
+    **dict.fromkeys(("duration", "wait", "rise", "peak_speed", "hold", "fall", "peak_force"), math.nan),
+    "share": 0.0,
+    "share_low": 0.0,
+    "draws": 0,
+    "failures": {},
+    "uses": (),
+    "warnings": (),
+    "response": None,
+}
+
+
+@dataclass(frozen=True)
+class Proof:
+    """What fresh draws say of a profile."""
+
+    duration: float
+    share: float
+    share_low: float
+    draws: int
+    failures: Mapping[str, int]
+    peak_force: float
+    accepted: bool
+    machines: list[MachineSample]
+
+
+@dataclass(frozen=True)
+class Unknown:
+    """The machine and what is not known of it."""
+
+    train: Drivetrain
+    drag: AnyDrag
+    uncertainty: Mapping[str, Uncertainty]
+    samples: Mapping[str, ArrayLike]
+    seed: int
+
+    def draws(self, stream: int, count: int) -> list[MachineSample]:
+        """Return machines of a stream of random draws; the nominal one alone if all is known."""
+        if not self.uncertainty and not self.samples:
+            return [MachineSample(self.train, self.drag)]
+        rng = np.random.default_rng([self.seed, stream])
+        return drawn(self.train, self.drag, self.uncertainty, self.samples, rng, count)
+
+    def trials(self, confidence: float, thermal: TemperatureProfile, force_limit: float) -> Trials:
+        """Return the machines of the search."""
+        if not self.uncertainty and not self.samples:
+            return Trials(neighbours(self.train, self.drag), 0, thermal, force_limit)
+        allowed = _ALLOWED if confidence <= _STRICT else 0
+        machines = self.draws(0, needed(confidence, _LEVEL, allowed))
+        return Trials(machines, allowed, thermal, force_limit)
+
+    def verify(
+        self,
+        shape: Shape,
+        duration: float,
+        thermal: TemperatureProfile,
+        force_limit: float,
+        confidence: float,
+        number: int,
+    ) -> Proof:
+        """Try a profile on draws that the search has not seen."""
+        machines = self.draws(number, max(_FRESH, math.ceil(10.0 / (1.0 - confidence))))
+        laps = thermal.end / machines[0].lap
+        long = _LONG if laps < _LONG_LAPS else 1
+        found = [
+            machine.trial(
+                shape,
+                thermal,
+                force_limit,
+                force=True,
+                until=thermal.end if i < long else 0.0,
+                tolerance=_TIGHT,
+            )
+            for i, machine in enumerate(machines)
+        ]
+        failures = Counter(_failures(found, duration))
+        good = len(found) - failures.total()
+        share = good / len(found)
+        return Proof(
+            duration=duration,
+            share=share,
+            share_low=share if len(found) == 1 else lower_bound(good, len(found), _STATED),
+            draws=len(found),
+            failures=dict(sorted(failures.items())),
+            peak_force=float(np.quantile([f.peak_force for f in found], confidence, method="higher")),
+            accepted=good == 1 if len(found) == 1 else lower_bound(good, len(found), _LEVEL) >= confidence,
+            machines=machines,
+        )
+
+
+def _failures(found: Iterable[Outcome], duration: float) -> Iterable[str]:
+    for outcome in found:
+        if outcome.ready > duration * (1.0 + ROUNDING):
+            yield outcome.why or "sticks longer"
+
+
+def _found(
+    nominal: MachineSample,
+    shape: Shape,
+    thermal: TemperatureProfile,
+    proof: Proof,
+    reach: Reach,
+    facts: Mapping[str, Any],
+) -> Plan:
+    ramps = shape.schedule()
+    times, speeds = np.asarray(ramps.times), np.asarray(ramps.values)
+    if proof.duration > times[-1]:
+        times, speeds = np.append(times, proof.duration), np.append(speeds, shape.target)
+    past = proof.duration - shape.wait
+    response = simulate(
+        nominal.train,
+        nominal.drag,
+        drive_speed=shape.schedule(waited=False),
+        temperature=thermal.from_time(shape.wait),
+        duration=1.15 * past + 2.0 * nominal.lap,
+        samples=_SAMPLES,
+    )
+    return Plan(
+        **facts,
+        kind="direct" if shape.peak == shape.target else "overshoot",
+        schedule=Schedule(times, speeds),
+        duration=proof.duration,
+        wait=shape.wait,
+        rise=shape.rise,
+        peak_speed=shape.peak,
+        hold=shape.hold,
+        fall=shape.fall,
+        share=proof.share,
+        share_low=proof.share_low,
+        draws=proof.draws,
+        failures=proof.failures,
+        uses=tuple(LimitUse(*row) for row in reach.uses(shape, proof.peak_force)),
+        obstacles=(),
+        peak_force=proof.peak_force,
+        response=response,
+    )
+
+
+def _warnings(limits: Limits, force: float) -> tuple[str, ...]:
+    if limits.grip is None or force <= limits.grip:
+        return ()
+    return (
+        f"the spring force reaches {force:.4g} N, more than the grip of the roll, {limits.grip:.4g} N: "
+        "the belt may slip on the roll, which is not in the model",
+    )
+
+
+def _check(drag: AnyDrag, target_speed: float, limits: Limits, confidence: float, seed: int) -> None:
+    closure = getattr(drag, "closure", "retained")
+    if closure not in _CLOSURES:
+        raise ParameterError(
+            f"closure '{closure}' has no stuck phase to plan with: use {' or '.join(_CLOSURES)}"
+        )
+    for name, value in {"target_speed": target_speed, **vars(limits)}.items():
+        if value is not None and not (math.isfinite(value) and value > 0):
+            raise ParameterError(f"{name} is {value}: it must be greater than 0")
+    if not _CONFIDENCES[0] <= confidence <= _CONFIDENCES[1]:
+        low, high = _CONFIDENCES
+        raise ParameterError(f"confidence is {confidence}: {low} to {high} is possible")
+    if seed < 0:
+        raise ParameterError(f"seed is {seed}: it must not be negative")

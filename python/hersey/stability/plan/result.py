@@ -1,0 +1,121 @@
+"""What a plan is: the profile, its proof, or what forbids it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, fields
+from typing import Any
+
+import numpy as np
+
+from hersey.motion.schedule import Schedule
+from hersey.motion.simulation import Trajectory
+from hersey.result import json_value
+from hersey.stability.plan.obstacles import Obstacle, speed_text
+
+
+@dataclass(frozen=True)
+class LimitUse:
+    """A limit and what the profile takes of it (SI): the most that a share ``confidence`` of draws takes."""
+
+    name: str
+    limit: float
+    used: float
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A profile of drive speed, or the obstacles that forbid one.
+
+    ``kind`` is ``direct`` (straight up), ``overshoot`` (above the target and down) or ``impossible``; then
+    ``schedule`` is None and ``obstacles`` says why. ``duration`` (s) is the time from which the drive is at
+    the target and the belt slides for good; ``wait`` (s) the time at rest before it starts, for warmth.
+    ``share`` of ``draws`` fresh draws are smooth from there on and keep all limits, ``failures`` counts what
+    went wrong with the others; ``share_low`` is the bound that the true share exceeds with 95 %.
+    ``peak_force`` (N) is the spring force that a share ``confidence`` of them keeps below. ``response`` is
+    the motion at the nominal parameters, its time counted from the end of the wait. ``fold_speed`` and
+    ``transition_speed`` (m/s) are nominal, at ``temperature`` (K), that of the end. Peak speeds up to
+    ``greatest_speed`` were sought, ``tried`` profiles tried. ``warnings`` names what the model leaves out.
+    """
+
+    kind: str
+    target_speed: float
+    confidence: float
+    seed: int
+    schedule: Schedule | None
+    duration: float
+    wait: float
+    rise: float
+    peak_speed: float
+    hold: float
+    fall: float
+    share: float
+    share_low: float
+    draws: int
+    failures: Mapping[str, int]
+    uses: tuple[LimitUse, ...]
+    warnings: tuple[str, ...]
+    obstacles: tuple[Obstacle, ...]
+    fold_speed: float
+    transition_speed: float
+    temperature: float | None
+    greatest_speed: float
+    peak_force: float
+    tried: int
+    response: Trajectory | None
+
+    @property
+    def found(self) -> bool:
+        """Whether there is a profile."""
+        return self.schedule is not None
+
+    def rows(self) -> list[tuple[float, float]]:
+        """Return times (s) and drive speeds (m/s), joined by straight lines; equal times make a jump."""
+        if self.schedule is None:
+            return []
+        times, speeds = np.asarray(self.schedule.times), np.asarray(self.schedule.values)
+        return list(zip(times.tolist(), speeds.tolist(), strict=True))
+
+    def verdict(self) -> str:
+        """Return the decision in a sentence or two."""
+        if not self.found:
+            return "No profile ends smooth: " + "; ".join(o.text for o in self.obstacles) + "."
+        up = f"in {self.rise:.4g} s" if self.rise > 0 else "at once"
+        if self.kind == "direct":
+            way = f"Come straight up to {speed_text(self.target_speed)} {up}"
+        else:
+            down = f"in {self.fall:.4g} s" if self.fall > 0 else "at once"
+            held = f"hold {self.hold:.4g} s, " if self.hold > 0 else ""
+            way = f"Go up to {speed_text(self.peak_speed)} {up}, {held}"
+            way += f"come down to {speed_text(self.target_speed)} {down}"
+        start = f"Wait {self.wait:.5g} s. " if self.wait > 0 else ""
+        return f"{start}{way}. From {self.duration:.5g} s on the belt slides for good."
+
+    def proof(self) -> str:
+        """Return how far the plan is verified, in a sentence."""
+        if self.draws == 1:
+            return "Verified at the nominal parameters only, which are taken as known to 0.1 %."
+        return (
+            f"Smooth and within the limits in {100 * self.share:.1f} % of {self.draws} fresh draws "
+            f"(more than {math.floor(1000 * self.share_low) / 10:.1f} % at the 95 % level; "
+            f"asked for {100 * self.confidence:g} %)."
+        )
+
+    def table(self) -> str:
+        """Return the profile as CSV for a motor controller: straight lines between the rows."""
+        lines = ["time [s],drive speed [m/s]"]
+        return "\n".join([*lines, *(f"{t:.12g},{v:.12g}" for t, v in self.rows())]) + "\n"
+
+    def document(self) -> dict[str, Any]:
+        """Return all but the response, for JSON; infinite and missing numbers are None."""
+        plain = {
+            f.name: getattr(self, f.name) for f in fields(self) if f.name not in ("response", "schedule")
+        }
+        plain["uses"] = [asdict(use) for use in self.uses]
+        plain["obstacles"] = [asdict(obstacle) for obstacle in self.obstacles]
+        plain["failures"] = dict(self.failures)
+        plain["warnings"] = list(self.warnings)
+        rows = [{"time": t, "drive_speed": v} for t, v in self.rows()]
+        document = {"verdict": self.verdict(), "rows": rows, **plain}
+        return {name: json_value(value) for name, value in document.items()}

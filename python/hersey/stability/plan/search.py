@@ -1,0 +1,389 @@
+"""The quickest profile: a grid in the order of its duration, then ever finer steps around the best found.
+
+A profile is first tried at the nominal parameters, which refuse most, then on all drawn machines, those that
+refused others before first. It counts only if it works on all but the few allowed.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hersey.stability.plan.draws import Trials
+from hersey.stability.plan.trial import ROUNDING, MachineSample, Outcome, Shape, TemperatureProfile
+
+Progress = Callable[[int, int], object]
+
+#: Durations of the grid in laps (periods of spring and mass), beyond what the acceleration needs.
+_RISES = (0.0, 0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0)
+_HOLDS = (0.0, 0.1, 0.2, 0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 3.0, 5.0, 8.0)
+_FALLS = (0.0, 0.1, 0.2, 0.35, 0.5, 0.75, 1.0, 1.5, 2.5, 4.0, 7.0)
+#: Factors on these durations: each only if those before find nothing.
+_STRETCHES = (1.0, 6.0, 40.0)
+#: Peak speeds of the grid between target and greatest.
+_PEAKS = 10
+#: Profiles tried at random below the best found, and steps of the refinement as shares of its duration.
+_RANDOM = 600
+_STEPS = (0.15, 0.06, 0.025, 0.01, 0.004, 0.0015)
+#: Factors by which rise, hold and fall of failed profiles become longer.
+_LONGER = (1.0, 1.02, 1.05, 1.1, 1.2, 1.4, 2.0)
+#: Profiles of the grid so much slower than the best are starts too, those of them that differ by a share.
+_NEAR, _APART, _STARTS = 1.03, 0.15, 5
+#: Profiles that differ, kept for the search after a failed verification.
+_KEPT = 12
+#: Best profiles refined, others of the grid so much slower at most, steps at random, draws of a step.
+_BEST, _OTHERS, _VALLEYS, _TRIES, _DRAWS = 3, 9, 1.15, 160, 6
+#: Profiles tried for the number that would do, those tried on all machines, and waits among them.
+_PROBES, _PROBED, _FEW_WAITS = 4000, 200, 5
+#: Speeds and durations within this factor are the same, and relative time that a simpler profile may cost.
+_SAME, _SAME_TIME = 1.01, 1e-5
+#: Waits of the grid over a temperature profile, and share of the profile's duration to which a wait is found.
+_WAITS = 24
+#: Profiles of the grid after each of several waits, and of the slow grid.
+_THINNED = 300
+_WAIT_STEP = 0.02
+
+
+@dataclass(frozen=True)
+class Room:
+    """What the drive may do: greatest speed (m/s), greatest acceleration (m/s^2; infinite for jumps)."""
+
+    speed: float
+    acceleration: float
+
+    def shape(
+        self, target: float, peak: float, rise: float, hold: float, fall: float, wait: float = 0.0
+    ) -> Shape:
+        """Return the profile whose ramps take so much longer than they must."""
+        peak = max(peak, target)
+        least_rise, least_fall = peak / self.acceleration, (peak - target) / self.acceleration
+        return Shape(target, peak, least_rise + rise, hold, least_fall + fall, wait)
+
+    def allows(self, shape: Shape) -> bool:
+        """Return whether the profile keeps within."""
+        return shape.peak <= self.speed and shape.acceleration <= self.acceleration * (1.0 + ROUNDING)
+
+
+class Search:
+    """The search for the quickest profile on given machines."""
+
+    def __init__(
+        self,
+        nominal: MachineSample,
+        trials: Trials,
+        thermal: TemperatureProfile,
+        target: float,
+        room: Room,
+        *,
+        seed: int,
+        progress: Progress | None = None,
+    ) -> None:
+        """Keep what the search needs; the seed is that of the profiles tried at random."""
+        self.nominal, self.trials, self.thermal = nominal, trials, thermal
+        self.target, self.room, self.seed = target, room, seed
+        self.progress = progress
+        self.best: Shape | None = None
+        self.time = math.inf
+        self.found: list[tuple[float, Shape]] = []
+        self.known: list[Shape] = []
+        self.count = 0
+
+    def run(self, *, again: bool = False) -> Shape | None:
+        """Return the quickest profile, or None if none of the family works; again: not far from the best."""
+        for stretch in _STRETCHES:
+            self._over_grid(stretch)
+            if self.best is not None:
+                break
+        if self.best is None:
+            return None
+        self._at_random()
+        starts = self._apart(_STARTS)
+        if not again:
+            starts += self._others()
+        rng = np.random.default_rng([self.seed, 8])
+        valleys = []
+        for i, start in enumerate(starts):
+            self._report(i, len(starts))
+            valleys.append(self._wander(start, rng))
+        for valley in sorted(valleys, key=_time)[:_BEST]:
+            self._descend(valley)
+        self._wander((self.time, self.best), rng)
+        self._simplify()
+        return self.best
+
+    def again(self, machines: Sequence[MachineSample], allowed: int) -> Shape | None:
+        """Return the quickest profile that works on these machines too, all but the allowed."""
+        everyone = [*self.trials.machines, *machines]
+        self.trials = Trials(everyone, allowed, self.thermal, self.trials.force_limit)
+        self.known += [shape for _, shape in self._apart(_KEPT)]
+        self.found, self.best, self.time = [], None, math.inf
+        longer = {
+            replace(shape, rise=shape.rise * up, hold=shape.hold * on, fall=shape.fall * down)
+            for shape in self.known
+            for up, on, down in itertools.product(_LONGER, repeat=3)
+        }
+        for shape in sorted(longer, key=lambda shape: shape.end):
+            self.attempt(shape)
+        return self.run(again=True)
+
+    def least(self, demand: Callable[[Shape, Outcome], float]) -> tuple[float, Shape] | None:
+        """Return the profile that works with the least demand on the drive, and the demand at the nominal.
+
+        Of the grid only: the number that would do, not the least possible.
+        """
+        rows: list[tuple[float, Shape]] = []
+        grid = [shape for stretch in _STRETCHES for shape in self.grid(stretch)]
+        waits = self.waits()
+        waits = waits[:: max(1, len(waits) // _FEW_WAITS)]
+        few = max(1, len(grid) * len(waits) // _PROBES)
+        tried = [(wait, shape) for wait in waits for shape in grid][::few]
+        for i, (wait, shape) in enumerate(tried):
+            if i % 64 == 0:
+                self._report(i, len(tried))
+            moved = replace(shape, wait=wait)
+            found = self.nominal.trial(moved, self.thermal, self.trials.force_limit, force=True)
+            if found.ready < math.inf:
+                rows.append((demand(moved, found), moved))
+        rows.sort(key=_time)
+        even = rows[:: max(1, len(rows) // _PROBED)]
+        return next((row for row in even if self.trials.time(row[1]) < math.inf), None)
+
+    def slower(self, shape: Shape) -> Shape:
+        """Return the profile with the least peak speed, to a per cent, that works with the same ramps."""
+        low, high = shape.target, shape.peak
+        while high - low > 0.01 * high:
+            middle = 0.5 * (low + high)
+            moved = replace(shape, peak=middle)
+            if self.trials.time(moved) < math.inf:
+                shape, high = moved, middle
+            else:
+                low = middle
+        return shape
+
+    def grid(self, stretch: float = 1.0) -> list[Shape]:
+        """Return the profiles of the grid that the room allows, quickest first, without waits."""
+        lap = self.nominal.lap * stretch
+        peaks = np.linspace(self.target, self.room.speed, _PEAKS + 1)[1:].tolist()
+        if not self.room.speed > self.target:
+            peaks = []
+        direct = [self.room.shape(self.target, self.target, lap * r, 0.0, 0.0) for r in (*_RISES, *_HOLDS)]
+        over = (
+            self.room.shape(self.target, peak, lap * r, lap * h, lap * f)
+            for peak, r, h, f in itertools.product(peaks, _RISES, _HOLDS, _FALLS)
+        )
+        return sorted((s for s in {*direct, *over} if self.room.allows(s)), key=lambda s: (s.end, s.peak))
+
+    def waits(self) -> list[float]:
+        """Return the waits of the grid: none, and where the temperature has moved by equal shares."""
+        levels = self.thermal.levels
+        if len({value for _, value in levels}) < 2:
+            return [0.0]
+        even = np.linspace(0.0, self.thermal.end, 20 * _WAITS)
+        moved = np.cumsum(np.abs(np.diff([self.thermal.at(t) or 0.0 for t in even], prepend=0.0)))
+        moved = moved - moved[0]
+        shares = np.linspace(0.0, moved[-1], _WAITS)
+        return sorted({0.0, *np.interp(shares, moved, even).tolist(), self.thermal.end})
+
+    def attempt(self, shape: Shape, below: float = math.inf) -> float:
+        """Return the time of a profile, infinite if it fails or is not below that of the best, or another."""
+        below = self.time if below == math.inf else below
+        if shape.end >= below or not self.room.allows(shape):
+            return math.inf
+        self.count += 1
+        if self.nominal.trial(shape, self.thermal, self.trials.force_limit).ready >= below:
+            return math.inf
+        time = self.trials.time(shape, below)
+        if time >= below:
+            return math.inf
+        self.found.append((time, shape))
+        if time < self.time:
+            self.best, self.time = shape, time
+        return time
+
+    def _report(self, done: int, total: int) -> None:
+        if self.progress is not None:
+            self.progress(done, total)
+
+    def _over_grid(self, stretch: float) -> None:
+        """Try the grid at every wait that is not hopeless, the least wait first, until something works."""
+        grid = self.grid(stretch)
+        waits = [wait for wait in self.waits() if self._may_start(wait)]
+        if len(waits) > 1 or stretch > 1.0:
+            grid = grid[:: max(1, len(grid) // _THINNED)]
+        for i, wait in enumerate(waits):
+            self._at_wait(grid, wait, i * len(grid), len(waits) * len(grid))
+            if self.best is not None:
+                if wait > 0:
+                    self._earlier(max((w for w in self.waits() if w < wait), default=0.0), wait, grid)
+                return
+
+    def _at_wait(self, grid: Sequence[Shape], wait: float, done: int, total: int) -> bool:
+        """Try the grid after a wait; whether something worked that was quicker than the best."""
+        before = self.time
+        for j, shape in enumerate(grid):
+            moved = replace(shape, wait=wait)
+            if moved.end >= self.time:
+                break
+            if j % 64 == 0:
+                self._report(done + j, total)
+            self.attempt(moved, self.time * _NEAR)
+        return self.time < before
+
+    def _may_start(self, wait: float) -> bool:
+        """Whether enough belts break away within the force allowed, after this wait or a little later."""
+        later = self.thermal.end / _WAITS if self.thermal.schedule is not None else 0.0
+        limit = self.trials.force_limit
+        if limit == math.inf:
+            return True
+        temperatures = self.thermal.at(wait), self.thermal.at(wait + later)
+        return any(
+            self.trials.kept([m.drag.law_at(t).breakaway_force for m in self.trials.machines]) <= limit
+            for t in temperatures
+        )
+
+    def _earlier(self, early: float, late: float, grid: Sequence[Shape]) -> None:
+        """Halve the wait between one at which nothing works and one at which something does."""
+        assert self.best is not None
+        while late - early > _WAIT_STEP * self.best.ramps:
+            middle = 0.5 * (early + late)
+            tried = [replace(shape, wait=middle) for _, shape in sorted(self.found, key=_time)[:8]]
+            works = [self.attempt(shape) < math.inf for shape in tried]
+            if any(works) or self._at_wait(grid, middle, 0, len(grid)):
+                late = middle
+            else:
+                early = middle
+
+    def _at_random(self) -> None:
+        """Try profiles quicker than the best, spread evenly over the family."""
+        rng = np.random.default_rng([self.seed, 7])
+        count = _RANDOM if len(self.waits()) == 1 else _RANDOM // 4
+        for i, row in enumerate(rng.uniform(size=(count, 5))):
+            if i % 64 == 0:
+                self._report(i, count)
+            assert self.best is not None
+            self.attempt(self._between(row, self.best))
+
+    def _between(self, row: NDArray[np.float64], best: Shape) -> Shape:
+        peak = self.target + row[0] * max(self.room.speed - self.target, 0.0)
+        least = (2.0 * peak - self.target) / self.room.acceleration
+        spare = max(best.ramps - least, 0.0) * row[1]
+        shares = np.sort(row[2:4])
+        return self.room.shape(
+            self.target,
+            peak,
+            spare * shares[0] ** 2,
+            spare * (shares[1] - shares[0]),
+            spare * (1.0 - shares[1]),
+            best.wait * (1.0 if row[4] < 0.5 else 1.0 - 0.1 * (row[4] - 0.5)),
+        )
+
+    def _others(self) -> list[tuple[float, Shape]]:
+        """Profiles of the grid a little slower than the best, one for each peak speed: other valleys."""
+        assert self.best is not None
+        most, seen = self.time * _VALLEYS, set[float]()
+        found: list[tuple[float, Shape]] = []
+        for j, shape in enumerate(self.grid()):
+            moved = replace(shape, wait=self.best.wait)
+            if j % 64 == 0:
+                self._report(j, _OTHERS * 1000)
+            if moved.end >= most or len(found) >= _OTHERS:
+                break
+            if moved.peak not in seen and (time := self.attempt(moved, most)) < math.inf:
+                seen.add(moved.peak)
+                found.append((time, moved))
+        return found
+
+    def _apart(self, count: int) -> list[tuple[float, Shape]]:
+        """The quickest of the profiles found that differ from one another."""
+        chosen: list[tuple[float, Shape]] = []
+        for time, shape in sorted(self.found, key=_time):
+            if all(_differ(shape, other) for _, other in chosen):
+                chosen.append((time, shape))
+                if len(chosen) == count:
+                    break
+        return chosen
+
+    def _wander(self, start: tuple[float, Shape], rng: np.random.Generator) -> tuple[float, Shape]:
+        """Step at random, far and near, and keep what makes the profile quicker."""
+        time, shape = start
+        span = max(self.room.speed - self.target, 0.0)
+        low, high = np.log(_STEPS[-1]), np.log(2.0 * _STEPS[0])
+        for _ in range(_TRIES):
+            moved = shape
+            for _ in range(_DRAWS):
+                step = np.exp(rng.uniform(low, high))
+                up, rise, hold, fall = step * rng.standard_normal(4) * (rng.uniform(size=4) < 0.6)
+                wait = -abs(step * rng.standard_normal()) * shape.ramps if shape.wait > 0 else 0.0
+                size = shape.ramps
+                moved = self._moved(shape, up * span, rise * size, hold * size, fall * size, wait)
+                if moved.end < time:
+                    break
+            found = self.attempt(moved, time)
+            if found < time:
+                time, shape = found, moved
+        return time, shape
+
+    def _descend(self, valley: tuple[float, Shape]) -> None:
+        """Step along every combination of the numbers of a profile, ever finer."""
+        time, shape = valley
+        for step in _STEPS:
+            moved: tuple[float, Shape] | None = (time, shape)
+            while moved is not None:
+                time, shape = moved
+                moved = self._stepped(time, shape, step)
+
+    def _simplify(self) -> None:
+        """Leave out what is too short to matter: an overshoot, a hold."""
+        assert self.best is not None
+        shape = self.best
+        if shape.peak < _SAME * shape.target:
+            shape = replace(shape, peak=shape.target)
+        if shape.hold < (_SAME - 1.0) * shape.ramps:
+            shape = replace(shape, hold=0.0)
+        if shape == self.best or not self.room.allows(shape):
+            return
+        time = self.trials.time(shape)
+        if time < self.time * (1.0 + _SAME_TIME):
+            self.best, self.time = shape, time
+
+    def _stepped(self, time: float, shape: Shape, step: float) -> tuple[float, Shape] | None:
+        span, size = step * max(self.room.speed - self.target, 0.0), step * shape.ramps
+        for up, rise, hold, fall in itertools.product((0, -1, 1), repeat=4):
+            moved = self._moved(shape, up * span, rise * size, hold * size, fall * size, 0.0)
+            found = self.attempt(moved, time)
+            if found < time:
+                return found, moved
+        return None
+
+    def _moved(self, shape: Shape, up: float, rise: float, hold: float, fall: float, wait: float) -> Shape:
+        """The profile with its numbers changed by so much, kept within the room."""
+        return self._within(
+            Shape(
+                self.target,
+                min(shape.peak + up, self.room.speed),
+                shape.rise + rise,
+                max(shape.hold + hold, 0.0),
+                shape.fall + fall,
+                max(shape.wait + wait, 0.0),
+            )
+        )
+
+    def _within(self, shape: Shape) -> Shape:
+        """Return the profile with ramps as long as the acceleration demands."""
+        rise = max(shape.rise, shape.peak / self.room.acceleration)
+        fall = max(shape.fall, (shape.peak - shape.target) / self.room.acceleration)
+        return replace(shape, rise=rise, fall=fall)
+
+
+def _time(row: tuple[float, Shape]) -> float:
+    return row[0]
+
+
+def _differ(one: Shape, other: Shape) -> bool:
+    pairs = ((one.rise, other.rise), (one.hold, other.hold), (one.fall, other.fall))
+    return max(abs(a - b) for a, b in pairs) > _APART * other.ramps

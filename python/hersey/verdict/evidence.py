@@ -1,0 +1,289 @@
+"""From measurement to film: how thick, how loaded, and which regime the exponents speak for.
+
+The measured film is delta = eta A/B with B = torque/(omega R^2) the translational damping and A the area of
+the nip. The Hersey number is eta U/p (m) with p = N/(nip L), the Sommerfeld number eta U L/N (no unit), both
+with the sliding speed U = omega R; the friction coefficient is torque/(R N).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import stats
+
+from hersey import _core
+from hersey.arrays import FloatArray
+from hersey.damping.dwells import SteadyPoints
+from hersey.damping.estimation import CONFIDENCE, Estimate, quantile
+from hersey.damping.surface import DampingSurface
+from hersey.errors import InsufficientDataError, ParameterError
+from hersey.lubrication.contact import Contact
+from hersey.lubrication.film import REGIMES, Film, drag_torque, film_thickness
+from hersey.lubrication.lubricant import Lubricant
+from hersey.lubrication.reynolds import exponent, solve_line_contact
+
+#: Exponent of damping in speed, least and greatest, that each state of lubrication predicts, and why.
+PREDICTIONS: tuple[tuple[str, float, float, str], ...] = (
+    ("starved", 0.0, 0.0, "a film of fixed thickness: torque proportional to speed"),
+    ("isoviscous-elastic", -0.60, -0.56, "soft EHL; on a bonded layer down to -0.56 by numerical solutions"),
+    ("piezoviscous-rigid", -2 / 3, -2 / 3, "film as speed^(2/3)"),
+    ("piezoviscous-elastic", -0.70, -0.70, "Dowson and Higginson; Eq. 10 of the paper"),
+    ("isoviscous-rigid", -1.0, -1.0, "film as speed: drag of a rigid pair hardly varies"),
+    ("mixed or boundary", -np.inf, -1.0, "torque falls with speed: the surfaces touch"),
+)
+
+
+@dataclass(frozen=True)
+class MeasuredFilm:
+    """What each dwell says of the film; arrays of shape (points,), SI.
+
+    ``low`` and ``high`` enclose ``thickness`` at 95 %: errors of torque and scatter between dwells, and what
+    is stated of viscosity and nip (``systematic``, a factor common to all dwells, 1 if nothing is stated).
+    ``grip`` is the friction at which the belt slips on the roll, if known.
+    """
+
+    speed: FloatArray
+    temperature: FloatArray
+    torque: FloatArray
+    thickness: FloatArray
+    low: FloatArray
+    high: FloatArray
+    systematic: float
+    friction: FloatArray
+    hersey_number: FloatArray
+    sommerfeld_number: FloatArray
+    lambda_ratio: FloatArray | None
+    predicted: Film
+    predicted_torque: FloatArray
+    calibration: Estimate  #: measured over predicted torque, geometric mean
+    on_film: FloatArray  #: 1 where the dwell is on the rising branch, 0 on the falling one
+    grip: float | None
+
+
+def measured_film(
+    points: SteadyPoints,
+    surface: DampingSurface,
+    contact: Contact,
+    lubricant: Lubricant,
+    *,
+    temperature: float | None = None,
+    grip: float | None = None,
+) -> MeasuredFilm:
+    """Return the film that the dwells measure, beside the predicted one.
+
+    Parameters
+    ----------
+    points, surface
+        Of a log, and the surface fitted to it.
+    contact, lubricant
+        The nip and what is in it.
+    temperature
+        K, of an isothermal log.
+    grip
+        Friction coefficient at which the belt slips on the roll.
+
+    Raises
+    ------
+    InsufficientDataError
+        If the log holds no temperature and none is given.
+    """
+    speed, torque = np.abs(points.column("speed")), np.abs(points.column("torque"))
+    kelvin = np.asarray(points.column("temperature"), dtype=float)
+    if surface.b is None or not np.isfinite(kelvin).all():
+        if temperature is None:
+            raise InsufficientDataError(
+                "the log holds no temperatures: state that of the film, --at '180 degC'"
+            )
+        kelvin = np.full(speed.size, temperature)
+    film = film_thickness(contact, lubricant, speed=speed, temperature=kelvin)
+    expected = drag_torque(contact, lubricant, speed=speed, temperature=kelvin)
+    radius, nip = contact.roll_radius, film.nip
+    thickness = film.viscosity * nip.width * contact.length * speed * radius**2 / torque
+    freedom = surface.statistics.points - surface.statistics.variables
+    relative = quantile(freedom) * np.hypot(
+        points.column("torque_error") / torque, surface.statistics.scatter
+    )
+    shares = [share for share in (lubricant.uncertainty, contact.nip_uncertainty) if share is not None]
+    systematic = float(np.exp(np.sqrt(sum(np.log1p(share) ** 2 for share in shares))))
+    reach = np.exp(np.hypot(relative, np.log(systematic)))
+    sliding = speed * radius
+    rises = np.array([_rises(surface, w, t) for w, t in zip(speed, kelvin, strict=True)])
+    roughness = contact.roughness
+    return MeasuredFilm(
+        speed=speed,
+        temperature=kelvin,
+        torque=torque,
+        thickness=thickness,
+        low=thickness / reach,
+        high=thickness * reach,
+        systematic=systematic,
+        friction=torque / (radius * contact.load),
+        hersey_number=film.viscosity * sliding / nip.pressure_mean,
+        sommerfeld_number=film.viscosity * sliding / contact.load_per_length,
+        lambda_ratio=None if roughness is None else thickness / roughness,
+        predicted=film,
+        predicted_torque=expected,
+        calibration=_mean_ratio(torque[rises], expected[rises])
+        if rises.any()
+        else _mean_ratio(torque, expected),
+        on_film=rises.astype(float),
+        grip=grip,
+    )
+
+
+def _rises(surface: DampingSurface, speed: float, kelvin: float) -> bool:
+    at = surface.transition_speed(kelvin if surface.b is not None else None)
+    return bool(np.isnan(at) or speed >= at)
+
+
+def _mean_ratio(measured: FloatArray, expected: FloatArray) -> Estimate:
+    logs = np.log(measured / expected)
+    mean = float(logs.mean())
+    error = float(logs.std(ddof=1) / np.sqrt(logs.size)) if logs.size > 1 else 0.0
+    reach = quantile(logs.size - 1) * error
+    value = float(np.exp(mean))
+    return Estimate(value, value * error, float(np.exp(mean - reach)), float(np.exp(mean + reach)))
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """What a state of lubrication predicts of the damping exponent, against what was measured."""
+
+    name: str
+    low: float
+    high: float
+    meaning: str
+    p_value: float
+    holds_here: bool  #: whether this is the regime of the chart for this contact
+
+    @property
+    def consistent(self) -> bool:
+        """Whether it survives at the 5 % level."""
+        return self.p_value > 1.0 - CONFIDENCE
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """Measured exponents against those predicted for this contact."""
+
+    exponent: Estimate  #: of damping in speed, above the transition
+    expected: float  #: of damping in speed by the governing law for this contact, with corrections
+    solved: float | None  #: the same with pressure and film solved numerically; None if no solution is found
+    predictions: tuple[Prediction, ...]
+    thermal: Estimate | None  #: d ln B/d ln T at the middle of the log, T in K
+    thermal_expected: float  #: the same by the governing law and the lubricant
+    activation_energy: float | None  #: apparent, of torque, J/mol
+    viscosity_activation_energy: float  #: of the lubricant there, J/mol
+    text: str
+
+
+def verdict(
+    measured: MeasuredFilm, surface: DampingSurface, contact: Contact, lubricant: Lubricant
+) -> Verdict:
+    """Return what the exponents say of this contact."""
+    film = measured.predicted
+    held = REGIMES[int(np.bincount(film.regime.ravel(), minlength=4).argmax())]
+    freedom = surface.statistics.points - surface.statistics.variables
+    predictions = tuple(
+        Prediction(name, low, high, why, _p_value(surface.c, low, high, freedom), name == held)
+        for name, low, high, why in PREDICTIONS
+    )
+    speed = float(np.exp(np.log(measured.speed).mean()))
+    kelvin = float(measured.temperature.mean())
+    expected = _slope(contact, lubricant, speed, kelvin, in_speed=True) - 1.0
+    solved = solved_exponent(contact, lubricant, speed, kelvin)
+    thermal_expected = _slope(contact, lubricant, speed, kelvin, in_speed=False)
+    thermal = _thermal(surface, kelvin)
+    energy = None if thermal is None else -_core.GAS_CONSTANT * kelvin * thermal.value
+    own = float(lubricant.activation_energy(kelvin))
+    text = _text(surface.c, expected, solved, predictions, held, thermal, thermal_expected)
+    return Verdict(surface.c, expected, solved, predictions, thermal, thermal_expected, energy, own, text)
+
+
+def solved_exponent(contact: Contact, lubricant: Lubricant, speed: float, temperature: float) -> float | None:
+    """Return the exponent of damping in speed of this contact, by its numerical solution.
+
+    The layer is bonded to the roll, the film isothermal, Newtonian and fully flooded.
+    None where the solver finds no solution.
+
+    Parameters
+    ----------
+    speed
+        Of the roll, rad/s.
+    temperature
+        Of the film, K.
+    """
+    try:
+        solution = solve_line_contact(
+            contact.reduced_radius,
+            contact.load_per_length,
+            0.5 * speed * contact.roll_radius,
+            float(lubricant.viscosity(temperature)),
+            effective_modulus=contact.effective_modulus,
+            thickness=contact.rubber_thickness,
+            poisson=contact.poisson_ratio,
+            pressure_viscosity=float(lubricant.alpha(temperature)),
+        )
+    except ParameterError:
+        return None
+    return exponent("damping", solution)
+
+
+def _p_value(c: Estimate, low: float, high: float, freedom: int) -> float:
+    away = max(low - c.value, c.value - high, 0.0) / max(c.error, 1e-12)
+    sides = 1.0 if np.isinf(low) else 2.0
+    return min(1.0, sides * float(stats.t.sf(away, max(freedom, 1))))
+
+
+def _slope(contact: Contact, lubricant: Lubricant, speed: float, kelvin: float, *, in_speed: bool) -> float:
+    """Local exponent of the predicted torque in speed or in temperature (K)."""
+    step = np.array([1.0 / 1.001, 1.001])
+    speeds, kelvins = (speed * step, kelvin) if in_speed else (speed, kelvin * step)
+    torque = drag_torque(contact, lubricant, speed=speeds, temperature=kelvins)
+    return float(np.log(torque[1] / torque[0]) / (2.0 * np.log(1.001)))
+
+
+def _thermal(surface: DampingSurface, kelvin: float) -> Estimate | None:
+    """The exponent of damping in absolute temperature, whatever the scale of the fit."""
+    if surface.b is None:
+        return None
+    scale = 1.0 if surface.temperature_scale == "K" else kelvin / (kelvin - 273.15)
+    b = surface.b
+    ends = sorted((b.low * scale, b.high * scale))
+    return Estimate(b.value * scale, b.error * abs(scale), *ends)
+
+
+def _text(
+    c: Estimate,
+    expected: float,
+    solved: float | None,
+    predictions: tuple[Prediction, ...],
+    held: str,
+    thermal: Estimate | None,
+    thermal_expected: float,
+) -> str:
+    kept = [p.name for p in predictions if p.consistent]
+    lines = [
+        f"The regime chart puts this contact in the {held} regime, where damping goes as speed to the power "
+        f"{expected:.2f}; measured {c}."
+    ]
+    if solved is not None:
+        lines.append(f"Solved numerically for this roll, the film gives the power {solved:.2f}.")
+    if held in kept:
+        lines.append("The measured exponent agrees with it.")
+    elif kept:
+        lines.append(f"The measured exponent agrees with {' and '.join(kept)} instead.")
+    else:
+        lines.append("The measured exponent agrees with no regime.")
+    if not next(p.holds_here for p in predictions if p.name == "piezoviscous-elastic"):
+        lines.append(
+            "Eq. 5 of the paper (Dowson-Higginson) does not apply to this contact, whatever the exponent."
+        )
+    if thermal is not None:
+        says = "agrees" if thermal.low <= thermal_expected <= thermal.high else "disagrees"
+        lines.append(
+            f"With temperature (K) damping goes to the power {thermal}; the film of this lubricant predicts "
+            f"{thermal_expected:.2f}, which {says}."
+        )
+    return " ".join(lines)

@@ -1,0 +1,185 @@
+"""Traces from files, and ``hersey cycles``."""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import sys
+import warnings
+from pathlib import Path
+
+import numpy as np
+import pytest
+import typer
+from scipy.io import savemat
+
+import hersey.cli.cycles  # noqa: F401 - it adds the command
+from hersey.cli import app
+from hersey.errors import (
+    ChannelError,
+    HerseyError,
+    MissingFileError,
+    OutputError,
+    UnitError,
+    UnreadableLogError,
+)
+from hersey.identification.trace_file import read_trace
+from tests.conftest import ROOT, shared
+
+CSV = ROOT / "examples" / "stick-slip.csv"
+COMMAND = "from hersey.cli import main; import hersey.cli.cycles; main()"
+
+
+def shown(capsys: pytest.CaptureFixture[str], *arguments: str | Path) -> str:
+    """What the command prints, run here."""
+    typer.main.get_command(app).main(["cycles", *map(str, arguments)], standalone_mode=False)
+    return capsys.readouterr().out
+
+
+def run(*arguments: str | Path, cwd: Path) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-c", COMMAND, "cycles", *map(str, arguments)],
+        cwd=cwd,
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=120,
+    )
+
+
+def test_the_shipped_trace_comes_from_its_seed(tmp_path: Path) -> None:
+    script = ROOT / "examples" / "stick_slip_trace.py"
+    done = subprocess.run([sys.executable, script, tmp_path / "again.csv"], check=False, capture_output=True)
+    assert done.returncode == 0, done.stderr
+    again, shipped = (read_trace(path) for path in (tmp_path / "again.csv", CSV))
+    np.testing.assert_allclose(again.value, shipped.value, atol=2e-4)
+    assert CSV.read_text().startswith("# SYNTHETIC")
+    assert CSV.stat().st_size < 200_000
+
+
+def test_identified_drive_of_the_shipped_trace(tmp_path: Path) -> None:
+    """Truth, which stands in the head of the file, within every interval given."""
+    result = run(CSV, "--drive-speed", "20 mm/s", "--identify", "--json", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    document = json.loads(result.stdout)
+    assert document["kind"] == "stick_slip"
+    assert document["command"].endswith("--identify --json")
+    truth = dict(part.split(" ") for part in CSV.read_text().split("SI: ")[1].split(";")[0].split(", "))
+    drive = document["drive"]
+    assert {"stiffness", "mass", "transition_force"} <= set(drive["estimates"])
+    for name, estimate in drive["estimates"].items():
+        assert estimate["low"] <= float(truth[name]) <= estimate["high"], name
+    assert (drive["closure"], drive["closure_decided"]) == ("retained", True)
+
+
+def test_summary_figure_and_known_values(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    figure = tmp_path / "fit.png"
+    options = ["--drive-speed", "20 mm/s", "--identify", "--closures", "retained"]
+    text = shown(capsys, CSV, *options, "--known", "mass=500 g", "--figure", figure)
+    assert "stick slip: 110 slips" in text
+    assert "0.5 kg (given)" in text
+    assert figure.read_bytes().startswith(b"\x89PNG")
+    with pytest.raises(OutputError, match="say --force"):
+        shown(capsys, CSV, "--figure", figure)
+
+
+def test_a_mistake_ends_in_one_line(tmp_path: Path) -> None:
+    result = run(CSV, "--drive-speed", "20", cwd=tmp_path)
+    assert (result.returncode, result.stdout) == (2, "")
+    assert "needs a number and a unit" in result.stderr
+    assert result.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--drive-speed", "0 mm/s"], "must be greater than 0"),
+        (["--drive-speed", "3 rpm"], "--drive-speed with a trace of force in N"),
+        (["--known", "mass=1 kg"], "--known needs --identify"),
+        (["--identify"], "give drive_speed"),
+        (["--identify", "--known", "weight=1 kg"], "write NAME=VALUE with one of stiffness, mass"),
+        (["--identify", "--known", "mass=1 s"], "--known mass: unit 's' is not a unit of mass"),
+        (["--least-drop", "5 mm"], "--least-drop"),
+        (["--value", "pull"], "there is no column 'pull': it has time [s], force [N]"),
+        (["--quantity", "heat"], "quantity 'heat' is not known"),
+        (["--figure", "fit.bmp"], "name a file that ends in .png"),
+    ],
+)
+def test_mistakes_are_named(arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(HerseyError, match=re.escape(message)):
+        shown(capsys, CSV, *arguments)
+
+
+def test_units_and_names_of_a_csv_file(tmp_path: Path) -> None:
+    path = tmp_path / "pull.csv"
+    path.write_text("# bench 2\nTime (ms),pull,Torque [mN m]\n0,1,5\n1,,6\n2,nan,7\n")
+    torque = read_trace(path)
+    assert torque.quantity == "torque"
+    np.testing.assert_allclose(torque.time, [0, 1e-3, 2e-3])
+    np.testing.assert_allclose(torque.value, [5e-3, 6e-3, 7e-3])
+    pull = read_trace(path, value="pull", unit="lbf")
+    assert pull.value[0] == pytest.approx(4.4482216)
+    assert np.isnan(pull.value[1:]).all()
+    with pytest.raises(UnitError, match=r"pull has no unit: give --unit N"):
+        read_trace(path, value="pull")
+    path.write_text("time [s],force [N]\n0,1\n1,l0\n")
+    with pytest.raises(UnreadableLogError, match=r"column force \[N\]: row 2 is 'l0', which is no number"):
+        read_trace(path)
+    path.write_text("time [s],a,b\n0,1,2\n")
+    with pytest.raises(ChannelError, match="holds no force, torque or speed"):
+        read_trace(path)
+    with pytest.raises(MissingFileError):
+        read_trace(tmp_path / "none.csv")
+
+
+def test_mat_files(tmp_path: Path) -> None:
+    path = tmp_path / "pull.mat"
+    savemat(path, {"t": np.arange(5.0), "force": np.arange(5.0), "long": np.arange(9.0), "note": "x"})
+    found = read_trace(path, time_unit="ms", unit="N")
+    np.testing.assert_allclose(found.time, np.arange(5) * 1e-3)
+    with pytest.raises(UnitError, match="t has no unit: give --time-unit s"):
+        read_trace(path, unit="N")
+    with pytest.raises(UnreadableLogError, match="t has 5 numbers, long 9"):
+        read_trace(path, value="long", time_unit="s", unit="N")
+
+
+def test_damaged_files_end_in_a_clear_error_or_a_partial_read(tmp_path: Path) -> None:
+    rng = np.random.default_rng(0)
+    savemat(tmp_path / "whole.mat", {"t": np.arange(500.0), "force": rng.normal(size=500)})
+    wholes = [(tmp_path / "whole.mat").read_bytes(), CSV.read_bytes()[:20_000]]
+    for whole, suffix in zip(wholes, (".mat", ".csv"), strict=True):
+        path = tmp_path / f"damaged{suffix}"
+        for share in range(1, 100, 3):
+            path.write_bytes(whole[: len(whole) * share // 100])
+            _reads_or_says_why(path)
+        for _ in range(60):
+            flipped = bytearray(whole)
+            flipped[rng.integers(len(whole))] ^= 1 << int(rng.integers(8))
+            path.write_bytes(bytes(flipped))
+            _reads_or_says_why(path)
+
+
+def _reads_or_says_why(path: Path) -> None:
+    found, reason = None, ""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        try:
+            found = read_trace(path, time_unit="s", unit="N")
+        except HerseyError as error:
+            reason = str(error)
+    assert path.name in reason if found is None else found.time.shape == found.value.shape
+
+
+@pytest.mark.parametrize(
+    ("speed", "kind", "slips"), [(42, "stick_slip", 477), (1100, "stick_slip", 206), (4300, "inertial", 130)]
+)
+def test_the_slider_through_the_command(
+    speed: int, kind: str, slips: int, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = shared(f"data/stick-slip/k1002Nm_v{speed}.mat")
+    units = ["--time-unit", "s", "--unit", "1", "--least-drop", "0.05"]
+    document = json.loads(shown(capsys, path, "--drive-speed", f"{speed} um/s", *units, "--json"))
+    assert document["kind"] == kind
+    assert document["slips"] == pytest.approx(slips, rel=0.05)
+    assert document["unit"] == "1"

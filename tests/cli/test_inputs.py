@@ -1,0 +1,124 @@
+"""Commands hand on what they are told: seeds, temperatures, limits; and never write over what they read."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+from typing import Any
+
+import pytest
+import typer
+
+import hersey
+from hersey.cli import app
+from hersey.cli.plan import _drag
+from hersey.errors import OutputError
+from hersey.machine.machine import read_machine
+from tests.cli.test_cli import run
+from tests.conftest import ROOT
+
+
+def typed(*arguments: str | Path) -> None:
+    """Run a command here, so that its error comes out as it is."""
+    typer.main.get_command(app).main(list(map(str, arguments)), standalone_mode=False)
+
+
+def test_a_report_never_replaces_what_it_reads(bench_csv: Path, tmp_path: Path) -> None:
+    machine = tmp_path / "machine.toml"
+    shutil.copy(ROOT / "examples" / "machine.toml", machine)
+    log = tmp_path / "bench.csv"
+    shutil.copy(bench_csv, log)
+    for path in (machine, log):
+        before = path.read_bytes()
+        with pytest.raises(OutputError, match=r"is an input: name another file for the output$"):
+            typed("report", log, "--tare", "standing", "--machine", machine, "--out", path, "--force")
+        assert path.read_bytes() == before
+
+
+def test_a_map_and_a_plan_never_replace_what_they_read(bench_csv: Path, tmp_path: Path) -> None:
+    fit = tmp_path / "fit.html"
+    fit.write_text("{}")
+    with pytest.raises(OutputError, match=r"fit\.html is an input"):
+        typed("map", ROOT / "examples" / "machine.toml", "--fit", fit, "--out", fit, "--force")
+    machine, course = tmp_path / "machine.toml", tmp_path / "course.csv"
+    shutil.copy(ROOT / "examples" / "machine.toml", machine)
+    course.write_text("time (s),temperature (degC)\n0,150\n")
+    for path in (machine, course, bench_csv):
+        with pytest.raises(OutputError, match="is an input"):
+            typed(
+                "plan",
+                machine,
+                bench_csv,
+                "--target",
+                "40 mm/s",
+                "--temperature-profile",
+                course,
+                "--out",
+                path,
+                "--force",
+            )
+
+
+def test_the_stick_speed_moves_with_the_temperature_asked_for(points: hersey.SteadyPoints) -> None:
+    surface = hersey.fit(points)
+    machine = read_machine(ROOT / "examples" / "machine.toml")
+    whole = surface.drag(roll_radius=0.015, stick_speed=machine.stick_speed)
+    for kelvin in (373.15, 453.15):
+        drag, samples = _drag(surface, machine, kelvin, 3, course=False)
+        assert drag == whole.at(kelvin)
+        assert drag.stick_speed != machine.stick_speed
+        expected = surface.drag_samples(
+            4000, 3, roll_radius=0.015, stick_speed=whole.at(kelvin).stick_speed, temperature=kelvin
+        )
+        for name, values in expected.items():
+            assert samples[name].tolist() == values.tolist()
+        other = _drag(surface, machine, kelvin, 4, course=False)[1]
+        assert other["transition_speed"].tolist() != samples["transition_speed"].tolist()
+    drag, samples = _drag(surface, machine, None, 3, course=True)
+    assert drag == whole
+    at_reference = surface.drag_samples(
+        4000, 3, roll_radius=0.015, stick_speed=machine.stick_speed, temperature=whole.reference_temperature
+    )
+    assert samples["transition_speed"].tolist() == at_reference["transition_speed"].tolist()
+
+
+def test_draws_are_asked_for_at_the_stick_speed_of_their_temperature(
+    points: hersey.SteadyPoints, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It decides which draws are refused for having no falling branch."""
+    surface = hersey.fit(points)
+    machine = read_machine(ROOT / "examples" / "machine.toml")
+    asked: list[float] = []
+    draw = type(surface).drag_samples
+
+    def watched(self: Any, *given: int, **named: Any) -> Any:
+        asked.append(named["stick_speed"])
+        return draw(self, *given, **named)
+
+    monkeypatch.setattr(type(surface), "drag_samples", watched)
+    _drag(surface, machine, 453.15, 3, course=False)
+    whole = surface.drag(roll_radius=0.015, stick_speed=machine.stick_speed)
+    assert asked == [whole.at(453.15).stick_speed]
+
+
+def test_a_plan_for_a_hot_machine_says_its_speeds(
+    tmp_path: Path, bench_csv: Path, points: hersey.SteadyPoints
+) -> None:
+    """The printed transition speed and V* are those of the drag at the temperature asked for."""
+    machine = read_machine(ROOT / "examples" / "machine.toml")
+    done = run(
+        "plan", ROOT / "examples" / "machine.toml", bench_csv, "--tare", "standing", "--target", "20 mm/s",
+        "--at", "180 degC", "--seed", "9", "--json", cwd=tmp_path,
+    )  # fmt: skip
+    assert done.returncode == 1, done.stderr
+    document = json.loads(done.stdout)
+    drag = hersey.fit(points).drag(roll_radius=0.015, stick_speed=machine.stick_speed).at(453.15)
+    band = hersey.hysteresis(machine.train, drag, sensitivity=False)
+    assert document["fold_speed"] == pytest.approx(band.upper, rel=1e-9)
+    assert document["transition_speed"] == pytest.approx(band.transition, rel=1e-9)
+    assert (document["target_speed"], document["seed"], document["confidence"]) == (
+        pytest.approx(0.02),
+        9,
+        0.95,
+    )

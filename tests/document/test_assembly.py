@@ -1,0 +1,91 @@
+"""The analysis document: whole, valid, the same each time, and readable back."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+import hersey
+from hersey.document.assembly import analyse, load
+from hersey.document.parts import Analysis
+from hersey.errors import ParameterError
+
+
+def test_it_survives_json(document: Analysis) -> None:
+    assert load(document.model_dump_json()) == document
+
+
+def test_no_number_is_nan(document: Analysis) -> None:
+    def walk(value: object) -> None:
+        if isinstance(value, float):
+            assert math.isfinite(value)
+        for item in value.values() if isinstance(value, dict) else value if isinstance(value, list) else []:
+            walk(item)
+
+    walk(document.model_dump())
+
+
+def test_rows_add_up(document: Analysis) -> None:
+    q = document.quality
+    assert q.rows_used + q.rows_settling + q.rows_rejected == q.rows == document.files[0].rows
+
+
+def test_same_input_same_bits(log: hersey.TorqueLog, document: Analysis) -> None:
+    again = analyse(log, log.steady(tare="standing"), command=document.command)
+    assert again.fit == document.fit
+    assert (
+        again.model_dump_json()
+        == analyse(log, log.steady(tare="standing"), command=document.command).model_dump_json()
+    )
+
+
+def test_the_fit_is_in_the_document(document: Analysis, points: hersey.SteadyPoints) -> None:
+    surface = hersey.fit(points)
+    assert document.fit.coefficients["c"].value == surface.c.value
+    for curve in document.fit.curves:
+        own = surface.damping(np.clip(curve.speed, *surface.speed_range), curve.temperature)
+        np.testing.assert_allclose(curve.damping, own, rtol=1e-5)
+
+
+def test_warnings_name_what_matters(document: Analysis, log: hersey.TorqueLog) -> None:
+    text = " ".join(document.warnings)
+    assert "synthetic" in text
+    assert "Stick-slip was recorded" in text
+    untared = analyse(log, log.steady())
+    assert any("--tare standing" in w for w in untared.warnings)
+    assert any("paper's baseline" in w for w in untared.warnings)
+
+
+def test_the_simulation_is_of_this_machine(document: Analysis) -> None:
+    s = document.simulation
+    assert (s.source, s.kind) == ("fit", "stick_slip")
+    assert s.transition_speed == pytest.approx(0.015 * document.fit.transition_curve[-1].speed, rel=1e-3)
+
+
+def test_without_a_machine_file_it_is_the_papers_baseline(log: hersey.TorqueLog) -> None:
+    s = analyse(log, log.steady()).simulation
+    assert s.source == "paper"
+    assert s.frequency == pytest.approx(3.940314, rel=1e-6)
+
+
+def test_foreign_documents_are_refused(document: Analysis) -> None:
+    with pytest.raises(ParameterError, match="not an analysis document"):
+        load("{}")
+    content = json.loads(document.model_dump_json())
+    content["schema_version"] = "99"
+    with pytest.raises(ParameterError, match="schema_version"):
+        load(json.dumps(content))
+
+
+def test_the_film_of_the_nip_is_part_of_it(document: Analysis) -> None:
+    """The verdict names regime and solver; the chart's points are those of the machine and the dwells."""
+    part = document.film
+    assert part is not None
+    assert "isoviscous-elastic" in part.verdict
+    assert "Solved numerically" in part.verdict
+    assert [point.name for point in part.points] == ["full speed", "thick paper"]
+    assert len(part.dwells) == len(document.points)
+    assert any("alpha p" in note for note in part.notes)

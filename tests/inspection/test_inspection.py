@@ -1,0 +1,374 @@
+"""Each detector finds what was put in and is silent on clean logs; what a log cannot tell is said."""
+
+from __future__ import annotations
+
+import json
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Protocol
+
+import numpy as np
+import polars as pl
+import pytest
+
+import hersey.cli.inspect  # noqa: F401 (enters the command)
+from hersey import testbench
+from hersey.cli import main
+from hersey.errors import HerseyError
+from hersey.inspection import inspect
+from hersey.inspection.clock import clock_of
+from hersey.inspection.faults import noise_of, quantisation_step, traits
+from hersey.log.mapping import FILE_NAME, read_mapping
+from tests.conftest import shared
+
+SEEDS = range(20)
+TIME, TORQUE, SPEED, TEMPERATURE = testbench.COLUMNS
+
+
+@dataclass
+class Command:
+    """``hersey inspect`` run in this process: what it printed, and its exit code."""
+
+    returncode: int
+    stdout: str
+    stderr: str
+
+
+class Runner(Protocol):
+    def __call__(self, *arguments: str, cwd: Path) -> Command: ...
+
+
+@pytest.fixture
+def command(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Runner:
+    def run(*arguments: str, cwd: Path) -> Command:
+        monkeypatch.chdir(cwd)
+        monkeypatch.setattr(sys, "argv", ["hersey", "inspect", *arguments])
+        with pytest.raises(SystemExit) as left:
+            main()
+        out, err = capsys.readouterr()
+        return Command(int(left.value.code or 0), out, err)
+
+    return run
+
+
+@pytest.fixture(scope="module")
+def benches() -> list[pl.DataFrame]:
+    return [testbench.run(seed=seed).table for seed in SEEDS]
+
+
+def kinds(values: np.ndarray, *, stands: bool = False) -> list[str]:
+    return [fault.kind for fault in traits(values, stands=stands).faults]
+
+
+def test_clean_logs_raise_no_alarm(benches: list[pl.DataFrame]) -> None:
+    for table in benches:
+        for name in (TORQUE, SPEED, TEMPERATURE):
+            assert kinds(table[name].to_numpy(), stands=name == SPEED) == [], name
+
+
+def test_lost_rows_are_counted_to_the_last(benches: list[pl.DataFrame]) -> None:
+    for table in benches:
+        clock = clock_of(TIME, table[TIME].to_numpy())
+        rows = round((table[TIME][-1] - table[TIME][0]) / 0.05) + 1
+        assert round(clock.lost / 0.05) == rows - table.height
+        assert not clock.is_uneven
+        assert (clock.back, clock.repeated) == (0, 0)
+
+
+def test_what_the_stand_rounds_to_is_found(benches: list[pl.DataFrame]) -> None:
+    for table in benches[:5]:
+        assert traits(table[TORQUE].to_numpy()).step == pytest.approx(0.0005)
+        assert traits(table[TEMPERATURE].to_numpy()).step == pytest.approx(0.01)
+        assert traits(table[TEMPERATURE].to_numpy()).noise == pytest.approx(0.1, rel=0.05)
+
+
+def test_injected_faults_are_found_in_every_log(benches: list[pl.DataFrame]) -> None:
+    random = np.random.default_rng(4)
+    for table in benches:
+        torque, temperature = table[TORQUE].to_numpy(), table[TEMPERATURE].to_numpy()
+        limit = float(np.quantile(torque, 0.97))
+        (clipped,) = traits(np.minimum(torque, limit)).faults
+        assert (clipped.kind, clipped.value) == ("clipped above", limit)
+        assert clipped.rows > 0.8 * np.count_nonzero(torque >= limit)
+        first = int(random.integers(2000, torque.size - 2000))
+        frozen = torque.copy()
+        frozen[first : first + 60] = frozen[first]
+        (stuck,) = traits(frozen).faults
+        assert stuck.kind == "stuck"
+        assert abs(stuck.first - first) <= 1
+        assert 60 <= stuck.rows <= 62
+        lost = temperature.copy()
+        places = 1000 * np.arange(1, 13)
+        lost[places] = 0.0
+        (gone,) = traits(lost).faults
+        assert (gone.kind, gone.rows, gone.places, gone.first) == ("drop-outs", 12, 12, 1000)
+        spiked = torque.copy()
+        spiked[places] = 2.4e5
+        (spikes,) = traits(spiked).faults
+        assert (spikes.kind, spikes.rows, spikes.value) == ("spikes", 12, 2.4e5)
+
+
+@pytest.mark.parametrize("step", [0.0005, 0.0032226, 0.1, 7.0])
+@pytest.mark.parametrize("offset", [0.0, 0.4])
+def test_quantisation_step(step: float, offset: float) -> None:
+    random = np.random.default_rng(7)
+    values = offset * step + step * np.round(30 * random.standard_normal(5000))
+    found = quantisation_step(values)
+    assert found is not None
+    assert found == pytest.approx(step, rel=1e-3)
+    assert quantisation_step(random.standard_normal(5000)) is None
+
+
+def test_quantisation_step_behind_rounded_decimals() -> None:
+    """A converter of 10 bits over 3.3 V, logged with three decimals."""
+    random = np.random.default_rng(8)
+    values = np.round(np.round(random.normal(700, 12, 4000)) * 3.3 / 1024, 3)
+    found = quantisation_step(values)
+    assert found is not None
+    assert found == pytest.approx(3.3 / 1024, rel=0.02)
+
+
+def test_noise_is_told_from_trend_and_waves() -> None:
+    random = np.random.default_rng(9)
+    t = np.arange(0.0, 100.0, 0.01)
+    wave = 5 * np.sin(2 * np.pi * 0.2 * t) + 0.3 * t
+    assert noise_of(wave + 0.02 * random.standard_normal(t.size)) == pytest.approx(0.02, rel=0.05)
+    assert noise_of(np.arange(5.0)) is None
+
+
+def held_levels(each: int, *levels: float) -> np.ndarray:
+    return np.repeat(levels, each).astype(float)
+
+
+HONEST = {
+    "a set point": held_levels(300, 0, 5, 10, 20, 40, 20, 10, 5),
+    "a trapezoid": np.concatenate([np.zeros(200), np.linspace(0, 100, 80), np.full(500, 100.0)]),
+    "a speed in whole rpm": np.round(
+        held_levels(400, 0, 30, 60) + np.random.default_rng(1).normal(0, 0.4, 1200)
+    ),
+    "a drive that stands": np.concatenate(
+        [np.zeros(600), 50 + np.random.default_rng(2).standard_normal(2000)]
+    ),
+    "a coarse thermometer": np.round(np.linspace(20, 24, 3000)),
+    "a sawtooth": np.tile(np.linspace(0.0, 1.0, 97), 30) + 1e-3 * np.random.default_rng(3).random(2910),
+    "a ramp": np.linspace(0.0, 1.0, 500),
+    "noise": np.random.default_rng(4).standard_normal(20_000),
+    "heavy noise": np.random.default_rng(5).standard_t(4, 20_000),
+    "a step": np.concatenate([np.zeros(500), np.ones(500)]) + 0.01 * np.random.default_rng(6).random(1000),
+}
+
+
+@pytest.mark.parametrize("case", HONEST)
+def test_honest_channels_are_not_accused(case: str) -> None:
+    assert kinds(HONEST[case], stands=True) == []
+
+
+def test_clipping_on_both_rails_and_below() -> None:
+    random = np.random.default_rng(11)
+    wave = 3 * np.sin(np.arange(20_000) / 300) + 0.05 * random.standard_normal(20_000)
+    assert kinds(np.clip(wave, -2.5, 2.5)) == ["clipped above", "clipped below"]
+    assert kinds(np.round(np.clip(wave, -2.0, 99), 2)) == ["clipped below"]
+
+
+def test_a_sensor_slower_than_the_log() -> None:
+    random = np.random.default_rng(12)
+    slow = np.repeat(150 + 0.1 * random.standard_normal(200), 20)
+    found = traits(slow)
+    assert found.refresh == 20
+    assert found.faults == ()
+    assert found.noise == pytest.approx(0.1, rel=0.2)
+    assert traits(150 + random.standard_normal(4000)).refresh == 1
+
+
+def test_missing_values_shift_no_row() -> None:
+    random = np.random.default_rng(13)
+    values = 1 + 0.1 * random.standard_normal(3000)
+    values[[5, 6, 7, 100]] = np.nan
+    values[200] = 50.0
+    found = traits(values)
+    assert found.missing == 4
+    assert [(f.kind, f.first) for f in found.faults] == [("spikes", 200)]
+    empty = traits(np.full(10, np.nan))
+    assert (empty.missing, empty.faults) == (10, ())
+
+
+def test_clock_faults() -> None:
+    random = np.random.default_rng(14)
+    even = np.arange(0.0, 200.0, 0.01)
+    assert clock_of("t", even).findings() == []
+    assert clock_of("t", 1.5e9 + even).findings() == []
+    holes = np.delete(even, [*range(500, 520), 3000, *range(9000, 9003)])
+    holed = clock_of("t", holes)
+    assert (holed.gaps, round(holed.lost, 6), round(holed.longest_gap, 6)) == (3, 0.24, 0.21)
+    back = even.copy()
+    back[7000:] -= 3.0
+    stepped = clock_of("t", back)
+    assert (stepped.back, stepped.first_back) == (1, 7000)
+    assert "time steps back once, first at row 7001" in stepped.findings()[0]
+    assert clock_of("t", even + 0.002 * random.uniform(-1, 1, even.size)).is_uneven
+    coarse = clock_of("t", np.floor(np.arange(0.0, 60.0, 0.0117) / 0.01) * 0.01)
+    assert not coarse.is_uneven
+    assert coarse.gaps == 0
+    stamped = clock_of("t", np.floor(even))
+    assert stamped.repeated == even.size - 200
+
+
+def test_the_example_log(root: Path) -> None:
+    found = inspect(root / "examples" / "bench.csv")
+    assert found.problem == ""
+    assert found.support is not None
+    assert found.support.dwells == 73
+    assert [round(k - 273.15) for k in found.support.temperatures] == [90, 120, 150, 180]
+    can = "; ".join(found.support.can)
+    assert "exponent c of speed: 10 speeds, 5 to 140 rpm" in can
+    assert "torque falls at the slow end and rises at the fast end at 150, 180 degC" in can
+    assert found.support.rejected["stick-slip"] > 500
+    assert [f for f in found.findings if "missing" not in f] == []
+    assert "cannot tell" not in found.summary()
+    assert json.loads(json.dumps(found.document()))["files"][0]["channels"][1]["traits"]["step"] == 0.0005
+
+
+def thinned(tmp_path: Path, keep: pl.Expr, seed: int = 3) -> Path:
+    path = tmp_path / "part.csv"
+    testbench.run(seed=seed).table.filter(keep).write_csv(path)
+    return path
+
+
+def test_what_a_poor_log_cannot_tell(tmp_path: Path) -> None:
+    one_speed = thinned(tmp_path, pl.col(SPEED).is_between(29, 31))
+    support = inspect(one_speed).support
+    assert support is not None
+    assert any(said.startswith("exponent c of speed: one speed") for said in support.cannot)
+    cold = thinned(tmp_path, pl.col(TEMPERATURE).is_between(89, 91) & (pl.col(SPEED) > 11))
+    support = inspect(cold).support
+    assert support is not None
+    assert any("exponent b of temperature: all dwells are at 90 degC" in said for said in support.cannot)
+    assert any("torque rises from 14 rpm on" in said for said in support.cannot)
+    assert any("a tare: the drive never stands" in said for said in support.cannot)
+
+
+def test_missing_numbers_and_temperature_say_which_flag_helps(tmp_path: Path) -> None:
+    table = testbench.run(seed=2).table.head(4000)
+    holes = table.with_columns(pl.when(pl.int_range(pl.len()) % 500 != 17).then(pl.col(TORQUE)))
+    path = tmp_path / "holes.csv"
+    holes.drop(TEMPERATURE).write_csv(path)
+    found = inspect(path)
+    assert found.needed == ("--isothermal", "--drop-missing")
+    assert found.dropped == {"holes.csv": 8}
+    assert f"{path.name}: Drive torque: 8 rows lack a number" in found.findings
+    assert "readable as a log of torque with --isothermal --drop-missing" in found.summary()
+
+
+def test_a_log_whose_time_steps_back_is_shown_all_the_same(tmp_path: Path) -> None:
+    table = testbench.run(seed=2).table.head(3000)
+    path = tmp_path / "twice.csv"
+    pl.concat([table, table]).write_csv(path)
+    found = inspect(path)
+    assert "time runs backwards" in found.problem
+    assert found.support is None
+    assert any("time steps back once, first at row 3001" in finding for finding in found.findings)
+
+
+def test_couette_cell_without_torque() -> None:
+    folder = shared("data/friction/couette_rheometer_pi")
+    for name in ("rheometry_test_glyc_0_081117_1416.csv", "rheometry_test_solA2_281117_1358.csv"):
+        found = inspect(folder / name)
+        (file,) = found.files
+        own = {channel.name: channel for channel in file.channels}
+        assert "there is no torque channel in " + name in found.summary()
+        assert file.without["torque"] == "there is no torque channel"
+        dead = [c.name for c in file.channels if any(f.kind == "constant" for f in c.traits.faults)]
+        assert dead == ["spd2", "spd3", "spd4", "spd5"]
+        (spikes,) = own["spd0"].traits.faults
+        assert spikes.kind == "spikes"
+        assert spikes.value > 2e5
+        assert file.clocks[0].is_uneven
+        assert own["Vcr"].traits.step == pytest.approx(3.3 / 1024, rel=0.01)
+    for name, rows in (("empty_vsweep.csv", 83), ("water_vsweep.csv", 76)):
+        (file,) = inspect(folder / name).files
+        (fault,) = next(c for c in file.channels if c.name == "T").traits.faults
+        assert (fault.kind, fault.rows) == ("drop-outs", rows)
+        assert not file.clocks[0].is_uneven
+
+
+def test_other_formats_are_shown_channel_by_channel() -> None:
+    (file,) = inspect(shared("data/daq-formats/tdms") / "Digital_Input.tdms").files
+    assert [round(clock.interval, 6) for clock in file.clocks] == [0.0005, 0.025, 1.25]
+    assert file.rows == 20_000
+    for path in sorted(shared("data/daq-formats/mf4-bus").glob("*.MF4")):
+        found = inspect(path)
+        assert found.files[0].channels == ()
+        assert "bus frames" in found.summary()
+    slider = inspect(shared("data/stick-slip") / "k1002Nm_v1100.mat")
+    assert "there is no torque channel" in slider.summary()
+    assert [c.findings for c in slider.files[0].channels if c.name == "Fnorm"] == [()]
+
+
+def test_wear_tests_and_a_dynamometer() -> None:
+    for path in sorted(shared("data/friction/te67_pin_on_disc").glob("*.tsv")):
+        found = inspect(path)
+        assert "there is no torque channel" in found.summary()
+        assert found.files[0].clocks[0].interval == 1.0
+        flagged = {c.name for c in found.files[0].channels for f in c.traits.faults if f.kind == "stuck"}
+        assert flagged == set()
+    (dyno,) = inspect(shared("data/friction/odrive_motor_dyno/odrive_data.csv")).files
+    assert dyno.clocks == ()
+    assert "is not a unit of speed" in dyno.without["speed"]
+
+
+def test_screw_drives_together_can_tell_what_each_alone_cannot() -> None:
+    paths = sorted(shared("data/friction/tro2021_screw_drives/driveNo1/steady_state").glob("*.csv"))
+    found = inspect(paths, units={"torque": "9.84 mN*m / 100"})
+    assert found.needed == ("--isothermal",)
+    assert found.support is not None
+    assert found.support.speeds == 15
+    assert any("torque falls at the slow end and rises" in said for said in found.support.can)
+    assert not [f for f in found.findings if "coarse" not in f]
+    alone = inspect(paths[5], units={"torque": "9.84 mN*m / 100"}).support
+    assert alone is not None
+    assert any("exponent c of speed: one speed" in said for said in alone.cannot)
+
+
+def test_the_command(command: Runner, examples_here: Path) -> None:
+    result = command("examples/bench.csv", "--figure", "channels.svg", cwd=examples_here)
+    assert result.returncode == 0, result.stderr
+    assert "73 dwells" in result.stdout
+    assert (examples_here / "channels.svg").read_text().startswith("<svg")
+    again = command("examples/bench.csv", "--figure", "channels.svg", cwd=examples_here)
+    assert again.returncode == 2
+    assert "exists: say --force" in again.stderr
+    document = json.loads(command("examples/bench.csv", "--json", cwd=examples_here).stdout)
+    assert document["support"]["dwells"] == 73
+    assert document["files"][0]["clocks"][0]["findings"]
+
+
+def test_the_mapping_is_proposed_once_and_never_replaced(
+    command: Runner, bench_csv: Path, tmp_path: Path
+) -> None:
+    log = tmp_path / "log.csv"
+    log.write_bytes(bench_csv.read_bytes())
+    first = command("log.csv", "--save-mapping", cwd=tmp_path)
+    assert first.returncode == 0, first.stderr
+    assert f"mapping: {FILE_NAME}" in first.stdout
+    kept = tmp_path / FILE_NAME
+    assert read_mapping(kept).channels["torque"] == "Drive torque"
+    kept.write_text('[torque]\ntare = "3 mN*m"\n')
+    second = command("log.csv", "--save-mapping", cwd=tmp_path)
+    assert second.returncode == 2
+    assert "exists: say --force" in second.stderr
+    assert kept.read_text() == '[torque]\ntare = "3 mN*m"\n'
+    assert "corrected: tare (torque 0.003 N m)" in command("log.csv", cwd=tmp_path).stdout
+    kept.write_text("[torque]\ntar = 1\n")
+    wrong = command("log.csv", cwd=tmp_path)
+    assert wrong.returncode == 2
+    assert f"{FILE_NAME}: [torque] has no key 'tar'" in wrong.stderr
+
+
+def test_what_is_no_log_is_refused(command: Runner, tmp_path: Path) -> None:
+    (tmp_path / "words.csv").write_text("nothing but words\nand more of them\n")
+    with pytest.raises(HerseyError, match=r"words\.csv"):
+        inspect(tmp_path / "words.csv")
+    result = command("none.csv", cwd=tmp_path)
+    assert result.returncode == 2
+    assert "there is no such file" in result.stderr

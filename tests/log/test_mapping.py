@@ -1,0 +1,209 @@
+"""A mapping is proposed once, checked to the last key, and used for the next log without a question."""
+
+from __future__ import annotations
+
+import doctest
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import hersey
+from hersey.errors import ChannelError, MissingFileError, ParameterError, UnitError
+from hersey.log import mapping as log_mapping
+from hersey.log.mapping import FILE_NAME, find_mapping, propose_mapping, read_mapping, read_with_mapping
+from tests.conftest import shared
+
+TIME = np.arange(0.0, 20.0, 0.05)
+
+
+def write(path: Path, header: str, *columns: np.ndarray | float) -> Path:
+    full = [np.broadcast_to(c, TIME.shape) for c in (TIME, *columns)]
+    rows = [",".join(repr(float(v)) for v in row) for row in zip(*full, strict=True)]
+    path.write_text("\n".join([header, *rows]) + "\n")
+    return path
+
+
+def test_a_proposal_reads_the_log_it_was_made_for(bench_csv: Path, tmp_path: Path) -> None:
+    file = tmp_path / FILE_NAME
+    file.write_text(propose_mapping(bench_csv))
+    mapping = read_mapping(file)
+    assert mapping.channels == {
+        "time": "Time",
+        "torque": "Drive torque",
+        "speed": "Drive speed",
+        "temperature": "Heater temperature",
+    }
+    done = read_with_mapping(bench_csv, mapping=file)
+    plain = hersey.read(bench_csv)
+    assert done.corrections == ()
+    np.testing.assert_array_equal(done.log.runs[0].torque, plain.runs[0].torque)
+    assert f"channels, units and corrections are those of {FILE_NAME}" in done.log.files[0].notes
+
+
+def test_every_comment_of_a_proposal_becomes_a_key_that_is_known(bench_csv: Path, tmp_path: Path) -> None:
+    text = propose_mapping(bench_csv)
+    said = text.replace('unit = "N*m"', 'unit = "mA"').splitlines()
+    keys = [line[2:] if line.startswith("# ") and " = " in line else line for line in said]
+    keys = [line for line in keys if not line.startswith("#")]
+    (tmp_path / FILE_NAME).write_text("\n".join(keys))
+    mapping = read_mapping(tmp_path / FILE_NAME)
+    assert mapping.torque.motor_constant == pytest.approx(0.035)
+    assert mapping.torque.inertia == pytest.approx(2e-4)
+    assert mapping.temperature.offset == -1.5
+    assert mapping.speed.sign == -1
+
+
+def test_what_cannot_be_told_is_said_in_the_proposal(tmp_path: Path) -> None:
+    path = write(tmp_path / "odd.csv", "t [s],Torque 1 [N*m],Torque 2 [N*m],Drehzahl", 1.0, 2.0, 3.0)
+    text = propose_mapping(path)
+    assert "# torque could be 'Torque 1 [N*m]' or 'Torque 2 [N*m]'" in text
+    assert "# column 'Drehzahl' has no unit" in text
+    text = propose_mapping(path, channels={"torque": "Torque 2"}, units={"speed": "-1 rpm"})
+    assert 'channel = "Torque 2"' in text
+    assert 'unit = "-1 rpm"' in text
+    (tmp_path / FILE_NAME).write_text(text)
+    done = read_with_mapping(path, isothermal=True)
+    assert done.log.runs[0].torque[0] == 2.0
+    assert done.log.runs[0].speed[0] == pytest.approx(-np.pi / 10)
+
+
+def test_the_next_log_is_read_unattended(tmp_path: Path) -> None:
+    header = "t [s],A [N*m],B [N*m],n [rpm]"
+    first = write(tmp_path / "monday.csv", header, 0.5, 7.0, 60.0)
+    second = write(tmp_path / "tuesday.csv", header, 0.75, 7.0, 90.0)
+    with pytest.raises(ChannelError):
+        read_with_mapping(second, isothermal=True)
+    (tmp_path / FILE_NAME).write_text('[torque]\nchannel = "A"\ntare = "50 mN*m"\n')
+    done = read_with_mapping([first, second], isothermal=True)
+    assert [run.torque[0] for run in done.log.runs] == pytest.approx([0.45, 0.7])
+    assert [record.name for record in done.corrections] == ["tare"]
+    own = tmp_path / "tuesday.hersey.toml"
+    own.write_text('[torque]\nchannel = "B"\n')
+    assert find_mapping(second) == own
+    assert find_mapping(first) == tmp_path / FILE_NAME
+    assert read_with_mapping(second, isothermal=True).log.runs[0].torque[0] == 7.0
+    with pytest.raises(ParameterError, match="different mappings"):
+        read_with_mapping([first, second], isothermal=True)
+    chosen = read_with_mapping([first, second], mapping=own, isothermal=True)
+    assert [run.torque[0] for run in chosen.log.runs] == [7.0, 7.0]
+    by_hand = read_with_mapping(first, channels={"torque": "B"}, isothermal=True)
+    assert by_hand.log.runs[0].torque[0] == pytest.approx(6.95)
+
+
+FULL = """
+[time]
+channel = "t"
+unit = "ms"
+[torque]
+channel = "I motor"
+unit = "mA"
+sign = -1
+motor_constant = "35 mN*m/A"
+tare = "1 mN*m"
+no_load = "2 mN*m"
+gear_ratio = 12.5
+efficiency = 0.8
+[speed]
+channel = "n"
+unit = "rpm"
+gear_ratio = 12.5
+[temperature]
+channel = "T film"
+unit = "degF"
+offset = "-1.5 K"
+"""
+
+
+def test_every_correction_of_a_mapping_is_made_in_its_order(tmp_path: Path) -> None:
+    path = write(tmp_path / "motor.csv", "t,I motor,n,T film", -3000.0, 250.0, 302.0)
+    (tmp_path / FILE_NAME).write_text(FULL)
+    done = read_with_mapping(path)
+    run = done.log.runs[0]
+    assert run.torque[5] == pytest.approx((0.105 - 0.001 - 0.002) * 12.5 * 0.8)
+    assert run.speed[5] == pytest.approx(20 * np.pi / 30)
+    assert run.temperature is not None
+    assert run.temperature[5] == pytest.approx(150 + 273.15 - 1.5)
+    assert run.time[-1] == pytest.approx(TIME[-1] / 1000)
+    names = [record.name for record in done.corrections]
+    assert names == ["torque from current", "sign", "tare", "no-load torque", "gears", "temperature offset"]
+    used = {channel.role: channel.unit for channel in done.log.files[0].channels}
+    assert used["torque"] == "mA"
+
+
+def test_a_no_load_log_beside_the_mapping_is_subtracted(tmp_path: Path) -> None:
+    header = "t [s],Torque [N*m],n [rad/s],Temp [degC]"
+    write(tmp_path / "free.csv", header, -0.1, 5.0, 25.0)
+    path = write(tmp_path / "bench.csv", header, -0.5, 5.0, 150.0)
+    text = '[torque]\nchannel = "Torque"\nsign = -1\nno_load = "free.csv"\n[temperature]\nchannel = "Temp"\n'
+    (tmp_path / FILE_NAME).write_text(text)
+    done = read_with_mapping(path)
+    np.testing.assert_allclose(done.log.runs[0].torque, 0.4)
+    np.testing.assert_allclose(read_with_mapping(path, isothermal=True).log.runs[0].torque, 0.4)
+    assert "dwells of free.csv" in str(done.corrections[-1])
+
+
+BAD = {
+    "a table that is not known": ('[torqe]\nchannel = "x"\n', "no table 'torqe'"),
+    "a key that is not known": ('[torque]\ngear = 2\n', r"\[torque\] has no key 'gear'"),
+    "a key of another role": ('[speed]\ntare = "1 N*m"\n', r"\[speed\] has no key 'tare'"),
+    "a role that is no table": ('torque = "x"\n', r"write \[torque\]"),
+    "an empty channel": ('[torque]\nchannel = ""\n', "torque.channel is ''"),
+    "a number as channel": ("[torque]\nchannel = 3\n", "torque.channel is 3"),
+    "a sign of two": ("[torque]\nsign = 2\n", "torque.sign is 2: write 1 or -1"),
+    "a sign that is true": ("[torque]\nsign = true\n", "torque.sign is True"),
+    "a gear ratio in words": ('[speed]\ngear_ratio = "12:1"\n', "speed.gear_ratio is '12:1': write a number"),
+    "a gear ratio of nothing": ("[speed]\ngear_ratio = 0\n", "speed.gear_ratio is 0"),
+    "an efficiency over one": ("[torque]\nefficiency = 1.1\n", "0.05 to 1 is believed"),
+    "a not-a-number": ("[torque]\nefficiency = nan\n", "torque.efficiency is nan"),
+}  # fmt: skip
+BAD_UNITS = {
+    "a tare without unit": ("[torque]\ntare = 0.004\n", "torque.tare is 0.004: write a string with its unit"),
+    "a tare in rpm": ('[torque]\ntare = "4 rpm"\n', "torque.tare: unit 'rpm' is not a unit of torque"),
+    "an unknown unit": ('[speed]\nunit = "furlong"\n', "speed.unit"),
+    "a current without constant": ('[torque]\nunit = "A"\n', "a motor's current needs motor_constant"),
+    "a constant of a torque": ('[torque]\nunit = "N*m"\nmotor_constant = "1 N*m/A"\n', "no unit of a cur"),
+    "a constant in N m": ('[torque]\nunit = "A"\nmotor_constant = "1 N*m"\n', "motor_constant is '1 N"),
+    "an offset in degC": ('[temperature]\noffset = "2 degC"\n', "such as \"-1.5 K\""),
+    "an offset without unit": ("[temperature]\noffset = 2\n", "temperature.offset is 2"),
+    "code for a unit": ('[torque]\ninertia = "1 __import__(os)"\n', "torque.inertia"),
+    "a tower of powers": ('[torque]\ninertia = "1 kg**9**9**9"\n', "torque.inertia"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", [*BAD, *BAD_UNITS])
+def test_what_is_wrong_is_named_with_file_and_key(case: str, tmp_path: Path) -> None:
+    text, says = {**BAD, **BAD_UNITS}[case]
+    path = tmp_path / "bench.hersey.toml"
+    path.write_text(text)
+    with pytest.raises(UnitError if case in BAD_UNITS else ParameterError, match=says) as caught:
+        read_mapping(path)
+    assert "bench.hersey.toml" in str(caught.value)
+
+
+def test_a_log_without_the_channels_of_its_mapping_names_the_mapping(tmp_path: Path) -> None:
+    path = write(tmp_path / "log.csv", "t [s],Torque [N*m],n [rpm]", 1.0, 2.0)
+    (tmp_path / FILE_NAME).write_text('[torque]\nchannel = "Tq"\n')
+    with pytest.raises(ChannelError, match=r"no column 'Tq'.*those of hersey.toml"):
+        read_with_mapping(path, isothermal=True)
+    (tmp_path / FILE_NAME).write_text('[torque]\nno_load = "gone.csv"\n')
+    with pytest.raises(ParameterError, match=r"torque\.no_load is 'gone\.csv'"):
+        read_with_mapping(path, isothermal=True)
+    with pytest.raises(MissingFileError):
+        read_mapping(tmp_path / "none.toml")
+
+
+def test_a_screw_drive_by_its_mapping(tmp_path: Path) -> None:
+    folder = shared("data/friction/tro2021_screw_drives/driveNo1/steady_state")
+    text = '[torque]\nchannel = "Torque actual value averaged"\nunit = "9.84 mN*m / 100"\nsign = -1\n'
+    (tmp_path / FILE_NAME).write_text(text)
+    done = read_with_mapping(folder / "50.csv", mapping=tmp_path / FILE_NAME, isothermal=True)
+    plain = hersey.read(folder / "50.csv", units={"torque": "-9.84 mN*m / 100"}, isothermal=True)
+    np.testing.assert_allclose(done.log.runs[0].torque, plain.runs[0].torque)
+
+
+def test_examples(monkeypatch: pytest.MonkeyPatch, root: Path) -> None:
+    monkeypatch.chdir(root)
+    result = doctest.testmod(log_mapping)
+    assert result.attempted > 1
+    assert result.failed == 0

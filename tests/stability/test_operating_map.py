@@ -1,0 +1,471 @@
+"""The operating map: right against simulation, honest about its limits, legible as a picture."""
+
+from __future__ import annotations
+
+import json
+import math
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import hersey
+from hersey.charts.operating_map import SUFFIXES, map_chart, rendered_map
+from hersey.damping.estimation import Estimate
+from hersey.damping.surface import DampingSurface
+from hersey.document.saved_fit import read_fit
+from hersey.errors import InsufficientDataError, MissingFileError, OutputError, ParameterError
+from hersey.machine.machine import Limits, Machine, OperatingPoint, read_machine
+from hersey.stability.operating_map import STATES, OperatingMap, operating_map
+from tests.conftest import ROOT
+
+#: What a belt settles to from rest and from steady sliding, by state of the map.
+SETTLES_TO = {
+    "stick_slip": ("stick_slip", "stick_slip"),
+    "swing": ("stick_slip", "oscillation"),
+    "bistable": ("stick_slip", "steady_sliding"),
+    "smooth": ("steady_sliding", "steady_sliding"),
+}
+AT: dict[str, Any] = {"roll_radius": 0.015, "stick_speed": 3e-4}
+#: Few draws: for tests that look at anything but the interval of V*.
+QUICK: dict[str, Any] = {**AT, "draws": 2}
+
+
+@pytest.fixture(scope="module")
+def surface(points: hersey.SteadyPoints) -> DampingSurface:
+    return hersey.fit(points)
+
+
+@pytest.fixture(scope="module")
+def fuser() -> Machine:
+    return read_machine(ROOT / "examples" / "machine.toml")
+
+
+@pytest.fixture(scope="module")
+def drawn(surface: DampingSurface, machine: Machine) -> OperatingMap:
+    points = (*machine.points, OperatingPoint("cold <b>start</b>", 0.3, 350.0))
+    return operating_map(surface, machine.train, **AT, limits=machine.limits, points=points)
+
+
+@pytest.fixture(scope="module")
+def isothermal(surface: DampingSurface) -> DampingSurface:
+    """The surface at its reference temperature, as an isothermal fit would have it."""
+    keep = [0, 2, 3, 4]
+    return replace(
+        surface,
+        b=None,
+        reference_temperature=None,
+        temperature_range=None,
+        variables=tuple(surface.variables[i] for i in keep),
+        values=surface.values[keep],
+        covariance=surface.covariance[np.ix_(keep, keep)],
+    )
+
+
+def simulated(train: hersey.Drivetrain, drawn: OperatingMap, kelvin: Any, speed: Any) -> tuple[Any, Any]:
+    """Kinds settled to from rest and from above on a grid, by simulation until the orbit closes."""
+    laws = [drawn.drag.at(t) for t in kelvin.tolist()]
+    own = {
+        name: np.array([getattr(law, name) for law in laws])[:, None]
+        for name in ("transition_force", "transition_speed", "stick_speed")
+    }
+    rest, steady = (
+        hersey.sweep(train, laws[0], zip=True, start=start, drive_speed=speed[None, :], **own).kind.values
+        for start in ("rest", "steady")
+    )
+    return rest, steady
+
+
+@pytest.mark.parametrize("size", [20, 53])
+def test_the_map_agrees_with_simulation_from_below_and_above(
+    surface: DampingSurface, machine: Machine, size: int
+) -> None:
+    drawn = operating_map(surface, machine.train, **QUICK)
+    kelvin, speed = np.linspace(360.0, 466.0, size), np.geomspace(2e-3, 0.15, size)
+    states = drawn.states(kelvin[:, None], speed[None, :])
+    assert {"stick_slip", "bistable", "smooth"} <= set(states.ravel())
+    rest, steady = simulated(machine.train, drawn, kelvin, speed)
+    padded = np.pad(states, 1, mode="edge")
+    for i, j in np.ndindex(states.shape):
+        near = padded[i : i + 3, j : j + 3]
+        if np.all(near == states[i, j]):  # a boundary may pass within one cell of all others
+            assert (rest[i, j], steady[i, j]) == SETTLES_TO[states[i, j]], (kelvin[i], speed[j])
+
+
+def test_the_edges_part_what_simulation_finds_beside_them(surface: DampingSurface, machine: Machine) -> None:
+    kelvin = np.array([430.0, 450.0, 468.0])
+    drawn = operating_map(surface, machine.train, **QUICK, temperatures=kelvin)
+    for i, t in enumerate(kelvin):
+        lower, bend, upper = drawn.lower[i], drawn.transition[i], drawn.upper[i]
+        beside = [0.997 * lower, (lower * bend) ** 0.5, 1.003 * bend, 0.999 * upper, 1.001 * upper]
+        expected = ["stick_slip", "swing", "bistable", "bistable", "smooth"]
+        assert drawn.states(t, beside).tolist() == expected
+        for speed, state in zip(beside, expected, strict=True):
+            rest, steady = simulated(machine.train, drawn, np.array([t]), np.array([speed]))
+            assert (rest[0, 0], steady[0, 0]) == SETTLES_TO[state], (t, speed)
+
+
+def test_stall_is_where_the_drag_exceeds_the_limit(surface: DampingSurface, machine: Machine) -> None:
+    grip = Limits(roll_friction=0.2, nip_load=250.0, motor_torque=8.0)
+    drawn = operating_map(surface, machine.train, **QUICK, limits=grip)
+    assert (drawn.torque_limit, drawn.limited_by) == (pytest.approx(0.2 * 250 * 0.015), "roll friction")
+    t, above, below = drawn.temperature[30], drawn.stall_above[30], drawn.stall_below[30]
+    assert 0 < below < drawn.transition[30] < above < math.inf
+    for speed in (above, below):
+        assert float(drawn.drag.at(t).force(speed)) * 0.015 == pytest.approx(drawn.torque_limit, rel=1e-9)
+    around = [0.999 * below, 1.001 * below, 0.999 * above, 1.001 * above]
+    assert (drawn.states(t, around) == "stall").tolist() == [True, False, False, True]
+    motor = operating_map(surface, machine.train, **QUICK, limits=replace(grip, motor_torque=0.74))
+    assert (motor.torque_limit, motor.limited_by) == (0.74, "motor torque")
+    free = operating_map(surface, machine.train, **QUICK)
+    assert np.all(np.isinf(free.stall_above))
+    assert np.all(free.stall_below == 0)
+    assert any("motor_torque" in text for text in free.warnings)
+    tight = operating_map(surface, machine.train, **QUICK, limits=Limits(motor_torque=0.5))
+    assert set(tight.states(t, tight.speed)) == {"stall"}
+
+
+def test_contours_are_lines_of_equal_drag(drawn: OperatingMap) -> None:
+    falling, rising = drawn.contour(1.2)
+    for t, slow, fast in zip(drawn.temperature, falling, rising, strict=True):
+        assert slow < fast
+        assert (drawn.drag.at(t).force([slow, fast]) * 0.015).tolist() == pytest.approx([1.2, 1.2])
+    assert np.all(drawn.contour(1e3)[0] == 0)
+
+
+def test_points_are_judged(drawn: OperatingMap) -> None:
+    judged = {p.name: p.at for p in drawn.points}
+    assert judged["full speed"].state == "smooth"
+    assert judged["thick paper"].state == "bistable"
+    assert judged["cold <b>start</b>"].state == "stall"
+    assert [p.extrapolated for p in judged.values()] == [False, False, True]
+    said = "\n".join(drawn.warnings)
+    assert "thick paper: within the 95 % interval of V*" not in said  # only the fit is counted here
+    assert "cold <b>start</b>: extrapolated" in said
+    assert "state how far stick_speed is known" in said
+    assert drawn.state_at(453.15, 0.12) == judged["full speed"]
+
+
+def test_what_is_uncertain_widens_the_interval_of_the_fold(
+    surface: DampingSurface, machine: Machine, drawn: OperatingMap
+) -> None:
+    at = np.array([450.0, 465.0])
+    fit_only, all_of_it = (
+        operating_map(
+            surface, machine.train, **AT, points=machine.points, temperatures=at, uncertainty=uncertainty
+        )
+        for uncertainty in ({}, machine.uncertainty)
+    )
+    assert all_of_it.uncertain == ("stiffness", "stick_speed")
+    narrow, wide = (np.log(m.upper_interval[1] / m.upper_interval[0]) for m in (fit_only, all_of_it))
+    assert np.all(wide > 3 * narrow)
+    for m in (fit_only, all_of_it):
+        assert np.all((m.upper_interval[0] < m.upper) & (m.upper < m.upper_interval[1]))
+    assert any("thick paper: within the 95 % interval of V*" in text for text in all_of_it.warnings)
+    # the whole map interpolates what these two temperatures computed
+    assert np.interp(450.0, drawn.temperature, drawn.upper_interval[0]) == pytest.approx(
+        fit_only.upper_interval[0, 0], rel=0.01
+    )
+
+
+def test_the_interval_of_the_transition_is_that_of_the_fit(surface: DampingSurface) -> None:
+    reference = surface.reference_temperature + 273.15
+    draws = surface.drag_samples(20000, 1, **AT, temperature=reference)
+    assert surface.transition is not None
+    for name, estimate, scale in (
+        ("transition_speed", surface.transition.speed, 0.015),
+        ("ehl_exponent", surface.c, 1.0),
+        ("mixed_exponent", surface.transition.mixed_exponent, 1.0),
+    ):
+        low, high = np.quantile(draws[name], [0.025, 0.975])
+        width = scale * (estimate.high - estimate.low)
+        assert abs(low - scale * estimate.low) < 0.05 * width
+        assert abs(high - scale * estimate.high) < 0.05 * width
+
+
+def test_draws_without_covariance_are_the_drag(surface: DampingSurface, isothermal: DampingSurface) -> None:
+    for fit, t in ((surface, 365.0), (surface, 450.0), (isothermal, None)):
+        speed = replace(fit.transition.speed, error=0.0)
+        exact = replace(fit, covariance=0 * fit.covariance, transition=replace(fit.transition, speed=speed))
+        drag = fit.drag(**AT, temperature=t)
+        for name, values in exact.drag_samples(3, 0, **AT, temperature=t).items():
+            assert values == pytest.approx(np.full(3, getattr(drag, name)), rel=1e-12)
+
+
+def test_draws_are_seeded_and_go_together_across_temperatures(surface: DampingSurface) -> None:
+    one, again = (surface.drag_samples(50, 7, **AT, temperature=400.0) for _ in range(2))
+    other = surface.drag_samples(50, 7, **AT, temperature=440.0)
+    for name in one:
+        assert np.array_equal(one[name], again[name])
+    assert np.array_equal(one["ehl_exponent"], other["ehl_exponent"])
+    assert not np.array_equal(one["transition_speed"], other["transition_speed"])
+
+
+def test_draws_without_a_falling_branch_are_counted(surface: DampingSurface) -> None:
+    vague = surface.covariance.copy()
+    vague[3, 3] = 0.3**2  # of c_mixed - c, which is -0.505: some draws do not fall
+    with pytest.warns(UserWarning, match=r"\d+ of 600 draws of the fit had no falling branch") as caught:
+        draws = replace(surface, covariance=vague).drag_samples(300, 0, **AT, temperature=400.0)
+    assert len(caught) == 1
+    assert draws["mixed_exponent"].size == 300
+    assert np.all(draws["mixed_exponent"] < -1)
+    assert np.all(draws["ehl_exponent"] > -1)
+    hopeless = replace(surface, values=surface.values * [1, 1, 1, -1, 1])
+    with pytest.raises(InsufficientDataError, match="have no falling branch"):
+        hopeless.drag_samples(300, 0, **AT, temperature=400.0)
+
+
+def test_a_gradual_bend_is_as_uncertain_as_its_split(surface: DampingSurface) -> None:
+    best = surface.transition.speed
+    wide = Estimate(best.value, 0.1 * best.value, 0.82 * best.value, 1.22 * best.value)
+    gradual = replace(surface, transition=replace(surface.transition, speed=wide, gradual=True))
+    speeds = gradual.drag_samples(5000, 0, **AT, temperature=404.4)["transition_speed"]
+    assert np.std(np.log(speeds)) == pytest.approx(0.1, rel=0.05)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"count": 0}, "count is 0"),
+        ({"seed": -1}, "seed is -1"),
+        ({"temperature": None}, "depends on temperature"),
+        ({"temperature": 250.0}, "above 0 degC"),
+        ({"temperature": float("nan")}, "above 0 degC"),
+        ({"stick_speed": 1.0}, "stick_speed"),
+        ({"roll_radius": -1.0}, "transition"),
+    ],
+)
+def test_bad_draws_are_refused(surface: DampingSurface, arguments: dict[str, Any], message: str) -> None:
+    given = {"count": 5, "seed": 0, **AT, "temperature": 400.0, **arguments}
+    with pytest.raises(ParameterError, match=message):
+        surface.drag_samples(given.pop("count"), given.pop("seed"), **given)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"temperatures": [400.0]}, "two or more"),
+        ({"temperatures": [400.0, 390.0]}, "ascend"),
+        ({"temperatures": [200.0, 390.0]}, "above 0 degC"),
+        ({"speeds": [0.0, 1.0]}, "ascend from above 0"),
+        ({"speeds": [0.2, 0.1]}, "ascend"),
+        ({"speeds": ["fast", 1.0]}, "speeds is not a number"),
+        ({"points": [OperatingPoint("freezer", 0.1, 255.0)]}, "255 K"),
+        ({"stick_speed": 1.0}, "stick_speed"),
+    ],
+)
+def test_bad_maps_are_refused(
+    surface: DampingSurface, machine: Machine, arguments: dict[str, Any], message: str
+) -> None:
+    with pytest.raises(ParameterError, match=message):
+        operating_map(surface, machine.train, **{**QUICK, **arguments})
+
+
+@pytest.mark.parametrize(
+    ("temperature", "speed", "message"),
+    [
+        (400.0, 0.0, "speed is 0"),
+        (400.0, float("nan"), "speed is"),
+        (260.0, 0.1, "260 K"),
+        (None, 0.1, "give one"),
+    ],
+)
+def test_bad_look_ups_are_refused(
+    drawn: OperatingMap, temperature: float | None, speed: float, message: str
+) -> None:
+    with pytest.raises(ParameterError, match=message):
+        drawn.state_at(temperature, speed)
+
+
+def test_without_a_falling_branch_there_is_no_map(surface: DampingSurface, machine: Machine) -> None:
+    rising = replace(surface, transition=None, rejected_transition="a second branch does not pay")
+    with pytest.raises(InsufficientDataError, match=r"does not pay.*record slower dwells"):
+        operating_map(rising, machine.train, **QUICK)
+
+
+def test_an_isothermal_fit_has_a_map_of_one_column(isothermal: DampingSurface, machine: Machine) -> None:
+    drawn = operating_map(isothermal, machine.train, **QUICK, limits=machine.limits, points=machine.points)
+    assert drawn.temperature is None
+    assert drawn.lower.shape == (1,)
+    assert drawn.transition_interval.shape == (2, 1)
+    assert any("isothermal" in text for text in drawn.warnings)
+    assert drawn.state_at(None, 0.12).state == "smooth"
+    assert "as in the log" in drawn.summary()
+    with pytest.raises(ParameterError, match="isothermal"):
+        drawn.state_at(400.0, 0.12)
+    with pytest.raises(ParameterError, match="isothermal"):
+        operating_map(isothermal, machine.train, **QUICK, temperatures=[400.0, 410.0])
+    picture = rendered_map(map_chart(drawn, tooltips=False), ".svg")
+    assert isinstance(picture, str)
+    assert "Operating map (isothermal fit)" in picture
+    assert "Temperature" not in picture
+
+
+def test_the_document_is_json_without_infinities(surface: DampingSurface, machine: Machine) -> None:
+    drawn = operating_map(surface, machine.train, **QUICK, points=machine.points)
+    document = json.loads(json.dumps(drawn.document(), allow_nan=False))
+    assert document["stall_above"] == [None] * 61
+    assert np.shape(document["torque"]) == (61, 81)
+    assert document["upper"] == drawn.upper.tolist()
+    assert document["points"][0]["at"]["state"] in STATES
+    assert document["drag"]["transition_speed"] == drawn.drag.transition_speed
+
+
+def texts(picture: str) -> list[str]:
+    import re
+    from html import unescape
+
+    return [unescape(t) for t in re.findall(r">([^<>]+)</t(?:ext|span)>", picture)]
+
+
+def test_the_picture_names_everything(drawn: OperatingMap) -> None:
+    picture = rendered_map(map_chart(drawn), ".svg")
+    assert isinstance(picture, str)
+    shown = texts(picture)
+    for text in ("Temperature (°C)", "Drive speed at the belt (mm/s)", "Roll speed (rpm)"):
+        assert text in shown
+    for text in ("smooth", "stick-slip", "stall", "bistable: smooth only from above", "1 N·m"):
+        assert text in shown
+    for text in ("full speed", "thick paper", "cold <b>start</b>", "greatest drive speed"):
+        assert text in shown
+    assert any("stall beyond 2.7 N·m (roll friction)" in text for text in shown)
+    assert "NaN" not in picture
+
+
+def test_labels_do_not_overlap(surface: DampingSurface, machine: Machine) -> None:
+    from hersey.charts.operating_map import _bands, _contours, _Frame, _Labels, _measured_box, _points
+
+    crowd = tuple(OperatingPoint(f"point {i}", 0.04 + 0.004 * i, 450.0 + i) for i in range(6))
+    drawn = operating_map(surface, machine.train, **QUICK, limits=machine.limits, points=crowd)
+    frame = _Frame.of(drawn)
+    labels = _Labels(frame)
+    _points(drawn, frame, labels)
+    _contours(drawn, frame, labels)
+    labels.regions(_bands(drawn, frame), _measured_box(drawn, frame))
+    boxes = [labels._box(t.text, t.across, t.up) for t in labels._texts]
+    assert len(boxes) >= 10
+    for i, a in enumerate(boxes):
+        for b in boxes[i + 1 :]:
+            assert not (a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3])
+
+
+@pytest.mark.slow
+def test_pictures_of_each_kind(drawn: OperatingMap) -> None:
+    chart = map_chart(drawn)
+    begins = {".html": "<!doctype html>", ".svg": "<svg", ".png": b"\x89PNG", ".pdf": b"%PDF"}
+    assert set(begins) == set(SUFFIXES)
+    for suffix, start in begins.items():
+        assert rendered_map(chart, suffix).startswith(start)  # type: ignore[arg-type]
+    assert "<b>start" not in str(rendered_map(chart, ".html"))
+    with pytest.raises(OutputError, match="no kind of picture"):
+        rendered_map(chart, ".docx")
+
+
+def hersey_command(*arguments: str | Path, cwd: Path) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "hersey.cli", *map(str, arguments)]
+    return subprocess.run(command, cwd=cwd, capture_output=True, text=True, check=False, timeout=120)
+
+
+@pytest.fixture(scope="module")
+def fit_json(bench_csv: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("fit")
+    printed = hersey_command("fit", bench_csv, "--tare", "standing", "--json", cwd=folder)
+    assert printed.returncode == 0, printed.stderr
+    path = folder / "fit.json"
+    path.write_text(printed.stdout)
+    return path
+
+
+def test_a_fit_is_read_back_as_it_was(surface: DampingSurface, fit_json: Path) -> None:
+    again = read_fit(fit_json)
+    for name, value in vars(surface).items():
+        if isinstance(value, np.ndarray):
+            assert np.array_equal(getattr(again, name), value), name
+        else:
+            assert getattr(again, name) == value, name
+
+
+@pytest.mark.parametrize(
+    ("change", "field"),
+    [
+        (lambda fit: fit.pop("values"), "fit.values: Field required"),
+        (lambda fit: fit["values"].pop(), "fit.values: it must be 5 numbers"),
+        (lambda fit: fit["values"].__setitem__(0, "much"), "fit.values.0"),
+        (lambda fit: fit["values"].__setitem__(2, -0.9), "fit.coefficients.c"),
+        (lambda fit: fit["values"].__setitem__(4, 0.1), "fit.transition.speed"),
+        (lambda fit: fit["covariance"].pop(), "fit.covariance"),
+        (lambda fit: fit["covariance"][0].pop(), "fit.covariance"),
+        (lambda fit: fit["covariance"][0].__setitem__(0, -1.0), "fit.covariance"),
+        (lambda fit: fit["covariance"][0].__setitem__(1, 1.0), "fit.covariance"),
+        (lambda fit: fit.update(reference_speed=-1.0), "fit.reference_speed"),
+        (lambda fit: fit.update(reference_speed=float("nan")), "fit.reference_speed"),
+        (lambda fit: fit.update(reference_temperature=None), "fit.reference_temperature"),
+        (lambda fit: fit.update(temperature_range=None), "fit.temperature_range"),
+        (lambda fit: fit.update(speed_range=[2.0, 1.0]), "fit.speed_range"),
+        (lambda fit: fit.update(temperature_scale="degF"), "fit.temperature_scale"),
+        (lambda fit: fit.update(transition=None), "fit.values"),
+        (lambda fit: fit.update(points=5), "fit.points"),
+        (lambda fit: fit["coefficients"].pop("a"), "fit.coefficients"),
+        (lambda fit: fit["transition"]["mixed_exponent"].update(value=-1.1), "fit.transition.mixed_exponent"),
+    ],
+)
+def test_a_broken_fit_is_refused_by_file_and_field(
+    fit_json: Path, tmp_path: Path, change: Any, field: str
+) -> None:
+    document = json.loads(fit_json.read_text())
+    change(document["fit"])
+    path = tmp_path / "broken.json"
+    path.write_text(json.dumps(document))
+    with pytest.raises(ParameterError) as caught:
+        read_fit(path)
+    assert str(caught.value).startswith(f"broken.json: {field}")
+    assert "\n" not in str(caught.value)
+
+
+def test_what_is_no_fit_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "fit.json"
+    for text in ("", "{", "[]", "{}", '"fit"', "[" * 100_000, "time,torque\n1,2\n"):
+        path.write_text(text)
+        with pytest.raises(ParameterError, match=r"^fit\.json: "):
+            read_fit(path)
+    path.write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(ParameterError, match=r"^fit\.json: "):
+        read_fit(path)
+    with pytest.raises(MissingFileError, match="no such file"):
+        read_fit(tmp_path / "none.json")
+    with pytest.raises(MissingFileError, match="no ordinary file"):
+        read_fit(tmp_path)
+
+
+def test_the_command_maps_a_fit_and_overwrites_nothing(fit_json: Path, tmp_path: Path) -> None:
+    machine = ROOT / "examples" / "machine.toml"
+    first = hersey_command("map", machine, "--fit", fit_json, cwd=tmp_path)
+    assert first.returncode == 0, first.stderr
+    assert "thick paper (45 mm/s, 180 degC" in first.stdout
+    assert first.stdout.endswith("map: map.html\n")
+    assert [p.name for p in tmp_path.iterdir()] == ["map.html"]
+    refused = hersey_command("map", machine, "--fit", fit_json, cwd=tmp_path)
+    assert (refused.returncode, "--force" in refused.stderr) == (2, True)
+    printed = hersey_command("map", machine, "--fit", fit_json, "--json", cwd=tmp_path)
+    assert json.loads(printed.stdout)["limited_by"] == "roll friction"
+
+
+def test_the_command_refuses_what_it_cannot_use(fit_json: Path, bench_csv: Path, tmp_path: Path) -> None:
+    machine = ROOT / "examples" / "machine.toml"
+    for arguments, message in (
+        ((machine,), "give either a LOG or --fit"),
+        ((machine, bench_csv, "--fit", fit_json), "give either a LOG or --fit"),
+        ((machine, "--fit", fit_json, "--tare", "standing"), "leave out the options"),
+        ((machine, "--fit", fit_json, "--out", "map.jpg"), "ends in .html"),
+        ((machine, "--fit", fit_json, "--out", fit_json.with_suffix(".svg") / "a.svg"), "no directory"),
+        ((machine, "--fit", machine), "machine.toml: document: not valid JSON"),
+        ((tmp_path / "none.toml", bench_csv), "no such file"),
+    ):
+        result = hersey_command("map", *arguments, cwd=tmp_path)
+        assert (result.returncode, result.stderr.count("\n")) == (2, 1), result.stderr
+        assert message in result.stderr
+    assert list(tmp_path.iterdir()) == []

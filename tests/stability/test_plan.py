@@ -1,0 +1,201 @@
+"""Drive profiles: each ends smooth, keeps the limits, and says what forbids it where there is none."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from benchmarks.plan import brute_force, case, fresh_share, planned
+from scipy.stats import binom
+
+import hersey
+from hersey.errors import ParameterError
+from hersey.machine.machine import Limits
+from hersey.machine.uncertainty import Uncertainty
+from hersey.stability.plan.draws import lower_bound, most_failures, needed
+from tests.cli.test_cli import run
+
+TRAIN = hersey.Drivetrain(1000, 1)
+DRAG = hersey.Drag(50, 1, ehl_exponent=-0.7, mixed_exponent=-1.2, stick_speed=0.01)
+WIDE = Limits(speed=4.0, acceleration=10.0)
+
+
+def test_bounds_are_those_of_the_binomial() -> None:
+    """Clopper and Pearson: at the bound, so few failures have just the probability left over."""
+    for good, count, level in ((200, 220, 0.95), (972, 1000, 0.999)):
+        bound = lower_bound(good, count, level)
+        assert binom.sf(good - 1, count, bound) == pytest.approx(1 - level, rel=1e-9)
+    least = needed(0.95, 0.999, 2)
+    assert lower_bound(least - 2, least, 0.999) >= 0.95 > lower_bound(least - 3, least - 1, 0.999)
+    most = most_failures(0.95, 0.999, 1000)
+    assert lower_bound(1000 - most, 1000, 0.999) >= 0.95 > lower_bound(999 - most, 1000, 0.999)
+
+
+def test_straight_up_where_the_past_does_not_matter() -> None:
+    """Above V* every start ends smooth: the steepest ramp will do, for by its end the belt slides."""
+    plan = hersey.plan_profile(TRAIN, DRAG, target_speed=3.0, limits=Limits(speed=4.0, acceleration=3.0))
+    assert plan.kind == "direct"
+    assert plan.duration == pytest.approx(1.0, rel=1e-5)
+    assert plan.response is not None
+    late = plan.response.time > plan.duration
+    assert plan.response.belt_speed[late].min() > DRAG.stick_speed
+
+
+def test_overshoot_in_the_band() -> None:
+    """The paper's case: below V* = 2.17 it comes from above (it overshoots to 2.5 v_t; we need less time)."""
+    plan = hersey.plan_profile(TRAIN, DRAG, target_speed=1.9, limits=WIDE)
+    assert plan.found
+    by_hand = hersey.Schedule([0.0, 0.25, 1.25, 1.31], [0.0, 2.5, 2.5, 1.9])
+    assert plan.duration < by_hand.times[-1]
+    assert plan.schedule is not None
+    end = hersey.simulate(TRAIN, DRAG, drive_speed=plan.schedule, duration=plan.duration, tolerance=1e-11)
+    state = float(end.belt_speed[-1]), float(end.stretch[-1])
+    settled = hersey.stick_slip(TRAIN, DRAG, drive_speed=1.9, start=state)
+    assert settled.kind == "steady_sliding"
+
+
+@pytest.mark.parametrize("number", [0, 1004, 6])
+def test_random_drives_keep_their_confidence(number: int) -> None:
+    """Fresh draws, tight tolerance; nothing of a brute-force grid is quicker (200 of them: benchmarks)."""
+    given = case(number)
+    plan = planned(given, seed=number + 1)
+    assert plan.found
+    assert fresh_share(given, plan, draws=300) >= 0.95
+    assert brute_force(given, plan, seed=number + 1)[0] >= plan.duration
+
+
+def test_the_same_seed_gives_the_same_plan() -> None:
+    given = case(1003)
+    plans = [planned(given, seed=3) for _ in range(2)]
+    assert plans[0].rows() == plans[1].rows()
+    assert plans[0].document() == plans[1].document()
+
+
+@pytest.mark.parametrize(
+    ("limits", "target", "limit", "text"),
+    [
+        (Limits(speed=1.5), 1.9, "speed", "the drive speed is limited to 1.5 m/s: 1.9 m/s would do"),
+        (WIDE, 0.9, "target_speed", "not above the transition speed 1.001 m/s"),
+        (
+            Limits(speed=4.0, acceleration=10.0, spring_force=60.0),
+            1.9,
+            "spring_force",
+            "spring force is limited",
+        ),
+    ],
+)
+def test_the_forbidding_limit_is_named(limits: Limits, target: float, limit: str, text: str) -> None:
+    plan = hersey.plan_profile(TRAIN, DRAG, target_speed=target, limits=limits)
+    assert plan.kind == "impossible"
+    assert not plan.found
+    assert plan.rows() == []
+    assert [obstacle.limit for obstacle in plan.obstacles] == [limit]
+    assert text in plan.verdict()
+
+
+def test_the_number_that_would_do_does() -> None:
+    """A limit raised to what the plan asks for leaves a profile."""
+    tight = Limits(speed=4.0, acceleration=10.0, spring_force=100.0)
+    refused = hersey.plan_profile(TRAIN, DRAG, target_speed=1.9, limits=tight)
+    assert refused.kind == "impossible"
+    enough = refused.obstacles[0].needed
+    assert enough is not None
+    wider = replace(tight, spring_force=enough)
+    assert hersey.plan_profile(TRAIN, DRAG, target_speed=1.9, limits=wider).found
+
+
+def test_waiting_for_warmth() -> None:
+    """Cold, the belt does not break away within the force allowed: the drive waits until it does."""
+    drag = replace(
+        DRAG,
+        reference_temperature=400.0,
+        force_temperature_exponent=-2.0,
+        speed_temperature_exponent=0.5,
+        temperature_zero=273.15,
+    )
+    course = hersey.Schedule([0.0, 20.0, 30.0], [320.0, 400.0, 400.0])
+    limits = Limits(speed=4.0, acceleration=10.0, spring_force=1.5 * drag.at(400.0).breakaway_force)
+    plan = hersey.plan_profile(TRAIN, drag, target_speed=2.5, temperature=course, limits=limits)
+    assert plan.found
+    assert 1.0 < plan.wait < 20.0
+    assert plan.verdict().startswith("Wait ")
+    cold = drag.at(course.at(0.5 * plan.wait))
+    assert cold.breakaway_force > 1.5 * drag.at(400.0).breakaway_force
+
+
+def test_motor_torque_is_a_limit_at_the_roll() -> None:
+    plan = hersey.plan_profile(
+        TRAIN, DRAG, target_speed=1.9, limits=replace(WIDE, motor_torque=8.0), roll_radius=0.02
+    )
+    use = {use.name: use for use in plan.uses}["motor_torque"]
+    assert use.used == pytest.approx(0.02 * plan.peak_force)
+    assert use.used <= 8.0
+    with pytest.raises(ParameterError, match="roll_radius"):
+        hersey.plan_profile(TRAIN, DRAG, target_speed=1.9, limits=replace(WIDE, motor_torque=8.0))
+
+
+@pytest.mark.parametrize(
+    ("changed", "words"),
+    [
+        ({"target_speed": -1.0}, "target_speed is -1"),
+        ({"target_speed": math.nan}, "target_speed is nan"),
+        ({"confidence": 1.0}, "confidence is 1.0"),
+        ({"seed": -1}, "seed is -1"),
+        ({"uncertainty": {"colour": Uncertainty(share=0.1)}}, "'colour' is no parameter"),
+        ({"samples": {"stiffness": [1.0, 2.0], "mass": [1.0]}}, "differ in length"),
+        ({"limits": Limits(speed=-1.0)}, "speed is -1"),
+        ({"temperature": 300.0}, "temperature"),
+    ],
+)
+def test_bad_arguments_are_named(changed: dict[str, object], words: str) -> None:
+    given: dict[str, object] = {"target_speed": 1.9, "limits": WIDE}
+    with pytest.raises(ParameterError, match=words):
+        hersey.plan_profile(TRAIN, DRAG, **(given | changed))  # type: ignore[arg-type]
+
+
+def test_smooth_closures_are_refused() -> None:
+    with pytest.raises(ParameterError, match="stribeck"):
+        hersey.plan_profile(TRAIN, replace(DRAG, closure="stribeck"), target_speed=1.9)
+
+
+def test_the_command_writes_table_and_figure(examples_here: Path) -> None:
+    command = ["plan", "examples/machine.toml", "examples/bench.csv", "--tare", "standing"]
+    asked = [*command, "--target", "45 mm/s", "--at", "180 degC", "--seed", "4"]
+    result = run(*asked, "--out", "p.csv", "--figure", "p.svg", "--json", cwd=examples_here)
+    assert result.returncode == 0, result.stderr
+    document = json.loads(result.stdout)
+    assert document["seed"] == 4
+    assert document["share_low"] >= 0.95
+    table = np.loadtxt(examples_here / "p.csv", delimiter=",", skiprows=1)
+    assert (examples_here / "p.csv").read_text().startswith("time [s],drive speed [m/s]\n")
+    assert table.tolist() == [[row["time"], row["drive_speed"]] for row in document["rows"]]
+    assert table[-1, 1] == 0.045
+    assert "slides for good" in (examples_here / "p.svg").read_text()
+    again = run(*asked, "--out", "p.csv", cwd=examples_here)
+    assert (again.returncode, "exists" in again.stderr) == (2, True)
+
+
+def test_the_command_says_what_forbids_a_profile(examples_here: Path) -> None:
+    command = ["plan", "examples/machine.toml", "examples/bench.csv", "--tare", "standing"]
+    refused = run(*command, "--target", "25 mm/s", "--at", "180 degC", "--out", "p.csv", cwd=examples_here)
+    assert refused.returncode == 1
+    assert "not above the transition speed" in refused.stdout
+    assert not (examples_here / "p.csv").exists()
+    for arguments, words in (
+        (["--target", "45"], "45"),
+        (["--at", "180 degC"], "--target"),
+        (["--target", "45 mm/s"], "--at"),
+        (
+            ["--target", "45 mm/s", "--at", "180 degC", "--temperature-profile", "c.csv"],
+            "--temperature-profile",
+        ),
+        (["--target", "45 mm/s", "--temperature-profile", "none.csv"], "none.csv"),
+    ):
+        result = run(*command, *arguments, cwd=examples_here)
+        assert result.returncode == 2
+        assert words in result.stderr
+        assert result.stderr.count("\n") == 1

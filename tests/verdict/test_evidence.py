@@ -1,0 +1,437 @@
+"""What dwells say of the film, number by number, and the linter sentence by sentence."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy import stats
+
+import hersey
+from hersey.charts.film import film_chart
+from hersey.damping.estimation import Estimate
+from hersey.damping.surface import DampingSurface, fit
+from hersey.errors import InsufficientDataError, ParameterError
+from hersey.lubrication.contact import Contact
+from hersey.lubrication.film import Correction, Film, drag_torque, film_thickness
+from hersey.lubrication.lubricant import Lubricant
+from hersey.machine.machine import Machine, read_machine
+from hersey.verdict.checks import check_film
+from hersey.verdict.evidence import MeasuredFilm, Verdict, measured_film, verdict
+from tests.conftest import ROOT
+
+GAS = 8.31446261815324
+
+
+@pytest.fixture(scope="module")
+def machine() -> Machine:
+    return read_machine(ROOT / "examples" / "machine.toml")
+
+
+@pytest.fixture(scope="module")
+def contact(machine: Machine) -> Contact:
+    assert machine.contact is not None
+    return machine.contact
+
+
+@pytest.fixture(scope="module")
+def oil(machine: Machine) -> Lubricant:
+    assert machine.lubricant is not None
+    return machine.lubricant
+
+
+@pytest.fixture(scope="module")
+def surface(points: hersey.SteadyPoints) -> DampingSurface:
+    return fit(points)
+
+
+@pytest.fixture(scope="module")
+def measured(
+    points: hersey.SteadyPoints, surface: DampingSurface, contact: Contact, oil: Lubricant
+) -> MeasuredFilm:
+    return measured_film(points, surface, contact, oil, grip=0.6)
+
+
+def test_the_interval_of_the_film_holds_torque_scatter_viscosity_and_nip(
+    points: hersey.SteadyPoints, surface: DampingSurface, contact: Contact, measured: MeasuredFilm
+) -> None:
+    statistics = surface.statistics
+    t = stats.t.ppf(0.975, statistics.points - statistics.variables)
+    torque = np.abs(points.column("torque"))
+    random = t * np.sqrt((points.column("torque_error") / torque) ** 2 + statistics.scatter**2)
+    stated = np.log(1.2) ** 2 + np.log(1.1) ** 2
+    reach = np.exp(np.sqrt(random**2 + stated))
+    np.testing.assert_allclose(measured.high / measured.thickness, reach, rtol=1e-12)
+    np.testing.assert_allclose(measured.thickness / measured.low, reach, rtol=1e-12)
+    assert contact.roughness is not None
+    np.testing.assert_allclose(measured.lambda_ratio, measured.thickness / contact.roughness, rtol=1e-12)
+
+
+def test_what_is_not_stated_widens_nothing(
+    points: hersey.SteadyPoints, surface: DampingSurface, contact: Contact, oil: Lubricant
+) -> None:
+    bare = measured_film(
+        points,
+        surface,
+        replace(contact, nip_uncertainty=None, roughness=None),
+        replace(oil, uncertainty=None),
+    )
+    assert bare.systematic == 1.0
+    assert bare.lambda_ratio is None
+    assert bare.grip is None
+
+
+def test_numbers_of_a_dwell_by_hand(
+    points: hersey.SteadyPoints,
+    surface: DampingSurface,
+    contact: Contact,
+    oil: Lubricant,
+    measured: MeasuredFilm,
+) -> None:
+    for i in (0, 11, -1):
+        w, torque = abs(points.column("speed")[i]), abs(points.column("torque")[i])
+        kelvin = float(points.column("temperature")[i])
+        eta, belt = float(oil.viscosity(kelvin)), w * 15e-3
+        assert measured.friction[i] == pytest.approx(torque / (15e-3 * 300.0), rel=1e-12)
+        assert measured.hersey_number[i] == pytest.approx(
+            eta * belt * contact.nip.width * 0.22 / 300.0, rel=1e-12
+        )
+        assert measured.sommerfeld_number[i] == pytest.approx(eta * belt * 0.22 / 300.0, rel=1e-12)
+        area = contact.nip.width * 0.22
+        assert measured.thickness[i] == pytest.approx(eta * area * w * 15e-3**2 / torque, rel=1e-12)
+        at = surface.transition_speed(kelvin)
+        assert measured.on_film[i] == float(w >= at)
+        alone = drag_torque(contact, oil, speed=w, temperature=kelvin)
+        assert measured.predicted_torque[i] == pytest.approx(float(alone), rel=1e-12)
+    assert set(measured.on_film) == {0.0, 1.0}
+    assert measured.grip == 0.6
+
+
+def test_the_calibration_is_the_mean_of_the_rising_branch(measured: MeasuredFilm) -> None:
+    on = measured.on_film > 0.5
+    logs = np.log(measured.torque[on] / measured.predicted_torque[on])
+    error = logs.std(ddof=1) / np.sqrt(logs.size)
+    t = stats.t.ppf(0.975, logs.size - 1)
+    found = measured.calibration
+    assert found.value == pytest.approx(np.exp(logs.mean()), rel=1e-12)
+    assert found.error == pytest.approx(found.value * error, rel=1e-12)
+    assert found.low == pytest.approx(np.exp(logs.mean() - t * error), rel=1e-12)
+    assert found.high == pytest.approx(np.exp(logs.mean() + t * error), rel=1e-12)
+
+
+def test_an_isothermal_log_needs_its_temperature(
+    points: hersey.SteadyPoints, surface: DampingSurface, contact: Contact, oil: Lubricant
+) -> None:
+    cold = replace(points, table=points.table.with_columns(temperature=np.full(len(points), np.nan)))
+    with pytest.raises(InsufficientDataError, match=r"state that of the film, --at '180 degC'"):
+        measured_film(cold, surface, contact, oil)
+    stated = measured_film(cold, surface, contact, oil, temperature=430.0)
+    assert set(stated.temperature) == {430.0}
+
+
+@pytest.fixture(scope="module")
+def says(measured: MeasuredFilm, surface: DampingSurface, contact: Contact, oil: Lubricant) -> Verdict:
+    return verdict(measured, surface, contact, oil)
+
+
+def test_each_prediction_has_its_probability(says: Verdict, surface: DampingSurface) -> None:
+    freedom = surface.statistics.points - surface.statistics.variables
+    c, error = surface.c.value, surface.c.error
+    ranges = {
+        "starved": (0.0, 0.0),
+        "isoviscous-elastic": (-0.60, -0.56),
+        "piezoviscous-rigid": (-2 / 3, -2 / 3),
+        "piezoviscous-elastic": (-0.70, -0.70),
+        "isoviscous-rigid": (-1.0, -1.0),
+    }
+    found = {p.name: p for p in says.predictions}
+    assert list(found) == [*ranges, "mixed or boundary"]
+    for name, (low, high) in ranges.items():
+        away = max(low - c, c - high, 0.0) / error
+        expected = min(1.0, 2 * stats.t.sf(away, freedom))
+        assert found[name].p_value == pytest.approx(expected, rel=1e-9), name
+        assert found[name].consistent == (expected > 0.05)
+    one_sided = stats.t.sf((c + 1.0) / error, freedom)
+    assert found["mixed or boundary"].p_value == pytest.approx(one_sided, rel=1e-9)
+    assert [p.name for p in says.predictions if p.consistent] == ["piezoviscous-elastic"]
+
+
+def test_probabilities_near_the_level(
+    measured: MeasuredFilm, surface: DampingSurface, contact: Contact, oil: Lubricant
+) -> None:
+    """A damping exponent 1.9 and 2.1 errors from a prediction, and 1.5 above -1, where one side counts."""
+    freedom = surface.statistics.points - surface.statistics.variables
+    for value, name in (
+        (-0.62, "isoviscous-elastic"),
+        (-0.541, "isoviscous-elastic"),
+        (-0.985, "mixed or boundary"),
+    ):
+        c = Estimate(value, 0.01, value - 0.02, value + 0.02)
+        found = verdict(measured, replace(surface, c=c), contact, oil)
+        p = next(p.p_value for p in found.predictions if p.name == name)
+        sides, away = (1, 1.5) if name == "mixed or boundary" else (2, 2.0 if value == -0.62 else 1.9)
+        assert p == pytest.approx(sides * stats.t.sf(away, freedom), rel=1e-6)
+
+
+def test_exponents_expected_of_this_contact(
+    says: Verdict, measured: MeasuredFilm, surface: DampingSurface, contact: Contact, oil: Lubricant
+) -> None:
+    speed = float(np.exp(np.log(measured.speed).mean()))
+    kelvin = float(measured.temperature.mean())
+    step = np.exp([-1e-3, 1e-3])
+    by_speed = drag_torque(contact, oil, speed=speed * step, temperature=kelvin)
+    by_heat = drag_torque(contact, oil, speed=speed, temperature=kelvin * step)
+    assert says.expected == pytest.approx(np.log(by_speed[1] / by_speed[0]) / 2e-3 - 1.0, abs=1e-5)
+    assert says.thermal_expected == pytest.approx(np.log(by_heat[1] / by_heat[0]) / 2e-3, abs=1e-4)
+    assert surface.b is not None
+    assert says.thermal is not None
+    scale = kelvin / (kelvin - 273.15)
+    for name in ("value", "error", "low", "high"):
+        assert getattr(says.thermal, name) == pytest.approx(scale * getattr(surface.b, name), rel=1e-12)
+    assert says.activation_energy == pytest.approx(-GAS * kelvin * scale * surface.b.value, rel=1e-9)
+    assert says.viscosity_activation_energy == pytest.approx(float(oil.activation_energy(kelvin)), rel=1e-12)
+
+
+def test_a_fit_in_kelvin_is_taken_as_it_is(
+    measured: MeasuredFilm, surface: DampingSurface, contact: Contact, oil: Lubricant
+) -> None:
+    found = verdict(measured, replace(surface, temperature_scale="K"), contact, oil)
+    assert found.thermal is not None
+    assert surface.b is not None
+    assert found.thermal.value == surface.b.value
+
+
+def test_the_verdict_in_whole_sentences(says: Verdict) -> None:
+    thermal = "agrees" if says.thermal.low <= says.thermal_expected <= says.thermal.high else "disagrees"  # type: ignore[union-attr]
+    assert says.text == (
+        "The regime chart puts this contact in the isoviscous-elastic regime, where damping goes as speed to "
+        f"the power {says.expected:.2f}; measured {says.exponent}. "
+        f"Solved numerically for this roll, the film gives the power {says.solved:.2f}. "
+        "The measured exponent agrees with piezoviscous-elastic instead. "
+        "Eq. 5 of the paper (Dowson-Higginson) does not apply to this contact, whatever the exponent. "
+        f"With temperature (K) damping goes to the power {says.thermal}; the film of this lubricant predicts "
+        f"{says.thermal_expected:.2f}, which {thermal}."
+    )
+
+
+def test_a_verdict_that_agrees_with_nothing(
+    measured: MeasuredFilm, surface: DampingSurface, contact: Contact, oil: Lubricant
+) -> None:
+    for value, words in (
+        (-0.3, "The measured exponent agrees with no regime."),
+        (-0.58, "The measured exponent agrees with it."),
+    ):
+        c = Estimate(value, 1e-3, value - 2e-3, value + 2e-3)
+        assert words in verdict(measured, replace(surface, c=c), contact, oil).text
+    thermal = verdict(measured, surface, contact, oil).thermal_expected
+    at = float(measured.temperature.mean())
+    share = (at - 273.15) / at
+    for off, words in ((0.0, "which agrees."), (0.2, "which disagrees.")):
+        b = Estimate(thermal * share + off, 0.01, thermal * share + off - 0.02, thermal * share + off + 0.02)
+        assert verdict(measured, replace(surface, b=b), contact, oil).text.endswith(words)
+
+
+def film_at(
+    contact: Contact, oil: Lubricant, *, speed: float = 5.0, kelvin: float | list[float] = 350.0
+) -> Film:
+    return film_thickness(contact, oil, speed=speed, temperature=kelvin)
+
+
+EXTRAPOLATED = "viscosity is extrapolated: known from 40 to 100 degC, used from {} to {} degC"
+
+
+@pytest.mark.parametrize(
+    ("celsius", "shown"),
+    [
+        ([20.0, 90.0], ("20", "90")),
+        ([39.0, 90.0], ("39", "90")),
+        ([50.0, 120.0], ("50", "120")),
+        ([50.0, 101.0], ("50", "101")),
+        ([20.0, 120.0], ("20", "120")),
+        ([39.6, 100.4], None),
+    ],
+)
+def test_extrapolation_is_said_of_the_cold_and_the_hot(
+    machine: Machine, contact: Contact, oil: Lubricant, celsius: list[float], shown: tuple[str, str] | None
+) -> None:
+    notes = check_film(machine, film_at(contact, oil, kelvin=[t + 273.15 for t in celsius]))
+    found = [note for note in notes if note.startswith("viscosity is extrapolated")]
+    assert found == ([] if shown is None else [EXTRAPOLATED.format(*shown)])
+
+
+def test_statements_that_disagree(machine: Machine, contact: Contact, oil: Lubricant) -> None:
+    other = replace(contact, roll_radius=16e-3, load=310.0)
+    notes = check_film(replace(machine, contact=other), film_at(other, oil))
+    assert notes[0] == (
+        "[contact] roll_radius is 16 mm, [drivetrain] roll_radius 15 mm: one roll has one radius"
+    )
+    assert notes[1] == "[contact] load is 310 N, [limits] nip_load 300 N: say which"
+    near = replace(contact, roll_radius=15.1e-3, load=302.0)
+    assert not [
+        n for n in check_film(replace(machine, contact=near), film_at(near, oil)) if n.startswith("[")
+    ]
+
+
+def test_the_lambda_ratio_is_named_by_its_band(machine: Machine, contact: Contact, oil: Lubricant) -> None:
+    least = float(film_at(contact, oil).lambda_ratio(1.0))
+    for ratio, kind, limit in ((0.5, "boundary", 1), (2.0, "mixed", 3)):
+        rough = replace(contact, roughness=least / ratio)
+        assert (
+            f"predicted lambda ratio down to {ratio:.2g} (minimum film over composite rms roughness): by "
+            f"convention {kind} lubrication below {limit}"
+        ) in check_film(replace(machine, contact=rough), film_at(rough, oil))
+    smooth = replace(contact, roughness=least / 3.1)
+    assert not [
+        n for n in check_film(replace(machine, contact=smooth), film_at(smooth, oil)) if "lambda" in n
+    ]
+
+
+def test_nip_strain_and_inlet(machine: Machine, contact: Contact, oil: Lubricant) -> None:
+    thick = replace(contact, rubber_thickness=9e-3, load=60.0)
+    nip = thick.nip
+    off = 100 * (nip.paper_width / nip.width - 1)
+    assert (
+        f"nip/h = {nip.paper_width / 9e-3:.2g} is outside the range of the regression of Eq. 8, 1 to 4: "
+        f"it is {off:+.0f} % off the solved nip"
+    ) in check_film(replace(machine, contact=thick), film_at(thick, oil))
+    pressed = replace(contact, load=900.0)
+    share = 100 * (pressed.nip.width / 2) ** 2 / (2 * 15e-3 * 3.5e-3)
+    assert share > 15
+    assert (
+        f"the rubber is strained by {share:.0f} % (a^2/(2 R h)): linear elasticity ends near 15 %"
+    ) in check_film(replace(machine, contact=pressed), film_at(pressed, oil))
+    film = film_at(contact, oil)
+    short = "the inlet of the film is not short against rubber and nip: the soft law is rough there"
+    assert short not in check_film(machine, film)
+    assert short in check_film(machine, replace(film, inlet_short=np.array(False)))
+    rigid = replace(film, inlet_short=np.array(False), regime=np.array(0))
+    assert short not in check_film(machine, rigid)
+
+
+def test_what_is_said_of_the_lubricant(machine: Machine, contact: Contact, oil: Lubricant) -> None:
+    film = film_at(contact, oil)
+    thickening = 20e-9 * contact.nip.pressure_max
+    assert (
+        f"alpha p = {thickening:.2g}: pressure does not thicken this lubricant in this nip, so Eqs. 5, 9 and "
+        "10 of the paper do not apply"
+    ) in check_film(machine, film)
+    hard = replace(oil, pressure_viscosity=((300.0, 0.11 / contact.nip.pressure_max),))
+    notes = check_film(replace(machine, lubricant=hard), film_at(contact, hard))
+    assert not [n for n in notes if n.startswith("alpha p")]
+    flagged = replace(
+        film, corrections={"starvation": Correction(np.array([0.5, 0.25]), np.array([True, False]))}
+    )
+    assert "starvation: the factor (down to 0.25) is outside the validity of its rule" in check_film(
+        machine, flagged
+    )
+    fine = replace(
+        film, corrections={"starvation": Correction(np.array([0.5, 0.25]), np.array([True, True]))}
+    )
+    assert not [n for n in check_film(machine, fine) if n.startswith("starvation")]
+
+
+def test_shear_that_warms(machine: Machine, contact: Contact, oil: Lubricant) -> None:
+    eta = float(oil.viscosity(350.0))
+    for rise, said in ((2.5, True), (1.9, False)):
+        speed = np.sqrt(rise * 8 * 0.1 / eta) / 15e-3
+        text = f"shear warms the film by up to {rise:.2g} K over its walls: it is thinner than stated"
+        assert (text in check_film(machine, film_at(contact, oil, speed=float(speed)))) == said
+
+
+def test_what_is_said_of_a_log(machine: Machine, measured: MeasuredFilm) -> None:
+    film, on = measured.predicted, measured.on_film
+
+    def notes(**changed: object) -> tuple[str, ...]:
+        quiet = {
+            "friction": np.full(on.size, 0.2),
+            "grip": None,
+            "calibration": Estimate(1.0, 0.1, 0.8, 1.2),
+            "lambda_ratio": np.full(on.size, 2.0),
+        }
+        return check_film(machine, film, replace(measured, **(quiet | changed)))  # type: ignore[arg-type]
+
+    alone = check_film(machine, film)
+    assert notes() == alone
+    assert notes(friction=np.full(on.size, 0.35))[len(alone) :] == (
+        "friction coefficient 0.35 is not a fluid film: above 0.3 surfaces touch, or torque holds more than "
+        "the nip's drag",
+    )
+    assert notes(grip=0.15)[len(alone) :] == (
+        "friction coefficient 0.2 exceeds that of belt on roll, 0.15: it would slip",
+    )
+    assert notes(grip=0.25) == alone
+    for value, said in ((3.1, True), (2.9, False), (0.3, True), (0.35, False)):
+        text = (
+            f"measured torque is {value:.3g} times the predicted one: viscosity, nip or what the torque "
+            f"holds "
+            "besides the film is not as stated; exponents are unaffected"
+        )
+        assert (text in notes(calibration=Estimate(value, 0.1, value, value))) == said
+    rough = np.where(on > 0.5, 0.8, 0.1)
+    assert notes(lambda_ratio=rough)[len(alone) :] == (
+        "the measured film is down to 0.8 of the roughness (1.5 um) where torque rises with speed: not "
+        "thickness alone makes this drag",
+    )
+    assert notes(lambda_ratio=np.where(on > 0.5, 1.1, 0.1)) == alone
+
+
+def test_a_machine_without_its_tables(machine: Machine, contact: Contact, oil: Lubricant) -> None:
+    film = film_at(contact, oil)
+    for name in ("contact", "lubricant"):
+        with pytest.raises(ParameterError, match=rf"the machine has no \[{name}\]: state it in machine.toml"):
+            check_film(replace(machine, **{name: None}), film)  # type: ignore[arg-type]
+
+
+def test_the_stribeck_curve_in_numbers(measured: MeasuredFilm) -> None:
+    panel = film_chart(measured.predicted, ["a"] * measured.speed.size, measured).to_dict(validate=False)[
+        "vconcat"
+    ][1]
+    line, dots, rule = (panel["layer"][i]["data"]["values"] for i in range(3))
+    assert [row["hersey"] for row in dots] == pytest.approx((1e6 * measured.hersey_number).tolist())
+    assert [row["friction"] for row in dots] == pytest.approx(measured.friction.tolist())
+    order = np.argsort(measured.hersey_number)
+    film = measured.predicted_torque * measured.calibration.value / (15e-3 * 300.0)
+    assert [row["hersey"] for row in line] == pytest.approx((1e6 * measured.hersey_number[order]).tolist())
+    assert [row["friction"] for row in line] == pytest.approx(film[order].tolist())
+    rounded = [f"{5 * round((t - 273.15) / 5)} °C" for t in measured.temperature]
+    assert [row["temperature"] for row in dots] == rounded
+    assert rule == [{"friction": 0.6, "text": "the belt slips on the roll: stall"}]
+    shown = panel["layer"][1]["encoding"]["color"]["scale"]["domain"]
+    assert shown == ["90 °C", "120 °C", "150 °C", "180 °C"]
+    free = film_chart(measured.predicted, [], replace(measured, grip=None)).to_dict(validate=False)
+    assert len(free["vconcat"][1]["layer"]) == 2
+
+
+def test_the_regime_chart_in_numbers(contact: Contact, oil: Lubricant, measured: MeasuredFilm) -> None:
+    film = film_thickness(contact, oil, speed=[1.0, 8.0], temperature=[320.0, 370.0])
+    chart = film_chart(film, ["slow", "fast"]).to_dict(validate=False)
+    cells, _, dots, marks, names = (layer["data"]["values"] for layer in chart["layer"])
+    assert dots == []
+    assert [row["name"] for row in marks] == ["slow", "fast"]
+    for axis in ("g_v", "g_e"):
+        assert [row[axis] for row in marks] == pytest.approx(getattr(film, axis).tolist())
+    assert [row["h"] for row in marks] == pytest.approx((1e6 * film.minimum * film.factor).tolist(), rel=1e-3)
+    assert [row["regime"] for row in marks] == film.regime_names()
+    assert names == marks
+    # every point lies in a cell of its own regime
+    for row in marks:
+        held = [
+            c["regime"]
+            for c in cells
+            if c["g_v"] <= row["g_v"] <= c["g_v2"] and c["g_e"] <= row["g_e"] <= c["g_e2"]
+        ]
+        assert row["regime"] in held
+    domains = [chart["layer"][0]["encoding"][axis]["scale"]["domain"] for axis in ("x", "y")]
+    for axis, (low, high), (least, most) in zip(("g_v", "g_e"), domains, ((-2, 4), (-1, 3)), strict=True):
+        logs = np.log10(getattr(film, axis))
+        assert np.log10(low) == pytest.approx(min(least, logs.min() - 1.5))
+        assert np.log10(high) == pytest.approx(max(most, logs.max() + 1.5))
+    with_log = film_chart(film, ["slow", "fast"], measured).to_dict(validate=False)["vconcat"][0]
+    assert len(with_log["layer"][2]["data"]["values"]) == measured.speed.size
+    bare = replace(oil, pressure_viscosity=())
+    hidden = film_chart(film_thickness(contact, bare, speed=1.0, temperature=320.0), ["one"]).to_dict(
+        validate=False
+    )
+    assert hidden["layer"][3]["data"]["values"] == []
+    assert hidden["title"]["subtitle"][0].endswith(" No point is shown: alpha is not known, g_V = 0.")
