@@ -41,8 +41,9 @@ if TYPE_CHECKING:
     from hersey.damping.compare import LogComparison, compare
     from hersey.damping.design import TestDesign, design
     from hersey.damping.dwells import SteadyPoints
-    from hersey.damping.estimation import Estimate
-    from hersey.damping.surface import DampingSurface, fit
+    from hersey.damping.estimate import Estimate
+    from hersey.damping.fit import fit
+    from hersey.damping.surface import DampingSurface
     from hersey.errors import HerseyError
     from hersey.identification import CycleRecord, IdentifiedDrive, cycles, identify
     from hersey.inspection import Inspection, inspect
@@ -87,9 +88,10 @@ _HOMES = {
     "motion.simulation": "Drivetrain StickSlipCycle Trajectory simulate stick_slip",
     "motion.sweep": "sweep",
     "damping.dwells": "SteadyPoints",
-    "damping.estimation": "Estimate",
+    "damping.estimate": "Estimate",
     "damping.branches": "Transition",
-    "damping.surface": "DampingSurface fit",
+    "damping.fit": "fit",
+    "damping.surface": "DampingSurface",
     "damping.candidates": "ModelComparison compare_models hersey_collapse viscosity_laws",
     "damping.compare": "LogComparison compare",
     "damping.design": "TestDesign design",

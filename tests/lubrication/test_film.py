@@ -11,7 +11,8 @@ import pytest
 
 import hersey
 from hersey.charts.film import film_chart
-from hersey.damping.surface import DampingSurface, fit
+from hersey.damping.fit import fit
+from hersey.damping.surface import DampingSurface
 from hersey.errors import HerseyError, ParameterError, UnitError
 from hersey.lubrication.lubricant import EXAMPLES, ShearThinning
 from hersey.machine.machine import Machine, read_machine

@@ -15,7 +15,7 @@ import pytest
 
 import hersey
 from hersey.charts.operating_map import SUFFIXES, map_chart, rendered_map
-from hersey.damping.estimation import Estimate
+from hersey.damping.estimate import Estimate
 from hersey.damping.surface import DampingSurface
 from hersey.document.saved_fit import read_fit
 from hersey.errors import InsufficientDataError, MissingFileError, OutputError, ParameterError

@@ -18,7 +18,7 @@ from hersey.charts.render import specification_of
 from hersey.charts.style import Chart, Row, plot
 from hersey.errors import OutputError
 from hersey.stability.operating_map import OperatingMap
-from hersey.units import celsius, rpm
+from hersey.units import ZERO_CELSIUS, celsius, rpm
 
 WIDTH, HEIGHT = 680, 450
 #: Kinds of file that a map can be written to.
@@ -45,7 +45,6 @@ _THIN = 4.0
 #: Least share by which V* exceeds the transition speed where its line is drawn.
 _VISIBLE = 1.01
 
-_KELVIN = 273.15
 
 Box = tuple[float, float, float, float]
 
@@ -394,7 +393,7 @@ def _tooltips(drawn: OperatingMap, frame: _Frame) -> alt.Chart:
     middles = 0.5 * (columns[1:] + columns[:-1])
     centres = np.sqrt(speeds[1:] * speeds[:-1])
     across, up = (grid.ravel() for grid in np.meshgrid(middles, centres, indexing="ij"))
-    states = drawn.look_up(None if drawn.temperature is None else across + _KELVIN, up)
+    states = drawn.look_up(None if drawn.temperature is None else across + ZERO_CELSIUS, up)
     rows: list[Row] = []
     for number, (x, speed, state) in enumerate(zip(across.tolist(), up.tolist(), states, strict=True)):
         i, j = divmod(number, centres.size)

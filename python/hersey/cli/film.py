@@ -69,7 +69,7 @@ def film(
         raise ParameterError("options that say how to read a log need --log")
     measured, says = None, None
     if log:
-        from hersey.damping.surface import fit
+        from hersey.damping.fit import fit
 
         points = reading.points(reading.log(log))
         with working("fitting the surface"):

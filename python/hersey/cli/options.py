@@ -97,7 +97,7 @@ class Reading:
 
     def surface(self, paths: list[Path] | None, fit_file: Path | None) -> DampingSurface:
         """Read a finished fit, or fit the log."""
-        from hersey.damping.surface import fit
+        from hersey.damping.fit import fit
         from hersey.document.saved_fit import read_fit
         from hersey.errors import ParameterError
 

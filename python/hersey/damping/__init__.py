@@ -2,10 +2,10 @@
 
 ==========  =========================================================
 dwells      dwells, reduced to steady points with honest errors
-estimation  weighted least squares with an unknown scatter
-law         B = a T^b w^c in logarithms, and the data it is fitted to
+estimate    a number with its uncertainty
 branches    two branches of the law: whether, and where they meet
-surface     the fitted damping surface
+surface     the damping surface, and what can be asked of it
+fit         fitting it: the paper's candidate among all
 candidates  every law fitted to the same dwells, one chosen
 compare     two logs against each other
 design      which dwells to record next

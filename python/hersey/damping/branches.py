@@ -7,26 +7,21 @@ line through the points on its side, as one would draw it by hand.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import optimize
 
 from hersey.arrays import BoolArray, FloatArray
-from hersey.damping.estimation import Estimate, Solution, fitted_scatter, quantile
-from hersey.damping.law import (
-    SAME_SPEED,
-    FitData,
-    corner_residual,
-    distinct_speeds,
-    hersey_exponent,
-    log_damping,
-)
+from hersey.damping.candidates.branched import HELD, Bend, Law, transition_exponent
+from hersey.damping.candidates.fitting import LawFit, fit_law
+from hersey.damping.candidates.intervals import profile_interval
+from hersey.damping.candidates.likelihood import EVIDENCE, scatter_beyond
+from hersey.damping.candidates.observations import Observations
+from hersey.damping.dwells import SAME_SPEED, distinct_speeds
+from hersey.damping.estimate import Estimate, quantile
 from hersey.units import rpm
 
-#: AICc by which a second branch must beat a single power law before it is announced.
-EVIDENCE = 6.0
 #: Widths of a bend, in the logarithm of speed, that a corner is compared with.
 BEND_WIDTHS = (0.15, 0.3, 0.6)
 #: Points and distinct speeds that each branch needs.
@@ -37,7 +32,7 @@ MIN_BRANCH_POINTS, MIN_BRANCH_SPEEDS = 4, 3
 class Branches:
     """Two branches as fitted, and where they part and meet (logarithms of scaled speed)."""
 
-    solution: Solution
+    fit: LawFit
     parted_at: float
     meeting: tuple[float, float]  #: 95 % interval
     gradual: bool
@@ -55,126 +50,141 @@ class Transition:
     gradual: bool  #: whether the branches are trend lines on either side of a gradual bend
 
 
-def fit_branches(data: FitData, single: Solution) -> Branches | None:
+def fit_branches(data: Observations, single: LawFit) -> Branches | None:
     """Return the best two branches, or None if there are too few points for any."""
-    found, (b, c) = None, data.exponents(single)
-    for _ in range(4):  # which points are slow depends on b and c, which depend on it
-        temperature_exponent = hersey_exponent(b, c)
-        splits = _splits(data, temperature_exponent)
+    law = replace(_law_of(single), branches=HELD)
+    trend, powers = None, _powers(single)
+    for _ in range(4):  # which points are slow depends on the law, which depends on it
+        splits = _splits(data, single, transition_exponent(*powers))
         if not splits:
             return None
-        found = _trend_lines(data, splits, temperature_exponent)
-        if np.allclose((b, c), data.exponents(found.solution), rtol=1e-9):
+        trend = _trend_lines(data, law, single, splits, transition_exponent(*powers))
+        if np.allclose(powers, _powers(trend.fit), rtol=1e-9):
             break
-        b, c = data.exponents(found.solution)
-    assert found is not None
-    corner = data.solve(corner_residual(data), found.solution.values)
-    below = np.asarray(data.scaled_speed(corner) < corner.values[-1])
-    if not (_enough(data, below) and _enough(data, ~below)) or _is_gradual(data, corner):
-        return found
-    return Branches(corner, found.parted_at, corner.interval_of_last(), gradual=False)
+        powers = _powers(trend.fit)
+    assert trend is not None
+    corner = fit_law(law, data, [trend.fit.values])
+    below = np.asarray(_scaled_speed(data, corner) < corner.values[-1])
+    if not (_enough(data, below) and _enough(data, ~below)) or _is_gradual(data, law, corner):
+        return trend
+    meeting = profile_interval(corner, data, law.index("at"))
+    return Branches(corner, trend.parted_at, meeting, gradual=False)
 
 
-def why_no_transition(data: FitData, single: Solution, branches: Branches) -> str:
+def why_no_transition(data: Observations, single: LawFit, branches: Branches) -> str:
     """Return why a second branch is not announced; empty if torque falls and rises beyond doubt."""
-    solution = branches.solution
-    below, above = solution.estimate(data.pick(c=1.0, change=1.0)), solution.estimate(data.pick(c=1.0))
-    gain = single.aicc(data.error) - solution.aicc(data.error)
+    fit = branches.fit
+    below, above, at = fit.estimate("c_mixed"), fit.estimate("c"), float(fit.values[-1])
+    gain = single.aicc - fit.aicc
     if gain < EVIDENCE:
         return f"a second branch does not pay: its AICc is better by {gain:.1f}, {EVIDENCE:g} are asked"
     if below.high >= -1.0:
-        bend = rpm(data.reference_speed * float(np.exp(solution.values[-1])))
+        bend = rpm(data.reference_speed * float(np.exp(at)))
         return f"below {bend:.3g} rpm the exponent is {below}: torque does not fall with speed beyond doubt"
     if above.low <= -1.0:
         return f"above the bend the exponent is {above}: torque does not rise with speed beyond doubt"
-    scaled = data.scaled_speed(solution)
-    if not scaled.min() < solution.values[-1] < scaled.max():
+    scaled = _scaled_speed(data, fit)
+    if not scaled.min() < at < scaled.max():
         return "the falling and the rising branch do not meet within the speeds measured"
+    if not np.all(np.isfinite(branches.meeting)):
+        return "where the falling and the rising branch meet has no bound in these data"
     return ""
 
 
-def transition(data: FitData, single: Solution, branches: Branches) -> Transition:
+def transition(data: Observations, single: LawFit, branches: Branches) -> Transition:
     """Return the transition that branches show."""
-    solution = branches.solution
+    fit = branches.fit
     best, low, high, least = (
         data.reference_speed * float(np.exp(v))
-        for v in (solution.values[-1], *branches.meeting, branches.parted_at)
+        for v in (fit.values[-1], *branches.meeting, branches.parted_at)
     )
-    reach = quantile(data.y.size - solution.values.size)
+    reach = quantile(fit.freedom)
     return Transition(
         speed=Estimate(best, best * float(np.log(high / low)) / (2 * reach), low, high),
         least_torque_speed=least,
-        mixed_exponent=solution.estimate(data.pick(c=1.0, change=1.0)),
-        temperature_exponent=hersey_exponent(*data.exponents(solution)),
-        evidence=single.aicc(data.error) - solution.aicc(data.error),
+        mixed_exponent=fit.estimate("c_mixed"),
+        temperature_exponent=transition_exponent(*_powers(fit)),
+        evidence=single.aicc - fit.aicc,
         gradual=branches.gradual,
     )
 
 
+def _law_of(fit: LawFit) -> Law:
+    assert isinstance(fit.law, Law)
+    return fit.law
+
+
+def _powers(fit: LawFit) -> tuple[float, float]:
+    """Exponents of temperature (0 if isothermal) and of speed above the transition."""
+    law = _law_of(fit)
+    e = float(fit.values[law.index("e")]) if law.thermal else 0.0
+    return e, float(fit.values[law.index("c")])
+
+
+def _temperatures(data: Observations, law: Law) -> FloatArray:
+    """Logarithm of temperature about the reference, in the scale of the law; zeros if isothermal."""
+    if law.thermal is None or data.inputs.kelvin is None:
+        return np.zeros(len(data))
+    return law.thermal.shape(data.inputs.kelvin)[0]
+
+
+def _scaled_speed(data: Observations, fit: LawFit) -> FloatArray:
+    """Logarithm of speed at the same Hersey number at the reference temperature."""
+    shift = transition_exponent(*_powers(fit)) * _temperatures(data, _law_of(fit))
+    return np.asarray(data.inputs.log_speed - shift)
+
+
 def _trend_lines(
-    data: FitData, splits: list[tuple[float, BoolArray]], temperature_exponent: float
+    data: Observations, law: Law, single: LawFit, splits: list[tuple[float, BoolArray]], exponent: float
 ) -> Branches:
     """A trend line on either side of the likeliest split; where they meet is as uncertain as the split."""
-    limit = splits[0][0] + quantile(data.y.size) ** 2
-    solved = [(chi, below, _solve_split(data, below)) for chi, below in splits if chi <= limit]
-    ends = [solution.interval_of_last() for _, _, solution in solved]
+    limit = splits[0][0] + quantile(len(data)) ** 2
+    solved = [(chi, below, _fit_split(data, law, single, below)) for chi, below in splits if chi <= limit]
+    meetings = [fit.estimate("at") for _, _, fit in solved]
     likeliest = [s for s in solved if s[0] <= splits[0][0] + 1e-9]
-    _, below, best = min(likeliest, key=lambda s: s[2].aicc(data.error))
-    scaled = data.z - temperature_exponent * data.temperatures
+    _, below, best = min(likeliest, key=lambda s: s[2].aicc)
+    scaled = data.inputs.log_speed - exponent * _temperatures(data, law)
     return Branches(
         best,
         parted_at=0.5 * float(scaled[below].max() + scaled[~below].min()),
-        meeting=(min(e[0] for e in ends), max(e[1] for e in ends)),
+        meeting=(min(m.low for m in meetings), max(m.high for m in meetings)),
         gradual=True,
     )
 
 
-def _is_gradual(data: FitData, corner: Solution) -> bool:
+def _is_gradual(data: Observations, law: Law, corner: LawFit) -> bool:
     """Whether a bend of some width describes the data much better than a corner."""
-    for width in BEND_WIDTHS:
-
-        def residual(values: FloatArray, width: float = width) -> FloatArray:
-            return np.asarray(data.y - log_damping(values, data.temperatures, data.z, data.thermal, width))
-
-        bend = data.solve(residual, corner.values)
-        if bend.aicc(data.error, more=1) < corner.aicc(data.error) - EVIDENCE:
-            return True
-    return False
+    bends = (fit_law(replace(law, bend=Bend(width)), data, [corner.values]) for width in BEND_WIDTHS)
+    return any(bend.aicc_with(1) < corner.aicc - EVIDENCE for bend in bends)
 
 
-def _branch_residual(data: FitData, below: BoolArray) -> Callable[[FloatArray], FloatArray]:
-    """Residuals with each point held to its branch, as with trend lines drawn through either side."""
-    thermal = data.thermal
-
-    def residual(values: FloatArray) -> FloatArray:
-        level, b, c = (values[0], values[1], values[2]) if thermal else (values[0], 0.0, values[1])
-        change, at = values[-2:]
-        reach = data.z - at - hersey_exponent(b, c) * data.temperatures
-        return np.asarray(data.y - level - b * data.temperatures - c * data.z - change * below * reach)
-
-    return residual
-
-
-def _solve_split(data: FitData, below: BoolArray) -> Solution:
-    columns = [np.ones_like(data.z), *([data.x] if data.x is not None else []), data.z]
-    slow = [below * 1.0, below * data.z]
-    start, *_ = np.linalg.lstsq(np.column_stack([*columns, *slow]), data.y, rcond=None)
-    jump, change = float(start[-2]), float(start[-1])
-    at = -jump / change if change else float(data.z[below].max())
-    return data.solve(_branch_residual(data, below), np.append(start[:-2], [change, at]))
+def _fit_split(data: Observations, law: Law, single: LawFit, below: BoolArray) -> LawFit:
+    """The law with each point held to its branch, from two lines of their own."""
+    z, heat = data.inputs.log_speed, [_temperatures(data, law)] if law.thermal else []
+    columns = [np.ones_like(z), *heat, z, below * 1.0, below * z]
+    weights = 1.0 / single.sigma
+    linear, *_ = np.linalg.lstsq(
+        np.column_stack(columns) * weights[:, None], data.log_torque * weights, rcond=None
+    )
+    jump, change = float(linear[-2]), float(linear[-1])
+    c = float(linear[-3]) - 1.0
+    at = -jump / change if change else float(z[below].max())
+    start = np.array([*linear[:-3], c, c + change, at])
+    return fit_law(replace(law, bend=Bend(below=below)), data, [start])
 
 
-def _splits(data: FitData, temperature_exponent: float) -> list[tuple[float, BoolArray]]:
+def _splits(data: Observations, single: LawFit, exponent: float) -> list[tuple[float, BoolArray]]:
     """Which points are slow, for every split with enough points on either side, the likeliest first.
 
     At a fixed Hersey number torque is a function of scaled speed alone. Its best falling curve below the
     split and best rising curve above it (isotonic regression, no law assumed) say how likely the split is.
     """
-    scaled = data.z - temperature_exponent * data.temperatures
-    torque = data.y + data.z
+    scaled = data.inputs.log_speed - exponent * _temperatures(data, _law_of(single))
     order = np.argsort(scaled, kind="stable")
-    scatter = fitted_scatter(_unimodal_residuals(torque[order]), data.error[order], max(scaled.size // 2, 1))
-    weights = 1.0 / (data.error[order] ** 2 + scatter**2 + 1e-18)
+    torque = data.log_torque
+    residuals = _unimodal_residuals(torque[order])
+    scatter = scatter_beyond(residuals, single.errors[order], max(scaled.size // 2, 1))
+    weights = 1.0 / (single.errors[order] ** 2 + scatter**2 + 1e-18)
     found = []
     for i in np.nonzero(np.diff(scaled[order]) > 0.5 * SAME_SPEED)[0]:
         below = np.asarray(scaled <= 0.5 * (scaled[order][i] + scaled[order][i + 1]))
@@ -201,6 +211,6 @@ def _unimodal_residuals(torque: FloatArray) -> FloatArray:
     return best
 
 
-def _enough(data: FitData, side: BoolArray) -> bool:
+def _enough(data: Observations, side: BoolArray) -> bool:
     points, speeds = int(np.count_nonzero(side)), distinct_speeds(data.speed[side])
     return points >= MIN_BRANCH_POINTS and speeds >= MIN_BRANCH_SPEEDS

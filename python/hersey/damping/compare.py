@@ -16,14 +16,14 @@ import numpy as np
 from scipy import stats
 
 from hersey.arrays import FloatArray
-from hersey.damping.branches import EVIDENCE
 from hersey.damping.candidates.branched import Law
 from hersey.damping.candidates.comparison import compare_models
 from hersey.damping.candidates.intervals import quantities
+from hersey.damping.candidates.likelihood import EVIDENCE
 from hersey.damping.candidates.model_comparison import CandidateFit, ModelComparison
 from hersey.damping.candidates.observations import Inputs, Observations
 from hersey.damping.dwells import SteadyPoints
-from hersey.damping.estimation import CONFIDENCE, Estimate
+from hersey.damping.estimate import CONFIDENCE, Estimate
 from hersey.errors import InsufficientDataError
 from hersey.result import json_value
 from hersey.units import convert, rpm

@@ -38,6 +38,8 @@ STICK_SLIP_SWING, STICK_SLIP_SKEWNESS = 0.05, -3.0
 LATER_STARTS = (0.3, 0.5, 0.65, 0.8, 0.9)
 #: Samples to which a dwell is averaged before its drift and autocorrelation are computed.
 THINNED = 10_000
+#: Speeds closer than this share count as the same.
+SAME_SPEED = 0.03
 #: Drift counts as real beyond this many standard errors.
 SIGNIFICANT = 3.0
 
@@ -449,3 +451,9 @@ def groups_of_temperature(temperature: FloatArray, width: float = 6.0) -> Iterat
         if i == order.size or temperature[order[i]] - temperature[order[start]] > width:
             yield order[start:i]
             start = i
+
+
+def distinct_speeds(speed: FloatArray) -> int:
+    """Return how many different speeds there are, to `SAME_SPEED`."""
+    ordered = np.sort(speed)
+    return int(1 + np.count_nonzero(np.diff(np.log(ordered)) > SAME_SPEED)) if ordered.size else 0

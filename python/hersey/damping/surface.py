@@ -1,7 +1,8 @@
 """The damping surface B = a T^b w^c (Eq. 4 of the paper), with a falling branch where the data show one.
 
-The fit is weighted least squares in ln B about reference values, where the coefficients are well
-conditioned. The same law is fitted in torque space, where errors are absolute, for comparison.
+It is the paper's candidate in the likelihood of all candidate laws (`candidates`), about the same reference
+values, where the coefficients are well conditioned. The same law is fitted in torque space, where errors are
+absolute, for comparison.
 
 Where torque falls with speed (c < -1) below a transition speed, a second branch with an exponent of its own
 meets the first there. The transition sits at a fixed Hersey number, so that it moves with temperature.
@@ -11,25 +12,26 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from hersey import _core
 from hersey.arrays import FloatArray
-from hersey.damping.branches import Transition, fit_branches, transition, why_no_transition
-from hersey.damping.dwells import SteadyPoints
-from hersey.damping.estimation import Estimate, Solution, robust, solve
-from hersey.damping.law import (
-    FitData,
-    fit_single,
-    hersey_exponent,
-    log_damping,
-    scaled_temperature,
-    variables,
-)
+from hersey.damping.branches import Transition
+from hersey.damping.candidates.branched import HELD, ONE, Law, transition_exponent
+from hersey.damping.candidates.intervals import Band, band_of
+from hersey.damping.candidates.observations import Inputs
+from hersey.damping.candidates.thermal import CELSIUS, KELVIN, Thermal, scaled_temperature
+from hersey.damping.estimate import Estimate
 from hersey.errors import ExtrapolationWarning, InsufficientDataError, ParameterError
 from hersey.motion.drag import Drag
+from hersey.units import ZERO_CELSIUS, celsius, si
+
+#: Law of temperature by the scale of T in T^b.
+SCALES = {"degC": CELSIUS, "K": KELVIN}
 
 
 @dataclass(frozen=True)
@@ -41,6 +43,7 @@ class FitStatistics:
     chi_square: float
     reduced_chi_square: float
     scatter: float  #: relative, between dwells, beyond the standard errors of their means
+    dwell_error: float  #: relative, median of the errors of the dwells
     aicc: float
     r_squared_damping: float
     r_squared_torque: float
@@ -51,7 +54,7 @@ class DampingSurface:
     """A fitted law B = a T^b w^c; T in ``temperature_scale``, w in rad/s, B in N m s/rad.
 
     ``b`` is None for isothermal data. ``covariance`` is that of ``variables``, the numbers fitted, about
-    ``reference_speed`` (rad/s) and ``reference_temperature`` (in the scale). ``torque_space`` holds a, b, c
+    ``reference_speed`` (rad/s) and ``reference_temperature`` (K). ``torque_space`` holds a, b, c
     of the fit to torque. ``speed_range`` and ``temperature_range`` (SI) bound the data.
     """
 
@@ -81,16 +84,32 @@ class DampingSurface:
         """
         speeds = np.abs(np.asarray(speed, dtype=float))
         self._warn_outside("speed", speeds, self.speed_range)
-        z = np.log(speeds / self.reference_speed)
-        if self.b is None or self.reference_temperature is None or temperature is None:
-            if self.b is not None:
-                raise ParameterError("this law depends on temperature: give it one, in K")
-            x = np.zeros(())
-        else:
-            temperatures = np.asarray(temperature, dtype=float)
-            self._warn_outside("temperature", temperatures, self.temperature_range)
-            x = np.log(scaled_temperature(temperatures, self.temperature_scale) / self.reference_temperature)
-        return np.asarray(np.exp(log_damping(self.values, x, z, self.b is not None)))
+        if self.b is not None and temperature is None:
+            raise ParameterError("this law depends on temperature: give it one, in K")
+        kelvin = None
+        if self.b is not None and temperature is not None:
+            kelvin = np.asarray(temperature, dtype=float)
+            self._warn_outside("temperature", kelvin, self.temperature_range)
+            speeds, kelvin = np.broadcast_arrays(speeds, kelvin)
+        inputs = self._inputs(speeds, kelvin)
+        return np.asarray(np.exp(self._law.predict(self._law_values, inputs)).reshape(speeds.shape) / speeds)
+
+    @cached_property
+    def _law(self) -> Law:
+        thermal = None
+        if self.reference_temperature is not None:
+            thermal = Thermal(SCALES[self.temperature_scale], self.reference_temperature)
+        return Law(thermal, HELD if self.transition else ONE)
+
+    @cached_property
+    def _law_values(self) -> FloatArray:
+        """The values as the law has them, whose level is of torque."""
+        return np.append(self.values[0] + np.log(self.reference_speed), self.values[1:])
+
+    def _inputs(self, speed: FloatArray, kelvin: FloatArray | None) -> Inputs:
+        z = np.log(speed.ravel() / self.reference_speed)
+        hot = None if kelvin is None else np.ravel(kelvin)
+        return Inputs(z, hot, np.zeros(z.size, dtype=np.intp))
 
     def torque(self, speed: ArrayLike, temperature: ArrayLike | None = None) -> FloatArray:
         """Return drag torque in N m, with the sign of the speed (rad/s); temperature in K."""
@@ -102,8 +121,8 @@ class DampingSurface:
             return float("nan")
         if temperature is None or self.reference_temperature is None:
             return self.transition.speed.value
-        ratio = self._scaled(temperature) / self.reference_temperature
-        return float(self.transition.speed.value * ratio**self.transition.temperature_exponent)
+        moved = self.transition.temperature_exponent * self._log_temperature(temperature)
+        return float(self.transition.speed.value * np.exp(moved))
 
     def drag(self, *, roll_radius: float, stick_speed: float, temperature: float | None = None) -> Drag:
         """Return the drag on the belt surface, at one temperature or varying with it.
@@ -126,8 +145,8 @@ class DampingSurface:
         if self.transition is None:
             raise InsufficientDataError(f"the data show no falling branch ({self.rejected_transition})")
         if temperature is None and self.b is not None and self.reference_temperature is not None:
-            zero = 0.0 if self.temperature_scale == "K" else 273.15
-            reference = self.reference_temperature + zero
+            zero = 0.0 if self.temperature_scale == "K" else ZERO_CELSIUS
+            reference = self.reference_temperature
             at_reference = self.drag(roll_radius=roll_radius, stick_speed=stick_speed, temperature=reference)
             exponent = self.transition.temperature_exponent
             return replace(
@@ -203,7 +222,7 @@ class DampingSurface:
         self.drag(roll_radius=roll_radius, stick_speed=stick_speed, temperature=temperature)
         x = 0.0
         if temperature is not None and self.reference_temperature is not None:
-            x = float(np.log(self._scaled(temperature) / self.reference_temperature))
+            x = self._log_temperature(temperature)
         slowest = np.log(stick_speed / roll_radius / self.reference_speed)
         kept, drawn, failed = self._draws(count, seed, x, slowest)
         if failed:
@@ -212,7 +231,7 @@ class DampingSurface:
                 "the intervals hold for fits that have one",
                 stacklevel=2,
             )
-        level, b, c, change, at = kept.T
+        level, b, c, mixed, at = kept.T
         z = at + _transition_exponents(b, c) * x
         speed = self.reference_speed * np.exp(z)
         torque = np.exp(level + b * x + c * z) * speed
@@ -220,17 +239,17 @@ class DampingSurface:
             "transition_force": torque / roll_radius,
             "transition_speed": speed * roll_radius,
             "ehl_exponent": c,
-            "mixed_exponent": c + change,
+            "mixed_exponent": mixed,
         }
 
     def _draws(self, count: int, seed: int, x: float, slowest: float) -> tuple[FloatArray, int, int]:
-        """Draws of level, b, c, change and at that have both branches; how many were drawn, and refused."""
+        """Draws of level, b, c, c_mixed and at that have both branches; how many were drawn, and refused."""
         assert self.transition is not None
         covariance = self.covariance.copy()
         # Where the bend is gradual the meeting of the branches is less certain than a corner's.
         meeting = self.transition.speed.error / self.transition.speed.value
         covariance[-1, -1] = max(covariance[-1, -1], meeting**2)
-        freedom = max(self.statistics.points - self.statistics.variables, 1)
+        freedom = max(self.freedom, 1)
         rng = np.random.default_rng(seed)
         kept, drawn = np.empty((0, 5)), 0
         while len(kept) < count:
@@ -238,8 +257,8 @@ class DampingSurface:
             values = self.values + values * np.sqrt(freedom / rng.chisquare(freedom, size=(count, 1)))
             if self.b is None:
                 values = np.insert(values, 1, 0.0, axis=1)
-            _, b, c, change, at = values.T
-            falls = (c > -1.0) & (c + change < -1.0) & (at + _transition_exponents(b, c) * x > slowest)
+            _, b, c, mixed, at = values.T
+            falls = (c > -1.0) & (mixed < -1.0) & (at + _transition_exponents(b, c) * x > slowest)
             kept, drawn = np.concatenate([kept, values[falls]]), drawn + count
             if 2 * len(kept) < drawn:
                 raise InsufficientDataError(
@@ -248,19 +267,56 @@ class DampingSurface:
                 )
         return kept[:count], drawn, drawn - len(kept)
 
+    def predict(self, speed: Any, temperature: Any = None) -> Band:
+        """Return torque with its 95 % limits: of the law, and of one further dwell.
+
+        Parameters
+        ----------
+        speed
+            rad/s, or strings such as ``"400 rpm"``, or pint quantities.
+        temperature
+            K, or strings such as ``"150 degC"``, or pint quantities; needed if the law depends on it. Both
+            broadcast together.
+
+        Examples
+        --------
+        >>> import hersey
+        >>> surface = hersey.fit(hersey.read("examples/bench.csv").steady(tare="standing"))
+        >>> surface.predict("25 rpm", "150 degC").torque.round(3)
+        array([0.303])
+        """
+        speeds = np.abs(np.asarray(si("speed", speed), dtype=float))
+        self._warn_outside("speed", speeds, self.speed_range)
+        kelvin = None
+        if self.b is not None:
+            if temperature is None:
+                raise ParameterError("this law depends on temperature: give it one, in K")
+            kelvin = np.asarray(si("temperature", temperature), dtype=float)
+            self._warn_outside("temperature", kelvin, self.temperature_range)
+            speeds, kelvin = np.broadcast_arrays(speeds, kelvin)
+        dwell = float(np.hypot(self.statistics.scatter, self.statistics.dwell_error))
+        inputs = self._inputs(speeds, kelvin)
+        return band_of(self._law, self._law_values, self.covariance, self.freedom, dwell, inputs)
+
+    @property
+    def freedom(self) -> int:
+        """Degrees of freedom of the fit."""
+        return self.statistics.points - self.statistics.variables
+
     def summary(self) -> str:
         """Return the fit as text, in the layout that users of lmfit know."""
         return _summary(self)
 
-    def _scaled(self, temperature: float) -> float:
-        """A temperature (K) in the scale of the law, where its powers have a meaning."""
+    def _log_temperature(self, temperature: float) -> float:
+        """Logarithm of a temperature (K) over the reference, in the scale of the law."""
         scaled = float(scaled_temperature(np.asarray(temperature, dtype=float), self.temperature_scale))
         if not (np.isfinite(scaled) and scaled > 0):
             raise ParameterError(
                 f"temperature is {temperature:g} K: a law in {self.temperature_scale} holds above 0 "
                 f"{self.temperature_scale} only"
             )
-        return scaled
+        reference = scaled_temperature(np.asarray(self.reference_temperature), self.temperature_scale)
+        return float(np.log(scaled / reference))
 
     def _warn_outside(self, name: str, values: FloatArray, limits: tuple[float, float] | None) -> None:
         if limits and (np.any(values < limits[0] * 0.999) or np.any(values > limits[1] * 1.001)):
@@ -272,114 +328,8 @@ class DampingSurface:
             )
 
 
-def fit(points: SteadyPoints, *, temperature_scale: str = "degC") -> DampingSurface:
-    """Fit the damping surface to steady points.
-
-    Parameters
-    ----------
-    points
-        From `TorqueLog.steady`.
-    temperature_scale
-        ``degC`` (as the paper) or ``K``: a and b depend on it.
-
-    Raises
-    ------
-    InsufficientDataError
-        If the points hold fewer than three speeds, or a temperature that does not vary.
-    """
-    data = FitData.of(points, temperature_scale)
-    single = fit_single(data)
-    branches = fit_branches(data, single)
-    if branches is None:
-        return _surface(points, data, single, None, "too few points for a second branch")
-    refused = why_no_transition(data, single, branches)
-    if refused:
-        return _surface(points, data, single, None, refused)
-    return _surface(points, data, branches.solution, transition(data, single, branches), "")
-
-
 def _transition_exponents(b: FloatArray, c: FloatArray) -> FloatArray:
-    return np.array([hersey_exponent(*pair) for pair in zip(b.tolist(), c.tolist(), strict=True)])
-
-
-def _fit_torque(data: FitData, solution: Solution) -> Solution:
-    """The same law fitted to torque, errors absolute; a transition stays where ln B put it."""
-    held = solution.values[-1:] if _branched(data, solution) else np.empty(0)
-    start = solution.values[: solution.values.size - held.size]
-    tare = np.full(data.torque.size, data.tare_error)
-
-    def residual(values: FloatArray) -> FloatArray:
-        law = log_damping(np.append(values, held), data.temperatures, data.z, data.thermal)
-        return np.asarray(data.torque - data.speed * np.exp(law))
-
-    return robust(solve(residual, start, data.torque_error, tare), tare)
-
-
-def _branched(data: FitData, solution: Solution) -> bool:
-    return solution.values.size > 2 + data.thermal
-
-
-def _coefficients(data: FitData, solution: Solution) -> dict[str, Estimate]:
-    """a, b and c as Eq. 4 has them, from values about the reference point."""
-
-    def combined(**share: float) -> Estimate:
-        return solution.estimate(data.pick(**share)[: solution.values.size])
-
-    speed, temperature = np.log(data.reference_speed), np.log(data.reference_temperature or 1.0)
-    log_a = combined(level=1.0, b=-float(temperature), c=-float(speed))
-    a = float(np.exp(log_a.value))
-    out = {"a": Estimate(a, a * log_a.error, float(np.exp(log_a.low)), float(np.exp(log_a.high)))}
-    if data.thermal:
-        out["b"] = combined(b=1.0)
-    out["c"] = combined(c=1.0)
-    return out
-
-
-def _surface(
-    points: SteadyPoints, data: FitData, solution: Solution, found: Transition | None, refused: str
-) -> DampingSurface:
-    coefficients = _coefficients(data, solution)
-    fitted = np.exp(data.y - solution.residuals)
-    count, size = data.y.size, solution.values.size
-    chi_square = solution.chi_square(data.error)
-    statistics = FitStatistics(
-        points=count,
-        variables=size,
-        chi_square=chi_square,
-        reduced_chi_square=chi_square / (count - size),
-        scatter=solution.scatter,
-        aicc=solution.aicc(data.error),
-        r_squared_damping=_r_squared(np.exp(data.y), fitted),
-        r_squared_torque=_r_squared(data.torque, fitted * data.speed),
-    )
-    labels = {"level": "ln B_ref", "change": "c_mixed - c", "at": "ln(w_t/w_ref)"}
-    names = variables(data.thermal, _branched(data, solution))
-    kelvin = points.column("temperature") if data.thermal else None
-    return DampingSurface(
-        a=coefficients["a"],
-        b=coefficients.get("b"),
-        c=coefficients["c"],
-        transition=found,
-        temperature_scale=data.scale,
-        reference_speed=data.reference_speed,
-        reference_temperature=data.reference_temperature,
-        variables=tuple(labels.get(name, name) for name in names),
-        values=solution.values,
-        covariance=solution.covariance,
-        torque_space=_coefficients(data, _fit_torque(data, solution)),
-        statistics=statistics,
-        speed_range=(float(data.speed.min()), float(data.speed.max())),
-        temperature_range=None if kelvin is None else (float(kelvin.min()), float(kelvin.max())),
-        residuals=solution.residuals,
-        rejected_transition=refused,
-        data_sha256=tuple(file.sha256 for file in points.log.files),
-    )
-
-
-def _r_squared(measured: FloatArray, fitted: FloatArray) -> float:
-    """Share of the variance explained; 0 where there is none to explain."""
-    total = float(np.sum((measured - measured.mean()) ** 2))
-    return 1.0 - float(np.sum((measured - fitted) ** 2)) / total if total > 0 else 0.0
+    return np.array([transition_exponent(*pair) for pair in zip(b.tolist(), c.tolist(), strict=True)])
 
 
 def _summary(s: DampingSurface) -> str:
@@ -390,11 +340,11 @@ def _summary(s: DampingSurface) -> str:
         "[[Model]]",
         f"    {law}    (B in N m s/rad, {unit}w in rad/s)",
         "[[Fit Statistics]]",
-        "    # fitting method   = weighted least squares in ln B, absolute standard errors of the dwells",
+        "    # fitting method   = robust likelihood of ln torque, errors of torque, speed and temperature",
         f"    # scatter added    = {st.scatter:.3%} between dwells, beyond the errors of their means",
         f"    # data points      = {st.points}",
         f"    # variables        = {st.variables}",
-        f"    chi-square         = {st.chi_square:.6g}  (against the errors of the means alone)",
+        f"    chi-square         = {st.chi_square:.6g}  (against the errors of the dwells alone)",
         f"    reduced chi-square = {st.reduced_chi_square:.6g}  (1 if these errors explained it all)",
         f"    Akaike (AICc)      = {st.aicc:.6g}",
         f"    R-squared, torque  = {st.r_squared_torque:.6f}",
@@ -407,7 +357,7 @@ def _summary(s: DampingSurface) -> str:
         at = (
             ""
             if s.reference_temperature is None
-            else f" at {s.reference_temperature:.4g} {s.temperature_scale}"
+            else f" at {temperature_text(s.reference_temperature, s.temperature_scale)}"
         )
         lines += [
             _variable("c_mixed", s.transition.mixed_exponent),
@@ -437,3 +387,8 @@ def _correlations(s: DampingSurface) -> list[str]:
             if abs(r) >= 0.1:
                 pairs.append((-abs(r), f"    C({first}, {s.variables[j]}) = {r:+.4f}"))
     return [text for _, text in sorted(pairs)]
+
+
+def temperature_text(kelvin: float, scale: str) -> str:
+    """Return a temperature (K) in the scale of a law, for people."""
+    return f"{kelvin:.4g} K" if scale == "K" else f"{celsius(kelvin):.4g} degC"

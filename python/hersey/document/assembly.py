@@ -13,8 +13,9 @@ from tsdownsample import MinMaxLTTBDownsampler
 from hersey import _core
 from hersey.arrays import FloatArray
 from hersey.damping.dwells import SteadyPoints, groups_of_temperature
-from hersey.damping.estimation import Estimate
-from hersey.damping.surface import DampingSurface, fit
+from hersey.damping.estimate import Estimate
+from hersey.damping.fit import fit
+from hersey.damping.surface import DampingSurface
 from hersey.document.film_part import film_part
 from hersey.document.parts import (
     Analysis,
@@ -234,6 +235,7 @@ def _fit_part(points: SteadyPoints, s: DampingSurface) -> FitPart:
         chi_square=s.statistics.chi_square,
         reduced_chi_square=s.statistics.reduced_chi_square,
         scatter=s.statistics.scatter,
+        dwell_error=s.statistics.dwell_error,
         aicc=s.statistics.aicc,
         r_squared_damping=s.statistics.r_squared_damping,
         r_squared_torque=s.statistics.r_squared_torque,
@@ -255,6 +257,7 @@ def _regime_part(r: Regime) -> RegimePart:
                 low=None if np.isinf(h.low) else h.low,
                 high=h.high,
                 meaning=h.meaning,
+                film=h.film,
                 p_value=h.p_value,
                 consistent=h.consistent,
             )

@@ -136,7 +136,7 @@ class FitPart(Part):
     law: str
     temperature_scale: Literal["degC", "K"]
     reference_speed: float = Field(description="rad/s")
-    reference_temperature: float | None = Field(description="in the scale named")
+    reference_temperature: float | None = Field(description="K")
     coefficients: dict[str, Interval]
     torque_space: dict[str, Interval]
     transition: TransitionPart | None
@@ -148,6 +148,7 @@ class FitPart(Part):
     chi_square: float
     reduced_chi_square: float
     scatter: float
+    dwell_error: float = Field(description="relative, median of the errors of the dwells")
     aicc: float
     r_squared_damping: float
     r_squared_torque: float
@@ -166,6 +167,7 @@ class HypothesisPart(Part):
     low: float | None
     high: float
     meaning: str
+    film: str = Field(description="regime of film theory that predicts it, or empty")
     p_value: float
     consistent: bool
 

@@ -9,8 +9,8 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from hersey.damping.branches import Transition
-from hersey.damping.estimation import Estimate
-from hersey.damping.law import hersey_exponent
+from hersey.damping.candidates.branched import transition_exponent
+from hersey.damping.estimate import Estimate
 from hersey.damping.surface import DampingSurface, FitStatistics
 from hersey.document.parts import FitPart, InputFile, Interval, Point, TransitionPart
 from hersey.errors import ParameterError
@@ -109,12 +109,16 @@ def _derived(fit: FitPart) -> list[tuple[str, float, float]]:
     if thermal:
         found.append(("coefficients.b", fit.coefficients["b"].value, b))
     if fit.transition is not None:
-        change, at = fit.values[-2:]
+        mixed, at = fit.values[-2:]
         speed = fit.reference_speed * float(np.exp(at))
         found += [
             ("transition.speed", fit.transition.speed.value, speed),
-            ("transition.mixed_exponent", fit.transition.mixed_exponent.value, c + change),
-            ("transition.temperature_exponent", fit.transition.temperature_exponent, hersey_exponent(b, c)),
+            ("transition.mixed_exponent", fit.transition.mixed_exponent.value, mixed),
+            (
+                "transition.temperature_exponent",
+                fit.transition.temperature_exponent,
+                transition_exponent(b, c),
+            ),
         ]
     return found
 
@@ -161,6 +165,7 @@ def _surface(document: _FitFile) -> DampingSurface:
             chi_square=fit.chi_square,
             reduced_chi_square=fit.reduced_chi_square,
             scatter=fit.scatter,
+            dwell_error=fit.dwell_error,
             aicc=fit.aicc,
             r_squared_damping=fit.r_squared_damping,
             r_squared_torque=fit.r_squared_torque,

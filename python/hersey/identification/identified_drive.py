@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.damping.estimation import Estimate, quantile
+from hersey.damping.estimate import Estimate, quantile
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.identification.cycle_record import CycleRecord
 from hersey.identification.drive_fit import EXPONENTS, DriveFit

@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hersey.arrays import FloatArray
-from hersey.damping.dwells import SteadyPoints, groups_of_temperature
-from hersey.damping.law import distinct_speeds
+from hersey.damping.dwells import SteadyPoints, distinct_speeds, groups_of_temperature
 from hersey.errors import InsufficientDataError
 from hersey.log.torque_log import TorqueLog
 from hersey.units import convert, rpm

@@ -11,11 +11,11 @@ from numpy.typing import ArrayLike
 from hersey import _core
 from hersey.arrays import FloatArray, rows
 from hersey.errors import ParameterError
+from hersey.units import ZERO_CELSIUS
 
 #: Laws of viscosity against temperature, and how many points each takes.
 MODELS = {"arrhenius": 2, "vogel": 3, "walther": 2}
 #: Temperature of ice, K.
-_ICE = 273.15
 
 
 @dataclass(frozen=True)
@@ -163,7 +163,7 @@ _BATCHELOR = "Stachowiak and Batchelor, Engineering Tribology, Table 2.3"
 
 def _oil(name: str, viscosities: tuple[float, ...], alphas: tuple[float, ...]) -> Lubricant:
     """An oil of the table: mPa s, and alpha in 1e-9/Pa, at 30, 60 and 100 degC."""
-    kelvin = tuple(_ICE + t for t in (30.0, 60.0, 100.0))
+    kelvin = tuple(ZERO_CELSIUS + t for t in (30.0, 60.0, 100.0))
     return Lubricant(
         "vogel",
         tuple(zip(kelvin, (1e-3 * eta for eta in viscosities), strict=True)),

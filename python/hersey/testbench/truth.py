@@ -10,7 +10,6 @@ from hersey.arrays import FloatArray
 from hersey.errors import ParameterError
 
 RPM = 2.0 * np.pi / 60.0
-KELVIN = 273.15
 
 
 @dataclass(frozen=True)
@@ -61,7 +60,7 @@ class ThermalTruth(Truth):
 
     def log_torque_ratio(self, temperature: FloatArray) -> FloatArray:
         """Return ln of torque over that at the reference temperature, at temperatures in degC."""
-        kelvin, reference = temperature + KELVIN, self.reference_temperature_degC + KELVIN
+        kelvin, reference = temperature + ZERO_CELSIUS, self.reference_temperature_degC + ZERO_CELSIUS
         slope = self.activation_energy / (8.314462618 * reference**2)  # of -ln torque, 1/K, there
         if self.law == "degC":
             scale = self.reference_temperature_degC

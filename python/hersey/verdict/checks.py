@@ -10,6 +10,7 @@ from hersey.lubrication.contact import Contact
 from hersey.lubrication.film import REGIMES, Film, shear_heating
 from hersey.lubrication.lubricant import Lubricant
 from hersey.machine.machine import Machine
+from hersey.units import celsius
 from hersey.verdict.evidence import MeasuredFilm
 
 #: Friction above this is no fluid film between smooth surfaces.
@@ -108,8 +109,8 @@ def _check_lubricant(lubricant: Lubricant, film: Film) -> list[str]:
     hottest, coldest = float(film.temperature.max()), float(film.temperature.min())
     if hottest > high + 0.5 or coldest < low - 0.5:
         found.append(
-            f"viscosity is extrapolated: known from {low - 273.15:.0f} to {high - 273.15:.0f} degC, used "
-            f"from {coldest - 273.15:.0f} to {hottest - 273.15:.0f} degC"
+            f"viscosity is extrapolated: known from {celsius(low):.0f} to {celsius(high):.0f} degC, used "
+            f"from {celsius(coldest):.0f} to {celsius(hottest):.0f} degC"
         )
     for name, correction in film.corrections.items():
         if not np.all(correction.valid):

@@ -10,28 +10,19 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import stats
 
 from hersey import _core
 from hersey.arrays import FloatArray
 from hersey.damping.dwells import SteadyPoints
-from hersey.damping.estimation import CONFIDENCE, Estimate, quantile
+from hersey.damping.estimate import Estimate, quantile
 from hersey.damping.surface import DampingSurface
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.lubrication.contact import Contact
 from hersey.lubrication.film import REGIMES, Film, drag_torque, film_thickness
 from hersey.lubrication.lubricant import Lubricant
 from hersey.lubrication.reynolds import exponent, solve_line_contact
-
-#: Exponent of damping in speed, least and greatest, that each state of lubrication predicts, and why.
-PREDICTIONS: tuple[tuple[str, float, float, str], ...] = (
-    ("starved", 0.0, 0.0, "a film of fixed thickness: torque proportional to speed"),
-    ("isoviscous-elastic", -0.60, -0.56, "soft EHL; on a bonded layer down to -0.56 by numerical solutions"),
-    ("piezoviscous-rigid", -2 / 3, -2 / 3, "film as speed^(2/3)"),
-    ("piezoviscous-elastic", -0.70, -0.70, "Dowson and Higginson; Eq. 10 of the paper"),
-    ("isoviscous-rigid", -1.0, -1.0, "film as speed: drag of a rigid pair hardly varies"),
-    ("mixed or boundary", -np.inf, -1.0, "torque falls with speed: the surfaces touch"),
-)
+from hersey.units import celsius
+from hersey.verdict.regimes import Hypothesis, tested
 
 
 @dataclass(frozen=True)
@@ -100,8 +91,7 @@ def measured_film(
     expected = drag_torque(contact, lubricant, speed=speed, temperature=kelvin)
     radius, nip = contact.roll_radius, film.nip
     thickness = film.viscosity * nip.width * contact.length * speed * radius**2 / torque
-    freedom = surface.statistics.points - surface.statistics.variables
-    relative = quantile(freedom) * np.hypot(
+    relative = quantile(surface.freedom) * np.hypot(
         points.column("torque_error") / torque, surface.statistics.scatter
     )
     shares = [share for share in (lubricant.uncertainty, contact.nip_uncertainty) if share is not None]
@@ -147,30 +137,13 @@ def _mean_ratio(measured: FloatArray, expected: FloatArray) -> Estimate:
 
 
 @dataclass(frozen=True)
-class Prediction:
-    """What a state of lubrication predicts of the damping exponent, against what was measured."""
-
-    name: str
-    low: float
-    high: float
-    meaning: str
-    p_value: float
-    holds_here: bool  #: whether this is the regime of the chart for this contact
-
-    @property
-    def consistent(self) -> bool:
-        """Whether it survives at the 5 % level."""
-        return self.p_value > 1.0 - CONFIDENCE
-
-
-@dataclass(frozen=True)
 class Verdict:
     """Measured exponents against those predicted for this contact."""
 
     exponent: Estimate  #: of damping in speed, above the transition
     expected: float  #: of damping in speed by the governing law for this contact, with corrections
     solved: float | None  #: the same with pressure and film solved numerically; None if no solution is found
-    predictions: tuple[Prediction, ...]
+    predictions: tuple[Hypothesis, ...]
     thermal: Estimate | None  #: d ln B/d ln T at the middle of the log, T in K
     thermal_expected: float  #: the same by the governing law and the lubricant
     activation_energy: float | None  #: apparent, of torque, J/mol
@@ -184,11 +157,7 @@ def verdict(
     """Return what the exponents say of this contact."""
     film = measured.predicted
     held = REGIMES[int(np.bincount(film.regime.ravel(), minlength=4).argmax())]
-    freedom = surface.statistics.points - surface.statistics.variables
-    predictions = tuple(
-        Prediction(name, low, high, why, _p_value(surface.c, low, high, freedom), name == held)
-        for name, low, high, why in PREDICTIONS
-    )
+    predictions = tested(surface.c, surface.freedom, film=held)
     speed = float(np.exp(np.log(measured.speed).mean()))
     kelvin = float(measured.temperature.mean())
     expected = _slope(contact, lubricant, speed, kelvin, in_speed=True) - 1.0
@@ -230,12 +199,6 @@ def solved_exponent(contact: Contact, lubricant: Lubricant, speed: float, temper
     return exponent("damping", solution)
 
 
-def _p_value(c: Estimate, low: float, high: float, freedom: int) -> float:
-    away = max(low - c.value, c.value - high, 0.0) / max(c.error, 1e-12)
-    sides = 1.0 if np.isinf(low) else 2.0
-    return min(1.0, sides * float(stats.t.sf(away, max(freedom, 1))))
-
-
 def _slope(contact: Contact, lubricant: Lubricant, speed: float, kelvin: float, *, in_speed: bool) -> float:
     """Local exponent of the predicted torque in speed or in temperature (K)."""
     step = np.array([1.0 / 1.001, 1.001])
@@ -248,7 +211,7 @@ def _thermal(surface: DampingSurface, kelvin: float) -> Estimate | None:
     """The exponent of damping in absolute temperature, whatever the scale of the fit."""
     if surface.b is None:
         return None
-    scale = 1.0 if surface.temperature_scale == "K" else kelvin / (kelvin - 273.15)
+    scale = 1.0 if surface.temperature_scale == "K" else kelvin / celsius(kelvin)
     b = surface.b
     ends = sorted((b.low * scale, b.high * scale))
     return Estimate(b.value * scale, b.error * abs(scale), *ends)
@@ -258,25 +221,25 @@ def _text(
     c: Estimate,
     expected: float,
     solved: float | None,
-    predictions: tuple[Prediction, ...],
+    predictions: tuple[Hypothesis, ...],
     held: str,
     thermal: Estimate | None,
     thermal_expected: float,
 ) -> str:
-    kept = [p.name for p in predictions if p.consistent]
+    kept = [p for p in predictions if p.consistent]
     lines = [
         f"The regime chart puts this contact in the {held} regime, where damping goes as speed to the power "
         f"{expected:.2f}; measured {c}."
     ]
     if solved is not None:
         lines.append(f"Solved numerically for this roll, the film gives the power {solved:.2f}.")
-    if held in kept:
+    if any(p.holds_here for p in kept):
         lines.append("The measured exponent agrees with it.")
     elif kept:
-        lines.append(f"The measured exponent agrees with {' and '.join(kept)} instead.")
+        lines.append(f"The measured exponent agrees with {' and '.join(p.name for p in kept)} instead.")
     else:
         lines.append("The measured exponent agrees with no regime.")
-    if not next(p.holds_here for p in predictions if p.name == "piezoviscous-elastic"):
+    if held != "piezoviscous-elastic":
         lines.append(
             "Eq. 5 of the paper (Dowson-Higginson) does not apply to this contact, whatever the exponent."
         )

@@ -8,36 +8,12 @@ import numpy as np
 from scipy import stats
 
 from hersey.arrays import FloatArray
-from hersey.damping.dwells import SteadyPoints, groups_of_temperature
-from hersey.damping.estimation import CONFIDENCE, Estimate
-from hersey.damping.law import distinct_speeds, scaled_temperature
+from hersey.damping.candidates.thermal import scaled_temperature
+from hersey.damping.dwells import SteadyPoints, distinct_speeds, groups_of_temperature
+from hersey.damping.estimate import CONFIDENCE, Estimate
 from hersey.damping.surface import DampingSurface
-from hersey.units import rpm
-
-#: Name, least and greatest exponent of damping in speed, and where it comes from.
-HYPOTHESES: tuple[tuple[str, float, float, str], ...] = (
-    ("constant film", 0.0, 0.0, "a film of fixed thickness, as when starved: torque proportional to speed"),
-    ("soft EHL", -0.60, -0.56, "isoviscous film in a rubber nip, numerical solutions for a layered roll"),
-    ("Dowson-Higginson EHL", -0.70, -0.70, "piezoviscous line contact, Eq. 10 of the paper"),
-    ("dry Coulomb friction", -1.0, -1.0, "torque independent of speed"),
-    ("falling branch", -np.inf, -1.0, "torque falls with speed: mixed lubrication, stick-slip possible"),
-)
-
-
-@dataclass(frozen=True)
-class Hypothesis:
-    """A named value (or range) of the exponent, and how probable a deviation like the measured one is."""
-
-    name: str
-    low: float
-    high: float
-    meaning: str
-    p_value: float
-
-    @property
-    def consistent(self) -> bool:
-        """Whether it survives at the 5 % level."""
-        return self.p_value > 1.0 - CONFIDENCE
+from hersey.units import celsius, rpm
+from hersey.verdict.regimes import REGIMES, Hypothesis, tested
 
 
 @dataclass(frozen=True)
@@ -63,21 +39,8 @@ class Regime:
 
 def regime(points: SteadyPoints, surface: DampingSurface) -> Regime:
     """Return the evidence on the lubrication regime, from steady points and the surface fitted to them."""
-    tested = tuple(_tested(h, surface) for h in HYPOTHESES)
-    return Regime(_exponents(points, surface), tested, _verdict(surface, tested))
-
-
-def _freedom(surface: DampingSurface) -> int:
-    return surface.statistics.points - surface.statistics.variables
-
-
-def _tested(hypothesis: tuple[str, float, float, str], surface: DampingSurface) -> Hypothesis:
-    name, low, high, meaning = hypothesis
-    c = surface.c
-    away = max(low - c.value, c.value - high, 0.0) / max(c.error, 1e-12)
-    sides = 1.0 if np.isinf(low) else 2.0
-    p = min(1.0, sides * float(stats.t.sf(away, _freedom(surface))))
-    return Hypothesis(name, low, high, meaning, p)
+    hypotheses = tested(surface.c, surface.freedom)
+    return Regime(_exponents(points, surface), hypotheses, _verdict(surface, hypotheses))
 
 
 def _exponents(points: SteadyPoints, surface: DampingSurface) -> tuple[BranchExponent, ...]:
@@ -107,8 +70,10 @@ def _warmth(points: SteadyPoints, surface: DampingSurface) -> FloatArray:
     """Logarithm of T^b of each dwell about the reference: dwells of a group differ by some kelvin."""
     if surface.b is None or surface.reference_temperature is None:
         return np.zeros(len(points))
-    temperature = scaled_temperature(points.column("temperature"), surface.temperature_scale)
-    return np.asarray(surface.b.value * np.log(temperature / surface.reference_temperature))
+    scale = surface.temperature_scale
+    temperature = scaled_temperature(points.column("temperature"), scale)
+    reference = scaled_temperature(np.asarray(surface.reference_temperature), scale)
+    return np.asarray(surface.b.value * np.log(temperature / reference))
 
 
 def _slope(speed: FloatArray, torque: FloatArray, error: FloatArray, surface: DampingSurface) -> Estimate:
@@ -118,12 +83,12 @@ def _slope(speed: FloatArray, torque: FloatArray, error: FloatArray, surface: Da
     centred = z - np.average(z, weights=weight)
     spread = float(np.sum(weight * centred**2))
     slope, deviation = float(np.sum(weight * centred * y)) / spread, spread**-0.5
-    reach = float(stats.t.ppf(0.5 + CONFIDENCE / 2, _freedom(surface))) * deviation
+    reach = float(stats.t.ppf(0.5 + CONFIDENCE / 2, surface.freedom)) * deviation
     return Estimate(slope, deviation, slope - reach, slope + reach)
 
 
-def _verdict(surface: DampingSurface, tested: tuple[Hypothesis, ...]) -> str:
-    kept = [h.name for h in tested if h.consistent]
+def _verdict(surface: DampingSurface, hypotheses: tuple[Hypothesis, ...]) -> str:
+    kept = [h.name for h in hypotheses if h.consistent]
     c = _in_words(surface.c)
     agrees = f"agrees with {' and '.join(kept)}" if kept else _between(surface.c.value)
     if surface.transition is None:
@@ -141,7 +106,7 @@ def _verdict(surface: DampingSurface, tested: tuple[Hypothesis, ...]) -> str:
     if t.gradual:
         where = f"about {rpm(t.least_torque_speed):.2g} rpm"
     if surface.reference_temperature is not None:
-        where += f" at {surface.reference_temperature:.0f} {surface.temperature_scale}"
+        where += f" at {_degrees(surface.reference_temperature, surface.temperature_scale)}"
         where += ", higher when hotter" if t.temperature_exponent > 0 else ""
     least = ", where torque is least," if t.gradual else ""
     return (
@@ -156,9 +121,13 @@ def _in_words(e: Estimate) -> str:
     return f"{e.value:.{digits}f} [{e.low:.{digits}f}, {e.high:.{digits}f}]"
 
 
+def _degrees(kelvin: float, scale: str) -> str:
+    return f"{kelvin:.0f} K" if scale == "K" else f"{celsius(kelvin):.0f} degC"
+
+
 def _between(c: float) -> str:
-    above = [h for h in HYPOTHESES if h[1] > c]
-    below = [h for h in HYPOTHESES if h[2] < c]
+    above = [row for row in REGIMES if row.low > c]
+    below = [row for row in REGIMES if row.high < c]
     if above and below:
-        return f"agrees with no named regime: it lies between {above[-1][0]} and {below[0][0]}"
+        return f"agrees with no named regime: it lies between {above[-1].name} and {below[0].name}"
     return "agrees with no named regime"

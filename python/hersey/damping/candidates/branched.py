@@ -4,8 +4,9 @@ With z = ln(w/w_ref) and e s(T) from `thermal`, one branch is
 
     ln torque = level + e s(T) + (1 + c) z
 
-and two branches add (c_mixed - c) min(z - z_t(T), 0). The transition z_t sits at one Hersey number,
-z_t = at - e s(T)/(1 + c) because torque varies as viscosity^(1 + c), or moves freely, z_t = at + d s(T).
+and two branches add (c_mixed - c) min(z - z_t(T), 0), or what `Bend` puts in the place of that corner. The
+transition z_t sits at one Hersey number, z_t = at - e s(T)/(1 + c) because torque varies as
+viscosity^(1 + c), or moves freely, z_t = at + d s(T).
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from functools import cached_property
 
 import numpy as np
 
-from hersey.arrays import FloatArray
+from hersey.arrays import BoolArray, FloatArray
 from hersey.damping.candidates.observations import Inputs
 from hersey.damping.candidates.thermal import Thermal
 
@@ -23,6 +24,32 @@ from hersey.damping.candidates.thermal import Thermal
 LEAST_POWER = 0.05
 
 NO_SPEED, ONE, HELD, FREE = "no speed", "one branch", "two branches, one Hersey number", "two branches, free"
+
+
+def transition_exponent(e: float, c: float) -> float:
+    """Return d of a transition at one Hersey number, ln w_t = at + d s(T).
+
+    Torque varies as viscosity^(1 + c), so viscosity as exp(e s/(1 + c)) and the transition speed as its
+    inverse. Near c = -1 torque tells nothing of viscosity, and the denominator is bounded.
+    """
+    return -e / max(1.0 + c, LEAST_POWER)
+
+
+@dataclass(frozen=True)
+class Bend:
+    """How two branches part: in a corner, gradually, or with each point held to its branch."""
+
+    width: float = 0.0  #: of a gradual bend, in ln w; 0 is a corner
+    below: BoolArray | None = None  #: points held to the lower branch wherever it ends, shape (points,)
+
+    def reach(self, away: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the way below the transition, and its derivative, at distances from it in ln w."""
+        if self.below is not None:
+            return np.asarray(away * self.below), self.below.astype(np.float64)
+        if not self.width:
+            return np.minimum(away, 0.0), np.asarray(away < 0.0, dtype=np.float64)
+        steps = away / self.width
+        return -self.width * np.logaddexp(0.0, -steps), np.exp(-np.logaddexp(0.0, steps))
 
 
 @dataclass(frozen=True)
@@ -36,6 +63,7 @@ class Law:
     thermal: Thermal | None
     branches: str
     groups: int = 1
+    bend: Bend = Bend()
 
     @cached_property
     def names(self) -> tuple[str, ...]:
@@ -109,7 +137,7 @@ class Law:
             return [0.0]
         e = float(values[1])
         c = float(np.mean(values[2 : 2 + self.groups] - 1.0)) if first else self._mean_exponent(values)
-        held = -e / max(1.0 + c, LEAST_POWER)
+        held = transition_exponent(e, c)
         return [held, 3.3 * -e] if first else [held]
 
     def _assembled(self, linear: FloatArray, q: list[float], rest: list[float]) -> FloatArray:
@@ -153,7 +181,7 @@ class Law:
         at = float(values[self.index("at")])
         if self.branches == FREE:
             return np.asarray(at + (float(values[-1]) * s if self.thermal else 0.0 * s))
-        return np.asarray(at - e * s / max(1.0 + self._mean_exponent(values), LEAST_POWER))
+        return np.asarray(at + transition_exponent(e, self._mean_exponent(values)) * s)
 
     def _evaluate(
         self, values: FloatArray, inputs: Inputs, *, derivatives: bool = False
@@ -186,16 +214,16 @@ class Law:
         z = inputs.log_speed
         e, s, ds_dt, ds_dq = self._thermal_term(values, inputs)
         at = self._transition(values, e, s)
-        reach = np.minimum(z - at, 0.0)
+        reach, share = self.bend.reach(np.asarray(z - at))
         change = values[self.index("c_mixed")] - c
         law = law + change * reach
         if not derivatives:
             return law, np.empty((z.size, 0)), z, z
-        drop = change * (z < at)  # times minus the derivative of the transition
+        drop = change * share  # times minus the derivative of the transition
         power = 1.0 + self._mean_exponent(values)
         held = self.branches == HELD
         # one Hersey number: d = -e/(1 + c), as long as that is not bounded
-        d = -e / max(power, LEAST_POWER) if held else (float(values[-1]) if self.thermal else 0.0)
+        d = transition_exponent(e, power - 1.0) if held else (float(values[-1]) if self.thermal else 0.0)
         moved_by_e = -1.0 / max(power, LEAST_POWER) if held else 0.0
         moved_by_c = e / power**2 / self.groups if held and power > LEAST_POWER else 0.0
         columns = [np.ones_like(z)]
@@ -208,7 +236,7 @@ class Law:
         if self.branches == FREE and self.thermal:
             columns.append(-drop * s)
         temperature = e * ds_dt - drop * d * ds_dt
-        return law, np.column_stack(columns), 1.0 + c + change * (z < at), temperature
+        return law, np.column_stack(columns), 1.0 + c + drop, temperature
 
 
 def _corners(reach: FloatArray, count: int = 14) -> FloatArray:

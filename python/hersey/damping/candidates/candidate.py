@@ -10,7 +10,7 @@ from hersey.damping.candidates.branched import FREE, HELD, NO_SPEED, ONE, Law
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.candidates.stribeck import StribeckLaw
 from hersey.damping.candidates.thermal import ARRHENIUS, CELSIUS, KELVIN, VFT, Thermal
-from hersey.damping.law import distinct_speeds
+from hersey.damping.dwells import distinct_speeds
 from hersey.units import convert
 
 #: Degrees of freedom that a fit must leave.

@@ -12,7 +12,6 @@ from collections.abc import Callable
 
 import numpy as np
 
-from hersey.damping.branches import EVIDENCE
 from hersey.damping.candidates.candidate import Candidate, all_candidates
 from hersey.damping.candidates.collapse import HerseyCollapse, temperature_collapse
 from hersey.damping.candidates.energy import ActivationEnergies, activation_energies, usable_for_transition
@@ -22,6 +21,7 @@ from hersey.damping.candidates.intervals import (
     bootstrap_draws,
     estimates,
 )
+from hersey.damping.candidates.likelihood import EVIDENCE
 from hersey.damping.candidates.model_comparison import CandidateFit, ModelComparison
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.candidates.thermal import ARRHENIUS

@@ -16,7 +16,7 @@ from hersey.arrays import FloatArray
 from hersey.damping.candidates.branched import FREE, LEAST_POWER, Law
 from hersey.damping.candidates.fitting import LawFit
 from hersey.damping.candidates.observations import Observations
-from hersey.damping.estimation import Estimate, quantile
+from hersey.damping.estimate import Estimate, quantile
 
 #: Joules in a thermochemical calorie.
 CALORIE = 4.184

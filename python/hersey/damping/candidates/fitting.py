@@ -18,6 +18,7 @@ from hersey.damping.candidates.branched import LEAST_POWER, Law
 from hersey.damping.candidates.likelihood import HUBER, Minimum, deviance, minimise, scatter_beyond
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.candidates.stribeck import StribeckLaw
+from hersey.damping.estimate import Estimate, estimate
 
 AnyLaw = Law | StribeckLaw
 
@@ -62,8 +63,18 @@ class LawFit:
     @property
     def aicc(self) -> float:
         """Akaike's criterion, corrected for few points."""
-        k, n = self.parameters, self.residuals.size
+        return self.aicc_with(0)
+
+    def aicc_with(self, more: int) -> float:
+        """Return the same if ``more`` numbers were chosen beside those of the law."""
+        k, n = self.parameters + more, self.residuals.size
         return self.deviance + 2 * k + 2 * k * (k + 1) / max(n - k - 1, 1)
+
+    def estimate(self, name: str) -> Estimate:
+        """Return a parameter of the law with its interval by covariance."""
+        index = self.law.index(name)
+        error = float(np.sqrt(max(self.covariance[index, index], 0.0)))
+        return estimate(float(self.values[index]), error, self.freedom)
 
     @property
     def bic(self) -> float:
@@ -273,8 +284,30 @@ def _residuals(law: AnyLaw, data: Observations, values: FloatArray) -> FloatArra
 
 
 def _clustered(jacobian: FloatArray, u: FloatArray, bread: FloatArray, cluster: IntArray) -> FloatArray:
-    """Covariance that holds whatever dwells of a cluster have in common (Bell and McCaffrey's CR3)."""
-    rows, out = jacobian[:-1], np.zeros_like(bread)
+    """Covariance of the values and the tare, whose prior is the last row."""
+    return _cr3(jacobian[:-1], u, bread, cluster, np.outer(jacobian[-1], jacobian[-1]))
+
+
+def clustered_covariance(jacobian: FloatArray, u: FloatArray, cluster: IntArray) -> FloatArray:
+    """Return a covariance that holds whatever points of a cluster have in common (Bell and McCaffrey's CR3).
+
+    Parameters
+    ----------
+    jacobian
+        Of the residuals in standard errors, shape (points, parameters).
+    u
+        These residuals, shape (points,).
+    cluster
+        Label of each point, shape (points,).
+    """
+    bread = np.asarray(np.linalg.pinv(jacobian.T @ jacobian), dtype=np.float64)
+    return _cr3(jacobian, u, bread, cluster, np.zeros_like(bread))
+
+
+def _cr3(
+    rows: FloatArray, u: FloatArray, bread: FloatArray, cluster: IntArray, prior: FloatArray
+) -> FloatArray:
+    out = np.zeros_like(bread)
     psi = np.clip(u, -HUBER, HUBER)
     labels = np.unique(cluster)
     for label in labels:
@@ -283,6 +316,5 @@ def _clustered(jacobian: FloatArray, u: FloatArray, bread: FloatArray, cluster: 
         leverage = np.eye(members.size) - part @ bread @ part.T
         push = part.T @ np.linalg.pinv(leverage) @ psi[members]
         out += np.outer(push, push)
-    out += np.outer(jacobian[-1], jacobian[-1])
     shrink = (labels.size - 1) / labels.size
-    return np.asarray(bread @ (shrink * out) @ bread)
+    return np.asarray(bread @ (shrink * (out + prior)) @ bread)

@@ -22,10 +22,10 @@ from scipy import stats
 
 from hersey.arrays import FloatArray
 from hersey.damping.candidates.branched import FREE, Law
-from hersey.damping.candidates.fitting import LawFit, not_identified, resampled, search
+from hersey.damping.candidates.fitting import AnyLaw, LawFit, not_identified, resampled, search
 from hersey.damping.candidates.observations import Inputs, Observations
 from hersey.damping.candidates.thermal import ARRHENIUS, VFT
-from hersey.damping.estimation import CONFIDENCE, quantile
+from hersey.damping.estimate import CONFIDENCE, quantile
 from hersey.units import convert
 
 Ends = tuple[float, float]
@@ -165,13 +165,20 @@ def bootstrap_draws(fit: LawFit, data: Observations, count: int = 400, seed: int
 
 
 def band(fit: LawFit, inputs: Inputs) -> Band:
-    """Return the torque of a law at inputs, the median of what one would measure, with its limits."""
-    slopes = fit.law.jacobian(fit.values, inputs)
-    centre = fit.law.predict(fit.values, inputs)
-    variance = np.einsum("ij,jk,ik->i", slopes, fit.covariance, slopes)
-    dwell = fit.scatter**2 + float(np.median(fit.errors)) ** 2
-    reach = quantile(fit.freedom)
-    of_law, of_dwell = reach * np.sqrt(variance), reach * np.sqrt(variance + dwell)
+    """Return the torque of a fit at inputs, the median of what one would measure, with its limits."""
+    dwell = float(np.hypot(fit.scatter, np.median(fit.errors)))
+    return band_of(fit.law, fit.values, fit.covariance, fit.freedom, dwell, inputs)
+
+
+def band_of(
+    law: AnyLaw, values: FloatArray, covariance: FloatArray, freedom: int, dwell: float, inputs: Inputs
+) -> Band:
+    """Return the torque of a law at inputs with its limits; ``dwell`` is the relative error of one dwell."""
+    slopes = law.jacobian(values, inputs)
+    centre = law.predict(values, inputs)
+    variance = np.einsum("ij,jk,ik->i", slopes, covariance, slopes)
+    reach = quantile(freedom)
+    of_law, of_dwell = reach * np.sqrt(variance), reach * np.sqrt(variance + dwell**2)
     return Band(
         np.exp(centre),
         (np.exp(centre - of_law), np.exp(centre + of_law)),

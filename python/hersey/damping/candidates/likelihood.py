@@ -19,6 +19,8 @@ from hersey.errors import InsufficientDataError
 
 #: Standard errors up to which a residual counts as normal; 99 % efficient if all are.
 HUBER = 2.5
+#: AICc by which a larger law must beat a smaller one before it is announced.
+EVIDENCE = 6.0
 #: First step of a search over the size of the parameters: a bold one can leave the basin.
 FIRST_STEP = 1.0
 #: Relative scatter below which data count as exact.

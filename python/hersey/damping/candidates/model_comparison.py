@@ -15,7 +15,7 @@ from hersey.damping.candidates.errors_in_variables import OrthogonalFit
 from hersey.damping.candidates.fitting import LawFit
 from hersey.damping.candidates.intervals import METHODS, Band, Ends, ParameterEstimate, band
 from hersey.damping.candidates.observations import Observations
-from hersey.damping.estimation import Estimate
+from hersey.damping.estimate import Estimate
 from hersey.errors import ParameterError
 from hersey.result import json_value
 from hersey.units import convert

@@ -7,8 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hersey.arrays import FloatArray, IntArray
-from hersey.damping.dwells import SteadyPoints, groups_of_temperature
-from hersey.damping.law import SAME_SPEED, distinct_speeds
+from hersey.damping.dwells import SAME_SPEED, SteadyPoints, distinct_speeds, groups_of_temperature
 from hersey.errors import InsufficientDataError
 from hersey.units import rpm
 

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.damping.law import scaled_temperature
+from hersey.units import ZERO_CELSIUS
 
 #: Molar gas constant, J/(mol K) (exact since 2019).
 GAS_CONSTANT = 8.314462618
@@ -63,3 +63,8 @@ class Thermal:
         """Return the apparent activation energy, J/mol, at a temperature (K) for e = 1."""
         _, slope, _ = self.shape(np.array([kelvin]), q)
         return float(-GAS_CONSTANT * kelvin**2 * slope[0])
+
+
+def scaled_temperature(kelvin: FloatArray, scale: str) -> FloatArray:
+    """Return temperatures in K in the scale of a law."""
+    return kelvin if scale == "K" else np.asarray(kelvin - ZERO_CELSIUS)

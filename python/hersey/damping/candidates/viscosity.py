@@ -13,7 +13,7 @@ from hersey.damping.candidates.fitting import fit_law
 from hersey.damping.candidates.model_comparison import CandidateFit
 from hersey.damping.candidates.observations import Inputs, Observations
 from hersey.damping.candidates.thermal import ARRHENIUS
-from hersey.damping.estimation import Estimate, quantile
+from hersey.damping.estimate import Estimate, quantile
 from hersey.errors import InsufficientDataError, ParameterError
 
 

@@ -7,6 +7,7 @@ const report = document.getElementById("report");
 
 const TO_RPM = 60 / (2 * Math.PI);
 const celsius = (kelvin) => kelvin - 273.15;
+const degrees = (kelvin) => data.fit.temperature_scale === "K" ? `${digits(kelvin, 4)} K` : `${digits(celsius(kelvin), 3)} degC`;
 
 function digits(value, count = 4) {
   if (value === null || value === undefined) return "–";
@@ -79,7 +80,7 @@ function head() {
   }
   if (transition) {
     const t = data.fit.reference_temperature;
-    const at = t === null ? "" : ` at ${digits(t, 3)} ${data.fit.temperature_scale}`;
+    const at = t === null ? "" : ` at ${degrees(t)}`;
     const s = transition.speed;
     card(`${digits(s.value * TO_RPM, 3)} rpm`, `transition${at}, 95 %: ${digits(s.low * TO_RPM, 3)} to ${digits(s.high * TO_RPM, 3)}`);
     const m = transition.mixed_exponent;
@@ -180,7 +181,7 @@ async function main() {
   await chart(report, "regime");
   hypotheses();
   const level = data.fit.reference_temperature;
-  const at = level === null ? "" : ` (at ${digits(level, 3)} ${data.fit.temperature_scale})`;
+  const at = level === null ? "" : ` (at ${degrees(level)})`;
   add(report, "p", data.fit.transition
     ? `The second branch is better than a single power law by ${data.fit.transition.evidence.toFixed(0)} in AICc. Torque is least `
       + `near ${digits(data.fit.transition.least_torque_speed * TO_RPM, 3)} rpm; the ${data.fit.transition.gradual ? "bend is gradual: trend lines on either side" : "branches"} `

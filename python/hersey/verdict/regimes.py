@@ -1,0 +1,98 @@
+"""The table of regimes: what each state of lubrication predicts for the exponent of damping in speed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from scipy import stats
+
+from hersey.damping.estimate import CONFIDENCE, Estimate
+
+
+class RegimeRow(NamedTuple):
+    """A named regime: least and greatest exponent, the regime of film theory that predicts it, and why."""
+
+    name: str
+    low: float
+    high: float
+    film: str  #: as the regime chart of the film names it; empty where that knows no such state
+    meaning: str
+
+
+#: In the order of the exponents.
+REGIMES: tuple[RegimeRow, ...] = (
+    RegimeRow(
+        "constant film",
+        0.0,
+        0.0,
+        "",
+        "a film of fixed thickness, as when starved: torque proportional to speed",
+    ),
+    RegimeRow(
+        "soft EHL",
+        -0.60,
+        -0.56,
+        "isoviscous-elastic",
+        "isoviscous film in a rubber nip; on a bonded layer down to -0.56 by numerical solutions",
+    ),
+    RegimeRow("rigid piezoviscous film", -2 / 3, -2 / 3, "piezoviscous-rigid", "film as speed^(2/3)"),
+    RegimeRow(
+        "Dowson-Higginson EHL",
+        -0.70,
+        -0.70,
+        "piezoviscous-elastic",
+        "piezoviscous line contact, Eq. 10 of the paper",
+    ),
+    RegimeRow(
+        "constant torque",
+        -1.0,
+        -1.0,
+        "isoviscous-rigid",
+        "torque independent of speed: dry Coulomb friction, or a film between rigid walls",
+    ),
+    RegimeRow(
+        "falling branch", -np.inf, -1.0, "", "torque falls with speed: mixed lubrication, stick-slip possible"
+    ),
+)
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """A named value (or range) of the exponent, and how probable a deviation like the measured one is."""
+
+    name: str
+    low: float
+    high: float
+    film: str
+    meaning: str
+    p_value: float
+    holds_here: bool | None = None  #: whether film theory puts this contact there; None without a contact
+
+    @property
+    def consistent(self) -> bool:
+        """Whether it survives at the 5 % level."""
+        return self.p_value > 1.0 - CONFIDENCE
+
+
+def tested(exponent: Estimate, freedom: int, *, film: str | None = None) -> tuple[Hypothesis, ...]:
+    """Return every regime of the table against a measured exponent of damping in speed.
+
+    Parameters
+    ----------
+    freedom
+        Degrees of freedom of the exponent's standard error.
+    film
+        The regime that film theory gives the contact, if one is known.
+    """
+    return tuple(
+        Hypothesis(*row, _p_value(exponent, row, freedom), None if film is None else row.film == film)
+        for row in REGIMES
+    )
+
+
+def _p_value(exponent: Estimate, row: RegimeRow, freedom: int) -> float:
+    away = max(row.low - exponent.value, exponent.value - row.high, 0.0) / max(exponent.error, 1e-12)
+    sides = 1.0 if np.isinf(row.low) else 2.0
+    return min(1.0, sides * float(stats.t.sf(away, max(freedom, 1))))
