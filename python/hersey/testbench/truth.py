@@ -8,6 +8,7 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.errors import ParameterError
+from hersey.units import ZERO_CELSIUS
 
 RPM = 2.0 * np.pi / 60.0
 

@@ -22,7 +22,7 @@ from hersey.lubrication.film import REGIMES, Film, drag_torque, film_thickness
 from hersey.lubrication.lubricant import Lubricant
 from hersey.lubrication.reynolds import exponent, solve_line_contact
 from hersey.units import celsius
-from hersey.verdict.regimes import Hypothesis, tested
+from hersey.verdict.regimes import Hypothesis, judged
 
 
 @dataclass(frozen=True)
@@ -157,7 +157,7 @@ def verdict(
     """Return what the exponents say of this contact."""
     film = measured.predicted
     held = REGIMES[int(np.bincount(film.regime.ravel(), minlength=4).argmax())]
-    predictions = tested(surface.c, surface.freedom, film=held)
+    predictions = judged(surface.c, surface.freedom, film=held)
     speed = float(np.exp(np.log(measured.speed).mean()))
     kelvin = float(measured.temperature.mean())
     expected = _slope(contact, lubricant, speed, kelvin, in_speed=True) - 1.0

@@ -13,7 +13,7 @@ from hersey.damping.dwells import SteadyPoints, distinct_speeds, groups_of_tempe
 from hersey.damping.estimate import CONFIDENCE, Estimate
 from hersey.damping.surface import DampingSurface
 from hersey.units import celsius, rpm
-from hersey.verdict.regimes import REGIMES, Hypothesis, tested
+from hersey.verdict.regimes import REGIMES, Hypothesis, judged
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Regime:
 
 def regime(points: SteadyPoints, surface: DampingSurface) -> Regime:
     """Return the evidence on the lubrication regime, from steady points and the surface fitted to them."""
-    hypotheses = tested(surface.c, surface.freedom)
+    hypotheses = judged(surface.c, surface.freedom)
     return Regime(_exponents(points, surface), hypotheses, _verdict(surface, hypotheses))
 
 

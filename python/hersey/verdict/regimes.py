@@ -76,7 +76,7 @@ class Hypothesis:
         return self.p_value > 1.0 - CONFIDENCE
 
 
-def tested(exponent: Estimate, freedom: int, *, film: str | None = None) -> tuple[Hypothesis, ...]:
+def judged(exponent: Estimate, freedom: int, *, film: str | None = None) -> tuple[Hypothesis, ...]:
     """Return every regime of the table against a measured exponent of damping in speed.
 
     Parameters

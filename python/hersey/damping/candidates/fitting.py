@@ -203,7 +203,8 @@ def resampled(fit: LawFit, data: Observations, count: int, seed: int) -> FloatAr
     clusters = [np.flatnonzero(data.cluster == label) for label in np.unique(data.cluster)]
     starts = [np.append(fit.values, fit.tare)]
     if fit.law.broken:  # the cost has several minima in a corner
-        at, error = fit.law.index("at"), min(float(np.sqrt(fit.covariance[-1, -1])), 0.5)
+        at = fit.law.index("at")
+        error = min(float(np.sqrt(fit.covariance[at, at])), 0.5)
         for aside in (-error, error):
             moved = starts[0].copy()
             moved[at] += aside
@@ -308,13 +309,14 @@ def _cr3(
     rows: FloatArray, u: FloatArray, bread: FloatArray, cluster: IntArray, prior: FloatArray
 ) -> FloatArray:
     out = np.zeros_like(bread)
-    psi = np.clip(u, -HUBER, HUBER)
+    # the rows carry the root of Huber's weight already, so the residual carries the other root
+    weighted = np.sign(u) * np.sqrt(np.minimum(np.abs(u), HUBER) * np.abs(u))
     labels = np.unique(cluster)
     for label in labels:
         members = np.flatnonzero(cluster == label)
         part = rows[members]
         leverage = np.eye(members.size) - part @ bread @ part.T
-        push = part.T @ np.linalg.pinv(leverage) @ psi[members]
+        push = part.T @ np.linalg.pinv(leverage) @ weighted[members]
         out += np.outer(push, push)
     shrink = (labels.size - 1) / labels.size
-    return np.asarray(bread @ (shrink * (out + prior)) @ bread)
+    return np.asarray(bread @ (shrink * out + prior) @ bread)

@@ -56,8 +56,11 @@ class Thermal:
         t = kelvin / self.reference - 1.0
         if self.kind == ARRHENIUS:
             return -t / (1.0 + t), -1.0 / (self.reference * (1.0 + t) ** 2), nothing
-        below = np.maximum(1.0 + q * t * self.reference, _NEAR_T0)
-        return -t / below, -1.0 / (self.reference * below**2), t**2 * self.reference / below**2
+        below = 1.0 + q * t * self.reference
+        held = below < _NEAR_T0
+        below = np.maximum(below, _NEAR_T0)
+        by_heat = np.where(held, -1.0 / (self.reference * below), -1.0 / (self.reference * below**2))
+        return -t / below, by_heat, np.where(held, 0.0, t**2 * self.reference / below**2)
 
     def energy(self, kelvin: float, q: float = 0.0) -> float:
         """Return the apparent activation energy, J/mol, at a temperature (K) for e = 1."""
