@@ -16,7 +16,7 @@ from hersey.damping.candidates.intervals import quantities
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.candidates.thermal import ARRHENIUS, Thermal
 from hersey.damping.compare import Change, LogComparison, compare
-from hersey.damping.estimation import Estimate
+from hersey.damping.estimate import Estimate
 from hersey.errors import InsufficientDataError
 from tests.damping.candidates.test_comparison import REFERENCE, SPEEDS, TEMPERATURES, dwells
 

@@ -10,7 +10,7 @@ import pytest
 from scipy import optimize, stats
 
 import hersey
-from hersey.damping.estimation import Estimate
+from hersey.damping.estimate import Estimate
 from tests.damping.test_surface import SPEEDS, TEMPERATURES, grid, points_of
 
 

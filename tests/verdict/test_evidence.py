@@ -10,8 +10,9 @@ from scipy import stats
 
 import hersey
 from hersey.charts.film import film_chart
-from hersey.damping.estimation import Estimate
-from hersey.damping.surface import DampingSurface, fit
+from hersey.damping.estimate import Estimate
+from hersey.damping.fit import fit
+from hersey.damping.surface import DampingSurface
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.lubrication.contact import Contact
 from hersey.lubrication.film import Correction, Film, drag_torque, film_thickness

@@ -9,10 +9,10 @@ import pytest
 from scipy import stats
 
 import hersey
-from hersey.damping.estimation import Estimate
+from hersey.damping.estimate import Estimate
 from hersey.damping.surface import DampingSurface
 from hersey.units import celsius
-from hersey.verdict.regime import HYPOTHESES, Hypothesis
+from hersey.verdict.regimes import REGIMES, Hypothesis
 from tests.damping.test_surface import SPEEDS, grid, points_of
 
 RPM = np.pi / 30
@@ -90,7 +90,7 @@ def p_values(c: float, error: float = 0.05, freedom: int = 5) -> dict[str, float
 
 
 def test_the_hypotheses_are_those_of_the_literature() -> None:
-    assert [h[:3] for h in HYPOTHESES] == [
+    assert [h[:3] for h in REGIMES] == [
         ("constant film", 0.0, 0.0),
         ("soft EHL", -0.60, -0.56),
         ("Dowson-Higginson EHL", -0.70, -0.70),

@@ -162,8 +162,10 @@ def test_likelier_laws_that_were_not_chosen_are_accounted_for() -> None:
 def test_cross_validation_says_whether_another_is_better_beyond_chance() -> None:
     random = np.random.default_rng(1)
     good, bad = 0.02 * random.standard_normal(72), 0.02 * random.standard_normal(72)
-    what = "Cross-validation, leaving out one level at a time: "
+    what = (
+        "Cross-validation, leaving out one level at a time: "
         "the chosen candidate predicts the dwells left out to "
+    )
     best = entry(0.0, missed=0.5 * good)
     assert _by_cross_validation((best, entry(1.0, missed=bad)), best, DATA) == (
         f"{what}{best.cross_validation:.2%}, the best of all.",
