@@ -129,8 +129,8 @@ def test_what_the_film_made_is_found_again(points: hersey.SteadyPoints, machine:
     says = verdict(measured, refit, machine.contact, machine.lubricant)
     assert says.exponent.value == pytest.approx(-0.6, abs=0.01)
     kept = [p.name for p in says.predictions if p.consistent]
-    assert "isoviscous-elastic" in kept
-    assert not {"starved", "isoviscous-rigid", "mixed or boundary"} & set(kept)
+    assert "soft EHL" in kept
+    assert not {"constant film", "dry Coulomb friction or a rigid film", "falling branch"} & set(kept)
     assert "agrees with it" in says.text
     assert says.expected == pytest.approx(-0.6, abs=1e-3)
 
@@ -144,7 +144,7 @@ def test_the_verdict_on_the_bench(
     says = verdict(measured, surface, machine.contact, machine.lubricant)
     assert "isoviscous-elastic regime" in says.text
     assert "does not apply" in says.text
-    assert [p.name for p in says.predictions if p.holds_here] == ["isoviscous-elastic"]
+    assert [p.name for p in says.predictions if p.holds_here] == ["soft EHL"]
     notes = " ".join(check_film(machine, measured.predicted, measured))
     for words in ("is not a fluid film", "pressure does not thicken", "extrapolated", "times the predicted"):
         assert words in notes

@@ -140,22 +140,22 @@ def test_each_prediction_has_its_probability(says: Verdict, surface: DampingSurf
     freedom = surface.statistics.points - surface.statistics.variables
     c, error = surface.c.value, surface.c.error
     ranges = {
-        "starved": (0.0, 0.0),
-        "isoviscous-elastic": (-0.60, -0.56),
-        "piezoviscous-rigid": (-2 / 3, -2 / 3),
-        "piezoviscous-elastic": (-0.70, -0.70),
-        "isoviscous-rigid": (-1.0, -1.0),
+        "constant film": (0.0, 0.0),
+        "soft EHL": (-0.60, -0.56),
+        "rigid piezoviscous film": (-2 / 3, -2 / 3),
+        "Dowson-Higginson EHL": (-0.70, -0.70),
+        "dry Coulomb friction or a rigid film": (-1.0, -1.0),
     }
     found = {p.name: p for p in says.predictions}
-    assert list(found) == [*ranges, "mixed or boundary"]
+    assert list(found) == [*ranges, "falling branch"]
     for name, (low, high) in ranges.items():
         away = max(low - c, c - high, 0.0) / error
         expected = min(1.0, 2 * stats.t.sf(away, freedom))
         assert found[name].p_value == pytest.approx(expected, rel=1e-9), name
         assert found[name].consistent == (expected > 0.05)
     one_sided = stats.t.sf((c + 1.0) / error, freedom)
-    assert found["mixed or boundary"].p_value == pytest.approx(one_sided, rel=1e-9)
-    assert [p.name for p in says.predictions if p.consistent] == ["piezoviscous-elastic"]
+    assert found["falling branch"].p_value == pytest.approx(one_sided, rel=1e-9)
+    assert [p.name for p in says.predictions if p.consistent] == ["Dowson-Higginson EHL"]
 
 
 def test_probabilities_near_the_level(
@@ -164,14 +164,14 @@ def test_probabilities_near_the_level(
     """A damping exponent 1.9 and 2.1 errors from a prediction, and 1.5 above -1, where one side counts."""
     freedom = surface.statistics.points - surface.statistics.variables
     for value, name in (
-        (-0.62, "isoviscous-elastic"),
-        (-0.541, "isoviscous-elastic"),
-        (-0.985, "mixed or boundary"),
+        (-0.62, "soft EHL"),
+        (-0.541, "soft EHL"),
+        (-0.985, "falling branch"),
     ):
         c = Estimate(value, 0.01, value - 0.02, value + 0.02)
         found = verdict(measured, replace(surface, c=c), contact, oil)
         p = next(p.p_value for p in found.predictions if p.name == name)
-        sides, away = (1, 1.5) if name == "mixed or boundary" else (2, 2.0 if value == -0.62 else 1.9)
+        sides, away = (1, 1.5) if name == "falling branch" else (2, 2.0 if value == -0.62 else 1.9)
         assert p == pytest.approx(sides * stats.t.sf(away, freedom), rel=1e-6)
 
 
@@ -209,7 +209,7 @@ def test_the_verdict_in_whole_sentences(says: Verdict) -> None:
         "The regime chart puts this contact in the isoviscous-elastic regime, where damping goes as speed to "
         f"the power {says.expected:.2f}; measured {says.exponent}. "
         f"Solved numerically for this roll, the film gives the power {says.solved:.2f}. "
-        "The measured exponent agrees with piezoviscous-elastic instead. "
+        "The measured exponent agrees with Dowson-Higginson EHL instead. "
         "Eq. 5 of the paper (Dowson-Higginson) does not apply to this contact, whatever the exponent. "
         f"With temperature (K) damping goes to the power {says.thermal}; the film of this lubricant predicts "
         f"{says.thermal_expected:.2f}, which {thermal}."

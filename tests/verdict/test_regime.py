@@ -16,6 +16,7 @@ from hersey.verdict.regimes import REGIMES, Hypothesis
 from tests.damping.test_surface import SPEEDS, grid, points_of
 
 RPM = np.pi / 30
+COULOMB = "dry Coulomb friction or a rigid film"
 
 
 def verdict(exponent: float, error: float = 0.005) -> hersey.Regime:
@@ -34,7 +35,7 @@ def test_each_regime_is_recognised(exponent: float, name: str) -> None:
     assert name in found.verdict
     kept = [h.name for h in found.hypotheses if h.consistent]
     assert any(k.startswith(name) for k in kept)
-    assert not {"constant film", "dry Coulomb friction"} & set(kept) or exponent in (0.0, -1.0)
+    assert not {"constant film", COULOMB} & set(kept) or exponent in (0.0, -1.0)
 
 
 def test_a_falling_branch_warns_of_stick_slip() -> None:
@@ -93,8 +94,9 @@ def test_the_hypotheses_are_those_of_the_literature() -> None:
     assert [h[:3] for h in REGIMES] == [
         ("constant film", 0.0, 0.0),
         ("soft EHL", -0.60, -0.56),
+        ("rigid piezoviscous film", -2 / 3, -2 / 3),
         ("Dowson-Higginson EHL", -0.70, -0.70),
-        ("dry Coulomb friction", -1.0, -1.0),
+        (COULOMB, -1.0, -1.0),
         ("falling branch", -np.inf, -1.0),
     ]
 
@@ -108,7 +110,7 @@ def test_p_values_by_hand(freedom: int) -> None:
     assert found["constant film"] == pytest.approx(two_sided(0.85))
     assert found["soft EHL"] == pytest.approx(two_sided(0.25))  # from the nearer end
     assert found["Dowson-Higginson EHL"] == pytest.approx(two_sided(0.15))
-    assert found["dry Coulomb friction"] == pytest.approx(two_sided(0.15))
+    assert found[COULOMB] == pytest.approx(two_sided(0.15))
     assert found["falling branch"] == pytest.approx(two_sided(0.15) / 2.0)  # only one side speaks against it
 
 
@@ -116,7 +118,7 @@ def test_p_values_on_the_other_side() -> None:
     slow = p_values(-0.50)
     assert slow["soft EHL"] == pytest.approx(2.0 * float(stats.t.sf(0.06 / 0.05, 5)))
     steep = p_values(-1.10)
-    assert steep["dry Coulomb friction"] == pytest.approx(2.0 * float(stats.t.sf(2.0, 5)))
+    assert steep[COULOMB] == pytest.approx(2.0 * float(stats.t.sf(2.0, 5)))
     assert steep["falling branch"] == pytest.approx(0.5)
     assert p_values(-0.58)["soft EHL"] == 1.0
     assert p_values(-0.7, error=0.0)["Dowson-Higginson EHL"] == 1.0
@@ -124,7 +126,7 @@ def test_p_values_on_the_other_side() -> None:
 
 
 def test_a_hypothesis_survives_at_five_percent() -> None:
-    kept, lost = (Hypothesis("", 0.0, 0.0, "", p) for p in (0.0501, 0.0499))
+    kept, lost = (Hypothesis("", 0.0, 0.0, "", "", p) for p in (0.0501, 0.0499))
     assert kept.consistent
     assert not lost.consistent
 
@@ -207,15 +209,15 @@ def test_the_verdict_of_one_branch_in_words() -> None:
         "No transition to a falling branch shows in these data."
     )
     assert (
-        "-0.650 [-0.680, -0.620], which agrees with no named regime: it lies between soft EHL and Dowson"
+        "-0.650 [-0.680, -0.620], which agrees with no named regime: it lies between soft EHL and rigid"
         in (said(-0.65, 0.03 / reach))
     )
-    assert "-0.65 [-0.75, -0.55], which agrees with soft EHL and Dowson-Higginson EHL." in said(
+    assert "-0.65 [-0.75, -0.55], which agrees with soft EHL, rigid piezoviscous film and Dowson-" in said(
         -0.65, 0.1 / reach
     )
     assert "power 0.2000 [0.1995, 0.2005], which agrees with no named regime. " in said(0.2, 0.0005 / reach)
     assert "lies between constant film and soft EHL" in said(-0.3, 0.01)
-    assert "lies between Dowson-Higginson EHL and dry Coulomb friction" in said(-0.85, 0.01)
+    assert "lies between Dowson-Higginson EHL and dry Coulomb friction or a rigid film" in said(-0.85, 0.01)
     assert said(-1.2, 0.06 / reach) == (
         "Torque falls as speed rises over the whole range (damping exponent -1.20 [-1.26, -1.14]): mixed or "
         "boundary lubrication, where the drive can stick and slip."
@@ -253,7 +255,9 @@ def test_the_verdict_says_where_the_transition_moves(exponent: float, words: str
     points, surface = bent(celsius=True)
     assert surface.transition is not None
     moved = replace(surface.transition, temperature_exponent=exponent)
-    verdict = hersey.regime(points, replace(surface, transition=moved, reference_temperature=150.2)).verdict
+    verdict = hersey.regime(
+        points, replace(surface, transition=moved, reference_temperature=150.2 + 273.15)
+    ).verdict
     assert " at 150 degC" in verdict
     assert words in verdict
 

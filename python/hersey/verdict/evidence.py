@@ -22,7 +22,7 @@ from hersey.lubrication.film import REGIMES, Film, drag_torque, film_thickness
 from hersey.lubrication.lubricant import Lubricant
 from hersey.lubrication.reynolds import exponent, solve_line_contact
 from hersey.units import celsius
-from hersey.verdict.regimes import Hypothesis, judged
+from hersey.verdict.regimes import Hypothesis, judged, listed
 
 
 @dataclass(frozen=True)
@@ -236,7 +236,7 @@ def _text(
     if any(p.holds_here for p in kept):
         lines.append("The measured exponent agrees with it.")
     elif kept:
-        lines.append(f"The measured exponent agrees with {' and '.join(p.name for p in kept)} instead.")
+        lines.append(f"The measured exponent agrees with {listed([p.name for p in kept])} instead.")
     else:
         lines.append("The measured exponent agrees with no regime.")
     if held != "piezoviscous-elastic":

@@ -13,7 +13,7 @@ from hersey.damping.dwells import SteadyPoints, distinct_speeds, groups_of_tempe
 from hersey.damping.estimate import CONFIDENCE, Estimate
 from hersey.damping.surface import DampingSurface
 from hersey.units import celsius, rpm
-from hersey.verdict.regimes import REGIMES, Hypothesis, judged
+from hersey.verdict.regimes import REGIMES, Hypothesis, judged, listed
 
 
 @dataclass(frozen=True)
@@ -90,7 +90,7 @@ def _slope(speed: FloatArray, torque: FloatArray, error: FloatArray, surface: Da
 def _verdict(surface: DampingSurface, hypotheses: tuple[Hypothesis, ...]) -> str:
     kept = [h.name for h in hypotheses if h.consistent]
     c = _in_words(surface.c)
-    agrees = f"agrees with {' and '.join(kept)}" if kept else _between(surface.c.value)
+    agrees = f"agrees with {listed(kept)}" if kept else _between(surface.c.value)
     if surface.transition is None:
         if "falling branch" in kept and surface.c.high < -1.0:
             return (

@@ -46,11 +46,11 @@ REGIMES: tuple[RegimeRow, ...] = (
         "piezoviscous line contact, Eq. 10 of the paper",
     ),
     RegimeRow(
-        "constant torque",
+        "dry Coulomb friction or a rigid film",
         -1.0,
         -1.0,
         "isoviscous-rigid",
-        "torque independent of speed: dry Coulomb friction, or a film between rigid walls",
+        "torque independent of speed",
     ),
     RegimeRow(
         "falling branch", -np.inf, -1.0, "", "torque falls with speed: mixed lubrication, stick-slip possible"
@@ -96,3 +96,8 @@ def _p_value(exponent: Estimate, row: RegimeRow, freedom: int) -> float:
     away = max(row.low - exponent.value, exponent.value - row.high, 0.0) / max(exponent.error, 1e-12)
     sides = 1.0 if np.isinf(row.low) else 2.0
     return min(1.0, sides * float(stats.t.sf(away, max(freedom, 1))))
+
+
+def listed(names: list[str]) -> str:
+    """Return names as a sentence lists them."""
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
