@@ -154,7 +154,9 @@ def estimates(
 def profile_interval(fit: LawFit, data: Observations, parameter: int) -> Ends:
     """Return where the profile of the cost crosses t^2 on either side; infinite where it never does."""
     target = quantile(fit.freedom) ** 2
-    error = float(np.sqrt(fit.covariance[parameter, parameter]))
+    error = float(np.sqrt(max(fit.covariance[parameter, parameter], 0.0)))
+    if not error > 0:  # exact data
+        return float(fit.values[parameter]), float(fit.values[parameter])
     below, above = (_crossing(fit, data, parameter, side * error, target) for side in (-1.0, 1.0))
     return below, above
 
