@@ -156,6 +156,7 @@ mod tests {
     }
 
     #[test]
+    #[allow(clippy::float_cmp)] // small whole numbers
     fn a_cubic_about_another_time_is_the_same_cubic() {
         // 1 + 2 t - 3 t^2 + 0.5 t^3 has at t = 2 the value -3, the slope -4, half the curvature 0 and the same 0.5
         let s = Schedule::piecewise("w", &[1.0, 5.0], &[[1.0, 2.0, -3.0, 0.5]], 0.0).unwrap();

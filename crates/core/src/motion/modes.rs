@@ -1,0 +1,219 @@
+//! Changes of mode: which one holds at the start, which guard ends it, and which follows.
+
+use super::event::Guard;
+use super::hybrid::Motion;
+use super::piece::{Condition, Phase, Piece};
+use crate::drag::{Closure, Mode};
+
+impl Motion<'_> {
+    /// Bristles of a sliding belt are bent as in steady sliding.
+    pub(super) fn bend_bristles(&mut self) {
+        if let Closure::LuGre { bristle_stiffness, .. } = self.now.system.drag.closure()
+            && self.phase.speed >= self.now.speed(self.now.system.drag.stick_speed())
+        {
+            self.phase.bristle = self.now.steady_drag(self.phase.speed) / bristle_stiffness;
+        }
+    }
+
+    /// Enter the mode that pull and speed ask for.
+    pub(super) fn enter_mode_at_start(&mut self) {
+        let drag = &self.now.system.drag;
+        let Phase { pull, speed, .. } = self.phase;
+        let v_s = self.now.speed(drag.stick_speed());
+        if speed < v_s {
+            if drag.closure() == Closure::Stiction {
+                self.phase.mode = self.mode_below_stick_speed();
+            } else {
+                let held =
+                    !drag.closure().is_smooth() && pull.abs() <= self.now.holding_force(speed);
+                self.phase.mode = if held { Mode::Stuck } else { Mode::Microslip };
+            }
+            return;
+        }
+        // on a boundary the motion itself says which side it belongs to: m u' and, where that is nil, u''
+        let net_force = pull - self.now.steady_drag(speed);
+        let onward = self.rate()[0] - self.now.system.train.stiffness() * speed;
+        let rising = net_force > 0.0 || (net_force == 0.0 && onward >= 0.0);
+        let x = self.now.unwarmed(speed);
+        let mut branch = drag.branch(x);
+        if !rising && branch > 0 && drag.upper_knot(branch - 1) == Some(x) && x > drag.stick_speed()
+        {
+            branch -= 1;
+        }
+        self.phase.branch = branch;
+        self.phase.mode = if rising || speed > v_s {
+            drag.branch_mode(branch)
+        } else {
+            self.mode_below_stick_speed()
+        };
+    }
+
+    /// Mode of a belt that has slowed to the stick speed; with `Stiction` it stops dead if it can be held.
+    fn mode_below_stick_speed(&mut self) -> Mode {
+        let drag = &self.now.system.drag;
+        let closure = drag.closure();
+        let holding = self.now.holding_force(self.now.speed(drag.stick_speed()));
+        if closure.is_smooth() || self.phase.pull.abs() > holding {
+            return Mode::Microslip;
+        }
+        if closure == Closure::Stiction {
+            self.stop_dead();
+        }
+        Mode::Stuck
+    }
+
+    fn stop_dead(&mut self) {
+        self.stopped += 0.5 * self.now.system.train.mass() * self.phase.speed * self.phase.speed;
+        self.phase.speed = 0.0;
+    }
+
+    /// Enter the mode behind `guard`, on it exactly.
+    pub(super) fn cross(&mut self, guard: Guard) {
+        let crept = self.phase.creeping;
+        (self.phase.released, self.phase.creeping) = (false, false);
+        self.next_step = f64::INFINITY;
+        self.phase.mode = match (guard, self.phase.mode) {
+            (Guard::TransitionSpeed | Guard::TablePoint, _) => self.over_knot(),
+            (Guard::StickSpeed, from) => self.over_stick_speed(from),
+            (Guard::HoldingForce, Mode::Stuck) => self.released(),
+            (Guard::HoldingForce, _) => self.caught(),
+            (Guard::Reversal, _) => self.turned(crept),
+        };
+    }
+
+    /// Onto the next branch of the law.
+    fn over_knot(&mut self) -> Mode {
+        let drag = &self.now.system.drag;
+        let x = self.now.unwarmed(self.phase.speed);
+        let above = drag.upper_knot(self.phase.branch);
+        let below = drag.lower_knot(self.phase.branch);
+        // the knot that was reached is the nearer one
+        let up = match (above, below) {
+            (Some(a), Some(b)) => (a - x).abs() <= (x - b).abs(),
+            (above, _) => above.is_some(),
+        };
+        let knot = if up { above } else { below };
+        self.phase.speed = self.now.speed(knot.unwrap_or(x));
+        self.phase.branch = if up { self.phase.branch + 1 } else { self.phase.branch - 1 };
+        drag.branch_mode(self.phase.branch)
+    }
+
+    /// Past the stick speed, up out of the microslip or down from sliding.
+    fn over_stick_speed(&mut self, from: Mode) -> Mode {
+        let drag = &self.now.system.drag;
+        self.phase.speed = self.now.speed(drag.stick_speed());
+        if from != Mode::Microslip {
+            return self.mode_below_stick_speed();
+        }
+        self.phase.branch = drag.branch(drag.stick_speed());
+        drag.branch_mode(self.phase.branch)
+    }
+
+    /// Held by just what it is pulled with.
+    fn caught(&mut self) -> Mode {
+        self.phase.pull = self.now.holding_force(self.phase.speed).copysign(self.phase.pull);
+        if self.now.system.drag.closure() == Closure::Stiction {
+            self.stop_dead();
+        }
+        Mode::Stuck
+    }
+
+    /// At rest for an instant: held there, or off the other way.
+    fn turned(&mut self, crept: bool) -> Mode {
+        self.phase.speed = 0.0;
+        if crept {
+            return self.released();
+        }
+        let held = self.now.system.drag.closure() == Closure::Stiction
+            && self.phase.pull.abs() <= self.now.holding_force(0.0);
+        if held {
+            return Mode::Stuck;
+        }
+        self.mirror();
+        Mode::Microslip
+    }
+
+    /// Leave the stuck phase with the spring force exactly at the holding force.
+    fn released(&mut self) -> Mode {
+        let drag = &self.now.system.drag;
+        self.phase.pull = self.now.holding_force(self.phase.speed).copysign(self.phase.pull);
+        let forward = self.phase.pull > 0.0;
+        if self.phase.speed == 0.0 && !forward {
+            self.mirror();
+        }
+        self.phase.creeping = self.phase.speed > 0.0 && !forward;
+        self.phase.released = !self.phase.creeping;
+        if forward && self.phase.speed >= self.now.speed(drag.stick_speed()) {
+            self.phase.branch = drag.branch(self.now.unwarmed(self.phase.speed));
+            drag.branch_mode(self.phase.branch)
+        } else {
+            Mode::Microslip
+        }
+    }
+
+    fn mirror(&mut self) {
+        self.phase.direction = -self.phase.direction;
+        self.phase.pull = -self.phase.pull;
+        self.phase.bristle = -self.phase.bristle;
+    }
+
+    /// The guard that the piece crosses first, if it crosses any.
+    pub(super) fn first_guard(&self, piece: &Piece) -> Option<(f64, Guard)> {
+        if piece.duration.is_infinite() {
+            return None;
+        }
+        let mut first: Option<(f64, Guard)> = None;
+        let range = if self.now.warmth.is_none() { piece.speed_range() } else { None };
+        for (condition, guard) in self.guards().into_iter().flatten() {
+            if range.is_some_and(|range| condition.holds_over(range)) {
+                continue;
+            }
+            if let Some(elapsed) = piece.end_of(condition, self.now.warmth.as_ref())
+                && first.is_none_or(|(earliest, _)| elapsed < earliest)
+            {
+                first = Some((elapsed, guard));
+            }
+        }
+        first
+    }
+
+    /// The conditions under which the mode goes on, and what their ends are called.
+    fn guards(&self) -> [Option<(Condition, Guard)>; 3] {
+        let drag = &self.now.system.drag;
+        let slower = Some((Condition::Slower(drag.stick_speed()), Guard::StickSpeed));
+        let forward = Some((Condition::Faster(0.0), Guard::Reversal));
+        match self.phase.mode {
+            Mode::Stuck => [
+                Some((Condition::HeldForward, Guard::HoldingForce)),
+                Some((Condition::HeldBack, Guard::HoldingForce)),
+                None,
+            ],
+            Mode::Microslip if self.phase.creeping => [forward, None, None],
+            Mode::Microslip => {
+                let overcome = match drag.closure() {
+                    Closure::Retained => Some(Condition::Overcome),
+                    Closure::Stiction => Some(Condition::Pulled(drag.breakaway_force())),
+                    Closure::Stribeck | Closure::LuGre { .. } => None,
+                };
+                [slower, overcome.map(|condition| (condition, Guard::HoldingForce)), forward]
+            }
+            Mode::Ehl | Mode::Mixed => self.branch_guards(),
+        }
+    }
+
+    /// The ends of the branch of the law.
+    fn branch_guards(&self) -> [Option<(Condition, Guard)>; 3] {
+        let (drag, branch) = (&self.now.system.drag, self.phase.branch);
+        let named = |is_transition: bool| {
+            if is_transition { Guard::TransitionSpeed } else { Guard::TablePoint }
+        };
+        let upper = drag
+            .upper_knot(branch)
+            .map(|knot| (Condition::Slower(knot), named(drag.is_transition(branch))));
+        let lower = match drag.lower_knot(branch) {
+            Some(knot) => (Condition::Faster(knot), named(drag.is_transition(branch - 1))),
+            None => (Condition::Faster(drag.stick_speed()), Guard::StickSpeed),
+        };
+        [upper, Some(lower), None]
+    }
+}
