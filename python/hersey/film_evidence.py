@@ -14,7 +14,7 @@ from scipy import stats
 
 from hersey import _core
 from hersey.contact import Contact
-from hersey.errors import InsufficientDataError, ParameterError
+from hersey.errors import InsufficientDataError, ParameterError, UnfinishedError
 from hersey.estimation import CONFIDENCE, Estimate, quantile
 from hersey.film import REGIMES, Film, drag_torque, film_thickness
 from hersey.log.torque_log import FloatArray
@@ -225,7 +225,7 @@ def solved_exponent(contact: Contact, lubricant: Lubricant, speed: float, temper
             poisson=contact.poisson_ratio,
             pressure_viscosity=float(lubricant.alpha(temperature)),
         )
-    except ParameterError:
+    except (ParameterError, UnfinishedError):
         return None
     return exponent("damping", solution)
 

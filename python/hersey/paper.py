@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hersey import _core
-from hersey.columns import rows
+from hersey.columns import pointwise
 from hersey.log.torque_log import FloatArray
 
 #: What the core takes, in its order.
@@ -133,5 +133,4 @@ def damping(
 
 def _equation(number: int, **given: ArrayLike) -> FloatArray:
     # What an equation does not contain is 1: it is not used.
-    found = rows(partial(_core.paper, number), *(given.get(name, 1.0) for name in _QUANTITIES))
-    return np.asarray(found[0])
+    return pointwise(partial(_core.paper, number), *(given.get(name, 1.0) for name in _QUANTITIES))

@@ -29,6 +29,7 @@
 //! | `motion::lanes`           | slip laps of many belts at once, several to a register                             |
 //! | `motion::ensemble`        | what thousands of belts settle to                                                  |
 //! | `stability::fold`         | drive speed at which a slip lap comes back to its start, many at once              |
+//! | `stability::cycles`       | swings that never stick, by their slowest speed                                    |
 //! | `stability::band`         | lower edge, transition and upper fold of a belt, for every closure                 |
 //!
 //! Conventions: any consistent set of units (SI inside the product); speeds and forces are signed,

@@ -20,7 +20,7 @@ from hersey.hysteresis import (
     hysteresis,
 )
 from hersey.log.torque_log import FloatArray
-from hersey.motion import stick_slip
+from hersey.motion import steady_start, stick_slip
 
 #: Drive speeds shown (in/s), and those of the panel that shows the lower edge enlarged, with its belt speeds.
 SHOWN, ENLARGED, ENLARGED_BELT = (0.9, 2.4), (0.979, 1.003), (0.5, 1.5)
@@ -161,7 +161,7 @@ def small_swing(case: Case, motions: Motions) -> Claim:
 def _from_cycle(case: Case, cycles: CyclesWithoutSticking, place: int, share: float) -> str:
     """What a belt settles to from the slowest point of a lap, its speed changed by a factor."""
     speed = float(cycles.slowest[place]) * share
-    start = speed, float(case.drag.force(speed)) / case.stiffness
+    start = steady_start(case.train, case.drag, speed)
     drive = float(cycles.drive_speed[place])
     return stick_slip(case.train, case.drag, drive_speed=drive, start=start).kind
 

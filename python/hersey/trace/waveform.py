@@ -8,7 +8,7 @@ import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
 from hersey.drag import AnyDrag
-from hersey.errors import InsufficientDataError, ParameterError
+from hersey.errors import InsufficientDataError, ParameterError, UnfinishedError
 from hersey.log.torque_log import FloatArray
 from hersey.motion import Drivetrain, simulate, stick_slip
 from hersey.trace.record import CycleRecord
@@ -117,7 +117,7 @@ def model_lap(train: Drivetrain, drag: AnyDrag, drive_speed: float) -> ModelLap 
             samples=_SAMPLES,
             start=(drive_speed, cycle.stretch_max),
         )
-    except ParameterError:
+    except (ParameterError, UnfinishedError):
         return None
     # The slope of the force is known too, so that the curve is smooth in the parameters.
     force = CubicHermiteSpline(run.time, run.spring_force, train.stiffness * (drive_speed - run.belt_speed))

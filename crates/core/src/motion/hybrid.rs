@@ -118,6 +118,7 @@ impl<'a> Motion<'a> {
     }
 
     /// To the end of a piece that no guard ends, and into the next segment of the schedules if it reaches there.
+    #[inline]
     fn go_on(&mut self, piece: &Piece, until_change: f64) {
         [self.phase.pull, self.phase.speed, self.phase.bristle] = piece.state(piece.duration);
         self.phase.released = false;
@@ -133,6 +134,7 @@ impl<'a> Motion<'a> {
     }
 
     /// To the end of a piece, where `guard` is met, and across it; no event if the mode does not change.
+    #[inline]
     fn meet(&mut self, guard: Guard, piece: &Piece) -> Result<Option<Event>, Error> {
         let before = self.now.time;
         self.now.time += piece.duration;

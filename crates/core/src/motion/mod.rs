@@ -45,5 +45,5 @@ pub use event::{Event, Guard};
 pub(crate) use hybrid::first_slide;
 pub use schedule::{Cubic, Schedule};
 pub(crate) use system::checked_tolerance;
-pub use system::{Drive, Drivetrain, Integrator, Start, System};
+pub use system::{Drive, Drivetrain, Integrator, NUDGE, Start, System};
 pub use trajectory::{Energy, Trajectory, simulate};

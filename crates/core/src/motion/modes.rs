@@ -3,6 +3,7 @@
 use super::event::Guard;
 use super::hybrid::Motion;
 use super::piece::{Condition, Phase, Piece};
+use super::taylor::Warmth;
 use crate::drag::{Closure, Mode};
 
 impl Motion<'_> {
@@ -162,58 +163,75 @@ impl Motion<'_> {
         if piece.duration.is_infinite() {
             return None;
         }
-        let mut first: Option<(f64, Guard)> = None;
-        let range = if self.now.warmth.is_none() { piece.speed_range() } else { None };
-        for (condition, guard) in self.guards().into_iter().flatten() {
-            if range.is_some_and(|range| condition.holds_over(range)) {
-                continue;
-            }
-            if let Some(elapsed) = piece.end_of(condition, self.now.warmth.as_ref())
-                && first.is_none_or(|(earliest, _)| elapsed < earliest)
-            {
-                first = Some((elapsed, guard));
-            }
-        }
-        first
-    }
-
-    /// The conditions under which the mode goes on, and what their ends are called.
-    fn guards(&self) -> [Option<(Condition, Guard)>; 3] {
+        let mut watch = Watch::over(piece, self.now.warmth.as_ref());
         let drag = &self.now.system.drag;
-        let slower = Some((Condition::Slower(drag.stick_speed()), Guard::StickSpeed));
-        let forward = Some((Condition::Faster(0.0), Guard::Reversal));
         match self.phase.mode {
-            Mode::Stuck => [
-                Some((Condition::HeldForward, Guard::HoldingForce)),
-                Some((Condition::HeldBack, Guard::HoldingForce)),
-                None,
-            ],
-            Mode::Microslip if self.phase.creeping => [forward, None, None],
-            Mode::Microslip => {
-                let overcome = match drag.closure() {
-                    Closure::Retained => Some(Condition::Overcome),
-                    Closure::Stiction => Some(Condition::Pulled(drag.breakaway_force())),
-                    Closure::Stribeck | Closure::LuGre { .. } => None,
-                };
-                [slower, overcome.map(|condition| (condition, Guard::HoldingForce)), forward]
+            Mode::Stuck => {
+                watch.look(Condition::HeldForward, Guard::HoldingForce);
+                watch.look(Condition::HeldBack, Guard::HoldingForce);
             }
-            Mode::Ehl | Mode::Mixed => self.branch_guards(),
+            Mode::Microslip if self.phase.creeping => {
+                watch.look(Condition::Faster(0.0), Guard::Reversal);
+            }
+            Mode::Microslip => {
+                watch.look(Condition::Slower(drag.stick_speed()), Guard::StickSpeed);
+                match drag.closure() {
+                    Closure::Retained => watch.look(Condition::Overcome, Guard::HoldingForce),
+                    Closure::Stiction => {
+                        watch.look(Condition::Pulled(drag.breakaway_force()), Guard::HoldingForce);
+                    }
+                    Closure::Stribeck | Closure::LuGre { .. } => {}
+                }
+                watch.look(Condition::Faster(0.0), Guard::Reversal);
+            }
+            Mode::Ehl | Mode::Mixed => self.watch_branch(&mut watch),
         }
+        watch.first
     }
 
-    /// The ends of the branch of the law.
-    fn branch_guards(&self) -> [Option<(Condition, Guard)>; 3] {
+    /// Watch the ends of the branch of the law.
+    #[inline]
+    fn watch_branch(&self, watch: &mut Watch) {
         let (drag, branch) = (&self.now.system.drag, self.phase.branch);
         let named = |is_transition: bool| {
             if is_transition { Guard::TransitionSpeed } else { Guard::TablePoint }
         };
-        let upper = drag
-            .upper_knot(branch)
-            .map(|knot| (Condition::Slower(knot), named(drag.is_transition(branch))));
-        let lower = match drag.lower_knot(branch) {
-            Some(knot) => (Condition::Faster(knot), named(drag.is_transition(branch - 1))),
-            None => (Condition::Faster(drag.stick_speed()), Guard::StickSpeed),
-        };
-        [upper, Some(lower), None]
+        if let Some(knot) = drag.upper_knot(branch) {
+            watch.look(Condition::Slower(knot), named(drag.is_transition(branch)));
+        }
+        match drag.lower_knot(branch) {
+            Some(knot) => {
+                watch.look(Condition::Faster(knot), named(drag.is_transition(branch - 1)));
+            }
+            None => watch.look(Condition::Faster(drag.stick_speed()), Guard::StickSpeed),
+        }
+    }
+}
+
+/// The earliest guard met along a piece.
+struct Watch<'p> {
+    piece: &'p Piece<'p>,
+    warmth: Option<&'p Warmth>,
+    /// Speeds on the piece, where they are known at once.
+    range: Option<(f64, f64)>,
+    first: Option<(f64, Guard)>,
+}
+
+impl<'p> Watch<'p> {
+    fn over(piece: &'p Piece<'p>, warmth: Option<&'p Warmth>) -> Self {
+        let range = if warmth.is_none() { piece.speed_range() } else { None };
+        Self { piece, warmth, range, first: None }
+    }
+
+    /// See whether `condition`, under which the mode goes on, ends on the piece, and before the others do.
+    fn look(&mut self, condition: Condition, guard: Guard) {
+        if self.range.is_some_and(|range| condition.holds_over(range)) {
+            return;
+        }
+        if let Some(elapsed) = self.piece.end_of(condition, self.warmth)
+            && self.first.is_none_or(|(earliest, _)| elapsed < earliest)
+        {
+            self.first = Some((elapsed, guard));
+        }
     }
 }

@@ -36,6 +36,7 @@ impl<'a> Surroundings<'a> {
     }
 
     /// Rate of the pull if the belt stood still, about now, for a belt that moves in `direction`.
+    #[inline]
     pub(super) fn rate(&self, direction: f64) -> Cubic {
         let d = direction;
         match &self.system.drive {
@@ -85,6 +86,7 @@ impl<'a> Surroundings<'a> {
     }
 
     /// Take the law as it is now.
+    #[inline]
     pub(super) fn warm(&mut self) {
         self.warmth = self.warming().map(|(temperature, warming)| {
             let ratio = temperature.map(|c| c / warming.reference);
@@ -99,16 +101,19 @@ impl<'a> Surroundings<'a> {
     }
 
     /// A speed of the law as it is now.
+    #[inline]
     pub(super) fn speed(&self, base: f64) -> f64 {
         self.warmth.as_ref().map_or(base, |warmth| base * warmth.speed[0])
     }
 
     /// A force of the law as it is now.
+    #[inline]
     pub(super) fn force(&self, base: f64) -> f64 {
         self.warmth.as_ref().map_or(base, |warmth| base * warmth.force[0])
     }
 
     /// A belt speed in the terms of the law as it was given.
+    #[inline]
     pub(super) fn unwarmed(&self, speed: f64) -> f64 {
         self.warmth.as_ref().map_or(speed, |warmth| speed * warmth.slowness[0])
     }
