@@ -79,7 +79,7 @@ class ThermalTruth(Truth):
     def log_torque_ratio(self, temperature: FloatArray) -> FloatArray:
         """Return ln of torque over that at the reference temperature, at temperatures in degC."""
         kelvin, reference = temperature + KELVIN, self.reference_temperature_degC + KELVIN
-        slope = self.activation_energy / (8.314462618 * reference**2)  # of -ln torque, 1/K, there
+        slope = self.activation_energy / (_core.GAS_CONSTANT * reference**2)  # of -ln torque, 1/K, there
         if self.law == "degC":
             scale = self.reference_temperature_degC
             return np.asarray(-slope * scale * np.log(temperature / scale))
