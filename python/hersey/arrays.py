@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hersey.errors import ParameterError
 
+R = TypeVar("R")
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.intp]
 BoolArray = NDArray[np.bool_]
@@ -50,17 +52,12 @@ def together(given: dict[str, FloatArray]) -> tuple[list[str], dict[str, FloatAr
     return axes[:dimensions], dict(zip(given, arrays, strict=True))
 
 
-def rows(function: Callable[[Sequence[FloatArray]], FloatArray], *given: ArrayLike) -> FloatArray:
-    """Return the rows of a core function of columns, each of the shape that the arguments span together.
+def pointwise(function: Callable[[Sequence[FloatArray]], R], *given: ArrayLike) -> R:
+    """Return what a core function makes of arrays, each spread to the shape that the arguments span together.
 
     Raises
     ------
     ParameterError
         With the core's words, which name the quantity.
     """
-    arrays = np.broadcast_arrays(*(np.asarray(value, dtype=float) for value in given))
-    try:
-        found = function([np.ascontiguousarray(array).ravel() for array in arrays])
-    except ValueError as error:
-        raise ParameterError(str(error)) from None
-    return np.asarray(found.reshape(-1, *arrays[0].shape))
+    return function(np.broadcast_arrays(*(np.asarray(value, dtype=float) for value in given)))

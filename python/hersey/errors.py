@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Self
+
 
 class HerseyError(Exception):
     """A mistake that the user can mend; the message says what is wrong and the way out."""
@@ -9,6 +11,12 @@ class HerseyError(Exception):
     def __str__(self) -> str:
         """Return the message on one line."""
         return " ".join(str(part) for part in self.args)
+
+    def within(self, place: str) -> Self:
+        """Return the same error, its message led by where it happened."""
+        again = type(self)(f"{place}: {self}")
+        again.__dict__.update(self.__dict__)
+        return again
 
 
 class MissingFileError(HerseyError, FileNotFoundError):
@@ -36,7 +44,45 @@ class InsufficientDataError(HerseyError, ValueError):
 
 
 class ParameterError(HerseyError, ValueError):
-    """A parameter outside what the physics allows."""
+    """A parameter outside what the physics allows.
+
+    ``quantity`` names it as the message does, ``value`` and ``limit`` are in ``unit``; ``index`` is the place
+    among the sets or points of a call that takes many. Each is None where it is not known.
+    """
+
+    def __init__(
+        self,
+        *message: object,
+        quantity: str | None = None,
+        value: float | None = None,
+        limit: float | None = None,
+        unit: str | None = None,
+        index: int | None = None,
+    ) -> None:
+        """Take the message and what is known of the parameter."""
+        super().__init__(*message)
+        self.quantity, self.value, self.limit, self.unit, self.index = quantity, value, limit, unit, index
+
+
+class UnfinishedError(HerseyError, RuntimeError):
+    """A computation on sound input that did not come to its end.
+
+    ``quantity`` and ``value`` (in ``unit``) tell where a solution was lost, ``time`` is that which a motion
+    had reached; ``index`` as in `ParameterError`. Each is None where it is not known.
+    """
+
+    def __init__(
+        self,
+        *message: object,
+        quantity: str | None = None,
+        value: float | None = None,
+        unit: str | None = None,
+        time: float | None = None,
+        index: int | None = None,
+    ) -> None:
+        """Take the message and what is known of the end."""
+        super().__init__(*message)
+        self.quantity, self.value, self.unit, self.time, self.index = quantity, value, unit, time, index
 
 
 class OutputError(HerseyError, OSError):

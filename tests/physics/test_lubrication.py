@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from hersey import _core
-from hersey.arrays import rows
+from hersey.arrays import pointwise
 from hersey.lubrication import paper
 from hersey.lubrication.contact import Contact, nip_width
 from hersey.lubrication.film import drag_torque, film_thickness
@@ -131,7 +131,9 @@ def test_published_line_and_point_films() -> None:
         number = {k: float(row[k]) for k in ("eta_Pas", "alpha", "u_entrain", "load", "Eprime", "R")}
         columns = (number["alpha"], number["eta_Pas"], number["u_entrain"], number["load"], number["R"])
         if row["formula"].startswith("Dowson-Higginson line"):
-            found = rows(_core.line_film, *columns, number["Eprime"], 1.0)[5]
+            found = pointwise(_core.line_film, *columns, number["Eprime"], 1.0).minimum[
+                "piezoviscous-elastic"
+            ]
         elif row["formula"].startswith("paper Eq5"):
             found = paper.film_thickness(
                 pressure_viscosity=number["alpha"],
@@ -144,10 +146,10 @@ def test_published_line_and_point_films() -> None:
             )
         elif "book conventions" in row["case"]:
             # The book takes 1/R = 1/Rx + 1/Ry; its stated answer is in um.
-            found = rows(_core.elliptic_film, *columns, number["Eprime"], 1.0339)[0]
+            found = pointwise(_core.elliptic_film, *columns, number["Eprime"], 1.0339).hard_minimum
             assert 1e6 * found == pytest.approx(float(row["stated_answer_um"]), rel=0.01)
         else:
-            found = rows(_core.elliptic_film, *columns, number["Eprime"], 1.0)[0]
+            found = pointwise(_core.elliptic_film, *columns, number["Eprime"], 1.0).hard_minimum
         assert found == pytest.approx(float(row["hmin_m"]), rel=2e-3), row["case"]
         seen += 1
     assert seen >= 10
@@ -157,7 +159,7 @@ def test_the_soft_point_film_is_the_one_known_for_joints() -> None:
     # For k = 1 the law is known as h = 2.80 R (eta u/(E'R))^0.65 (W/(E'R^2))^-0.21; its chart form is
     # 8.70 g_E^0.67 (1 - 0.85 exp(-0.31 k)).
     eta, u, load, radius, modulus = 0.005, 0.02, 1500.0, 0.5, 1e9
-    soft = rows(_core.elliptic_film, 0.0, eta, u, load, radius, modulus, 1.0)[2]
+    soft = pointwise(_core.elliptic_film, 0.0, eta, u, load, radius, modulus, 1.0).soft_minimum
     speed, weight = eta * u / (modulus * radius), load / (modulus * radius**2)
     assert soft == pytest.approx(2.80 * radius * speed**0.65 * weight**-0.21, rel=2e-3)
     chart = 8.70 * (weight ** (8 / 3) / speed**2) ** 0.67 * (1 - 0.85 * np.exp(-0.31))
@@ -171,9 +173,9 @@ def test_hertz_against_a_textbook_example() -> None:
     radius = _core.reduced_radius(case["RA"], case["RB"])
     assert modulus == pytest.approx(case["stated"]["Eprime"], rel=1e-3)
     assert radius == pytest.approx(case["stated"]["Rx"], rel=1e-9)
-    half_width, peak = rows(partial(_core.hertz, line=False), case["W"], radius, modulus)
-    assert half_width == pytest.approx(case["computed"]["a"], rel=1e-4)
-    assert peak == pytest.approx(case["computed"]["pmax"], rel=1e-3)
+    found = pointwise(partial(_core.hertz, line=False), case["W"], radius, modulus)
+    assert found.half_width == pytest.approx(case["computed"]["a"], rel=1e-4)
+    assert found.pressure_max == pytest.approx(case["computed"]["pmax"], rel=1e-3)
 
 
 def test_nip_widths_of_the_table() -> None:

@@ -205,8 +205,8 @@ def test_the_verdict_of_one_branch_in_words() -> None:
 
     reach = float(stats.t.ppf(0.975, 5))
     assert said(-0.7, 0.03 / reach) == (
-        "Damping varies as speed to the power -0.700 [-0.730, -0.670], which agrees with Dowson-Higginson EHL. "
-        "No transition to a falling branch shows in these data."
+        "Damping varies as speed to the power -0.700 [-0.730, -0.670], which agrees with "
+        "Dowson-Higginson EHL. No transition to a falling branch shows in these data."
     )
     assert (
         "-0.650 [-0.680, -0.620], which agrees with no named regime: it lies between soft EHL and rigid"

@@ -123,6 +123,87 @@ impl fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
+impl Error {
+    /// The quantity that is out of range, or at which a solution was lost.
+    #[must_use]
+    pub fn quantity(&self) -> Option<&'static str> {
+        match *self {
+            Self::NotFinite { quantity, .. }
+            | Self::TooSmall { quantity, .. }
+            | Self::TooLarge { quantity, .. }
+            | Self::NotBelow { quantity, .. }
+            | Self::TooFew { quantity, .. }
+            | Self::Backwards { quantity, .. }
+            | Self::NotConverged { quantity, .. } => Some(quantity),
+            Self::TooLong { .. } | Self::Chattering { .. } => None,
+        }
+    }
+
+    /// Its value.
+    #[must_use]
+    pub fn value(&self) -> Option<f64> {
+        match *self {
+            Self::NotFinite { value, .. }
+            | Self::TooSmall { value, .. }
+            | Self::TooLarge { value, .. }
+            | Self::NotBelow { value, .. }
+            | Self::Backwards { value, .. }
+            | Self::NotConverged { value, .. } => Some(value),
+            Self::TooFew { .. } | Self::TooLong { .. } | Self::Chattering { .. } => None,
+        }
+    }
+
+    /// What the value must keep to; of too few values, how many are needed.
+    #[must_use]
+    #[allow(clippy::cast_precision_loss)] // a small number
+    pub fn limit(&self) -> Option<f64> {
+        match *self {
+            Self::TooSmall { limit, .. }
+            | Self::TooLarge { limit, .. }
+            | Self::NotBelow { limit, .. } => Some(limit),
+            Self::TooFew { needed, .. } => Some(needed as f64),
+            _ => None,
+        }
+    }
+
+    /// Model time that a motion had reached when it was given up.
+    #[must_use]
+    pub fn time(&self) -> Option<f64> {
+        match *self {
+            Self::TooLong { time, .. } | Self::Chattering { time, .. } => Some(time),
+            _ => None,
+        }
+    }
+
+    /// Unit of the value, where the quantity has but one; a motion is in the units that it was given in.
+    #[must_use]
+    pub fn unit(&self) -> Option<&'static str> {
+        let quantity = self.quantity()?;
+        UNITS.iter().find(|(names, _)| names.contains(&quantity)).map(|(_, unit)| *unit)
+    }
+
+    /// Whether the input was sound and the computation did not come to its end.
+    #[must_use]
+    pub fn is_unfinished(&self) -> bool {
+        matches!(self, Self::TooLong { .. } | Self::Chattering { .. } | Self::NotConverged { .. })
+    }
+}
+
+/// Units of the quantities of lubrication, by their names in the errors.
+const UNITS: [(&[&str], &str); 11] = [
+    (&["viscosity", "viscosity under pressure", "viscosity at the higher temperature"], "Pa*s"),
+    (&["pressure-viscosity coefficient", "pressure_viscosity"], "1/Pa"),
+    (&["kinematic viscosity in mm^2/s"], "mm^2/s"),
+    (&["temperature of a viscosity", "temperature of a Vogel law"], "K"),
+    (&["pressure", "modulus", "effective modulus", "effective_modulus"], "Pa"),
+    (&["density"], "kg/m^3"),
+    (&["relaxation time"], "s"),
+    (&["entrainment speed", "entrainment_speed", "sliding speed", "sliding_speed"], "m/s"),
+    (&["thermal conductivity"], "W/(m*K)"),
+    (&["film thickness", "flooded film", "supplied layer", "rubber thickness"], "m"),
+    (&["radius", "roll length", "radius along the motion", "radius across the motion"], "m"),
+];
+
 /// `value` if it is finite.
 pub(crate) fn finite(quantity: &'static str, value: f64) -> Result<f64, Error> {
     if value.is_finite() { Ok(value) } else { Err(Error::NotFinite { quantity, value }) }
@@ -161,5 +242,36 @@ pub(crate) fn below(quantity: &'static str, value: f64, limit: f64) -> Result<f6
         Ok(value)
     } else {
         Err(Error::NotBelow { quantity, value, limit })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_error_tells_its_fields() {
+        let small = above("viscosity", -1.0, 0.0).unwrap_err();
+        assert_eq!(small.quantity(), Some("viscosity"));
+        assert_eq!((small.value(), small.limit()), (Some(-1.0), Some(0.0)));
+        assert_eq!((small.unit(), small.time()), (Some("Pa*s"), None));
+        assert!(!small.is_unfinished());
+        let few = Error::TooFew { quantity: "points", needed: 2 };
+        assert_eq!((few.value(), few.limit(), few.unit()), (None, Some(2.0), None));
+        let long = Error::TooLong { steps: 9, time: 1.5 };
+        assert_eq!((long.quantity(), long.time()), (None, Some(1.5)));
+        let lost = Error::NotConverged { quantity: "entrainment_speed", value: 0.1 };
+        assert_eq!((lost.unit(), lost.value()), (Some("m/s"), Some(0.1)));
+        assert!(long.is_unfinished() && lost.is_unfinished());
+        assert!(Error::Chattering { guard: "reversal", time: 0.0 }.is_unfinished());
+    }
+
+    #[test]
+    fn limits_belong_to_one_side() {
+        assert!(above("x", 1.0, 1.0).is_err() && above("x", 1.1, 1.0).is_ok());
+        assert!(below("x", 1.0, 1.0).is_err() && below("x", 0.9, 1.0).is_ok());
+        assert!(at_least("x", 1.0, 1.0).is_ok() && at_least("x", 0.9, 1.0).is_err());
+        assert!(at_most("x", 1.0, 1.0).is_ok() && at_most("x", 1.1, 1.0).is_err());
+        assert!(at_most("x", f64::NEG_INFINITY, 1.0).is_err() && finite("x", f64::NAN).is_err());
     }
 }

@@ -2,14 +2,22 @@
 
 use hersey_core::drag::{Closure, Drag, Warming};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::value_error;
+use crate::errors::{raised, refused};
 
 /// A drag law.
 #[pyclass(frozen, module = "hersey._core")]
 pub struct Law(pub Drag);
+
+/// Two speeds, one on either side of the transition.
+#[pyclass(frozen, get_all, module = "hersey._core")]
+pub struct Pair {
+    /// Zero if the belt is held before.
+    slower: f64,
+    /// Infinite if drag never rises so far.
+    faster: f64,
+}
 
 /// Name, bristle stiffness and bristle damping.
 pub type ClosureArguments<'a> = (&'a str, Option<f64>, Option<f64>);
@@ -20,15 +28,16 @@ pub fn closure_from((name, stiffness, damping): ClosureArguments) -> PyResult<Cl
         "stiction" => Ok(Closure::Stiction),
         "stribeck" => Ok(Closure::Stribeck),
         "lugre" => {
-            let missing = |name| PyValueError::new_err(format!("closure 'lugre' needs {name}"));
+            let missing = |name| refused(name, format!("closure 'lugre' needs {name}"));
             Ok(Closure::LuGre {
                 bristle_stiffness: stiffness.ok_or_else(|| missing("bristle_stiffness"))?,
                 bristle_damping: damping.ok_or_else(|| missing("bristle_damping"))?,
             })
         }
-        other => Err(PyValueError::new_err(format!(
-            "closure '{other}' is not known: retained, stiction, stribeck or lugre"
-        ))),
+        other => {
+            let known = "retained, stiction, stribeck or lugre";
+            Err(refused("closure", format!("closure '{other}' is not known: {known}")))
+        }
     }
 }
 
@@ -47,7 +56,7 @@ impl Law {
         let closure = closure_from(closure)?;
         Drag::new(force, speed, ehl_exponent, mixed_exponent, stick_speed, closure)
             .map(Self)
-            .map_err(value_error)
+            .map_err(raised)
     }
 
     /// A chain of branches through measured points.
@@ -60,18 +69,18 @@ impl Law {
     ) -> PyResult<Self> {
         Drag::tabulated(&speeds, &forces, stick_speed, closure_from(closure)?)
             .map(Self)
-            .map_err(value_error)
+            .map_err(raised)
     }
 
     /// The same law, varying with temperature.
     fn warmed(&self, reference: f64, force_exponent: f64, speed_exponent: f64) -> PyResult<Self> {
         let warming = Warming { reference, force_exponent, speed_exponent };
-        self.0.clone().warmed(warming).map(Self).map_err(value_error)
+        self.0.clone().warmed(warming).map(Self).map_err(raised)
     }
 
     /// The law at one temperature.
     fn at(&self, temperature: f64) -> PyResult<Self> {
-        self.0.at(temperature).map(Self).map_err(value_error)
+        self.0.at(temperature).map(Self).map_err(raised)
     }
 
     /// Drag force in steady sliding at each speed.
@@ -82,6 +91,12 @@ impl Law {
     ) -> Bound<'py, PyArray1<f64>> {
         let forces: Vec<f64> = speed.as_array().iter().map(|v| self.0.force(*v)).collect();
         forces.into_pyarray(py)
+    }
+
+    /// Speeds below and above the transition with a drag of `force`.
+    fn speeds_of(&self, force: f64) -> Pair {
+        let (slower, faster) = self.0.speeds_of(force);
+        Pair { slower, faster }
     }
 
     /// Drag that a belt at rest can bear.

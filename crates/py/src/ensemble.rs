@@ -4,17 +4,20 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;
 use std::time::Duration;
 
-use hersey_core::drag::Drag;
-use hersey_core::motion::{Belt, Drivetrain, Span, Start, StickSlipCycle, ensemble};
-use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
-use pyo3::exceptions::PyValueError;
+use hersey_core::Error;
+use hersey_core::drag::{Closure, Drag};
+use hersey_core::motion::{Belt, Drivetrain, Outcome, Span, Start, StickSlipCycle, ensemble};
+use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 
 use crate::drag::{ClosureArguments, closure_from};
-use crate::value_error;
+use crate::errors::{Failure, raised, raised_at};
 
 /// Names behind the indices of kinds; the last is for motion that cannot be continued.
 pub const KINDS: [&str; 5] = ["steady_sliding", "oscillation", "stick_slip", "unsettled", "failed"];
+
+/// Index of motion that cannot be continued.
+const FAILED: u8 = 4;
 
 /// Belts that one thread takes at a time.
 const CHUNK: usize = 512;
@@ -22,95 +25,103 @@ const CHUNK: usize = 512;
 /// How often progress is told and an interrupt noticed.
 const PATIENCE: Duration = Duration::from_millis(50);
 
-/// (kind index, numbers of shape (8, sets), laps, (index, message) of each failure)
-type Columns<'py> = (
-    Bound<'py, PyArray1<u8>>,
-    Bound<'py, PyArray2<f64>>,
-    Bound<'py, PyArray1<u32>>,
-    Vec<(usize, String)>,
-);
+/// What each parameter set settles to: arrays of one length, and the failures.
+#[pyclass(frozen, get_all, module = "hersey._core")]
+pub struct Sweep {
+    kind_index: Py<PyArray1<u8>>,
+    frequency: Py<PyArray1<f64>>,
+    slip_duration: Py<PyArray1<f64>>,
+    stick_duration: Py<PyArray1<f64>>,
+    speed_min: Py<PyArray1<f64>>,
+    speed_max: Py<PyArray1<f64>>,
+    stretch_min: Py<PyArray1<f64>>,
+    stretch_max: Py<PyArray1<f64>>,
+    drag_work: Py<PyArray1<f64>>,
+    laps: Py<PyArray1<u32>>,
+    failures: Vec<Py<Failure>>,
+}
+
+impl Sweep {
+    fn new(py: Python<'_>, results: &[Outcome]) -> PyResult<Self> {
+        let kind = |r: &Outcome| r.as_ref().map_or(FAILED, |c| c.kind as u8);
+        let laps = |r: &Outcome| {
+            r.as_ref().map_or(0, |cycle| u32::try_from(cycle.laps).unwrap_or(u32::MAX))
+        };
+        let column = |of: fn(&StickSlipCycle) -> f64| column(py, results, of);
+        Ok(Self {
+            kind_index: PyArray1::from_iter(py, results.iter().map(kind)).unbind(),
+            frequency: column(|c| c.frequency),
+            slip_duration: column(|c| c.slip_duration),
+            stick_duration: column(|c| c.stick_duration),
+            speed_min: column(|c| c.speed_min),
+            speed_max: column(|c| c.speed_max),
+            stretch_min: column(|c| c.stretch_min),
+            stretch_max: column(|c| c.stretch_max),
+            drag_work: column(|c| c.drag_work),
+            laps: PyArray1::from_iter(py, results.iter().map(laps)).unbind(),
+            failures: failures(py, results)?,
+        })
+    }
+}
+
+/// One number of each result; not a number where there is none.
+pub fn column<T>(
+    py: Python<'_>,
+    results: &[Result<T, Error>],
+    of: fn(&T) -> f64,
+) -> Py<PyArray1<f64>> {
+    PyArray1::from_iter(py, results.iter().map(|r| r.as_ref().map_or(f64::NAN, of))).unbind()
+}
+
+/// The results that are errors.
+pub fn failures<T>(py: Python<'_>, results: &[Result<T, Error>]) -> PyResult<Vec<Py<Failure>>> {
+    let errors = results.iter().enumerate().filter_map(|(i, r)| Some((i, r.as_ref().err()?)));
+    errors.map(|(i, error)| Py::new(py, Failure::new(py, i, error)?)).collect()
+}
 
 /// What each parameter set settles to.
 ///
 /// `parameters` are stiffness, mass, transition force, transition speed, EHL exponent, mixed exponent, stick
-/// speed and drive speed, each of the same length.
+/// speed and drive speed, each of the same length; `steady` starts each sliding, but for a nudge.
 #[pyfunction]
 #[allow(clippy::too_many_arguments)] // the Python layer names them all
 pub fn sweep<'py>(
     py: Python<'py>,
     parameters: [PyReadonlyArray1<'py, f64>; 8],
     closure: ClosureArguments<'_>,
-    nudge: Option<f64>,
+    steady: bool,
     duration: Option<f64>,
     tolerance: f64,
     threads: usize,
     progress: Option<Py<PyAny>>,
-) -> PyResult<Columns<'py>> {
+) -> PyResult<Sweep> {
     let columns: Vec<Vec<f64>> =
         parameters.iter().map(|column| column.as_array().iter().copied().collect()).collect();
     let sets = columns[0].len();
     let closure = closure_from(closure)?;
-    let belt = |i: usize| -> Result<Belt, hersey_core::Error> {
-        let [k, m, force, speed, ehl, mixed, stick, drive] = std::array::from_fn(|c| columns[c][i]);
-        let drag = Drag::new(force, speed, ehl, mixed, stick, closure)?;
-        let start = nudge.map_or(Start::REST, |nudge| Start {
-            belt_speed: drive * (1.0 + nudge),
-            stretch: drag.force(drive) / k,
-        });
-        Ok(Belt { train: Drivetrain::new(k, m)?, drag, drive_speed: drive, start })
+    let belt = |i: usize| {
+        let set = std::array::from_fn(|c| columns[c][i]);
+        belt_of(set, closure, steady).map_err(|error| (i, error))
     };
-    let belts = py.detach(|| {
-        (0..sets).map(|i| belt(i).map_err(|error| (i, error))).collect::<Result<Vec<_>, _>>()
-    });
+    let belts = py.detach(|| (0..sets).map(belt).collect::<Result<Vec<_>, _>>());
     let belts = belts.map_err(|(i, error)| match sets {
-        1 => value_error(error),
-        _ => PyValueError::new_err(format!("set {i}: {error}")),
+        1 => raised(error),
+        _ => raised_at("set", i, error),
     })?;
     let span = duration.map_or(Span::UntilClosed, Span::Lasting);
     let follow = |belts: &[Belt]| ensemble(belts, span, tolerance);
     let results = in_chunks(py, &belts, CHUNK, threads, progress, follow)?;
-
-    let kinds = PyArray1::<u8>::zeros(py, sets, false);
-    let numbers = PyArray2::<f64>::zeros(py, [8, sets], false);
-    let laps = PyArray1::<u32>::zeros(py, sets, false);
-    let mut failures = Vec::new();
-    {
-        let (mut kinds, mut numbers, mut laps) =
-            (kinds.readwrite(), numbers.readwrite(), laps.readwrite());
-        let (mut kinds, mut numbers, mut laps) =
-            (kinds.as_array_mut(), numbers.as_array_mut(), laps.as_array_mut());
-        for (i, result) in results.into_iter().enumerate() {
-            let row = match result {
-                Ok(cycle) => {
-                    kinds[i] = cycle.kind as u8;
-                    laps[i] = u32::try_from(cycle.laps).unwrap_or(u32::MAX);
-                    row_of(&cycle)
-                }
-                Err(error) => {
-                    kinds[i] = 4;
-                    failures.push((i, error.to_string()));
-                    [f64::NAN; 8]
-                }
-            };
-            for (c, value) in row.into_iter().enumerate() {
-                numbers[[c, i]] = value;
-            }
-        }
-    }
-    Ok((kinds, numbers, laps, failures))
+    Sweep::new(py, &results)
 }
 
-fn row_of(cycle: &StickSlipCycle) -> [f64; 8] {
-    [
-        cycle.frequency,
-        cycle.slip_duration,
-        cycle.stick_duration,
-        cycle.speed_min,
-        cycle.speed_max,
-        cycle.stretch_min,
-        cycle.stretch_max,
-        cycle.drag_work,
-    ]
+/// The belt of a parameter set, in the order of `sweep`.
+fn belt_of(set: [f64; 8], closure: Closure, steady: bool) -> Result<Belt, Error> {
+    let [k, m, force, speed, ehl, mixed, stick, drive_speed] = set;
+    let drag = Drag::new(force, speed, ehl, mixed, stick, closure)?;
+    let train = Drivetrain::new(k, m)?;
+    let start =
+        if steady { Start::steady(&train, &drag, drive_speed)?.nudged() } else { Start::REST };
+    Ok(Belt { train, drag, drive_speed, start })
 }
 
 /// What `work` makes of `items`, chunk by chunk, spread over `threads`; ends early when Python is interrupted.
@@ -120,7 +131,7 @@ pub fn in_chunks<T: Sync, R: Clone + Send>(
     chunk: usize,
     threads: usize,
     progress: Option<Py<PyAny>>,
-    work: impl Fn(&[T]) -> Result<Vec<R>, hersey_core::Error> + Sync,
+    work: impl Fn(&[T]) -> Result<Vec<R>, Error> + Sync,
 ) -> PyResult<Vec<R>> {
     let chunks: Vec<&[T]> = items.chunks(chunk).collect();
     let mut done: Vec<Vec<R>> = vec![Vec::new(); chunks.len()];
@@ -155,7 +166,7 @@ pub fn in_chunks<T: Sync, R: Clone + Send>(
                 match receive.recv_timeout(PATIENCE) {
                     Ok((index, results)) => {
                         let results = results
-                            .map_err(value_error)
+                            .map_err(raised)
                             .inspect_err(|_| cancelled.store(true, Ordering::Relaxed))?;
                         finished += results.len();
                         done[index] = results;

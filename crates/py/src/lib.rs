@@ -4,36 +4,37 @@
 
 mod drag;
 mod ensemble;
+mod errors;
 mod lubrication;
 mod motion;
 mod reynolds;
 mod stability;
 
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-
-fn value_error(error: hersey_core::Error) -> PyErr {
-    PyValueError::new_err(error.to_string())
-}
 
 #[pymodule]
 mod _core {
     #[pymodule_export]
-    use super::drag::Law;
+    use super::drag::{Law, Pair};
     #[pymodule_export]
-    use super::ensemble::sweep;
+    use super::ensemble::{Sweep, sweep};
+    #[pymodule_export]
+    use super::errors::Failure;
     #[pymodule_export]
     use super::lubrication::{
-        ViscosityLaw, carreau, effective_modulus, elliptic_film, ellipticity, hertz, inlet_heating,
-        inlet_length, layer, layer_factor, line_film, paper, reduced_radius, shear_heating,
-        shear_thinning, shore_a_modulus, starvation,
+        Correction, EllipticFilm, Hertz, LayerNip, LineFilm, ShearHeating, Viscosity, ViscosityLaw,
+        carreau, effective_modulus, elliptic_film, ellipticity, hertz, inlet_heating, inlet_length,
+        layer, layer_factor, line_film, paper, reduced_radius, shear_heating, shear_thinning,
+        shore_a_modulus, starvation,
     };
     #[pymodule_export]
-    use super::motion::{simulate, stick_slip};
+    use super::motion::{
+        Cycle, Energy, Event, State, Trajectory, simulate, steady_start, stick_slip,
+    };
     #[pymodule_export]
-    use super::reynolds::line_contact;
+    use super::reynolds::{Exponents, LineContact, line_contact};
     #[pymodule_export]
-    use super::stability::{band, bands, cycles};
+    use super::stability::{Band, Bands, Swings, band, bands, swings};
 
     use pyo3::prelude::*;
 
@@ -48,6 +49,7 @@ mod _core {
         module.add("FILM_CONSTANTS", super::lubrication::FILM_CONSTANTS)?;
         module.add("FILM_SPEED_EXPONENTS", super::lubrication::speed_exponents())?;
         module.add("GAS_CONSTANT", hersey_core::lubrication::viscosity::GAS_CONSTANT)?;
+        module.add("NUDGE", hersey_core::motion::NUDGE)?;
         module.add("NIP_RATIO_RANGE", hersey_core::lubrication::paper::NIP_RATIO_RANGE)?;
         module.add("VERSION", env!("CARGO_PKG_VERSION"))
     }

@@ -2,53 +2,126 @@
 
 use hersey_core::Error;
 use hersey_core::lubrication::contact::{self, Solid};
-use hersey_core::lubrication::correction::{self, Correction};
+use hersey_core::lubrication::correction;
 use hersey_core::lubrication::film::{self, EllipticContact, LineContact, Regime};
-use hersey_core::lubrication::layer::LayerContact;
+use hersey_core::lubrication::layer as bonded;
 use hersey_core::lubrication::paper::Nip;
 use hersey_core::lubrication::viscosity::{Carreau, Point, TemperatureLaw};
-use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
-use pyo3::exceptions::PyValueError;
+use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
-use crate::value_error;
+use crate::errors::{raised, raised_at, refused};
 
-/// Columns of one length, one for each quantity.
-type Columns<'py, const N: usize> = [PyReadonlyArray1<'py, f64>; N];
-/// Rows of numbers, one column for each point.
-type Rows<'py> = Bound<'py, PyArray2<f64>>;
+/// Arrays of one shape, one for each quantity.
+type Columns<'py, const N: usize> = [PyReadonlyArrayDyn<'py, f64>; N];
+/// An array of that shape.
+type Array = Py<PyArrayDyn<f64>>;
 
-/// What a rule makes of each point, as rows; the message names the point if there are several.
-fn mapped<'py, const IN: usize, const OUT: usize>(
-    py: Python<'py>,
-    columns: &Columns<'py, IN>,
-    mut rule: impl FnMut([f64; IN]) -> Result<[f64; OUT], Error> + Send,
-) -> PyResult<Rows<'py>> {
-    let columns: Vec<Vec<f64>> =
-        columns.iter().map(|column| column.as_array().iter().copied().collect()).collect();
-    let points = columns.first().map_or(0, Vec::len);
-    if columns.iter().any(|column| column.len() != points) {
-        return Err(PyValueError::new_err("the columns differ in length"));
-    }
-    let flat = py.detach(|| {
-        let mut flat = vec![0.0; OUT * points];
-        for i in 0..points {
-            let row = rule(std::array::from_fn(|c| columns[c][i])).map_err(|error| (i, error))?;
-            for (c, value) in row.into_iter().enumerate() {
-                flat[c * points + i] = value;
-            }
-        }
-        Ok(flat)
-    });
-    let flat = flat.map_err(|(i, error)| match points {
-        1 => value_error(error),
-        _ => PyValueError::new_err(format!("point {i}: {error}")),
-    })?;
-    flat.into_pyarray(py).reshape([OUT, points])
+/// What a rule makes of the points of some arrays.
+struct Mapped<R> {
+    shape: Vec<usize>,
+    results: Vec<R>,
 }
 
-fn row_of(found: Correction) -> [f64; 2] {
-    [found.factor, f64::from(u8::from(found.valid))]
+impl<R> Mapped<R> {
+    /// One number of each point, in the shape of the arrays.
+    fn of<T: numpy::Element>(
+        &self,
+        py: Python<'_>,
+        of: impl Fn(&R) -> T,
+    ) -> PyResult<Py<PyArrayDyn<T>>> {
+        let flat: Vec<T> = self.results.iter().map(of).collect();
+        Ok(flat.into_pyarray(py).reshape(self.shape.as_slice())?.unbind())
+    }
+}
+
+/// What a rule makes of each point; the message names the point if there are several.
+fn mapped<const IN: usize, R: Send>(
+    py: Python<'_>,
+    columns: &Columns<'_, IN>,
+    mut rule: impl FnMut([f64; IN]) -> Result<R, Error> + Send,
+) -> PyResult<Mapped<R>> {
+    let shape = columns[0].as_array().shape().to_vec();
+    if columns.iter().any(|column| column.as_array().shape() != shape) {
+        return Err(refused("shape", "the arrays differ in shape".to_owned()));
+    }
+    let columns: [Vec<f64>; IN] =
+        std::array::from_fn(|c| columns[c].as_array().iter().copied().collect());
+    let points = columns[0].len();
+    let results = py.detach(|| {
+        let point = |i: usize| rule(std::array::from_fn(|c| columns[c][i])).map_err(|e| (i, e));
+        (0..points).map(point).collect::<Result<Vec<_>, _>>()
+    });
+    let results = results.map_err(|(i, error)| match points {
+        1 => raised(error),
+        _ => raised_at("point", i, error),
+    })?;
+    Ok(Mapped { shape, results })
+}
+
+/// A factor on film thickness, and whether the rule behind it holds.
+#[pyclass(frozen, get_all, module = "hersey._core")]
+pub struct Correction {
+    factor: Array,
+    valid: Py<PyArrayDyn<bool>>,
+}
+
+fn corrected<const IN: usize>(
+    py: Python<'_>,
+    columns: &Columns<'_, IN>,
+    rule: impl FnMut([f64; IN]) -> Result<correction::Correction, Error> + Send,
+) -> PyResult<Correction> {
+    let found = mapped(py, columns, rule)?;
+    Ok(Correction { factor: found.of(py, |c| c.factor)?, valid: found.of(py, |c| c.valid)? })
+}
+
+/// Viscosity (Pa s) and d ln eta/d ln T.
+#[pyclass(frozen, get_all, module = "hersey._core")]
+pub struct Viscosity {
+    viscosity: Array,
+    temperature_exponent: Array,
+}
+
+/// Half-width or radius (m) and greatest pressure (Pa) of a contact.
+#[pyclass(frozen, get_all, module = "hersey._core")]
+pub struct Hertz {
+    half_width: Array,
+    pressure_max: Array,
+}
+
+/// A roll pressed into a bonded layer.
+#[pyclass(frozen, get_all, module = "hersey._core")]
+pub struct LayerNip {
+    width: Array,
+    pressure_max: Array,
+    edge: Array,
+    width_over_hertz: Array,
+}
+
+/// Films of a line contact by each law, by the names of the regimes, and the index of the one that holds.
+#[pyclass(frozen, get_all, module = "hersey._core")]
+pub struct LineFilm {
+    g_v: Array,
+    g_e: Array,
+    minimum: Py<PyDict>,
+    central: Py<PyDict>,
+    regime: Py<PyArrayDyn<u8>>,
+}
+
+/// Films of an elliptic contact by each law, m.
+#[pyclass(frozen, get_all, module = "hersey._core")]
+pub struct EllipticFilm {
+    hard_minimum: Array,
+    hard_central: Array,
+    soft_minimum: Array,
+}
+
+/// Rise of temperature in a sheared film, K.
+#[pyclass(frozen, get_all, module = "hersey._core")]
+pub struct ShearHeating {
+    greatest: Array,
+    mean: Array,
 }
 
 /// How viscosity falls with temperature.
@@ -60,29 +133,29 @@ impl ViscosityLaw {
     /// Through two points (K, Pa s).
     #[staticmethod]
     fn arrhenius(points: [Point; 2]) -> PyResult<Self> {
-        TemperatureLaw::arrhenius(points).map(Self).map_err(value_error)
+        TemperatureLaw::arrhenius(points).map(Self).map_err(raised)
     }
 
     /// Through three points (K, Pa s).
     #[staticmethod]
     fn vogel(points: [Point; 3]) -> PyResult<Self> {
-        TemperatureLaw::vogel(points).map(Self).map_err(value_error)
+        TemperatureLaw::vogel(points).map(Self).map_err(raised)
     }
 
     /// Through two points (K, m^2/s), at a density in kg/m^3.
     #[staticmethod]
     fn walther(points: [Point; 2], density: f64) -> PyResult<Self> {
-        TemperatureLaw::walther(points, density).map(Self).map_err(value_error)
+        TemperatureLaw::walther(points, density).map(Self).map_err(raised)
     }
 
     /// Viscosity (Pa s) and d ln eta/d ln T at temperatures (K).
-    fn at<'py>(
-        &self,
-        py: Python<'py>,
-        temperature: PyReadonlyArray1<'py, f64>,
-    ) -> PyResult<Rows<'py>> {
-        mapped(py, &[temperature], |[t]| {
-            Ok([self.0.viscosity(t)?, self.0.temperature_exponent(t)?])
+    fn at(&self, py: Python<'_>, temperature: PyReadonlyArrayDyn<'_, f64>) -> PyResult<Viscosity> {
+        let found = mapped(py, &[temperature], |[t]| {
+            Ok((self.0.viscosity(t)?, self.0.temperature_exponent(t)?))
+        })?;
+        Ok(Viscosity {
+            viscosity: found.of(py, |point| point.0)?,
+            temperature_exponent: found.of(py, |point| point.1)?,
         })
     }
 
@@ -105,79 +178,68 @@ impl ViscosityLaw {
 
 /// Share of viscosity left at a shear rate: rate, relaxation time, exponent, limit.
 #[pyfunction]
-pub fn carreau<'py>(
-    py: Python<'py>,
-    columns: Columns<'py, 4>,
-) -> PyResult<Bound<'py, PyArray1<f64>>> {
-    let rows = mapped(py, &columns, |[rate, time, exponent, limit]| {
-        Ok([Carreau::new(time, exponent, limit)?.share(rate)])
-    })?;
-    Ok(rows.readonly().as_array().row(0).to_vec().into_pyarray(py))
+pub fn carreau(py: Python<'_>, columns: Columns<'_, 4>) -> PyResult<Array> {
+    mapped(py, &columns, |[rate, time, exponent, limit]| {
+        Ok(Carreau::new(time, exponent, limit)?.share(rate))
+    })?
+    .of(py, |share| *share)
 }
 
 /// Effective modulus E' of two bodies, each (Young's modulus, Poisson's ratio).
 #[pyfunction]
 pub fn effective_modulus(one: (f64, f64), other: (f64, f64)) -> PyResult<f64> {
     let solid = |(modulus, poisson_ratio)| Solid { modulus, poisson_ratio };
-    contact::effective_modulus(solid(one), solid(other)).map_err(value_error)
+    contact::effective_modulus(solid(one), solid(other)).map_err(raised)
 }
 
 /// Young's modulus of a Shore A hardness.
 #[pyfunction]
 pub fn shore_a_modulus(hardness: f64) -> PyResult<f64> {
-    contact::shore_a_modulus(hardness).map_err(value_error)
+    contact::shore_a_modulus(hardness).map_err(raised)
 }
 
 /// Reduced radius of two.
 #[pyfunction]
 pub fn reduced_radius(one: f64, other: f64) -> PyResult<f64> {
-    contact::reduced_radius(one, other).map_err(value_error)
+    contact::reduced_radius(one, other).map_err(raised)
 }
 
-/// (half-width, greatest pressure) from load (per length, if a line), radius, effective modulus.
+/// Hertz's contact, from load (per length, if a line), radius and effective modulus.
 #[pyfunction]
-pub fn hertz<'py>(py: Python<'py>, columns: Columns<'py, 3>, line: bool) -> PyResult<Rows<'py>> {
+pub fn hertz(py: Python<'_>, columns: Columns<'_, 3>, line: bool) -> PyResult<Hertz> {
     let rule = if line { contact::hertz_line } else { contact::hertz_point };
-    mapped(py, &columns, |[load, radius, modulus]| {
-        rule(load, radius, modulus).map(|found| [found.half_width, found.pressure_max])
+    let found = mapped(py, &columns, |[load, radius, modulus]| rule(load, radius, modulus))?;
+    Ok(Hertz {
+        half_width: found.of(py, |h| h.half_width)?,
+        pressure_max: found.of(py, |h| h.pressure_max)?,
     })
 }
 
-/// (nip width, pressure at its centre, slope of pressure at the edge over that of a half-space contact of the
-/// same width, width over that of the half-space contact of the same load), from load per length, radius,
-/// thickness, Young's modulus and Poisson's ratio of the layer.
+/// The nip of a roll on a layer, from load per length, radius, thickness, Young's modulus and Poisson's ratio.
 #[pyfunction]
-pub fn layer<'py>(py: Python<'py>, columns: Columns<'py, 5>) -> PyResult<Rows<'py>> {
-    let mut last: Option<([f64; 5], [f64; 4])> = None;
-    mapped(py, &columns, |point| {
-        if let Some((same, row)) = last
-            && same.map(f64::to_bits) == point.map(f64::to_bits)
-        {
-            return Ok(row);
+pub fn layer(py: Python<'_>, columns: Columns<'_, 5>) -> PyResult<LayerNip> {
+    let mut last: Option<([u64; 5], bonded::LayerNip)> = None;
+    let found = mapped(py, &columns, |point| {
+        let bits = point.map(f64::to_bits);
+        if let Some((_, nip)) = last.filter(|(same, _)| *same == bits) {
+            return Ok(nip);
         }
-        let [load, radius, thickness, young, poisson_ratio] = point;
-        let solid = Solid { modulus: young, poisson_ratio };
-        let rigid = Solid { modulus: f64::INFINITY, poisson_ratio: 0.5 };
-        let effective = contact::effective_modulus(solid, rigid)?;
-        let half = contact::hertz_line(load, radius, effective)?.half_width;
-        let star = 0.5 * effective;
-        let found =
-            LayerContact::of_load(load * radius / (star * thickness * thickness), poisson_ratio)?;
-        let width = found.half_width * thickness;
-        let centre = found.centre_pressure * star * width / (2.0 * radius);
-        let row = [2.0 * width, centre, found.edge, width / half];
-        last = Some((point, row));
-        Ok(row)
+        let [load, radius, thickness, modulus, poisson_ratio] = point;
+        let nip = bonded::nip(load, radius, thickness, Solid { modulus, poisson_ratio })?;
+        last = Some((bits, nip));
+        Ok(nip)
+    })?;
+    Ok(LayerNip {
+        width: found.of(py, |nip| nip.width)?,
+        pressure_max: found.of(py, |nip| nip.pressure_max)?,
+        edge: found.of(py, |nip| nip.edge)?,
+        width_over_hertz: found.of(py, |nip| nip.width_over_hertz)?,
     })
 }
 
 /// One of Eqs. 5-10, from alpha, eta, mean speed, load, length, thickness, radius and effective modulus.
 #[pyfunction]
-pub fn paper<'py>(
-    py: Python<'py>,
-    equation: u8,
-    columns: Columns<'py, 8>,
-) -> PyResult<Bound<'py, PyArray1<f64>>> {
+pub fn paper(py: Python<'_>, equation: u8, columns: Columns<'_, 8>) -> PyResult<Array> {
     let rule: fn(&Nip) -> f64 = match equation {
         5 => Nip::film_thickness,
         6 => Nip::shear_stress,
@@ -185,32 +247,40 @@ pub fn paper<'py>(
         8 => Nip::nip_width,
         9 => Nip::torque_in_full,
         10 => Nip::damping,
-        _ => return Err(PyValueError::new_err(format!("equation {equation}: 5 to 10 are known"))),
+        _ => return Err(refused("equation", format!("equation {equation}: 5 to 10 are known"))),
     };
-    let rows = mapped(py, &columns, |column| {
+    mapped(py, &columns, |column| {
         let [pressure_viscosity, viscosity, speed, load, length, thickness, radius, modulus] =
             column;
         let nip =
             Nip { pressure_viscosity, viscosity, speed, load, length, thickness, radius, modulus };
-        nip.checked().map(|nip| [rule(&nip)])
-    })?;
-    Ok(rows.readonly().as_array().row(0).to_vec().into_pyarray(py))
+        nip.checked().map(|nip| rule(&nip))
+    })?
+    .of(py, |value| *value)
 }
 
-/// (viscosity and elasticity parameter, four minimum films, four central films, index of the regime), from alpha,
-/// eta, mean speed, load per length, radius, effective modulus and the factor of the layer.
+/// The films of a line contact, from alpha, eta, mean speed, load per length, radius, effective modulus and the
+/// factor of the layer.
 #[pyfunction]
-pub fn line_film<'py>(py: Python<'py>, columns: Columns<'py, 7>) -> PyResult<Rows<'py>> {
-    mapped(py, &columns, |column| {
+pub fn line_film(py: Python<'_>, columns: Columns<'_, 7>) -> PyResult<LineFilm> {
+    let found = mapped(py, &columns, |column| {
         let [pressure_viscosity, viscosity, speed, load, radius, modulus, softness] = column;
         let contact = LineContact { pressure_viscosity, viscosity, speed, load, radius, modulus };
-        let found = contact.film(softness)?;
-        let (low, mid) = (found.minimum, found.central);
-        let regime = f64::from(found.regime as u8);
-        Ok([
-            found.g_v, found.g_e, low[0], low[1], low[2], low[3], mid[0], mid[1], mid[2], mid[3],
-            regime,
-        ])
+        contact.film(softness)
+    })?;
+    let by_regime = |of: fn(&film::LineFilm) -> [f64; 4]| {
+        let films = PyDict::new(py);
+        for (i, name) in REGIMES.iter().enumerate() {
+            films.set_item(name, found.of(py, |film| of(film)[i])?)?;
+        }
+        PyResult::Ok(films.unbind())
+    };
+    Ok(LineFilm {
+        g_v: found.of(py, |film| film.g_v)?,
+        g_e: found.of(py, |film| film.g_e)?,
+        minimum: by_regime(|film| film.minimum)?,
+        central: by_regime(|film| film.central)?,
+        regime: found.of(py, |film| film.regime as u8)?,
     })
 }
 
@@ -222,70 +292,69 @@ pub fn layer_factor(edge: f64, width: f64) -> f64 {
 
 /// Length of the inlet, from eta, mean speed, radius, effective modulus, slope at the edge and half-width.
 #[pyfunction]
-pub fn inlet_length<'py>(py: Python<'py>, columns: Columns<'py, 6>) -> PyResult<Rows<'py>> {
+pub fn inlet_length(py: Python<'_>, columns: Columns<'_, 6>) -> PyResult<Array> {
     mapped(py, &columns, |[viscosity, speed, radius, modulus, edge, half_width]| {
         let contact =
             LineContact { pressure_viscosity: 0.0, viscosity, speed, load: 0.0, radius, modulus };
-        Ok([film::inlet_length(&contact, edge, half_width)])
-    })
+        Ok(film::inlet_length(&contact, edge, half_width))
+    })?
+    .of(py, |length| *length)
 }
 
 /// Ellipticity from the reduced radii along and across the motion.
 #[pyfunction]
 pub fn ellipticity(along: f64, across: f64) -> PyResult<f64> {
-    film::ellipticity(along, across).map_err(value_error)
+    film::ellipticity(along, across).map_err(raised)
 }
 
-/// (hard minimum, hard central, soft minimum), from alpha, eta, mean speed, load, radius along the motion,
-/// effective modulus and ellipticity.
+/// The films of an elliptic contact, from alpha, eta, mean speed, load, radius along the motion, effective modulus
+/// and ellipticity.
 #[pyfunction]
-pub fn elliptic_film<'py>(py: Python<'py>, columns: Columns<'py, 7>) -> PyResult<Rows<'py>> {
-    mapped(py, &columns, |column| {
+pub fn elliptic_film(py: Python<'_>, columns: Columns<'_, 7>) -> PyResult<EllipticFilm> {
+    let found = mapped(py, &columns, |column| {
         let [pressure_viscosity, viscosity, speed, load, radius, modulus, ellipticity] = column;
-        let contact = EllipticContact {
-            pressure_viscosity,
-            viscosity,
-            speed,
-            load,
-            radius,
-            modulus,
-            ellipticity,
-        };
-        contact.film().map(|found| [found.hard_minimum, found.hard_central, found.soft_minimum])
+        EllipticContact { pressure_viscosity, viscosity, speed, load, radius, modulus, ellipticity }
+            .film()
+    })?;
+    Ok(EllipticFilm {
+        hard_minimum: found.of(py, |film| film.hard_minimum)?,
+        hard_central: found.of(py, |film| film.hard_central)?,
+        soft_minimum: found.of(py, |film| film.soft_minimum)?,
     })
 }
 
-/// (factor, valid), from the supplied layer, the flooded film and the sharpness.
+/// Starvation, from the supplied layer, the flooded film and the sharpness.
 #[pyfunction]
-pub fn starvation<'py>(py: Python<'py>, columns: Columns<'py, 3>) -> PyResult<Rows<'py>> {
-    mapped(py, &columns, |[supply, flooded, gamma]| {
-        correction::starvation(supply, flooded, gamma).map(row_of)
+pub fn starvation(py: Python<'_>, columns: Columns<'_, 3>) -> PyResult<Correction> {
+    corrected(py, &columns, |[supply, flooded, gamma]| {
+        correction::starvation(supply, flooded, gamma)
     })
 }
 
-/// (factor, valid), from viscosity, its fall with temperature, mean speed, conductivity and slide-to-roll ratio.
+/// Inlet heating, from viscosity, its fall with temperature, mean speed, conductivity and slide-to-roll ratio.
 #[pyfunction]
-pub fn inlet_heating<'py>(py: Python<'py>, columns: Columns<'py, 5>) -> PyResult<Rows<'py>> {
-    mapped(py, &columns, |[viscosity, fall, speed, conductivity, slide]| {
-        correction::inlet_heating(viscosity, fall, speed, conductivity, slide).map(row_of)
+pub fn inlet_heating(py: Python<'_>, columns: Columns<'_, 5>) -> PyResult<Correction> {
+    corrected(py, &columns, |[viscosity, fall, speed, conductivity, slide]| {
+        correction::inlet_heating(viscosity, fall, speed, conductivity, slide)
     })
 }
 
-/// (greatest, mean) rise of temperature, from viscosity, sliding speed and conductivity.
+/// Rise of temperature, from viscosity, sliding speed and conductivity.
 #[pyfunction]
-pub fn shear_heating<'py>(py: Python<'py>, columns: Columns<'py, 3>) -> PyResult<Rows<'py>> {
-    mapped(py, &columns, |[viscosity, sliding, conductivity]| {
-        correction::shear_heating(viscosity, sliding, conductivity).map(|(most, mean)| [most, mean])
-    })
+pub fn shear_heating(py: Python<'_>, columns: Columns<'_, 3>) -> PyResult<ShearHeating> {
+    let found = mapped(py, &columns, |[viscosity, sliding, conductivity]| {
+        correction::shear_heating(viscosity, sliding, conductivity)
+    })?;
+    Ok(ShearHeating { greatest: found.of(py, |rise| rise.0)?, mean: found.of(py, |rise| rise.1)? })
 }
 
-/// (factor, valid), from the Newtonian film, the sliding speed, the exponent of the film in viscosity, and
-/// Carreau's relaxation time, exponent and limit.
+/// Shear thinning, from the Newtonian film, the sliding speed, the exponent of the film in viscosity, and Carreau's
+/// relaxation time, exponent and limit.
 #[pyfunction]
-pub fn shear_thinning<'py>(py: Python<'py>, columns: Columns<'py, 6>) -> PyResult<Rows<'py>> {
-    mapped(py, &columns, |[film, sliding, exponent, time, power, limit]| {
+pub fn shear_thinning(py: Python<'_>, columns: Columns<'_, 6>) -> PyResult<Correction> {
+    corrected(py, &columns, |[film, sliding, exponent, time, power, limit]| {
         let thinning = Carreau::new(time, power, limit)?;
-        correction::shear_thinning(film, sliding, exponent, thinning).map(row_of)
+        correction::shear_thinning(film, sliding, exponent, thinning)
     })
 }
 

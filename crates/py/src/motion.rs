@@ -1,33 +1,70 @@
 //! One motion at a time.
 
 use hersey_core::drag::Mode;
-use hersey_core::motion::{
-    self, Drive, Drivetrain, Integrator, Schedule, Span, Start, StickSlipCycle, System,
-};
+use hersey_core::motion::{self, Drive, Drivetrain, Integrator, Schedule, Span, Start, System};
 use numpy::{IntoPyArray, PyArray1};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::drag::Law;
 use crate::ensemble::KINDS;
-use crate::value_error;
+use crate::errors::{raised, refused};
 
 /// Times, values, and cubics between the times unless the values are joined by straight lines.
 type ScheduleArguments = (Vec<f64>, Vec<f64>, Option<Vec<[f64; 4]>>);
-/// (time, from, to, guard, stretch, belt speed)
-type EventRow = (f64, &'static str, &'static str, &'static str, f64, f64);
-/// (time, belt speed, stretch, mode index, events, (work, dissipated, stored, residual), steps)
-type TrajectoryColumns<'py> = (
-    Bound<'py, PyArray1<f64>>,
-    Bound<'py, PyArray1<f64>>,
-    Bound<'py, PyArray1<f64>>,
-    Bound<'py, PyArray1<u8>>,
-    Vec<EventRow>,
-    (f64, f64, f64, f64),
-    usize,
-);
-/// (kind, frequency, slip duration, stick duration, speed min, max, stretch min, max, drag work, laps)
-type CycleRow = (&'static str, f64, f64, f64, f64, f64, f64, f64, f64, usize);
+
+/// A change of mode.
+#[pyclass(frozen, get_all, module = "hersey._core")]
+pub struct Event {
+    time: f64,
+    from_mode: &'static str,
+    to_mode: &'static str,
+    guard: &'static str,
+    stretch: f64,
+    belt_speed: f64,
+}
+
+/// Where the work of the drive went.
+#[pyclass(frozen, get_all, module = "hersey._core")]
+pub struct Energy {
+    work: f64,
+    dissipated: f64,
+    stored: f64,
+    residual: f64,
+}
+
+/// Motion at equally spaced times.
+#[pyclass(frozen, get_all, module = "hersey._core")]
+pub struct Trajectory {
+    time: Py<PyArray1<f64>>,
+    belt_speed: Py<PyArray1<f64>>,
+    stretch: Py<PyArray1<f64>>,
+    mode_index: Py<PyArray1<u8>>,
+    events: Vec<Py<Event>>,
+    energy: Py<Energy>,
+    steps: usize,
+}
+
+/// What the motion settles to.
+#[pyclass(frozen, get_all, module = "hersey._core")]
+pub struct Cycle {
+    kind: &'static str,
+    frequency: f64,
+    slip_duration: f64,
+    stick_duration: f64,
+    speed_min: f64,
+    speed_max: f64,
+    stretch_min: f64,
+    stretch_max: f64,
+    drag_work: f64,
+    laps: usize,
+}
+
+/// Where a motion starts.
+#[pyclass(frozen, get_all, module = "hersey._core")]
+pub struct State {
+    belt_speed: f64,
+    stretch: f64,
+}
 
 pub fn mode_name(mode: Mode) -> &'static str {
     match mode {
@@ -49,14 +86,14 @@ fn schedule_from(
             Schedule::piecewise(name, &times, &cubics, last)
         }
     }
-    .map_err(value_error)
+    .map_err(raised)
 }
 
 /// Motion at equally spaced times.
 #[pyfunction]
 #[allow(clippy::too_many_arguments)] // the Python layer names them all
-pub fn simulate<'py>(
-    py: Python<'py>,
+pub fn simulate(
+    py: Python<'_>,
     train: (f64, f64),
     drag: &Law,
     drive: (&str, ScheduleArguments),
@@ -66,41 +103,43 @@ pub fn simulate<'py>(
     samples: usize,
     tolerance: f64,
     integrator: &str,
-) -> PyResult<TrajectoryColumns<'py>> {
-    let train = Drivetrain::new(train.0, train.1).map_err(value_error)?;
+) -> PyResult<Trajectory> {
+    let train = Drivetrain::new(train.0, train.1).map_err(raised)?;
     let drive = match drive {
         ("speed", schedule) => Drive::Speed(schedule_from("drive_speed", schedule)?),
         (_, schedule) => Drive::Force(schedule_from("drive_torque", schedule)?),
     };
     let temperature = temperature.map(|t| schedule_from("temperature", t)).transpose()?;
-    let system = System::new(train, &drag.0, drive, temperature).map_err(value_error)?;
+    let system = System::new(train, &drag.0, drive, temperature).map_err(raised)?;
     let start = Start { belt_speed: start.0, stretch: start.1 };
     let integrator = match integrator {
         "adaptive" => Integrator::Adaptive,
         "dormand-prince" => Integrator::DormandPrince,
-        other => return Err(PyValueError::new_err(format!("unknown integrator '{other}'"))),
+        other => return Err(refused("integrator", format!("unknown integrator '{other}'"))),
     };
     let run = py
         .detach(|| motion::simulate(&system, start, duration, samples, tolerance, integrator))
-        .map_err(value_error)?;
+        .map_err(raised)?;
     let modes: Vec<u8> = run.mode.iter().map(|m| *m as u8).collect();
-    let events = run
-        .events
-        .iter()
-        .map(|e| {
-            (e.time, mode_name(e.from), mode_name(e.to), e.guard.name(), e.stretch, e.belt_speed)
-        })
-        .collect();
-    let energy = run.energy;
-    Ok((
-        run.time.into_pyarray(py),
-        run.belt_speed.into_pyarray(py),
-        run.stretch.into_pyarray(py),
-        modes.into_pyarray(py),
-        events,
-        (energy.work, energy.dissipated, energy.stored, energy.residual()),
-        run.steps,
-    ))
+    let event = |e: &motion::Event| Event {
+        time: e.time,
+        from_mode: mode_name(e.from),
+        to_mode: mode_name(e.to),
+        guard: e.guard.name(),
+        stretch: e.stretch,
+        belt_speed: e.belt_speed,
+    };
+    let motion::Energy { work, dissipated, stored, .. } = run.energy;
+    let residual = run.energy.residual();
+    Ok(Trajectory {
+        time: run.time.into_pyarray(py).unbind(),
+        belt_speed: run.belt_speed.into_pyarray(py).unbind(),
+        stretch: run.stretch.into_pyarray(py).unbind(),
+        mode_index: modes.into_pyarray(py).unbind(),
+        events: run.events.iter().map(|e| Py::new(py, event(e))).collect::<PyResult<_>>()?,
+        energy: Py::new(py, Energy { work, dissipated, stored, residual })?,
+        steps: run.steps,
+    })
 }
 
 /// What the motion settles to, or its last whole lap within `duration`.
@@ -113,24 +152,32 @@ pub fn stick_slip(
     start: (f64, f64),
     duration: Option<f64>,
     tolerance: f64,
-) -> PyResult<CycleRow> {
-    let train = Drivetrain::new(train.0, train.1).map_err(value_error)?;
+) -> PyResult<Cycle> {
+    let train = Drivetrain::new(train.0, train.1).map_err(raised)?;
     let start = Start { belt_speed: start.0, stretch: start.1 };
     let span = duration.map_or(Span::UntilClosed, Span::Lasting);
     let cycle = py
         .detach(|| motion::settle(&train, &drag.0, drive_speed, start, span, tolerance))
-        .map_err(value_error)?;
-    let StickSlipCycle { kind, laps, .. } = cycle;
-    Ok((
-        KINDS[kind as usize],
-        cycle.frequency,
-        cycle.slip_duration,
-        cycle.stick_duration,
-        cycle.speed_min,
-        cycle.speed_max,
-        cycle.stretch_min,
-        cycle.stretch_max,
-        cycle.drag_work,
-        laps,
-    ))
+        .map_err(raised)?;
+    Ok(Cycle {
+        kind: KINDS[cycle.kind as usize],
+        frequency: cycle.frequency,
+        slip_duration: cycle.slip_duration,
+        stick_duration: cycle.stick_duration,
+        speed_min: cycle.speed_min,
+        speed_max: cycle.speed_max,
+        stretch_min: cycle.stretch_min,
+        stretch_max: cycle.stretch_max,
+        drag_work: cycle.drag_work,
+        laps: cycle.laps,
+    })
+}
+
+/// Sliding at a speed with the spring stretched to match, and nudged off that balance if asked for.
+#[pyfunction]
+pub fn steady_start(train: (f64, f64), drag: &Law, speed: f64, nudged: bool) -> PyResult<State> {
+    let train = Drivetrain::new(train.0, train.1).map_err(raised)?;
+    let steady = Start::steady(&train, &drag.0, speed).map_err(raised)?;
+    let Start { belt_speed, stretch } = if nudged { steady.nudged() } else { steady };
+    Ok(State { belt_speed, stretch })
 }

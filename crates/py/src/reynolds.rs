@@ -1,33 +1,91 @@
 //! The numerical film of a line contact.
 
-use hersey_core::lubrication::reynolds::{Exponents, Fluid, Foundation, LineContact, Thickening};
+use hersey_core::lubrication::reynolds::{self, Fluid, Foundation, LineSolution, Thickening};
 use numpy::{IntoPyArray, PyArray1};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::value_error;
+use crate::errors::{raised, refused};
 
-/// x, pressure and film thickness at the nodes.
-type Profiles<'py> = [Bound<'py, PyArray1<f64>>; 3];
-/// central, minimum, couette, poiseuille, `traction_1`, `traction_2`, `greatest_pressure`, outlet, offset, length,
-/// `load_residual`, `flow_residual`, `grid_error`
-type Numbers = [f64; 13];
+/// Exponents of speed or load.
+#[pyclass(frozen, get_all, module = "hersey._core")]
+pub struct Exponents {
+    central: f64,
+    minimum: f64,
+    traction_1: f64,
+    traction_2: f64,
+}
+
+impl From<reynolds::Exponents> for Exponents {
+    fn from(of: reynolds::Exponents) -> Self {
+        let reynolds::Exponents { central, minimum, traction_1, traction_2 } = of;
+        Self { central, minimum, traction_1, traction_2 }
+    }
+}
+
+/// Profiles, films, forces, exponents and the work that it took.
+#[pyclass(frozen, get_all, module = "hersey._core")]
+pub struct LineContact {
+    x: Py<PyArray1<f64>>,
+    pressure: Py<PyArray1<f64>>,
+    film_thickness: Py<PyArray1<f64>>,
+    central: f64,
+    minimum: f64,
+    couette: f64,
+    poiseuille: f64,
+    traction_1: f64,
+    traction_2: f64,
+    greatest_pressure: f64,
+    outlet: f64,
+    offset: f64,
+    length: f64,
+    load_residual: f64,
+    flow_residual: f64,
+    grid_error: f64,
+    by_speed: Py<Exponents>,
+    by_load: Py<Exponents>,
+    iterations: usize,
+    stations: usize,
+}
+
+impl LineContact {
+    fn new(py: Python<'_>, found: LineSolution) -> PyResult<Self> {
+        let array = |values: Vec<f64>| values.into_pyarray(py).unbind();
+        let summary = found.summary;
+        Ok(Self {
+            x: array(found.x),
+            pressure: array(found.pressure),
+            film_thickness: array(found.film_thickness),
+            central: summary.central,
+            minimum: summary.minimum,
+            couette: summary.couette,
+            poiseuille: summary.poiseuille,
+            traction_1: summary.traction_1(),
+            traction_2: summary.traction_2(),
+            greatest_pressure: found.greatest_pressure,
+            outlet: found.outlet,
+            offset: found.offset,
+            length: found.length,
+            load_residual: found.load_residual,
+            flow_residual: found.flow_residual,
+            grid_error: found.grid_error,
+            by_speed: Py::new(py, Exponents::from(found.by_speed))?,
+            by_load: Py::new(py, Exponents::from(found.by_load))?,
+            iterations: found.iterations,
+            stations: found.stations,
+        })
+    }
+}
 
 fn thickening_from(name: &str) -> PyResult<Thickening> {
     match name {
         "barus" => Ok(Thickening::Barus),
         "roelands" => Ok(Thickening::Roelands),
-        _ => Err(PyValueError::new_err(format!("thickening is {name:?}: barus or roelands"))),
+        _ => Err(refused("thickening", format!("thickening is {name:?}: barus or roelands"))),
     }
 }
 
-fn row(exponents: &Exponents) -> [f64; 4] {
-    [exponents.central, exponents.minimum, exponents.traction_1, exponents.traction_2]
-}
-
-/// Profiles, numbers, exponents by speed and by load, Newton steps and stations of one contact.
+/// The film of a roll of radius, contact modulus E* and load per length.
 #[pyfunction]
-#[allow(clippy::type_complexity)] // named in the stub
 pub fn line_contact(
     py: Python<'_>,
     roll: (f64, f64, f64),
@@ -35,11 +93,11 @@ pub fn line_contact(
     speeds: (f64, f64),
     fluid: (f64, f64, String, bool),
     nodes: usize,
-) -> PyResult<(Profiles<'_>, Numbers, [f64; 4], [f64; 4], (usize, usize))> {
+) -> PyResult<LineContact> {
     let (radius, contact_modulus, load) = roll;
     let (viscosity, pressure_viscosity, thickening, compressible) = fluid;
     let thickening = thickening_from(&thickening)?;
-    let contact = LineContact {
+    let contact = reynolds::LineContact {
         radius,
         contact_modulus,
         load,
@@ -51,25 +109,6 @@ pub fn line_contact(
         sliding_speed: speeds.1,
         fluid: Fluid { viscosity, pressure_viscosity, thickening, compressible },
     };
-    let found = py.detach(|| contact.solve(nodes)).map_err(value_error)?;
-    let summary = found.summary;
-    let numbers = [
-        summary.central,
-        summary.minimum,
-        summary.couette,
-        summary.poiseuille,
-        summary.traction_1(),
-        summary.traction_2(),
-        found.greatest_pressure,
-        found.outlet,
-        found.offset,
-        found.length,
-        found.load_residual,
-        found.flow_residual,
-        found.grid_error,
-    ];
-    let work = (found.iterations, found.stations);
-    let exponents = (row(&found.by_speed), row(&found.by_load));
-    let profiles = [found.x, found.pressure, found.film_thickness].map(|v| v.into_pyarray(py));
-    Ok((profiles, numbers, exponents.0, exponents.1, work))
+    let found = py.detach(|| contact.solve(nodes)).map_err(raised)?;
+    LineContact::new(py, found)
 }

@@ -1,49 +1,95 @@
 //! Bands of drive speed and the cycles that bound them.
 
+use hersey_core::Error;
 use hersey_core::drag::Drag;
 use hersey_core::motion::Drivetrain;
-use hersey_core::stability::{self, Band, Method, SlipLap};
-use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
-use pyo3::exceptions::PyValueError;
+use hersey_core::stability::{self, Method, Swing};
+use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 
 use crate::drag::{ClosureArguments, Law, closure_from};
-use crate::ensemble::in_chunks;
-use crate::value_error;
+use crate::ensemble::{column, failures, in_chunks};
+use crate::errors::{Failure, raised, raised_at};
 
 /// Belts that one thread takes at a time.
 const CHUNK: usize = 64;
 
-/// (lower, transition, upper, speed max, lower accuracy, upper accuracy, by half laps, deeper, laps)
-type BandRow = (f64, f64, f64, f64, f64, f64, bool, bool, usize);
+/// Edges of the behaviour over drive speed.
+#[pyclass(frozen, get_all, module = "hersey._core")]
+pub struct Band {
+    lower: f64,
+    transition: f64,
+    upper: f64,
+    /// Not a number where the fold was found by simulation.
+    speed_max: f64,
+    lower_accuracy: f64,
+    upper_accuracy: f64,
+    half_laps: bool,
+    deeper: bool,
+    laps: usize,
+}
 
-fn row_of(band: &Band) -> BandRow {
-    (
-        band.lower,
-        band.transition,
-        band.upper,
-        band.speed_max,
-        band.lower_accuracy,
-        band.upper_accuracy,
-        band.method == Method::HalfLaps,
-        band.deeper,
-        band.laps,
-    )
+/// The same of many belts, as arrays; not a number or zero where it failed.
+#[pyclass(frozen, get_all, module = "hersey._core")]
+pub struct Bands {
+    lower: Py<PyArray1<f64>>,
+    transition: Py<PyArray1<f64>>,
+    upper: Py<PyArray1<f64>>,
+    speed_max: Py<PyArray1<f64>>,
+    lower_accuracy: Py<PyArray1<f64>>,
+    upper_accuracy: Py<PyArray1<f64>>,
+    half_laps: Py<PyArray1<bool>>,
+    deeper: Py<PyArray1<bool>>,
+    laps: Py<PyArray1<u32>>,
+    failures: Vec<Py<Failure>>,
+}
+
+impl Bands {
+    fn new(py: Python<'_>, found: &[Result<stability::Band, Error>]) -> PyResult<Self> {
+        let number = |of: fn(&stability::Band) -> f64| column(py, found, of);
+        let flag = |of: fn(&stability::Band) -> bool| {
+            PyArray1::from_iter(py, found.iter().map(|r| r.as_ref().is_ok_and(of))).unbind()
+        };
+        let laps = found.iter().map(|r| r.as_ref().map_or(0, |b| few(b.laps)));
+        Ok(Self {
+            lower: number(|b| b.lower),
+            transition: number(|b| b.transition),
+            upper: number(|b| b.upper),
+            speed_max: number(|b| b.speed_max),
+            lower_accuracy: number(|b| b.lower_accuracy),
+            upper_accuracy: number(|b| b.upper_accuracy),
+            half_laps: flag(|b| b.method == Method::HalfLaps),
+            deeper: flag(|b| b.deeper),
+            laps: PyArray1::from_iter(py, laps).unbind(),
+            failures: failures(py, found)?,
+        })
+    }
+}
+
+fn few(laps: usize) -> u32 {
+    u32::try_from(laps).unwrap_or(u32::MAX)
 }
 
 /// The band of one belt, for any law.
 #[pyfunction]
-pub fn band(py: Python<'_>, train: (f64, f64), drag: &Law, tolerance: f64) -> PyResult<BandRow> {
-    let belt = [(Drivetrain::new(train.0, train.1).map_err(value_error)?, drag.0.clone())];
+pub fn band(py: Python<'_>, train: (f64, f64), drag: &Law, tolerance: f64) -> PyResult<Band> {
+    let belt = [(Drivetrain::new(train.0, train.1).map_err(raised)?, drag.0.clone())];
     let found = py
         .detach(|| stability::bands(&belt, true, tolerance))
         .and_then(|mut bands| bands.remove(0))
-        .map_err(value_error)?;
-    Ok(row_of(&found))
+        .map_err(raised)?;
+    Ok(Band {
+        lower: found.lower,
+        transition: found.transition,
+        upper: found.upper,
+        speed_max: found.speed_max,
+        lower_accuracy: found.lower_accuracy,
+        upper_accuracy: found.upper_accuracy,
+        half_laps: found.method == Method::HalfLaps,
+        deeper: found.deeper,
+        laps: found.laps,
+    })
 }
-
-/// (numbers of shape (9, sets), in the order of `BandRow`, and the message of each failure)
-type Columns<'py> = (Bound<'py, PyArray2<f64>>, Vec<(usize, String)>);
 
 /// The band of each parameter set: stiffness, mass, transition force, transition speed, EHL exponent, mixed
 /// exponent and stick speed, each of the same length.
@@ -57,79 +103,53 @@ pub fn bands<'py>(
     tolerance: f64,
     threads: usize,
     progress: Option<Py<PyAny>>,
-) -> PyResult<Columns<'py>> {
+) -> PyResult<Bands> {
     let columns: Vec<Vec<f64>> =
         parameters.iter().map(|column| column.as_array().iter().copied().collect()).collect();
     let closure = closure_from(closure)?;
-    let belt = |i: usize| -> Result<(Drivetrain, Drag), hersey_core::Error> {
+    let belt = |i: usize| -> Result<(Drivetrain, Drag), Error> {
         let [k, m, force, speed, ehl, mixed, stick] = std::array::from_fn(|c| columns[c][i]);
         Ok((Drivetrain::new(k, m)?, Drag::new(force, speed, ehl, mixed, stick, closure)?))
     };
-    let sets = columns[0].len();
-    let belts = (0..sets)
-        .map(|i| belt(i).map_err(|error| PyValueError::new_err(format!("set {i}: {error}"))))
+    let belts = (0..columns[0].len())
+        .map(|i| belt(i).map_err(|error| raised_at("set", i, error)))
         .collect::<PyResult<Vec<_>>>()?;
     let work = |belts: &[(Drivetrain, Drag)]| stability::bands(belts, lower, tolerance);
     let found = in_chunks(py, &belts, CHUNK, threads, progress, work)?;
-    let numbers = PyArray2::<f64>::zeros(py, [9, sets], false);
-    let mut failures = Vec::new();
-    {
-        let mut writable = numbers.readwrite();
-        let mut rows = writable.as_array_mut();
-        for (i, result) in found.iter().enumerate() {
-            let row = match result {
-                Ok(band) => columns_of(band),
-                Err(error) => {
-                    failures.push((i, error.to_string()));
-                    let none = f64::NAN;
-                    [none, none, none, none, none, none, 0.0, 0.0, 0.0]
-                }
-            };
-            for (c, value) in row.into_iter().enumerate() {
-                rows[[c, i]] = value;
-            }
-        }
-    }
-    Ok((numbers, failures))
+    Bands::new(py, &found)
 }
 
-#[allow(clippy::cast_precision_loss)] // laps are few
-fn columns_of(band: &Band) -> [f64; 9] {
-    let (lower, transition, upper, top, near, nearer, half, deeper, laps) = row_of(band);
-    let flag = |on: bool| f64::from(u8::from(on));
-    [lower, transition, upper, top, near, nearer, flag(half), flag(deeper), laps as f64]
+/// Laps that never stick, by their slowest speeds; not a number where there is none.
+#[pyclass(frozen, get_all, module = "hersey._core")]
+pub struct Swings {
+    slowest: Py<PyArray1<f64>>,
+    fastest: Py<PyArray1<f64>>,
+    drive_speed: Py<PyArray1<f64>>,
+    stable: Py<PyArray1<bool>>,
 }
 
-/// (drive speed, greatest speed, laps), in transition speeds; not a number where a cycle is not found.
-type Cycles<'py> =
-    (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<u32>>);
-
-/// Cycles without sticking, from the damping number, the slowest speed and the exponents of drag.
+/// The swing of each slowest speed; none if the drag does not fall below the transition and rise above, or has
+/// bristles.
 #[pyfunction]
-pub fn cycles<'py>(
-    py: Python<'py>,
-    parameters: [PyReadonlyArray1<'py, f64>; 4],
+pub fn swings(
+    py: Python<'_>,
+    train: (f64, f64),
+    drag: &Law,
+    slowest: PyReadonlyArray1<'_, f64>,
     tolerance: f64,
-) -> Cycles<'py> {
-    let columns: Vec<Vec<f64>> =
-        parameters.iter().map(|column| column.as_array().iter().copied().collect()).collect();
-    let laps: Vec<SlipLap> = (0..columns[0].len())
-        .map(|i| SlipLap {
-            damping: columns[0][i],
-            slowest: columns[1][i],
-            mixed: columns[2][i],
-            ehl: columns[3][i],
-        })
-        .collect();
-    let found = py.detach(|| stability::cycles(&laps, tolerance));
-    let number = |of: fn(&stability::Fold) -> f64| -> Vec<f64> {
-        found.iter().map(|fold| fold.as_ref().map_or(f64::NAN, of)).collect()
+) -> PyResult<Option<Swings>> {
+    let train = Drivetrain::new(train.0, train.1).map_err(raised)?;
+    let slowest: Vec<f64> = slowest.as_array().iter().copied().collect();
+    let found =
+        py.detach(|| stability::swings(&train, &drag.0, &slowest, tolerance)).map_err(raised)?;
+    let swings = |found: Vec<Swing>| {
+        let number = |of: fn(&Swing) -> f64| PyArray1::from_iter(py, found.iter().map(of)).unbind();
+        Swings {
+            slowest: number(|s| s.slowest),
+            fastest: number(|s| s.fastest),
+            drive_speed: number(|s| s.drive_speed),
+            stable: PyArray1::from_iter(py, found.iter().map(|s| s.stable)).unbind(),
+        }
     };
-    let laps: Vec<u32> =
-        found.iter().map(|f| f.map_or(0, |f| u32::try_from(f.laps).unwrap_or(u32::MAX))).collect();
-    (
-        number(|f| f.drive_speed).into_pyarray(py),
-        number(|f| f.speed_max).into_pyarray(py),
-        laps.into_pyarray(py),
-    )
+    Ok(found.map(swings))
 }

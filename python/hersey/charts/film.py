@@ -6,7 +6,7 @@ import altair as alt
 import numpy as np
 
 from hersey import _core
-from hersey.arrays import rows
+from hersey.arrays import pointwise
 from hersey.charts.style import HEIGHT, WIDTH, Chart, Row, plot
 from hersey.document.film_part import film_points
 from hersey.document.parts import FilmPoint
@@ -177,8 +177,8 @@ def _cells(spans: list[tuple[float, float]], softness: float) -> tuple[list[Row]
     v, e = np.meshgrid(*middle, indexing="ij")
     g_v, g_e = 10.0**v, 10.0**e
     w = g_e * np.sqrt(_U)
-    found = rows(_core.line_film, g_v * np.sqrt(_U) / w**1.5, _U, 1.0, w, 1.0, 1.0, softness)
-    regime = found[10].astype(int)
+    found = pointwise(_core.line_film, g_v * np.sqrt(_U) / w**1.5, _U, 1.0, w, 1.0, 1.0, softness)
+    regime = found.regime.astype(int)
     cells = []
     for i in range(_CELLS):
         # Neighbours of one regime are one cell.

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
 from hersey.arrays import FloatArray
-from hersey.errors import InsufficientDataError, ParameterError
+from hersey.errors import InsufficientDataError, ParameterError, UnfinishedError
 from hersey.identification.cycle_record import CycleRecord
 from hersey.motion.drag import AnyDrag
 from hersey.motion.simulation import Drivetrain, simulate, stick_slip
@@ -117,7 +117,7 @@ def model_lap(train: Drivetrain, drag: AnyDrag, drive_speed: float) -> ModelLap 
             samples=_SAMPLES,
             start=(drive_speed, cycle.stretch_max),
         )
-    except ParameterError:
+    except (ParameterError, UnfinishedError):
         return None
     # The slope of the force is known too, so that the curve is smooth in the parameters.
     force = CubicHermiteSpline(run.time, run.spring_force, train.stiffness * (drive_speed - run.belt_speed))

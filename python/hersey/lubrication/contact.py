@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hersey import _core
-from hersey.arrays import FloatArray, rows
+from hersey.arrays import FloatArray, pointwise
 from hersey.errors import ParameterError
 from hersey.lubrication import paper
 
@@ -91,10 +91,7 @@ class Contact:
                 f"rubber_thickness is {self.rubber_thickness:g} m: it must be less than roll_radius, "
                 f"{self.roll_radius:g} m"
             )
-        try:
-            _ = self.effective_modulus, self.reduced_radius
-        except ValueError as error:
-            raise ParameterError(str(error)) from None
+        _ = self.effective_modulus, self.reduced_radius
 
     @property
     def effective_modulus(self) -> float:
@@ -121,18 +118,19 @@ class Contact:
         """The width of the nip and the pressure in it."""
         load = self.load_per_length
         rubber = (self.rubber_thickness, self.modulus, self.poisson_ratio)
-        width, peak, edge, ratio = rows(_core.layer, load, self.reduced_radius, *rubber)
+        nip = pointwise(_core.layer, load, self.reduced_radius, *rubber)
+        width = float(nip.width)
         low, high = _core.NIP_RATIO_RANGE
         by_paper = float(nip_width(self, rule="paper"))
         return Nip(
-            width=float(width),
-            pressure_mean=load / float(width),
-            pressure_max=float(peak),
-            edge=float(edge),
-            width_over_hertz=float(ratio),
+            width=width,
+            pressure_mean=load / width,
+            pressure_max=float(nip.pressure_max),
+            edge=float(nip.edge),
+            width_over_hertz=float(nip.width_over_hertz),
             paper_width=by_paper,
             paper_in_range=low <= by_paper / self.rubber_thickness <= high,
-            strain=float(width) ** 2 / (8.0 * self.reduced_radius * self.rubber_thickness),
+            strain=width**2 / (8.0 * self.reduced_radius * self.rubber_thickness),
         )
 
     def loaded(self, load: float) -> Contact:
@@ -181,10 +179,10 @@ def nip_width(contact: Contact, *, load: ArrayLike | None = None, rule: str = "l
         )
     per_length, radius = loads / contact.length, contact.reduced_radius
     if rule == "hertz":
-        found = rows(partial(_core.hertz, line=True), per_length, radius, contact.effective_modulus)
-        return np.asarray(2.0 * found[0])
+        found = pointwise(partial(_core.hertz, line=True), per_length, radius, contact.effective_modulus)
+        return np.asarray(2.0 * found.half_width)
     rubber = (contact.rubber_thickness, contact.modulus, contact.poisson_ratio)
-    return np.asarray(rows(_core.layer, per_length, radius, *rubber)[0])
+    return pointwise(_core.layer, per_length, radius, *rubber).width
 
 
 def shore_a_modulus(hardness: float) -> float:
@@ -197,7 +195,4 @@ def shore_a_modulus(hardness: float) -> float:
     >>> print(f"{shore_a_modulus(40) / 1e6:.2f} MPa")
     1.69 MPa
     """
-    try:
-        return _core.shore_a_modulus(hardness)
-    except ValueError as error:
-        raise ParameterError(str(error)) from None
+    return _core.shore_a_modulus(hardness)

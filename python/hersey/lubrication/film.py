@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hersey import _core
-from hersey.arrays import FloatArray, rows
+from hersey.arrays import FloatArray, pointwise
 from hersey.errors import ParameterError
 from hersey.lubrication import paper
 from hersey.lubrication.contact import Contact, Nip
@@ -161,7 +161,7 @@ def film_thickness(
     viscosity = lubricant.viscosity(temperatures)
     alpha = lubricant.alpha(temperatures) if lubricant.pressure_viscosity else np.zeros_like(viscosity)
     entrainment = 0.5 * speeds * contact.roll_radius
-    laws = rows(
+    laws = pointwise(
         _core.line_film,
         alpha,
         viscosity,
@@ -171,8 +171,7 @@ def film_thickness(
         contact.effective_modulus,
         nip.layer_factor,
     )
-    minima = dict(zip(REGIMES, laws[2:6], strict=True))
-    centres = dict(zip(REGIMES, laws[6:10], strict=True))
+    minima, centres = dict(laws.minimum), dict(laws.central)
     if np.all(alpha > 0):
         minima["paper"] = centres["paper"] = paper.film_thickness(
             pressure_viscosity=alpha,
@@ -183,8 +182,8 @@ def film_thickness(
             radius=contact.reduced_radius,
             effective_modulus=contact.effective_modulus,
         )
-    regime = laws[10].astype(np.intp)
-    inlet = rows(
+    regime = laws.regime.astype(np.intp)
+    inlet = pointwise(
         _core.inlet_length,
         viscosity,
         entrainment,
@@ -192,17 +191,17 @@ def film_thickness(
         contact.effective_modulus,
         nip.edge,
         nip.half_width,
-    )[0]
-    central = np.choose(regime, laws[6:10])
+    )
+    central = np.choose(regime, list(laws.central.values()))
     film = Film(
         speed=speeds,
         temperature=temperatures,
         entrainment_speed=entrainment,
         viscosity=viscosity,
-        g_v=laws[0],
-        g_e=laws[1],
+        g_v=laws.g_v,
+        g_e=laws.g_e,
         regime=regime,
-        minimum=np.choose(regime, laws[2:6]),
+        minimum=np.choose(regime, list(laws.minimum.values())),
         central=central,
         minima=minima,
         centres=centres,
@@ -220,7 +219,7 @@ def _corrections(
     if lubricant.thinning is not None:
         carreau = lubricant.thinning
         exponent = np.asarray(_core.FILM_SPEED_EXPONENTS)[film.regime]
-        answer = rows(
+        answer = pointwise(
             _core.shear_thinning,
             film.central,
             2.0 * film.entrainment_speed,
@@ -232,7 +231,7 @@ def _corrections(
         corrections["shear thinning"] = _correction(answer)
     if lubricant.conductivity is not None:
         fall = -lubricant.temperature_exponent(film.temperature) / film.temperature
-        answer = rows(
+        answer = pointwise(
             _core.inlet_heating,
             film.viscosity,
             fall,
@@ -242,12 +241,12 @@ def _corrections(
         )
         corrections["inlet heating"] = _correction(answer)
     if supply is not None:
-        corrections["starvation"] = _correction(rows(_core.starvation, supply, film.central, sharpness))
+        corrections["starvation"] = _correction(pointwise(_core.starvation, supply, film.central, sharpness))
     return corrections
 
 
-def _correction(answer: FloatArray) -> Correction:
-    return Correction(answer[0], answer[1] > 0.5)
+def _correction(answer: _core.Correction) -> Correction:
+    return Correction(answer.factor, answer.valid)
 
 
 def drag_torque(
@@ -329,4 +328,4 @@ def shear_heating(lubricant: Lubricant, *, sliding_speed: ArrayLike, temperature
     if lubricant.conductivity is None:
         raise ParameterError(f"the thermal conductivity of {lubricant.name} is not known: state it")
     viscosity = lubricant.viscosity(temperature)
-    return np.asarray(rows(_core.shear_heating, viscosity, sliding_speed, lubricant.conductivity)[0])
+    return pointwise(_core.shear_heating, viscosity, sliding_speed, lubricant.conductivity).greatest

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from hersey import _core
-from hersey.arrays import FloatArray, rows
+from hersey.arrays import FloatArray, pointwise
 from hersey.errors import ParameterError
 from hersey.units import ZERO_CELSIUS
 
@@ -36,7 +35,7 @@ class ShearThinning:
 
     def share(self, rate: ArrayLike) -> FloatArray:
         """Return the share of viscosity left at shear rates (1/s)."""
-        return np.asarray(rows(_core.carreau, rate, self.relaxation_time, self.exponent, self.limit)[0])
+        return pointwise(_core.carreau, rate, self.relaxation_time, self.exponent, self.limit)
 
 
 @dataclass(frozen=True)
@@ -108,8 +107,8 @@ class Lubricant:
                 return _core.ViscosityLaw.walther(kinematic, self.density)
             law = _core.ViscosityLaw.vogel if self.model == "vogel" else _core.ViscosityLaw.arrhenius
             return law(self.points)
-        except ValueError as error:
-            raise ParameterError(f"viscosities of {self.name}: {error}") from None
+        except ParameterError as error:
+            raise error.within(f"viscosities of {self.name}") from None
 
     def viscosity(self, temperature: ArrayLike, shear_rate: ArrayLike = 0.0) -> FloatArray:
         """Return dynamic viscosity, Pa s, at temperatures (K) and shear rates (1/s)."""
@@ -149,13 +148,10 @@ class Lubricant:
 
     def _at(self, temperature: ArrayLike) -> tuple[FloatArray, FloatArray]:
         try:
-            viscosity, exponent = rows(self._law_of_columns, temperature)
+            found = self._law.at(np.asarray(temperature, dtype=float))
         except ParameterError as error:
-            raise ParameterError(f"viscosity of {self.name}: {error}") from None
-        return viscosity, exponent
-
-    def _law_of_columns(self, columns: Sequence[FloatArray]) -> FloatArray:
-        return self._law.at(columns[0])
+            raise error.within(f"viscosity of {self.name}") from None
+        return found.viscosity, found.temperature_exponent
 
 
 _BATCHELOR = "Stachowiak and Batchelor, Engineering Tribology, Table 2.3"

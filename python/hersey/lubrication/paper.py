@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hersey import _core
-from hersey.arrays import FloatArray, rows
+from hersey.arrays import FloatArray, pointwise
 
 #: What the core takes, in its order.
 _QUANTITIES = (
@@ -132,5 +132,4 @@ def damping(
 
 def _equation(number: int, **given: ArrayLike) -> FloatArray:
     # What an equation does not contain is 1: it is not used.
-    found = rows(partial(_core.paper, number), *(given.get(name, 1.0) for name in _QUANTITIES))
-    return np.asarray(found[0])
+    return pointwise(partial(_core.paper, number), *(given.get(name, 1.0) for name in _QUANTITIES))

@@ -17,6 +17,8 @@ from hersey.errors import ParameterError
 
 #: Nodes between inlet and outlet.
 NODES = 201
+#: More than the core takes, so that it says so itself.
+_MANY = 1_000_000
 #: What an exponent can be asked of.
 Quantity = Literal["damping", "torque", "minimum_thickness", "central_thickness", "base_traction"]
 #: Shares of a layer's thickness and of its roll's radius beyond which linear elasticity is a sketch.
@@ -147,7 +149,9 @@ def solve_line_contact(
     Raises
     ------
     ParameterError
-        If a value is out of range, or no solution is found; with its name.
+        If a value is out of range, with its name.
+    UnfinishedError
+        If no solution is found.
 
     Examples
     --------
@@ -161,46 +165,38 @@ def solve_line_contact(
         raise ParameterError(f"{missing} is not given: a layer needs its thickness and its Poisson ratio")
     slide = 2.0 * entrainment_speed if sliding_speed is None else sliding_speed
     layer = None if thickness is None or poisson is None else (float(thickness), float(poisson))
-    try:
-        profiles, numbers, by_speed, by_load, (iterations, stations) = _core.line_contact(
-            (float(radius), 0.5 * float(effective_modulus), float(load)),
-            layer,
-            (float(entrainment_speed), float(slide)),
-            (float(viscosity), float(pressure_viscosity), thickening, bool(compressible)),
-            max(int(nodes), 0),
-        )
-    except (ValueError, OverflowError) as error:
-        message = str(error).replace("contact_modulus", "effective_modulus/2")
-        raise ParameterError(message) from error
-    central, minimum, couette, poiseuille, roll, base, top, outlet, offset, length, *residuals = numbers
-    load_residual, flow_residual, grid_error = residuals
-    for profile in profiles:
+    found = _core.line_contact(
+        (float(radius), 0.5 * float(effective_modulus), float(load)),
+        layer,
+        (float(entrainment_speed), float(slide)),
+        (float(viscosity), float(pressure_viscosity), thickening, bool(compressible)),
+        min(max(int(nodes), 0), _MANY),
+    )
+    for profile in (found.x, found.pressure, found.film_thickness):
         profile.setflags(write=False)
     return LineContactSolution(
-        x=profiles[0],
-        pressure=profiles[1],
-        film_thickness=profiles[2],
-        central_thickness=central,
-        minimum_thickness=minimum,
-        couette=couette,
-        poiseuille=poiseuille,
-        roll_traction=roll,
-        base_traction=base,
-        greatest_pressure=top,
-        outlet=outlet,
-        offset=offset,
-        length=length,
-        load_residual=load_residual,
-        flow_residual=flow_residual,
-        grid_error=grid_error,
-        by_speed=LineExponents(*by_speed),
-        by_load=LineExponents(*by_load),
-        friction=abs(roll) / load,
-        iterations=iterations,
-        stations=stations,
-        cautions=_cautions(
-            radius, thickness, offset, outlet, grid_error, top if thickening == "barus" else 0.0
-        ),
+        x=found.x,
+        pressure=found.pressure,
+        film_thickness=found.film_thickness,
+        central_thickness=found.central,
+        minimum_thickness=found.minimum,
+        couette=found.couette,
+        poiseuille=found.poiseuille,
+        roll_traction=found.traction_1,
+        base_traction=found.traction_2,
+        greatest_pressure=found.greatest_pressure,
+        outlet=found.outlet,
+        offset=found.offset,
+        length=found.length,
+        load_residual=found.load_residual,
+        flow_residual=found.flow_residual,
+        grid_error=found.grid_error,
+        by_speed=_exponents(found.by_speed),
+        by_load=_exponents(found.by_load),
+        friction=abs(found.traction_1) / load,
+        iterations=found.iterations,
+        stations=found.stations,
+        cautions=_cautions(found, radius, thickness, barus=thickening == "barus"),
     )
 
 
@@ -234,27 +230,29 @@ def exponent(quantity: Quantity, solution: LineContactSolution) -> float:
     return known[quantity]
 
 
+def _exponents(of: _core.Exponents) -> LineExponents:
+    return LineExponents(of.central, of.minimum, of.traction_1, of.traction_2)
+
+
 def _cautions(
-    radius: float,
-    thickness: float | None,
-    offset: float,
-    outlet: float,
-    grid_error: float,
-    barus_pressure: float,
+    found: _core.LineContact, radius: float, thickness: float | None, *, barus: bool
 ) -> tuple[str, ...]:
     """What a reader must know before the numbers are used."""
-    found = []
-    if thickness is not None and -offset > _INDENTATION * thickness:
-        found.append(
-            f"the layer is indented by {-offset / thickness:.0%} of its thickness: linear elasticity, meant "
-            f"for up to {_INDENTATION:.0%}, is a sketch there"
+    cautions = []
+    if thickness is not None and -found.offset > _INDENTATION * thickness:
+        cautions.append(
+            f"the layer is indented by {-found.offset / thickness:.0%} of its thickness: linear elasticity, "
+            f"meant for up to {_INDENTATION:.0%}, is a sketch there"
         )
-    if outlet > _HALF_WIDTH * radius:
-        found.append(
-            f"the contact reaches {outlet / radius:.0%} of the radius from the axis: the roll is no parabola"
+    if found.outlet > _HALF_WIDTH * radius:
+        cautions.append(
+            f"the contact reaches {found.outlet / radius:.0%} of the radius from the axis: the roll is no "
+            "parabola"
         )
-    if grid_error > _GRID_ERROR:
-        found.append(f"the least film is good to {grid_error:.1%} on this grid: take more nodes")
-    if barus_pressure > _BARUS:
-        found.append(f"Barus' law overstates viscosity at {barus_pressure / 1e9:.2g} GPa: use roelands")
-    return tuple(found)
+    if found.grid_error > _GRID_ERROR:
+        cautions.append(f"the least film is good to {found.grid_error:.1%} on this grid: take more nodes")
+    if barus and found.greatest_pressure > _BARUS:
+        cautions.append(
+            f"Barus' law overstates viscosity at {found.greatest_pressure / 1e9:.2g} GPa: use roelands"
+        )
+    return tuple(cautions)

@@ -156,7 +156,7 @@ def _uncertainty(file: str, table: object) -> dict[str, Uncertainty]:
         except UnitError as error:
             raise UnitError(f"{file}: uncertainty.{key}: {error}") from None
         except ParameterError as error:
-            raise ParameterError(f"{file}: uncertainty.{key}: {error}") from None
+            raise error.within(f"{file}: uncertainty.{key}") from None
     return uncertainties
 
 

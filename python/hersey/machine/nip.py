@@ -62,7 +62,7 @@ def read_contact(file: str, table: object, *, roll_radius: float, load: float | 
     try:
         return Contact(**own, nip_uncertainty=share)
     except ParameterError as error:
-        raise ParameterError(f"{file}: [contact]: {error}") from None
+        raise error.within(f"{file}: [contact]") from None
 
 
 def read_lubricant(file: str, table: object) -> Lubricant:
@@ -117,7 +117,7 @@ def _through_points(
             source=str(texts.get("source", "")),
         )
     except ParameterError as error:
-        raise ParameterError(f"{file}: [lubricant]: {error}") from None
+        raise error.within(f"{file}: [lubricant]") from None
 
 
 def _alphas(file: str, given: object) -> tuple[tuple[float, float], ...]:

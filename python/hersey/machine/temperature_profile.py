@@ -45,7 +45,7 @@ def read_temperature_profile(path: str | Path) -> Schedule:
     try:
         return Schedule(times, values)
     except ParameterError as error:
-        raise ParameterError(f"{path.name}: {error}") from None
+        raise error.within(path.name) from None
 
 
 def _text(path: Path) -> str:

@@ -43,6 +43,14 @@ class AnyDrag:
         """The drag A that a belt at rest can bear (Eq. 29)."""
         return self.law().breakaway_force
 
+    def speeds_of(self, force: float, temperature: float | None = None) -> tuple[float, float]:
+        """Return the speeds below and above the transition at which drag has risen to ``force``.
+
+        Zero below if the belt is held before, infinite above if drag never rises so far.
+        """
+        found = (self.law_at(temperature) if self.warms else self.law()).speeds_of(float(force))
+        return found.slower, found.faster
+
     def force(self, speed: ArrayLike, temperature: float | None = None) -> FloatArray:
         """Return the drag force in steady sliding at each speed, with its sign."""
         speeds = np.asarray(speed, dtype=float)
@@ -84,10 +92,7 @@ class Drag(AnyDrag):
 
     def __post_init__(self) -> None:
         """Let the core check the values."""
-        try:
-            self.law()
-        except ValueError as error:
-            raise ParameterError(str(error)) from None
+        self.law()
 
     @classmethod
     def rotational(
@@ -168,10 +173,7 @@ class DragTable(AnyDrag):
         """Let the core check the values."""
         object.__setattr__(self, "speeds", tuple(float(v) for v in self.speeds))
         object.__setattr__(self, "forces", tuple(float(f) for f in self.forces))
-        try:
-            self.law()
-        except ValueError as error:
-            raise ParameterError(str(error)) from None
+        self.law()
 
     def law(self) -> _core.Law:
         """Return the law as the core holds it."""

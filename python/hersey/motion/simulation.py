@@ -10,24 +10,21 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple, ParamSpec, TypeVar
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hersey import _core
 from hersey.arrays import FloatArray
-from hersey.errors import ParameterError
+from hersey.errors import HerseyError, ParameterError
 from hersey.motion.drag import AnyDrag
 from hersey.motion.schedule import Schedule
-
-P = ParamSpec("P")
-R = TypeVar("R")
 
 #: Relative tolerance of the steps.
 TOLERANCE = 1e-9
 #: Share of the drive speed by which a steady start is off.
-NUDGE = 1e-3
+NUDGE = _core.NUDGE
 
 
 @dataclass(frozen=True)
@@ -212,12 +209,11 @@ def simulate(
     given = drive_speed if drive_speed is not None else drive_torque
     drive = Schedule.of(given if given is not None else 0.0)
     course = None if temperature is None else Schedule.of(temperature).shifted(-drag.temperature_zero)
-    law = _core_call(drag.law)
+    law = drag.law()
     state = _start(train, law, drive, course, start, is_torque=drive_speed is None)
 
-    def run(integrator: str) -> _core._TrajectoryColumns:
-        return _core_call(
-            _core.simulate,
+    def run(integrator: str) -> _core.Trajectory:
+        return _core.simulate(
             train._arguments,
             law,
             ("speed" if drive_speed is not None else "torque", drive.arguments),
@@ -229,26 +225,38 @@ def simulate(
             integrator,
         )
 
-    time, speed, stretch, mode, events, energy, steps = run("adaptive")
-    checked = _self_check(lambda: run("dormand-prince"), speed, stretch, events) if check else None
-    rows = tuple(map(Event._make, events))
-    force = train.stiffness * stretch
-    return Trajectory(time, speed, stretch, force, mode, rows, Energy(*energy), steps, checked)
+    found = run("adaptive")
+    energy = found.energy
+    return Trajectory(
+        time=found.time,
+        belt_speed=found.belt_speed,
+        stretch=found.stretch,
+        spring_force=train.stiffness * found.stretch,
+        mode_index=found.mode_index,
+        events=tuple(_event(event) for event in found.events),
+        energy=Energy(energy.work, energy.dissipated, energy.stored, energy.residual),
+        steps=found.steps,
+        check=_self_check(lambda: run("dormand-prince"), found) if check else None,
+    )
 
 
-def _self_check(
-    run: Callable[[], _core._TrajectoryColumns],
-    speed: FloatArray,
-    stretch: FloatArray,
-    events: list[_core._EventRow],
-) -> SelfCheck:
+def _event(event: _core.Event) -> Event:
+    return Event(**{name: getattr(event, name) for name in Event._fields})
+
+
+def _self_check(run: Callable[[], _core.Trajectory], first: _core.Trajectory) -> SelfCheck:
     name = "Dormand-Prince 5(4)"
     try:
-        _, other_speed, other_stretch, _, other_events, _, _ = run()
-    except ParameterError as error:
+        other = run()
+    except HerseyError as error:
         return SelfCheck(name, None, None, False, str(error))
-    same = [event[1:4] for event in events] == [event[1:4] for event in other_events]
-    return SelfCheck(name, _difference(speed, other_speed), _difference(stretch, other_stretch), same)
+    changes = [[(e.from_mode, e.to_mode, e.guard) for e in motion.events] for motion in (first, other)]
+    return SelfCheck(
+        name,
+        _difference(first.belt_speed, other.belt_speed),
+        _difference(first.stretch, other.stretch),
+        changes[0] == changes[1],
+    )
 
 
 def _difference(one: FloatArray, two: FloatArray) -> float:
@@ -284,21 +292,19 @@ def stick_slip(
     >>> cycle.kind, round(cycle.frequency, 5)
     ('stick_slip', 3.94031)
     """
-    law = _core_call(drag.law_at, temperature)
-    state = _start(train, law, Schedule.of(drive_speed), None, start, is_torque=False)
-    if start == "steady":
-        state = state[0] * (1.0 + NUDGE), state[1]
-    return StickSlipCycle(
-        *_core_call(
-            _core.stick_slip,
-            train._arguments,
-            law,
-            float(drive_speed),
-            state,
-            None,
-            float(tolerance),
-        )
-    )
+    law = drag.law_at(temperature)
+    state = _start(train, law, Schedule.of(drive_speed), None, start, is_torque=False, nudged=True)
+    found = _core.stick_slip(train._arguments, law, float(drive_speed), state, None, float(tolerance))
+    return StickSlipCycle(**{name: getattr(found, name) for name in StickSlipCycle.__dataclass_fields__})
+
+
+def steady_start(
+    train: Drivetrain, drag: AnyDrag, speed: float, temperature: float | None = None
+) -> tuple[float, float]:
+    """Return belt speed and stretch of sliding at ``speed``, the spring stretched by just the drag there."""
+    law = drag.law_at(temperature)
+    state = _core.steady_start(train._arguments, law, float(speed), nudged=False)
+    return state.belt_speed, state.stretch
 
 
 def _start(
@@ -309,6 +315,7 @@ def _start(
     start: str | tuple[float, float],
     *,
     is_torque: bool,
+    nudged: bool = False,
 ) -> tuple[float, float]:
     if not isinstance(start, str):
         speed, stretch = start
@@ -319,16 +326,6 @@ def _start(
         raise ParameterError(f"start '{start}' is not known: rest, steady, or (belt speed, stretch)")
     if is_torque:
         raise ParameterError("start 'steady' needs a drive_speed")
-    if not train.stiffness > 0:
-        raise ParameterError(f"stiffness is {train.stiffness}: it must be greater than 0")
-    speed = drive.first
-    now = law if temperature is None else _core_call(law.at, temperature.first)
-    return speed, float(now.force(np.array([speed]))[0]) / train.stiffness
-
-
-def _core_call(function: Callable[P, R], *args: P.args, **kwargs: P.kwargs) -> R:
-    """Call the core; what it refuses is a mistake of the user's."""
-    try:
-        return function(*args, **kwargs)
-    except ValueError as error:
-        raise ParameterError(str(error)) from None
+    now = law if temperature is None else law.at(temperature.first)
+    state = _core.steady_start(train._arguments, now, drive.first, nudged)
+    return state.belt_speed, state.stretch

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,12 +13,10 @@ from hersey.arrays import crossed, numbers_of, together
 from hersey.errors import ParameterError
 from hersey.motion.drag import Drag
 from hersey.motion.parameters import PARAMETERS
-from hersey.motion.simulation import NUDGE, TOLERANCE, Drivetrain
+from hersey.motion.simulation import TOLERANCE, Drivetrain
 
 if TYPE_CHECKING:
     import xarray as xr
-
-_pairs = partial(zip, strict=True)
 
 #: Numbers of each cycle, in the order of the core.
 NUMBERS = (
@@ -111,29 +108,26 @@ def sweep(
     given = {name: numbers_of(name, own[name] if value is None else value) for name, value in varied.items()}
     axes, columns = together(given) if zip else crossed(given)
     shape = next(iter(columns.values())).shape
-    try:
-        kinds, numbers, laps, failures = _core.sweep(
-            [np.ascontiguousarray(columns[name].ravel()) for name in PARAMETERS],
-            (drag.closure, drag.bristle_stiffness, drag.bristle_damping),
-            None if start == "rest" else NUDGE,
-            None if duration is None else float(duration),
-            float(tolerance),
-            int(threads),
-            progress,
-        )
-    except ValueError as error:
-        raise ParameterError(str(error)) from None
-    data = {name: (axes, row.reshape(shape)) for name, row in _pairs(NUMBERS, numbers)}
-    stuck = numbers[NUMBERS.index("stick_duration")] * numbers[NUMBERS.index("frequency")]
+    found = _core.sweep(
+        [np.ascontiguousarray(columns[name].ravel()) for name in PARAMETERS],
+        (drag.closure, drag.bristle_stiffness, drag.bristle_damping),
+        start == "steady",
+        None if duration is None else float(duration),
+        float(tolerance),
+        int(threads),
+        progress,
+    )
+    data = {name: (axes, getattr(found, name).reshape(shape)) for name in NUMBERS}
+    stuck = found.stick_duration * found.frequency
     coordinates = {
         name: (axes, columns[name]) if zip and given[name].ndim else given[name] for name in PARAMETERS
     }
     return xr.Dataset(
         {
-            "kind": (axes, np.array(_core.KINDS)[kinds].reshape(shape)),
+            "kind": (axes, np.array(_core.KINDS)[found.kind_index].reshape(shape)),
             **data,
             "stuck_fraction": (axes, stuck.reshape(shape)),
-            "laps": (axes, laps.reshape(shape)),
+            "laps": (axes, found.laps.reshape(shape)),
         },
         coords=coordinates,
         attrs={
@@ -141,6 +135,6 @@ def sweep(
             "start": start,
             "tolerance": tolerance,
             "hersey_version": _core.VERSION,
-            "failures": [f"set {index}: {message}" for index, message in failures],
+            "failures": [f"set {failure.index}: {failure.error}" for failure in found.failures],
         },
     )

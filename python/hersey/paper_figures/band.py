@@ -10,7 +10,7 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.charts.style import Chart
-from hersey.motion.simulation import stick_slip
+from hersey.motion.simulation import steady_start, stick_slip
 from hersey.motion.sweep import sweep
 from hersey.paper_figures.figure import Claim, OwnFigure, Verdict, shown
 from hersey.paper_figures.panels import BLUE, INK, Row, plot
@@ -161,7 +161,7 @@ def small_swing(case: Case, motions: Motions) -> Claim:
 def _from_cycle(case: Case, cycles: CyclesWithoutSticking, place: int, share: float) -> str:
     """What a belt settles to from the slowest point of a lap, its speed changed by a factor."""
     speed = float(cycles.slowest[place]) * share
-    start = speed, float(case.drag.force(speed)) / case.stiffness
+    start = steady_start(case.train, case.drag, speed)
     drive = float(cycles.drive_speed[place])
     return stick_slip(case.train, case.drag, drive_speed=drive, start=start).kind
 

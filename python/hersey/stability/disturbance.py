@@ -13,7 +13,7 @@ from math import inf, pi, sqrt
 from hersey.errors import ParameterError
 from hersey.motion.drag import AnyDrag
 from hersey.motion.schedule import Schedule
-from hersey.motion.simulation import Drivetrain, StickSlipCycle, simulate, stick_slip
+from hersey.motion.simulation import Drivetrain, StickSlipCycle, simulate, steady_start, stick_slip
 from hersey.stability.hysteresis import hysteresis
 
 #: Ramps looked at per period of the free oscillation, and periods up to which they are.
@@ -135,10 +135,10 @@ def disturbance(
     if drive_speed > band.upper:
         return Disturbance(drive_speed, inf, inf)
     law = drag.law_at(temperature)
-    force = float(drag.force(drive_speed, temperature))
+    _, stretch = steady_start(train, drag, drive_speed, temperature)
 
     def kicked(loss: float) -> bool:
-        start = (drive_speed - loss, force / train.stiffness)
+        start = (drive_speed - loss, stretch)
         cycle = stick_slip(train, drag, drive_speed=drive_speed, start=start, temperature=temperature)
         return _is_rough(cycle, law.stick_speed)
 
@@ -180,7 +180,7 @@ def _sticks(
         temperature=temperature,
         duration=watched,
         samples=401,
-        start=(from_speed, float(drag.force(from_speed, temperature)) / train.stiffness),
+        start=steady_start(train, drag, from_speed, temperature),
     )
     slowest = float(run.belt_speed.min())
     if any(event.to_mode in ("stuck", "microslip") for event in run.events):

@@ -20,7 +20,7 @@ from hersey.arrays import FloatArray, crossed, numbers_of, together
 from hersey.errors import ParameterError
 from hersey.motion.drag import AnyDrag, Drag
 from hersey.motion.parameters import OF_THE_BELT
-from hersey.motion.simulation import Drivetrain, _core_call
+from hersey.motion.simulation import Drivetrain
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -29,8 +29,6 @@ if TYPE_CHECKING:
 TOLERANCE = 1e-11
 #: Relative step of the derivatives.
 _STEP = 1e-3
-#: Relative distance of the laps on either side of one, to see which way the drive speed goes.
-_NEAR = 1e-4
 #: Columns of the core.
 _COLUMNS = (
     "lower",
@@ -151,31 +149,28 @@ def hysteresis(
     >>> round(band.sensitivity["stick_speed"], 3)  # one per cent on v_s moves V* by a quarter of a per cent
     -0.233
     """
-    law = _core_call(drag.law_at, temperature)
-    lower, transition, upper, top, low_error, error, half, deeper, laps = _core_call(
-        _core.band, train._arguments, law, float(tolerance)
-    )
+    band = _core.band(train._arguments, drag.law_at(temperature), float(tolerance))
     plain = drag.at(temperature) if isinstance(drag, Drag) else None
     closure = str(getattr(drag, "closure", "retained"))
     if sensitivity is None:
-        sensitivity = plain is not None and half
+        sensitivity = plain is not None and band.half_laps
     changes = _sensitivities(train, plain, tolerance) if sensitivity else ({}, {})
     interval, lower_interval, share = None, None, None
     if samples is not None:
         edges = _sampled(train, plain, samples, tolerance)
-        interval, lower_interval = _middle(edges["upper"]), _middle(edges["lower"])
-        share = float(np.mean(edges["upper"] > edges["transition"]))
+        interval, lower_interval = _middle(edges.upper), _middle(edges.lower)
+        share = float(np.mean(edges.upper > edges.transition))
     return HysteresisBand(
-        lower=lower,
-        transition=transition,
-        upper=upper,
+        lower=band.lower,
+        transition=band.transition,
+        upper=band.upper,
         closure=closure,
-        method="half laps" if half else "simulation",
-        lower_accuracy=low_error,
-        upper_accuracy=error,
-        deeper=deeper,
-        speed_max=None if np.isnan(top) else top,
-        laps=laps,
+        method="half laps" if band.half_laps else "simulation",
+        lower_accuracy=band.lower_accuracy,
+        upper_accuracy=band.upper_accuracy,
+        deeper=band.deeper,
+        speed_max=None if np.isnan(band.speed_max) else band.speed_max,
+        laps=band.laps,
         sensitivity=changes[0],
         lower_sensitivity=changes[1],
         interval=interval,
@@ -224,7 +219,7 @@ def hysteresis_sweep(
     if not isinstance(drag, Drag):
         raise ParameterError("a sweep needs a Drag")
     if drag.warms != (temperature is not None):
-        _core_call(drag.law_at, None if temperature is None else 300.0)
+        drag.law_at(None if temperature is None else 300.0)
     varied: dict[str, ArrayLike | None] = {
         "stiffness": stiffness,
         "mass": mass,
@@ -246,7 +241,7 @@ def hysteresis_sweep(
     shape = next(iter(columns.values())).shape
     if temperature is not None:
         columns = {**columns, **_at_temperatures(drag, columns["temperature"])}
-    numbers, failures = _bands(columns, drag, tolerance, threads, progress, lower=lower)
+    found = _bands(columns, drag, tolerance, threads, progress, lower=lower)
     coordinates = {
         name: (axes, columns[name]) if zip and values.ndim else values
         for name, values in given.items()
@@ -254,15 +249,15 @@ def hysteresis_sweep(
     }
     return xr.Dataset(
         {
-            name: (axes, row.reshape(shape).astype(_WHOLE.get(name, float)))
-            for name, row in _named(numbers).items()
+            name: (axes, getattr(found, name).reshape(shape).astype(_WHOLE.get(name, float)))
+            for name in _COLUMNS
         },
         coords=coordinates,
         attrs={
             "closure": drag.closure,
             "tolerance": tolerance,
             "hersey_version": _core.VERSION,
-            "failures": [f"set {index}: {message}" for index, message in failures],
+            "failures": [f"set {failure.index}: {failure.error}" for failure in found.failures],
         },
     )
 
@@ -304,32 +299,20 @@ def cycles_without_sticking(
     """
     if not isinstance(drag, Drag) or drag.closure == "lugre":
         raise ParameterError("cycles without sticking need a Drag, and one without bristles")
-    for name, value in vars(train).items():
-        if not value > 0 or not np.isfinite(value):
-            raise ParameterError(f"{name} is {value}: it must be greater than 0")
     law = drag.at(temperature)
-    mixed, ehl = 1.0 + law.mixed_exponent, 1.0 + law.ehl_exponent
-    if not mixed < 0.0 < ehl:
-        raise ParameterError("drag that does not fall below the transition and rise above has no cycles")
     low, high = law.stick_speed, law.transition_speed
     speeds = np.geomspace(low, 0.999 * high, 201) if slowest is None else numbers_of("slowest", slowest)
     if not bool(np.all((speeds >= low) & (speeds < high))):
         raise ParameterError(f"slowest is to lie from the stick speed {low:g} to below {high:g}")
-    damping = law.transition_force / (high * np.sqrt(train.stiffness * train.mass))
-    # a cycle is stable where its drive speed rises with its slowest speed: where a slower drive swings wider
-    laps = (speeds.ravel() / high)[:, None] * [1.0, 1.0 - _NEAR, 1.0 + _NEAR]
-    laps = np.minimum(laps, 0.5 * (1.0 + laps[:, :1])).ravel()
-    forces, falls, rises = (np.full_like(laps, x) for x in (damping, mixed, ehl))
-    drive, top, _ = _core_call(_core.cycles, [forces, laps, falls, rises], float(tolerance))
-    drive, below, above = (high * drive).reshape(-1, 3).T
-    # with so steep a fall no belt swings below the transition: a search that ends there found nothing
-    gone = (-mixed * damping >= 2.0) & (drive <= high * (1.0 + _NEAR**2))
-    shape = speeds.shape
+    flat = np.ascontiguousarray(speeds.ravel())
+    found = _core.swings(train._arguments, law.law(), flat, float(tolerance))
+    if found is None:
+        raise ParameterError("drag that does not fall below the transition and rise above has no cycles")
     return CyclesWithoutSticking(
         slowest=speeds,
-        fastest=np.where(gone, np.nan, high * top.reshape(-1, 3)[:, 0]).reshape(shape),
-        drive_speed=np.where(gone, np.nan, drive).reshape(shape),
-        stable=((above > below) & ~gone).reshape(shape),
+        fastest=found.fastest.reshape(speeds.shape),
+        drive_speed=found.drive_speed.reshape(speeds.shape),
+        stable=found.stable.reshape(speeds.shape),
     )
 
 
@@ -350,16 +333,12 @@ def _bands(
     progress: Callable[[int, int], object] | None = None,
     *,
     lower: bool = True,
-) -> tuple[FloatArray, list[tuple[int, str]]]:
+) -> _core.Bands:
     if threads < 1:
         raise ParameterError(f"threads is {threads}: at least 1 is needed")
     arrays = [np.ascontiguousarray(columns[name].ravel()) for name in OF_THE_BELT]
     closure = (drag.closure, drag.bristle_stiffness, drag.bristle_damping)
-    return _core_call(_core.bands, arrays, closure, lower, float(tolerance), int(threads), progress)
-
-
-def _named(numbers: FloatArray) -> dict[str, FloatArray]:
-    return dict(zip(_COLUMNS, numbers, strict=True))
+    return _core.bands(arrays, closure, lower, float(tolerance), int(threads), progress)
 
 
 def _sensitivities(
@@ -372,21 +351,20 @@ def _sensitivities(
     base = np.array([float(own[name]) for name in OF_THE_BELT])
     factors = np.vstack([1 + _STEP * np.eye(len(OF_THE_BELT)), 1 - _STEP * np.eye(len(OF_THE_BELT))])
     columns = dict(zip(OF_THE_BELT, (base * factors).T, strict=True))
-    numbers, failures = _bands(columns, drag, tolerance)
-    if failures:
-        raise ParameterError(failures[0][1])
-    edges = _named(numbers)
+    edges = _bands(columns, drag, tolerance)
+    if edges.failures:
+        raise edges.failures[0].error
 
-    def change(edge: str) -> dict[str, float]:
-        up, down = np.log(edges[edge]).reshape(2, -1)
+    def change(edge: FloatArray) -> dict[str, float]:
+        up, down = np.log(edge).reshape(2, -1)
         return dict(zip(OF_THE_BELT, ((up - down) / (2 * _STEP)).tolist(), strict=True))
 
-    return change("upper"), change("lower")
+    return change(edges.upper), change(edges.lower)
 
 
 def _sampled(
     train: Drivetrain, drag: Drag | None, samples: Mapping[str, ArrayLike], tolerance: float
-) -> dict[str, FloatArray]:
+) -> _core.Bands:
     if drag is None:
         raise ParameterError("samples need a Drag: a table has no parameters to draw")
     unknown = sorted(set(samples) - set(OF_THE_BELT))
@@ -395,11 +373,10 @@ def _sampled(
     own = {**vars(train), **vars(drag)}
     given = {name: numbers_of(name, samples.get(name, own[name])) for name in OF_THE_BELT}
     _, columns = together(given)
-    numbers, failures = _bands(columns, drag, tolerance)
-    if failures:
-        index, message = failures[0]
-        raise ParameterError(f"samples: draw {index}: {message}")
-    return _named(numbers)
+    found = _bands(columns, drag, tolerance)
+    for failure in found.failures:
+        raise failure.error.within(f"samples: draw {failure.index}")
+    return found
 
 
 def _middle(values: FloatArray) -> tuple[float, float]:

@@ -385,17 +385,9 @@ def _laws(drag: Drag, kelvin: FloatArray | None) -> list[Drag]:
 
 
 def _contour(laws: Sequence[Drag], force: float) -> tuple[FloatArray, FloatArray]:
-    """Speeds of a force on the falling and the rising branch of each law, straight in logarithms."""
-    below, above = [], []
-    for law in laws:
-        slow, bend, fast = law.stick_speed, law.transition_speed, law.transition_speed * np.e
-        f_slow, f_bend, f_fast = law.force([slow, bend, fast]).tolist()
-        share = np.log(force / f_bend)
-        below.append(
-            0.0 if force > f_slow else bend * (slow / bend) ** (max(share, 0.0) / np.log(f_slow / f_bend))
-        )
-        above.append(bend * np.exp(max(share, 0.0) / np.log(f_fast / f_bend)))
-    return np.array(below), np.array(above)
+    """Speeds of a force on the falling and the rising branch of each law."""
+    below, above = np.array([law.speeds_of(force) for law in laws]).T
+    return below, above
 
 
 def _torque_limit(limits: Limits, roll_radius: float) -> tuple[float | None, str]:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hersey import _core
 from hersey.arrays import FloatArray
 from hersey.errors import ParameterError
 from hersey.units import ZERO_CELSIUS
@@ -62,7 +63,7 @@ class ThermalTruth(Truth):
     def log_torque_ratio(self, temperature: FloatArray) -> FloatArray:
         """Return ln of torque over that at the reference temperature, at temperatures in degC."""
         kelvin, reference = temperature + ZERO_CELSIUS, self.reference_temperature_degC + ZERO_CELSIUS
-        slope = self.activation_energy / (8.314462618 * reference**2)  # of -ln torque, 1/K, there
+        slope = self.activation_energy / (_core.GAS_CONSTANT * reference**2)  # of -ln torque, 1/K, there
         if self.law == "degC":
             scale = self.reference_temperature_degC
             return np.asarray(-slope * scale * np.log(temperature / scale))

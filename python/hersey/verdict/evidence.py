@@ -16,7 +16,7 @@ from hersey.arrays import FloatArray
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.estimate import Estimate, quantile
 from hersey.damping.surface import DampingSurface
-from hersey.errors import InsufficientDataError, ParameterError
+from hersey.errors import InsufficientDataError, ParameterError, UnfinishedError
 from hersey.lubrication.contact import Contact
 from hersey.lubrication.film import REGIMES, Film, drag_torque, film_thickness
 from hersey.lubrication.lubricant import Lubricant
@@ -194,7 +194,7 @@ def solved_exponent(contact: Contact, lubricant: Lubricant, speed: float, temper
             poisson=contact.poisson_ratio,
             pressure_viscosity=float(lubricant.alpha(temperature)),
         )
-    except ParameterError:
+    except (ParameterError, UnfinishedError):
         return None
     return exponent("damping", solution)
 

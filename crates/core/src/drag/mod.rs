@@ -229,6 +229,35 @@ impl Drag {
         magnitude.copysign(speed)
     }
 
+    /// The speeds on either side of the transition at which drag has risen to `force`: below it none, so zero, where
+    /// the stick speed is reached first; above it infinite, where drag never gets there.
+    ///
+    /// On a law that falls to the transition and rises from it these are the only ones; at the transition itself or
+    /// for less force, both are the transition speed.
+    #[must_use]
+    pub fn speeds_of(&self, force: f64) -> (f64, f64) {
+        let (speed, least) = self.knots[self.transition];
+        if force <= least {
+            return (speed, speed);
+        }
+        let on = |branch: usize, knot: usize| {
+            let ((v, f), exponent) = (self.knots[knot], self.exponents[branch]);
+            v * (force / f).powf(1.0 / exponent)
+        };
+        let slower = (self.branch(self.stick_speed)..=self.transition).rev().find_map(|branch| {
+            let low = self.lower_knot(branch).unwrap_or(self.stick_speed);
+            (self.branch_force(branch, low) >= force).then(|| on(branch, branch))
+        });
+        let faster = (self.transition + 1..self.exponents.len()).find_map(|branch| {
+            let reached = match self.knots.get(branch) {
+                Some((_, end)) => *end >= force,
+                None => self.exponents[branch] > 0.0,
+            };
+            reached.then(|| on(branch, branch - 1))
+        });
+        (slower.unwrap_or(0.0), faster.unwrap_or(f64::INFINITY))
+    }
+
     /// Slope of the drag force in steady sliding at `speed`.
     #[must_use]
     pub fn slope(&self, speed: f64) -> f64 {
@@ -302,5 +331,35 @@ impl Drag {
     /// Whether the knot between `branch` and the one above is the transition.
     pub(crate) fn is_transition(&self, branch: usize) -> bool {
         branch == self.transition
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    #[allow(clippy::float_cmp)] // limits are given as they are
+    fn speeds_of_a_force_have_that_force() {
+        let drag = Drag::new(50.0, 1.0, -0.7, -1.2, 0.01, Closure::Retained).unwrap();
+        let (slow, fast) = drag.speeds_of(100.0);
+        // (v)^-0.2 = 2, (v)^0.3 = 2
+        assert!((slow - 1.0 / 32.0).abs() < 1e-15 && (fast - 2_f64.powf(1.0 / 0.3)).abs() < 1e-13);
+        assert_eq!(drag.speeds_of(50.0), (1.0, 1.0));
+        assert_eq!(drag.speeds_of(10.0), (1.0, 1.0));
+        // beyond the drag at the stick speed, 125.6, the belt is held
+        assert_eq!(drag.speeds_of(126.0).0, 0.0);
+        assert!(drag.speeds_of(125.0).0 > 0.01);
+        assert_eq!(drag.speeds_of(f64::INFINITY), (0.0, f64::INFINITY));
+        let (speeds, forces) = ([0.01, 0.1, 1.0, 3.0, 9.0], [120.0, 80.0, 50.0, 70.0, 75.0]);
+        let table = Drag::tabulated(&speeds, &forces, 0.02, Closure::Retained).unwrap();
+        for force in [55.0, 69.0, 72.0, 79.0, 85.0, 100.0] {
+            let (slow, fast) = table.speeds_of(force);
+            assert!((table.force(slow) / force - 1.0).abs() < 1e-13 && slow < 1.0, "{force}");
+            assert!((table.force(fast) / force - 1.0).abs() < 1e-13 && fast > 1.0, "{force}");
+        }
+        assert_eq!(table.speeds_of(119.0).0, 0.0);
+        let falling = Drag::new(50.0, 1.0, -1.1, -1.2, 0.01, Closure::Retained).unwrap();
+        assert_eq!(falling.speeds_of(60.0).1, f64::INFINITY);
     }
 }

@@ -9,7 +9,7 @@
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
-use super::contact::poisson;
+use super::contact::{Solid, effective_modulus, hertz_line, poisson};
 use crate::error::{Error, above, at_most};
 
 /// Half-width over thickness up to which the contact is solved.
@@ -104,6 +104,39 @@ impl LayerContact {
         }
         sum
     }
+}
+
+/// A roll pressed into the layer, SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LayerNip {
+    /// Width of the nip, m.
+    pub width: f64,
+    /// Pressure at its centre, Pa.
+    pub pressure_max: f64,
+    /// Slope of pressure at the edge over that of a half-space contact of the same width.
+    pub edge: f64,
+    /// Width over that of the half-space contact of the same load.
+    pub width_over_hertz: f64,
+}
+
+/// The nip of a load per length (N/m) on a roll of reduced radius (m) with a `rubber` of some thickness (m).
+///
+/// # Errors
+/// If a value is not positive, or the nip is wider than `2 HALF_WIDTH_MAX` thicknesses.
+pub fn nip(load: f64, radius: f64, thickness: f64, rubber: Solid) -> Result<LayerNip, Error> {
+    let rigid = Solid { modulus: f64::INFINITY, poisson_ratio: 0.5 };
+    let effective = effective_modulus(rubber, rigid)?;
+    let half = hertz_line(load, radius, effective)?.half_width;
+    let star = 0.5 * effective;
+    let scaled = load * radius / (star * thickness * thickness);
+    let found = LayerContact::of_load(scaled, rubber.poisson_ratio)?;
+    let width = found.half_width * thickness;
+    Ok(LayerNip {
+        width: 2.0 * width,
+        pressure_max: found.centre_pressure * star * width / (2.0 * radius),
+        edge: found.edge,
+        width_over_hertz: width / half,
+    })
 }
 
 /// Terms that resolve the pressure to 1e-9: more where the contact is wide against the layer.

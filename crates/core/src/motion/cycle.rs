@@ -4,8 +4,9 @@
 //! belt sticks, otherwise the moment when belt speed rises through drive speed. The orbit has closed
 //! once two laps in a row start at the same state.
 
-use super::event::{Event, Guard};
+use super::event::Event;
 use super::hybrid::Motion;
+use super::lap::{Lap, Pace, Section, overtaking, release};
 use super::piece::Piece;
 use super::system::{Drivetrain, Integrator, Start, System};
 use crate::drag::{Closure, Drag, Mode};
@@ -47,6 +48,24 @@ pub struct StickSlipCycle {
     pub drag_work: f64,
     /// Laps simulated.
     pub laps: usize,
+}
+
+impl StickSlipCycle {
+    /// Steady sliding at `drive_speed`, after so many laps.
+    pub(super) fn steady(drive_speed: f64, stretch: f64, laps: usize) -> Self {
+        Self {
+            kind: CycleKind::SteadySliding,
+            frequency: 0.0,
+            slip_duration: 0.0,
+            stick_duration: 0.0,
+            speed_min: drive_speed,
+            speed_max: drive_speed,
+            stretch_min: stretch,
+            stretch_max: stretch,
+            drag_work: 0.0,
+            laps,
+        }
+    }
 }
 
 /// Laps after which an orbit that has not closed is reported as unsettled.
@@ -103,158 +122,166 @@ pub fn settle(
         Span::UntilClosed => f64::INFINITY,
         Span::Lasting(duration) => above("duration", duration, 0.0)?,
     };
-    let lasting = until.is_finite();
-    let mut whole: Option<StickSlipCycle> = None;
     let system = System::at_speed(*train, drag, drive_speed)?;
-    let mut motion = Motion::new(&system, start, tolerance, Integrator::Adaptive)?;
-    let k = train.stiffness();
-    let smooth = drag.closure().is_smooth();
-    let (near, most_laps) =
-        if smooth { (CLOSED_SMOOTH * tolerance, MAX_SMOOTH_LAPS) } else { (CLOSED, MAX_LAPS) };
-    let mut lap = Lap::starting_at(0.0);
-    let mut previous: Option<Section> = None;
-    let mut pace = Pace::default();
-    let (mut pieces, mut laps, mut overtakings) = (0, 0, 0);
+    let mut laps = Laps::starting(&system, drive_speed, start, until, tolerance)?;
     loop {
-        if motion.time() >= until {
-            let unfinished =
-                || lap.cycle(CycleKind::Unsettled, motion.time(), laps, drive_speed, k, None);
-            return Ok(whole.unwrap_or_else(unfinished));
+        if let Some(cycle) = laps.go_on()? {
+            return Ok(cycle);
         }
-        let (piece, event) = motion.advance(until - motion.time())?;
-        lap.add(&piece, smooth);
-        pieces += 1;
-        let still = piece.duration.is_infinite() || is_steady(&piece, train, drag, drive_speed);
-        if still || pieces > MAX_PIECES_PER_LAP {
-            let kind = if still { CycleKind::SteadySliding } else { CycleKind::Unsettled };
-            let steady = still.then(|| steady_stretch(&piece, train, drag, drive_speed));
-            return Ok(lap.cycle(kind, motion.time(), laps, drive_speed, k, steady));
+    }
+}
+
+/// A motion followed lap by lap.
+struct Laps<'a> {
+    motion: Motion<'a>,
+    train: &'a Drivetrain,
+    drag: &'a Drag,
+    drive_speed: f64,
+    /// When the motion ends, if it is not followed until its orbit has closed.
+    until: f64,
+    smooth: bool,
+    /// Relative change between laps at which the orbit has closed.
+    near: f64,
+    most: usize,
+    lap: Lap,
+    /// Where the lap under way began, if it began at a section.
+    previous: Option<Section>,
+    /// The last whole lap, of a motion that has an end.
+    whole: Option<StickSlipCycle>,
+    pace: Pace,
+    /// Pieces since the last lap, and times that the belt overtook the drive.
+    pieces: usize,
+    overtakings: u32,
+    count: usize,
+}
+
+impl<'a> Laps<'a> {
+    fn starting(
+        system: &'a System,
+        drive_speed: f64,
+        start: Start,
+        until: f64,
+        tolerance: f64,
+    ) -> Result<Self, Error> {
+        let smooth = system.drag.closure().is_smooth();
+        let (near, most) =
+            if smooth { (CLOSED_SMOOTH * tolerance, MAX_SMOOTH_LAPS) } else { (CLOSED, MAX_LAPS) };
+        Ok(Self {
+            motion: Motion::new(system, start, tolerance, Integrator::Adaptive)?,
+            train: &system.train,
+            drag: &system.drag,
+            drive_speed,
+            until,
+            smooth,
+            near,
+            most,
+            lap: Lap::starting_at(0.0),
+            previous: None,
+            whole: None,
+            pace: Pace::default(),
+            pieces: 0,
+            overtakings: 0,
+            count: 0,
+        })
+    }
+
+    /// One piece further; the cycle, once it is known.
+    fn go_on(&mut self) -> Result<Option<StickSlipCycle>, Error> {
+        let now = self.motion.time();
+        if now >= self.until {
+            return Ok(self.whole.or_else(|| Some(self.cycle(CycleKind::Unsettled, now))));
         }
-        let found = release(event, smooth, train).or_else(|| overtaking(&piece, drive_speed));
-        let Some(section) = found.filter(|s| s.stuck || lap.stick_duration == 0.0) else {
-            continue;
-        };
+        let (piece, event) = self.motion.advance(self.until - now)?;
+        self.lap.add(&piece, self.smooth);
+        self.pieces += 1;
+        if let Some(end) = self.end_without_lap(&piece) {
+            return Ok(Some(end));
+        }
+        let Some(section) = self.section(event, &piece) else { return Ok(None) };
+        (self.pieces, self.overtakings) = (0, 0);
+        self.count += 1;
+        if self.until.is_finite() {
+            self.keep_whole(&section);
+            self.begin_lap(section, &piece);
+            return Ok(None);
+        }
+        if let Some(kind) = self.verdict(&section) {
+            return Ok(Some(self.cycle(kind, section.time)));
+        }
+        if !self.skip_ahead(&section) {
+            self.begin_lap(section, &piece);
+        }
+        Ok(None)
+    }
+
+    /// What the motion is if it slides steadily from this piece on, or makes no laps at all.
+    fn end_without_lap(&self, piece: &Piece) -> Option<StickSlipCycle> {
+        let still = piece.duration.is_infinite()
+            || is_steady(piece, self.train, self.drag, self.drive_speed);
+        if still {
+            let stretch = steady_stretch(piece, self.train, self.drag, self.drive_speed);
+            return Some(StickSlipCycle::steady(self.drive_speed, stretch, self.count));
+        }
+        let lost = self.pieces > MAX_PIECES_PER_LAP;
+        lost.then(|| self.cycle(CycleKind::Unsettled, self.motion.time()))
+    }
+
+    /// The section at which the lap ends with this piece, if it does.
+    fn section(&mut self, event: Option<Event>, piece: &Piece) -> Option<Section> {
+        let found =
+            release(event, self.smooth, self.train).or_else(|| overtaking(piece, self.drive_speed));
+        let section = found.filter(|s| s.stuck || self.lap.stick_duration == 0.0)?;
         // every slip after a release overtakes the drive once; a second time means that it did not stick
-        overtakings += u32::from(!section.stuck);
-        if !section.stuck && overtakings < 2 && previous.is_some_and(|p| p.stuck) {
-            continue;
+        self.overtakings += u32::from(!section.stuck);
+        let within_slip = !section.stuck && self.overtakings < 2;
+        (!within_slip || self.previous.is_none_or(|p| !p.stuck)).then_some(section)
+    }
+
+    /// Keep the lap that ends here as the last whole one, if it began at the same kind of section.
+    fn keep_whole(&mut self, section: &Section) {
+        let kind = if section.stuck { CycleKind::StickSlip } else { CycleKind::Oscillation };
+        if self.previous.is_some_and(|p| p.stuck == section.stuck) {
+            self.whole = Some(self.cycle(kind, section.time));
         }
-        (pieces, overtakings) = (0, 0);
-        laps += 1;
-        if lasting {
-            let kind = if section.stuck { CycleKind::StickSlip } else { CycleKind::Oscillation };
-            if previous.is_some_and(|p| p.stuck == section.stuck) {
-                whole = Some(lap.cycle(kind, section.time, laps, drive_speed, k, None));
-            }
-            previous = Some(section);
-            lap = Lap::starting_at(section.time);
-            lap.add_rest_of(&piece, section.time);
-            continue;
+    }
+
+    /// What the motion is if its orbit has closed with this lap, or will not.
+    fn verdict(&self, section: &Section) -> Option<CycleKind> {
+        let (low, high) = self.lap.speed;
+        let grown = section.stuck || high - low > GROWING * self.drive_speed.abs();
+        let repeats = |p: Section| section.repeats(&p, self.drag, self.train, self.near);
+        let closed = grown && self.previous.is_some_and(repeats);
+        match (closed, section.stuck) {
+            (false, _) => (self.count >= self.most).then_some(CycleKind::Unsettled),
+            (true, true) => Some(CycleKind::StickSlip),
+            (true, false) => Some(CycleKind::Oscillation),
         }
-        let grown = section.stuck || lap.speed.1 - lap.speed.0 > GROWING * drive_speed.abs();
-        let closed = grown && previous.is_some_and(|p| section.repeats(&p, drag, train, near));
-        if closed || laps >= most_laps {
-            let kind = match (closed, section.stuck) {
-                (false, _) => CycleKind::Unsettled,
-                (true, true) => CycleKind::StickSlip,
-                (true, false) => CycleKind::Oscillation,
-            };
-            return Ok(lap.cycle(kind, section.time, laps, drive_speed, k, None));
-        }
-        if !section.stuck
-            && let Some(pull) = pace.ahead(section.pull, drag.force(drive_speed))
-        {
-            motion.resume(section.time, drive_speed, pull);
-            (previous, lap) = (None, Lap::starting_at(section.time));
-            continue;
-        }
+    }
+
+    /// Pass over laps that can be foreseen, if they can.
+    fn skip_ahead(&mut self, section: &Section) -> bool {
         if section.stuck {
-            pace = Pace::default();
+            self.pace = Pace::default();
+            return false;
         }
-        previous = Some(section);
-        lap = Lap::starting_at(section.time);
-        lap.add_rest_of(&piece, section.time);
+        let steady_pull = self.drag.force(self.drive_speed);
+        let Some(pull) = self.pace.ahead(section.pull, steady_pull) else { return false };
+        self.motion.resume(section.time, self.drive_speed, pull);
+        (self.previous, self.lap) = (None, Lap::starting_at(section.time));
+        true
     }
-}
 
-/// State where a lap ends and the next begins.
-#[derive(Debug, Clone, Copy)]
-struct Section {
-    time: f64,
-    stuck: bool,
-    belt_speed: f64,
-    pull: f64,
-}
-
-impl Section {
-    fn repeats(&self, previous: &Self, drag: &Drag, train: &Drivetrain, near: f64) -> bool {
-        let speed_scale = drag.stick_speed().max(self.belt_speed.abs());
-        let impedance = (train.stiffness() * train.mass()).sqrt();
-        let pull_scale = self.pull.abs().max(speed_scale * impedance);
-        self.stuck == previous.stuck
-            && (self.belt_speed - previous.belt_speed).abs() <= near * speed_scale
-            && (self.pull - previous.pull).abs() <= near * pull_scale
+    /// The next lap, with the rest of the piece in which the last one ended.
+    fn begin_lap(&mut self, section: Section, piece: &Piece) {
+        self.previous = Some(section);
+        self.lap = Lap::starting_at(section.time);
+        self.lap.add_rest_of(piece, section.time);
     }
-}
 
-/// The last laps' pulls where the belt overtakes the drive, to shorten a long approach.
-///
-/// The map from one overtaking to the next has one variable and cannot swap two orbits, so every state
-/// between here and where the laps are heading leads there too: part of the way can be skipped.
-#[derive(Default)]
-struct Pace {
-    pulls: Vec<f64>,
-}
-
-impl Pace {
-    /// Share of the way to the expected limit that is skipped.
-    const SKIPPED: f64 = 0.7;
-    /// Growth of a swing away from an unstable orbit that is skipped at once.
-    const GROWTH: f64 = 1.2;
-    /// Laps that shrink faster than this need no help.
-    const SLOW: f64 = 0.8;
-
-    /// A pull further along the way of the laps, if they are slow and steady enough to foresee.
-    fn ahead(&mut self, pull: f64, steady_pull: f64) -> Option<f64> {
-        self.pulls.push(pull);
-        let [.., a, b, c, d] = self.pulls[..] else { return None };
-        let (ratio, before) = ((d - c) / (c - b), (c - b) / (b - a));
-        let steady = (ratio - before).abs() < 0.1 * (1.0 - ratio).abs();
-        let growth = ratio - 1.0;
-        let noise = 1e-7 * (d - steady_pull).abs();
-        if !steady || (d - c).abs() < noise || !(Self::SLOW..1.1).contains(&ratio) || growth == 0.0
-        {
-            return None;
-        }
-        let limit = d - (d - c) * ratio / growth;
-        let jump = if growth < 0.0 {
-            Self::SKIPPED * (limit - d)
-        } else {
-            (Self::GROWTH - 1.0) * (d - limit)
-        };
-        let most = 0.5 * (d - steady_pull).abs();
-        self.pulls.clear();
-        Some(d + jump.clamp(-most, most))
+    /// The lap under way as a cycle that ends at `end`.
+    fn cycle(&self, kind: CycleKind, end: f64) -> StickSlipCycle {
+        self.lap.cycle(kind, end, self.count, self.drive_speed, self.train.stiffness())
     }
-}
-
-/// The section of sticking motion: the release from the stuck phase.
-///
-/// A smooth closure has no stuck phase: there it is the moment when the belt leaves the creep below `v_s`.
-fn release(event: Option<Event>, smooth: bool, train: &Drivetrain) -> Option<Section> {
-    let released = |e: &Event| {
-        e.from == Mode::Stuck
-            || (smooth && e.from == Mode::Microslip && e.guard == Guard::StickSpeed)
-    };
-    let Event { time, belt_speed, stretch, .. } = event.filter(released)?;
-    Some(Section { time, stuck: true, belt_speed, pull: train.stiffness() * stretch })
-}
-
-/// The section of motion without sticking: the belt overtakes the drive.
-fn overtaking(piece: &Piece, drive_speed: f64) -> Option<Section> {
-    let elapsed = piece.overtaking(drive_speed)?;
-    let (belt_speed, pull) = piece.at(elapsed);
-    Some(Section { time: piece.time + elapsed, stuck: false, belt_speed, pull })
 }
 
 /// Whether the belt slides with the drive for good.
@@ -287,76 +314,5 @@ fn steady_stretch(piece: &Piece, train: &Drivetrain, drag: &Drag, drive_speed: f
         drag.force(drive_speed) / train.stiffness()
     } else {
         piece.at(0.0).1 / train.stiffness()
-    }
-}
-
-/// Extremes and durations of the lap under way.
-struct Lap {
-    begin: f64,
-    stick_duration: f64,
-    speed: (f64, f64),
-    pull: (f64, f64),
-    /// Integral of the pull over time.
-    impulse: f64,
-}
-
-impl Lap {
-    fn starting_at(time: f64) -> Self {
-        let none = (f64::INFINITY, f64::NEG_INFINITY);
-        Self { begin: time, stick_duration: 0.0, speed: none, pull: none, impulse: 0.0 }
-    }
-
-    fn add(&mut self, piece: &Piece, smooth: bool) {
-        if piece.start.mode == Mode::Stuck || (smooth && piece.start.mode == Mode::Microslip) {
-            self.stick_duration += piece.duration;
-        }
-        self.add_rest_of(piece, piece.time);
-    }
-
-    /// Take in `piece` from `time` on: its impulse, and the extremes at its ends and turning points.
-    fn add_rest_of(&mut self, piece: &Piece, time: f64) {
-        if piece.duration.is_infinite() {
-            return;
-        }
-        let begin = time - piece.time;
-        self.impulse += piece.impulse(begin);
-        let turning = piece.turning_points().map(|t| t.filter(|t| *t >= begin));
-        for elapsed in
-            [Some(begin), Some(piece.duration), turning[0], turning[1]].into_iter().flatten()
-        {
-            let (belt_speed, pull) = piece.at(elapsed);
-            self.speed = (self.speed.0.min(belt_speed), self.speed.1.max(belt_speed));
-            self.pull = (self.pull.0.min(pull), self.pull.1.max(pull));
-        }
-    }
-
-    fn cycle(
-        &self,
-        kind: CycleKind,
-        end: f64,
-        laps: usize,
-        drive_speed: f64,
-        stiffness: f64,
-        steady: Option<f64>,
-    ) -> StickSlipCycle {
-        let duration = end - self.begin;
-        let periodic = kind != CycleKind::SteadySliding && duration.is_finite() && duration > 0.0;
-        let (speed, stretch) = match steady {
-            Some(stretch) => ((drive_speed, drive_speed), (stretch, stretch)),
-            None => (self.speed, (self.pull.0 / stiffness, self.pull.1 / stiffness)),
-        };
-        StickSlipCycle {
-            kind,
-            frequency: if periodic { 1.0 / duration } else { 0.0 },
-            slip_duration: if periodic { duration - self.stick_duration } else { 0.0 },
-            stick_duration: if periodic { self.stick_duration } else { 0.0 },
-            speed_min: speed.0,
-            speed_max: speed.1,
-            stretch_min: stretch.0,
-            stretch_max: stretch.1,
-            // over a closed lap all work of the drive ends in drag
-            drag_work: if periodic { drive_speed * self.impulse } else { 0.0 },
-            laps,
-        }
     }
 }

@@ -397,18 +397,8 @@ impl Rider {
         if self.steady {
             let drive_speed = self.drive * self.scale.speed;
             let stretch = self.system.drag.force(drive_speed) / self.system.train.stiffness();
-            return StickSlipCycle {
-                kind: CycleKind::SteadySliding,
-                frequency: 0.0,
-                slip_duration: 0.0,
-                stick_duration: 0.0,
-                speed_min: drive_speed,
-                speed_max: drive_speed,
-                stretch_min: stretch,
-                stretch_max: stretch,
-                drag_work: 0.0,
-                laps: self.laps + self.turns as usize / 2,
-            };
+            let laps = self.laps + self.turns as usize / 2;
+            return StickSlipCycle::steady(drive_speed, stretch, laps);
         }
         let (lap, end) = self.whole.unwrap_or((self.lap, self.lap.begin));
         let Scale { time, speed, pull } = self.scale;

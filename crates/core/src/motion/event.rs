@@ -2,6 +2,9 @@
 
 use crate::drag::Mode;
 
+/// Deviation from a corner of the law, relative, that is lost in rounding.
+pub(super) const ROUNDING: f64 = 1e-12;
+
 /// The condition whose crossing ends a mode.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Guard {

@@ -9,10 +9,14 @@
 //! | `runge_kutta` | steps for stiff motion (Radau IIA) and for the second opinion             |
 //! | `piece`       | a stretch of smooth motion: state, conditions and turning points along it |
 //! | `event`       | changes of mode and the conditions that cause them                        |
-//! | `hybrid`      | modes, guards and located events: the motion as a chain of pieces         |
+//! | `surroundings` | drive, temperature and law of drag at the time that the motion has reached |
+//! | `modes`       | modes, the guards that end them, and which mode follows                   |
+//! | `steps`       | the next piece: held, as a Taylor series, or by a Runge-Kutta step        |
+//! | `hybrid`      | the motion as a chain of pieces between located events                    |
 //! | `trajectory`  | the motion sampled at given times, with its event table and energies      |
 //! | `lanes`       | slip laps of many belts at once, several to a register                    |
 //! | `ensemble`    | what thousands of belts settle to                                         |
+//! | `lap`         | one lap: its sections, its extremes, and where the laps are heading       |
 //! | `cycle`       | what the motion settles to: steady sliding, oscillation, stick-slip       |
 //!
 //! The state is the pull of the spring and the belt speed (and the deflection of the bristles, with
@@ -23,10 +27,14 @@ mod ensemble;
 mod event;
 mod hybrid;
 pub(crate) mod lanes;
+mod lap;
+mod modes;
 mod piece;
 mod polynomial;
 mod runge_kutta;
 mod schedule;
+mod steps;
+mod surroundings;
 mod system;
 mod taylor;
 mod trajectory;
@@ -37,5 +45,5 @@ pub use event::{Event, Guard};
 pub(crate) use hybrid::first_slide;
 pub use schedule::{Cubic, Schedule};
 pub(crate) use system::checked_tolerance;
-pub use system::{Drive, Drivetrain, Integrator, Start, System};
+pub use system::{Drive, Drivetrain, Integrator, NUDGE, Start, System};
 pub use trajectory::{Energy, Trajectory, simulate};

@@ -156,6 +156,24 @@ mod tests {
     }
 
     #[test]
+    #[allow(clippy::float_cmp)] // small whole numbers
+    fn a_cubic_about_another_time_is_the_same_cubic() {
+        // 1 + 2 t - 3 t^2 + 0.5 t^3 has at t = 2 the value -3, the slope -4, half the curvature 0 and the same 0.5
+        let s = Schedule::piecewise("w", &[1.0, 5.0], &[[1.0, 2.0, -3.0, 0.5]], 0.0).unwrap();
+        assert_eq!(s.about(1, 3.0), [-3.0, -4.0, 0.0, 0.5]);
+        for since in [0.0_f64, 0.5, 1.5, 2.0, 3.25] {
+            let [a, b, c, d] = s.about(1, 1.0 + since);
+            for ahead in [-0.5, 0.25, 0.75] {
+                let t = since + ahead;
+                let value = 1.0 + t * (2.0 + t * (-3.0 + t * 0.5));
+                assert!((a + ahead * (b + ahead * (c + ahead * d)) - value).abs() < 1e-13, "{t}");
+            }
+        }
+        // before its first time and after its last it is constant
+        assert_eq!((s.at(-9.0), s.at(0.999), s.at(5.0), s.at(9.0)), (1.0, 1.0, 0.0, 0.0));
+    }
+
+    #[test]
     fn what_is_no_schedule_is_refused_by_name() {
         let backwards = Schedule::linear("drive_speed", &[1.0, 0.5], &[0.0, 1.0]).unwrap_err();
         assert!(backwards.to_string().starts_with("drive_speed runs backwards"));

@@ -68,9 +68,27 @@ pub struct Start {
     pub stretch: f64,
 }
 
+/// Share of the drive speed by which a nudged start is faster: an unstable balance is nothing that a belt can keep.
+pub const NUDGE: f64 = 1e-3;
+
 impl Start {
     /// Belt at rest and spring slack.
     pub const REST: Self = Self { belt_speed: 0.0, stretch: 0.0 };
+
+    /// Sliding at `speed`, with the spring stretched by just the drag there.
+    ///
+    /// # Errors
+    /// If there is no spring.
+    pub fn steady(train: &Drivetrain, drag: &Drag, speed: f64) -> Result<Self, Error> {
+        let stiffness = above("stiffness", train.stiffness, 0.0)?;
+        Ok(Self { belt_speed: speed, stretch: drag.force(speed) / stiffness })
+    }
+
+    /// The same, but for a nudge of the speed by `NUDGE`.
+    #[must_use]
+    pub fn nudged(self) -> Self {
+        Self { belt_speed: self.belt_speed * (1.0 + NUDGE), ..self }
+    }
 }
 
 /// How the smooth pieces of the motion are integrated.

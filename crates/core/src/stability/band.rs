@@ -53,8 +53,6 @@ const MEETING: f64 = 30.0;
 const PASSING: f64 = 1e4;
 /// How far above the fold the belt is started from rest to see whether some deeper stick-slip lasts.
 const ABOVE: f64 = 1e-4;
-/// Nudge from steady sliding, relative.
-const NUDGE: f64 = 1e-3;
 /// Greatest drive speed looked at, in transition speeds.
 const FASTEST: f64 = 1e4;
 
@@ -284,10 +282,7 @@ fn upper_by_simulation(
 fn lower_by_simulation(train: &Drivetrain, drag: &Drag, tolerance: f64) -> Result<f64, Error> {
     let transition = drag.transition_speed();
     let sticks = |drive_speed: f64| -> Result<bool, Error> {
-        let start = Start {
-            belt_speed: drive_speed * (1.0 + NUDGE),
-            stretch: drag.force(drive_speed) / train.stiffness(),
-        };
+        let start = Start::steady(train, drag, drive_speed)?.nudged();
         let cycle = settle(train, drag, drive_speed, start, Span::UntilClosed, tolerance)?;
         Ok(lasts(&cycle, drag))
     };

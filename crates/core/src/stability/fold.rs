@@ -25,6 +25,15 @@ pub struct SlipLap {
     pub ehl: f64,
 }
 
+impl SlipLap {
+    /// Whether steady sliding just below the transition is an unstable node, `|F'| >= 2` there: then no belt comes
+    /// back from below the transition.
+    #[must_use]
+    pub fn is_node(&self) -> bool {
+        -self.mixed * self.damping >= 2.0
+    }
+}
+
 /// A drive speed at which the lap comes back to its start.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fold {
@@ -105,9 +114,8 @@ impl Seeker {
     fn new(index: usize, lap: SlipLap) -> Self {
         // close to the baseline's, so that few laps are needed
         let guess = 0.45 + 0.52 * lap.slowest.powf(-0.26);
-        // from `|F'| >= 2` on no belt comes back from below the transition: the fold is there or above
-        let node = -lap.mixed * lap.damping >= 2.0;
-        let search = if node {
+        // without a way back from below the transition the fold is there or above
+        let search = if lap.is_node() {
             Search::new(1.0 - f64::EPSILON, 1.0)
         } else {
             Search::new(lap.slowest, guess.max(0.5 * (1.0 + lap.slowest)))

@@ -18,11 +18,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hersey import _core
 from hersey.arrays import FloatArray
 from hersey.units import ZERO_CELSIUS
 
 #: Molar gas constant, J/(mol K) (exact since 2019).
-GAS_CONSTANT = 8.314462618
+GAS_CONSTANT = _core.GAS_CONSTANT
 #: Least value of 1 + q t T_ref: a temperature at or below T0 has no viscosity.
 _NEAR_T0 = 0.02
 

@@ -93,7 +93,7 @@ def _machine(train: Drivetrain, drag: AnyDrag, values: Mapping[str, float]) -> M
     try:
         changed: AnyDrag = replace(drag, **of_drag) if of_drag else drag  # type: ignore[type-var]
     except ParameterError as error:
-        raise ParameterError(f"uncertainty: a draw is impossible: {error}") from None
+        raise error.within("uncertainty: a draw is impossible") from None
     return MachineSample(replace(train, **of_train), changed)
 
 

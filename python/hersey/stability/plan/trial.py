@@ -17,7 +17,7 @@ from hersey import _core
 from hersey.arrays import FloatArray
 from hersey.motion.drag import AnyDrag
 from hersey.motion.schedule import Schedule, ScheduleArguments
-from hersey.motion.simulation import Drivetrain, _core_call
+from hersey.motion.simulation import Drivetrain
 
 #: Significant digits of the durations and of the peak speed: what is tried is what is written.
 _DIGITS = 6
@@ -216,8 +216,7 @@ class MachineSample:
         for _ in range(_DOUBLINGS):
             duration = max(shape.ramps + watch, until - shape.wait)
             samples = math.ceil(duration / self.lap * _PER_LAP) + 1 if force else 2
-            time, speed, stretch, _, events, _, _ = _core_call(
-                _core.simulate,
+            run = _core.simulate(
                 self.train._arguments,
                 self._law,
                 ("speed", (*drive, None)),
@@ -229,15 +228,16 @@ class MachineSample:
                 "adaptive",
             )
             if force:
-                turned = greatest_stretch(time, speed, stretch, drive)
-                peak = self.train.stiffness * max(turned, *(abs(event[4]) for event in events), 0.0)
-            state = float(speed[-1]), float(stretch[-1])
+                turned = greatest_stretch(run.time, run.belt_speed, run.stretch, drive)
+                at_events = (abs(event.stretch) for event in run.events)
+                peak = self.train.stiffness * max(turned, *at_events, 0.0)
+            state = float(run.belt_speed[-1]), float(run.stretch[-1])
             kind = self._settled(thermal.at(shape.wait + duration), shape.target, state, tolerance)
             if kind != "steady_sliding":
                 return Outcome(math.inf, peak, kind.replace("_", "-"))
             if peak > force_limit:
                 return Outcome(math.inf, peak, "force")
-            released, held = _last_held(events)
+            released, held = _last_held(run.events)
             if not held and duration - released >= _CALM * self.lap:
                 return self._for_good(shape, thermal, force_limit, max(released, shape.ramps), peak)
             watch *= 2.0
@@ -248,10 +248,8 @@ class MachineSample:
     ) -> str:
         """What the motion settles to from a state, temperature held."""
         zero = self.drag.temperature_zero
-        law = self._law if temperature is None else _core_call(self._law.at, temperature - zero)
-        return str(
-            _core_call(_core.stick_slip, self.train._arguments, law, target, state, None, tolerance)[0]
-        )
+        law = self._law if temperature is None else self._law.at(temperature - zero)
+        return _core.stick_slip(self.train._arguments, law, target, state, None, tolerance).kind
 
     def _for_good(
         self,
@@ -272,11 +270,11 @@ class MachineSample:
         return Outcome(shape.wait + ready, peak, "")
 
 
-def _last_held(events: list[_core._EventRow]) -> tuple[float, bool]:
+def _last_held(events: list[_core.Event]) -> tuple[float, bool]:
     """When the belt last began to slide, and whether it is held at the end."""
-    if not events or events[-1][2] in _HELD:
+    if not events or events[-1].to_mode in _HELD:
         return math.inf, True
-    return next((event[0] for event in reversed(events) if event[1] in _HELD), 0.0), False
+    return next((event.time for event in reversed(events) if event.from_mode in _HELD), 0.0), False
 
 
 def greatest_stretch(

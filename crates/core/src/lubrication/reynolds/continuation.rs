@@ -332,3 +332,95 @@ fn dry_half_width(contact: &LineContact) -> f64 {
     }
     low
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn contact(foundation: Foundation) -> LineContact {
+        LineContact {
+            radius: 0.015,
+            contact_modulus: 2e6,
+            foundation,
+            load: 1000.0,
+            entrainment_speed: 0.1,
+            sliding_speed: 0.2,
+            fluid: Fluid {
+                viscosity: 0.1,
+                pressure_viscosity: 0.0,
+                thickening: crate::lubrication::reynolds::Thickening::Barus,
+                compressible: false,
+            },
+        }
+    }
+
+    #[test]
+    fn the_dry_contact_is_hertz_on_a_thick_layer_and_narrower_on_a_thin_one() {
+        let hertz = (4.0 * 1000.0 * 0.015 / (PI * 2e6)).sqrt();
+        let width = |thickness| {
+            dry_half_width(&contact(Foundation::Layer { thickness, poisson: 0.45 })) / hertz
+        };
+        assert!((dry_half_width(&contact(Foundation::HalfSpace)) / hertz - 1.0).abs() < 1e-14);
+        assert!((width(1.0) - 1.0).abs() < 1e-6);
+        assert!(width(2e-3) < 0.9 && width(2e-3) > 0.4, "{}", width(2e-3));
+        // the width squared is that of Hertz times the compliance at the wavenumber 2/a
+        let half = width(2e-3) * hertz;
+        let softness = layer_factor(2.0 * 2e-3 / half, 0.45);
+        assert!((half * half / (hertz * hertz * softness) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_pressure_under_a_rigid_roll_carries_one_and_dies_out() {
+        let film: f64 = 0.5;
+        let outlet = MARTIN_OUTLET * (2.0 * film).sqrt();
+        let nodes: Vec<f64> =
+            (0..=2000_u32).map(|i| -60.0 + (60.0 + outlet) * f64::from(i) / 2000.0).collect();
+        let pressure = rigid_pressure(&nodes, film);
+        assert!((load(&nodes, &pressure) - 1.0).abs() < 1e-12);
+        let top = pressure.iter().fold(0.0_f64, |a, p| a.max(*p));
+        // Martin's outlet is where pressure, nil far upstream, is nil with its slope
+        assert!(pressure[1].abs() < 2e-3 * top, "{}", pressure[1]);
+        assert!(pressure[1999] < 2e-3 * top, "{}", pressure[1999]);
+        // it is greatest where the gap is that at the outlet: as far before the axis as the outlet is behind it
+        let place = nodes[pressure.iter().position(|p| *p >= top).unwrap()];
+        assert!((place + outlet).abs() < 0.05, "{place}");
+    }
+
+    #[test]
+    fn the_start_is_nearly_rigid() {
+        let contact = contact(Foundation::HalfSpace);
+        let scaling = Scaling::new(&contact);
+        let film = MARTIN * 0.1 * 0.1 * 0.015 / 1000.0;
+        assert!((scaling.martin(1.0) / film - 1.0).abs() < 1e-14);
+        assert!((scaling.martin(3.0) / film - 3.0).abs() < 1e-13);
+        let factor = scaling.start();
+        let deflection = scaling.dry * scaling.dry / 0.015;
+        assert!((deflection / scaling.martin(factor) / RIGID - 1.0).abs() < 1e-12);
+        let length = scaling.dry.hypot((2.0 * 0.015 * film).sqrt());
+        assert!((scaling.length(1.0) / length - 1.0).abs() < 1e-14);
+        assert!(
+            (inlet_of(1.0) - 200.0).abs() < 1e-12 && (inlet_of(1e-9) - INLET_LEAST).abs() < 1e-15
+        );
+        assert_eq!(
+            (part(100, 400, 0.0), part(100, 400, 0.5), part(100, 400, 1.0)),
+            (100, 200, 400)
+        );
+    }
+
+    #[test]
+    fn profiles_are_fitted_to_a_new_inlet() {
+        let lists =
+            || (vec![-4.0, -2.0, 0.0, 1.0], vec![0.0, 0.3, 1.0, 0.0], vec![1.0, 2.0, 3.0, 4.0]);
+        let (mut x, mut p, mut w) = lists();
+        refit(&mut x, &mut p, &mut w, 8.0);
+        assert_eq!(x, [-8.0, -4.0, -2.0, 0.0, 1.0]);
+        assert_eq!((p[0], p[1], w[0], w[1]), (0.0, 0.0, 0.5, 1.0));
+        let (mut x, mut p, mut w) = lists();
+        refit(&mut x, &mut p, &mut w, 3.0);
+        assert_eq!((x, p), (vec![-3.0, -2.0, 0.0, 1.0], vec![0.0, 0.3, 1.0, 0.0]));
+        assert_eq!(w, [2.0, 2.0, 3.0, 4.0]);
+        let (mut x, mut p, mut w) = lists();
+        refit(&mut x, &mut p, &mut w, 2.0);
+        assert_eq!((x, p, w.len()), (vec![-2.0, 0.0, 1.0], vec![0.0, 1.0, 0.0], 3));
+    }
+}

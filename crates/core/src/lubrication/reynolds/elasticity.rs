@@ -283,3 +283,98 @@ fn exponential_part(x: f64) -> [f64; 5] {
 fn count(i: usize) -> f64 {
     f64::from(u32::try_from(i).unwrap_or(u32::MAX))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Deflection integral of a hat by quadrature of -ln|x| and, for a layer, of the table's own second derivative.
+    fn hat(kernel: &Kernel, at: f64, nodes: [f64; 3]) -> f64 {
+        let count = 20_000;
+        let sum = |from: f64, to: f64, of: &dyn Fn(f64) -> f64| -> f64 {
+            let step = (to - from) / f64::from(count);
+            (0..count).map(|i| step * of(from + (f64::from(i) + 0.5) * step)).sum()
+        };
+        let [a, b, c] = nodes;
+        let k = |x: f64| {
+            let scaled = (at - x).abs() / kernel.length;
+            let more = if kernel.table.is_empty() { 0.0 } else { kernel.correction(scaled, 2)[0] };
+            kernel.length * (more - scaled.ln()) / kernel.length
+        };
+        sum(a, b, &|x| k(x) * (x - a) / (b - a)) + sum(b, c, &|x| k(x) * (c - x) / (c - b))
+    }
+
+    #[test]
+    fn hats_are_the_integrals_of_the_kernel() {
+        let half_space = Kernel::new(Foundation::HalfSpace);
+        let layer = Kernel::new(Foundation::Layer { thickness: 1.0, poisson: 0.45 });
+        let nodes = [-2.0, -1.2, -0.7, 0.0, 0.3, 1.1];
+        for kernel in [half_space, layer] {
+            let hats = kernel.influence(&nodes).hats;
+            for (i, at) in nodes.iter().enumerate() {
+                for j in 1..nodes.len() - 1 {
+                    let known = hat(&kernel, *at, [nodes[j - 1], nodes[j], nodes[j + 1]]);
+                    let found = hats.row(i)[j];
+                    assert!((found - known).abs() < 2e-4, "{i} {j}: {found} {known}");
+                }
+                assert_eq!((hats.row(i)[0], hats.row(i)[5]), (0.0, 0.0));
+            }
+        }
+    }
+
+    #[test]
+    fn far_hats_go_over_into_near_ones() {
+        for (kernel, distance) in [
+            (Kernel::new(Foundation::HalfSpace), 2.0),
+            (Kernel::new(Foundation::Layer { thickness: 1.0, poisson: 0.48 }), 2.0),
+            (Kernel::new(Foundation::Layer { thickness: 2.0, poisson: 0.3 }), 3.0),
+        ] {
+            let (left, right) = (0.11, 0.07);
+            for distance in [distance, -distance] {
+                let f = |x: f64| kernel.twice_integrated(x)[0];
+                let near = (f(distance - right) - f(distance)) / right
+                    - (f(distance) - f(distance + left)) / left;
+                let far = kernel.far(distance, left, right);
+                assert!((far - near).abs() < 1e-6, "{distance}: {far} {near}");
+            }
+        }
+        // beyond the table a layer is not moved at all
+        let layer = Kernel::new(Foundation::Layer { thickness: 1.0, poisson: 0.3 });
+        assert!(layer.far(33.0, 0.1, 0.1).abs() < f64::MIN_POSITIVE);
+        let [value, stretch] = layer.twice_integrated(40.0);
+        let [at_end, slope] = layer.twice_integrated(END);
+        assert!((value - at_end - slope / END * 8.0).abs() < 1e-9);
+        assert!((stretch / 40.0 - slope / END).abs() < 1e-9);
+    }
+
+    #[test]
+    fn the_table_is_its_own_derivatives() {
+        let kernel = Kernel::new(Foundation::Layer { thickness: 1.0, poisson: 0.4 });
+        for x in [0.13, 0.51, 1.77, 5.2, 20.01] {
+            for column in [0, 2] {
+                let by = 1e-4;
+                let [_, slope, bend] = kernel.correction(x, column);
+                let [low, mid, high] = [x - by, x, x + by].map(|x| kernel.correction(x, column)[0]);
+                assert!((slope - (high - low) / (2.0 * by)).abs() < 1e-6, "{x} {column}");
+                assert!((bend - (high - 2.0 * mid + low) / (by * by)).abs() < 1e-4, "{x} {column}");
+            }
+            let [value, slope, _] = kernel.correction(x, 1);
+            let [_, first, second] = kernel.correction(x, 0);
+            assert!((value - first).abs() < 1e-8 && (slope - second).abs() < 1e-6, "{x}");
+        }
+    }
+
+    #[test]
+    fn a_kernel_in_other_units_is_the_same() {
+        let kernel = Kernel::new(Foundation::Layer { thickness: 2e-3, poisson: 0.45 });
+        let scaled = kernel.scaled(1e-3);
+        assert!((scaled.length - 2.0).abs() < 1e-15);
+        let [value, _] = kernel.twice_integrated(3e-3);
+        let [other, _] = scaled.twice_integrated(3.0);
+        assert!((value / 1e-6 / other - 1.0).abs() < 1e-12);
+        assert_eq!(
+            Kernel::new(Foundation::HalfSpace).scaled(7.0).length.to_bits(),
+            1_f64.to_bits()
+        );
+    }
+}

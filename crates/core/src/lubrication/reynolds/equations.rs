@@ -328,3 +328,89 @@ fn greatest(values: &[f64]) -> f64 {
 fn norm(values: &[f64]) -> f64 {
     dot(values, values).sqrt()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::elasticity::Foundation;
+    use super::super::fluid::Thickening;
+    use super::*;
+
+    fn case(foundation: Foundation) -> (Equations, Unknowns) {
+        let cells = 24;
+        let shares: Vec<f64> =
+            (0..=cells).map(|i| (f64::from(i) / f64::from(cells)).powf(0.8)).collect();
+        let fluid = Fluid {
+            viscosity: 0.1,
+            pressure_viscosity: 2e-8,
+            thickening: Thickening::Barus,
+            compressible: true,
+        };
+        let kernel = Kernel::new(foundation);
+        let equations = Equations {
+            shares,
+            inlet: 4.0,
+            speed: 0.4,
+            compliance: 0.5,
+            kernel,
+            fluid,
+            pressure: 4e7,
+        };
+        let nodes = equations.nodes(1.1);
+        let bump = |x: f64| 0.6 * (1.0 - (x / 1.1).powi(2)).max(0.0).sqrt() + 0.01 * (x + 4.0);
+        let mut pressure: Vec<f64> = nodes.iter().map(|x| bump(*x)).collect();
+        (pressure[0], pressure[24]) = (0.0, 0.0);
+        (equations, Unknowns { pressure, outlet: 1.1, offset: 1.3 })
+    }
+
+    #[test]
+    fn the_jacobian_is_the_slope_of_the_residual() {
+        for foundation in
+            [Foundation::HalfSpace, Foundation::Layer { thickness: 1.5, poisson: 0.45 }]
+        {
+            let (equations, point) = case(foundation);
+            let film = equations.film(&point);
+            let jacobian = equations.jacobian(&point, &film);
+            let n = film.x.len() - 1;
+            for column in 0..=n {
+                let mut step = vec![0.0; n + 1];
+                step[column] = 1.0;
+                let by = 1e-6;
+                let residual = |share: f64| {
+                    let moved = point.moved(&step, share);
+                    equations.residual(&moved, &equations.film(&moved))
+                };
+                for (row, (up, down)) in residual(by).iter().zip(residual(-by)).enumerate() {
+                    let slope = (up - down) / (2.0 * by);
+                    let found = jacobian.row(row)[column];
+                    let near = 1e-6 * (1.0 + slope.abs());
+                    assert!((found - slope).abs() < near, "{row} {column}: {found} {slope}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_wedge_is_weighed_exactly_for_lines() {
+        let x = [0.0, 0.3, 1.0, 1.2];
+        assert_eq!(wedge_weights(&x, 0).map(f64::to_bits), [0.5, 0.5, 0.0].map(f64::to_bits));
+        for k in [1, 2] {
+            let weights = wedge_weights(&x, k);
+            let middle = 0.5 * (x[k] + x[k + 1]);
+            let mean = |of: fn(f64) -> f64| -> f64 {
+                weights.iter().zip(&x[k - 1..]).map(|(w, x)| w * of(*x)).sum()
+            };
+            assert!((mean(|_| 1.0) - 1.0).abs() < 1e-14 && (mean(|x| x) - middle).abs() < 1e-14);
+            // of a parabola the half that the line misses: (x - a)(x - b)/2 at the middle, a and b the first two
+            let missed = 0.5 * (middle - x[k - 1]) * (middle - x[k]);
+            assert!((mean(|x| x * x) - (middle * middle - missed)).abs() < 1e-14, "{k}");
+        }
+    }
+
+    #[test]
+    fn load_and_norms() {
+        assert!((load(&[0.0, 1.0, 3.0], &[0.0, 2.0, 1.0]) - 4.0).abs() < 1e-15);
+        assert_eq!(greatest(&[1.0, -3.0, 2.0]).to_bits(), 3_f64.to_bits());
+        assert!(greatest(&[1.0, f64::NAN]).is_infinite());
+        assert!((norm(&[3.0, -4.0]) - 5.0).abs() < 1e-15);
+    }
+}

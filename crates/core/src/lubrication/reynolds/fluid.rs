@@ -82,3 +82,49 @@ impl Fluid {
         ((pole + factor * pressure) / below, pole * (factor - 1.0) / (below * below))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn derivatives_are_those_of_the_ratios() {
+        for thickening in [Thickening::Barus, Thickening::Roelands] {
+            let fluid = Fluid {
+                viscosity: 0.08,
+                pressure_viscosity: 1.8e-8,
+                thickening,
+                compressible: true,
+            };
+            for pressure in [0.0, 2e7, 4e8, 1.2e9] {
+                let by = 1e-5 * (pressure + 1e6);
+                let change = |of: fn(&Fluid, f64) -> (f64, f64)| {
+                    let slope =
+                        (of(&fluid, pressure + by).0 - of(&fluid, pressure - by).0) / (2.0 * by);
+                    slope / of(&fluid, pressure).1
+                };
+                assert!((change(Fluid::viscosity_ratio) - 1.0).abs() < 1e-5);
+                assert!((change(Fluid::density_ratio) - 1.0).abs() < 1e-5);
+            }
+            // what would leave the range of numbers is held
+            assert_eq!(fluid.viscosity_ratio(1e13), (600_f64.exp(), 0.0));
+            let plain = Fluid { pressure_viscosity: 0.0, compressible: false, ..fluid };
+            assert_eq!(plain.viscosity_ratio(1e9), (1.0, 0.0));
+            assert_eq!(plain.density_ratio(1e9), (1.0, 0.0));
+        }
+    }
+
+    #[test]
+    fn roelands_begins_above_its_pole() {
+        let fluid = |viscosity, pressure_viscosity, thickening| {
+            Fluid { viscosity, pressure_viscosity, thickening, compressible: false }.checked()
+        };
+        // the pole is at 6.31e-5 Pa s
+        assert!(fluid(6.3e-5, 1e-8, Thickening::Roelands).is_err());
+        assert!(fluid(6.4e-5, 1e-8, Thickening::Roelands).is_ok());
+        assert!(fluid(6.3e-5, 0.0, Thickening::Roelands).is_ok());
+        assert!(fluid(6.3e-5, 1e-8, Thickening::Barus).is_ok());
+        assert!(fluid(0.0, 1e-8, Thickening::Barus).is_err());
+        assert!(fluid(0.1, -1e-8, Thickening::Barus).is_err());
+    }
+}

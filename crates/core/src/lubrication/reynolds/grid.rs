@@ -105,3 +105,54 @@ pub fn interpolated(x: &[f64], y: &[f64], places: &[f64]) -> Vec<f64> {
 fn ratio(part: usize, whole: usize) -> f64 {
     part as f64 / whole as f64
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nodes_share_the_integral_of_the_density() {
+        // density 1 + 3 x on [0, 1]: the integral x + 1.5 x^2 grows by 0.25 from node to node of ten cells
+        let shares = equidistributed(&[2.0, 3.0], &[1.0, 4.0], 10);
+        assert_eq!((shares.len(), shares[0], shares[10]), (11, 0.0, 1.0));
+        for (k, x) in shares.iter().enumerate() {
+            assert!((x + 1.5 * x * x - 0.25 * ratio(k, 1)).abs() < 1e-14, "{k}: {x}");
+        }
+        // three stretches of other densities: half of the cells lie in the dense one
+        let shares = equidistributed(&[0.0, 1.0, 1.0 + 1e-9, 2.0], &[1.0, 1.0, 3.0, 3.0], 8);
+        assert!((shares[2] - 0.5).abs() < 1e-6 && (shares[5] - 0.75).abs() < 1e-6, "{shares:?}");
+    }
+
+    #[test]
+    fn density_is_the_root_of_the_relative_curvatures() {
+        // p = 1 - x^2 and h = 1 + x^2: on even nodes the curvatures are 2
+        let x: Vec<f64> = (-20..=20).map(|i| f64::from(i) * 0.05).collect();
+        let p: Vec<f64> = x.iter().map(|x| 1.0 - x * x).collect();
+        let h: Vec<f64> = x.iter().map(|x| 1.0 + x * x).collect();
+        let found = density(&x, &p, &h);
+        let exact = |x: f64| 2_f64.sqrt() + (2.0 / (1.0 + x * x)).sqrt() + 1.0 / (0.5 + x.abs());
+        for i in [8, 12, 28, 32] {
+            assert!((found[i] / exact(x[i]) - 1.0).abs() < 0.01, "{}: {}", x[i], found[i]);
+        }
+        // what is too sharp draws no more than so many
+        let spike = density(&[-1.0, 0.0, 1e-6, 1.0], &[0.0, 0.0, 1.0, 0.0], &[1.0; 4]);
+        assert!(spike.iter().all(|d| *d <= 2.0 * SHARPEST + 2.0 && *d > 1.0), "{spike:?}");
+    }
+
+    #[test]
+    fn interpolation_keeps_lines_and_does_not_overshoot() {
+        let (x, line) = ([0.0, 0.5, 2.0, 2.5, 4.0], [1.0, 2.0, 5.0, 6.0, 9.0]);
+        let places = [-1.0, 0.0, 0.2, 1.0, 2.0, 2.1, 3.9, 4.0, 5.0];
+        for (place, y) in places.iter().zip(interpolated(&x, &line, &places)) {
+            let within = place.clamp(0.0, 4.0);
+            assert!((y - (1.0 + 2.0 * within)).abs() < 1e-14, "{place}: {y}");
+        }
+        let step = interpolated(&[0.0, 1.0, 2.0, 3.0], &[0.0, 0.0, 1.0, 1.0], &[0.5, 1.5, 2.5]);
+        assert_eq!(step, [0.0, 0.5, 1.0]);
+        // slopes between: the harmonic mean of the chords, weighted by what lies beyond (Fritsch and Butland)
+        let curve = interpolated(&[0.0, 1.0, 3.0], &[0.0, 1.0, 9.0], &[0.5, 2.0]);
+        // slope at 1 is (5 + 4)/(5/1 + 4/4) = 1.5
+        assert!((curve[0] - (0.5 + 0.125 * (1.0 - 1.5))).abs() < 1e-14, "{curve:?}");
+        assert!((curve[1] - (5.0 + 0.25 * (1.5 - 4.0))).abs() < 1e-14, "{curve:?}");
+    }
+}

@@ -59,7 +59,7 @@ impl LineContact {
     /// If a number is out of range, with its name.
     pub fn checked(self) -> Result<Self, Error> {
         above("radius", self.radius, 0.0)?;
-        above("contact_modulus", self.contact_modulus, 0.0)?;
+        above("effective_modulus", 2.0 * self.contact_modulus, 0.0)?;
         above("load", self.load, 0.0)?;
         above("entrainment_speed", self.entrainment_speed, 0.0)?;
         finite("sliding_speed", self.sliding_speed)?;

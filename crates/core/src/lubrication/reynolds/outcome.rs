@@ -200,3 +200,26 @@ fn parabola(x: &[f64], h: &[f64], place: Option<f64>) -> f64 {
     let s = place.map_or(-slope / (2.0 * bend), |place| place - x[i]);
     h[i] + s * (slope + s * bend)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_parabola_is_read_where_it_is_asked_for() {
+        // 2 + 0.5 (x - 0.4)^2 on uneven nodes
+        let x = [-1.0, -0.2, 0.1, 0.7, 1.5];
+        let h = x.map(|x: f64| 2.0 + 0.5 * (x - 0.4).powi(2));
+        assert!((parabola(&x, &h, None) - 2.0).abs() < 1e-14);
+        assert!((parabola(&x, &h, Some(0.0)) - 2.08).abs() < 1e-14);
+        assert!((parabola(&x, &h, Some(1.2)) - 2.32).abs() < 1e-14);
+        assert!((parabola(&x, &h, Some(-3.0)) - 7.78).abs() < 1e-13);
+    }
+
+    #[test]
+    fn tractions_add_shear_and_pressure_each_with_its_side() {
+        let summary = Summary { central: 1.0, minimum: 0.8, couette: 3.0, poiseuille: 0.5 };
+        assert!((summary.traction_1() + 3.5).abs() < 1e-15);
+        assert!((summary.traction_2() - 2.5).abs() < 1e-15);
+    }
+}

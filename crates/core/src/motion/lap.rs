@@ -1,0 +1,160 @@
+//! One lap of a periodic motion: where it begins and ends, what happens on it, and where the laps are heading.
+
+use super::cycle::{CycleKind, StickSlipCycle};
+use super::event::{Event, Guard};
+use super::piece::Piece;
+use super::system::Drivetrain;
+use crate::drag::{Drag, Mode};
+
+/// State where a lap ends and the next begins.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Section {
+    pub time: f64,
+    pub stuck: bool,
+    belt_speed: f64,
+    pub pull: f64,
+}
+
+impl Section {
+    pub(super) fn repeats(
+        &self,
+        previous: &Self,
+        drag: &Drag,
+        train: &Drivetrain,
+        near: f64,
+    ) -> bool {
+        let speed_scale = drag.stick_speed().max(self.belt_speed.abs());
+        let impedance = (train.stiffness() * train.mass()).sqrt();
+        let pull_scale = self.pull.abs().max(speed_scale * impedance);
+        self.stuck == previous.stuck
+            && (self.belt_speed - previous.belt_speed).abs() <= near * speed_scale
+            && (self.pull - previous.pull).abs() <= near * pull_scale
+    }
+}
+
+/// The last laps' pulls where the belt overtakes the drive, to shorten a long approach.
+///
+/// The map from one overtaking to the next has one variable and cannot swap two orbits, so every state
+/// between here and where the laps are heading leads there too: part of the way can be skipped.
+#[derive(Default)]
+pub(super) struct Pace {
+    pulls: Vec<f64>,
+}
+
+impl Pace {
+    /// Share of the way to the expected limit that is skipped.
+    const SKIPPED: f64 = 0.7;
+    /// Growth of a swing away from an unstable orbit that is skipped at once.
+    const GROWTH: f64 = 1.2;
+    /// Laps that shrink faster than this need no help.
+    const SLOW: f64 = 0.8;
+
+    /// A pull further along the way of the laps, if they are slow and steady enough to foresee.
+    pub(super) fn ahead(&mut self, pull: f64, steady_pull: f64) -> Option<f64> {
+        self.pulls.push(pull);
+        let [.., a, b, c, d] = self.pulls[..] else { return None };
+        let (ratio, before) = ((d - c) / (c - b), (c - b) / (b - a));
+        let steady = (ratio - before).abs() < 0.1 * (1.0 - ratio).abs();
+        let growth = ratio - 1.0;
+        let noise = 1e-7 * (d - steady_pull).abs();
+        if !steady || (d - c).abs() < noise || !(Self::SLOW..1.1).contains(&ratio) || growth == 0.0
+        {
+            return None;
+        }
+        let limit = d - (d - c) * ratio / growth;
+        let jump = if growth < 0.0 {
+            Self::SKIPPED * (limit - d)
+        } else {
+            (Self::GROWTH - 1.0) * (d - limit)
+        };
+        let most = 0.5 * (d - steady_pull).abs();
+        self.pulls.clear();
+        Some(d + jump.clamp(-most, most))
+    }
+}
+
+/// The section of sticking motion: the release from the stuck phase.
+///
+/// A smooth closure has no stuck phase: there it is the moment when the belt leaves the creep below `v_s`.
+pub(super) fn release(event: Option<Event>, smooth: bool, train: &Drivetrain) -> Option<Section> {
+    let released = |e: &Event| {
+        e.from == Mode::Stuck
+            || (smooth && e.from == Mode::Microslip && e.guard == Guard::StickSpeed)
+    };
+    let Event { time, belt_speed, stretch, .. } = event.filter(released)?;
+    Some(Section { time, stuck: true, belt_speed, pull: train.stiffness() * stretch })
+}
+
+/// The section of motion without sticking: the belt overtakes the drive.
+pub(super) fn overtaking(piece: &Piece, drive_speed: f64) -> Option<Section> {
+    let elapsed = piece.overtaking(drive_speed)?;
+    let (belt_speed, pull) = piece.at(elapsed);
+    Some(Section { time: piece.time + elapsed, stuck: false, belt_speed, pull })
+}
+
+/// Extremes and durations of the lap under way.
+pub(super) struct Lap {
+    begin: f64,
+    pub stick_duration: f64,
+    pub speed: (f64, f64),
+    pull: (f64, f64),
+    /// Integral of the pull over time.
+    impulse: f64,
+}
+
+impl Lap {
+    pub(super) fn starting_at(time: f64) -> Self {
+        let none = (f64::INFINITY, f64::NEG_INFINITY);
+        Self { begin: time, stick_duration: 0.0, speed: none, pull: none, impulse: 0.0 }
+    }
+
+    pub(super) fn add(&mut self, piece: &Piece, smooth: bool) {
+        if piece.start.mode == Mode::Stuck || (smooth && piece.start.mode == Mode::Microslip) {
+            self.stick_duration += piece.duration;
+        }
+        self.add_rest_of(piece, piece.time);
+    }
+
+    /// Take in `piece` from `time` on: its impulse, and the extremes at its ends and turning points.
+    pub(super) fn add_rest_of(&mut self, piece: &Piece, time: f64) {
+        if piece.duration.is_infinite() {
+            return;
+        }
+        let begin = time - piece.time;
+        self.impulse += piece.impulse(begin);
+        let turning = piece.turning_points().map(|t| t.filter(|t| *t >= begin));
+        for elapsed in
+            [Some(begin), Some(piece.duration), turning[0], turning[1]].into_iter().flatten()
+        {
+            let (belt_speed, pull) = piece.at(elapsed);
+            self.speed = (self.speed.0.min(belt_speed), self.speed.1.max(belt_speed));
+            self.pull = (self.pull.0.min(pull), self.pull.1.max(pull));
+        }
+    }
+
+    /// The lap as a cycle that ends at `end`.
+    pub(super) fn cycle(
+        &self,
+        kind: CycleKind,
+        end: f64,
+        laps: usize,
+        drive_speed: f64,
+        stiffness: f64,
+    ) -> StickSlipCycle {
+        let duration = end - self.begin;
+        let periodic = duration.is_finite() && duration > 0.0;
+        StickSlipCycle {
+            kind,
+            frequency: if periodic { 1.0 / duration } else { 0.0 },
+            slip_duration: if periodic { duration - self.stick_duration } else { 0.0 },
+            stick_duration: if periodic { self.stick_duration } else { 0.0 },
+            speed_min: self.speed.0,
+            speed_max: self.speed.1,
+            stretch_min: self.pull.0 / stiffness,
+            stretch_max: self.pull.1 / stiffness,
+            // over a closed lap all work of the drive ends in drag
+            drag_work: if periodic { drive_speed * self.impulse } else { 0.0 },
+            laps,
+        }
+    }
+}

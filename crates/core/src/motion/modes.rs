@@ -1,0 +1,237 @@
+//! Changes of mode: which one holds at the start, which guard ends it, and which follows.
+
+use super::event::Guard;
+use super::hybrid::Motion;
+use super::piece::{Condition, Phase, Piece};
+use super::taylor::Warmth;
+use crate::drag::{Closure, Mode};
+
+impl Motion<'_> {
+    /// Bristles of a sliding belt are bent as in steady sliding.
+    pub(super) fn bend_bristles(&mut self) {
+        if let Closure::LuGre { bristle_stiffness, .. } = self.now.system.drag.closure()
+            && self.phase.speed >= self.now.speed(self.now.system.drag.stick_speed())
+        {
+            self.phase.bristle = self.now.steady_drag(self.phase.speed) / bristle_stiffness;
+        }
+    }
+
+    /// Enter the mode that pull and speed ask for.
+    pub(super) fn enter_mode_at_start(&mut self) {
+        let drag = &self.now.system.drag;
+        let Phase { pull, speed, .. } = self.phase;
+        let v_s = self.now.speed(drag.stick_speed());
+        if speed < v_s {
+            if drag.closure() == Closure::Stiction {
+                self.phase.mode = self.mode_below_stick_speed();
+            } else {
+                let held =
+                    !drag.closure().is_smooth() && pull.abs() <= self.now.holding_force(speed);
+                self.phase.mode = if held { Mode::Stuck } else { Mode::Microslip };
+            }
+            return;
+        }
+        // on a boundary the motion itself says which side it belongs to: m u' and, where that is nil, u''
+        let net_force = pull - self.now.steady_drag(speed);
+        let onward = self.rate()[0] - self.now.system.train.stiffness() * speed;
+        let rising = net_force > 0.0 || (net_force == 0.0 && onward >= 0.0);
+        let x = self.now.unwarmed(speed);
+        let mut branch = drag.branch(x);
+        if !rising && branch > 0 && drag.upper_knot(branch - 1) == Some(x) && x > drag.stick_speed()
+        {
+            branch -= 1;
+        }
+        self.phase.branch = branch;
+        self.phase.mode = if rising || speed > v_s {
+            drag.branch_mode(branch)
+        } else {
+            self.mode_below_stick_speed()
+        };
+    }
+
+    /// Mode of a belt that has slowed to the stick speed; with `Stiction` it stops dead if it can be held.
+    fn mode_below_stick_speed(&mut self) -> Mode {
+        let drag = &self.now.system.drag;
+        let closure = drag.closure();
+        let holding = self.now.holding_force(self.now.speed(drag.stick_speed()));
+        if closure.is_smooth() || self.phase.pull.abs() > holding {
+            return Mode::Microslip;
+        }
+        if closure == Closure::Stiction {
+            self.stop_dead();
+        }
+        Mode::Stuck
+    }
+
+    fn stop_dead(&mut self) {
+        self.stopped += 0.5 * self.now.system.train.mass() * self.phase.speed * self.phase.speed;
+        self.phase.speed = 0.0;
+    }
+
+    /// Enter the mode behind `guard`, on it exactly.
+    pub(super) fn cross(&mut self, guard: Guard) {
+        let crept = self.phase.creeping;
+        (self.phase.released, self.phase.creeping) = (false, false);
+        self.next_step = f64::INFINITY;
+        self.phase.mode = match (guard, self.phase.mode) {
+            (Guard::TransitionSpeed | Guard::TablePoint, _) => self.over_knot(),
+            (Guard::StickSpeed, from) => self.over_stick_speed(from),
+            (Guard::HoldingForce, Mode::Stuck) => self.released(),
+            (Guard::HoldingForce, _) => self.caught(),
+            (Guard::Reversal, _) => self.turned(crept),
+        };
+    }
+
+    /// Onto the next branch of the law.
+    fn over_knot(&mut self) -> Mode {
+        let drag = &self.now.system.drag;
+        let x = self.now.unwarmed(self.phase.speed);
+        let above = drag.upper_knot(self.phase.branch);
+        let below = drag.lower_knot(self.phase.branch);
+        // the knot that was reached is the nearer one
+        let up = match (above, below) {
+            (Some(a), Some(b)) => (a - x).abs() <= (x - b).abs(),
+            (above, _) => above.is_some(),
+        };
+        let knot = if up { above } else { below };
+        self.phase.speed = self.now.speed(knot.unwrap_or(x));
+        self.phase.branch = if up { self.phase.branch + 1 } else { self.phase.branch - 1 };
+        drag.branch_mode(self.phase.branch)
+    }
+
+    /// Past the stick speed, up out of the microslip or down from sliding.
+    fn over_stick_speed(&mut self, from: Mode) -> Mode {
+        let drag = &self.now.system.drag;
+        self.phase.speed = self.now.speed(drag.stick_speed());
+        if from != Mode::Microslip {
+            return self.mode_below_stick_speed();
+        }
+        self.phase.branch = drag.branch(drag.stick_speed());
+        drag.branch_mode(self.phase.branch)
+    }
+
+    /// Held by just what it is pulled with.
+    fn caught(&mut self) -> Mode {
+        self.phase.pull = self.now.holding_force(self.phase.speed).copysign(self.phase.pull);
+        if self.now.system.drag.closure() == Closure::Stiction {
+            self.stop_dead();
+        }
+        Mode::Stuck
+    }
+
+    /// At rest for an instant: held there, or off the other way.
+    fn turned(&mut self, crept: bool) -> Mode {
+        self.phase.speed = 0.0;
+        if crept {
+            return self.released();
+        }
+        let held = self.now.system.drag.closure() == Closure::Stiction
+            && self.phase.pull.abs() <= self.now.holding_force(0.0);
+        if held {
+            return Mode::Stuck;
+        }
+        self.mirror();
+        Mode::Microslip
+    }
+
+    /// Leave the stuck phase with the spring force exactly at the holding force.
+    fn released(&mut self) -> Mode {
+        let drag = &self.now.system.drag;
+        self.phase.pull = self.now.holding_force(self.phase.speed).copysign(self.phase.pull);
+        let forward = self.phase.pull > 0.0;
+        if self.phase.speed == 0.0 && !forward {
+            self.mirror();
+        }
+        self.phase.creeping = self.phase.speed > 0.0 && !forward;
+        self.phase.released = !self.phase.creeping;
+        if forward && self.phase.speed >= self.now.speed(drag.stick_speed()) {
+            self.phase.branch = drag.branch(self.now.unwarmed(self.phase.speed));
+            drag.branch_mode(self.phase.branch)
+        } else {
+            Mode::Microslip
+        }
+    }
+
+    fn mirror(&mut self) {
+        self.phase.direction = -self.phase.direction;
+        self.phase.pull = -self.phase.pull;
+        self.phase.bristle = -self.phase.bristle;
+    }
+
+    /// The guard that the piece crosses first, if it crosses any.
+    pub(super) fn first_guard(&self, piece: &Piece) -> Option<(f64, Guard)> {
+        if piece.duration.is_infinite() {
+            return None;
+        }
+        let mut watch = Watch::over(piece, self.now.warmth.as_ref());
+        let drag = &self.now.system.drag;
+        match self.phase.mode {
+            Mode::Stuck => {
+                watch.look(Condition::HeldForward, Guard::HoldingForce);
+                watch.look(Condition::HeldBack, Guard::HoldingForce);
+            }
+            Mode::Microslip if self.phase.creeping => {
+                watch.look(Condition::Faster(0.0), Guard::Reversal);
+            }
+            Mode::Microslip => {
+                watch.look(Condition::Slower(drag.stick_speed()), Guard::StickSpeed);
+                match drag.closure() {
+                    Closure::Retained => watch.look(Condition::Overcome, Guard::HoldingForce),
+                    Closure::Stiction => {
+                        watch.look(Condition::Pulled(drag.breakaway_force()), Guard::HoldingForce);
+                    }
+                    Closure::Stribeck | Closure::LuGre { .. } => {}
+                }
+                watch.look(Condition::Faster(0.0), Guard::Reversal);
+            }
+            Mode::Ehl | Mode::Mixed => self.watch_branch(&mut watch),
+        }
+        watch.first
+    }
+
+    /// Watch the ends of the branch of the law.
+    #[inline]
+    fn watch_branch(&self, watch: &mut Watch) {
+        let (drag, branch) = (&self.now.system.drag, self.phase.branch);
+        let named = |is_transition: bool| {
+            if is_transition { Guard::TransitionSpeed } else { Guard::TablePoint }
+        };
+        if let Some(knot) = drag.upper_knot(branch) {
+            watch.look(Condition::Slower(knot), named(drag.is_transition(branch)));
+        }
+        match drag.lower_knot(branch) {
+            Some(knot) => {
+                watch.look(Condition::Faster(knot), named(drag.is_transition(branch - 1)));
+            }
+            None => watch.look(Condition::Faster(drag.stick_speed()), Guard::StickSpeed),
+        }
+    }
+}
+
+/// The earliest guard met along a piece.
+struct Watch<'p> {
+    piece: &'p Piece<'p>,
+    warmth: Option<&'p Warmth>,
+    /// Speeds on the piece, where they are known at once.
+    range: Option<(f64, f64)>,
+    first: Option<(f64, Guard)>,
+}
+
+impl<'p> Watch<'p> {
+    fn over(piece: &'p Piece<'p>, warmth: Option<&'p Warmth>) -> Self {
+        let range = if warmth.is_none() { piece.speed_range() } else { None };
+        Self { piece, warmth, range, first: None }
+    }
+
+    /// See whether `condition`, under which the mode goes on, ends on the piece, and before the others do.
+    fn look(&mut self, condition: Condition, guard: Guard) {
+        if self.range.is_some_and(|range| condition.holds_over(range)) {
+            return;
+        }
+        if let Some(elapsed) = self.piece.end_of(condition, self.warmth)
+            && self.first.is_none_or(|(earliest, _)| elapsed < earliest)
+        {
+            self.first = Some((elapsed, guard));
+        }
+    }
+}

@@ -1,0 +1,224 @@
+//! The next piece of smooth motion: held in closed form, as a Taylor series, or by a Runge-Kutta step.
+
+use super::event::ROUNDING;
+use super::hybrid::Motion;
+use super::piece::{Path, Phase, Piece};
+use super::polynomial::first_crossing;
+use super::runge_kutta::{Flow, Formula, growth};
+use super::system::Integrator;
+use super::taylor::{Recurrence, Series, Slip, SlipStart, creep_series, held_series};
+use crate::drag::{Closure, Mode};
+use crate::error::Error;
+
+/// Longest step in units of `sqrt(m/k)`, about half a period of the free oscillation.
+const LONGEST_STEP: f64 = 3.0;
+
+/// Decay over the time in question, in e-folds, from which the rising branch counts as stiff.
+const STIFF: f64 = 30.0;
+
+/// Lengths tried for one Runge-Kutta step before the motion is given up.
+const MAX_TRIES: usize = 200;
+
+impl<'a> Motion<'a> {
+    /// The smooth motion from here, `longest` at most, with its own length; guards are not looked at.
+    pub(super) fn piece(&mut self, longest: f64) -> Result<Piece<'a>, Error> {
+        let start = self.phase;
+        if start.mode == Mode::Stuck {
+            return Ok(self.held_piece(longest));
+        }
+        if self.on_a_corner() {
+            return Ok(self.along(Series::still(start.pull, start.speed), longest));
+        }
+        if start.creeping || !self.needs_steps(longest) {
+            return Ok(self.series_piece(longest));
+        }
+        self.steps_piece(longest)
+    }
+
+    /// Whether the belt rests on a corner of the drag law, where rounding would switch modes for ever.
+    fn on_a_corner(&self) -> bool {
+        let Phase { mode, pull, speed, branch, .. } = self.phase;
+        if mode == Mode::Microslip || self.now.warmth.is_some() {
+            return false;
+        }
+        let drag = &self.now.system.drag;
+        let onward = (self.rate()[0] - self.now.system.train.stiffness() * speed).abs();
+        let steady = self.rate()[1..] == [0.0; 3]
+            && onward <= ROUNDING * self.now.system.train.stiffness() * speed;
+        steady
+            && [drag.upper_knot(branch), drag.lower_knot(branch)].into_iter().flatten().any(
+                |knot| {
+                    let force = drag.force(knot);
+                    (speed - knot).abs() <= ROUNDING * knot
+                        && (pull - force).abs() <= ROUNDING * force
+                },
+            )
+    }
+
+    /// The held belt keeps its speed while the pull grows.
+    fn held_piece(&self, longest: f64) -> Piece<'a> {
+        let series = held_series(&self.slip_start());
+        let duration = match &self.now.warmth {
+            // the guard is found inside the piece
+            None if longest.is_infinite() => 1.01 * self.release_time(),
+            None => longest,
+            Some(warmth) => {
+                // no longer than the series of the holding force is good for
+                let breakaway = self.now.system.drag.breakaway_force();
+                let holding = Series { pull: series.drag, ..series };
+                let scale = self.phase.pull.abs().max(1e-3 * breakaway);
+                let good = holding.step_size(self.tolerance, scale, 1.0).min(longest);
+                // and not past the moment when the stick speed passes the belt: there another law holds it
+                let (speed, v_s) = (self.phase.speed, self.now.system.drag.stick_speed());
+                let side = if self.now.held_fast(self.phase.speed) { -1.0 } else { 1.0 };
+                let mut gap = warmth.speed.map(|c| side * v_s * c);
+                gap[0] -= side * speed;
+                let apart = gap[0] > ROUNDING * speed;
+                let passing = if apart { first_crossing(&gap, good) } else { None };
+                passing.unwrap_or(good)
+            }
+        };
+        self.along(series, duration)
+    }
+
+    /// A piece from here along `series`.
+    #[allow(clippy::large_types_passed_by_value)] // it moves into the piece
+    fn along(&self, series: Series, duration: f64) -> Piece<'a> {
+        let path = Path::Series(series);
+        Piece { time: self.now.time, duration, start: self.phase, flow: self.flow(), path }
+    }
+
+    /// How long the drive, at constant speed, takes to overcome what holds the belt.
+    fn release_time(&self) -> f64 {
+        let Phase { pull, speed, .. } = self.phase;
+        let rate = self.rate()[0] - self.now.system.train.stiffness() * speed;
+        let limit = self.now.holding_force(speed);
+        if rate == 0.0 { f64::INFINITY } else { ((limit.copysign(rate) - pull) / rate).max(0.0) }
+    }
+
+    fn scales(&self) -> [f64; 3] {
+        let drag = &self.now.system.drag;
+        let train = &self.now.system.train;
+        let speed = self.phase.speed.max(self.now.speed(drag.stick_speed()));
+        let impedance = (train.stiffness() * train.mass()).sqrt();
+        let pull = self.phase.pull.abs().max(speed * impedance).max(1e-9 * drag.transition_force());
+        let bristle = match drag.closure() {
+            Closure::LuGre { bristle_stiffness, .. } => drag.transition_force() / bristle_stiffness,
+            _ => 1.0,
+        };
+        [pull, speed, bristle]
+    }
+
+    /// Whether the equation is stiff here, or has no series.
+    fn needs_steps(&self, longest: f64) -> bool {
+        if self.integrator == Integrator::DormandPrince || self.now.system.has_bristles() {
+            return true;
+        }
+        let drag = &self.now.system.drag;
+        if self.phase.mode == Mode::Microslip {
+            return drag.closure() == Closure::Stribeck;
+        }
+        let horizon = longest.min(self.now.system.train.time_scale());
+        let exponent = drag.branch_exponent(self.phase.branch);
+        let force = self.phase.pull.max(drag.transition_force());
+        exponent * force / (self.phase.speed * self.now.system.train.mass()) * horizon > STIFF
+    }
+
+    fn slip_start(&self) -> SlipStart<'_> {
+        let Phase { mode, branch, pull, speed, .. } = self.phase;
+        let drag = &self.now.system.drag;
+        let x = self.now.unwarmed(speed);
+        let (base, law) = match mode {
+            Mode::Ehl | Mode::Mixed => {
+                (drag.branch_force(branch, x), Recurrence::power(drag.branch_exponent(branch), x))
+            }
+            Mode::Stuck if self.now.held_fast(self.phase.speed) => {
+                let exponent = drag.branch_exponent(drag.branch(x));
+                (drag.force(x), Recurrence::power(exponent, x))
+            }
+            _ => (drag.exponential(x), Recurrence::exponential(drag.stick_speed())),
+        };
+        let force = if self.phase.released { pull / self.now.force(1.0) } else { base };
+        SlipStart {
+            stiffness: self.now.system.train.stiffness(),
+            mass: self.now.system.train.mass(),
+            rate: self.rate(),
+            pull,
+            speed,
+            force,
+            law,
+            warmth: self.now.warmth.as_ref(),
+        }
+    }
+
+    fn series_piece(&self, longest: f64) -> Piece<'a> {
+        let [mut pull_scale, speed_scale, _] = self.scales();
+        if self.phase.creeping {
+            pull_scale = self.phase.pull.abs(); // the speed follows its logarithm
+        }
+        let start = self.slip_start();
+        let v_s = self.now.system.drag.stick_speed();
+        let series = if self.phase.creeping {
+            creep_series(&start, v_s)
+        } else {
+            self.arch.dispatch(Slip(start))
+        };
+        let duration = series
+            .step_size(self.tolerance, pull_scale, speed_scale)
+            .min(LONGEST_STEP * self.now.system.train.time_scale())
+            .min(longest);
+        self.along(series, duration)
+    }
+
+    /// The equation of motion from here.
+    fn flow(&self) -> Flow<'a> {
+        let sliding = matches!(self.phase.mode, Mode::Ehl | Mode::Mixed);
+        Flow {
+            drag: &self.now.system.drag,
+            branch: sliding.then_some(self.phase.branch),
+            warming: self.now.warming(),
+            rate: self.rate(),
+            stiffness: self.now.system.train.stiffness(),
+            mass: self.now.system.train.mass(),
+        }
+    }
+
+    fn steps_piece(&mut self, longest: f64) -> Result<Piece<'a>, Error> {
+        self.runge_kutta_steps += 1;
+        let (system, flow) = (self.now.system, self.flow());
+        let formula = match self.integrator {
+            Integrator::Adaptive => Formula::Radau,
+            Integrator::DormandPrince => Formula::DormandPrince,
+        };
+        let (scales, tolerance) = (self.scales(), self.tolerance);
+        let state = self.phase.state();
+        let rates = flow.rates(0.0, &state);
+        let mut duration = self.next_step;
+        if !duration.is_finite() {
+            // a first step in which nothing changes by more than a hundredth of its scale
+            let change = (0..3).map(|i| rates[i].abs() / scales[i]).fold(0.0, f64::max);
+            duration = 0.01 / change.max(1e-3 / system.train.time_scale());
+        }
+        duration = duration.min(longest);
+        let mut tries = 0;
+        loop {
+            tries += 1;
+            if tries > MAX_TRIES {
+                return Err(Error::TooLong { steps: self.steps, time: self.now.time });
+            }
+            if let Some((_, errors)) = formula.step(&flow, &state, duration, &scales, tolerance) {
+                let error =
+                    (0..3).map(|i| errors[i].abs() / (tolerance * scales[i])).fold(0.0, f64::max);
+                if error <= 1.0 {
+                    self.next_step = duration * growth(error);
+                    break;
+                }
+                duration *= growth(error).min(0.8);
+            } else {
+                duration *= 0.25;
+            }
+        }
+        let path = Path::Steps { formula, scales, tolerance };
+        Ok(Piece { time: self.now.time, duration, start: self.phase, flow, path })
+    }
+}

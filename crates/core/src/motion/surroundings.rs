@@ -1,0 +1,139 @@
+//! What surrounds the belt as the motion goes on: the drive, the temperature, and the law of drag that it makes.
+
+use super::event::ROUNDING;
+use super::schedule::Cubic;
+use super::system::{Drive, System};
+use super::taylor::Warmth;
+use crate::drag::Warming;
+
+/// Drive and drag law at the time that the motion has reached.
+pub(super) struct Surroundings<'a> {
+    pub system: &'a System,
+    pub time: f64,
+    /// Segments of the drive and of the temperature that hold now.
+    drive_segment: usize,
+    temperature_segment: usize,
+    /// When the drive or the temperature changes its formula.
+    pub next_change: f64,
+    /// How the law moves with the temperature, if it does.
+    pub warmth: Option<Warmth>,
+}
+
+impl<'a> Surroundings<'a> {
+    /// Those of `system` at time 0.
+    pub(super) fn at_start(system: &'a System) -> Self {
+        let mut surroundings = Self {
+            system,
+            time: 0.0,
+            drive_segment: system.drive.schedule().segment(0.0),
+            temperature_segment: system.temperature.as_ref().map_or(0, |t| t.segment(0.0)),
+            next_change: f64::INFINITY,
+            warmth: None,
+        };
+        surroundings.find_next_change();
+        surroundings.warm();
+        surroundings
+    }
+
+    /// Rate of the pull if the belt stood still, about now, for a belt that moves in `direction`.
+    #[inline]
+    pub(super) fn rate(&self, direction: f64) -> Cubic {
+        let d = direction;
+        match &self.system.drive {
+            Drive::Speed(schedule) => {
+                let k = self.system.train.stiffness();
+                schedule.about(self.drive_segment, self.time).map(|c| d * k * c)
+            }
+            Drive::Force(schedule) => {
+                let [_, b, c, e] = schedule.about(self.drive_segment, self.time);
+                [d * b, d * 2.0 * c, d * 3.0 * e, 0.0]
+            }
+        }
+    }
+
+    fn find_next_change(&mut self) {
+        let drive = self.system.drive.schedule().end(self.drive_segment);
+        let temperature = &self.system.temperature;
+        let warm = temperature.as_ref().map_or(f64::INFINITY, |t| t.end(self.temperature_segment));
+        self.next_change = drive.min(warm);
+    }
+
+    /// Enter the next segment of the schedules; a jump of the driving force, which is one of the pull, is returned.
+    pub(super) fn pass_change(&mut self) -> Option<f64> {
+        let (schedule, mut jump) = (self.system.drive.schedule(), None);
+        if schedule.end(self.drive_segment) <= self.time {
+            let before = schedule.about(self.drive_segment, self.time)[0];
+            self.drive_segment += 1;
+            let after = schedule.about(self.drive_segment, self.time)[0];
+            if matches!(self.system.drive, Drive::Force(_)) {
+                jump = Some(after - before);
+            }
+        }
+        if let Some(temperature) = &self.system.temperature
+            && temperature.end(self.temperature_segment) <= self.time
+        {
+            self.temperature_segment += 1;
+        }
+        self.find_next_change();
+        jump
+    }
+
+    /// Course of the temperature from now on, and how the law varies with it.
+    pub(super) fn warming(&self) -> Option<(Cubic, Warming)> {
+        let temperature = self.system.temperature.as_ref()?;
+        let warming = self.system.drag.warming()?;
+        Some((temperature.about(self.temperature_segment, self.time), warming))
+    }
+
+    /// Take the law as it is now.
+    #[inline]
+    pub(super) fn warm(&mut self) {
+        self.warmth = self.warming().map(|(temperature, warming)| {
+            let ratio = temperature.map(|c| c / warming.reference);
+            let mut warmth = Warmth::new(&ratio, warming.force_exponent, warming.speed_exponent);
+            let force = ratio[0].powf(warming.force_exponent);
+            let speed = ratio[0].powf(warming.speed_exponent);
+            warmth.force = warmth.force.map(|c| c * force);
+            warmth.speed = warmth.speed.map(|c| c * speed);
+            warmth.slowness = warmth.slowness.map(|c| c / speed);
+            warmth
+        });
+    }
+
+    /// A speed of the law as it is now.
+    #[inline]
+    pub(super) fn speed(&self, base: f64) -> f64 {
+        self.warmth.as_ref().map_or(base, |warmth| base * warmth.speed[0])
+    }
+
+    /// A force of the law as it is now.
+    #[inline]
+    pub(super) fn force(&self, base: f64) -> f64 {
+        self.warmth.as_ref().map_or(base, |warmth| base * warmth.force[0])
+    }
+
+    /// A belt speed in the terms of the law as it was given.
+    #[inline]
+    pub(super) fn unwarmed(&self, speed: f64) -> f64 {
+        self.warmth.as_ref().map_or(speed, |warmth| speed * warmth.slowness[0])
+    }
+
+    /// Whether a belt held at `speed` is faster than the stick speed, which may move past it, or about to be.
+    pub(super) fn held_fast(&self, speed: f64) -> bool {
+        let (x, v_s) = (self.unwarmed(speed), self.system.drag.stick_speed());
+        let falling = self.warmth.as_ref().is_some_and(|warmth| warmth.speed[1] < 0.0);
+        if (x - v_s).abs() <= ROUNDING * v_s { falling } else { x > v_s }
+    }
+
+    /// What can hold a belt at `speed`; a law that moves may leave a held belt above the stick speed.
+    pub(super) fn holding_force(&self, speed: f64) -> f64 {
+        let (drag, x) = (&self.system.drag, self.unwarmed(speed));
+        let fast = x > drag.stick_speed();
+        self.force(if fast { drag.force(x) } else { drag.holding_force(x) })
+    }
+
+    /// Drag in steady sliding at `speed`.
+    pub(super) fn steady_drag(&self, speed: f64) -> f64 {
+        self.force(self.system.drag.force(self.unwarmed(speed)))
+    }
+}
