@@ -6,11 +6,11 @@ import pickle
 
 import numpy as np
 import pytest
-from hersey.contact import shore_a_modulus
-from hersey.lubricant import Lubricant
 
 from hersey import Drag, Drivetrain, hysteresis, simulate, solve_line_contact, stick_slip, sweep
 from hersey.errors import HerseyError, ParameterError, UnfinishedError
+from hersey.lubrication.contact import shore_a_modulus
+from hersey.lubrication.lubricant import Lubricant
 
 TRAIN = Drivetrain(1000, 1)
 PAPER = {"ehl_exponent": -0.7, "mixed_exponent": -1.2, "stick_speed": 0.01}

@@ -209,8 +209,8 @@ def test_the_verdict_of_one_branch_in_words() -> None:
         "Dowson-Higginson EHL. No transition to a falling branch shows in these data."
     )
     assert (
-        "-0.650 [-0.680, -0.620], which agrees with no named regime: it lies between soft EHL and rigid"
-        in (said(-0.65, 0.03 / reach))
+        "-0.630 [-0.640, -0.620], which agrees with no named regime: it lies between soft EHL and rigid"
+        in (said(-0.63, 0.01 / reach))
     )
     assert "-0.65 [-0.75, -0.55], which agrees with soft EHL, rigid piezoviscous film and Dowson-" in said(
         -0.65, 0.1 / reach

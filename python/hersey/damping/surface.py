@@ -283,7 +283,7 @@ class DampingSurface:
         >>> import hersey
         >>> surface = hersey.fit(hersey.read("examples/bench.csv").steady(tare="standing"))
         >>> surface.predict("25 rpm", "150 degC").torque.round(3)
-        array([0.303])
+        array([0.912])
         """
         speeds = np.abs(np.asarray(si("speed", speed), dtype=float))
         self._warn_outside("speed", speeds, self.speed_range)
