@@ -14,7 +14,7 @@ from tests.damping.candidates.test_comparison import REFERENCE, SPEEDS, dwells
 
 STRAIGHT = Law(Thermal(KELVIN, REFERENCE), ONE)
 
-LADDER = {
+ALL = {
     "isothermal/one": ("no temperature x power of speed, one branch", 2),
     "power-degC/one": ("power law in degC x power of speed, one branch", 3),
     "power-K/one": ("power law in K x power of speed, one branch", 3),
@@ -51,11 +51,11 @@ LADDER = {
 }
 
 
-def test_the_ladder_from_the_simplest_on() -> None:
+def test_the_candidates_from_the_simplest_on() -> None:
     data = dwells(STRAIGHT, [0.1, -2.4, -0.7])
     found = {r.key: (r.name, len(r.law(data).names)) for r in all_candidates()}
-    assert found == LADDER
-    assert list(found) == list(LADDER)
+    assert found == ALL
+    assert list(found) == list(ALL)
     assert all(r.refused(data) == "" for r in all_candidates())
 
 
