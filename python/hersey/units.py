@@ -75,7 +75,8 @@ _FORCE, _PRESSURE, _VISCOSITY = (1, 1, -2, 0, 0), (-1, 1, -2, 0, 0), (-1, 1, -1,
 _POUND, _INCH, _GRAVITY = Fraction("0.45359237"), Fraction("0.0254"), Fraction("9.80665")
 _PSI, _TURN = _POUND * _GRAVITY / _INCH**2, 2 * Fraction(math.pi)
 
-#: Units of drives that take SI prefixes, and those that take none: value in SI, exact, and dimension.
+#: Units of drives that take SI prefixes, and those that take none: value in SI, exact, and dimension. Units of
+#: energy are left to pint, which tells them from a torque.
 _PREFIXED: dict[str, tuple[Fraction, _Dimension]] = {
     "m": (Fraction(1), _LENGTH),
     "g": (Fraction(1, 1000), _MASS),
@@ -86,7 +87,6 @@ _PREFIXED: dict[str, tuple[Fraction, _Dimension]] = {
     "bar": (Fraction(100_000), _PRESSURE),
     "P": (Fraction(1, 10), _VISCOSITY),
     "St": (Fraction(1, 10_000), (2, 0, -1, 0, 0)),
-    "W": (Fraction(1), (2, 1, -3, 0, 0)),
 }
 _UNPREFIXED: dict[str, tuple[Fraction, _Dimension]] = {
     "min": (Fraction(60), _TIME),
@@ -170,9 +170,11 @@ def conversion(kind: str, unit: str) -> Conversion:
     si, example = KINDS[kind]
     factor, text = _split_factor(unit.strip(), unit, example)
     line, standard = _from_table(text), _from_table(si)
-    if line is not None and standard is not None and line[2] == standard[2]:
+    if line and standard and line[2] == standard[2]:
         scale, zero = line[:2]
-    else:
+    elif line and standard and line[2][:-1] != standard[2][:-1]:
+        raise _wrong_kind(kind, unit)
+    else:  # a unit beside the table, or one that differs by an angle, which need not matter
         scale, zero = _from_registry(kind, text, unit)
     if not 1e-15 < abs(factor * scale) < 1e15:
         raise UnitError(f"unit '{unit}' has an impossible factor")
@@ -182,8 +184,8 @@ def conversion(kind: str, unit: str) -> Conversion:
 @lru_cache(maxsize=256)
 def _from_table(text: str) -> tuple[float, float, _Dimension] | None:
     """Scale, offset and dimension of a product of units of the table, as ``N*m``; None for any other."""
-    if text in _OFFSETS:
-        return _OFFSETS[text]
+    if text in _OFFSETS or not text:
+        return _OFFSETS.get(text)
     scale, dimension, end = Fraction(1), _NONE, 0
     for match in _TERM.finditer(text):
         sign, name, power = match[1], match[2], int(match[3] or 1)
@@ -194,7 +196,9 @@ def _from_table(text: str) -> tuple[float, float, _Dimension] | None:
         scale *= value**power
         dimension = cast("_Dimension", tuple(a + power * b for a, b in zip(dimension, of_unit, strict=True)))
         end = match.end()
-    return (float(scale), 0.0, dimension) if end == len(text) > 0 else None
+    if end < len(text) or not 1e-99 < scale < 1e99:
+        return None
+    return float(scale), 0.0, dimension
 
 
 def _from_registry(kind: str, text: str, unit: str) -> tuple[float, float]:
@@ -220,11 +224,15 @@ def _from_registry(kind: str, text: str, unit: str) -> tuple[float, float]:
             raise WrongKindError(
                 "unit '%' of a torque needs the torque that 100 % stands for: --torque-unit '9.84 mN*m / 100'"
             )
-        raise WrongKindError(f"unit '{unit}' is not a unit of {kind}: write one such as {example}")
+        raise _wrong_kind(kind, unit)
     if "delta_" in names:
         raise UnitError(f"unit '{unit}' is a difference of temperatures: write degC or K")
     zero, far = (float(registry.Quantity(x, parsed).to(si).magnitude) for x in (0.0, 1e6))
     return (far - zero) / 1e6, zero
+
+
+def _wrong_kind(kind: str, unit: str) -> WrongKindError:
+    return WrongKindError(f"unit '{unit}' is not a unit of {kind}: write one such as {KINDS[kind][1]}")
 
 
 def _split_factor(text: str, unit: str, example: str) -> tuple[float, str]:
