@@ -11,11 +11,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-import typer
 
 import hersey
 from hersey import errors
-from hersey.cli import app
+from hersey.cli.application import VERBS, load
 from tests.conftest import ROOT
 
 PACKAGE = ROOT / "python" / "hersey"
@@ -172,8 +171,7 @@ def test_examples_in_docstrings(module: str, monkeypatch: pytest.MonkeyPatch) ->
 
 
 def commands() -> dict[str, Any]:
-    group: Any = typer.main.get_command(app)
-    return {name: group.get_command(None, name) for name in group.list_commands(None)}
+    return {name: load(name) for name in VERBS}
 
 
 def test_every_flag_is_in_the_docs() -> None:

@@ -1,10 +1,19 @@
 """Units are read at the door, in the spellings of the field, and refused where they could mislead."""
 
-import numpy as np
-import pytest
+from __future__ import annotations
 
+import math
+from typing import Any
+
+import numpy as np
+import pint
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from hersey import units
 from hersey.errors import UnitError
-from hersey.units import conversion, convert, parse
+from hersey.units import KINDS, Conversion, conversion, convert, parse
 
 OUNCE_INCH = 0.45359237 / 16 * 9.80665 * 0.0254
 
@@ -105,3 +114,119 @@ def test_quantities_need_number_and_unit() -> None:
         with pytest.raises(UnitError):
             parse("speed", text)
     assert convert(2 * np.pi, "rad/s", "rpm") == pytest.approx(60)
+
+
+@pytest.fixture(scope="module")
+def theirs() -> pint.UnitRegistry[float]:
+    """The definitions of pint, as they come."""
+    registry: pint.UnitRegistry[float] = pint.UnitRegistry(autoconvert_offset_to_baseunit=True)
+    registry.define("rev = revolution")
+    return registry
+
+
+@pytest.fixture
+def no_registry(monkeypatch: pytest.MonkeyPatch) -> None:
+    """From here on a unit that the table lacks is an error."""
+
+    def forbidden() -> None:
+        raise AssertionError("the registry is asked")
+
+    monkeypatch.setattr(units, "_full_registry", forbidden)
+    for cached in (conversion, units._from_table):
+        cached.cache_clear()
+
+
+def base(dimension: tuple[int, ...]) -> str:
+    return "*".join(f"{unit}**{n}" for unit, n in zip(("m", "kg", "s", "K", "rad"), dimension, strict=True))
+
+
+@pytest.mark.parametrize("name", [*units._TABLE, *units._OFFSETS])
+def test_a_unit_of_the_table_is_that_of_pint(name: str, theirs: Any) -> None:
+    scale, offset, dimension = units._from_table(name) or pytest.fail(name)
+    zero, one = (float(theirs.Quantity(x, name).to(base(dimension)).magnitude) for x in (0.0, 1.0))
+    assert offset == pytest.approx(zero, rel=1e-14, abs=1e-300)
+    assert scale == pytest.approx(one - zero, rel=1e-12)
+
+
+@st.composite
+def products(draw: st.DrawFn) -> str:
+    """Units of the table, multiplied, divided and to small powers."""
+    text = draw(st.sampled_from(["", "1/"]))
+    for i in range(draw(st.integers(1, 4))):
+        sign = draw(st.sampled_from("*/")) if i else ""
+        power = draw(st.sampled_from(["", "", "^2", "**3", "^-1", "**-2"]))
+        text += sign + draw(st.sampled_from(sorted(units._TABLE))) + power
+    return text
+
+
+@settings(max_examples=300, deadline=None, derandomize=True)
+@given(products())
+def test_a_product_is_that_of_pint(theirs: Any, text: str) -> None:
+    line = units._from_table(text)
+    if line is None:  # beyond what any unit could be
+        assert abs(math.log10(theirs.Quantity(1.0, text).to_base_units().magnitude)) > 90
+        return
+    assert line[0] == pytest.approx(theirs.Quantity(1.0, text).to(base(line[2])).magnitude, rel=1e-12)
+
+
+FIELD = {
+    "time": "s ms us min h sec",
+    "torque": "N*m mN*m Nm mNm N.m kN*m cN*m uN*m N*mm ozf*in oz.in lbf*in lbf*ft lbf.in kgf*m gf*cm",
+    "speed": "rad/s rpm RPM rev/s rev/min deg/s mrad/s 1/min U/min",
+    "temperature": "degC degF K °C °F",
+    "stiffness": "N/m N/mm kN/m lbf/in N/um",
+    "mass": "kg g lb oz slug mg",
+    "length": "m mm cm um µm nm in ft inch mil thou",
+    "belt speed": "m/s mm/s in/s ft/min m/min",
+    "force": "N kN mN lbf ozf kgf gf",
+    "acceleration": "m/s^2 mm/s^2 in/s^2",
+    "translational damping": "N*s/m N*s/mm lbf*s/in",
+    "pressure": "Pa kPa MPa GPa bar mbar psi",
+    "viscosity": "Pa*s mPa*s cP P reyn",
+    "kinematic viscosity": "m^2/s mm^2/s cSt St",
+    "density": "kg/m^3 g/cm^3",
+    "pressure-viscosity coefficient": "Pa^-1 GPa^-1 1/GPa",
+}
+
+
+@pytest.mark.usefixtures("no_registry")
+@pytest.mark.parametrize(("kind", "unit"), [(kind, unit) for kind in FIELD for unit in FIELD[kind].split()])
+def test_units_of_drives_need_no_registry(kind: str, unit: str, theirs: Any) -> None:
+    line = conversion(kind, unit)
+    assert conversion(kind, KINDS[kind][0]) == Conversion(KINDS[kind][0], 1.0, 0.0)
+    if kind != "temperature":
+        assert convert(line.scale, KINDS[kind][0], KINDS[kind][0]) == line.scale
+        assert line.offset == 0.0
+        plain = units._split_factor(unit, unit, "")[1]
+        assert line.scale == pytest.approx(float(theirs.Quantity(1.0, plain).to(KINDS[kind][0]).m), rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("kind", "unit", "one"),
+    [
+        ("torque", "dyn*cm", 1e-7),
+        ("torque", "hp/rpm", 6600 * 0.0254 * 0.45359237 * 9.80665 / (math.pi / 30)),
+        ("belt speed", "km/hour", 1 / 3.6),
+        ("pressure", "atm", 101_325.0),
+        ("force", "kip", 4448.2216152605),
+        ("thermal conductivity", "mW/mm/K", 1.0),
+        ("time", "day", 86_400.0),
+    ],
+)
+def test_any_other_unit_is_read_by_pint(kind: str, unit: str, one: float) -> None:
+    assert units._from_table(unit) is None
+    assert conversion(kind, unit).scale == pytest.approx(one, rel=1e-12)
+
+
+@pytest.mark.parametrize(("kind", "unit"), [("torque", "W*s"), ("torque", "mW*s"), ("speed", "1/s")])
+def test_what_misleads_is_not_read_by_the_table(kind: str, unit: str) -> None:
+    with pytest.raises(UnitError):
+        conversion(kind, unit)
+
+
+def test_units_for_people() -> None:
+    assert convert(273.15, "K", "degC") == 0.0
+    assert convert(20.0, "degC", "degF") == pytest.approx(68.0, abs=1e-12)
+    assert convert(1000.0, "J/mol", "kcal/mol") == pytest.approx(1 / 4.184)
+    assert units.rpm(math.pi) == 30.0
+    assert units.celsius(373.15) == 100.0

@@ -1,20 +1,42 @@
-"""The one unit registry: units are read and written at the door, everything inside is SI."""
+"""The one door for units: they are read and written here, everything inside is SI.
+
+The units in which logs and machine files of drives are written stand in a table, so that reading one loads no
+registry. Pint reads every other unit, and says what is wrong with one that misleads; a test holds the table
+to its definitions.
+"""
 
 from __future__ import annotations
 
 import math
 import re
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import lru_cache
-from typing import Any
-
-import numpy as np
-import pint
+from typing import TYPE_CHECKING, Any, cast
 
 from hersey.errors import UnitError, WrongKindError
 
-registry: pint.UnitRegistry[float] = pint.UnitRegistry(autoconvert_offset_to_baseunit=True, cache_folder=None)
-registry.define("rev = revolution")
+if TYPE_CHECKING:
+    import pint
+
+
+class _OnFirstUse:
+    """The registry of pint, which takes longer to import and fill than many a command to run."""
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(_full_registry(), name)
+
+
+@lru_cache(maxsize=1)
+def _full_registry() -> pint.UnitRegistry[float]:
+    import pint
+
+    full: pint.UnitRegistry[float] = pint.UnitRegistry(autoconvert_offset_to_baseunit=True, cache_folder=None)
+    full.define("rev = revolution")
+    return full
+
+
+registry = cast("pint.UnitRegistry[float]", _OnFirstUse())
 
 #: 0 degC, K.
 ZERO_CELSIUS = 273.15
@@ -39,6 +61,66 @@ KINDS: dict[str, tuple[str, str]] = {
     "thermal conductivity": ("W/m/K", "W/m/K"),
 }
 
+#: Exponents of m, kg, s, K and rad. The angle counts here, so that 1/s is no speed of a drive.
+_Dimension = tuple[int, int, int, int, int]
+_NONE: _Dimension = (0, 0, 0, 0, 0)
+_LENGTH, _MASS, _TIME, _TEMPERATURE, _ANGLE = (
+    (1, 0, 0, 0, 0),
+    (0, 1, 0, 0, 0),
+    (0, 0, 1, 0, 0),
+    (0, 0, 0, 1, 0),
+    (0, 0, 0, 0, 1),
+)
+_FORCE, _PRESSURE, _VISCOSITY = (1, 1, -2, 0, 0), (-1, 1, -2, 0, 0), (-1, 1, -1, 0, 0)
+_POUND, _INCH, _GRAVITY = Fraction("0.45359237"), Fraction("0.0254"), Fraction("9.80665")
+_PSI, _TURN = _POUND * _GRAVITY / _INCH**2, 2 * Fraction(math.pi)
+
+#: Units of drives that take SI prefixes, and those that take none: value in SI, exact, and dimension. Units of
+#: energy are left to pint, which tells them from a torque.
+_PREFIXED: dict[str, tuple[Fraction, _Dimension]] = {
+    "m": (Fraction(1), _LENGTH),
+    "g": (Fraction(1, 1000), _MASS),
+    "s": (Fraction(1), _TIME),
+    "rad": (Fraction(1), _ANGLE),
+    "N": (Fraction(1), _FORCE),
+    "Pa": (Fraction(1), _PRESSURE),
+    "bar": (Fraction(100_000), _PRESSURE),
+    "P": (Fraction(1, 10), _VISCOSITY),
+    "St": (Fraction(1, 10_000), (2, 0, -1, 0, 0)),
+}
+_UNPREFIXED: dict[str, tuple[Fraction, _Dimension]] = {
+    "min": (Fraction(60), _TIME),
+    "h": (Fraction(3600), _TIME),
+    "deg": (_TURN / 360, _ANGLE),
+    "rev": (_TURN, _ANGLE),
+    "rpm": (_TURN / 60, (0, 0, -1, 0, 1)),
+    "K": (Fraction(1), _TEMPERATURE),
+    "inch": (_INCH, _LENGTH),
+    "in": (_INCH, _LENGTH),
+    "ft": (12 * _INCH, _LENGTH),
+    "thou": (_INCH / 1000, _LENGTH),
+    "lb": (_POUND, _MASS),
+    "oz": (_POUND / 16, _MASS),
+    "slug": (_POUND * _GRAVITY / (12 * _INCH), _MASS),
+    "lbf": (_POUND * _GRAVITY, _FORCE),
+    "ozf": (_POUND / 16 * _GRAVITY, _FORCE),
+    "kgf": (_GRAVITY, _FORCE),
+    "gf": (_GRAVITY / 1000, _FORCE),
+    "psi": (_PSI, _PRESSURE),
+    "reyn": (_PSI, _VISCOSITY),
+}
+_PREFIXES = {"G": 9, "M": 6, "k": 3, "": 0, "d": -1, "c": -2, "m": -3, "u": -6, "µ": -6, "μ": -6, "n": -9}
+_TABLE = {
+    prefix + name: (Fraction(10) ** power * value, dimension)
+    for prefix, power in _PREFIXES.items()
+    for name, (value, dimension) in _PREFIXED.items()
+} | _UNPREFIXED
+#: Scales of temperature that do not start at absolute zero: K = scale * value + offset.
+_OFFSETS = {
+    "degC": (1.0, ZERO_CELSIUS, _TEMPERATURE),
+    "degF": (5 / 9, ZERO_CELSIUS - 32 * 5 / 9, _TEMPERATURE),
+}
+
 # Spellings of the field that pint does not know, or reads as something else.
 _SPELLINGS = (
     (r"(?i:(°|º|deg(\.|rees?)?)\s*C|℃|celsius)|C", "degC"),
@@ -52,11 +134,13 @@ _SPELLINGS = (
     (r"rad\s+s(\^|\*\*)?-1|rad\s+s⁻¹", "rad/s"),
     (r"([mcdknuµμ]?)N[\s.·*-]?([mc]?m)", r"\1N*\2"),
     (r"(?i:sec)", "s"),
+    (r"mils?", "thou"),
 )
 _ALPHABET = re.compile(r"[A-Za-z0-9_°ºµμΩ%℃℉\s.·*/^()⁻¹²³-]{0,60}")
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _FACTORED = re.compile(rf"\s*({_NUMBER})?\s*\*?\s*([A-Za-z°ºµμ%℃℉/(1].*?)\s*(?:/\s*({_NUMBER}))?\s*")
 _POWER = re.compile(r"(?<=[A-Za-z)])(\*\*|\^)-?[1-4](?![\d.*^])")
+_TERM = re.compile(r"([*/]?)([A-Za-zµμ]+|1)(?:(?:\*\*|\^)(-?[1-4]))?")
 _ANGLES = re.compile(r"radian|degree|rev|turn|cycle|arc")
 _ENERGIES = re.compile(r"joule|watt|volt|calorie|erg|british")
 
@@ -85,6 +169,47 @@ def conversion(kind: str, unit: str) -> Conversion:
     """
     si, example = KINDS[kind]
     factor, text = _split_factor(unit.strip(), unit, example)
+    line, standard = _from_table(text), _from_table(si)
+    if line and standard and line[2] == standard[2]:
+        scale, zero = line[:2]
+    elif line and standard and line[2][:-1] != standard[2][:-1]:
+        raise _wrong_kind(kind, unit)
+    else:  # a unit beside the table, or one that differs by an angle, which need not matter
+        scale, zero = _from_registry(kind, text, unit)
+    if not 1e-15 < abs(factor * scale) < 1e15:
+        raise UnitError(f"unit '{unit}' has an impossible factor")
+    return Conversion(unit, factor * scale, zero)
+
+
+@lru_cache(maxsize=256)
+def _from_table(text: str) -> tuple[float, float, _Dimension] | None:
+    """Scale, offset and dimension of a product of units of the table, as ``N*m``; None for any other."""
+    if text in _OFFSETS or not text:
+        return _OFFSETS.get(text)
+    scale, dimension, end = Fraction(1), _NONE, 0
+    for match in _TERM.finditer(text):
+        sign, name, power = match[1], match[2], int(match[3] or 1)
+        if match.start() != end or bool(sign) == (end == 0) or (name != "1" and name not in _TABLE):
+            return None
+        value, of_unit = (Fraction(1), _NONE) if name == "1" else _TABLE[name]
+        power = -power if sign == "/" else power
+        scale *= value**power
+        dimension = cast("_Dimension", tuple(a + power * b for a, b in zip(dimension, of_unit, strict=True)))
+        end = match.end()
+    if end < len(text) or not 1e-99 < scale < 1e99:
+        return None
+    return float(scale), 0.0, dimension
+
+
+def _from_registry(kind: str, text: str, unit: str) -> tuple[float, float]:
+    """Scale and offset of any unit that pint knows.
+
+    Raises
+    ------
+    UnitError
+        If the unit is unknown, of another kind, or could be read in two ways.
+    """
+    si, example = KINDS[kind]
     try:
         parsed = registry.parse_units(text)
     except Exception as error:  # pint raises many kinds, from its tokenizer too
@@ -99,14 +224,15 @@ def conversion(kind: str, unit: str) -> Conversion:
             raise WrongKindError(
                 "unit '%' of a torque needs the torque that 100 % stands for: --torque-unit '9.84 mN*m / 100'"
             )
-        raise WrongKindError(f"unit '{unit}' is not a unit of {kind}: write one such as {example}")
+        raise _wrong_kind(kind, unit)
     if "delta_" in names:
         raise UnitError(f"unit '{unit}' is a difference of temperatures: write degC or K")
     zero, far = (float(registry.Quantity(x, parsed).to(si).magnitude) for x in (0.0, 1e6))
-    scale = factor * (far - zero) / 1e6
-    if not 1e-15 < abs(scale) < 1e15:
-        raise UnitError(f"unit '{unit}' has an impossible factor")
-    return Conversion(unit, scale, zero)
+    return (far - zero) / 1e6, zero
+
+
+def _wrong_kind(kind: str, unit: str) -> WrongKindError:
+    return WrongKindError(f"unit '{unit}' is not a unit of {kind}: write one such as {KINDS[kind][1]}")
 
 
 def _split_factor(text: str, unit: str, example: str) -> tuple[float, str]:
@@ -169,6 +295,8 @@ def si(kind: str, value: Any) -> Any:
     if isinstance(value, str):
         return parse(kind, value)
     if isinstance(value, list | tuple) and any(isinstance(v, str) or hasattr(v, "magnitude") for v in value):
+        import numpy as np
+
         return np.array([si(kind, item) for item in value], dtype=float)
     if hasattr(value, "magnitude") and hasattr(value, "units"):
         line = conversion(kind, f"{value.units:~C}" or str(value.units))
@@ -178,7 +306,10 @@ def si(kind: str, value: Any) -> Any:
 
 def convert(value: float, si: str, unit: str) -> float:
     """Return an SI value (given its SI unit) in ``unit``."""
-    return float(registry.Quantity(value, si).to(unit).magnitude)
+    given, wanted = _from_table(si), _from_table(unit)
+    if given is None or wanted is None or given[2] != wanted[2]:
+        return float(registry.Quantity(value, si).to(unit).magnitude)
+    return float((value * given[0] + given[1] - wanted[1]) / wanted[0])
 
 
 def rpm(speed: float) -> float:

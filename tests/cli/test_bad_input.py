@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+
+from tests.cli.command import Done, run
 
 HEADER = "Time [s],Torque [N*m],Speed [rpm],Temperature [degC]\n"
 
@@ -75,12 +75,7 @@ FILES: dict[str, tuple[bytes, list[str]]] = {
 }
 
 
-def run(*arguments: str | Path, cwd: Path) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "hersey.cli", *map(str, arguments)]
-    return subprocess.run(command, cwd=cwd, capture_output=True, text=True, check=False, timeout=120)
-
-
-def assert_one_clear_line(result: subprocess.CompletedProcess[str], says: list[str]) -> None:
+def assert_one_clear_line(result: Done, says: list[str]) -> None:
     assert result.returncode == 2, result
     assert result.stdout == ""
     (line,) = result.stderr.splitlines()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 import subprocess
 import sys
 import warnings
@@ -11,41 +10,26 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import typer
 from scipy.io import savemat
 
-import hersey.cli.cycles  # noqa: F401 - it adds the command
-from hersey.cli import app
 from hersey.errors import (
     ChannelError,
     HerseyError,
     MissingFileError,
-    OutputError,
     UnitError,
     UnreadableLogError,
 )
 from hersey.identification.trace_file import read_trace
+from tests.cli.command import run
 from tests.conftest import ROOT, shared
 
 CSV = ROOT / "examples" / "stick-slip.csv"
-COMMAND = "from hersey.cli import main; import hersey.cli.cycles; main()"
 
 
-def shown(capsys: pytest.CaptureFixture[str], *arguments: str | Path) -> str:
-    """What the command prints, run here."""
-    typer.main.get_command(app).main(["cycles", *map(str, arguments)], standalone_mode=False)
-    return capsys.readouterr().out
-
-
-def run(*arguments: str | Path, cwd: Path) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-c", COMMAND, "cycles", *map(str, arguments)],
-        cwd=cwd,
-        capture_output=True,
-        text=True,
-        check=False,
-        timeout=120,
-    )
+def printed(*arguments: str | Path) -> str:
+    done = run("cycles", *arguments, cwd=ROOT)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
 
 
 def test_the_shipped_trace_comes_from_its_seed(tmp_path: Path) -> None:
@@ -60,7 +44,7 @@ def test_the_shipped_trace_comes_from_its_seed(tmp_path: Path) -> None:
 
 def test_identified_drive_of_the_shipped_trace(tmp_path: Path) -> None:
     """Truth, which stands in the head of the file, within every interval given."""
-    result = run(CSV, "--drive-speed", "20 mm/s", "--identify", "--json", cwd=tmp_path)
+    result = run("cycles", CSV, "--drive-speed", "20 mm/s", "--identify", "--json", cwd=tmp_path)
     assert result.returncode == 0, result.stderr
     document = json.loads(result.stdout)
     assert document["kind"] == "stick_slip"
@@ -73,19 +57,19 @@ def test_identified_drive_of_the_shipped_trace(tmp_path: Path) -> None:
     assert (drive["closure"], drive["closure_decided"]) == ("retained", True)
 
 
-def test_summary_figure_and_known_values(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+def test_summary_figure_and_known_values(tmp_path: Path) -> None:
     figure = tmp_path / "fit.png"
     options = ["--drive-speed", "20 mm/s", "--identify", "--closures", "retained"]
-    text = shown(capsys, CSV, *options, "--known", "mass=500 g", "--figure", figure)
+    text = printed(CSV, *options, "--known", "mass=500 g", "--figure", figure)
     assert "stick slip: 110 slips" in text
     assert "0.5 kg (given)" in text
     assert figure.read_bytes().startswith(b"\x89PNG")
-    with pytest.raises(OutputError, match="say --force"):
-        shown(capsys, CSV, "--figure", figure)
+    refused = run("cycles", CSV, "--figure", figure, cwd=tmp_path)
+    assert (refused.returncode, "say --force" in refused.stderr) == (2, True)
 
 
 def test_a_mistake_ends_in_one_line(tmp_path: Path) -> None:
-    result = run(CSV, "--drive-speed", "20", cwd=tmp_path)
+    result = run("cycles", CSV, "--drive-speed", "20", cwd=tmp_path)
     assert (result.returncode, result.stdout) == (2, "")
     assert "needs a number and a unit" in result.stderr
     assert result.stderr.count("\n") == 1
@@ -106,9 +90,10 @@ def test_a_mistake_ends_in_one_line(tmp_path: Path) -> None:
         (["--figure", "fit.bmp"], "name a file that ends in .png"),
     ],
 )
-def test_mistakes_are_named(arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(HerseyError, match=re.escape(message)):
-        shown(capsys, CSV, *arguments)
+def test_mistakes_are_named(arguments: list[str], message: str) -> None:
+    done = run("cycles", CSV, *arguments, cwd=ROOT)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert message in done.stderr
 
 
 def test_units_and_names_of_a_csv_file(tmp_path: Path) -> None:
@@ -174,12 +159,10 @@ def _reads_or_says_why(path: Path) -> None:
 @pytest.mark.parametrize(
     ("speed", "kind", "slips"), [(42, "stick_slip", 477), (1100, "stick_slip", 206), (4300, "inertial", 130)]
 )
-def test_the_slider_through_the_command(
-    speed: int, kind: str, slips: int, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_slider_through_the_command(speed: int, kind: str, slips: int) -> None:
     path = shared(f"data/stick-slip/k1002Nm_v{speed}.mat")
     units = ["--time-unit", "s", "--unit", "1", "--least-drop", "0.05"]
-    document = json.loads(shown(capsys, path, "--drive-speed", f"{speed} um/s", *units, "--json"))
+    document = json.loads(printed(path, "--drive-speed", f"{speed} um/s", *units, "--json"))
     assert document["kind"] == kind
     assert document["slips"] == pytest.approx(slips, rel=0.05)
     assert document["unit"] == "1"

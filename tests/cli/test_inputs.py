@@ -8,56 +8,88 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-import typer
 
 import hersey
-from hersey.cli import app
+from hersey.cli.application import VERBS, load
 from hersey.cli.plan import _drag
-from hersey.errors import OutputError
 from hersey.machine.machine import read_machine
-from tests.cli.test_cli import run
+from tests.cli.command import run
 from tests.conftest import ROOT
 
-
-def typed(*arguments: str | Path) -> None:
-    """Run a command here, so that its error comes out as it is."""
-    typer.main.get_command(app).main(list(map(str, arguments)), standalone_mode=False)
+IS_AN_INPUT = "is an input: name another file for the output\n"
 
 
 def test_a_report_never_replaces_what_it_reads(bench_csv: Path, tmp_path: Path) -> None:
-    machine = tmp_path / "machine.toml"
+    machine, log, mapping = (tmp_path / name for name in ("machine.toml", "bench.csv", "bench-rig.toml"))
     shutil.copy(ROOT / "examples" / "machine.toml", machine)
-    log = tmp_path / "bench.csv"
     shutil.copy(bench_csv, log)
-    for path in (machine, log):
+    mapping.write_text("")
+    for path in (machine, log, mapping):
         before = path.read_bytes()
-        with pytest.raises(OutputError, match=r"is an input: name another file for the output$"):
-            typed("report", log, "--tare", "standing", "--machine", machine, "--out", path, "--force")
+        read = [log, "--tare", "standing", "--machine", machine, "--mapping", mapping]
+        done = run("report", *read, "--out", path, "--force", cwd=tmp_path)
+        assert (done.returncode, done.stdout) == (2, "")
+        assert done.stderr.endswith(IS_AN_INPUT)
         assert path.read_bytes() == before
 
 
 def test_a_map_and_a_plan_never_replace_what_they_read(bench_csv: Path, tmp_path: Path) -> None:
     fit = tmp_path / "fit.html"
     fit.write_text("{}")
-    with pytest.raises(OutputError, match=r"fit\.html is an input"):
-        typed("map", ROOT / "examples" / "machine.toml", "--fit", fit, "--out", fit, "--force")
+    done = run("map", ROOT / "examples" / "machine.toml", "--fit", fit, "--out", fit, "--force", cwd=tmp_path)
+    assert done.stderr.endswith(f"fit.html {IS_AN_INPUT}")
     machine, course = tmp_path / "machine.toml", tmp_path / "course.csv"
     shutil.copy(ROOT / "examples" / "machine.toml", machine)
     course.write_text("time (s),temperature (degC)\n0,150\n")
+    asked = ["plan", machine, bench_csv, "--target", "40 mm/s", "--temperature-profile", course]
     for path in (machine, course, bench_csv):
-        with pytest.raises(OutputError, match="is an input"):
-            typed(
-                "plan",
-                machine,
-                bench_csv,
-                "--target",
-                "40 mm/s",
-                "--temperature-profile",
-                course,
-                "--out",
-                path,
-                "--force",
-            )
+        done = run(*asked, "--out", path, "--force", cwd=tmp_path)
+        assert (done.returncode, done.stderr.endswith(IS_AN_INPUT)) == (2, True)
+
+
+@pytest.mark.parametrize(
+    "typed",
+    [
+        "report none.csv --out kept.html",
+        "report none.csv --figures kept",
+        "inspect none.csv --figure kept.svg",
+        "film none.toml --log none.csv --figure kept.svg",
+        "map none.toml none.csv --out kept.html",
+        "plan none.toml none.csv --target 1 --out kept.csv",
+        "plan none.toml none.csv --target 1 --figure kept.svg",
+        "cycles none.csv --figure kept.svg",
+        "sweep none.toml --out kept.csv",
+        "simulate --mass -1 --csv kept.csv",
+        "figures --out kept",
+        "testbench --size none --out kept.csv",
+        "testbench --size none --out new.csv --truth kept.csv",
+    ],
+)
+def test_outputs_are_refused_before_inputs_are_read(typed: str, tmp_path: Path) -> None:
+    """What would be replaced is named, not the input that is missing or wrong."""
+    for name in ("kept.html", "kept.svg", "kept.csv", "kept/figure.svg"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text("mine")
+    done = run(*typed.split(), cwd=tmp_path)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "kept" in done.stderr
+    assert "--force" in done.stderr
+    assert {path.read_text() for path in tmp_path.rglob("*.*")} == {"mine"}
+
+
+def test_every_verb_that_writes_is_refused_above() -> None:
+    """A new option that writes a file belongs on the list."""
+    (marks,) = test_outputs_are_refused_before_inputs_are_read.pytestmark  # type: ignore[attr-defined]
+    listed = {(line.split()[0], flag) for line in marks.args[1] for flag in line.split() if "--" in flag}
+    outputs = {"--out", "--figure", "--figures", "--csv", "--truth"}
+    writes = {
+        (name, flag)
+        for name in VERBS
+        for parameter in load(name).params
+        for flag in parameter.opts
+        if flag in outputs
+    }
+    assert writes <= listed
 
 
 def test_the_stick_speed_moves_with_the_temperature_asked_for(points: hersey.SteadyPoints) -> None:

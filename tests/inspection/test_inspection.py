@@ -3,53 +3,23 @@
 from __future__ import annotations
 
 import json
-import sys
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Protocol
 
 import numpy as np
 import polars as pl
 import pytest
 
-import hersey.cli.inspect  # noqa: F401 (enters the command)
 from hersey import testbench
-from hersey.cli import main
 from hersey.errors import HerseyError
 from hersey.inspection import inspect
 from hersey.inspection.clock import clock_of
 from hersey.inspection.faults import noise_of, quantisation_step, traits
 from hersey.log.mapping import FILE_NAME, read_mapping
+from tests.cli.command import run
 from tests.conftest import shared
 
 SEEDS = range(20)
 TIME, TORQUE, SPEED, TEMPERATURE = testbench.COLUMNS
-
-
-@dataclass
-class Command:
-    """``hersey inspect`` run in this process: what it printed, and its exit code."""
-
-    returncode: int
-    stdout: str
-    stderr: str
-
-
-class Runner(Protocol):
-    def __call__(self, *arguments: str, cwd: Path) -> Command: ...
-
-
-@pytest.fixture
-def command(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Runner:
-    def run(*arguments: str, cwd: Path) -> Command:
-        monkeypatch.chdir(cwd)
-        monkeypatch.setattr(sys, "argv", ["hersey", "inspect", *arguments])
-        with pytest.raises(SystemExit) as left:
-            main()
-        out, err = capsys.readouterr()
-        return Command(int(left.value.code or 0), out, err)
-
-    return run
 
 
 @pytest.fixture(scope="module")
@@ -330,45 +300,43 @@ def test_screw_drives_together_can_tell_what_each_alone_cannot() -> None:
     assert any("exponent c of speed: one speed" in said for said in alone.cannot)
 
 
-def test_the_command(command: Runner, examples_here: Path) -> None:
-    result = command("examples/bench.csv", "--figure", "channels.svg", cwd=examples_here)
+def test_the_command(examples_here: Path) -> None:
+    result = run("inspect", "examples/bench.csv", "--figure", "channels.svg", cwd=examples_here)
     assert result.returncode == 0, result.stderr
     assert "73 dwells" in result.stdout
     assert (examples_here / "channels.svg").read_text().startswith("<svg")
-    again = command("examples/bench.csv", "--figure", "channels.svg", cwd=examples_here)
+    again = run("inspect", "examples/bench.csv", "--figure", "channels.svg", cwd=examples_here)
     assert again.returncode == 2
     assert "exists: say --force" in again.stderr
-    document = json.loads(command("examples/bench.csv", "--json", cwd=examples_here).stdout)
+    document = json.loads(run("inspect", "examples/bench.csv", "--json", cwd=examples_here).stdout)
     assert document["support"]["dwells"] == 73
     assert document["files"][0]["clocks"][0]["findings"]
 
 
-def test_the_mapping_is_proposed_once_and_never_replaced(
-    command: Runner, bench_csv: Path, tmp_path: Path
-) -> None:
+def test_the_mapping_is_proposed_once_and_never_replaced(bench_csv: Path, tmp_path: Path) -> None:
     log = tmp_path / "log.csv"
     log.write_bytes(bench_csv.read_bytes())
-    first = command("log.csv", "--save-mapping", cwd=tmp_path)
+    first = run("inspect", "log.csv", "--save-mapping", cwd=tmp_path)
     assert first.returncode == 0, first.stderr
     assert f"mapping: {FILE_NAME}" in first.stdout
     kept = tmp_path / FILE_NAME
     assert read_mapping(kept).channels["torque"] == "Drive torque"
     kept.write_text('[torque]\ntare = "3 mN*m"\n')
-    second = command("log.csv", "--save-mapping", cwd=tmp_path)
+    second = run("inspect", "log.csv", "--save-mapping", cwd=tmp_path)
     assert second.returncode == 2
     assert "exists: say --force" in second.stderr
     assert kept.read_text() == '[torque]\ntare = "3 mN*m"\n'
-    assert "corrected: tare (torque 0.003 N m)" in command("log.csv", cwd=tmp_path).stdout
+    assert "corrected: tare (torque 0.003 N m)" in run("inspect", "log.csv", cwd=tmp_path).stdout
     kept.write_text("[torque]\ntar = 1\n")
-    wrong = command("log.csv", cwd=tmp_path)
+    wrong = run("inspect", "log.csv", cwd=tmp_path)
     assert wrong.returncode == 2
     assert f"{FILE_NAME}: [torque] has no key 'tar'" in wrong.stderr
 
 
-def test_what_is_no_log_is_refused(command: Runner, tmp_path: Path) -> None:
+def test_what_is_no_log_is_refused(tmp_path: Path) -> None:
     (tmp_path / "words.csv").write_text("nothing but words\nand more of them\n")
     with pytest.raises(HerseyError, match=r"words\.csv"):
         inspect(tmp_path / "words.csv")
-    result = command("none.csv", cwd=tmp_path)
+    result = run("inspect", "none.csv", cwd=tmp_path)
     assert result.returncode == 2
     assert "there is no such file" in result.stderr

@@ -18,7 +18,7 @@ from hersey.lubrication.lubricant import EXAMPLES, ShearThinning
 from hersey.machine.machine import Machine, read_machine
 from hersey.verdict.checks import check_film
 from hersey.verdict.evidence import measured_film, solved_exponent, verdict
-from tests.cli.test_bad_input import run
+from tests.cli.command import run
 from tests.conftest import ROOT
 
 TOML = (ROOT / "examples" / "machine.toml").read_text()

@@ -12,7 +12,7 @@ import pytest
 import hersey
 from hersey.errors import HerseyError
 from hersey.motion.scenario import read_scenario, rows, summary
-from tests.cli.test_cli import run
+from tests.cli.command import run
 from tests.conftest import ROOT
 
 PLAIN = """

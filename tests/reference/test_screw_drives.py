@@ -14,7 +14,7 @@ import pytest
 
 import hersey
 from hersey.log.torque_log import TorqueLog
-from tests.cli.test_cli import run
+from tests.cli.command import run
 from tests.conftest import shared
 
 RPM = np.pi / 30

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -21,6 +19,7 @@ from hersey.document.saved_fit import read_fit
 from hersey.errors import InsufficientDataError, MissingFileError, OutputError, ParameterError
 from hersey.machine.machine import Limits, Machine, OperatingPoint, read_machine
 from hersey.stability.operating_map import STATES, OperatingMap, operating_map
+from tests.cli.command import run
 from tests.conftest import ROOT
 
 #: What a belt settles to from rest and from steady sliding, by state of the map.
@@ -365,15 +364,10 @@ def test_pictures_of_each_kind(drawn: OperatingMap) -> None:
         rendered_map(chart, ".docx")
 
 
-def hersey_command(*arguments: str | Path, cwd: Path) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "hersey.cli", *map(str, arguments)]
-    return subprocess.run(command, cwd=cwd, capture_output=True, text=True, check=False, timeout=120)
-
-
 @pytest.fixture(scope="module")
 def fit_json(bench_csv: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("fit")
-    printed = hersey_command("fit", bench_csv, "--tare", "standing", "--json", cwd=folder)
+    printed = run("fit", bench_csv, "--tare", "standing", "--json", cwd=folder)
     assert printed.returncode == 0, printed.stderr
     path = folder / "fit.json"
     path.write_text(printed.stdout)
@@ -443,14 +437,14 @@ def test_what_is_no_fit_is_refused(tmp_path: Path) -> None:
 
 def test_the_command_maps_a_fit_and_overwrites_nothing(fit_json: Path, tmp_path: Path) -> None:
     machine = ROOT / "examples" / "machine.toml"
-    first = hersey_command("map", machine, "--fit", fit_json, cwd=tmp_path)
+    first = run("map", machine, "--fit", fit_json, cwd=tmp_path)
     assert first.returncode == 0, first.stderr
     assert "thick paper (45 mm/s, 180 degC" in first.stdout
     assert first.stdout.endswith("map: map.html\n")
     assert [p.name for p in tmp_path.iterdir()] == ["map.html"]
-    refused = hersey_command("map", machine, "--fit", fit_json, cwd=tmp_path)
+    refused = run("map", machine, "--fit", fit_json, cwd=tmp_path)
     assert (refused.returncode, "--force" in refused.stderr) == (2, True)
-    printed = hersey_command("map", machine, "--fit", fit_json, "--json", cwd=tmp_path)
+    printed = run("map", machine, "--fit", fit_json, "--json", cwd=tmp_path)
     assert json.loads(printed.stdout)["limited_by"] == "roll friction"
 
 
@@ -465,7 +459,7 @@ def test_the_command_refuses_what_it_cannot_use(fit_json: Path, bench_csv: Path,
         ((machine, "--fit", machine), "machine.toml: document: not valid JSON"),
         ((tmp_path / "none.toml", bench_csv), "no such file"),
     ):
-        result = hersey_command("map", *arguments, cwd=tmp_path)
+        result = run("map", *arguments, cwd=tmp_path)
         assert (result.returncode, result.stderr.count("\n")) == (2, 1), result.stderr
         assert message in result.stderr
     assert list(tmp_path.iterdir()) == []

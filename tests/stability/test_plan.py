@@ -17,7 +17,7 @@ from hersey.errors import ParameterError
 from hersey.machine.machine import Limits
 from hersey.machine.uncertainty import Uncertainty
 from hersey.stability.plan.draws import lower_bound, most_failures, needed
-from tests.cli.test_cli import run
+from tests.cli.command import run
 
 TRAIN = hersey.Drivetrain(1000, 1)
 DRAG = hersey.Drag(50, 1, ehl_exponent=-0.7, mixed_exponent=-1.2, stick_speed=0.01)

@@ -8,9 +8,36 @@ progress     spinner and bar on a terminal
 report ...   one module per verb
 ===========  ==================================================================
 
-A mistake of the user's ends in one line on stderr and exit code 2.
+A mistake of the user's ends in one line on stderr and exit code 2. The version is printed without loading
+the program, the list of verbs without loading a verb.
 """
 
-from hersey.cli.application import app, main
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from hersey.cli.application import app
 
 __all__ = ["app", "main"]
+
+
+def main() -> None:
+    """Run the command line."""
+    if sys.argv[1:] == ["--version"]:
+        from hersey import __version__
+
+        print(f"hersey {__version__}")
+        return
+    from hersey.cli.application import main as run
+
+    run()
+
+
+def __getattr__(name: str) -> Any:
+    if name != "app":
+        raise AttributeError(f"module 'hersey.cli' has no attribute '{name}'")
+    from hersey.cli.application import app
+
+    return app

@@ -9,47 +9,78 @@ import sys
 from typing import Annotated, Any
 
 import typer
-from typer.core import TyperGroup
+from typer.core import TyperCommand, TyperGroup
 
 from hersey.errors import HerseyError
 
-#: The verbs in the order of the help; each is a module of this folder, with a function of that name.
-VERBS = (
-    "report",
-    "inspect",
-    "fit",
-    "models",
-    "film",
-    "map",
-    "plan",
-    "compare",
-    "design",
-    "cycles",
-    "simulate",
-    "sweep",
-    "hysteresis",
-    "figures",
-    "testbench",
-)
+#: The verbs in the order of the help, with the first sentence of each, which stands here too so that the list
+#: of verbs is printed without loading them. Each is a module of this folder, with a function of that name.
+VERBS = {
+    "report": (
+        "Write a report: regime, damping surface, data quality and a stick-slip simulation, in one HTML page."
+    ),
+    "inspect": (
+        "Show what a log holds before anything is fitted: clocks, channels, their faults, what it can tell."
+    ),
+    "fit": "Fit the damping surface B = a T^b w^c and print it, with the verdict on the regime.",
+    "models": (
+        "Fit every candidate law to the same dwells, choose one, and say why; energies and Hersey collapse."
+    ),
+    "film": "Say how thick the lubricant film is, which regime makes it, and what a log says of both.",
+    "map": (
+        "Map where the belt runs smoothly, sticks and slips, or stalls: temperature across, drive speed up."
+    ),
+    "plan": (
+        "Find the quickest profile of drive speed from rest that ends smooth, and say how surely it does."
+    ),
+    "compare": (
+        "Compare two lubricants, ages or units: ratio of damping, change of exponents and of the transition."
+    ),
+    "design": (
+        "Propose the next dwells to record: those that make the fitted law, or one quantity, known best."
+    ),
+    "cycles": "Find the slips of a stick-slip trace, and with --identify the drive that makes them.",
+    "simulate": (
+        "Simulate the belt at constant drive speed and say what it settles to (defaults: the "
+        "paper's baseline)."
+    ),
+    "sweep": "Find what every combination of parameters settles to, and count the outcomes.",
+    "hysteresis": "Find the drive speeds between which the past decides whether the belt sticks.",
+    "figures": (
+        "Draw the paper's Figs. 9-14 anew and two of our own; say of each claim whether it holds "
+        "and how well."
+    ),
+    "testbench": (
+        "Write a log of the virtual test stand: synthetic, with a known truth, for tests and for learning."
+    ),
+}
 #: Exit code after Ctrl-C, as shells have it.
 INTERRUPTED = 130
+
+
+def load(name: str) -> Any:
+    """Return a verb's command with all its options, from its module."""
+    module = importlib.import_module(f"hersey.cli.{name}")
+    verb = typer.Typer(add_completion=False, rich_markup_mode="rich", context_settings=_CONTEXT)
+    verb.command(name)(getattr(module, name, None) or getattr(module, f"{name}_"))
+    return typer.main.get_command(verb)
+
+
+class Verb(TyperCommand):
+    """A verb as the list of verbs shows it; it is loaded when it is called."""
+
+    def make_context(self, info_name: Any, args: Any, parent: Any = None, **extra: Any) -> Any:
+        """Return the context of the loaded command, which then runs in this one's place."""
+        return load(str(self.name)).make_context(info_name, args, parent, **extra)
 
 
 class Verbs(TyperGroup):
     """The commands, of which only the one that is called is loaded."""
 
-    def list_commands(self, ctx: Any) -> list[str]:  # noqa: ARG002 - as the base class has it
-        """Return the verbs."""
-        return list(VERBS)
-
-    def get_command(self, ctx: Any, cmd_name: str) -> Any:  # noqa: ARG002
-        """Return a verb's command, or None."""
-        if cmd_name not in VERBS:
-            return None
-        module = importlib.import_module(f"hersey.cli.{cmd_name}")
-        own = typer.Typer(add_completion=False, rich_markup_mode="rich", context_settings=_CONTEXT)
-        own.command(cmd_name)(getattr(module, cmd_name, None) or getattr(module, f"{cmd_name}_"))
-        return typer.main.get_command(own)
+    def __init__(self, **settings: Any) -> None:
+        super().__init__(**settings)
+        for name, sentence in VERBS.items():
+            self.add_command(Verb(name, short_help=sentence))
 
 
 _CONTEXT = {"help_option_names": ["-h", "--help"], "max_content_width": 110}

@@ -57,17 +57,18 @@ def cycles(
 
     Example: [bold]hersey cycles examples/stick-slip.csv --drive-speed "20 mm/s" --identify[/bold]
     """
+    if figure is not None:
+        may_draw(figure, force, inputs=[trace])
+    if known and not identify:
+        raise ParameterError("--known needs --identify")
+
     from hersey.files.writing import write_atomically
     from hersey.identification.cycle_record import cycles as find_cycles
     from hersey.identification.identified_drive import identify as identify_drive
     from hersey.identification.trace_file import read_trace
 
-    if figure is not None:
-        may_draw(figure, force, inputs=[trace])
     given = read_trace(trace, quantity=quantity, time=time, value=value, time_unit=time_unit, unit=unit)
     speed = _drive_speed(drive_speed, given)
-    if known and not identify:
-        raise ParameterError("--known needs --identify")
     values = _known(known or [], given)
     record = find_cycles(
         given.time,

@@ -26,9 +26,10 @@ def figures(
 
     Example: [bold]hersey figures --out figures[/bold]
     """
+    may_write_folder(out, force, flag="--out")
+
     from hersey import paper_figures as paper
 
-    may_write_folder(out, force, flag="--out")
     with working("simulating"):
         drawn = paper.all_figures()
     with working("drawing"):

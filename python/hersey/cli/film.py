@@ -52,14 +52,15 @@ def film(
 
     Without a log the film is computed at the points of the file.
     """
+    if figure is not None:
+        may_draw(figure, force, inputs=reading.inputs(machine_file, log))
+
     from hersey.document.film_document import film_document
     from hersey.files.writing import write_atomically
     from hersey.machine.machine import read_machine
     from hersey.verdict.checks import check_film
     from hersey.verdict.evidence import measured_film, verdict
 
-    if figure is not None:
-        may_draw(figure, force, inputs=[machine_file, *(log or [])])
     machine = read_machine(machine_file)
     if machine.contact is None or machine.lubricant is None:
         missing = "contact" if machine.contact is None else "lubricant"

@@ -24,9 +24,10 @@ def fit(
 
     Example: [bold]hersey fit examples/bench.csv --tare standing[/bold]
     """
+    log = reading.log(logs)
+
     from hersey.document.assembly import analyse
 
-    log = reading.log(logs)
     with working("fitting the surface"):
         points = reading.points(log)
         document = analyse(log, points, command=command(), temperature_scale=reading.temperature_scale)

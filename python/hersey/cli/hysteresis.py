@@ -15,7 +15,6 @@ from hersey.cli.options import (
 )
 from hersey.cli.progress import working
 from hersey.errors import ParameterError
-from hersey.result import json_value
 
 
 @takes(Belt, "belt")
@@ -37,11 +36,12 @@ def hysteresis(
 
     Example: [bold]hersey hysteresis --from-speed 2.5 --to-speed 1.2[/bold]
     """
+    if (from_speed is None) != (to_speed is None):
+        raise ParameterError("a step needs both --from-speed and --to-speed")
+
     from hersey.stability import disturbance as approach
     from hersey.stability.hysteresis import hysteresis as band_of
 
-    if (from_speed is None) != (to_speed is None):
-        raise ParameterError("a step needs both --from-speed and --to-speed")
     train, law = belt.parts()
     with working("looking for the band"):
         band = band_of(train, law)
@@ -50,6 +50,8 @@ def hysteresis(
         if from_speed is not None and to_speed is not None:
             step = approach.safe_step(train, law, from_speed=from_speed, to_speed=to_speed)
     if as_json:
+        from hersey.result import json_value
+
         document = {
             **json_value(asdict(band)),
             "bistable": band.bistable,

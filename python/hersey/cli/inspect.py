@@ -41,19 +41,20 @@ def inspect(
 
     It works on logs that cannot be fitted too, and says why they cannot.
     """
-    from hersey.charts.inspection import inspection_chart
-    from hersey.charts.operating_map import rendered_map
-    from hersey.files.writing import write_atomically
-    from hersey.inspection import inspect as inspected
-    from hersey.log.mapping import FILE_NAME, propose_mapping
-    from hersey.units import parse
+    kept, inputs = None, reading.inputs(logs)
+    if save_mapping:
+        from hersey.log.mapping import FILE_NAME
 
-    inputs = [*logs, *([Path(reading.mapping)] if reading.mapping else [])]
-    kept = logs[0].with_name(FILE_NAME) if save_mapping else None
-    if kept is not None:
+        kept = logs[0].with_name(FILE_NAME)
         may_write(kept, force, inputs=inputs)
     if figure is not None:
         may_draw(figure, force, inputs, suffixes=PICTURES)
+
+    from hersey.files.writing import write_atomically
+    from hersey.inspection import inspect as inspected
+    from hersey.log.mapping import propose_mapping
+    from hersey.units import parse
+
     roles = ("time", "torque", "speed", "temperature")
     channels = {role: name for role in roles if (name := getattr(reading, role))}
     units = {role: unit for role in roles if (unit := getattr(reading, f"{role}_unit"))}
@@ -71,6 +72,9 @@ def inspect(
         proposal = propose_mapping(logs[0], channels=channels, units=units)
         write_atomically(kept, proposal, overwrite=True)
     if figure is not None:
+        from hersey.charts.inspection import inspection_chart
+        from hersey.charts.operating_map import rendered_map
+
         with working("drawing the channels"):
             chart = inspection_chart(logs, found)
             write_atomically(figure, rendered_map(chart, figure.suffix), overwrite=True)

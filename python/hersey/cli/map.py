@@ -42,15 +42,15 @@ def map_(
 
     With --json the whole map goes to stdout, and a picture is drawn only if --out is given.
     """
-    from hersey.charts.operating_map import map_chart, rendered_map
+    picture = out or (None if as_json else Path("map.html"))
+    if picture is not None:
+        inputs = reading.inputs(machine_file, logs, fit_file)
+        may_draw(picture, force, inputs, flag="--out", suffixes=PICTURES)
+
     from hersey.files.writing import write_atomically
     from hersey.machine.machine import read_machine
     from hersey.stability.operating_map import operating_map
 
-    picture = out or (None if as_json else Path("map.html"))
-    if picture is not None:
-        inputs = [machine_file, *(logs or []), *([fit_file] if fit_file else [])]
-        may_draw(picture, force, inputs, flag="--out", suffixes=PICTURES)
     machine = read_machine(machine_file)
     surface = reading.surface(logs, fit_file)
     with working("finding the bands"):
@@ -65,6 +65,8 @@ def map_(
             threads=os.cpu_count() or 1,
         )
     if picture is not None:
+        from hersey.charts.operating_map import map_chart, rendered_map
+
         with working("drawing the map"):
             chart = map_chart(drawn, tooltips=picture.suffix == ".html")
             write_atomically(picture, rendered_map(chart, picture.suffix), overwrite=True)

@@ -31,9 +31,10 @@ def models(
 
     Example: [bold]hersey models examples/bench.csv --tare standing[/bold]
     """
+    log = reading.log(logs)
+
     from hersey.damping.candidates import compare_models
 
-    log = reading.log(logs)
     with working("reducing to dwells"):
         points = reading.points(log)
     with bar("fitting", unit="candidates") as progress:

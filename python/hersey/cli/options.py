@@ -70,6 +70,13 @@ class Reading:
     rotation: Annotated[str, typer.Option(help="both, forward or reverse: dwells to use.")] = "both"
     temperature_scale: Annotated[str, typer.Option(help="degC or K: scale of T in B = a T^b w^c.")] = "degC"
 
+    def inputs(self, *given: Path | list[Path] | None) -> list[Path]:
+        """Return the files that a command reads: those given, and the mapping; none may be an output."""
+        named = [Path(self.mapping)] if self.mapping else []
+        for paths in given:
+            named += [paths] if isinstance(paths, Path) else paths or []
+        return named
+
     def log(self, paths: list[Path]) -> TorqueLog:
         """Read the files as one log, with a progress bar."""
         from hersey.log.mapping import read_with_mapping

@@ -76,12 +76,7 @@ def plan(
 
     Exit code 1 says that no profile exists; then nothing is written.
     """
-    from hersey.files.writing import write_atomically
-    from hersey.machine.machine import read_machine
-    from hersey.machine.temperature_profile import read_temperature_profile
-    from hersey.stability.plan import plan_profile
-
-    inputs = [machine_file, *(logs or []), *(path for path in (fit_file, course) if path is not None)]
+    inputs = reading.inputs(machine_file, logs, fit_file, course)
     if out is not None and figure is not None and out.absolute() == figure.absolute():
         raise OutputError(f"--out and --figure both name {out}: name two files")
     if figure is not None:
@@ -90,6 +85,12 @@ def plan(
         may_write(out, force, inputs)
     if at and course is not None:
         raise ParameterError("give either --at or --temperature-profile")
+
+    from hersey.files.writing import write_atomically
+    from hersey.machine.machine import read_machine
+    from hersey.machine.temperature_profile import read_temperature_profile
+    from hersey.stability.plan import plan_profile
+
     machine = read_machine(machine_file)
     wanted = _target(target, machine)
     kelvin = temperature_of(at)

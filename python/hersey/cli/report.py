@@ -40,16 +40,17 @@ def report(
 
     With --json the analysis document goes to stdout, and a page is written only if --out is given.
     """
+    page = out or (None if as_json else Path("report.html"))
+    if page is not None:
+        may_write(page, force, inputs=reading.inputs(logs, machine_file))
+    if figures is not None:
+        may_write_folder(figures, force)
+
     from hersey.document.assembly import analyse
     from hersey.files.writing import write_atomically
     from hersey.machine.machine import read_machine
     from hersey.report.page import render
 
-    page = out or (None if as_json else Path("report.html"))
-    if page is not None:
-        may_write(page, force, inputs=[*logs, *([machine_file] if machine_file else [])])
-    if figures is not None:
-        may_write_folder(figures, force)
     machine = None if machine_file is None else read_machine(machine_file)
     log = reading.log(logs)
     with working("fitting the surface"):

@@ -39,10 +39,11 @@ def simulate(
 
     Example: [bold]hersey simulate --stiffness 2000 --drive-speed 1.3[/bold]
     """
-    from hersey.motion import simulation as motion
-
     if csv is not None:
         may_write(csv, force)
+
+    from hersey.motion import simulation as motion
+
     train, drag = belt.parts()
     cycle = motion.stick_slip(train, drag, drive_speed=drive_speed, start=start)
     run = None

@@ -32,13 +32,14 @@ def sweep(
 
     Example: [bold]hersey sweep examples/scenario.toml --out sweep.parquet --threads 2[/bold]
     """
-    from hersey.files.writing import write_atomically
-    from hersey.motion.scenario import read_scenario, rows, summary
-
     if out is not None:
         if out.suffix not in (".parquet", ".csv"):
             raise OutputError(f"--out {out}: name a file that ends in .parquet or .csv")
         may_write(out, force, inputs=[scenario])
+
+    from hersey.files.writing import write_atomically
+    from hersey.motion.scenario import read_scenario, rows, summary
+
     described = read_scenario(scenario)
     with bar("simulating", unit="sets") as progress:
         result = described.run(threads=threads, progress=progress)

@@ -36,16 +36,17 @@ def testbench(
 
     Example: [bold]hersey testbench --out log.csv --truth truth.json --seed 7[/bold]
     """
-    import io
-
-    from hersey import testbench as stand
-    from hersey.files.writing import write_atomically
-
     for path in (out, truth):
         if path is not None:
             may_write(path, force)
     if truth is not None and truth.absolute() == out.absolute():
         raise OutputError(f"--out and --truth both name {out}: name two files")
+
+    import io
+
+    from hersey import testbench as stand
+    from hersey.files.writing import write_atomically
+
     if size:
         _write_long(out, _bytes(size), seed)
         document = {**stand.run(seed=seed).truth_document(), "size": size}

@@ -1,0 +1,127 @@
+"""The command starts in a blink: what each verb loads. No clock: `benchmarks/start.py` has the times."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+
+import pytest
+
+from hersey.cli.application import VERBS, load
+from tests.cli.command import run, run_apart
+from tests.conftest import ROOT
+
+#: What takes long to load.
+HEAVY = {"altair", "numpy", "odrpack", "pint", "polars", "pydantic", "scipy", "vl_convert", "xarray"}
+#: Runs the command, then says on stderr what it loaded.
+WATCHED = """
+import json, sys
+from hersey.cli import main
+try:
+    main()
+finally:
+    json.dump(sorted(sys.modules), sys.stderr)
+"""
+
+
+def loaded(*typed: str, cwd: Path) -> set[str]:
+    """Modules in memory when a command has run in a process of its own."""
+    done = run_apart(*typed, cwd=cwd, command=[sys.executable, "-c", WATCHED])
+    assert done.stdout, done.stderr
+    return set(json.loads(done.stderr[done.stderr.index("[") :]))
+
+
+def rooms(modules: set[str]) -> set[str]:
+    """Rooms of the package of which something is loaded, but for the command line's own."""
+    return {name.split(".")[1] for name in modules if name.startswith("hersey.")} - {"cli", "errors", "_core"}
+
+
+def test_the_version_loads_no_program() -> None:
+    modules = loaded("--version", cwd=ROOT)
+    assert not modules & (HEAVY | {"typer", "rich", "hersey.cli.application"})
+    assert not rooms(modules)
+
+
+def test_the_list_of_verbs_loads_no_verb() -> None:
+    modules = loaded("--help", cwd=ROOT)
+    assert not modules & HEAVY - {"pydantic"}  # typer checks options with it
+    assert not rooms(modules)
+    assert not {f"hersey.cli.{name}" for name in VERBS} & modules
+
+
+def test_importing_the_package_loads_nothing() -> None:
+    done = run_apart("-c", "import hersey, sys; print(*sys.modules)", cwd=ROOT, command=[sys.executable])
+    assert not set(done.stdout.split()) & (HEAVY | {"hersey._core"})
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_the_help_of_a_verb_loads_no_room(verb: str) -> None:
+    modules = loaded(verb, "--help", cwd=ROOT)
+    assert not modules & HEAVY - {"pydantic"}
+    assert not rooms(modules)
+    assert f"hersey.cli.{verb}" in modules
+
+
+LOG = "examples/bench.csv --tare standing"
+MACHINE = "examples/machine.toml"
+#: What each verb loads of what is heavy, beside pydantic, which every command loads.
+LOADS = {
+    "simulate": "numpy",
+    "simulate --json": "numpy",
+    "simulate --check": "numpy",
+    "hysteresis": "numpy",
+    "hysteresis --from-speed 2.5 --to-speed 1.2 --drive-speed 1.2 --json": "numpy",
+    "simulate --csv motion.csv": "numpy polars",
+    "inspect examples/bench.csv": "numpy polars scipy",
+    f"fit {LOG}": "numpy odrpack polars scipy",
+    f"compare {LOG} examples/bench.csv": "numpy odrpack polars scipy",
+    f"film {MACHINE}": "numpy odrpack pint polars scipy",
+    "cycles examples/stick-slip.csv": "numpy polars scipy",
+    "testbench": "numpy polars scipy",
+}
+
+
+@pytest.mark.parametrize("typed", LOADS)
+def test_what_a_verb_loads(typed: str, examples_here: Path) -> None:
+    modules = loaded(*typed.split(), cwd=examples_here)
+    assert modules & HEAVY - {"pydantic"} == set(LOADS[typed].split())
+
+
+@pytest.mark.parametrize(
+    "typed",
+    [
+        "report bench.csv --out report.csv/page.html",
+        "map machine.toml bench.csv --out map.bmp",
+        "plan machine.toml bench.csv --figure plan.bmp",
+        "film machine.toml --figure film.bmp",
+        "inspect bench.csv --figure channels.bmp",
+        "cycles trace.csv --figure cycles.bmp",
+        "sweep scenario.toml --out sweep.bmp",
+    ],
+)
+def test_a_refused_output_costs_nothing(typed: str, tmp_path: Path) -> None:
+    done = run_apart(*typed.split(), cwd=tmp_path, command=[sys.executable, "-c", WATCHED])
+    assert done.stderr.startswith("hersey: ")
+    modules = set(json.loads(done.stderr.splitlines()[1]))
+    assert not modules & HEAVY - {"pydantic"}
+    assert not rooms(modules)
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_the_list_says_what_the_verb_says(verb: str) -> None:
+    """The sentence in the list of verbs is the first of the verb's own help."""
+    assert load(verb).help.split("\n\n")[0] == VERBS[verb]
+
+
+def test_the_list_of_verbs_has_them_in_order() -> None:
+    text = run("--help", cwd=ROOT).stdout
+    assert [name for name in text.split() if name in VERBS and f"\u2502 {name}  " in text] != []
+    lines = [line.split()[1] for line in text.splitlines() if line.startswith("\u2502 ") and line[2] != " "]
+    assert [word for word in lines if not word.startswith("--")] == list(VERBS)
+
+
+def test_a_verb_nearly_right_is_guessed() -> None:
+    done = run("simulat", cwd=ROOT)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "Did you mean 'simulate'?" in done.stderr
