@@ -87,4 +87,6 @@ def table_of(facts: Iterable[Fact]) -> pl.DataFrame:
     import polars as pl
 
     rows = [(name, float(value), unit) for name, value, unit in facts if value is not None]
-    return pl.DataFrame(rows, schema={"name": pl.String, "value": pl.Float64, "unit": pl.String}, orient="row")
+    return pl.DataFrame(
+        rows, schema={"name": pl.String, "value": pl.Float64, "unit": pl.String}, orient="row"
+    )

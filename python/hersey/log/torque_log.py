@@ -178,7 +178,9 @@ def _ranges(run: Run) -> str:
     slow, fast = (rpm(end) for end in _ends(run.speed))
     least, most = _ends(run.torque)
     duration = float(run.time[-1] - run.time[0])
-    text = f"{run.time.size} rows, {duration:.5g} s; {slow:.4g} to {fast:.4g} rpm, {least:.4g} to {most:.4g} N m"
+    text = (
+        f"{run.time.size} rows, {duration:.5g} s; {slow:.4g} to {fast:.4g} rpm, {least:.4g} to {most:.4g} N m"
+    )
     if run.temperature is None:
         return text
     cold, hot = (celsius(end) for end in _ends(run.temperature))

@@ -17,6 +17,7 @@ from hersey.units import ZERO_CELSIUS, argument, fields_in_si, takes_si
 #: Laws of viscosity against temperature, and how many points each takes.
 MODELS = {"arrhenius": 2, "vogel": 3, "walther": 2}
 
+
 @dataclass(frozen=True)
 class ShearThinning:
     """Carreau's law: eta/eta_0 = limit + (1 - limit) [1 + (relaxation_time rate)^2]^((exponent - 1)/2).

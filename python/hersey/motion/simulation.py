@@ -229,7 +229,9 @@ class StickSlipCycle(Result):
 
     def headline(self) -> str:
         """Return kind, frequency and stuck fraction."""
-        return f"{self.kind.replace('_', ' ')}, frequency {self.frequency:.6g}, stuck {self.stuck_fraction:.3g}"
+        return (
+            f"{self.kind.replace('_', ' ')}, frequency {self.frequency:.6g}, stuck {self.stuck_fraction:.3g}"
+        )
 
     def to_dict(self) -> dict[str, Any]:
         """Return every number; in SI if the arguments were."""

@@ -118,15 +118,15 @@ class HysteresisBand(Result):
             f"upper fold V*     {self.upper:.9g}  (to {self.upper_accuracy:.0e}, by {self.method})",
         ]
         if self.deeper:
-            lines.append("at the upper fold a deeper stick-slip ends, released higher than at the stick speed")
+            lines.append(
+                "at the upper fold a deeper stick-slip ends, released higher than at the stick speed"
+            )
         if self.sensitivity and values is not None:
             lines += self._sensitivity_lines(values)
         return "\n".join([*lines, self.verdict()])
 
     def _sensitivity_lines(self, values: Mapping[str, float]) -> list[str]:
-        head = (
-            f"{'parameter':18s} {'value':>12s} {'dV*/dparameter':>15s} {'V* for +1 %':>13s} {'lower, +1 %':>13s}"
-        )
+        head = f"{'parameter':18s} {'value':>12s} {'dV*/dparameter':>15s} {'V* for +1 %':>13s} {'lower, +1 %':>13s}"
         return [head] + [
             f"{name:18s} {values[name]:12.6g} {self.derivative(name, values[name]):15.6g} {share:+10.3f} % "
             f"{self.lower_sensitivity[name]:+10.3f} %"

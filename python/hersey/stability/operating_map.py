@@ -8,13 +8,12 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hersey import _core
 from hersey.arrays import FloatArray, numbers_of
 from hersey.damping.surface import DampingSurface
 from hersey.errors import InsufficientDataError, ParameterError
@@ -231,9 +230,7 @@ class OperatingMap(Result):
         return MapState(state, torque, **edges, extrapolated=outside)
 
 
-@takes_si(
-    roll_radius="length", stick_speed="belt speed", temperatures="temperature", speeds="belt speed"
-)
+@takes_si(roll_radius="length", stick_speed="belt speed", temperatures="temperature", speeds="belt speed")
 def operating_map(
     surface: DampingSurface,
     train: Drivetrain,

@@ -22,8 +22,8 @@ from hersey.stability.plan.draws import Trials, drawn, lower_bound, most_failure
 from hersey.stability.plan.obstacles import Reach, obstacles
 from hersey.stability.plan.result import LimitUse, Plan
 from hersey.stability.plan.search import Progress, Room, Search
-from hersey.units import takes_si
 from hersey.stability.plan.trial import ROUNDING, MachineSample, Outcome, Shape, TemperatureProfile, rounded
+from hersey.units import takes_si
 
 #: Probability with which a profile that passes keeps its confidence: high, for the search tries many.
 _LEVEL = 0.999
