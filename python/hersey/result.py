@@ -83,7 +83,7 @@ def json_record(values: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def table_of(facts: Iterable[Fact]) -> pl.DataFrame:
-    """Return numbers as a table of ``name``, ``value`` and ``unit``; without those that are missing (None)."""
+    """Return numbers as a table of ``name``, ``value`` and ``unit``, without those that are None."""
     import polars as pl
 
     rows = [(name, float(value), unit) for name, value, unit in facts if value is not None]

@@ -149,7 +149,7 @@ class Trajectory(Result):
         return np.array(_core.MODES)[self.mode_index]
 
     def summary(self) -> str:
-        """Return ranges, energies and the second integrator's opinion as text, in the units of the arguments."""
+        """Return ranges, energies and check as text, in the units of the arguments."""
         lines = [
             f"{self.time.size} samples from {self.time[0]:.6g} to {self.time[-1]:.6g}, {len(self.events)} "
             f"changes of mode; SI or the units given",

@@ -126,12 +126,16 @@ class HysteresisBand(Result):
         return "\n".join([*lines, self.verdict()])
 
     def _sensitivity_lines(self, values: Mapping[str, float]) -> list[str]:
-        head = f"{'parameter':18s} {'value':>12s} {'dV*/dparameter':>15s} {'V* for +1 %':>13s} {'lower, +1 %':>13s}"
-        return [head] + [
+        head = (
+            f"{'parameter':18s} {'value':>12s} {'dV*/dparameter':>15s}"
+            f" {'V* for +1 %':>13s} {'lower, +1 %':>13s}"
+        )
+        rows = [
             f"{name:18s} {values[name]:12.6g} {self.derivative(name, values[name]):15.6g} {share:+10.3f} % "
             f"{self.lower_sensitivity[name]:+10.3f} %"
             for name, share in self.sensitivity.items()
         ]
+        return [head, *rows]
 
     def to_dict(self) -> dict[str, Any]:
         """Return every field, and what they mean; in SI if the arguments were."""

@@ -69,10 +69,7 @@ class Regime(Result):
 
         numbers = ("speed low (rad/s)", "speed high (rad/s)", "exponent (1)", "low (1)", "high (1)")
         schema = {"temperature (K)": pl.Float64, "branch": pl.String, "points": pl.Int64}
-        rows = [
-            (*_facts_of(e), e.exponent.value, e.exponent.low, e.exponent.high)
-            for e in self.exponents
-        ]
+        rows = [(*_facts_of(e), e.exponent.value, e.exponent.low, e.exponent.high) for e in self.exponents]
         return pl.DataFrame(rows, schema={**schema, **dict.fromkeys(numbers, pl.Float64)}, orient="row")
 
 
