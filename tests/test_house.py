@@ -42,9 +42,13 @@ ROOMS = (
     "testbench",
     "cli",
 )
-#: The two arrows that point backwards, both taken only when a user asks: a log reduces itself to its dwells,
-#: and a result finds its chart.
-LAZY = {("hersey.log.torque_log", "hersey.damping.dwells")}
+#: The arrows that point backwards, taken only when a user asks: a log reduces itself to its dwells,
+#: and a result finds its chart and draws it.
+LAZY = {
+    ("hersey.log.torque_log", "hersey.damping.dwells"),
+    ("hersey.result", "hersey.charts"),
+    ("hersey.result", "hersey.charts.render"),
+}
 
 
 def modules() -> dict[str, Path]:

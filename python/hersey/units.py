@@ -7,17 +7,24 @@ to its definitions.
 
 from __future__ import annotations
 
+import inspect
 import math
 import re
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import lru_cache
-from typing import TYPE_CHECKING, Any, cast
+from functools import lru_cache, wraps
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar, cast
 
 from hersey.errors import UnitError, WrongKindError
 
 if TYPE_CHECKING:
     import pint
+
+P = ParamSpec("P")
+R = TypeVar("R")
+#: A key of `KINDS`, or several where an argument may be one of them.
+Kind = str | tuple[str, ...]
 
 
 class _OnFirstUse:
@@ -59,6 +66,9 @@ KINDS: dict[str, tuple[str, str]] = {
     "density": ("kg/m^3", "g/cm^3"),
     "pressure-viscosity coefficient": ("Pa^-1", "GPa^-1"),
     "thermal conductivity": ("W/m/K", "W/m/K"),
+    "torsional stiffness": ("N*m/rad", "N*m/rad"),
+    "moment of inertia": ("kg*m^2", "kg*m^2"),
+    "load per length": ("N/m", "N/m"),
 }
 
 #: Exponents of m, kg, s, K and rad. The angle counts here, so that 1/s is no speed of a drive.
@@ -75,8 +85,8 @@ _FORCE, _PRESSURE, _VISCOSITY = (1, 1, -2, 0, 0), (-1, 1, -2, 0, 0), (-1, 1, -1,
 _POUND, _INCH, _GRAVITY = Fraction("0.45359237"), Fraction("0.0254"), Fraction("9.80665")
 _PSI, _TURN = _POUND * _GRAVITY / _INCH**2, 2 * Fraction(math.pi)
 
-#: Units of drives that take SI prefixes, and those that take none: value in SI, exact, and dimension. Units of
-#: energy are left to pint, which tells them from a torque.
+#: Units of drives that take SI prefixes, and those that take none: value in SI, exact, and dimension. Units
+#: of energy are left to pint, which tells them from a torque.
 _PREFIXED: dict[str, tuple[Fraction, _Dimension]] = {
     "m": (Fraction(1), _LENGTH),
     "g": (Fraction(1, 1000), _MASS),
@@ -302,6 +312,50 @@ def si(kind: str, value: Any) -> Any:
         line = conversion(kind, f"{value.units:~C}" or str(value.units))
         return line.scale * value.magnitude + line.offset
     return value
+
+
+def argument(name: str, kind: Kind, value: Any) -> Any:
+    """Return an argument in SI as `si` does, of the first of several kinds that its unit is one of.
+
+    Raises
+    ------
+    UnitError
+        With the name of the argument.
+    """
+    kinds = (kind,) if isinstance(kind, str) else kind
+    for number, each in enumerate(kinds, 1):
+        try:
+            return si(each, value)
+        except WrongKindError as error:
+            if number == len(kinds):
+                raise WrongKindError(f"{name}: {error}") from None
+        except UnitError as error:
+            raise UnitError(f"{name}: {error}") from None
+    return value
+
+
+def takes_si(**kinds: Kind) -> Callable[[Callable[P, R]], Callable[P, R]]:
+    """Let a function take the arguments named as `argument` does, each of its kind."""
+
+    def decorate(function: Callable[P, R]) -> Callable[P, R]:
+        signature = inspect.signature(function)
+
+        @wraps(function)
+        def called(*args: P.args, **kwargs: P.kwargs) -> R:
+            given = signature.bind(*args, **kwargs)
+            for name in kinds.keys() & given.arguments.keys():
+                given.arguments[name] = argument(name, kinds[name], given.arguments[name])
+            return function(*given.args, **given.kwargs)
+
+        return called
+
+    return decorate
+
+
+def fields_in_si(record: Any, kinds: Mapping[str, Kind]) -> None:
+    """Bring the fields of a frozen record to SI, each of its kind, as `argument` does."""
+    for name, kind in kinds.items():
+        object.__setattr__(record, name, argument(name, kind, getattr(record, name)))
 
 
 def convert(value: float, si: str, unit: str) -> float:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Annotated
 
@@ -13,7 +12,7 @@ from hersey.cli.options import (
     Reading,
     reads_logs,
 )
-from hersey.cli.outputs import command
+from hersey.cli.outputs import print_json
 from hersey.cli.progress import working
 
 
@@ -36,6 +35,6 @@ def compare(
     with working("comparing"):
         found = compared(of_a, of_b, names=(str(a), str(b)))
     if as_json:
-        print(json.dumps(found.document() | {"command": command()}, indent=1))
+        print_json("compare", found.to_dict())
         return
     print(found.summary())

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -12,7 +11,7 @@ from hersey.cli.options import (
     AsJson,
     Force,
 )
-from hersey.cli.outputs import command, may_draw
+from hersey.cli.outputs import may_draw, print_json
 from hersey.cli.progress import working
 from hersey.errors import ParameterError, UnitError, WrongKindError
 
@@ -90,10 +89,8 @@ def cycles(
             drawn = rendered(trace_chart(record, drive, unit=shown))[figure.suffix.removeprefix(".")]
         write_atomically(figure, drawn, overwrite=True)
     if as_json:
-        document = record.document() | {"unit": given.unit, "command": command()}
-        if drive is not None:
-            document["drive"] = drive.document()
-        typer.echo(json.dumps(document, indent=1))
+        driven = None if drive is None else drive.to_dict()
+        print_json("cycles", record.to_dict() | {"unit": given.unit, "drive": driven})
         return
     typer.echo(record.summary(given.unit))
     if drive is not None:

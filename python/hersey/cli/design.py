@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from typing import Annotated
 
 import typer
@@ -13,7 +12,7 @@ from hersey.cli.options import (
     Reading,
     reads_logs,
 )
-from hersey.cli.outputs import command
+from hersey.cli.outputs import print_json
 from hersey.cli.progress import working
 from hersey.errors import ParameterError
 
@@ -50,7 +49,7 @@ def design(
         seed=seed,
     )
     if as_json:
-        print(json.dumps(found.document() | {"command": command()}, indent=1))
+        print_json("design", found.to_dict())
         return
     print(found.summary())
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -15,7 +14,7 @@ from hersey.cli.options import (
     reads_logs,
     temperature_of,
 )
-from hersey.cli.outputs import command, may_draw
+from hersey.cli.outputs import may_draw, print_json
 from hersey.cli.progress import working
 from hersey.errors import ParameterError
 
@@ -55,7 +54,7 @@ def film(
     if figure is not None:
         may_draw(figure, force, inputs=reading.inputs(machine_file, log))
 
-    from hersey.document.film_document import film_document
+    from hersey.document.film_part import film_document
     from hersey.files.writing import write_atomically
     from hersey.machine.machine import read_machine
     from hersey.verdict.checks import check_film
@@ -95,10 +94,9 @@ def film(
             content = rendered(chart)[figure.suffix.removeprefix(".")]
         write_atomically(figure, content, overwrite=True)
     if as_json:
-        document = film_document(machine, predicted, names, measured, says, notes)
-        print(json.dumps(document | {"command": command()}, indent=1))
+        print_json("film", film_document(predicted, names, measured, says, notes))
         return
-    print(_text(machine, predicted, names, measured, says, notes))
+    print(_text(predicted, names, measured, says, notes))
     if figure is not None:
         print(f"figure: {figure}")
 
@@ -134,16 +132,15 @@ def _predicted(
 
 
 def _text(
-    machine: Machine,
     predicted: Film,
     names: list[str],
     measured: MeasuredFilm | None,
     says: Verdict | None,
     notes: tuple[str, ...],
 ) -> str:
-    from hersey.document.film_document import film_summary
-
-    lines = [film_summary(machine, predicted, names, measured)]
+    lines = [predicted.summary(names)]
+    if measured is not None:
+        lines += ["", measured.summary()]
     if says is not None:
         lines += ["", says.text]
     lines += [f"- {note}" for note in notes]

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import json
-
 from hersey.cli.options import (
     AsJson,
     Logs,
     Reading,
     reads_logs,
 )
-from hersey.cli.outputs import command
+from hersey.cli.outputs import print_json
 from hersey.cli.progress import working
 
 
@@ -26,16 +24,15 @@ def fit(
     """
     log = reading.log(logs)
 
-    from hersey.document.assembly import analyse
+    from hersey.damping.fit import fit as fitted
+    from hersey.document.assembly import fit_document
+    from hersey.verdict.regime import regime
 
     with working("fitting the surface"):
         points = reading.points(log)
-        document = analyse(log, points, command=command(), temperature_scale=reading.temperature_scale)
+        surface = fitted(points, temperature_scale=reading.temperature_scale)
     if as_json:
-        chosen = document.model_dump(
-            mode="json", include={"fit", "regime", "points", "files", "hersey_version", "command"}
-        )
-        print(json.dumps(chosen, indent=1))
+        print_json("fit", fit_document(log, points, surface))
         return
-    print(document.fit.summary)
-    print(document.regime.verdict)
+    print(surface.summary())
+    print(regime(points, surface).verdict)

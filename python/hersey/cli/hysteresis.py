@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-from dataclasses import asdict
 from typing import Annotated
 
 import typer
@@ -13,6 +11,7 @@ from hersey.cli.options import (
     Belt,
     takes,
 )
+from hersey.cli.outputs import print_json
 from hersey.cli.progress import working
 from hersey.errors import ParameterError
 
@@ -52,34 +51,10 @@ def hysteresis(
     if as_json:
         from hersey.result import json_value
 
-        document = {
-            **json_value(asdict(band)),
-            "bistable": band.bistable,
-            "verdict": band.verdict(),
-            "disturbance": None if bears is None else json_value(asdict(bears)),
-            "step": None if step is None else json_value(asdict(step)),
-        }
-        print(json.dumps(document, indent=1, allow_nan=False))
+        further = {"disturbance": json_value(bears), "step": json_value(step)}
+        print_json("hysteresis", band.to_dict() | further)
         return
-    lines = [
-        f"lower edge        {band.lower:.9g}  (to {band.lower_accuracy:.0e})",
-        f"transition speed  {band.transition:.9g}",
-        f"upper fold V*     {band.upper:.9g}  (to {band.upper_accuracy:.0e}, by {band.method})",
-    ]
-    if band.deeper:
-        lines.append("at the upper fold a deeper stick-slip ends, released higher than at the stick speed")
-    if band.sensitivity:
-        own = {**vars(train), **vars(law)}
-        lines.append(
-            f"{'parameter':18s} {'value':>12s} {'dV*/dparameter':>15s}"
-            f" {'V* for +1 %':>13s} {'lower, +1 %':>13s}"
-        )
-        lines += [
-            f"{name:18s} {own[name]:12.6g} {band.derivative(name, own[name]):15.6g} {share:+10.3f} % "
-            f"{band.lower_sensitivity[name]:+10.3f} %"
-            for name, share in band.sensitivity.items()
-        ]
-    lines.append(band.verdict())
+    lines = [band.summary({**vars(train), **vars(law)})]
     if bears is not None:
         lines.append(
             f"Sliding at {bears.drive_speed:g} it bears a sudden loss of belt speed of {bears.kick:.6g}, "

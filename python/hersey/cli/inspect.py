@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Annotated
 
@@ -15,7 +14,7 @@ from hersey.cli.options import (
     Reading,
     reads_logs,
 )
-from hersey.cli.outputs import PICTURES, may_draw, may_write
+from hersey.cli.outputs import PICTURES, may_draw, may_write, print_json
 from hersey.cli.progress import working
 
 
@@ -79,7 +78,7 @@ def inspect(
             chart = inspection_chart(logs, found)
             write_atomically(figure, rendered_map(chart, figure.suffix), overwrite=True)
     if as_json:
-        print(json.dumps(found.document(), indent=1))
+        print_json("inspect", found.to_dict())
         return
     print(found.summary())
     if kept is not None:

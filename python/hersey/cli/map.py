@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 from pathlib import Path
 from typing import Annotated
@@ -17,7 +16,7 @@ from hersey.cli.options import (
     SomeLogs,
     reads_logs,
 )
-from hersey.cli.outputs import PICTURES, may_draw
+from hersey.cli.outputs import PICTURES, may_draw, print_json
 from hersey.cli.progress import working
 
 
@@ -71,7 +70,7 @@ def map_(
             chart = map_chart(drawn, tooltips=picture.suffix == ".html")
             write_atomically(picture, rendered_map(chart, picture.suffix), overwrite=True)
     if as_json:
-        print(json.dumps(drawn.document(), indent=1))
+        print_json("map", drawn.to_dict())
         return
     print(drawn.summary())
     for warning in drawn.warnings:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from typing import Annotated
 
 import typer
@@ -13,7 +12,7 @@ from hersey.cli.options import (
     Reading,
     reads_logs,
 )
-from hersey.cli.outputs import command
+from hersey.cli.outputs import print_json
 from hersey.cli.progress import bar, working
 
 
@@ -40,6 +39,6 @@ def models(
     with bar("fitting", unit="candidates") as progress:
         found = compare_models(points, bootstrap=bootstrap, seed=seed, progress=progress)
     if as_json:
-        print(json.dumps(found.document() | {"command": command()}, indent=1))
+        print_json("models", found.to_dict())
         return
     print(found.summary())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shlex
 import sys
@@ -20,6 +21,16 @@ PICTURES = (".html", *FIGURES)
 def command() -> str:
     """Return the command as the user could type it again."""
     return " ".join(["hersey", *(shlex.quote(part) for part in sys.argv[1:])])
+
+
+def print_json(name: str, result: object) -> None:
+    """Print what a command of that name found: its part of the document, with versions and command."""
+    from hersey import _core
+    from hersey.document.parts import PRINTED, SCHEMA_VERSION
+
+    part = PRINTED[name].model_validate(result)
+    header = {"schema_version": SCHEMA_VERSION, "hersey_version": _core.VERSION, "command": command()}
+    print(json.dumps(header | part.model_dump(mode="json"), indent=1, allow_nan=False))
 
 
 def may_write(path: Path, force: bool, inputs: Sequence[Path] = ()) -> None:

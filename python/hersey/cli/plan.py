@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -17,7 +16,7 @@ from hersey.cli.options import (
     reads_logs,
     temperature_of,
 )
-from hersey.cli.outputs import command, may_draw, may_write
+from hersey.cli.outputs import may_draw, may_write, print_json
 from hersey.cli.progress import bar, working
 from hersey.errors import OutputError, ParameterError, WrongKindError
 
@@ -26,7 +25,6 @@ if TYPE_CHECKING:
     from hersey.damping.surface import DampingSurface
     from hersey.machine.machine import Machine
     from hersey.motion.drag import Drag
-    from hersey.stability.plan import Plan
 
 
 #: Draws of the fit from which those of the plan are taken.
@@ -121,9 +119,9 @@ def plan(
     if found.found and out is not None:
         write_atomically(out, found.table(), overwrite=True)
     if as_json:
-        typer.echo(json.dumps(found.document() | {"command": command()}, indent=1))
+        print_json("plan", found.to_dict())
     else:
-        typer.echo(_text(found))
+        typer.echo(found.summary())
         for what, written in (("profile", out), ("figure", figure)):
             if found.found and written is not None:
                 typer.echo(f"{what}: {written}")
@@ -172,17 +170,3 @@ def _drag(
             temperature=at,
         )
     return drag, samples
-
-
-def _text(found: Plan) -> str:
-    lines = [found.verdict()]
-    if found.found:
-        lines += [found.proof(), "", f"  {'time (s)':>12s}  {'drive speed (mm/s)':>18s}"]
-        lines += [f"  {time:12.6g}  {1e3 * value:18.6g}" for time, value in found.rows()]
-        lines.append("")
-        lines += [f"{use.name.replace('_', ' ')}: {use.used:.4g} of {use.limit:.4g}" for use in found.uses]
-        lines += [f"- {warning}" for warning in found.warnings]
-        lines += [f"- {number} of {found.draws} draws: {why}" for why, number in found.failures.items()]
-    fold = f"{1e3 * found.fold_speed:.4g}"
-    lines.append(f"nominal transition speed {1e3 * found.transition_speed:.4g} mm/s, V* {fold} mm/s")
-    return "\n".join([*lines, f"seed {found.seed}"])

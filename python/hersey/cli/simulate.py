@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
 
@@ -15,7 +13,7 @@ from hersey.cli.options import (
     Force,
     takes,
 )
-from hersey.cli.outputs import may_write
+from hersey.cli.outputs import may_write, print_json
 
 
 @takes(Belt, "belt")
@@ -43,6 +41,7 @@ def simulate(
         may_write(csv, force)
 
     from hersey.motion import simulation as motion
+    from hersey.result import json_value
 
     train, drag = belt.parts()
     cycle = motion.stick_slip(train, drag, drive_speed=drive_speed, start=start)
@@ -67,29 +66,12 @@ def simulate(
         )
         write_atomically(csv, table.write_csv(), overwrite=True)
     if as_json:
-        document: dict[str, object] = {**asdict(cycle), "stuck_fraction": cycle.stuck_fraction}
-        if run is not None:
-            document["energy"] = asdict(run.energy)
-            document["check"] = None if run.check is None else asdict(run.check)
-        print(json.dumps(document, indent=1))
+        ran = {} if run is None else {"energy": json_value(run.energy), "check": json_value(run.check)}
+        print_json("simulate", cycle.to_dict() | ran)
         return
-    lines = [
-        f"{cycle.kind.replace('_', ' ')}",
-        f"  frequency       {cycle.frequency:.6f}",
-        f"  stuck fraction  {cycle.stuck_fraction:.6f}",
-        f"  belt speed      {cycle.speed_min:.6f} to {cycle.speed_max:.6f}",
-        f"  stretch         {cycle.stretch_min:.6f} to {cycle.stretch_max:.6f}",
-        f"  drag work       {cycle.drag_work:.6f} a lap",
-    ]
+    lines = [cycle.summary()]
     if run is not None:
         lines.append(f"energy balance: {run.energy.residual:.1e} of the energy turned over is missing")
     if run is not None and run.check is not None:
-        seen = run.check
-        lines.append(
-            f"{seen.integrator}: " + seen.note
-            if seen.speed_difference is None
-            else f"{seen.integrator} differs by {seen.speed_difference:.1e} in speed and "
-            f"{seen.stretch_difference:.1e} in stretch; "
-            f"{'the same' if seen.same_events else 'OTHER'} events"
-        )
+        lines.append(str(run.check))
     print("\n".join(lines))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Annotated
 
@@ -12,7 +11,7 @@ from hersey.cli.options import (
     AsJson,
     Force,
 )
-from hersey.cli.outputs import may_write
+from hersey.cli.outputs import may_write, print_json
 from hersey.cli.progress import bar, working
 from hersey.errors import OutputError
 
@@ -48,7 +47,7 @@ def sweep(
             write_atomically(out, rows(result, out.suffix), overwrite=True)
     counted = summary(result)
     if as_json:
-        print(json.dumps(counted, indent=1))
+        print_json("sweep", counted)
         return
     for kind, share in counted["kinds"].items():
         print(f"{kind.replace('_', ' '):16s}{share}")

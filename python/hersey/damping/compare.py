@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy import stats
@@ -25,8 +26,11 @@ from hersey.damping.candidates.observations import Inputs, Observations
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.estimate import CONFIDENCE, Estimate
 from hersey.errors import InsufficientDataError
-from hersey.result import json_value
+from hersey.result import Result, json_record
 from hersey.units import convert, rpm
+
+if TYPE_CHECKING:
+    import polars as pl
 
 #: Speeds and temperatures at which the ratio is taken.
 SPEEDS, TEMPERATURES = 9, 4
@@ -56,8 +60,8 @@ class Change:
         return self.p_value < 1.0 - CONFIDENCE
 
 
-@dataclass(frozen=True)
-class LogComparison:
+@dataclass(frozen=True, repr=False)
+class LogComparison(Result):
     """Damping of B over that of A, and what else differs; arrays of shape (temperatures, speeds)."""
 
     candidate: str
@@ -92,26 +96,44 @@ class LogComparison:
             )
         return "\n".join([*lines, *(f"- {note}" for note in self.notes)])
 
-    def document(self) -> dict[str, object]:
-        """Return the comparison as plain data, SI units."""
-        found = json_value(
+    def headline(self) -> str:
+        """Return the mean ratio of damping."""
+        return f"damping of {self.names[1]} over {self.names[0]}: {self.mean_ratio}"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the comparison in SI."""
+        return json_record(
             {
                 "a": self.names[0],
                 "b": self.names[1],
                 "candidate": self.candidate,
                 "verdict": self.verdict,
                 "notes": self.notes,
-                "mean_ratio": vars(self.mean_ratio),
+                "mean_ratio": self.mean_ratio,
                 "speeds": self.speeds,
                 "temperatures": self.temperatures,
                 "ratio": self.ratio,
                 "low": self.low,
                 "high": self.high,
-                "changes": [{**vars(c), "change": vars(c.change), "real": c.real} for c in self.changes],
+                "changes": [{**vars(change), "real": change.real} for change in self.changes],
             }
         )
-        assert isinstance(found, dict)
-        return found
+
+    def to_frame(self) -> pl.DataFrame:
+        """Return the ratio with its limits at each temperature (null if none) and speed."""
+        import polars as pl
+
+        levels = self.temperatures.tolist() or [None]
+        kelvin = [level for level in levels for _ in self.speeds]
+        return pl.DataFrame(
+            {
+                "temperature (K)": pl.Series(kelvin, dtype=pl.Float64),
+                "speed (rad/s)": np.tile(self.speeds, len(levels)),
+                "ratio (1)": self.ratio.ravel(),
+                "ratio low (1)": self.low.ravel(),
+                "ratio high (1)": self.high.ravel(),
+            }
+        )
 
 
 def compare(

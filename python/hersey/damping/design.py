@@ -9,6 +9,7 @@ averaged over draws of the fit.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,8 +18,11 @@ from hersey.damping.candidates.intervals import Quantity, quantities
 from hersey.damping.candidates.model_comparison import ModelComparison
 from hersey.damping.candidates.observations import Inputs
 from hersey.errors import InsufficientDataError, ParameterError
-from hersey.result import json_value
+from hersey.result import Result, json_record
 from hersey.units import convert, rpm
+
+if TYPE_CHECKING:
+    import polars as pl
 
 #: Speeds of the candidate grid, and draws of the fit over which the gain is averaged.
 SPEEDS, DRAWS = 25, 40
@@ -34,8 +38,8 @@ class DesignPoint:
     volume: float  #: of the confidence region of all parameters, over that of today
 
 
-@dataclass(frozen=True)
-class TestDesign:
+@dataclass(frozen=True, repr=False)
+class TestDesign(Result):
     """The next dwells, in the order of their worth."""
 
     __test__ = False  # no test of pytest's
@@ -63,20 +67,18 @@ class TestDesign:
             lines.append(f"  {number}. {rpm(point.speed):.3g} rpm{hot}: then {then}")
         return "\n".join(lines)
 
-    def document(self) -> dict[str, object]:
-        """Return the points as plain data, rad/s and K."""
-        found = json_value(
-            {
-                "quantity": self.quantity,
-                "unit": self.unit,
-                "error_now": self.error_now,
-                "law": self.law,
-                "seed": self.seed,
-                "points": [vars(point) for point in self.points],
-            }
-        )
-        assert isinstance(found, dict)
-        return found
+    def to_dict(self) -> dict[str, Any]:
+        """Return the points in SI."""
+        return json_record(vars(self))
+
+    def to_frame(self) -> pl.DataFrame:
+        """Return one row per dwell, in their order."""
+        import polars as pl
+
+        unit = self.unit or "1"
+        rows = [(p.speed, p.kelvin, p.error, p.volume) for p in self.points]
+        names = ("speed (rad/s)", "temperature (K)", f"standard error ({unit})", "volume (1)")
+        return pl.DataFrame(rows, schema=dict.fromkeys(names, pl.Float64), orient="row")
 
     def _shown(self, error: float) -> str:
         if self.unit == "rad/s":

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import polars as pl
@@ -18,6 +19,8 @@ from scipy.ndimage import percentile_filter
 from hersey.arrays import FloatArray
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.log.torque_log import STANDING, Run, TorqueLog
+from hersey.result import Result, json_record
+from hersey.units import rpm
 
 #: Length of the blocks in which speed is judged, s, and how many a run may have at most.
 BLOCK_DURATION, MAX_BLOCKS = 0.2, 200_000
@@ -55,8 +58,8 @@ class Rejection:
     reason: str
 
 
-@dataclass(frozen=True)
-class SteadyPoints:
+@dataclass(frozen=True, repr=False)
+class SteadyPoints(Result):
     """One row per dwell.
 
     Attributes
@@ -91,6 +94,48 @@ class SteadyPoints:
     def column(self, name: str) -> FloatArray:
         """Return a column as an array of shape (points,)."""
         return self.table[name].to_numpy()
+
+    def summary(self) -> str:
+        """Return how many dwells, their ranges, the tare, and what is not used, as text."""
+        rows = f"{self.table['rows'].sum()} of {self.log.rows} rows used"
+        lines = [f"{self.headline()}; {rows}", f"tare {self.tare:.4g} N m"]
+        if self.standing_torque is not None:
+            lines[-1] += f", standing torque {self.standing_torque:.4g} N m"
+        lines += [f"  not used: {rows} rows, {why}" for why, rows in self._unused().items()]
+        return "\n".join(lines)
+
+    def headline(self) -> str:
+        """Return how many dwells, and the ranges of speed and torque."""
+        speed, torque = np.abs(self.column("speed")), np.abs(self.column("torque"))
+        return (
+            f"{len(self)} dwells, {rpm(float(speed.min())):.4g} to {rpm(float(speed.max())):.4g} rpm, "
+            f"{torque.min():.4g} to {torque.max():.4g} N m"
+        )
+
+    def _unused(self) -> dict[str, int]:
+        """Rows of every other stretch by its reason."""
+        rows: dict[str, int] = {}
+        for stretch in self.rejected:
+            rows[stretch.reason] = rows.get(stretch.reason, 0) + stretch.rows
+        return rows
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the dwells, what is not used, and the tare, in SI."""
+        return json_record(
+            {
+                "points": self.table.to_dicts(),
+                "rejected": self.rejected,
+                "tare": self.tare,
+                "tare_error": self.tare_error,
+                "standing_torque": self.standing_torque,
+            }
+        )
+
+    def to_frame(self) -> pl.DataFrame:
+        """Return one row per dwell."""
+        units = {"start": "s", "end": "s", "speed": "rad/s", "torque": "N m", "temperature": "K"}
+        units |= {f"{name}_error": units[name] for name in ("speed", "torque", "temperature")}
+        return self.table.rename({name: f"{name.replace('_', ' ')} ({unit})" for name, unit in units.items()})
 
 
 def steady_points(

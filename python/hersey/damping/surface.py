@@ -13,7 +13,7 @@ from __future__ import annotations
 import warnings
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -28,7 +28,11 @@ from hersey.damping.candidates.thermal import CELSIUS, KELVIN, Thermal, scaled_t
 from hersey.damping.estimate import Estimate
 from hersey.errors import ExtrapolationWarning, InsufficientDataError, ParameterError
 from hersey.motion.drag import Drag
-from hersey.units import ZERO_CELSIUS, celsius, si
+from hersey.result import Result, json_record
+from hersey.units import ZERO_CELSIUS, celsius, takes_si
+
+if TYPE_CHECKING:
+    import polars as pl
 
 #: Law of temperature by the scale of T in T^b.
 SCALES = {"degC": CELSIUS, "K": KELVIN}
@@ -49,8 +53,8 @@ class FitStatistics:
     r_squared_torque: float
 
 
-@dataclass(frozen=True)
-class DampingSurface:
+@dataclass(frozen=True, repr=False)
+class DampingSurface(Result):
     """A fitted law B = a T^b w^c; T in ``temperature_scale``, w in rad/s, B in N m s/rad.
 
     ``b`` is None for isothermal data. ``covariance`` is that of ``variables``, the numbers fitted, about
@@ -77,6 +81,7 @@ class DampingSurface:
     data_sha256: tuple[str, ...]
     version: str = field(default=_core.VERSION)
 
+    @takes_si(speed="speed", temperature="temperature")
     def damping(self, speed: ArrayLike, temperature: ArrayLike | None = None) -> FloatArray:
         """Return damping in N m s/rad at speeds (rad/s) and temperatures (K), broadcast together.
 
@@ -111,10 +116,12 @@ class DampingSurface:
         hot = None if kelvin is None else np.ravel(kelvin)
         return Inputs(z, hot, np.zeros(z.size, dtype=np.intp))
 
+    @takes_si(speed="speed", temperature="temperature")
     def torque(self, speed: ArrayLike, temperature: ArrayLike | None = None) -> FloatArray:
         """Return drag torque in N m, with the sign of the speed (rad/s); temperature in K."""
         return np.asarray(self.damping(speed, temperature) * np.asarray(speed, dtype=float))
 
+    @takes_si(temperature="temperature")
     def transition_speed(self, temperature: float | None = None) -> float:
         """Return the transition speed in rad/s at a temperature (K); NaN where the data show none."""
         if self.transition is None:
@@ -124,6 +131,7 @@ class DampingSurface:
         moved = self.transition.temperature_exponent * self._log_temperature(temperature)
         return float(self.transition.speed.value * np.exp(moved))
 
+    @takes_si(roll_radius="length", stick_speed="belt speed", temperature="temperature")
     def drag(self, *, roll_radius: float, stick_speed: float, temperature: float | None = None) -> Drag:
         """Return the drag on the belt surface, at one temperature or varying with it.
 
@@ -168,6 +176,7 @@ class DampingSurface:
             stick_speed=stick_speed,
         )
 
+    @takes_si(roll_radius="length", stick_speed="belt speed", temperature="temperature")
     def drag_samples(
         self,
         count: int,
@@ -229,7 +238,7 @@ class DampingSurface:
             warnings.warn(
                 f"{failed} of {drawn} draws of the fit had no falling branch and were drawn again: "
                 "the intervals hold for fits that have one",
-                stacklevel=2,
+                stacklevel=3,
             )
         level, b, c, mixed, at = kept.T
         z = at + _transition_exponents(b, c) * x
@@ -267,6 +276,7 @@ class DampingSurface:
                 )
         return kept[:count], drawn, drawn - len(kept)
 
+    @takes_si(speed="speed", temperature="temperature")
     def predict(self, speed: Any, temperature: Any = None) -> Band:
         """Return torque with its 95 % limits: of the law, and of one further dwell.
 
@@ -285,13 +295,13 @@ class DampingSurface:
         >>> surface.predict("25 rpm", "150 degC").torque.round(3)
         array([0.912])
         """
-        speeds = np.abs(np.asarray(si("speed", speed), dtype=float))
+        speeds = np.abs(np.asarray(speed, dtype=float))
         self._warn_outside("speed", speeds, self.speed_range)
         kelvin = None
         if self.b is not None:
             if temperature is None:
                 raise ParameterError("this law depends on temperature: give it one, in K")
-            kelvin = np.asarray(si("temperature", temperature), dtype=float)
+            kelvin = np.asarray(temperature, dtype=float)
             self._warn_outside("temperature", kelvin, self.temperature_range)
             speeds, kelvin = np.broadcast_arrays(speeds, kelvin)
         dwell = float(np.hypot(self.statistics.scatter, self.statistics.dwell_error))
@@ -306,6 +316,55 @@ class DampingSurface:
     def summary(self) -> str:
         """Return the fit as text, in the layout that users of lmfit know."""
         return _summary(self)
+
+    def headline(self) -> str:
+        """Return the law and its exponents."""
+        law = "B = a T^b w^c" if self.b else "B = a w^c"
+        exponents = f"b = {self.b.value:.4g}, c = {self.c.value:.4g}" if self.b else f"c = {self.c.value:.4g}"
+        where = "no transition"
+        if self.transition is not None:
+            where = f"transition at {self.transition.speed.value:.4g} rad/s"
+        return f"{law}, {exponents}, {where}"
+
+    def coefficients(self) -> dict[str, Estimate]:
+        """Return a, b (where thermal) and c by name."""
+        return {"a": self.a, **({"b": self.b} if self.b else {}), "c": self.c}
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the fit in SI; T of the law in its scale."""
+        statistics = {name: value for name, value in vars(self.statistics).items() if name != "variables"}
+        return json_record(
+            {
+                "law": "B = a T^b w^c" if self.b else "B = a w^c",
+                "temperature_scale": self.temperature_scale,
+                "reference_speed": self.reference_speed,
+                "reference_temperature": self.reference_temperature,
+                "coefficients": self.coefficients(),
+                "torque_space": self.torque_space,
+                "transition": self.transition,
+                "no_transition": self.rejected_transition,
+                "variables": self.variables,
+                "values": self.values,
+                "covariance": self.covariance,
+                **statistics,
+                "speed_range": self.speed_range,
+                "temperature_range": self.temperature_range,
+                "summary": self.summary(),
+            }
+        )
+
+    def to_frame(self) -> pl.DataFrame:
+        """Return the coefficients with error and 95 % interval; T of the law in its scale, w in rad/s."""
+        import polars as pl
+
+        named = [(name, estimate, "") for name, estimate in self.coefficients().items()]
+        if self.transition is not None:
+            named.append(("c_mixed", self.transition.mixed_exponent, ""))
+            named.append(("w_t", self.transition.speed, "rad/s"))
+        named[0] = ("a", self.a, "N m s/rad at T = 1, w = 1")
+        rows = [(name, e.value, e.error, e.low, e.high, unit) for name, e, unit in named]
+        numbers = dict.fromkeys(("value", "error", "low", "high"), pl.Float64)
+        return pl.DataFrame(rows, schema={"name": pl.String, **numbers, "unit": pl.String}, orient="row")
 
     def _log_temperature(self, temperature: float) -> float:
         """Logarithm of a temperature (K) over the reference, in the scale of the law."""
@@ -324,7 +383,7 @@ class DampingSurface:
             warnings.warn(
                 f"{name} outside the measured {limits[0]:.4g} to {limits[1]:.4g} {unit}: extrapolated",
                 ExtrapolationWarning,
-                stacklevel=3,
+                stacklevel=4,
             )
 
 

@@ -1,10 +1,9 @@
 """The analysis document: the contract between the package and the page.
 
-=============  ============================================
-parts          one part per result, versioned and validated
-assembly       from a log to the document
-film_part      the film of the nip
-film_document  the film as text and JSON
-saved_fit      a fit read back from its JSON
-=============  ============================================
+=========  ================================================
+parts      one part per result, versioned and validated
+assembly   from a log to the document
+film_part  the film of the nip
+saved_fit  a fit read back from its JSON
+=========  ================================================
 """

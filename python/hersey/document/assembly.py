@@ -13,20 +13,17 @@ from tsdownsample import MinMaxLTTBDownsampler
 from hersey import _core
 from hersey.arrays import FloatArray
 from hersey.damping.dwells import SteadyPoints, groups_of_temperature
-from hersey.damping.estimate import Estimate
 from hersey.damping.fit import fit
 from hersey.damping.surface import DampingSurface
 from hersey.document.film_part import film_part
 from hersey.document.parts import (
     Analysis,
-    BranchPart,
     Cell,
     ChannelUse,
     Curve,
+    FitDocument,
     FitPart,
-    HypothesisPart,
     InputFile,
-    Interval,
     Point,
     Quality,
     RegimePart,
@@ -35,7 +32,6 @@ from hersey.document.parts import (
     SimulationPart,
     Timeline,
     TransitionAt,
-    TransitionPart,
 )
 from hersey.errors import ExtrapolationWarning, ParameterError
 from hersey.log import TorqueLog
@@ -44,7 +40,7 @@ from hersey.machine.machine import Machine
 from hersey.motion.drag import Drag
 from hersey.motion.simulation import Drivetrain, simulate, stick_slip
 from hersey.units import celsius, rpm
-from hersey.verdict.regime import Regime, regime
+from hersey.verdict.regime import regime
 
 #: Samples kept of each channel for display; extremes survive the thinning.
 DISPLAYED_SAMPLES = 2000
@@ -72,7 +68,6 @@ def analyse(
         If the points cannot determine the surface.
     """
     surface = fit(points, temperature_scale=temperature_scale)
-    found = regime(points, surface)
     return Analysis(
         hersey_version=_core.VERSION,
         title=_title(log),
@@ -82,20 +77,26 @@ def analyse(
         quality=_quality(log, points),
         points=_points(points, surface),
         fit=_fit_part(points, surface),
-        regime=_regime_part(found),
+        regime=RegimePart.model_validate(regime(points, surface).to_dict()),
         film=film_part(points, surface, machine),
         simulation=_simulation(surface, machine),
         timeline=_timeline(log),
     )
 
 
+def fit_document(log: TorqueLog, points: SteadyPoints, surface: DampingSurface) -> FitDocument:
+    """Return what a fit needs to be read back: the fit, its dwells and files, and the regime."""
+    return FitDocument(
+        files=[_file(log, i) for i in range(len(log.files))],
+        points=_points(points, surface),
+        fit=_fit_part(points, surface),
+        regime=RegimePart.model_validate(regime(points, surface).to_dict()),
+    )
+
+
 def _title(log: TorqueLog) -> str:
     first = log.files[0].name
     return first if len(log.files) == 1 else f"{first} and {len(log.files) - 1} more"
-
-
-def _interval(e: Estimate) -> Interval:
-    return Interval(value=e.value, error=e.error, low=e.low, high=e.high)
 
 
 def _file(log: TorqueLog, index: int) -> InputFile:
@@ -208,73 +209,12 @@ def _damping(s: DampingSurface, speed: FloatArray, kelvin: float | None) -> list
 
 
 def _fit_part(points: SteadyPoints, s: DampingSurface) -> FitPart:
-    transition = None
-    if s.transition:
-        transition = TransitionPart(
-            speed=_interval(s.transition.speed),
-            least_torque_speed=s.transition.least_torque_speed,
-            mixed_exponent=_interval(s.transition.mixed_exponent),
-            temperature_exponent=s.transition.temperature_exponent,
-            evidence=s.transition.evidence,
-            gradual=s.transition.gradual,
-        )
-    coefficients = {"a": s.a, **({"b": s.b} if s.b else {}), "c": s.c}
-    return FitPart(
-        law="B = a T^b w^c" if s.b else "B = a w^c",
-        temperature_scale="K" if s.temperature_scale == "K" else "degC",
-        reference_speed=s.reference_speed,
-        reference_temperature=s.reference_temperature,
-        coefficients={name: _interval(e) for name, e in coefficients.items()},
-        torque_space={name: _interval(e) for name, e in s.torque_space.items()},
-        transition=transition,
-        no_transition=s.rejected_transition,
-        variables=list(s.variables),
-        values=s.values.tolist(),
-        covariance=s.covariance.tolist(),
-        points=s.statistics.points,
-        chi_square=s.statistics.chi_square,
-        reduced_chi_square=s.statistics.reduced_chi_square,
-        scatter=s.statistics.scatter,
-        dwell_error=s.statistics.dwell_error,
-        aicc=s.statistics.aicc,
-        r_squared_damping=s.statistics.r_squared_damping,
-        r_squared_torque=s.statistics.r_squared_torque,
-        speed_range=s.speed_range,
-        temperature_range=s.temperature_range,
-        summary=s.summary(),
-        curves=_curves(points, s),
-        cells=_cells(s),
-        transition_curve=_transition_curve(s),
-    )
-
-
-def _regime_part(r: Regime) -> RegimePart:
-    return RegimePart(
-        verdict=r.verdict,
-        hypotheses=[
-            HypothesisPart(
-                name=h.name,
-                low=None if np.isinf(h.low) else h.low,
-                high=h.high,
-                meaning=h.meaning,
-                film=h.film,
-                p_value=h.p_value,
-                consistent=h.consistent,
-            )
-            for h in r.hypotheses
-        ],
-        exponents=[
-            BranchPart(
-                temperature=e.temperature,
-                branch=e.branch,
-                points=e.points,
-                speed_low=e.speed_low,
-                speed_high=e.speed_high,
-                exponent=_interval(e.exponent),
-            )
-            for e in r.exponents
-        ],
-    )
+    drawn = {
+        "curves": _curves(points, s),
+        "cells": _cells(s),
+        "transition_curve": _transition_curve(s),
+    }
+    return FitPart.model_validate(s.to_dict() | drawn)
 
 
 def _warnings(

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.surface import DampingSurface
 from hersey.document.parts import FilmPart, FilmPoint
 from hersey.lubrication.film import REGIMES, Film, film_thickness
 from hersey.machine.machine import Machine
 from hersey.verdict.checks import check_film
-from hersey.verdict.evidence import measured_film, verdict
+from hersey.verdict.evidence import MeasuredFilm, Verdict, measured_film, verdict
 
 
 def film_part(points: SteadyPoints, surface: DampingSurface, machine: Machine | None) -> FilmPart | None:
@@ -25,12 +27,35 @@ def film_part(points: SteadyPoints, surface: DampingSurface, machine: Machine | 
             speed=[point.speed / contact.roll_radius for point in machine.points],
             temperature=[point.temperature for point in machine.points],
         )
-    return FilmPart(
-        verdict=verdict(measured, surface, contact, lubricant).text,
-        notes=list(check_film(machine, film, measured)),
-        points=film_points(film, [point.name for point in machine.points]),
-        dwells=film_points(measured.predicted, [""] * measured.speed.size),
-        layer_factor=film.nip.layer_factor,
+    return film_document(
+        film,
+        [point.name for point in machine.points],
+        measured,
+        verdict(measured, surface, contact, lubricant),
+        check_film(machine, film, measured),
+    )
+
+
+def film_document(
+    film: Film,
+    names: list[str],
+    measured: MeasuredFilm | None = None,
+    says: Verdict | None = None,
+    notes: Sequence[str] = (),
+) -> FilmPart:
+    """Return a film at named points, and what a log says of it if there is one."""
+    document = film.to_dict()
+    document["film"]["names"] = names
+    return FilmPart.model_validate(
+        document
+        | {
+            "measured": None if measured is None else measured.to_dict(),
+            "exponents": None if says is None else says.to_dict(),
+            "verdict": "" if says is None else says.text,
+            "notes": list(notes),
+            "points": film_points(film, names),
+            "dwells": [] if measured is None else film_points(measured.predicted, [""] * measured.speed.size),
+        }
     )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,7 +14,11 @@ from hersey.identification.detection import FEWEST_SLIPS, found_falls, steep_las
 from hersey.identification.sampling import Samples, even_samples
 from hersey.identification.slip_shape import SHARE, held_slope, slip_duration, stick_angle
 from hersey.identification.turning_points import Falls, crossing, curved, least_turn, smoothed
-from hersey.result import json_value
+from hersey.result import Result, json_record
+from hersey.units import takes_si
+
+if TYPE_CHECKING:
+    import polars as pl
 
 #: What a trace may hold.
 QUANTITIES = ("force", "speed")
@@ -50,8 +54,8 @@ class Scatter(NamedTuple):
         )
 
 
-@dataclass(frozen=True)
-class CycleRecord:
+@dataclass(frozen=True, repr=False)
+class CycleRecord(Result):
     """Cycles of a trace at one drive speed.
 
     ``kind`` is ``steady_sliding`` (no cycles), ``inertial`` (an oscillation near the free period in which the
@@ -125,8 +129,8 @@ class CycleRecord:
         """Return the number of slips whose fall is at least ``drop``; smaller ones part their neighbours."""
         return int(np.sum(self.drop >= drop))
 
-    def document(self) -> dict[str, Any]:
-        """Return the record as JSON can hold it."""
+    def to_dict(self) -> dict[str, Any]:
+        """Return the figures, time in s and force in the unit of the trace."""
         per_cycle = {
             "period": self.period,
             "drop": self.drop,
@@ -152,7 +156,21 @@ class CycleRecord:
             "notes": list(self.notes),
         }
         typical = {name: Scatter.of(values)._asdict() for name, values in per_cycle.items()}
-        return {str(key): value for key, value in json_value(figures | typical).items()}
+        return json_record(figures | typical)
+
+    def to_frame(self) -> pl.DataFrame:
+        """Return one row per slip; force in the unit of the trace."""
+        import polars as pl
+
+        return pl.DataFrame(
+            {
+                "time (s)": self.slip_time,
+                "force max (unit of the trace)": self.force_max,
+                "force min (unit of the trace)": self.force_min,
+                "fall duration (s)": self.fall_duration,
+                "steep duration (s)": self.steep_duration,
+            }
+        )
 
     def summary(self, unit: str = "") -> str:
         """Return the figures in words, a line each; ``unit`` is that of the trace, for the words."""
@@ -181,6 +199,7 @@ class CycleRecord:
         return "\n".join(lines)
 
 
+@takes_si(time="time", drive_speed=("belt speed", "speed"))
 def cycles(
     time: ArrayLike,
     value: ArrayLike,

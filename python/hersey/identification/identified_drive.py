@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,9 +16,13 @@ from hersey.identification.drive_fit import EXPONENTS, DriveFit
 from hersey.identification.independence import TOLD, in_words
 from hersey.identification.waveform import Waveform, mean_waveform
 from hersey.motion.drag import Drag
-from hersey.motion.parameters import OF_THE_BELT
+from hersey.motion.parameters import KINDS, OF_THE_BELT
 from hersey.motion.simulation import Drivetrain
-from hersey.result import json_value
+from hersey.result import Result, json_record
+from hersey.units import argument
+
+if TYPE_CHECKING:
+    import polars as pl
 
 #: Closures that a record can be compared with, and those that are unless told otherwise: `stribeck` takes
 #: minutes.
@@ -42,8 +46,8 @@ class ClosureFit:
     misfit: float
 
 
-@dataclass(frozen=True)
-class IdentifiedDrive:
+@dataclass(frozen=True, repr=False)
+class IdentifiedDrive(Result):
     """A drive identified from a record.
 
     ``estimates`` holds every parameter that the record tells, with its 95 % interval; ``values`` all that
@@ -77,22 +81,39 @@ class IdentifiedDrive:
         names = OF_THE_BELT[2:]
         return Drag(**{name: self.values[name] for name in names}, closure=self.closure)
 
-    def document(self) -> dict[str, Any]:
-        """Return the result as JSON can hold it."""
-        found = {
-            "closure": self.closure,
-            "closure_decided": self.decided,
-            "closures": [vars(fit) for fit in self.closures],
-            "estimates": {name: vars(estimate) for name, estimate in self.estimates.items()},
-            "known": dict(self.known),
-            "best_fit": dict(self.values),
-            "derived": {name: vars(estimate) for name, estimate in self.derived.items()},
-            "not_told": list(self.not_told),
-            "misfit": self.misfit,
-            "drive_speed": self.drive_speed,
-            "notes": list(self.notes),
-        }
-        return {str(key): value for key, value in json_value(found).items()}
+    def to_dict(self) -> dict[str, Any]:
+        """Return closure, estimates and what is not told; in SI if the trace was in newtons."""
+        return json_record(
+            {
+                "closure": self.closure,
+                "closure_decided": self.decided,
+                "closures": self.closures,
+                "estimates": self.estimates,
+                "known": self.known,
+                "best_fit": self.values,
+                "derived": self.derived,
+                "not_told": self.not_told,
+                "misfit": self.misfit,
+                "drive_speed": self.drive_speed,
+                "notes": self.notes,
+            }
+        )
+
+    def to_frame(self) -> pl.DataFrame:
+        """Return what the record tells with its 95 % interval; the units hold for a trace in newtons."""
+        import polars as pl
+
+        rows = [
+            (name, e.value, e.error, e.low, e.high, _UNITS.get(name, "").strip())
+            for name, e in {**self.estimates, **self.derived}.items()
+        ]
+        columns = ("value", "error", "low", "high")
+        schema = {"name": pl.String, **dict.fromkeys(columns, pl.Float64), "unit": pl.String}
+        return pl.DataFrame(rows, schema=schema, orient="row")
+
+    def headline(self) -> str:
+        """Return the closure and what is told."""
+        return f"closure {self.closure}, told: {', '.join(self.estimates) or 'nothing'}"
 
     def summary(self, unit: str = "") -> str:
         """Return the result in words, a line each; units where that of the trace is newtons."""
@@ -151,7 +172,7 @@ def identify(
     ParameterError
         If the drive speed or a name is missing or unknown.
     """
-    given = dict(known or {})
+    given = {name: _in_si(name, value) for name, value in (known or {}).items()}
     _check(record, given, closures)
     assert record.drive_speed is not None
     wave = mean_waveform(record)
@@ -195,6 +216,12 @@ def identify(
         fitted=best.curve(best.values),
         notes=tuple(notes),
     )
+
+
+def _in_si(name: str, value: Any) -> Any:
+    """A known parameter in SI, if it comes with a unit; a name that is not known is refused later."""
+    kind = KINDS.get(name)
+    return value if kind is None else argument(f"known {name}", kind, value)
 
 
 def _check(record: CycleRecord, known: Mapping[str, float], closures: tuple[str, ...]) -> None:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import itertools
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -21,8 +21,11 @@ from hersey.log.channels import ROLES, ChannelChoice
 from hersey.log.corrections import Corrected
 from hersey.log.mapping import LogMapping, mapping_of, read_with_mapping
 from hersey.log.torque_log import Correction
-from hersey.result import json_value
-from hersey.units import conversion
+from hersey.result import Result, json_record
+from hersey.units import conversion, takes_si
+
+if TYPE_CHECKING:
+    import polars as pl
 
 #: A step of a role's channel matters if it is this share of its small readings (their lowest tenth).
 COARSE = 0.05
@@ -60,8 +63,8 @@ class FileReport:
     cut_off: bool
 
 
-@dataclass(frozen=True)
-class Inspection:
+@dataclass(frozen=True, repr=False)
+class Inspection(Result):
     """Logs as they came, and together as one log of torque if they can be read so.
 
     Attributes
@@ -87,13 +90,41 @@ class Inspection:
     corrections: tuple[Correction, ...]
     support: Support | None
 
-    def document(self) -> dict[str, Any]:
-        """Return everything as plain data."""
-        document: dict[str, Any] = json_value(asdict(self))
+    def to_dict(self) -> dict[str, Any]:
+        """Return everything; traits of a channel in its own unit, all else in SI."""
+        document = json_record(vars(self))
         for file, own in zip(document["files"], self.files, strict=True):
             for clock, of in zip(file["clocks"], own.clocks, strict=True):
                 clock["findings"] = of.findings()
         return document
+
+    def to_frame(self) -> pl.DataFrame:
+        """Return one row per channel; its numbers in its own ``unit``."""
+        import polars as pl
+
+        numbers = ("low", "high", "median", "step", "noise")
+        rows = [
+            {
+                "file": file.name,
+                "channel": channel.name,
+                "role": channel.role,
+                "unit": channel.unit,
+                "rows": channel.traits.rows,
+                "missing rows": channel.traits.missing,
+                **{f"{name} (own unit)": getattr(channel.traits, name) for name in numbers},
+                "findings": "; ".join(channel.findings),
+            }
+            for file in self.files
+            for channel in file.channels
+        ]
+        return pl.DataFrame(rows, infer_schema_length=None)
+
+    def headline(self) -> str:
+        """Return files, channels and dwells."""
+        channels = sum(len(file.channels) for file in self.files)
+        names = self.files[0].name if len(self.files) == 1 else f"{len(self.files)} files"
+        dwells = "no fit is possible" if self.support is None else f"{self.support.dwells} dwells"
+        return f"{names}, {channels} channels, {dwells}"
 
     def summary(self) -> str:
         """Return the inspection as text."""
@@ -144,6 +175,7 @@ class Inspection:
         return said
 
 
+@takes_si(min_dwell="time")
 def inspect(
     paths: str | Path | Sequence[str | Path],
     *,

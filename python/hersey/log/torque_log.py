@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from hersey.arrays import FloatArray
+from hersey.result import Result, json_record
+from hersey.units import celsius, rpm, takes_si
 
 if TYPE_CHECKING:
+    import polars as pl
+
     from hersey.damping.dwells import SteadyPoints
 
 #: SI unit of each channel that can be corrected.
@@ -106,8 +110,8 @@ class Correction:
         return f"{self.name} ({stated}){moved}{'; ' + self.note if self.note else ''}"
 
 
-@dataclass(frozen=True)
-class TorqueLog:
+@dataclass(frozen=True, repr=False)
+class TorqueLog(Result):
     """One or more runs on the same machine; `hersey.read` makes it."""
 
     runs: tuple[Run, ...]
@@ -124,8 +128,79 @@ class TorqueLog:
         """Whether every run carries a temperature."""
         return all(run.temperature is not None for run in self.runs)
 
+    def summary(self) -> str:
+        """Return files, ranges and corrections as text."""
+        lines = [f"{self.rows} rows in {len(self.runs)} run{'s' if len(self.runs) > 1 else ''}"]
+        for file, run in zip(self.files, self.runs, strict=True):
+            lines.append(f"{file.name}: {_ranges(run)}")
+        return "\n".join([*lines, *(f"corrected: {correction}" for correction in self.corrections)])
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return files, runs with their ranges in SI, and corrections; the rows are in `to_frame`."""
+        return json_record(
+            {
+                "rows": self.rows,
+                "files": [asdict(file) for file in self.files],
+                "runs": [_run_record(run) for run in self.runs],
+                "corrections": [asdict(correction) for correction in self.corrections],
+            }
+        )
+
+    def to_frame(self) -> pl.DataFrame:
+        """Return every row: index of the run, time, torque, speed and, where recorded, temperature."""
+        import polars as pl
+
+        return pl.concat([_run_frame(index, run) for index, run in enumerate(self.runs)], how="diagonal")
+
+    @takes_si(min_dwell="time")
     def steady(self, *, min_dwell: float = 2.0, tare: str = "none", rotation: str = "both") -> SteadyPoints:
         """Reduce the log to its steady points: see `hersey.damping.dwells.steady_points`."""
         from hersey.damping.dwells import steady_points
 
         return steady_points(self, min_dwell=min_dwell, tare=tare, rotation=rotation)
+
+
+#: Channels of a run and their columns in a table.
+_COLUMNS = {
+    "time": "time (s)",
+    "torque": "torque (N m)",
+    "speed": "speed (rad/s)",
+    "temperature": "temperature (K)",
+}
+
+
+def _ends(values: FloatArray) -> tuple[float, float]:
+    return float(np.min(values)), float(np.max(values))
+
+
+def _ranges(run: Run) -> str:
+    """What a run spans, for people."""
+    slow, fast = (rpm(end) for end in _ends(run.speed))
+    least, most = _ends(run.torque)
+    duration = float(run.time[-1] - run.time[0])
+    text = (
+        f"{run.time.size} rows, {duration:.5g} s; {slow:.4g} to {fast:.4g} rpm, {least:.4g} to {most:.4g} N m"
+    )
+    if run.temperature is None:
+        return text
+    cold, hot = (celsius(end) for end in _ends(run.temperature))
+    return f"{text}, {cold:.4g} to {hot:.4g} degC"
+
+
+def _run_record(run: Run) -> dict[str, Any]:
+    channels = {name: getattr(run, name) for name in _COLUMNS}
+    return {
+        "name": run.name,
+        "rows": run.time.size,
+        "sampling_interval": run.sampling_interval,
+        "gaps": run.gaps(),
+        **{name: None if values is None else _ends(values) for name, values in channels.items()},
+    }
+
+
+def _run_frame(index: int, run: Run) -> pl.DataFrame:
+    import polars as pl
+
+    channels = {title: getattr(run, name) for name, title in _COLUMNS.items()}
+    columns = {title: values for title, values in channels.items() if values is not None}
+    return pl.DataFrame(columns).insert_column(0, pl.Series("run", np.full(run.time.size, index)))

@@ -13,9 +13,16 @@ from hersey import _core
 from hersey.arrays import FloatArray, pointwise
 from hersey.errors import ParameterError
 from hersey.lubrication import paper
+from hersey.units import fields_in_si, takes_si
 
 #: Rules for the width of a nip.
 RULES = ("layer", "hertz", "paper")
+#: Kinds of what describes a contact.
+_KINDS = {
+    **dict.fromkeys(("roll_radius", "rubber_thickness", "length", "heater_radius", "roughness"), "length"),
+    "modulus": "pressure",
+    "load": "force",
+}
 #: Poisson's ratio of a rigid body does not matter.
 _RIGID = (math.inf, 0.5)
 
@@ -80,7 +87,8 @@ class Contact:
     nip_uncertainty: float | None = None
 
     def __post_init__(self) -> None:
-        """Check the values."""
+        """Bring the values to SI if they come with units, and check them."""
+        fields_in_si(self, _KINDS)
         positive = ("roll_radius", "rubber_thickness", "modulus", "length", "load", "roughness")
         for name in (*positive, "nip_uncertainty"):
             value = getattr(self, name)
@@ -133,11 +141,13 @@ class Contact:
             strain=width**2 / (8.0 * self.reduced_radius * self.rubber_thickness),
         )
 
+    @takes_si(load="force")
     def loaded(self, load: float) -> Contact:
         """Return the contact under another load, N."""
         return replace(self, load=load)
 
 
+@takes_si(load="force")
 def nip_width(contact: Contact, *, load: ArrayLike | None = None, rule: str = "layer") -> FloatArray:
     """Return the width of the nip, m.
 

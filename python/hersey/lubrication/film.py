@@ -6,8 +6,9 @@ a heater at rest, so the entrainment speed is u = U/2 (the MEAN) and the sliding
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,8 +17,13 @@ from hersey import _core
 from hersey.arrays import FloatArray, pointwise
 from hersey.errors import ParameterError
 from hersey.lubrication import paper
-from hersey.lubrication.contact import Contact, Nip
+from hersey.lubrication.contact import RULES, Contact, Nip, nip_width
 from hersey.lubrication.lubricant import Lubricant
+from hersey.result import Result, json_record
+from hersey.units import celsius, takes_si
+
+if TYPE_CHECKING:
+    import polars as pl
 
 #: Regimes of a line contact, in the order of the core.
 REGIMES = tuple(_core.REGIMES)
@@ -74,15 +80,15 @@ class Correction:
     valid: NDArray[np.bool_]
 
 
-@dataclass(frozen=True)
-class Film:
+@dataclass(frozen=True, repr=False)
+class Film(Result):
     """The film at operating points; arrays of one shape.
 
     ``speed`` (rad/s), ``temperature`` (K), ``viscosity`` (Pa s, unsheared), ``g_v`` and ``g_e`` (the axes of
     the regime chart), ``regime`` (index into `REGIMES`), ``minimum`` and ``central`` (m) by the governing
     law, flooded, isothermal and Newtonian, before ``corrections``; ``minima`` and ``centres`` hold them by
     each law (Eq. 5 under ``paper``, where alpha is known). ``inlet_short`` says whether the soft law of a
-    layer holds.
+    layer holds. ``contact`` and ``lubricant`` are those it was computed for.
     """
 
     speed: FloatArray
@@ -97,6 +103,8 @@ class Film:
     minima: Mapping[str, FloatArray]
     centres: Mapping[str, FloatArray]
     inlet_short: NDArray[np.bool_]
+    contact: Contact
+    lubricant: Lubricant
     nip: Nip
     corrections: Mapping[str, Correction] = field(default_factory=dict)
 
@@ -116,7 +124,79 @@ class Film:
         """Return the regime of each point, flattened."""
         return [REGIMES[i] for i in self.regime.ravel()]
 
+    @property
+    def torque(self) -> FloatArray:
+        """Torque on the roll that shears the film, N m: see `drag_torque`."""
+        return _governing_torque(self)
 
+    def summary(self, names: Sequence[str] = ()) -> str:
+        """Return nip, film and laws as text; ``names`` of the points, numbered if not given."""
+        return "\n".join([*_nip_lines(self), "", *_point_lines(self, names), "", *_law_lines(self)])
+
+    def headline(self) -> str:
+        """Return how many points, in which regime, and the range of the film."""
+        film = 1e6 * np.ravel(self.minimum * self.factor)
+        regimes = " and ".join(dict.fromkeys(self.regime_names()))
+        return f"{film.size} points, {regimes}, minimum film {film.min():.3g} to {film.max():.3g} um"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return contact, lubricant, nip, laws and the states, in SI."""
+        contact, lubricant = self.contact, self.lubricant
+        return json_record(
+            {
+                "contact": vars(contact)
+                | {"effective_modulus": contact.effective_modulus, "reduced_radius": contact.reduced_radius},
+                "lubricant": {
+                    "name": lubricant.name,
+                    "model": lubricant.model,
+                    "source": lubricant.source,
+                    "points": lubricant.points,
+                    "pressure_viscosity": lubricant.pressure_viscosity,
+                    "coefficients": lubricant.coefficients(),
+                },
+                "nip": vars(self.nip)
+                | {"layer_factor": self.nip.layer_factor}
+                | {rule: float(nip_width(contact, rule=rule)) for rule in RULES},
+                "laws": CONSTANTS,
+                "film": self.states(),
+            }
+        )
+
+    def states(self) -> dict[str, Any]:
+        """Return the states alone, in SI; arrays of shape (points,)."""
+        hidden = ("contact", "lubricant", "nip", "corrections", "regime", "minima", "centres")
+        arrays = {name: np.ravel(values) for name, values in vars(self).items() if name not in hidden}
+        by_law = {
+            name: {law: np.ravel(film) for law, film in getattr(self, name).items()}
+            for name in ("minima", "centres")
+        }
+        corrections = {
+            name: {"factor": np.ravel(c.factor), "valid": np.ravel(c.valid)}
+            for name, c in self.corrections.items()
+        }
+        regimes = {"regime": self.regime_names(), "torque": np.ravel(self.torque)}
+        return json_record({**arrays, **by_law, **regimes, "corrections": corrections})
+
+    def to_frame(self) -> pl.DataFrame:
+        """Return one row per point; films with all corrections."""
+        import polars as pl
+
+        columns = {
+            "speed (rad/s)": self.speed,
+            "temperature (K)": self.temperature,
+            "entrainment speed (m/s)": self.entrainment_speed,
+            "viscosity (Pa s)": self.viscosity,
+            "g_V (1)": self.g_v,
+            "g_E (1)": self.g_e,
+            "minimum film (m)": self.minimum * self.factor,
+            "central film (m)": self.central * self.factor,
+            "torque (N m)": self.torque,
+        }
+        table = pl.DataFrame({name: np.ravel(values) for name, values in columns.items()})
+        return table.with_columns(pl.Series("regime", self.regime_names()))
+
+
+@takes_si(speed="speed", temperature="temperature", supply="length")
 def film_thickness(
     contact: Contact,
     lubricant: Lubricant,
@@ -206,6 +286,8 @@ def film_thickness(
         minima=minima,
         centres=centres,
         inlet_short=np.asarray(inlet < _SHORT * min(contact.rubber_thickness, nip.half_width)),
+        contact=contact,
+        lubricant=lubricant,
         nip=nip,
     )
     corrections = _corrections(film, lubricant, supply, starvation_sharpness)
@@ -249,6 +331,7 @@ def _correction(answer: _core.Correction) -> Correction:
     return Correction(answer.factor, answer.valid)
 
 
+@takes_si(speed="speed", temperature="temperature", supply="length")
 def drag_torque(
     contact: Contact,
     lubricant: Lubricant,
@@ -298,23 +381,30 @@ def drag_torque(
         )
     film = film_thickness(contact, lubricant, speed=speed, temperature=temperature, supply=supply)
     if law == "governing":
-        thickness = film.central * film.factor
-        rate = 2.0 * film.entrainment_speed / thickness
-        viscosity = lubricant.viscosity(film.temperature, rate)
-    else:
-        thickness, viscosity = film.centres[law], film.viscosity
-        if np.any(thickness <= 0):
-            raise ParameterError(f"law '{law}' needs the pressure-viscosity coefficient of {lubricant.name}")
+        return film.torque
+    if np.any(film.centres[law] <= 0):
+        raise ParameterError(f"law '{law}' needs the pressure-viscosity coefficient of {lubricant.name}")
+    return _torque_of(film, film.centres[law], film.viscosity)
+
+
+def _governing_torque(film: Film) -> FloatArray:
+    thickness = film.central * film.factor
+    rate = 2.0 * film.entrainment_speed / thickness
+    return _torque_of(film, thickness, film.lubricant.viscosity(film.temperature, rate))
+
+
+def _torque_of(film: Film, thickness: FloatArray, viscosity: FloatArray) -> FloatArray:
     return paper.torque_of_film(
         viscosity=viscosity,
         sliding_speed=2.0 * film.entrainment_speed,
         film_thickness=thickness,
         nip_width=film.nip.width,
-        length=contact.length,
-        radius=contact.roll_radius,
+        length=film.contact.length,
+        radius=film.contact.roll_radius,
     )
 
 
+@takes_si(sliding_speed="belt speed", temperature="temperature")
 def shear_heating(lubricant: Lubricant, *, sliding_speed: ArrayLike, temperature: ArrayLike) -> FloatArray:
     """Return the greatest rise of temperature in a sheared film between walls of one temperature, K.
 
@@ -329,3 +419,45 @@ def shear_heating(lubricant: Lubricant, *, sliding_speed: ArrayLike, temperature
         raise ParameterError(f"the thermal conductivity of {lubricant.name} is not known: state it")
     viscosity = lubricant.viscosity(temperature)
     return pointwise(_core.shear_heating, viscosity, sliding_speed, lubricant.conductivity).greatest
+
+
+def _nip_lines(film: Film) -> list[str]:
+    contact, lubricant, nip = film.contact, film.lubricant, film.nip
+    rules = ", ".join(f"{rule} {1e3 * float(nip_width(contact, rule=rule)):.3g}" for rule in RULES)
+    return [
+        f"nip       {1e3 * nip.width:.3g} mm wide (by rule, mm: {rules}); "
+        f"pressure {1e-6 * nip.pressure_mean:.3g} MPa mean, {1e-6 * nip.pressure_max:.3g} MPa at the centre",
+        f"moduli    E' = {1e-6 * contact.effective_modulus:.4g} MPa = 2 E/(1 - nu^2), E* = E'/2; "
+        f"the layer's soft film is {nip.layer_factor:.3g} of a half-space's",
+        f"lubricant {lubricant.name}, {lubricant.model}",
+    ]
+
+
+def _point_lines(film: Film, names: Sequence[str]) -> list[str]:
+    table = film.to_frame()
+    lines = [
+        f"  {'point':16s} {'degC':>6s} {'eta mPa s':>10s} {'g_V':>9s} {'g_E':>9s} {'h_min um':>9s} "
+        f"{'h_c um':>9s} {'torque N m':>11s}  regime"
+    ]
+    titles = names or [str(number) for number in range(1, table.height + 1)]
+    for name, row in zip(titles, table.iter_rows(named=True), strict=True):
+        lines.append(
+            f"  {name[:16]:16s} {celsius(row['temperature (K)']):6.1f} {1e3 * row['viscosity (Pa s)']:10.4g} "
+            f"{row['g_V (1)']:9.3g} {row['g_E (1)']:9.3g} {1e6 * row['minimum film (m)']:9.3g} "
+            f"{1e6 * row['central film (m)']:9.3g} {row['torque (N m)']:11.3g}  {row['regime']}"
+        )
+    return lines
+
+
+def _law_lines(film: Film) -> list[str]:
+    lines = ["minimum film by every law, um"]
+    for law in CONSTANTS:
+        if law.law in film.minima:
+            values = " ".join(f"{1e6 * h:9.3g}" for h in np.ravel(film.minima[law.law]))
+            lines.append(f"  {law.law:22s} {values}  {law.formula}")
+    lines.append(f"  all with {CONSTANTS[0].convention}")
+    for name, correction in film.corrections.items():
+        values = " ".join(f"{value:9.4g}" for value in np.ravel(correction.factor))
+        where = "" if np.all(correction.valid) else "  (outside the validity of its rule)"
+        lines.append(f"  factor, {name:14s} {values}{where}")
+    return lines

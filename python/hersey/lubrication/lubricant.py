@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -10,11 +12,10 @@ from numpy.typing import ArrayLike
 from hersey import _core
 from hersey.arrays import FloatArray, pointwise
 from hersey.errors import ParameterError
-from hersey.units import ZERO_CELSIUS
+from hersey.units import ZERO_CELSIUS, argument, fields_in_si, takes_si
 
 #: Laws of viscosity against temperature, and how many points each takes.
 MODELS = {"arrhenius": 2, "vogel": 3, "walther": 2}
-#: Temperature of ice, K.
 
 
 @dataclass(frozen=True)
@@ -30,7 +31,8 @@ class ShearThinning:
     limit: float = 0.0
 
     def __post_init__(self) -> None:
-        """Check the values."""
+        """Bring the time to s if it comes with a unit, and check the values."""
+        fields_in_si(self, {"relaxation_time": "time"})
         self.share(1.0)
 
     def share(self, rate: ArrayLike) -> FloatArray:
@@ -81,7 +83,13 @@ class Lubricant:
     _law: _core.ViscosityLaw = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        """Check the points against the law."""
+        """Bring the values to SI if they come with units, and check the points against the law."""
+        fields_in_si(self, {"density": "density", "conductivity": "thermal conductivity"})
+        for name, kind in (
+            ("points", "viscosity"),
+            ("pressure_viscosity", "pressure-viscosity coefficient"),
+        ):
+            object.__setattr__(self, name, _pairs_in_si(name, kind, getattr(self, name)))
         if self.model not in MODELS:
             raise ParameterError(f"viscosity model '{self.model}' is not known: {', '.join(MODELS)} are")
         if len(self.points) != MODELS[self.model]:
@@ -110,20 +118,24 @@ class Lubricant:
         except ParameterError as error:
             raise error.within(f"viscosities of {self.name}") from None
 
+    @takes_si(temperature="temperature")
     def viscosity(self, temperature: ArrayLike, shear_rate: ArrayLike = 0.0) -> FloatArray:
         """Return dynamic viscosity, Pa s, at temperatures (K) and shear rates (1/s)."""
         still = self._at(temperature)[0]
         return still if self.thinning is None else np.asarray(still * self.thinning.share(shear_rate))
 
+    @takes_si(temperature="temperature")
     def temperature_exponent(self, temperature: ArrayLike) -> FloatArray:
         """Return d ln eta/d ln T, T in K."""
         return self._at(temperature)[1]
 
+    @takes_si(temperature="temperature")
     def activation_energy(self, temperature: ArrayLike) -> FloatArray:
         """Return the local activation energy of viscosity, J/mol: R T^2 times its fall in logarithm."""
         kelvin = np.asarray(temperature, dtype=float)
         return np.asarray(-_core.GAS_CONSTANT * kelvin * self.temperature_exponent(kelvin))
 
+    @takes_si(temperature="temperature")
     def alpha(self, temperature: ArrayLike) -> FloatArray:
         """Return the pressure-viscosity coefficient, 1/Pa, at temperatures (K).
 
@@ -152,6 +164,11 @@ class Lubricant:
         except ParameterError as error:
             raise error.within(f"viscosity of {self.name}") from None
         return found.viscosity, found.temperature_exponent
+
+
+def _pairs_in_si(name: str, kind: str, pairs: Sequence[tuple[Any, Any]]) -> tuple[tuple[Any, Any], ...]:
+    """Pairs of a temperature and a quantity of ``kind``, in SI."""
+    return tuple((argument(name, "temperature", t), argument(name, kind, value)) for t, value in pairs)
 
 
 _BATCHELOR = "Stachowiak and Batchelor, Engineering Tribology, Table 2.3"

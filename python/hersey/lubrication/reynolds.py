@@ -14,6 +14,7 @@ from typing import Literal
 from hersey import _core
 from hersey.arrays import FloatArray
 from hersey.errors import ParameterError
+from hersey.units import takes_si
 
 #: Nodes between inlet and outlet.
 NODES = 201
@@ -103,6 +104,16 @@ class LineContactSolution:
     cautions: tuple[str, ...]
 
 
+@takes_si(
+    radius="length",
+    load="load per length",
+    entrainment_speed="belt speed",
+    viscosity="viscosity",
+    effective_modulus="pressure",
+    thickness="length",
+    sliding_speed="belt speed",
+    pressure_viscosity="pressure-viscosity coefficient",
+)
 def solve_line_contact(
     radius: float,
     load: float,

@@ -10,9 +10,16 @@ from numpy.typing import ArrayLike
 from hersey import _core
 from hersey.arrays import FloatArray
 from hersey.errors import ParameterError
+from hersey.units import fields_in_si, takes_si
 
 #: What the belt does near zero speed; see docs/closures.md.
 CLOSURES = ("retained", "stiction", "stribeck", "lugre")
+#: Kinds of what a drag law takes.
+_KINDS = {
+    "stick_speed": "belt speed",
+    "bristle_stiffness": "stiffness",
+    "bristle_damping": "translational damping",
+}
 
 
 class AnyDrag:
@@ -30,6 +37,7 @@ class AnyDrag:
         """Whether the law varies with temperature."""
         return False
 
+    @takes_si(temperature="temperature")
     def law_at(self, temperature: float | None) -> _core.Law:
         """Return the law at one temperature, K; none for a law that does not vary."""
         if self.warms != (temperature is not None):
@@ -43,6 +51,7 @@ class AnyDrag:
         """The drag A that a belt at rest can bear (Eq. 29)."""
         return self.law().breakaway_force
 
+    @takes_si(force="force", temperature="temperature")
     def speeds_of(self, force: float, temperature: float | None = None) -> tuple[float, float]:
         """Return the speeds below and above the transition at which drag has risen to ``force``.
 
@@ -51,6 +60,7 @@ class AnyDrag:
         found = (self.law_at(temperature) if self.warms else self.law()).speeds_of(float(force))
         return found.slower, found.faster
 
+    @takes_si(speed="belt speed", temperature="temperature")
     def force(self, speed: ArrayLike, temperature: float | None = None) -> FloatArray:
         """Return the drag force in steady sliding at each speed, with its sign."""
         speeds = np.asarray(speed, dtype=float)
@@ -91,10 +101,14 @@ class Drag(AnyDrag):
     temperature_zero: float = 0.0
 
     def __post_init__(self) -> None:
-        """Let the core check the values."""
+        """Bring the values to SI if they come with units, and let the core check them."""
+        temperatures = dict.fromkeys(("reference_temperature", "temperature_zero"), "temperature")
+        own = {"transition_force": "force", "transition_speed": "belt speed"}
+        fields_in_si(self, {**own, **_KINDS, **temperatures})
         self.law()
 
     @classmethod
+    @takes_si(transition_torque="torque", transition_speed="speed", roll_radius="length")
     def rotational(
         cls, *, transition_torque: float, transition_speed: float, roll_radius: float, **rest: float | str
     ) -> Drag:
@@ -111,6 +125,7 @@ class Drag(AnyDrag):
         """Whether the law varies with temperature."""
         return self.reference_temperature is not None
 
+    @takes_si(temperature="temperature")
     def at(self, temperature: float | None) -> Drag:
         """Return the law at one temperature, K, as one that does not vary; itself if it does not vary."""
         law = self.law_at(temperature)
@@ -170,7 +185,8 @@ class DragTable(AnyDrag):
     bristle_damping: float | None = None
 
     def __post_init__(self) -> None:
-        """Let the core check the values."""
+        """Bring the values to SI if they come with units, and let the core check them."""
+        fields_in_si(self, {"speeds": "belt speed", "forces": "force", **_KINDS})
         object.__setattr__(self, "speeds", tuple(float(v) for v in self.speeds))
         object.__setattr__(self, "forces", tuple(float(f) for f in self.forces))
         self.law()

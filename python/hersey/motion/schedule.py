@@ -9,7 +9,10 @@ from numpy.typing import ArrayLike
 
 from hersey.arrays import FloatArray
 from hersey.errors import ParameterError
+from hersey.units import fields_in_si
 
+#: What a schedule may be one of.
+_KINDS = ("belt speed", "speed", "temperature", "force", "torque")
 #: Times, values, and cubics between them unless they are joined by straight lines.
 ScheduleArguments = tuple[list[float], list[float], list[list[float]] | None]
 
@@ -37,7 +40,8 @@ class Schedule:
     smooth: bool = False
 
     def __post_init__(self) -> None:
-        """Check the points and freeze them."""
+        """Bring the points to SI if they come with units, check and freeze them."""
+        fields_in_si(self, {"times": "time", "values": _KINDS})
         times, values = (np.atleast_1d(np.asarray(x, dtype=float)) for x in (self.times, self.values))
         if times.ndim != 1 or times.shape != values.shape:
             raise ParameterError(f"schedule: {times.size} times, but {values.size} values")

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,11 @@ from hersey.arrays import FloatArray
 from hersey.errors import HerseyError, ParameterError
 from hersey.motion.drag import AnyDrag
 from hersey.motion.schedule import Schedule
+from hersey.result import Result, json_record, table_of
+from hersey.units import fields_in_si, takes_si
+
+if TYPE_CHECKING:
+    import polars as pl
 
 #: Relative tolerance of the steps.
 TOLERANCE = 1e-9
@@ -34,7 +39,12 @@ class Drivetrain:
     stiffness: float
     mass: float
 
+    def __post_init__(self) -> None:
+        """Bring the values to SI if they come with units."""
+        fields_in_si(self, {"stiffness": "stiffness", "mass": "mass"})
+
     @classmethod
+    @takes_si(stiffness="torsional stiffness", inertia="moment of inertia", roll_radius="length")
     def rotational(cls, *, stiffness: float, inertia: float, roll_radius: float) -> Drivetrain:
         """Return the drivetrain at the surface of a roll: k = K/r^2, m = J/r^2.
 
@@ -101,9 +111,19 @@ class SelfCheck:
     same_events: bool
     note: str = ""
 
+    def __str__(self) -> str:
+        """Return it in words."""
+        if self.speed_difference is None:
+            return f"{self.integrator}: " + self.note
+        return (
+            f"{self.integrator} differs by {self.speed_difference:.1e} in speed and "
+            f"{self.stretch_difference:.1e} in stretch; "
+            f"{'the same' if self.same_events else 'OTHER'} events"
+        )
 
-@dataclass(frozen=True)
-class Trajectory:
+
+@dataclass(frozen=True, repr=False)
+class Trajectory(Result):
     """Motion at equally spaced times: arrays of shape (samples,), every change of mode, and the energies.
 
     ``stretch`` is drive position minus belt position; with a torque drive, the position of the mass (zero
@@ -125,9 +145,48 @@ class Trajectory:
         """The mode at each sample: ``ehl``, ``mixed``, ``microslip`` or ``stuck``."""
         return np.array(_core.MODES)[self.mode_index]
 
+    def summary(self) -> str:
+        """Return ranges, energies and check as text, in the units of the arguments."""
+        lines = [
+            f"{self.time.size} samples from {self.time[0]:.6g} to {self.time[-1]:.6g}, {len(self.events)} "
+            f"changes of mode; SI or the units given",
+            f"  belt speed      {self.belt_speed.min():.6f} to {self.belt_speed.max():.6f}",
+            f"  stretch         {self.stretch.min():.6f} to {self.stretch.max():.6f}",
+            f"  spring force    {self.spring_force.min():.6f} to {self.spring_force.max():.6f}",
+            f"energy balance: {self.energy.residual:.1e} of the energy turned over is missing",
+        ]
+        return "\n".join([*lines, *([] if self.check is None else [str(self.check)])])
 
-@dataclass(frozen=True)
-class StickSlipCycle:
+    def to_dict(self) -> dict[str, Any]:
+        """Return samples, events, energies and check; in SI if the arguments were."""
+        arrays = ("time", "belt_speed", "stretch", "spring_force", "mode")
+        return json_record(
+            {
+                **{name: getattr(self, name) for name in arrays},
+                "events": [event._asdict() for event in self.events],
+                "energy": self.energy,
+                "steps": self.steps,
+                "check": self.check,
+            }
+        )
+
+    def to_frame(self) -> pl.DataFrame:
+        """Return one row per sample; the units named are SI, and stand for those given."""
+        import polars as pl
+
+        return pl.DataFrame(
+            {
+                "time (s)": self.time,
+                "belt speed (m/s)": self.belt_speed,
+                "stretch (m)": self.stretch,
+                "spring force (N)": self.spring_force,
+                "mode": self.mode,
+            }
+        )
+
+
+@dataclass(frozen=True, repr=False)
+class StickSlipCycle(Result):
     """What the motion settles to.
 
     ``kind`` is ``steady_sliding``, ``oscillation`` (without sticking), ``stick_slip``, or ``unsettled`` if
@@ -152,7 +211,53 @@ class StickSlipCycle:
         """Share of a lap during which the belt sticks."""
         return self.stick_duration * self.frequency
 
+    def summary(self) -> str:
+        """Return what the motion settles to as text, in the units of the arguments."""
+        return "\n".join(
+            [
+                f"{self.kind.replace('_', ' ')}",
+                f"  frequency       {self.frequency:.6f}",
+                f"  stuck fraction  {self.stuck_fraction:.6f}",
+                f"  belt speed      {self.speed_min:.6f} to {self.speed_max:.6f}",
+                f"  stretch         {self.stretch_min:.6f} to {self.stretch_max:.6f}",
+                f"  drag work       {self.drag_work:.6f} a lap",
+            ]
+        )
 
+    def headline(self) -> str:
+        """Return kind, frequency and stuck fraction."""
+        return (
+            f"{self.kind.replace('_', ' ')}, frequency {self.frequency:.6g}, stuck {self.stuck_fraction:.3g}"
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return every number; in SI if the arguments were."""
+        return json_record({**vars(self), "stuck_fraction": self.stuck_fraction})
+
+    def to_frame(self) -> pl.DataFrame:
+        """Return the numbers with their units; the units named are SI, and stand for those given."""
+        own = {**vars(self), "stuck_fraction": self.stuck_fraction}
+        return table_of((name, own[name], unit) for name, unit in _CYCLE_UNITS.items())
+
+
+#: Units of a cycle, where the arguments are in SI.
+_CYCLE_UNITS = {
+    "frequency": "Hz",
+    "slip_duration": "s",
+    "stick_duration": "s",
+    "stuck_fraction": "",
+    "speed_min": "m/s",
+    "speed_max": "m/s",
+    "stretch_min": "m",
+    "stretch_max": "m",
+    "drag_work": "J",
+    "laps": "",
+}
+
+
+@takes_si(
+    drive_speed="belt speed", drive_torque=("force", "torque"), temperature="temperature", duration="time"
+)
 def simulate(
     train: Drivetrain,
     drag: AnyDrag,
@@ -264,6 +369,7 @@ def _difference(one: FloatArray, two: FloatArray) -> float:
     return float(np.max(np.abs(one - two))) / greatest if greatest > 0 else float(np.max(np.abs(two)))
 
 
+@takes_si(drive_speed="belt speed", temperature="temperature")
 def stick_slip(
     train: Drivetrain,
     drag: AnyDrag,

@@ -12,8 +12,9 @@ from hersey import _core
 from hersey.arrays import crossed, numbers_of, together
 from hersey.errors import ParameterError
 from hersey.motion.drag import Drag
-from hersey.motion.parameters import PARAMETERS
+from hersey.motion.parameters import KINDS, PARAMETERS
 from hersey.motion.simulation import TOLERANCE, Drivetrain
+from hersey.units import takes_si
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -31,6 +32,7 @@ NUMBERS = (
 )
 
 
+@takes_si(duration="time", **{name: kind for name, kind in KINDS.items() if kind is not None})
 def sweep(
     train: Drivetrain,
     drag: Drag,

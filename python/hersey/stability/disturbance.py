@@ -15,6 +15,7 @@ from hersey.motion.drag import AnyDrag
 from hersey.motion.schedule import Schedule
 from hersey.motion.simulation import Drivetrain, StickSlipCycle, simulate, steady_start, stick_slip
 from hersey.stability.hysteresis import hysteresis
+from hersey.units import takes_si
 
 #: Ramps looked at per period of the free oscillation, and periods up to which they are.
 _PER_PERIOD, _PERIODS = 20, 8
@@ -54,6 +55,7 @@ class Disturbance:
     step: float
 
 
+@takes_si(from_speed="belt speed", to_speed="belt speed", temperature="temperature")
 def safe_step(
     train: Drivetrain,
     drag: AnyDrag,
@@ -109,6 +111,7 @@ def safe_step(
     return SafeStep(from_speed, to_speed, sticks, slowest, high)
 
 
+@takes_si(drive_speed="belt speed", temperature="temperature")
 def disturbance(
     train: Drivetrain, drag: AnyDrag, *, drive_speed: float, temperature: float | None = None
 ) -> Disturbance:

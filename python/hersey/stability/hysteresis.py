@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,10 +19,13 @@ from hersey import _core
 from hersey.arrays import FloatArray, crossed, numbers_of, together
 from hersey.errors import ParameterError
 from hersey.motion.drag import AnyDrag, Drag
-from hersey.motion.parameters import OF_THE_BELT
+from hersey.motion.parameters import KINDS, OF_THE_BELT
 from hersey.motion.simulation import Drivetrain
+from hersey.result import Result, json_record, table_of
+from hersey.units import takes_si
 
 if TYPE_CHECKING:
+    import polars as pl
     import xarray as xr
 
 #: Relative tolerance of the steps: the fold asks for more digits than a trajectory.
@@ -41,12 +44,14 @@ _COLUMNS = (
     "deeper",
     "laps",
 )
+#: Kinds of the units of what a sweep of bands varies.
+_PARAMETER_KINDS = {name: kind for name in OF_THE_BELT if (kind := KINDS[name]) is not None}
 #: Those that are no decimal numbers.
 _WHOLE = {"half_laps": bool, "deeper": bool, "laps": int}
 
 
-@dataclass(frozen=True)
-class HysteresisBand:
+@dataclass(frozen=True, repr=False)
+class HysteresisBand(Result):
     """Drive speeds that divide the behaviour, and how far to trust them.
 
     ``lower_accuracy`` and ``upper_accuracy`` are relative. ``method`` is ``half laps`` (slip laps forward
@@ -96,6 +101,64 @@ class HysteresisBand:
             "and sticks if it comes from below. Above, it slides."
         )
 
+    def headline(self) -> str:
+        """Return the three speeds."""
+        return f"lower edge {self.lower:.6g}, transition speed {self.transition:.6g}, V* {self.upper:.6g}"
+
+    def summary(self, values: Mapping[str, float] | None = None) -> str:
+        """Return the edges and the verdict as text, in the units of the arguments.
+
+        ``values``, of the parameters by name, adds the table of sensitivities.
+        """
+        lines = [
+            f"lower edge        {self.lower:.9g}  (to {self.lower_accuracy:.0e})",
+            f"transition speed  {self.transition:.9g}",
+            f"upper fold V*     {self.upper:.9g}  (to {self.upper_accuracy:.0e}, by {self.method})",
+        ]
+        if self.deeper:
+            lines.append(
+                "at the upper fold a deeper stick-slip ends, released higher than at the stick speed"
+            )
+        if self.sensitivity and values is not None:
+            lines += self._sensitivity_lines(values)
+        return "\n".join([*lines, self.verdict()])
+
+    def _sensitivity_lines(self, values: Mapping[str, float]) -> list[str]:
+        head = (
+            f"{'parameter':18s} {'value':>12s} {'dV*/dparameter':>15s}"
+            f" {'V* for +1 %':>13s} {'lower, +1 %':>13s}"
+        )
+        rows = [
+            f"{name:18s} {values[name]:12.6g} {self.derivative(name, values[name]):15.6g} {share:+10.3f} % "
+            f"{self.lower_sensitivity[name]:+10.3f} %"
+            for name, share in self.sensitivity.items()
+        ]
+        return [head, *rows]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return every field, and what they mean; in SI if the arguments were."""
+        return json_record({**vars(self), "bistable": self.bistable, "verdict": self.verdict()})
+
+    def to_frame(self) -> pl.DataFrame:
+        """Return the edges and their accuracies; the units named are SI, and stand for those given."""
+        edges = ("lower", "transition", "upper")
+        intervals = {"upper": self.interval, "lower": self.lower_interval}
+        ends = [
+            (f"{name} 95 % {end}", value, "m/s")
+            for name, interval in intervals.items()
+            for end, value in zip(("low", "high"), interval or (), strict=False)
+        ]
+        return table_of(
+            [
+                *((name, getattr(self, name), "m/s") for name in edges),
+                ("lower_accuracy", self.lower_accuracy, ""),
+                ("upper_accuracy", self.upper_accuracy, ""),
+                ("speed_max", self.speed_max, "m/s"),
+                *ends,
+                ("share_bistable", self.share_bistable, ""),
+            ]
+        )
+
 
 @dataclass(frozen=True)
 class CyclesWithoutSticking:
@@ -112,6 +175,7 @@ class CyclesWithoutSticking:
     stable: NDArray[np.bool_]
 
 
+@takes_si(temperature="temperature")
 def hysteresis(
     train: Drivetrain,
     drag: AnyDrag,
@@ -179,6 +243,7 @@ def hysteresis(
     )
 
 
+@takes_si(temperature="temperature", **_PARAMETER_KINDS)
 def hysteresis_sweep(
     train: Drivetrain,
     drag: Drag,
@@ -262,6 +327,7 @@ def hysteresis_sweep(
     )
 
 
+@takes_si(slowest="belt speed", temperature="temperature")
 def cycles_without_sticking(
     train: Drivetrain,
     drag: Drag,

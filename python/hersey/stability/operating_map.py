@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hersey import _core
 from hersey.arrays import FloatArray, numbers_of
 from hersey.damping.surface import DampingSurface
 from hersey.errors import InsufficientDataError, ParameterError
@@ -22,11 +21,12 @@ from hersey.machine.machine import Limits, OperatingPoint
 from hersey.machine.uncertainty import Uncertainty
 from hersey.motion.drag import Drag
 from hersey.motion.simulation import Drivetrain
-from hersey.result import json_value
+from hersey.result import Result, json_record
 from hersey.stability.hysteresis import hysteresis_sweep
-from hersey.units import convert
+from hersey.units import convert, takes_si
 
 if TYPE_CHECKING:
+    import polars as pl
     import xarray as xr
 
 #: States, from the slow side up. ``swing``: a small swing without sticking survives, a stuck belt sticks on.
@@ -90,8 +90,8 @@ class PlacedPoint:
     at: MapState
 
 
-@dataclass(frozen=True)
-class OperatingMap:
+@dataclass(frozen=True, repr=False)
+class OperatingMap(Result):
     """Speeds (m/s) that divide the behaviour at each temperature (K), shape (n,).
 
     ``temperature`` is None for an isothermal fit, whose map has one column. ``upper`` is infinite beyond
@@ -124,6 +124,7 @@ class OperatingMap:
     train: Drivetrain
     drag: Drag
 
+    @takes_si(temperature="temperature", speed="belt speed")
     def state_at(self, temperature: float | None, speed: float) -> MapState:
         """Return the state at a temperature (K; None for an isothermal fit) and a drive speed (m/s).
 
@@ -136,6 +137,7 @@ class OperatingMap:
         """
         return self.look_up(temperature, speed)[0]
 
+    @takes_si(temperature="temperature", speed="belt speed")
     def states(self, temperature: ArrayLike | None, speed: ArrayLike) -> NDArray[np.str_]:
         """Return the name of the state for arrays of temperature (K) and speed (m/s), broadcast together."""
         shape = np.broadcast_shapes(
@@ -144,6 +146,7 @@ class OperatingMap:
         names = [state.state for state in self.look_up(temperature, speed)]
         return np.array(names).reshape(shape)
 
+    @takes_si(torque="torque")
     def contour(self, torque: float) -> tuple[FloatArray, FloatArray]:
         """Return the speeds (m/s) of a torque (N m) at each temperature: falling branch, rising branch.
 
@@ -152,24 +155,43 @@ class OperatingMap:
         """
         return _contour(_laws(self.drag, self.temperature), torque / self.roll_radius)
 
-    def document(self) -> dict[str, Any]:
-        """Return the whole map for JSON; null stands for a speed beyond all that was searched."""
-        return {
-            "hersey_version": _core.VERSION,
-            **{
-                name: json_value(value)
-                for name, value in vars(self).items()
-                if name not in ("points", "train", "drag")
-            },
-            "train": asdict(self.train),
-            "drag": asdict(self.drag),
-            "points": [json_value(asdict(point)) for point in self.points],
+    def to_dict(self) -> dict[str, Any]:
+        """Return the whole map in SI; None stands for a speed beyond all that was searched."""
+        return json_record(vars(self))
+
+    def to_frame(self) -> pl.DataFrame:
+        """Return the dividing speeds at each temperature (one row if isothermal)."""
+        import polars as pl
+
+        speeds = {
+            "lower": self.lower,
+            "transition": self.transition,
+            "transition 95 % low": self.transition_interval[0],
+            "transition 95 % high": self.transition_interval[1],
+            "upper": self.upper,
+            "upper 95 % low": self.upper_interval[0],
+            "upper 95 % high": self.upper_interval[1],
+            "stall below": self.stall_below,
+            "stall above": self.stall_above,
         }
+        columns = {} if self.temperature is None else {"temperature (K)": self.temperature}
+        return pl.DataFrame({**columns, **{f"{name} (m/s)": values for name, values in speeds.items()}})
+
+    def headline(self) -> str:
+        """Return the ranges of temperature and speed."""
+        low, high = _mm(float(self.speed[0])), _mm(float(self.speed[-1]))
+        hot = (
+            ""
+            if self.temperature is None
+            else f", {_celsius(self.temperature[0])} to {_celsius(self.temperature[-1])}"
+        )
+        return f"{low} to {high} mm/s{hot}, {len(self.points)} points"
 
     def summary(self) -> str:
         """Return the dividing speeds at a few temperatures, and the points, as text."""
         return _summary(self)
 
+    @takes_si(temperature="temperature", speed="belt speed")
     def look_up(self, temperature: ArrayLike | None, speed: ArrayLike) -> list[MapState]:
         """Return the states of arrays, broadcast together and flattened, as `state_at` does for one."""
         if (temperature is None) == self.drag.warms:
@@ -208,6 +230,7 @@ class OperatingMap:
         return MapState(state, torque, **edges, extrapolated=outside)
 
 
+@takes_si(roll_radius="length", stick_speed="belt speed", temperatures="temperature", speeds="belt speed")
 def operating_map(
     surface: DampingSurface,
     train: Drivetrain,

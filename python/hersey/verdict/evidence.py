@@ -8,12 +8,13 @@ with the sliding speed U = omega R; the friction coefficient is torque/(R N).
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from hersey import _core
 from hersey.arrays import FloatArray
-from hersey.damping.dwells import SteadyPoints
+from hersey.damping.dwells import SteadyPoints, groups_of_temperature
 from hersey.damping.estimate import Estimate, quantile
 from hersey.damping.surface import DampingSurface
 from hersey.errors import InsufficientDataError, ParameterError, UnfinishedError
@@ -21,12 +22,16 @@ from hersey.lubrication.contact import Contact
 from hersey.lubrication.film import REGIMES, Film, drag_torque, film_thickness
 from hersey.lubrication.lubricant import Lubricant
 from hersey.lubrication.reynolds import exponent, solve_line_contact
+from hersey.result import Result, json_record, table_of
 from hersey.units import celsius
 from hersey.verdict.regimes import Hypothesis, judged, listed
 
+if TYPE_CHECKING:
+    import polars as pl
 
-@dataclass(frozen=True)
-class MeasuredFilm:
+
+@dataclass(frozen=True, repr=False)
+class MeasuredFilm(Result):
     """What each dwell says of the film; arrays of shape (points,), SI.
 
     ``low`` and ``high`` enclose ``thickness`` at 95 %: errors of torque and scatter between dwells, and what
@@ -50,6 +55,39 @@ class MeasuredFilm:
     calibration: Estimate  #: measured over predicted torque, geometric mean
     on_film: FloatArray  #: 1 where the dwell is on the rising branch, 0 on the falling one
     grip: float | None
+
+    def summary(self) -> str:
+        """Return the slowest, the middle and the fastest dwell of each temperature as text."""
+        return "\n".join([*_dwell_lines(self), *_systematic_lines(self)])
+
+    def headline(self) -> str:
+        """Return how many dwells, and the range of the film."""
+        film = 1e6 * self.thickness
+        return f"{film.size} dwells, measured film {film.min():.3g} to {film.max():.3g} um"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return what each dwell says, and the predicted states, in SI."""
+        return json_record({**vars(self), "predicted": self.predicted.states()})
+
+    def to_frame(self) -> pl.DataFrame:
+        """Return one row per dwell."""
+        import polars as pl
+
+        return pl.DataFrame(
+            {
+                "speed (rad/s)": self.speed,
+                "temperature (K)": self.temperature,
+                "torque (N m)": self.torque,
+                "film (m)": self.thickness,
+                "film low (m)": self.low,
+                "film high (m)": self.high,
+                "predicted film (m)": self.predicted.central * self.predicted.factor,
+                "predicted torque (N m)": self.predicted_torque,
+                "friction (1)": self.friction,
+                "Hersey number (m)": self.hersey_number,
+                "Sommerfeld number (1)": self.sommerfeld_number,
+            }
+        )
 
 
 def measured_film(
@@ -136,8 +174,8 @@ def _mean_ratio(measured: FloatArray, expected: FloatArray) -> Estimate:
     return Estimate(value, value * error, float(np.exp(mean - reach)), float(np.exp(mean + reach)))
 
 
-@dataclass(frozen=True)
-class Verdict:
+@dataclass(frozen=True, repr=False)
+class Verdict(Result):
     """Measured exponents against those predicted for this contact."""
 
     exponent: Estimate  #: of damping in speed, above the transition
@@ -149,6 +187,28 @@ class Verdict:
     activation_energy: float | None  #: apparent, of torque, J/mol
     viscosity_activation_energy: float  #: of the lubricant there, J/mol
     text: str
+
+    def summary(self) -> str:
+        """Return what the exponents say of this contact."""
+        return self.text
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return exponents, predictions and text; energies in J/mol."""
+        return json_record({**vars(self), "predictions": [h.to_dict() for h in self.predictions]})
+
+    def to_frame(self) -> pl.DataFrame:
+        """Return measured and expected exponents and energies."""
+        return table_of(
+            [
+                ("exponent of speed", self.exponent.value, ""),
+                ("expected exponent of speed", self.expected, ""),
+                ("solved exponent of speed", self.solved, ""),
+                ("exponent of temperature", None if self.thermal is None else self.thermal.value, ""),
+                ("expected exponent of temperature", self.thermal_expected, ""),
+                ("activation energy of torque", self.activation_energy, "J/mol"),
+                ("activation energy of viscosity", self.viscosity_activation_energy, "J/mol"),
+            ]
+        )
 
 
 def verdict(
@@ -250,3 +310,45 @@ def _text(
             f"{thermal_expected:.2f}, which {says}."
         )
     return " ".join(lines)
+
+
+def _dwell_lines(measured: MeasuredFilm) -> list[str]:
+    lines = [
+        f"  {'degC':>6s} {'rad/s':>7s} {'measured film um':>28s} {'predicted':>10s} {'friction':>9s} "
+        f"{'eta U/p um':>11s} {'eta U L/N':>10s}"
+    ]
+    film = measured.predicted
+    for i in _telling(measured):
+        film_text = (
+            f"{1e6 * measured.thickness[i]:.3g} [{1e6 * measured.low[i]:.3g}, {1e6 * measured.high[i]:.3g}]"
+        )
+        lines.append(
+            f"  {celsius(measured.temperature[i]):6.1f} {measured.speed[i]:7.3g} {film_text:>28s} "
+            f"{1e6 * film.central[i] * film.factor[i]:10.3g} {measured.friction[i]:9.3g} "
+            f"{1e6 * measured.hersey_number[i]:11.3g} {measured.sommerfeld_number[i]:10.3g}"
+        )
+    lines.append(
+        "  measured film eta A/B, A the nip; U sliding speed, p mean pressure of the nip; all dwells: --json"
+    )
+    return lines
+
+
+def _systematic_lines(measured: MeasuredFilm) -> list[str]:
+    lines = []
+    if measured.systematic > 1:
+        lines.append(
+            f"  intervals hold a common factor {measured.systematic:.3g} for viscosity and nip as stated"
+        )
+    else:
+        lines.append("  intervals leave out what is unknown of viscosity and nip: state their uncertainty")
+    lines.append(f"  measured torque over predicted, where torque rises with speed: {measured.calibration}")
+    return lines
+
+
+def _telling(measured: MeasuredFilm) -> list[int]:
+    """The slowest, the middle and the fastest dwell of each temperature."""
+    chosen: list[int] = []
+    for group in groups_of_temperature(measured.temperature):
+        ordered = group[np.argsort(measured.speed[group], kind="stable")]
+        chosen += [int(ordered[k]) for k in sorted({0, ordered.size // 2, ordered.size - 1})]
+    return chosen

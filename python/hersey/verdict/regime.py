@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy import stats
@@ -12,8 +13,12 @@ from hersey.damping.candidates.thermal import scaled_temperature
 from hersey.damping.dwells import SteadyPoints, distinct_speeds, groups_of_temperature
 from hersey.damping.estimate import CONFIDENCE, Estimate
 from hersey.damping.surface import DampingSurface
+from hersey.result import Result, json_record
 from hersey.units import celsius, rpm
 from hersey.verdict.regimes import REGIMES, Hypothesis, judged, listed
+
+if TYPE_CHECKING:
+    import polars as pl
 
 
 @dataclass(frozen=True)
@@ -28,13 +33,48 @@ class BranchExponent:
     exponent: Estimate
 
 
-@dataclass(frozen=True)
-class Regime:
+@dataclass(frozen=True, repr=False)
+class Regime(Result):
     """Evidence and verdict."""
 
     exponents: tuple[BranchExponent, ...]
     hypotheses: tuple[Hypothesis, ...]
     verdict: str
+
+    def summary(self) -> str:
+        """Return the verdict, the hypotheses and the exponents as text."""
+        lines = [self.verdict, "hypothesis                  exponent           p"]
+        for h in self.hypotheses:
+            values = f"{h.high:.3g}" if h.low == h.high else f"{h.low:.3g} to {h.high:.3g}"
+            lines.append(
+                f"  {h.name:24s}  {values:16s}  {h.p_value:.2g}{'' if h.consistent else '  refuted'}"
+            )
+        for e in self.exponents:
+            where = "" if e.temperature is None else f" at {celsius(e.temperature):.0f} degC"
+            span = f"{rpm(e.speed_low):.3g} to {rpm(e.speed_high):.3g} rpm"
+            lines.append(f"exponent of branch {e.branch}{where}, {span}: {e.exponent}")
+        return "\n".join(lines)
+
+    def headline(self) -> str:
+        """Return the hypotheses that survive."""
+        return "agrees with " + (" and ".join(h.name for h in self.hypotheses if h.consistent) or "no regime")
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return evidence and verdict in SI."""
+        return json_record({**vars(self), "hypotheses": [h.to_dict() for h in self.hypotheses]})
+
+    def to_frame(self) -> pl.DataFrame:
+        """Return one row per exponent: temperature, branch and the exponent with its 95 % interval."""
+        import polars as pl
+
+        numbers = ("speed low (rad/s)", "speed high (rad/s)", "exponent (1)", "low (1)", "high (1)")
+        schema = {"temperature (K)": pl.Float64, "branch": pl.String, "points": pl.Int64}
+        rows = [(*_facts_of(e), e.exponent.value, e.exponent.low, e.exponent.high) for e in self.exponents]
+        return pl.DataFrame(rows, schema={**schema, **dict.fromkeys(numbers, pl.Float64)}, orient="row")
+
+
+def _facts_of(e: BranchExponent) -> tuple[float | None, str, int, float, float]:
+    return e.temperature, e.branch, e.points, e.speed_low, e.speed_high
 
 
 def regime(points: SteadyPoints, surface: DampingSurface) -> Regime:

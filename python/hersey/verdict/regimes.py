@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy import stats
 
 from hersey.damping.estimate import CONFIDENCE, Estimate
+from hersey.result import json_record
 
 
 class RegimeRow(NamedTuple):
@@ -74,6 +75,10 @@ class Hypothesis:
     def consistent(self) -> bool:
         """Whether it survives at the 5 % level."""
         return self.p_value > 1.0 - CONFIDENCE
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return it as JSON can hold it; None for an end without bound."""
+        return json_record({**vars(self), "consistent": self.consistent})
 
 
 def judged(exponent: Estimate, freedom: int, *, film: str | None = None) -> tuple[Hypothesis, ...]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,8 +18,11 @@ from hersey.damping.candidates.intervals import METHODS, Band, Ends, ParameterEs
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.estimate import Estimate
 from hersey.errors import ParameterError
-from hersey.result import json_value
-from hersey.units import convert
+from hersey.result import Result, json_record
+from hersey.units import convert, takes_si
+
+if TYPE_CHECKING:
+    import polars as pl
 
 #: Units in which people read a quantity, by the unit it is kept in.
 _SHOWN = {"rad/s": "rpm"}
@@ -40,8 +44,8 @@ class CandidateFit:
     left_out: FloatArray | None  #: ln(measured/predicted) of each dwell from the others
 
 
-@dataclass(frozen=True)
-class ModelComparison:
+@dataclass(frozen=True, repr=False)
+class ModelComparison(Result):
     """All candidates by AICc, those refused and why, the one chosen, and what follows from it."""
 
     candidates: tuple[CandidateFit, ...]
@@ -70,6 +74,7 @@ class ModelComparison:
         known = ", ".join(r.candidate.key for r in self.candidates)
         raise ParameterError(f"no candidate '{key}' was fitted; there are {known}")
 
+    @takes_si(speed="speed", temperature="temperature")
     def predict(self, speed: FloatArray | float, temperature: FloatArray | float | None = None) -> Band:
         """Return torque (N m) with its bands at speeds (rad/s) and temperatures (K), broadcast together."""
         speeds = np.atleast_1d(np.asarray(speed, dtype=np.float64))
@@ -84,11 +89,33 @@ class ModelComparison:
         """Return the comparison as text."""
         return _summary(self)
 
-    def document(self) -> dict[str, object]:
-        """Return the comparison as plain data."""
-        found = json_value(_document(self))
-        assert isinstance(found, dict)
-        return found
+    def headline(self) -> str:
+        """Return the candidate chosen, among how many."""
+        return f"{self.chosen.candidate.name}, chosen among {len(self.candidates)} candidates"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the comparison in SI; energies in J/mol and cal/mol."""
+        return json_record(_document(self))
+
+    def to_frame(self) -> pl.DataFrame:
+        """Return one row per candidate."""
+        import polars as pl
+
+        rows = [
+            {
+                "candidate": r.candidate.name,
+                "chosen": r is self.chosen,
+                "numbers": r.fit.parameters,
+                "AICc (1)": r.fit.aicc,
+                "dAICc (1)": r.delta_aicc,
+                "dBIC (1)": r.delta_bic,
+                "weight (1)": r.weight,
+                "left out (1)": r.cross_validation,
+                "scatter (1)": r.fit.scatter,
+            }
+            for r in self.candidates
+        ]
+        return pl.DataFrame(rows, infer_schema_length=None)
 
 
 def _summary(found: ModelComparison) -> str:
@@ -118,7 +145,6 @@ def _summary(found: ModelComparison) -> str:
 def _document(found: ModelComparison) -> dict[str, object]:
     """Return everything as plain data; energies in J/mol, angles in rad."""
     return {
-        "hersey_version": found.version,
         "dwells": len(found.data),
         "clustered_by": found.data.clustered_by,
         "reference_speed": found.data.reference_speed,
@@ -206,7 +232,7 @@ def _energy_document(e: ActivationEnergies) -> dict[str, object]:
     def each(energy: Estimate | None) -> dict[str, object] | None:
         if energy is None:
             return None
-        return {"J/mol": vars(energy), "cal/mol": vars(scaled(energy, 1.0 / CALORIE))}
+        return {"joule_per_mol": vars(energy), "calorie_per_mol": vars(scaled(energy, 1.0 / CALORIE))}
 
     return {
         "torque": each(e.torque),
@@ -215,7 +241,7 @@ def _energy_document(e: ActivationEnergies) -> dict[str, object]:
         "transition": each(e.transition),
         "p_value": e.p_value,
         "verdict": e.verdict,
-        "local": [{"temperature": kelvin, "J/mol": energy} for kelvin, energy in e.local],
+        "local": [{"temperature": kelvin, "joule_per_mol": energy} for kelvin, energy in e.local],
     }
 
 

@@ -23,6 +23,7 @@ from hersey.stability.plan.obstacles import Reach, obstacles
 from hersey.stability.plan.result import LimitUse, Plan
 from hersey.stability.plan.search import Progress, Room, Search
 from hersey.stability.plan.trial import ROUNDING, MachineSample, Outcome, Shape, TemperatureProfile, rounded
+from hersey.units import takes_si
 
 #: Probability with which a profile that passes keeps its confidence: high, for the search tries many.
 _LEVEL = 0.999
@@ -46,6 +47,7 @@ _CONFIDENCES = (0.5, 0.999)
 _CLOSURES = ("retained", "stiction")
 
 
+@takes_si(target_speed="belt speed", temperature="temperature", roll_radius="length")
 def plan_profile(
     train: Drivetrain,
     drag: AnyDrag,

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields
-from typing import Any
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from hersey.motion.schedule import Schedule
 from hersey.motion.simulation import Trajectory
-from hersey.result import json_value
+from hersey.result import Result, json_record
 from hersey.stability.plan.obstacles import Obstacle, speed_text
+
+if TYPE_CHECKING:
+    import polars as pl
 
 
 @dataclass(frozen=True)
@@ -24,8 +27,8 @@ class LimitUse:
     used: float
 
 
-@dataclass(frozen=True)
-class Plan:
+@dataclass(frozen=True, repr=False)
+class Plan(Result):
     """A profile of drive speed, or the obstacles that forbid one.
 
     ``kind`` is ``direct`` (straight up), ``overshoot`` (above the target and down) or ``impossible``; then
@@ -107,15 +110,36 @@ class Plan:
         lines = ["time [s],drive speed [m/s]"]
         return "\n".join([*lines, *(f"{t:.12g},{v:.12g}" for t, v in self.rows())]) + "\n"
 
-    def document(self) -> dict[str, Any]:
-        """Return all but the response, for JSON; infinite and missing numbers are None."""
+    def summary(self) -> str:
+        """Return verdict, proof, profile and what it takes of the limits as text."""
+        lines = [self.verdict()]
+        if self.found:
+            lines += [self.proof(), "", f"  {'time (s)':>12s}  {'drive speed (mm/s)':>18s}"]
+            lines += [f"  {time:12.6g}  {1e3 * value:18.6g}" for time, value in self.rows()]
+            lines.append("")
+            lines += [f"{use.name.replace('_', ' ')}: {use.used:.4g} of {use.limit:.4g}" for use in self.uses]
+            lines += [f"- {warning}" for warning in self.warnings]
+            lines += [f"- {number} of {self.draws} draws: {why}" for why, number in self.failures.items()]
+        fold = f"{1e3 * self.fold_speed:.4g}"
+        lines.append(f"nominal transition speed {1e3 * self.transition_speed:.4g} mm/s, V* {fold} mm/s")
+        return "\n".join([*lines, f"seed {self.seed}"])
+
+    def headline(self) -> str:
+        """Return the kind, the target and how long it takes."""
+        target = f"{self.kind}, target {speed_text(self.target_speed)}"
+        return f"{target}, {self.duration:.4g} s" if self.found else target
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return all but the response, in SI; None for what is infinite or missing."""
         plain = {
             f.name: getattr(self, f.name) for f in fields(self) if f.name not in ("response", "schedule")
         }
-        plain["uses"] = [asdict(use) for use in self.uses]
-        plain["obstacles"] = [asdict(obstacle) for obstacle in self.obstacles]
-        plain["failures"] = dict(self.failures)
-        plain["warnings"] = list(self.warnings)
         rows = [{"time": t, "drive_speed": v} for t, v in self.rows()]
-        document = {"verdict": self.verdict(), "rows": rows, **plain}
-        return {name: json_value(value) for name, value in document.items()}
+        return json_record({"verdict": self.verdict(), "rows": rows, **plain})
+
+    def to_frame(self) -> pl.DataFrame:
+        """Return the profile; no rows if there is none."""
+        import polars as pl
+
+        schema = {"time (s)": pl.Float64, "drive speed (m/s)": pl.Float64}
+        return pl.DataFrame(self.rows(), schema=schema, orient="row")

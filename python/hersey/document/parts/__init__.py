@@ -1,0 +1,110 @@
+"""One part per result, versioned and validated: what the document and every ``--json`` hold.
+
+==========  ==================================================
+part        what every part is
+log         logs and dwells
+fit         the damping surface and the regime
+film        the film of a nip
+motion      trajectories, cycles, sweeps
+stability   bands, maps, plans
+models      candidates, comparisons of logs, designs
+inspection  what a log holds
+cycles      cycles of a trace and the drive behind them
+analysis    the whole document
+==========  ==================================================
+"""
+
+from hersey.document.parts.analysis import Analysis
+from hersey.document.parts.cycles import CyclesPart, DrivePart
+from hersey.document.parts.film import FilmPart, FilmPoint, FilmStatesPart, MeasuredFilmPart, VerdictPart
+from hersey.document.parts.fit import (
+    BranchPart,
+    Cell,
+    Curve,
+    FitDocument,
+    FitPart,
+    HypothesisPart,
+    RegimePart,
+    TransitionAt,
+    TransitionPart,
+)
+from hersey.document.parts.inspection import InspectionPart
+from hersey.document.parts.log import (
+    ChannelUse,
+    InputFile,
+    LogPart,
+    Point,
+    PointsPart,
+    Quality,
+    RejectedStretch,
+    Series,
+    Timeline,
+)
+from hersey.document.parts.models import ComparisonPart, DesignPart, ModelsPart
+from hersey.document.parts.motion import SimulationPart, StickSlipPart, SweepPart, TrajectoryPart
+from hersey.document.parts.part import SCHEMA_VERSION, Interval, OpenInterval, Part
+from hersey.document.parts.stability import BandPart, DisturbancePart, MapPart, PlanPart, StepPart
+
+#: What each command prints with ``--json``, beside version and command.
+PRINTED: dict[str, type[Part]] = {
+    "inspect": InspectionPart,
+    "report": Analysis,
+    "fit": FitDocument,
+    "models": ModelsPart,
+    "design": DesignPart,
+    "compare": ComparisonPart,
+    "cycles": CyclesPart,
+    "film": FilmPart,
+    "simulate": StickSlipPart,
+    "sweep": SweepPart,
+    "hysteresis": BandPart,
+    "map": MapPart,
+    "plan": PlanPart,
+}
+
+__all__ = [
+    "PRINTED",
+    "SCHEMA_VERSION",
+    "Analysis",
+    "BandPart",
+    "BranchPart",
+    "Cell",
+    "ChannelUse",
+    "ComparisonPart",
+    "Curve",
+    "CyclesPart",
+    "DesignPart",
+    "DisturbancePart",
+    "DrivePart",
+    "FilmPart",
+    "FilmPoint",
+    "FilmStatesPart",
+    "FitDocument",
+    "FitPart",
+    "HypothesisPart",
+    "InputFile",
+    "InspectionPart",
+    "Interval",
+    "LogPart",
+    "MapPart",
+    "MeasuredFilmPart",
+    "ModelsPart",
+    "OpenInterval",
+    "Part",
+    "PlanPart",
+    "Point",
+    "PointsPart",
+    "Quality",
+    "RegimePart",
+    "RejectedStretch",
+    "Series",
+    "SimulationPart",
+    "StepPart",
+    "StickSlipPart",
+    "SweepPart",
+    "Timeline",
+    "TrajectoryPart",
+    "TransitionAt",
+    "TransitionPart",
+    "VerdictPart",
+]

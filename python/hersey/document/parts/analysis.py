@@ -1,0 +1,46 @@
+"""The analysis document: everything a report says, as one versioned JSON document in SI units.
+
+It is the contract between the Python package and the page: charts and text are drawn from it alone.
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from hersey.document.parts.cycles import CyclesPart
+from hersey.document.parts.film import FilmPart
+from hersey.document.parts.fit import FitPart, RegimePart
+from hersey.document.parts.inspection import InspectionPart
+from hersey.document.parts.log import InputFile, Point, Quality, Timeline
+from hersey.document.parts.models import ComparisonPart, DesignPart, ModelsPart
+from hersey.document.parts.motion import SimulationPart, StickSlipPart, SweepPart
+from hersey.document.parts.part import SCHEMA_VERSION, Part
+from hersey.document.parts.stability import BandPart, MapPart, PlanPart
+
+
+class Analysis(Part):
+    """The whole document: what a report shows, and every further result that was asked for."""
+
+    schema_version: Literal["2"] = SCHEMA_VERSION
+    hersey_version: str
+    title: str
+    command: str
+    warnings: list[str]
+    files: list[InputFile]
+    quality: Quality
+    points: list[Point]
+    fit: FitPart
+    regime: RegimePart
+    film: FilmPart | None = None
+    simulation: SimulationPart
+    timeline: Timeline
+    inspection: InspectionPart | None = None
+    models: ModelsPart | None = None
+    compare: ComparisonPart | None = None
+    design: DesignPart | None = None
+    cycles: CyclesPart | None = None
+    motion: StickSlipPart | None = None
+    sweep: SweepPart | None = None
+    band: BandPart | None = None
+    map: MapPart | None = None
+    plan: PlanPart | None = None

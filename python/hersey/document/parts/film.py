@@ -1,0 +1,154 @@
+"""The film of a nip in the document."""
+
+from __future__ import annotations
+
+from pydantic import Field
+
+from hersey.document.parts.fit import HypothesisPart
+from hersey.document.parts.part import Holed, Numbers, OpenInterval, Part
+
+
+class FilmPoint(Part):
+    """A state on the regime chart; least film in m."""
+
+    name: str
+    viscosity_parameter: float  #: g_V
+    elasticity_parameter: float  #: g_E
+    regime: str
+    minimum_thickness: float
+
+
+class ContactPart(Part):
+    """The contact, SI; a flat heater has no radius (null)."""
+
+    roll_radius: float = Field(description="m")
+    rubber_thickness: float = Field(description="m")
+    modulus: float = Field(description="Young's modulus of the rubber, Pa")
+    poisson_ratio: float
+    length: float = Field(description="m")
+    load: float = Field(description="N")
+    heater_radius: float | None = Field(description="m")
+    roughness: float | None = Field(description="m, rms")
+    nip_uncertainty: float | None
+    effective_modulus: float = Field(description="E' = 2 E/(1 - nu^2), Pa")
+    reduced_radius: float = Field(description="m")
+
+
+class LubricantPart(Part):
+    """The lubricant: (K, Pa s) and (K, 1/Pa); coefficients of its law in SI."""
+
+    name: str
+    model: str
+    source: str
+    points: list[tuple[float, float]]
+    pressure_viscosity: list[tuple[float, float]]
+    coefficients: dict[str, float]
+
+
+class NipPart(Part):
+    """The contact of the roll, dry; its width by each rule."""
+
+    width: float = Field(description="m")
+    pressure_mean: float = Field(description="Pa")
+    pressure_max: float = Field(description="Pa")
+    edge: float
+    width_over_hertz: float
+    paper_width: float = Field(description="m")
+    paper_in_range: bool
+    strain: float
+    layer_factor: float = Field(description="soft film of the layer over that of a half-space")
+    layer: float = Field(description="width, m")
+    hertz: float = Field(description="width, m")
+    paper: float = Field(description="width, m")
+
+
+class LawPart(Part):
+    """A law of film thickness and the convention it belongs to."""
+
+    law: str
+    formula: str
+    convention: str
+    source: str
+
+
+class FilmCorrectionPart(Part):
+    """A factor on the film and where its rule holds, shape (points,)."""
+
+    factor: Numbers
+    valid: list[bool]
+
+
+class FilmStatesPart(Part):
+    """The film at operating points, arrays of shape (points,)."""
+
+    names: list[str] = Field(default=[], description="of the points")
+    speed: Numbers = Field(description="rad/s")
+    temperature: Numbers = Field(description="K")
+    entrainment_speed: Numbers = Field(description="mean of the surfaces, m/s")
+    viscosity: Numbers = Field(description="Pa s")
+    g_v: Numbers
+    g_e: Numbers
+    minimum: Numbers = Field(description="by the governing law, before corrections, m")
+    central: Numbers = Field(description="by the governing law, before corrections, m")
+    inlet_short: list[bool]
+    minima: dict[str, Numbers] = Field(description="by law, m")
+    centres: dict[str, Numbers] = Field(description="by law, m")
+    regime: list[str]
+    torque: Numbers = Field(description="N m")
+    corrections: dict[str, FilmCorrectionPart]
+
+
+class MeasuredFilmPart(Part):
+    """What each dwell says of the film, arrays of shape (dwells,)."""
+
+    speed: Numbers = Field(description="rad/s")
+    temperature: Numbers = Field(description="K")
+    torque: Numbers = Field(description="N m")
+    thickness: Numbers = Field(description="m")
+    low: Numbers = Field(description="m, 95 %")
+    high: Numbers = Field(description="m, 95 %")
+    systematic: float = Field(description="factor common to all dwells")
+    friction: Numbers
+    hersey_number: Numbers = Field(description="eta U/p, m")
+    sommerfeld_number: Numbers
+    lambda_ratio: Numbers | None
+    predicted: FilmStatesPart
+    predicted_torque: Numbers = Field(description="N m")
+    calibration: OpenInterval = Field(description="measured over predicted torque")
+    on_film: Holed = Field(description="1 on the rising branch, 0 on the falling one")
+    grip: float | None
+
+
+class VerdictPart(Part):
+    """Measured exponents against those predicted for this contact; energies in J/mol."""
+
+    exponent: OpenInterval
+    expected: float
+    solved: float | None
+    predictions: list[HypothesisPart]
+    thermal: OpenInterval | None
+    thermal_expected: float
+    activation_energy: float | None
+    viscosity_activation_energy: float
+    text: str
+
+
+class FilmPart(Part):
+    """The film that theory gives this nip, and what a log says of it if there is one."""
+
+    contact: ContactPart
+    lubricant: LubricantPart
+    nip: NipPart
+    laws: list[LawPart]
+    film: FilmStatesPart = Field(description="at the points of interest")
+    measured: MeasuredFilmPart | None = None
+    exponents: VerdictPart | None = None
+    verdict: str = ""
+    notes: list[str] = Field(default=[], description="what in the numbers cannot be")
+    points: list[FilmPoint] = Field(default=[], description="points of interest on the regime chart")
+    dwells: list[FilmPoint] = Field(default=[], description="dwells on the regime chart")
+
+    @property
+    def layer_factor(self) -> float:
+        """Soft film of the layer over that of a half-space."""
+        return self.nip.layer_factor

@@ -1,0 +1,119 @@
+"""The damping surface and the regime in the document."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from hersey.document.parts.log import InputFile, Point
+from hersey.document.parts.part import Interval, Part
+
+
+class TransitionPart(Part):
+    """Where falling and rising branch meet: speeds in rad/s at the reference temperature."""
+
+    speed: Interval
+    least_torque_speed: float
+    mixed_exponent: Interval
+    temperature_exponent: float
+    evidence: float = Field(description="gain in AICc over a single power law")
+    gradual: bool = Field(description="branches are trend lines on either side of a gradual bend")
+
+
+class Curve(Part):
+    """The fitted law at one temperature (K; null if none): speeds in rad/s, damping in N m s/rad."""
+
+    temperature: float | None
+    speed: list[float]
+    damping: list[float]
+
+
+class Cell(Part):
+    """The fitted law at the middle of a cell of speed (rad/s) and temperature (K)."""
+
+    speed_low: float
+    speed_high: float
+    temperature_low: float | None
+    temperature_high: float | None
+    damping: float
+
+
+class TransitionAt(Part):
+    """Transition speed (rad/s) at a temperature (K)."""
+
+    temperature: float
+    speed: float
+
+
+class FitPart(Part):
+    """B = a T^b w^c: B in N m s/rad, w in rad/s, T in the scale named."""
+
+    law: str
+    temperature_scale: Literal["degC", "K"]
+    reference_speed: float = Field(description="rad/s")
+    reference_temperature: float | None = Field(description="K")
+    coefficients: dict[str, Interval]
+    torque_space: dict[str, Interval]
+    transition: TransitionPart | None
+    no_transition: str
+    variables: list[str]
+    values: list[float]
+    covariance: list[list[float]]
+    points: int
+    chi_square: float
+    reduced_chi_square: float
+    scatter: float
+    dwell_error: float = Field(description="relative, median of the errors of the dwells")
+    aicc: float
+    r_squared_damping: float
+    r_squared_torque: float
+    speed_range: tuple[float, float] = Field(description="rad/s")
+    temperature_range: tuple[float, float] | None = Field(description="K")
+    summary: str
+    curves: list[Curve] = Field(default=[], description="the law at the temperatures measured")
+    cells: list[Cell] = Field(default=[], description="the law over the range measured")
+    transition_curve: list[TransitionAt] = Field(default=[], description="over the range measured")
+
+
+class HypothesisPart(Part):
+    """A named exponent (low is null where unbounded) and its p-value."""
+
+    name: str
+    low: float | None
+    high: float
+    meaning: str
+    film: str = Field(description="regime of film theory that predicts it, or empty")
+    p_value: float
+    holds_here: bool | None = Field(
+        default=None, description="whether film theory puts this contact there; null without a contact"
+    )
+    consistent: bool = Field(description="at the 5 % level")
+
+
+class BranchPart(Part):
+    """Exponent at one temperature (K) on one branch, over speeds in rad/s."""
+
+    temperature: float | None
+    branch: Literal["ehl", "mixed", "all"]
+    points: int
+    speed_low: float
+    speed_high: float
+    exponent: Interval
+
+
+class RegimePart(Part):
+    """Evidence and verdict."""
+
+    verdict: str
+    hypotheses: list[HypothesisPart]
+    exponents: list[BranchPart]
+
+
+class FitDocument(Part):
+    """What ``hersey fit --json`` prints: all that a fit needs to be read back."""
+
+    files: list[InputFile]
+    points: list[Point]
+    fit: FitPart
+    regime: RegimePart

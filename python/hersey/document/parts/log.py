@@ -1,0 +1,161 @@
+"""Logs and dwells in the document."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from hersey.document.parts.part import Part
+
+
+class ChannelUse(Part):
+    """A column used for a role, name and unit as written in the file."""
+
+    role: str
+    name: str
+    unit: str
+
+
+class InputFile(Part):
+    """A file that went in; the sampling interval is the median, in s."""
+
+    name: str
+    sha256: str
+    bytes: int
+    rows: int
+    missing_rows: int
+    duration: float = Field(description="s")
+    sampling_interval: float = Field(description="s")
+    gaps: int = Field(description="times that rows are missing")
+    channels: list[ChannelUse]
+    comments: list[str] = Field(description="comment lines above the header")
+
+
+class DwellPart(Part):
+    """A dwell: times in s, speed in rad/s, torque in N m, temperature in K; errors are standard errors."""
+
+    run: int
+    start: float
+    end: float
+    speed: float
+    speed_error: float
+    torque: float
+    torque_error: float
+    temperature: float | None
+    temperature_error: float | None
+    rows: int
+    effective_rows: float = Field(description="independent samples")
+    settling_rows: int = Field(description="cut at the ends")
+    approach: Literal["from below", "from above", "start"]
+
+
+class Point(DwellPart):
+    """A dwell beside the fit: damping in N m s/rad."""
+
+    group_temperature: float | None = Field(description="K, mean of the dwells at about this temperature")
+    damping: float
+    damping_fitted: float
+    residual: float = Field(description="ln(measured/fitted)")
+
+
+class RejectedStretch(Part):
+    """A stretch that is not used; times in s."""
+
+    run: int
+    start: float
+    end: float
+    rows: int
+    reason: str
+
+
+class Quality(Part):
+    """How the rows of the log were used; torques in N m."""
+
+    rows: int
+    rows_used: int
+    rows_settling: int
+    rows_rejected: int
+    standing_torque: float | None
+    tare: float
+    rejected: list[RejectedStretch]
+
+
+class PointsPart(Part):
+    """The dwells of a log; torques in N m."""
+
+    points: list[DwellPart]
+    rejected: list[RejectedStretch]
+    tare: float
+    tare_error: float
+    standing_torque: float | None
+
+
+class LogFilePart(Part):
+    """A file that was read."""
+
+    name: str
+    sha256: str
+    bytes: int
+    rows: int
+    missing_rows: int
+    channels: list[ChannelUse]
+    comments: list[str] = Field(description="comment lines above the header")
+    cut_off: bool = Field(description="the file ends before its time")
+    notes: list[str]
+
+
+class RunPart(Part):
+    """What a file recorded: least and greatest time (s), torque (N m), speed (rad/s) and temperature (K)."""
+
+    name: str
+    rows: int
+    sampling_interval: float = Field(description="s")
+    gaps: int = Field(description="times that rows are missing")
+    time: tuple[float, float]
+    torque: tuple[float, float]
+    speed: tuple[float, float]
+    temperature: tuple[float, float] | None
+
+
+class EffectPart(Part):
+    """How far a correction moved a role, SI; the share is of the median of the absolute values before."""
+
+    role: str
+    largest: float
+    typical: float = Field(description="root mean square")
+    share: float | None
+
+
+class CorrectionPart(Part):
+    """A correction: its parameters as written with units, and its effects."""
+
+    name: str
+    parameters: list[tuple[str, str]]
+    effects: list[EffectPart]
+    note: str
+
+
+class LogPart(Part):
+    """A log of torque without its rows."""
+
+    rows: int
+    files: list[LogFilePart]
+    runs: list[RunPart]
+    corrections: list[CorrectionPart]
+
+
+class Series(Part):
+    """Samples for display: time in s, values in the unit of the chart."""
+
+    time: list[float]
+    value: list[float]
+
+
+class Timeline(Part):
+    """The log thinned for display, runs one after another: rad/s, N m, K."""
+
+    speed: Series
+    torque: Series
+    temperature: Series | None
+    starts: list[float] = Field(description="s, start of each run")

@@ -1,0 +1,124 @@
+"""Motion in the document: in SI, or in the units of the arguments."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from hersey.document.parts.part import Numbers, Part
+
+
+class SimulationPart(Part):
+    """A simulation from rest at a low drive speed."""
+
+    title: str
+    source: Literal["paper", "fit"]
+    units: str
+    speed_unit: str
+    force_unit: str
+    parameters: dict[str, float | str]
+    kind: str
+    frequency: float = Field(description="Hz")
+    stuck_fraction: float
+    speed_max: float
+    time: list[float]
+    belt_speed: list[float]
+    spring_force: list[float]
+    transition_speed: float
+    drive_speed: float
+
+
+class TrainPart(Part):
+    """Spring and mass of a drive."""
+
+    stiffness: float = Field(description="N/m")
+    mass: float = Field(description="kg")
+
+
+class DragPart(Part):
+    """A law of drag; temperatures in K."""
+
+    transition_force: float = Field(description="N")
+    transition_speed: float = Field(description="m/s")
+    ehl_exponent: float
+    mixed_exponent: float
+    stick_speed: float = Field(description="m/s")
+    closure: str
+    bristle_stiffness: float | None = Field(description="N/m")
+    bristle_damping: float | None = Field(description="N s/m")
+    reference_temperature: float | None
+    force_temperature_exponent: float
+    speed_temperature_exponent: float
+    temperature_zero: float
+
+
+class EnergyPart(Part):
+    """Where the work of the drive went, J; the residual is a share of all energy turned over."""
+
+    work: float
+    dissipated: float
+    stored: float
+    residual: float
+
+
+class CheckPart(Part):
+    """The same run by another integrator; differences as shares of the greatest value."""
+
+    integrator: str
+    speed_difference: float | None
+    stretch_difference: float | None
+    same_events: bool
+    note: str
+
+
+class EventPart(Part):
+    """A change of mode."""
+
+    time: float = Field(description="s")
+    from_mode: str
+    to_mode: str
+    guard: str
+    stretch: float = Field(description="m")
+    belt_speed: float = Field(description="m/s")
+
+
+class TrajectoryPart(Part):
+    """Motion at equally spaced times, arrays of shape (samples,)."""
+
+    time: Numbers = Field(description="s")
+    belt_speed: Numbers = Field(description="m/s")
+    stretch: Numbers = Field(description="m")
+    spring_force: Numbers = Field(description="N")
+    mode: list[str]
+    events: list[EventPart]
+    energy: EnergyPart
+    steps: int
+    check: CheckPart | None
+
+
+class StickSlipPart(Part):
+    """What a motion settles to, with the energies of a run from the start if one was asked for."""
+
+    kind: Literal["steady_sliding", "oscillation", "stick_slip", "unsettled"]
+    frequency: float = Field(description="laps per unit of time, Hz")
+    slip_duration: float = Field(description="s")
+    stick_duration: float = Field(description="s")
+    stuck_fraction: float
+    speed_min: float = Field(description="m/s")
+    speed_max: float = Field(description="m/s")
+    stretch_min: float = Field(description="m")
+    stretch_max: float = Field(description="m")
+    drag_work: float = Field(description="a lap, J")
+    laps: int
+    energy: EnergyPart | None = None
+    check: CheckPart | None = None
+
+
+class SweepPart(Part):
+    """How many sets of a sweep have each outcome, and the range of numbers of those that stick and slip."""
+
+    sets: int
+    kinds: dict[str, int]
+    stick_slip: dict[str, tuple[float, float]]
+    failures: list[str]

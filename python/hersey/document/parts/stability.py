@@ -1,0 +1,152 @@
+"""Bands, maps and plans in the document."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from hersey.document.parts.motion import DragPart, TrainPart
+from hersey.document.parts.part import Holed, Numbers, Part
+
+
+class DisturbancePart(Part):
+    """What a sliding belt bears; null where nothing is too large."""
+
+    drive_speed: float
+    kick: float | None = Field(description="sudden loss of belt speed, m/s")
+    step: float | None = Field(description="sudden fall of the drive speed, m/s")
+
+
+class StepPart(Part):
+    """A change of drive speed; the ramp time (s) is null where no ramp is slow enough."""
+
+    from_speed: float
+    to_speed: float
+    sticks: bool
+    slowest: float
+    ramp_time: float | None
+
+
+class BandPart(Part):
+    """Drive speeds that divide the behaviour, m/s or the units of the arguments; null beyond the search."""
+
+    lower: float | None
+    transition: float
+    upper: float | None
+    closure: str
+    method: Literal["half laps", "simulation"]
+    lower_accuracy: float | None = Field(description="relative")
+    upper_accuracy: float | None = Field(description="relative")
+    deeper: bool
+    speed_max: float | None
+    laps: int
+    sensitivity: dict[str, float | None] = Field(description="relative change of upper per that of each")
+    lower_sensitivity: dict[str, float | None]
+    interval: tuple[float | None, float | None] | None = Field(description="of upper, 95 %")
+    lower_interval: tuple[float | None, float | None] | None
+    share_bistable: float | None
+    bistable: bool
+    verdict: str
+    disturbance: DisturbancePart | None = None
+    step: StepPart | None = None
+
+
+class StatePart(Part):
+    """What the belt does at one temperature and drive speed: speeds in m/s, torque in N m."""
+
+    state: str
+    torque: float
+    lower: float | None
+    transition: float
+    upper: float | None
+    extrapolated: bool
+
+
+class PlacedPart(Part):
+    """An operating point: speed in m/s, temperature in K."""
+
+    name: str
+    speed: float
+    temperature: float
+    at: StatePart
+
+
+class MapPart(Part):
+    """Speeds (m/s) that divide the behaviour at each temperature (K), shape (n,); null beyond the search."""
+
+    temperature: Numbers | None
+    speed: Numbers = Field(description="m/s, shape (m,)")
+    lower: Holed
+    transition: Holed
+    upper: Holed
+    transition_interval: list[Holed] = Field(description="95 %, shape (2, n)")
+    upper_interval: list[Holed] = Field(description="95 %, shape (2, n)")
+    stall_below: Holed
+    stall_above: Holed
+    torque: list[Numbers] = Field(description="of steady sliding, N m, shape (n, m)")
+    torque_limit: float | None = Field(description="N m")
+    limited_by: str
+    speed_limit: float | None = Field(description="m/s")
+    measured_temperature: tuple[float, float] | None = Field(description="K")
+    measured_speed: tuple[float, float] = Field(description="m/s")
+    points: list[PlacedPart]
+    uncertain: list[str]
+    warnings: list[str]
+    roll_radius: float = Field(description="m")
+    train: TrainPart
+    drag: DragPart
+
+
+class RowPart(Part):
+    """A point of a drive profile."""
+
+    time: float = Field(description="s")
+    drive_speed: float = Field(description="m/s")
+
+
+class LimitPart(Part):
+    """A limit and what the profile takes of it, SI."""
+
+    name: str
+    limit: float
+    used: float | None
+
+
+class ObstaclePart(Part):
+    """A limit that forbids every profile, SI; null where no value of it alone would do."""
+
+    limit: str
+    given: float | None
+    needed: float | None
+    text: str
+
+
+class PlanPart(Part):
+    """A profile of drive speed, or what forbids one: times in s, speeds in m/s, forces in N."""
+
+    verdict: str
+    rows: list[RowPart]
+    kind: Literal["direct", "overshoot", "impossible"]
+    target_speed: float
+    confidence: float
+    seed: int
+    duration: float | None
+    wait: float | None
+    rise: float | None
+    peak_speed: float | None
+    hold: float | None
+    fall: float | None
+    share: float = Field(description="of fresh draws that are smooth")
+    share_low: float = Field(description="exceeded by the true share with 95 %")
+    draws: int
+    failures: dict[str, int]
+    uses: list[LimitPart]
+    warnings: list[str]
+    obstacles: list[ObstaclePart]
+    fold_speed: float | None
+    transition_speed: float
+    temperature: float | None = Field(description="K")
+    greatest_speed: float | None
+    peak_force: float | None
+    tried: int
