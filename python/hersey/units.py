@@ -6,16 +6,19 @@ import math
 import re
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import pint
+from numpy.typing import NDArray
 
 from hersey.errors import UnitError, WrongKindError
 
 registry: pint.UnitRegistry[float] = pint.UnitRegistry(autoconvert_offset_to_baseunit=True, cache_folder=None)
 registry.define("rev = revolution")
 
+#: One number, or an array of them.
+Number = TypeVar("Number", float, NDArray[np.float64])
 #: 0 degC, K.
 ZERO_CELSIUS = 273.15
 #: SI unit and an example of each kind of quantity that a log or a command carries.
@@ -181,11 +184,15 @@ def convert(value: float, si: str, unit: str) -> float:
     return float(registry.Quantity(value, si).to(unit).magnitude)
 
 
-def rpm(speed: float) -> float:
-    """Return a speed in rad/s as revolutions per minute, for people."""
-    return convert(speed, "rad/s", "rpm")
+#: Revolutions per minute of one radian per second.
+_RPM = convert(1.0, "rad/s", "rpm")
 
 
-def celsius(kelvin: float) -> float:
-    """Return a temperature in K as degC, for people."""
-    return convert(kelvin, "K", "degC")
+def rpm(speed: Number) -> Number:
+    """Return speeds in rad/s as revolutions per minute, for people."""
+    return speed * _RPM
+
+
+def celsius(kelvin: Number) -> Number:
+    """Return temperatures in K as degC, for people."""
+    return kelvin - ZERO_CELSIUS

@@ -11,9 +11,10 @@ from pathlib import Path
 import altair as alt
 import numpy as np
 
+from hersey.charts import FIGURES
 from hersey.charts.film import regime_chart
-from hersey.charts.render import rendered
-from hersey.charts.style import HEIGHT, INK, WIDTH, Chart, Row, plot, ramp, tip, zoom
+from hersey.charts.render import picture
+from hersey.charts.style import HEIGHT, INK, WIDTH, Chart, Row, plot, ramp, tip, unchecked, zoom
 from hersey.document.parts import Analysis, Point, Series
 from hersey.units import celsius, rpm
 
@@ -39,7 +40,8 @@ def charts(document: Analysis) -> dict[str, Chart]:
         "timeline_torque": timeline_torque,
         "timeline_temperature": timeline_temperature,
     }
-    made = {name: make(document) for name, make in makers.items()}
+    with unchecked():
+        made = {name: make(document) for name, make in makers.items()}
     return {name: chart for name, chart in made.items() if chart is not None}
 
 
@@ -270,9 +272,9 @@ def write_figures(document: Analysis, folder: Path) -> list[Path]:
     folder.mkdir(parents=True, exist_ok=True)
     written = []
     for name, chart in charts(document).items():
-        for suffix, content in rendered(chart).items():
-            path = folder / f"{name}.{suffix}"
-            path.write_bytes(content)
+        for suffix in FIGURES:
+            path = folder / f"{name}{suffix}"
+            path.write_bytes(picture(chart, suffix))
             written.append(path)
     return written
 

@@ -10,7 +10,6 @@ import numpy as np
 from tsdownsample import MinMaxLTTBDownsampler
 
 from hersey.arrays import FloatArray
-from hersey.charts.operating_map import SUFFIXES as SUFFIXES
 from hersey.charts.style import WIDTH, Chart, Row
 from hersey.errors import InsufficientDataError
 from hersey.inspection.inspecting import ChannelReport, FileReport, Inspection

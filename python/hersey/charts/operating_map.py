@@ -6,23 +6,17 @@ so that the picture survives greyscale.
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 
 import altair as alt
 import numpy as np
-import vl_convert
 
 from hersey.arrays import FloatArray
-from hersey.charts.render import specification_of
 from hersey.charts.style import Chart, Row, plot
-from hersey.errors import OutputError
 from hersey.stability.operating_map import OperatingMap
 from hersey.units import ZERO_CELSIUS, celsius, rpm
 
 WIDTH, HEIGHT = 680, 450
-#: Kinds of file that a map can be written to.
-SUFFIXES = (".html", ".svg", ".png", ".pdf")
 _INK, _BLUE = "#222", "#1f4e9c"
 #: Name, text in the legend, text on the map, and colour of each region, lightness falling.
 _REGIONS = (
@@ -550,40 +544,3 @@ class _Labels:
                 rim = {**look, "color": "white", "stroke": "white", "strokeWidth": 3.5, "strokeJoin": "round"}
                 layers += [base.mark_text(**rim), base.mark_text(**look)]
         return alt.layer(*layers)
-
-
-def rendered_map(chart: Chart, suffix: str) -> str | bytes:
-    """Return the content of a file of one of `SUFFIXES`; html is self-contained, with tooltips.
-
-    Raises
-    ------
-    OutputError
-        If the suffix is none of these.
-    """
-    specification = specification_of(chart)
-    version = alt.SCHEMA_VERSION.removeprefix("v").rsplit(".", 1)[0]
-    if suffix not in SUFFIXES:
-        raise OutputError(f"'{suffix}' is no kind of picture: name a file that ends in {', '.join(SUFFIXES)}")
-    if suffix == ".html":
-        embedded = json.dumps(specification, allow_nan=False).replace(
-            "<", "\\u003c"
-        )  # a name may hold markup
-        runtime = vl_convert.javascript_bundle("window.vegaEmbed = vegaEmbed;", vl_version=version)
-        return _PAGE.format(runtime=runtime.replace("</script", "<\\/script"), chart=embedded)
-    if suffix == ".svg":
-        return vl_convert.vegalite_to_svg(specification, vl_version=version)
-    if suffix == ".pdf":
-        return vl_convert.vegalite_to_pdf(specification, vl_version=version)
-    return vl_convert.vegalite_to_png(specification, vl_version=version, scale=2)
-
-
-_PAGE = """<!doctype html>
-<html lang="en">
-<meta charset="utf-8">
-<title>Operating map</title>
-<style>body {{ margin: 2rem; font-family: sans-serif }}</style>
-<div id="map"></div>
-<script>{runtime}</script>
-<script>vegaEmbed("#map", {chart}, {{renderer: "svg", actions: false}});</script>
-</html>
-"""

@@ -15,7 +15,7 @@ from hersey.cli.options import (
     Reading,
     reads_logs,
 )
-from hersey.cli.outputs import PICTURES, may_draw, may_write
+from hersey.cli.outputs import may_draw, may_write
 from hersey.cli.progress import working
 
 
@@ -42,7 +42,7 @@ def inspect(
     It works on logs that cannot be fitted too, and says why they cannot.
     """
     from hersey.charts.inspection import inspection_chart
-    from hersey.charts.operating_map import rendered_map
+    from hersey.charts.render import picture
     from hersey.files.writing import write_atomically
     from hersey.inspection import inspect as inspected
     from hersey.log.mapping import FILE_NAME, propose_mapping
@@ -53,7 +53,7 @@ def inspect(
     if kept is not None:
         may_write(kept, force, inputs=inputs)
     if figure is not None:
-        may_draw(figure, force, inputs, suffixes=PICTURES)
+        may_draw(figure, force, inputs)
     roles = ("time", "torque", "speed", "temperature")
     channels = {role: name for role in roles if (name := getattr(reading, role))}
     units = {role: unit for role in roles if (unit := getattr(reading, f"{role}_unit"))}
@@ -73,7 +73,7 @@ def inspect(
     if figure is not None:
         with working("drawing the channels"):
             chart = inspection_chart(logs, found)
-            write_atomically(figure, rendered_map(chart, figure.suffix), overwrite=True)
+            write_atomically(figure, picture(chart, figure.suffix), overwrite=True)
     if as_json:
         print(json.dumps(found.document(), indent=1))
         return

@@ -17,7 +17,7 @@ from hersey.cli.options import (
     SomeLogs,
     reads_logs,
 )
-from hersey.cli.outputs import PICTURES, may_draw
+from hersey.cli.outputs import may_draw
 from hersey.cli.progress import working
 
 
@@ -42,15 +42,16 @@ def map_(
 
     With --json the whole map goes to stdout, and a picture is drawn only if --out is given.
     """
-    from hersey.charts.operating_map import map_chart, rendered_map
+    from hersey.charts.operating_map import map_chart
+    from hersey.charts.render import picture
     from hersey.files.writing import write_atomically
     from hersey.machine.machine import read_machine
     from hersey.stability.operating_map import operating_map
 
-    picture = out or (None if as_json else Path("map.html"))
-    if picture is not None:
+    path = out or (None if as_json else Path("map.html"))
+    if path is not None:
         inputs = [machine_file, *(logs or []), *([fit_file] if fit_file else [])]
-        may_draw(picture, force, inputs, flag="--out", suffixes=PICTURES)
+        may_draw(path, force, inputs, flag="--out")
     machine = read_machine(machine_file)
     surface = reading.surface(logs, fit_file)
     with working("finding the bands"):
@@ -64,14 +65,14 @@ def map_(
             uncertainty=machine.uncertainty,
             threads=os.cpu_count() or 1,
         )
-    if picture is not None:
+    if path is not None:
         with working("drawing the map"):
-            chart = map_chart(drawn, tooltips=picture.suffix == ".html")
-            write_atomically(picture, rendered_map(chart, picture.suffix), overwrite=True)
+            chart = map_chart(drawn, tooltips=path.suffix == ".html")
+            write_atomically(path, picture(chart, path.suffix), overwrite=True)
     if as_json:
         print(json.dumps(drawn.document(), indent=1))
         return
     print(drawn.summary())
     for warning in drawn.warnings:
         print(f"- {warning}")
-    print(f"map: {picture}")
+    print(f"map: {path}")
