@@ -43,7 +43,7 @@ def surface(points: hersey.SteadyPoints) -> DampingSurface:
 
 
 @pytest.fixture(scope="module")
-def fuser() -> Machine:
+def machine() -> Machine:
     return read_machine(ROOT / "examples" / "machine.toml")
 
 
@@ -337,16 +337,15 @@ def test_the_picture_names_everything(drawn: OperatingMap) -> None:
 
 
 def test_labels_do_not_overlap(surface: DampingSurface, machine: Machine) -> None:
-    from hersey.charts.operating_map import _bands, _contours, _Frame, _Labels, _measured_box, _points
+    from hersey.charts.labels import Labels
+    from hersey.charts.operating_map.chart import _layers
+    from hersey.charts.operating_map.frame import HEIGHT, WIDTH, Frame
 
     crowd = tuple(OperatingPoint(f"point {i}", 0.04 + 0.004 * i, 450.0 + i) for i in range(6))
     drawn = operating_map(surface, machine.train, **QUICK, limits=machine.limits, points=crowd)
-    frame = _Frame.of(drawn)
-    labels = _Labels(frame)
-    _points(drawn, frame, labels)
-    _contours(drawn, frame, labels)
-    labels.regions(_bands(drawn, frame), _measured_box(drawn, frame))
-    boxes = [labels._box(t.text, t.across, t.up) for t in labels._texts]
+    labels = Labels(WIDTH, HEIGHT)
+    _layers(drawn, Frame.of(drawn), labels)
+    boxes = [text.box for text in labels.texts]
     assert len(boxes) >= 10
     for i, a in enumerate(boxes):
         for b in boxes[i + 1 :]:

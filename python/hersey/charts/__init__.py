@@ -2,6 +2,7 @@
 
 =============  ====================================================
 style          sizes, colours, the smallest pieces
+labels         where texts stand, so that none covers another
 runtime        the Vega runtime, inlined in every page
 render         from a chart to the content of a file
 analysis       the charts of the analysis document

@@ -14,7 +14,20 @@ import numpy as np
 from hersey.charts import FIGURES
 from hersey.charts.film import regime_chart
 from hersey.charts.render import picture
-from hersey.charts.style import HEIGHT, INK, WIDTH, Chart, Row, plot, ramp, tip, unchecked, zoom
+from hersey.charts.style import (
+    HEIGHT,
+    INK,
+    WIDTH,
+    Chart,
+    Row,
+    logarithmic,
+    plot,
+    ramp,
+    tip,
+    torque_unit,
+    unchecked,
+    zoom,
+)
 from hersey.document.parts import Analysis, Point, Series
 from hersey.units import celsius, rpm
 
@@ -281,8 +294,7 @@ def write_figures(document: Analysis, folder: Path) -> list[Path]:
 
 def _torque_unit(document: Analysis) -> tuple[float, str]:
     """Factor from N m, and the unit in which the torques of a document read best."""
-    largest = max(abs(p.torque) for p in document.points)
-    return (1.0, "N·m") if largest >= 1.0 else (1e3, "mN·m")
+    return torque_unit(max(abs(p.torque) for p in document.points))
 
 
 def _against_speed(document: Analysis, quantity: str, title: str, scale: float) -> Chart:
@@ -299,7 +311,7 @@ def _against_speed(document: Analysis, quantity: str, title: str, scale: float) 
         for c in document.fit.curves
         for v, b in zip(c.speed, c.damping, strict=True)
     ]
-    y = alt.Y("y:Q", title=title, scale=alt.Scale(type="log", nice=False, padding=12))
+    y = alt.Y("y:Q", title=title, scale=logarithmic())
     color, shape = _temperature_channels(document)
     line = (
         plot(curves)
@@ -366,11 +378,7 @@ def _temperature_channels(document: Analysis) -> tuple[alt.Color, alt.Shape]:
 
 
 def _speed(field: str, domain: list[float] | None = None) -> alt.X:
-    scale = (
-        alt.Scale(type="log", nice=False, padding=12)
-        if domain is None
-        else alt.Scale(type="log", domain=domain)
-    )
+    scale = logarithmic() if domain is None else alt.Scale(type="log", domain=domain)
     return alt.X(field, title="Drive speed (rpm)", scale=scale)
 
 
