@@ -19,7 +19,9 @@ from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar, cast
 from hersey.errors import UnitError, WrongKindError
 
 if TYPE_CHECKING:
+    import numpy as np
     import pint
+    from numpy.typing import NDArray
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -45,6 +47,8 @@ def _full_registry() -> pint.UnitRegistry[float]:
 
 registry = cast("pint.UnitRegistry[float]", _OnFirstUse())
 
+#: One number, or an array of them.
+Number = TypeVar("Number", float, "NDArray[np.float64]")
 #: 0 degC, K.
 ZERO_CELSIUS = 273.15
 #: SI unit and an example of each kind of quantity that a log or a command carries.
@@ -366,11 +370,15 @@ def convert(value: float, si: str, unit: str) -> float:
     return float((value * given[0] + given[1] - wanted[1]) / wanted[0])
 
 
-def rpm(speed: float) -> float:
-    """Return a speed in rad/s as revolutions per minute, for people."""
-    return convert(speed, "rad/s", "rpm")
+#: Revolutions per minute of one radian per second.
+_RPM = convert(1.0, "rad/s", "rpm")
 
 
-def celsius(kelvin: float) -> float:
-    """Return a temperature in K as degC, for people."""
-    return convert(kelvin, "K", "degC")
+def rpm(speed: Number) -> Number:
+    """Return speeds in rad/s as revolutions per minute, for people."""
+    return speed * _RPM
+
+
+def celsius(kelvin: Number) -> Number:
+    """Return temperatures in K as degC, for people."""
+    return kelvin - ZERO_CELSIUS

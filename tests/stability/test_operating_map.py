@@ -12,7 +12,9 @@ import numpy as np
 import pytest
 
 import hersey
-from hersey.charts.operating_map import SUFFIXES, map_chart, rendered_map
+from hersey.charts import PICTURES
+from hersey.charts.operating_map import map_chart
+from hersey.charts.render import picture
 from hersey.damping.estimate import Estimate
 from hersey.damping.surface import DampingSurface
 from hersey.document.saved_fit import read_fit
@@ -40,7 +42,7 @@ def surface(points: hersey.SteadyPoints) -> DampingSurface:
 
 
 @pytest.fixture(scope="module")
-def fuser() -> Machine:
+def machine() -> Machine:
     return read_machine(ROOT / "examples" / "machine.toml")
 
 
@@ -298,10 +300,9 @@ def test_an_isothermal_fit_has_a_map_of_one_column(isothermal: DampingSurface, m
         drawn.state_at(400.0, 0.12)
     with pytest.raises(ParameterError, match="isothermal"):
         operating_map(isothermal, machine.train, **QUICK, temperatures=[400.0, 410.0])
-    picture = rendered_map(map_chart(drawn, tooltips=False), ".svg")
-    assert isinstance(picture, str)
-    assert "Operating map (isothermal fit)" in picture
-    assert "Temperature" not in picture
+    svg = picture(map_chart(drawn, tooltips=False), ".svg").decode()
+    assert "Operating map (isothermal fit)" in svg
+    assert "Temperature" not in svg
 
 
 def test_the_document_is_json_without_infinities(surface: DampingSurface, machine: Machine) -> None:
@@ -314,17 +315,16 @@ def test_the_document_is_json_without_infinities(surface: DampingSurface, machin
     assert document["drag"]["transition_speed"] == drawn.drag.transition_speed
 
 
-def texts(picture: str) -> list[str]:
+def texts(svg: str) -> list[str]:
     import re
     from html import unescape
 
-    return [unescape(t) for t in re.findall(r">([^<>]+)</t(?:ext|span)>", picture)]
+    return [unescape(t) for t in re.findall(r">([^<>]+)</t(?:ext|span)>", svg)]
 
 
 def test_the_picture_names_everything(drawn: OperatingMap) -> None:
-    picture = rendered_map(map_chart(drawn), ".svg")
-    assert isinstance(picture, str)
-    shown = texts(picture)
+    svg = picture(map_chart(drawn), ".svg").decode()
+    shown = texts(svg)
     for text in ("Temperature (°C)", "Drive speed at the belt (mm/s)", "Roll speed (rpm)"):
         assert text in shown
     for text in ("smooth", "stick-slip", "stall", "bistable: smooth only from above", "1 N·m"):
@@ -332,20 +332,19 @@ def test_the_picture_names_everything(drawn: OperatingMap) -> None:
     for text in ("full speed", "thick paper", "cold <b>start</b>", "greatest drive speed"):
         assert text in shown
     assert any("stall beyond 2.7 N·m (roll friction)" in text for text in shown)
-    assert "NaN" not in picture
+    assert "NaN" not in svg
 
 
 def test_labels_do_not_overlap(surface: DampingSurface, machine: Machine) -> None:
-    from hersey.charts.operating_map import _bands, _contours, _Frame, _Labels, _measured_box, _points
+    from hersey.charts.labels import Labels
+    from hersey.charts.operating_map.chart import _layers
+    from hersey.charts.operating_map.frame import HEIGHT, WIDTH, Frame
 
     crowd = tuple(OperatingPoint(f"point {i}", 0.04 + 0.004 * i, 450.0 + i) for i in range(6))
     drawn = operating_map(surface, machine.train, **QUICK, limits=machine.limits, points=crowd)
-    frame = _Frame.of(drawn)
-    labels = _Labels(frame)
-    _points(drawn, frame, labels)
-    _contours(drawn, frame, labels)
-    labels.regions(_bands(drawn, frame), _measured_box(drawn, frame))
-    boxes = [labels._box(t.text, t.across, t.up) for t in labels._texts]
+    labels = Labels(WIDTH, HEIGHT)
+    _layers(drawn, Frame.of(drawn), labels)
+    boxes = [text.box for text in labels.texts]
     assert len(boxes) >= 10
     for i, a in enumerate(boxes):
         for b in boxes[i + 1 :]:
@@ -355,13 +354,13 @@ def test_labels_do_not_overlap(surface: DampingSurface, machine: Machine) -> Non
 @pytest.mark.slow
 def test_pictures_of_each_kind(drawn: OperatingMap) -> None:
     chart = map_chart(drawn)
-    begins = {".html": "<!doctype html>", ".svg": "<svg", ".png": b"\x89PNG", ".pdf": b"%PDF"}
-    assert set(begins) == set(SUFFIXES)
+    begins = {".html": b"<!doctype html>", ".svg": b"<svg", ".png": b"\x89PNG", ".pdf": b"%PDF"}
+    assert set(begins) == set(PICTURES)
     for suffix, start in begins.items():
-        assert rendered_map(chart, suffix).startswith(start)  # type: ignore[arg-type]
-    assert "<b>start" not in str(rendered_map(chart, ".html"))
+        assert picture(chart, suffix).startswith(start)
+    assert b"<b>start" not in picture(chart, ".html")
     with pytest.raises(OutputError, match="no kind of picture"):
-        rendered_map(chart, ".docx")
+        picture(chart, ".docx")
 
 
 @pytest.fixture(scope="module")

@@ -11,9 +11,23 @@ from pathlib import Path
 import altair as alt
 import numpy as np
 
+from hersey.charts import FIGURES
 from hersey.charts.film import regime_chart
-from hersey.charts.render import rendered
-from hersey.charts.style import HEIGHT, INK, WIDTH, Chart, Row, plot, ramp, tip, zoom
+from hersey.charts.render import picture
+from hersey.charts.style import (
+    HEIGHT,
+    INK,
+    WIDTH,
+    Chart,
+    Row,
+    logarithmic,
+    plot,
+    ramp,
+    tip,
+    torque_unit,
+    unchecked,
+    zoom,
+)
 from hersey.document.parts import Analysis, Point, Series
 from hersey.units import celsius, rpm
 
@@ -39,7 +53,8 @@ def charts(document: Analysis) -> dict[str, Chart]:
         "timeline_torque": timeline_torque,
         "timeline_temperature": timeline_temperature,
     }
-    made = {name: make(document) for name, make in makers.items()}
+    with unchecked():
+        made = {name: make(document) for name, make in makers.items()}
     return {name: chart for name, chart in made.items() if chart is not None}
 
 
@@ -270,17 +285,16 @@ def write_figures(document: Analysis, folder: Path) -> list[Path]:
     folder.mkdir(parents=True, exist_ok=True)
     written = []
     for name, chart in charts(document).items():
-        for suffix, content in rendered(chart).items():
-            path = folder / f"{name}.{suffix}"
-            path.write_bytes(content)
+        for suffix in FIGURES:
+            path = folder / f"{name}{suffix}"
+            path.write_bytes(picture(chart, suffix))
             written.append(path)
     return written
 
 
 def _torque_unit(document: Analysis) -> tuple[float, str]:
     """Factor from N m, and the unit in which the torques of a document read best."""
-    largest = max(abs(p.torque) for p in document.points)
-    return (1.0, "N·m") if largest >= 1.0 else (1e3, "mN·m")
+    return torque_unit(max(abs(p.torque) for p in document.points))
 
 
 def _against_speed(document: Analysis, quantity: str, title: str, scale: float) -> Chart:
@@ -297,7 +311,7 @@ def _against_speed(document: Analysis, quantity: str, title: str, scale: float) 
         for c in document.fit.curves
         for v, b in zip(c.speed, c.damping, strict=True)
     ]
-    y = alt.Y("y:Q", title=title, scale=alt.Scale(type="log", nice=False, padding=12))
+    y = alt.Y("y:Q", title=title, scale=logarithmic())
     color, shape = _temperature_channels(document)
     line = (
         plot(curves)
@@ -364,11 +378,7 @@ def _temperature_channels(document: Analysis) -> tuple[alt.Color, alt.Shape]:
 
 
 def _speed(field: str, domain: list[float] | None = None) -> alt.X:
-    scale = (
-        alt.Scale(type="log", nice=False, padding=12)
-        if domain is None
-        else alt.Scale(type="log", domain=domain)
-    )
+    scale = logarithmic() if domain is None else alt.Scale(type="log", domain=domain)
     return alt.X(field, title="Drive speed (rpm)", scale=scale)
 
 

@@ -5,11 +5,10 @@ from __future__ import annotations
 import altair as alt
 import numpy as np
 
-from hersey.charts.style import WIDTH, Chart, Row, plot
+from hersey.charts.style import BLUE, ORANGE, WIDTH, Chart, plot, rows_of
 from hersey.identification.cycle_record import CycleRecord, Scatter
 from hersey.identification.identified_drive import IdentifiedDrive
 
-_INK, _BLUE, _ORANGE = "#333", "#1f4e9c", "#d9730d"
 #: The trace is shown over this many typical periods in the middle of it, and at least this many samples.
 _PERIODS, _SAMPLES = 8.0, 400
 #: Points drawn of the trace, at most.
@@ -64,23 +63,23 @@ def _trace(record: CycleRecord, label: str) -> Chart:
     first, last = _window(record)
     step = max(1, (last - first) // _DRAWN)
     samples = record.samples
-    rows = _rows(time=samples.time[first:last:step], force=samples.value[first:last:step])
+    rows = rows_of(time=samples.time[first:last:step], force=samples.value[first:last:step])
     inside = (record.slip_time >= samples.time[first]) & (record.slip_time <= samples.time[last - 1])
     middle = 0.5 * (record.force_max + record.force_min)
-    marks = _rows(time=record.slip_time[inside], force=middle[inside])
+    marks = rows_of(time=record.slip_time[inside], force=middle[inside])
     x = alt.X("time:Q", title="Time (s), part of the trace", scale=alt.Scale(nice=False, zero=False))
     y = alt.Y("force:Q", title=label, scale=alt.Scale(zero=False))
-    line = plot(rows).mark_line(color=_BLUE, strokeWidth=1, clip=True).encode(x=x, y=y, order="index:Q")
-    dots = plot(marks).mark_point(color=_ORANGE, filled=True, size=40).encode(x=x, y=y)
+    line = plot(rows).mark_line(color=BLUE, strokeWidth=1, clip=True).encode(x=x, y=y, order="index:Q")
+    dots = plot(marks).mark_point(color=ORANGE, filled=True, size=40).encode(x=x, y=y)
     return alt.layer(line, dots).properties(width=WIDTH, height=220)
 
 
 def _slips(record: CycleRecord, label: str) -> alt.Chart:
     step = max(1, record.slips // _DRAWN)
-    rows = _rows(time=record.slip_time[::step], drop=record.drop[::step])
+    rows = rows_of(time=record.slip_time[::step], drop=record.drop[::step])
     chart: alt.Chart = (
         plot(rows)
-        .mark_point(color=_BLUE, filled=True, size=14, opacity=0.7)
+        .mark_point(color=BLUE, filled=True, size=14, opacity=0.7)
         .encode(
             x=alt.X("time:Q", title="Time (s), whole trace", scale=alt.Scale(nice=False, zero=False)),
             y=alt.Y("drop:Q", title=label.replace("Force", "Fall", 1)),
@@ -92,9 +91,9 @@ def _slips(record: CycleRecord, label: str) -> alt.Chart:
 
 def _cycle(drive: IdentifiedDrive, label: str) -> Chart:
     wave = drive.waveform
-    rows = _rows(time=1e3 * wave.offset, force=wave.force, line=["mean of the laps"] * wave.offset.size)
-    fitted = _rows(time=1e3 * wave.offset, force=drive.fitted, line=["fitted motion"] * wave.offset.size)
-    names = alt.Scale(domain=["mean of the laps", "fitted motion"], range=[_ORANGE, _BLUE])
+    rows = rows_of(time=1e3 * wave.offset, force=wave.force, line=["mean of the laps"] * wave.offset.size)
+    fitted = rows_of(time=1e3 * wave.offset, force=drive.fitted, line=["fitted motion"] * wave.offset.size)
+    names = alt.Scale(domain=["mean of the laps", "fitted motion"], range=[ORANGE, BLUE])
     legend = alt.Legend(title=None, orient="bottom-right", fillColor="white", padding=4)
     x = alt.X("time:Q", title="Time from the middle of the slip (ms)", scale=alt.Scale(nice=False))
     y = alt.Y("force:Q", title=label, scale=alt.Scale(zero=False))
@@ -102,11 +101,3 @@ def _cycle(drive: IdentifiedDrive, label: str) -> Chart:
     dots = plot(rows).mark_point(filled=True, size=24).encode(x=x, y=y, color=color)
     line = plot(fitted).mark_line(strokeWidth=1.5).encode(x=x, y=y, color=color, order="index:Q")
     return alt.layer(line, dots).properties(width=WIDTH, height=220)
-
-
-def _rows(**columns: object) -> list[Row]:
-    lists = {
-        name: column.tolist() if isinstance(column, np.ndarray) else column
-        for name, column in columns.items()
-    }
-    return [dict(zip(lists, values, strict=True)) for values in zip(*lists.values(), strict=True)]

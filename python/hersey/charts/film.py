@@ -7,7 +7,7 @@ import numpy as np
 
 from hersey import _core
 from hersey.arrays import pointwise
-from hersey.charts.style import HEIGHT, WIDTH, Chart, Row, plot
+from hersey.charts.style import HEIGHT, INK, WIDTH, Chart, Row, logarithmic, plot
 from hersey.document.film_part import film_points
 from hersey.document.parts import FilmPoint
 from hersey.lubrication.film import REGIMES, Film
@@ -16,7 +16,6 @@ from hersey.verdict.evidence import MeasuredFilm
 
 #: Shades of the regimes that stay apart in grey.
 _SHADES = ("#f4f1de", "#e8b4a0", "#b7d3e9", "#8fae8b")
-_INK = "#222"
 #: Cells of the chart to a side, and decades shown beyond the points.
 _CELLS, _MARGIN = 90, 1.5
 #: The chart shows at least this.
@@ -57,23 +56,23 @@ def _regimes(points: list[Row], dwells: list[Row], layer_factor: float) -> Chart
         .encode(x=x, x2="g_v2:Q", y=y, y2="g_e2:Q", color=alt.Color("regime:N", scale=shade, legend=None))
     )
     names_of = (
-        plot(labels).mark_text(color=_INK, fontSize=12, fontStyle="italic").encode(x=x, y=y, text="regime:N")
+        plot(labels).mark_text(color=INK, fontSize=12, fontStyle="italic").encode(x=x, y=y, text="regime:N")
     )
     dots = (
         plot([row for row in dwells if row["g_v"] > 0])
-        .mark_point(color=_INK, size=14, opacity=0.6, clip=True)
+        .mark_point(color=INK, size=14, opacity=0.6, clip=True)
         .encode(x=x, y=y)
     )
     marks = (
         plot([row for row in points if row["g_v"] > 0])
-        .mark_point(filled=True, fill="white", stroke=_INK, strokeWidth=1.5, size=70, opacity=1, clip=True)
+        .mark_point(filled=True, fill="white", stroke=INK, strokeWidth=1.5, size=70, opacity=1, clip=True)
         .encode(
             x=x, y=y, tooltip=["name:N", "regime:N", alt.Tooltip("h:Q", title="h_min (um)", format=".3~g")]
         )
     )
     text = (
         plot([row for row in points if row["g_v"] > 0] if len(points) <= 8 else [])
-        .mark_text(align="left", dx=9, color=_INK, fontSize=11)
+        .mark_text(align="left", dx=9, color=INK, fontSize=11)
         .encode(x=x, y=y, text="name:N")
     )
     hidden = "" if known else " No point is shown: alpha is not known, g_V = 0."
@@ -109,12 +108,12 @@ def _stribeck(measured: MeasuredFilm) -> Chart:
     x = alt.X(
         "hersey:Q",
         title="Hersey number eta U/p (um), p the mean pressure of the nip, U the sliding speed",
-        scale=alt.Scale(type="log", nice=False, padding=12),
+        scale=logarithmic(),
     )
     y = alt.Y(
         "friction:Q",
         title="friction coefficient T/(R N)",
-        scale=alt.Scale(type="log", nice=False, padding=12),
+        scale=logarithmic(),
     )
     temperatures = [f"{t} °C" for t in sorted({5 * round(celsius(t) / 5) for t in measured.temperature})]
     colours = alt.Scale(domain=temperatures, scheme="viridis")
@@ -130,7 +129,7 @@ def _stribeck(measured: MeasuredFilm) -> Chart:
             ),
         )
     )
-    line = plot(film).mark_line(color=_INK, strokeDash=[6, 4], strokeWidth=1.5).encode(x=x, y=y)
+    line = plot(film).mark_line(color=INK, strokeDash=[6, 4], strokeWidth=1.5).encode(x=x, y=y)
     layers: list[alt.Chart] = [line, dots]
     if measured.grip is not None:
         rule = [{"friction": measured.grip, "text": "the belt slips on the roll: stall"}]

@@ -10,13 +10,11 @@ import numpy as np
 from tsdownsample import MinMaxLTTBDownsampler
 
 from hersey.arrays import FloatArray
-from hersey.charts.operating_map import SUFFIXES as SUFFIXES
-from hersey.charts.style import WIDTH, Chart, Row
+from hersey.charts.style import BLUE, ORANGE, WIDTH, Chart, Row, plot
 from hersey.errors import InsufficientDataError
 from hersey.inspection.inspecting import ChannelReport, FileReport, Inspection
 from hersey.inspection.raw import raw_channels
 
-_INK, _BLUE, _ORANGE = "#333", "#1f4e9c", "#d9730d"
 #: Points drawn of a channel; panels of a file, those with a role first.
 _POINTS, _PANELS = 2000, 12
 _AXIS, _HEIGHT = 56, 90
@@ -80,13 +78,13 @@ def _panel(channel: ChannelReport, values: FloatArray, time: FloatArray | None, 
     y = alt.Y("y:Q", title=None, scale=alt.Scale(zero=False), axis=alt.Axis(minExtent=_AXIS, tickCount=4))
     at = alt.X("x:Q", title=title, scale=alt.Scale(nice=False))
     line = (
-        alt.Chart(alt.Data(values=rows))
-        .mark_line(color=_BLUE, strokeWidth=1, clip=True)
+        plot(rows)
+        .mark_line(color=BLUE, strokeWidth=1, clip=True)
         .encode(x=at, y=y, order="index:Q", tooltip=[alt.Tooltip("x:Q"), alt.Tooltip("y:Q")])
     )
     point = (
-        alt.Chart(alt.Data(values=marks))
-        .mark_point(color=_ORANGE, size=90, strokeWidth=2)
+        plot(marks)
+        .mark_point(color=ORANGE, size=90, strokeWidth=2)
         .encode(x="x:Q", y="y:Q", tooltip=[alt.Tooltip("kind:N")])
     )
     said = "; ".join(channel.findings)

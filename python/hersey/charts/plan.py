@@ -5,13 +5,12 @@ from __future__ import annotations
 import altair as alt
 import numpy as np
 
-from hersey.charts.style import WIDTH, Chart, Row, plot, tip
+from hersey.charts.style import BLUE, INK, ORANGE, WIDTH, Chart, Row, level, plot, tip
 from hersey.errors import InsufficientDataError
 from hersey.motion.schedule import Schedule
 from hersey.stability.plan.result import Plan
 from hersey.units import celsius
 
-_INK, _BLUE, _ORANGE = "#333", "#1f4e9c", "#d9730d"
 #: Width kept for the axes, so that the panels line up.
 _AXIS = 46
 _KEY = "V*: above it stick-slip dies out by itself. v_t: below it steady sliding is unstable."
@@ -77,16 +76,16 @@ def _speeds(plan: Plan, window: tuple[float, float]) -> Chart:
             x=_x(window, title=False),
             y=y,
             order="index:Q",
-            color=alt.Color("line:N", scale=alt.Scale(domain=names, range=[_ORANGE, _BLUE]), legend=legend),
+            color=alt.Color("line:N", scale=alt.Scale(domain=names, range=[ORANGE, BLUE]), legend=legend),
             strokeDash=alt.StrokeDash(
                 "line:N", scale=alt.Scale(domain=names, range=[[7, 3], [1, 0]]), legend=legend
             ),
             tooltip=[tip("time", "time (s)"), tip("value", f"speed ({unit})")],
         )
     )
-    rules = _mark(plan.transition_speed * scale, "v_t", above=False)
+    rules = level(plan.transition_speed * scale, "v_t", lift=-4.0)
     if plan.fold_speed < _SHOWN * top:
-        rules += _mark(plan.fold_speed * scale, "V*", above=True)
+        rules += level(plan.fold_speed * scale, "V*", lift=4.0)
     return alt.layer(*rules, lines, *_ready(plan)).properties(width=WIDTH, height=260)
 
 
@@ -94,7 +93,7 @@ def _force(plan: Plan, window: tuple[float, float]) -> Chart:
     assert plan.response is not None
     line = (
         plot(_rows(plan, plan.response.spring_force, "spring"))
-        .mark_line(color=_BLUE, strokeWidth=1.5, clip=True)
+        .mark_line(color=BLUE, strokeWidth=1.5, clip=True)
         .encode(
             x=_x(window),
             y=alt.Y("value:Q", title="Spring force (N)", axis=alt.Axis(minExtent=_AXIS)),
@@ -110,7 +109,7 @@ def _force(plan: Plan, window: tuple[float, float]) -> Chart:
     for use in plan.uses:
         if use.name in labels:
             force = use.limit * plan.peak_force / use.used
-            rules += _mark(force, labels[use.name], above=False)
+            rules += level(force, labels[use.name], lift=-4.0)
     return alt.layer(*rules, line, *_ready(plan, named=False)).properties(width=WIDTH, height=150)
 
 
@@ -122,7 +121,7 @@ def _temperature(plan: Plan, course: Schedule) -> Chart:
     rows = [{"time": t, "value": celsius(course.at(t)), "index": i} for i, t in enumerate(at.tolist())]
     line = (
         plot(rows)
-        .mark_line(color=_BLUE, strokeWidth=1.5)
+        .mark_line(color=BLUE, strokeWidth=1.5)
         .encode(
             x=alt.X("time:Q", title="Time (s), the whole course", scale=alt.Scale(nice=False)),
             y=alt.Y(
@@ -136,10 +135,10 @@ def _temperature(plan: Plan, course: Schedule) -> Chart:
         )
     )
     start = plot([{"time": plan.wait, "name": "drive starts"}])
-    rule = start.mark_rule(color=_ORANGE, strokeDash=[7, 3]).encode(x="time:Q")
+    rule = start.mark_rule(color=ORANGE, strokeDash=[7, 3]).encode(x="time:Q")
     near_end = plan.wait > 0.8 * last
     text = start.mark_text(
-        align="right" if near_end else "left", dx=-5 if near_end else 5, color=_INK, baseline="bottom"
+        align="right" if near_end else "left", dx=-5 if near_end else 5, color=INK, baseline="bottom"
     ).encode(x="time:Q", y=alt.value(112), text="name:N")
     return alt.layer(line, rule, text).properties(width=WIDTH, height=120)
 
@@ -157,18 +156,10 @@ def _rows(plan: Plan, values: np.ndarray, line: str) -> list[Row]:
 def _ready(plan: Plan, *, named: bool = True) -> list[alt.Chart]:
     """The moment from which the belt slides for good."""
     mark = plot([{"time": plan.duration, "name": "slides for good from here"}])
-    rule = mark.mark_rule(color=_INK, strokeWidth=1).encode(x="time:Q")
-    text = mark.mark_text(align="left", dx=5, baseline="top", color=_INK)
+    rule = mark.mark_rule(color=INK, strokeWidth=1).encode(x="time:Q")
+    text = mark.mark_text(align="left", dx=5, baseline="top", color=INK)
     label = text.encode(x="time:Q", y=alt.value(62), text="name:N")
     return [rule, label] if named else [rule]
-
-
-def _mark(value: float, name: str, *, above: bool) -> list[alt.Chart]:
-    """A level across the chart, named right of it."""
-    mark = plot([{"value": value, "name": name}])
-    rule = mark.mark_rule(color=_INK, strokeDash=[3, 3], strokeWidth=1).encode(y="value:Q")
-    place = mark.mark_text(align="left", dx=5, dy=-4 if above else 4, color=_INK)
-    return [rule, place.encode(x=alt.value(WIDTH), y="value:Q", text="name:N")]
 
 
 def _x(window: tuple[float, float], *, title: bool = True) -> alt.X:

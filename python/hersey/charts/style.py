@@ -2,20 +2,41 @@
 
 from __future__ import annotations
 
-from typing import Any
+from contextlib import AbstractContextManager
+from typing import Any, ClassVar
 
 import altair as alt
 import numpy as np
+from altair.utils.schemapi import debug_mode
 
 WIDTH, HEIGHT = 680, 340
-INK = "#333"
+#: Ink for words and rules, the first and the second colour of lines.
+INK, BLUE, ORANGE = "#333", "#1f4e9c", "#d9730d"
 Row = dict[str, Any]
 Chart = alt.LayerChart | alt.FacetChart | alt.VConcatChart
 
 
+class _Inline:
+    """Rows that altair passes on as they are: it would copy all of them for every layer and channel."""
+
+    #: Altair takes what has a schema and `to_dict` for a piece of its own.
+    _schema: ClassVar[dict[str, str]] = {"type": "array"}
+
+    def __init__(self, rows: list[Row]) -> None:
+        self._rows = rows
+
+    def to_dict(self) -> list[Row]:
+        return self._rows
+
+
 def plot(rows: list[Row]) -> alt.Chart:
     """Return a chart of rows, to which marks and channels are given."""
-    return alt.Chart(alt.Data(values=rows))
+    return alt.Chart(alt.Data(values=_Inline(rows)))
+
+
+def unchecked() -> AbstractContextManager[None]:
+    """Let altair make charts without checking each piece against its schema: the tests check whole charts."""
+    return debug_mode(False)
 
 
 def ramp(count: int) -> list[str]:
@@ -24,6 +45,34 @@ def ramp(count: int) -> list[str]:
     at = np.linspace(0, 3, count) if count > 1 else np.array([0.0])
     channels = [np.interp(at, range(4), anchors[:, i]) for i in range(3)]
     return [f"#{int(r):02x}{int(g):02x}{int(b):02x}" for r, g, b in zip(*channels, strict=True)]
+
+
+def rows_of(**columns: object) -> list[Row]:
+    """Return one row per entry of columns of one length: arrays, lists or ranges."""
+    lists = [c.tolist() if isinstance(c, np.ndarray) else c for c in columns.values()]
+    return [dict(zip(columns, entries, strict=True)) for entries in zip(*lists, strict=True)]
+
+
+def logarithmic() -> alt.Scale:
+    """Return a logarithmic scale that ends a little beyond the data."""
+    return alt.Scale(type="log", nice=False, padding=12)
+
+
+def torque_unit(largest: float) -> tuple[float, str]:
+    """Return the factor from N m, and the unit in which torques up to the ``largest`` read best."""
+    return (1.0, "N·m") if largest >= 1.0 else (1e3, "mN·m")
+
+
+def level(value: float, name: str, *, lift: float = 0.0, width: int = WIDTH) -> list[alt.Chart]:
+    """Return a dashed level across a chart, named right of it where no line crosses the words.
+
+    ``lift`` moves the name up by pixels, away from that of a level nearby.
+    """
+    mark = plot([{"level": value, "name": name}])
+    y = alt.Y("level:Q")
+    rule = mark.mark_rule(color=INK, strokeDash=[4, 3], strokeWidth=1).encode(y=y)
+    text = mark.mark_text(align="left", dx=6, dy=-lift, color=INK, fontSize=12)
+    return [rule, text.encode(x=alt.value(width), y=y, text=alt.Text("name:N"))]
 
 
 def zoom() -> alt.Parameter:

@@ -47,7 +47,7 @@ def cycles(
         str, typer.Option(help="Closures to compare; stribeck may be added and takes minutes.")
     ] = "retained,stiction",
     figure: Annotated[
-        Path | None, typer.Option("--figure", help="Draw trace, slips and fit: .png, .svg or .pdf.")
+        Path | None, typer.Option("--figure", help="Draw trace, slips and fit: .html, .png, .svg or .pdf.")
     ] = None,
     as_json: AsJson = False,
     force: Force = False,
@@ -82,11 +82,11 @@ def cycles(
             drive = identify_drive(record, known=values, closures=tuple(closures.replace(" ", "").split(",")))
     if figure is not None:
         from hersey.charts.cycles import trace_chart
-        from hersey.charts.render import rendered
+        from hersey.charts.render import picture
 
         shown = "share of the weight" if given.unit == "1" else given.unit
         with working("drawing"):
-            drawn = rendered(trace_chart(record, drive, unit=shown))[figure.suffix.removeprefix(".")]
+            drawn = picture(trace_chart(record, drive, unit=shown), figure.suffix)
         write_atomically(figure, drawn, overwrite=True)
     if as_json:
         driven = None if drive is None else drive.to_dict()

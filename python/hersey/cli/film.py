@@ -40,7 +40,7 @@ def film(
         str, typer.Option(help="Speed of the belt, as '120 mm/s', instead of the points of the file.")
     ] = "",
     figure: Annotated[
-        Path | None, typer.Option("--figure", help="Draw the regime chart: .png, .svg or .pdf.")
+        Path | None, typer.Option("--figure", help="Draw the regime chart: .html, .png, .svg or .pdf.")
     ] = None,
     as_json: AsJson = False,
     force: Force = False,
@@ -87,11 +87,11 @@ def film(
     notes = check_film(machine, predicted, measured)
     if figure is not None:
         from hersey.charts.film import film_chart
-        from hersey.charts.render import rendered
+        from hersey.charts.render import picture
 
         with working("drawing"):
             chart = film_chart(predicted, names, measured)
-            content = rendered(chart)[figure.suffix.removeprefix(".")]
+            content = picture(chart, figure.suffix)
         write_atomically(figure, content, overwrite=True)
     if as_json:
         print_json("film", film_document(predicted, names, measured, says, notes))

@@ -14,7 +14,7 @@ from hersey.cli.options import (
     Reading,
     reads_logs,
 )
-from hersey.cli.outputs import PICTURES, may_draw, may_write, print_json
+from hersey.cli.outputs import may_draw, may_write, print_json
 from hersey.cli.progress import working
 
 
@@ -47,7 +47,7 @@ def inspect(
         kept = logs[0].with_name(FILE_NAME)
         may_write(kept, force, inputs=inputs)
     if figure is not None:
-        may_draw(figure, force, inputs, suffixes=PICTURES)
+        may_draw(figure, force, inputs)
 
     from hersey.files.writing import write_atomically
     from hersey.inspection import inspect as inspected
@@ -72,11 +72,11 @@ def inspect(
         write_atomically(kept, proposal, overwrite=True)
     if figure is not None:
         from hersey.charts.inspection import inspection_chart
-        from hersey.charts.operating_map import rendered_map
+        from hersey.charts.render import picture
 
         with working("drawing the channels"):
             chart = inspection_chart(logs, found)
-            write_atomically(figure, rendered_map(chart, figure.suffix), overwrite=True)
+            write_atomically(figure, picture(chart, figure.suffix), overwrite=True)
     if as_json:
         print_json("inspect", found.to_dict())
         return

@@ -16,7 +16,7 @@ from hersey.cli.options import (
     SomeLogs,
     reads_logs,
 )
-from hersey.cli.outputs import PICTURES, may_draw, print_json
+from hersey.cli.outputs import may_draw, print_json
 from hersey.cli.progress import working
 
 
@@ -41,10 +41,10 @@ def map_(
 
     With --json the whole map goes to stdout, and a picture is drawn only if --out is given.
     """
-    picture = out or (None if as_json else Path("map.html"))
-    if picture is not None:
+    path = out or (None if as_json else Path("map.html"))
+    if path is not None:
         inputs = reading.inputs(machine_file, logs, fit_file)
-        may_draw(picture, force, inputs, flag="--out", suffixes=PICTURES)
+        may_draw(path, force, inputs, flag="--out")
 
     from hersey.files.writing import write_atomically
     from hersey.machine.machine import read_machine
@@ -63,16 +63,17 @@ def map_(
             uncertainty=machine.uncertainty,
             threads=os.cpu_count() or 1,
         )
-    if picture is not None:
-        from hersey.charts.operating_map import map_chart, rendered_map
+    if path is not None:
+        from hersey.charts.operating_map import map_chart
+        from hersey.charts.render import picture
 
         with working("drawing the map"):
-            chart = map_chart(drawn, tooltips=picture.suffix == ".html")
-            write_atomically(picture, rendered_map(chart, picture.suffix), overwrite=True)
+            chart = map_chart(drawn, tooltips=path.suffix == ".html")
+            write_atomically(path, picture(chart, path.suffix), overwrite=True)
     if as_json:
         print_json("map", drawn.to_dict())
         return
     print(drawn.summary())
     for warning in drawn.warnings:
         print(f"- {warning}")
-    print(f"map: {picture}")
+    print(f"map: {path}")

@@ -11,11 +11,8 @@ from pathlib import Path
 
 import typer
 
+from hersey.charts import PICTURES
 from hersey.errors import OutputError
-
-#: Kinds of file of a figure, and of a picture that may also be a page.
-FIGURES = (".png", ".svg", ".pdf")
-PICTURES = (".html", *FIGURES)
 
 
 def command() -> str:
@@ -76,9 +73,8 @@ def may_draw(
     inputs: Sequence[Path] = (),
     *,
     flag: str = "--figure",
-    suffixes: Sequence[str] = FIGURES,
 ) -> None:
     """Refuse early a figure of an unknown kind, or one that cannot be written."""
-    if path.suffix not in suffixes:
-        raise OutputError(f"{flag} {path}: name a file that ends in {', '.join(suffixes)}")
+    if path.suffix not in PICTURES:
+        raise OutputError(f"{flag} {path}: name a file that ends in {', '.join(PICTURES)}")
     may_write(path, force, inputs)

@@ -62,7 +62,7 @@ def plan(
         Path | None, typer.Option("--out", metavar="CSV", help="Write the profile for a motor controller.")
     ] = None,
     figure: Annotated[
-        Path | None, typer.Option("--figure", help="Draw profile and motion: .png, .svg or .pdf.")
+        Path | None, typer.Option("--figure", help="Draw profile and motion: .html, .png, .svg or .pdf.")
     ] = None,
     as_json: AsJson = False,
     force: Force = False,
@@ -111,10 +111,10 @@ def plan(
         )
     if found.found and figure is not None:
         from hersey.charts.plan import plan_chart
-        from hersey.charts.render import rendered
+        from hersey.charts.render import picture
 
         with working("drawing"):
-            content = rendered(plan_chart(found, temperature=warming))[figure.suffix.removeprefix(".")]
+            content = picture(plan_chart(found, temperature=warming), figure.suffix)
         write_atomically(figure, content, overwrite=True)
     if found.found and out is not None:
         write_atomically(out, found.table(), overwrite=True)

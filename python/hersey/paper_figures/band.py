@@ -9,11 +9,10 @@ import altair as alt
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.charts.style import Chart
+from hersey.charts.style import BLUE, INK, Chart, Row, plot
 from hersey.motion.simulation import steady_start, stick_slip
 from hersey.motion.sweep import sweep
 from hersey.paper_figures.figure import Claim, OwnFigure, Verdict, shown
-from hersey.paper_figures.panels import BLUE, INK, Row, plot
 from hersey.paper_figures.sweep import Case
 from hersey.stability.hysteresis import (
     CyclesWithoutSticking,

@@ -7,10 +7,10 @@ from itertools import pairwise
 
 import altair as alt
 
-from hersey.charts.style import WIDTH, Chart
+from hersey.charts.style import WIDTH, Chart, level
 from hersey.motion.simulation import StickSlipCycle, Trajectory
 from hersey.paper_figures.figure import ABOUT, ROUNDING, Claim, PaperFigure, Verdict, shown
-from hersey.paper_figures.panels import levels, mode_strip, trace
+from hersey.paper_figures.panels import mode_strip, trace
 from hersey.paper_figures.sweep import DAMPING, DRIVE_SPEED, STIFFNESS, Case
 
 #: The sticking friction that the paper gives for its baseline (Eq. 29), and half of its last digit.
@@ -115,7 +115,7 @@ def keeps_speed(case: Case, run: Trajectory) -> Claim:
 def _speed(case: Case, run: Trajectory) -> Chart:
     domain = (0.0, 1.06 * float(run.belt_speed.max()))
     line = trace(run.time, run.belt_speed, title="Belt speed (in/s)", domain=domain)
-    marks = levels([(case.drive_speed, f"drive: {case.drive_speed:g} in/s")])
+    marks = level(case.drive_speed, f"drive: {case.drive_speed:g} in/s")
     return alt.layer(line, *marks).properties(width=WIDTH, height=190)
 
 
@@ -124,5 +124,5 @@ def _force(case: Case, run: Trajectory) -> Chart:
     low, high = float(run.spring_force.min()), float(run.spring_force.max())
     margin = 0.08 * (high - low)
     line = trace(run.time, run.spring_force, title="Spring force (ozf)", domain=(low - margin, high + margin))
-    marks = levels([(a, f"A: {a:.1f} ozf"), (a / math.e, f"A/e: {a / math.e:.1f} ozf")])
+    marks = [*level(a, f"A: {a:.1f} ozf"), *level(a / math.e, f"A/e: {a / math.e:.1f} ozf")]
     return alt.layer(line, *marks).properties(width=WIDTH, height=190)

@@ -14,12 +14,11 @@ import altair as alt
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.charts.style import WIDTH, Chart, ramp
+from hersey.charts.style import INK, WIDTH, Chart, Row, plot, ramp
 from hersey.motion.drag import Drag
 from hersey.motion.simulation import Drivetrain
 from hersey.motion.sweep import sweep
 from hersey.paper_figures.figure import Claim, OwnFigure, Verdict
-from hersey.paper_figures.panels import INK, Row, plot
 from hersey.paper_figures.sweep import Case
 from hersey.stability.hysteresis import cycles_without_sticking, hysteresis, hysteresis_sweep
 

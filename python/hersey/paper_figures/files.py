@@ -7,7 +7,8 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from hersey.charts.render import rendered
+from hersey.charts import FIGURES
+from hersey.charts.render import picture
 from hersey.errors import OutputError
 from hersey.paper_figures.figure import ABOUT, Figure
 from hersey.result import json_value
@@ -29,15 +30,13 @@ def write(figures: Sequence[Figure], folder: Path, *, overwrite: bool = False) -
     OutputError
         If a file exists and ``overwrite`` is false, or the folder cannot be written.
     """
-    names = [f"{figure.name}.{suffix}" for figure in figures for suffix in ("svg", "png", "pdf")]
+    names = [f"{figure.name}{suffix}" for figure in figures for suffix in FIGURES]
     paths = [folder / name for name in [*names, "figures.md", "figures.json"]]
     there = [path for path in paths if path.exists()]
     if there and not overwrite:
         raise OutputError(f"{there[0]} exists: say --force to replace it, or name another directory")
     contents = {
-        f"{figure.name}.{suffix}": content
-        for figure in figures
-        for suffix, content in rendered(figure.chart).items()
+        f"{figure.name}{suffix}": picture(figure.chart, suffix) for figure in figures for suffix in FIGURES
     }
     contents |= {"figures.md": markdown(figures).encode(), "figures.json": as_json(figures).encode()}
     try:

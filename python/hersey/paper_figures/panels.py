@@ -10,13 +10,12 @@ import altair as alt
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.charts.style import WIDTH, Chart, ramp
+from hersey.charts.style import BLUE, INK, WIDTH, Chart, Row, plot, ramp, rows_of
 from hersey.motion.schedule import Schedule
 from hersey.motion.simulation import Trajectory
 from hersey.paper_figures.judges import Quantity
 from hersey.paper_figures.sweep import Sweep
 
-INK, BLUE = "#333", "#1f4e9c"
 #: Colour and shape of the three values traced: each alone tells them apart, also in greyscale.
 COLORS, SHAPES = ramp(3), ("circle", "square", "triangle-up")
 #: Names and colours of the modes, dark to light by speed.
@@ -31,7 +30,6 @@ MODES = {
 _HALF = 292
 #: Width kept for the vertical axes, so that stacked panels line up.
 _AXIS = 42
-Row = dict[str, Any]
 
 
 def trace(
@@ -44,7 +42,7 @@ def trace(
     timed: bool = False,
 ) -> alt.Chart:
     """A quantity against time; of a stack of panels only the last is ``timed``."""
-    rows = [{"time": float(t), "value": float(v)} for t, v in zip(time, value, strict=True)]
+    rows = rows_of(time=time, value=value)
     y = alt.Y(
         "value:Q",
         title=title,
@@ -70,17 +68,6 @@ def driven(
     rows: list[Row] = [{"time": t, "value": v, "corner": i} for i, (t, v) in enumerate(corners)]
     dashed = plot(rows).mark_line(color=INK, strokeDash=[5, 3], strokeWidth=1.4)
     return alt.layer(line, dashed.encode(x=_time("time:Q", end, timed), y="value:Q", order="corner:Q"))
-
-
-def levels(marks: list[tuple[float, str]]) -> list[alt.Chart]:
-    """Dashed levels, named to the right of the panel where no trace can cross the words."""
-    layers: list[alt.Chart] = []
-    for y, name in marks:
-        mark = plot([{"y": y, "name": name}])
-        layers.append(mark.mark_rule(color=INK, strokeDash=[4, 3]).encode(y="y:Q"))
-        label = mark.mark_text(align="left", dx=6, color=INK, fontSize=12)
-        layers.append(label.encode(x=alt.value(WIDTH), y="y:Q", text="name:N"))
-    return layers
 
 
 def mode_strip(run: Trajectory) -> alt.Chart:
@@ -195,8 +182,3 @@ def _time(field: str, end: float, timed: bool) -> alt.X:
     )
     scale = alt.Scale(domain=[0.0, end], nice=False)
     return alt.X(field, title="Time (s)" if timed else None, scale=scale, axis=axis)
-
-
-def plot(rows: list[Row]) -> alt.Chart:
-    """A chart of rows, without marks yet."""
-    return alt.Chart(alt.Data(values=rows))

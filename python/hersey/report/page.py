@@ -6,15 +6,12 @@ from vl-convert and inlined, so the file works offline and nothing foreign is ke
 
 from __future__ import annotations
 
-import json
 from importlib import resources
 from typing import Any
 
-import altair as alt
-import vl_convert
-
 from hersey.charts.analysis import charts
 from hersey.charts.render import specification_of
+from hersey.charts.runtime import embedded, runtime
 from hersey.document.parts import Analysis
 
 # Samples that only the charts need: the page carries them once.
@@ -29,21 +26,12 @@ def render(document: Analysis) -> str:
     """Return the page as HTML text."""
     page = resources.files("hersey.report") / "static"
     specifications = {name: specification_of(chart) for name, chart in charts(document).items()}
-    version = alt.SCHEMA_VERSION.removeprefix("v").rsplit(".", 1)[0]
     parts = {
         "css": (page / "page.css").read_text(encoding="utf-8"),
-        "document": _embedded(document.model_dump(mode="json", exclude=_DRAWN)),
-        "charts": _embedded(specifications),
-        "runtime": vl_convert.javascript_bundle("window.vegaEmbed = vegaEmbed;", vl_version=version).replace(
-            "</script", "<\\/script"
-        ),
+        "document": embedded(document.model_dump(mode="json", exclude=_DRAWN)),
+        "charts": embedded(specifications),
+        "runtime": runtime(),
         "script": (page / "page.js").read_text(encoding="utf-8"),
     }
     pieces = (page / "page.html").read_text(encoding="utf-8").split("@@")
     return "".join(parts[piece] if i % 2 else piece for i, piece in enumerate(pieces))
-
-
-def _embedded(content: object) -> str:
-    """JSON that no browser can take for markup."""
-    text = json.dumps(content, ensure_ascii=True, separators=(",", ":"), allow_nan=False)
-    return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")

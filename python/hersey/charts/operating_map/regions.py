@@ -1,0 +1,150 @@
+"""The regions of an operating map, and where they are extrapolated."""
+
+from __future__ import annotations
+
+import altair as alt
+import numpy as np
+
+from hersey.arrays import FloatArray
+from hersey.charts.labels import Box, Labels
+from hersey.charts.operating_map.frame import HEIGHT, WIDTH, Frame, side_to_side, speed_axis, temperature_axis
+from hersey.charts.style import INK, Row, plot
+from hersey.stability.operating_map import OperatingMap
+from hersey.units import celsius
+
+#: Name, text in the legend, text on the map, and colour of each region, lightness falling.
+REGIONS = (
+    ("smooth", "smooth (EHL)", "smooth", "#eef5fb"),
+    ("bistable", "bistable: smooth only from above", "smooth only from above", "#f5cf7f"),
+    ("swing", "small swing without sticking", "small swing", "#e08f2d"),
+    ("stick_slip", "stick-slip", "stick-slip", "#cc6a3d"),
+    ("stall", "stall", "stall", "#44444e"),
+)
+#: Lower and upper edge (m/s) of a part of a region at each column of the chart.
+Edges = tuple[FloatArray, FloatArray]
+Bands = dict[str, list[Edges]]
+#: Pixels between hatches.
+_HATCH = 9.0
+#: Least height of a region that is shown, in pixels.
+_THIN = 4.0
+
+
+def bands_of(result: OperatingMap, frame: Frame) -> Bands:
+    """Return the parts of each region; the stall has two."""
+    names = ("stall_below", "lower", "transition", "upper", "stall_above")
+    below, lower, bend, upper, above = (
+        frame.clipped(side_to_side(result, getattr(result, n))) for n in names
+    )
+    bottom, top = np.full_like(below, frame.low), np.full_like(below, frame.high)
+
+    def between(low: FloatArray, high: FloatArray) -> Edges:
+        low = np.clip(low, below, above)
+        return low, np.maximum(np.clip(high, below, above), low)
+
+    return {
+        "stick_slip": [between(bottom, lower)],
+        "swing": [between(lower, bend)],
+        "bistable": [between(bend, upper)],
+        "smooth": [between(upper, top)],
+        "stall": [(bottom, below), (above, top)],
+    }
+
+
+def regions(bands: Bands, frame: Frame) -> alt.Chart:
+    """Return the regions as areas with their legend."""
+    rows = [
+        {"x": x, "y": 1e3 * low, "top": 1e3 * high, "region": text, "part": f"{name} {part}"}
+        for name, text, _, _ in REGIONS
+        for part, edges in enumerate(bands[name])
+        if HEIGHT * np.log(edges[1] / edges[0]).max() > _THIN * np.log(frame.high / frame.low)
+        for x, low, high in zip(*map(np.ndarray.tolist, (frame.x, *edges)), strict=True)
+    ]
+    shown = [r for r in REGIONS if any(row["region"] == r[1] for row in rows)]
+    scale = alt.Scale(domain=[r[1] for r in shown], range=[r[3] for r in shown])
+    legend = alt.Legend(
+        orient="bottom",
+        title=None,
+        symbolType="square",
+        symbolSize=160,
+        symbolStrokeColor="#666",
+        labelLimit=260,
+    )
+    chart: alt.Chart = (
+        plot(rows)
+        .mark_area(clip=True)
+        .encode(
+            x=temperature_axis(frame),
+            y=speed_axis(frame),
+            y2="top:Q",
+            color=alt.Color("region:N", scale=scale, legend=legend),
+            detail="part:N",
+        )
+    )
+    return chart
+
+
+def hatches(result: OperatingMap, frame: Frame) -> list[alt.Chart]:
+    """Return diagonals across all that is extrapolated, pale ones between them for dark regions."""
+    looks = ((0.0, "#555", 0.45), (_HATCH / 2, "white", 0.3))
+    return [
+        _hatch(_diagonals(result, frame, start), frame, color, opacity) for start, color, opacity in looks
+    ]
+
+
+def _diagonals(result: OperatingMap, frame: Frame, offset: float) -> list[Row]:
+    left, bottom, right, top = measured_box(result, frame)
+    rows: list[Row] = []
+    for shift in np.arange(offset - HEIGHT, WIDTH, _HATCH).tolist():
+        start, end = max(0.0, shift), min(float(WIDTH), shift + HEIGHT)
+        enter, leave = max(left, bottom + shift), min(right, top + shift)
+        inside = [enter, leave] if leave > enter else []
+        stops = sorted([start, *(min(max(v, start), end) for v in inside), end])
+        for a, b in zip(stops[::2], stops[1::2], strict=True):
+            if b - a > 0.5:
+                (x, y), (x2, y2) = frame.at(a, a - shift), frame.at(b, b - shift)
+                rows.append({"x": x, "y": 1e3 * y, "x2": x2, "y2": 1e3 * y2})
+    return rows
+
+
+def _hatch(rows: list[Row], frame: Frame, color: str, opacity: float) -> alt.Chart:
+    chart: alt.Chart = (
+        plot(rows)
+        .mark_rule(color=color, opacity=opacity, strokeWidth=0.7, clip=True)
+        .encode(x=temperature_axis(frame), y=speed_axis(frame), x2="x2:Q", y2="y2:Q")
+    )
+    return chart
+
+
+def measured_box(result: OperatingMap, frame: Frame) -> Box:
+    """Return what the dwells span, pixels."""
+    low, high = (frame.up(v) for v in result.measured_speed)
+    left, right = 0.0, float(WIDTH)
+    if result.measured_temperature is not None:
+        left, right = (frame.across(celsius(t)) for t in result.measured_temperature)
+    return max(left, 0.0), max(low, 0.0), min(right, float(WIDTH)), min(high, float(HEIGHT))
+
+
+def measured_range(result: OperatingMap, frame: Frame) -> list[alt.Chart]:
+    """Return the frame around what the dwells span."""
+    left, bottom, right, top = measured_box(result, frame)
+    if not (right > left and top > bottom):
+        return []
+    (x, y), (x2, y2) = frame.at(left, bottom), frame.at(right, top)
+    rows: list[Row] = [{"x": x, "y": 1e3 * y, "x2": x2, "y2": 1e3 * y2}]
+    base = plot(rows).encode(x=temperature_axis(frame), y=speed_axis(frame), x2="x2:Q", y2="y2:Q")
+    return [
+        base.mark_rect(filled=False, stroke=stroke, strokeWidth=width)
+        for stroke, width in (("white", 3.0), (INK, 1.2))
+    ]
+
+
+def name_regions(bands: Bands, frame: Frame, labels: Labels, measured: Box) -> None:
+    """Name each region where it is roomiest, if possible where dwells were measured."""
+    across = np.array([frame.across(x) for x in frame.x.tolist()])
+    for name, _, text, _ in REGIONS:
+        parts = [(across, _heights(low, frame), _heights(high, frame)) for low, high in bands[name]]
+        labels.inside(text, parts, "regions", preferred=measured)
+
+
+def _heights(edge: FloatArray, frame: Frame) -> FloatArray:
+    return np.array([frame.up(v) for v in edge.tolist()])
