@@ -55,9 +55,9 @@ class Result:
 
     def _repr_html_(self) -> str:
         """Return summary and chart for a notebook; nothing is loaded from elsewhere."""
-        from hersey.charts.render import rendered
+        from hersey.charts.render import picture
 
-        drawing = rendered(self.chart())["svg"].decode()
+        drawing = picture(self.chart(), ".svg").decode()
         return f"<pre>{html.escape(self.summary())}</pre>{drawing}"
 
 
