@@ -2,12 +2,15 @@
 
 use std::f64::consts::PI;
 
-use hersey_core::lubrication::contact::{Solid, effective_modulus, hertz_line};
+use hersey_core::Error;
+use hersey_core::lubrication::contact::{
+    Solid, effective_modulus, hertz_line, hertz_point, reduced_radius, shore_a_modulus,
+};
 use hersey_core::lubrication::correction::{inlet_heating, shear_thinning, starvation};
 use hersey_core::lubrication::film::{LineContact, Regime, layer_factor};
-use hersey_core::lubrication::layer::LayerContact;
+use hersey_core::lubrication::layer::{HALF_WIDTH_MAX, LayerContact, nip};
 use hersey_core::lubrication::paper::Nip;
-use hersey_core::lubrication::viscosity::{Carreau, TemperatureLaw};
+use hersey_core::lubrication::viscosity::{Carreau, TemperatureLaw, at_pressure};
 use proptest::prelude::*;
 
 fn close(value: f64, reference: f64, tolerance: f64) {
@@ -263,6 +266,85 @@ fn viscosity_laws_pass_through_their_points() {
     }
     assert!(TemperatureLaw::vogel([(300.0, 1.0), (350.0, 0.5), (400.0, 0.01)]).is_err());
     assert!(TemperatureLaw::arrhenius([(300.0, 1.0), (350.0, 2.0)]).is_err());
+}
+
+#[test]
+fn points_of_a_viscosity_ascend_in_temperature_and_fall_in_viscosity() {
+    let quantity =
+        |points: [(f64, f64); 3]| TemperatureLaw::vogel(points).unwrap_err().quantity().unwrap();
+    let sequence = "sequence of temperatures of the viscosities";
+    let fall = "viscosity at the higher temperature";
+    assert_eq!(quantity([(300.0, 3.0), (300.0, 2.0), (400.0, 1.0)]), sequence);
+    assert_eq!(quantity([(300.0, 3.0), (350.0, 2.0), (340.0, 1.0)]), sequence);
+    assert_eq!(quantity([(300.0, 3.0), (350.0, 3.0), (400.0, 1.0)]), fall);
+    assert_eq!(quantity([(300.0, 3.0), (350.0, 2.0), (400.0, 2.5)]), fall);
+    assert_eq!(quantity([(0.0, 3.0), (350.0, 2.0), (400.0, 1.0)]), "temperature of a viscosity");
+    assert_eq!(quantity([(300.0, 3.0), (350.0, 2.0), (400.0, 0.0)]), "viscosity");
+    // the first may be anything, and the index is that of the one that goes back
+    let back = TemperatureLaw::arrhenius([(300.0, 2.0), (290.0, 1.0)]).unwrap_err();
+    assert!(matches!(back, Error::Backwards { index: 1, value, .. } if value < 290.5));
+    let kinematic = |low| TemperatureLaw::walther([(313.15, 1e-5), (373.15, low)], 900.0);
+    assert!(kinematic(0.211e-6).is_ok() && kinematic(0.209e-6).is_err());
+    let vogel = TemperatureLaw::Vogel { prefactor: 1e-4, slope: 900.0, zero: 180.0 };
+    assert!(vogel.viscosity(180.0).is_err() && vogel.viscosity(190.0).is_ok());
+    assert!(vogel.temperature_exponent(180.0).is_err());
+}
+
+#[test]
+fn ranges_are_closed_where_they_say_so() {
+    let share = |exponent, limit| Carreau::new(0.0, exponent, limit);
+    assert!(share(1.0, 0.0).is_ok() && share(1.0, 1.0).is_ok() && share(0.0, 0.5).is_err());
+    assert!(share(0.5, -0.1).is_err() && share(0.5, 1.1).is_err() && share(1.1, 0.5).is_err());
+    assert!(at_pressure(1.0, 0.0, 0.0).is_ok() && at_pressure(1.0, -1.0, 0.0).is_err());
+    assert!(starvation(1.0, 1.0, 2.0).is_ok() && starvation(1.0, 1.0, 5.0).is_ok());
+    assert!(starvation(1.0, 1.0, 1.9).is_err() && starvation(1.0, 1.0, 5.1).is_err());
+    assert!(shear_thinning(1.0, 0.0, 1.0, Carreau::NONE).is_ok());
+    assert!(shear_thinning(1.0, 0.0, 1.1, Carreau::NONE).is_err());
+    // viscosity at just half counts as too little
+    let half = Carreau::new(1.0, 0.1, 0.5).unwrap();
+    let thinned = shear_thinning(1e-6, 1e100, 0.5, half).unwrap();
+    assert!(half.share(1e100).to_bits() == 0.5_f64.to_bits() && !thinned.valid);
+    let rubber = |poisson_ratio| Solid { modulus: 1e6, poisson_ratio };
+    assert!(effective_modulus(rubber(0.0), rubber(0.5)).is_ok());
+    assert!(effective_modulus(rubber(-0.01), rubber(0.5)).is_err());
+    assert!(effective_modulus(rubber(0.0), rubber(0.51)).is_err());
+    let rigid = Solid { modulus: f64::INFINITY, poisson_ratio: 0.3 };
+    assert!(effective_modulus(rigid, rigid).is_err());
+    assert!(shore_a_modulus(20.0).is_ok() && shore_a_modulus(80.0).is_ok());
+    assert!(shore_a_modulus(19.9).is_err() && shore_a_modulus(80.1).is_err());
+    assert!(reduced_radius(0.01, -0.01).is_err() && reduced_radius(0.01, -0.005).is_err());
+    for bad in [(0.0, 1.0, 1.0), (1.0, 0.0, 1.0), (1.0, 1.0, 0.0), (1.0, f64::INFINITY, 1.0)] {
+        assert!(
+            hertz_line(bad.0, bad.1, bad.2).is_err() && hertz_point(bad.0, bad.1, bad.2).is_err()
+        );
+    }
+    assert!(LayerContact::of_width(HALF_WIDTH_MAX, 0.3).is_ok());
+    assert!(LayerContact::of_width(HALF_WIDTH_MAX * 1.01, 0.3).is_err());
+    assert!(
+        LayerContact::of_width(0.0, 0.3).is_err() && LayerContact::of_width(1.0, 0.51).is_err()
+    );
+    let edge = LayerContact::of_width(2.0, 0.3).unwrap();
+    assert!(edge.pressure(1.0).abs() < f64::MIN_POSITIVE && edge.pressure(-1.5).abs() < 1e-300);
+    assert!(edge.pressure(0.99) > 0.0 && (edge.pressure(0.3) - edge.pressure(-0.3)).abs() < 1e-12);
+}
+
+#[test]
+fn a_nip_on_a_thick_layer_is_that_of_hertz() {
+    let rubber = Solid { modulus: 2e6, poisson_ratio: 0.45 };
+    let rigid = Solid { modulus: f64::INFINITY, poisson_ratio: 0.5 };
+    let hertz = hertz_line(1000.0, 0.015, effective_modulus(rubber, rigid).unwrap()).unwrap();
+    let thick = nip(1000.0, 0.015, 1.0, rubber).unwrap();
+    close(thick.width, 2.0 * hertz.half_width, 1e-3);
+    close(thick.pressure_max, hertz.pressure_max, 1e-3);
+    close(thick.width_over_hertz, 1.0, 1e-3);
+    // on 3 mm the same roll makes the nip of the scaled contact
+    let thin = nip(1000.0, 0.015, 3e-3, rubber).unwrap();
+    let star = 2e6 / (1.0 - 0.45 * 0.45);
+    let scaled = LayerContact::of_width(0.5 * thin.width / 3e-3, 0.45).unwrap();
+    close(scaled.load * star * 9e-6 / 0.015, 1000.0, 1e-9);
+    close(thin.pressure_max, scaled.pressure(0.0) * star * 0.5 * thin.width / 0.03, 1e-9);
+    close(thin.width_over_hertz, 0.5 * thin.width / hertz.half_width, 1e-12);
+    close(thin.edge, scaled.edge, 1e-9);
 }
 
 proptest! {

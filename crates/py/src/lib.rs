@@ -29,7 +29,7 @@ mod _core {
     };
     #[pymodule_export]
     use super::motion::{
-        Cycle, Energy, Event, State, Trajectory, simulate, steady_start, stick_slip,
+        Cycle, Energy, Events, State, Trajectory, simulate, steady_start, stick_slip,
     };
     #[pymodule_export]
     use super::reynolds::{Exponents, LineContact, line_contact};

@@ -12,15 +12,28 @@ use crate::errors::{raised, refused};
 /// Times, values, and cubics between the times unless the values are joined by straight lines.
 type ScheduleArguments = (Vec<f64>, Vec<f64>, Option<Vec<[f64; 4]>>);
 
-/// A change of mode.
+/// The changes of mode, as lists of one length.
 #[pyclass(frozen, get_all, module = "hersey._core")]
-pub struct Event {
-    time: f64,
-    from_mode: &'static str,
-    to_mode: &'static str,
-    guard: &'static str,
-    stretch: f64,
-    belt_speed: f64,
+pub struct Events {
+    time: Vec<f64>,
+    from_mode: Vec<&'static str>,
+    to_mode: Vec<&'static str>,
+    guard: Vec<&'static str>,
+    stretch: Vec<f64>,
+    belt_speed: Vec<f64>,
+}
+
+impl From<&[motion::Event]> for Events {
+    fn from(events: &[motion::Event]) -> Self {
+        Self {
+            time: events.iter().map(|e| e.time).collect(),
+            from_mode: events.iter().map(|e| mode_name(e.from)).collect(),
+            to_mode: events.iter().map(|e| mode_name(e.to)).collect(),
+            guard: events.iter().map(|e| e.guard.name()).collect(),
+            stretch: events.iter().map(|e| e.stretch).collect(),
+            belt_speed: events.iter().map(|e| e.belt_speed).collect(),
+        }
+    }
 }
 
 /// Where the work of the drive went.
@@ -39,7 +52,7 @@ pub struct Trajectory {
     belt_speed: Py<PyArray1<f64>>,
     stretch: Py<PyArray1<f64>>,
     mode_index: Py<PyArray1<u8>>,
-    events: Vec<Py<Event>>,
+    events: Py<Events>,
     energy: Py<Energy>,
     steps: usize,
 }
@@ -121,14 +134,6 @@ pub fn simulate(
         .detach(|| motion::simulate(&system, start, duration, samples, tolerance, integrator))
         .map_err(raised)?;
     let modes: Vec<u8> = run.mode.iter().map(|m| *m as u8).collect();
-    let event = |e: &motion::Event| Event {
-        time: e.time,
-        from_mode: mode_name(e.from),
-        to_mode: mode_name(e.to),
-        guard: e.guard.name(),
-        stretch: e.stretch,
-        belt_speed: e.belt_speed,
-    };
     let motion::Energy { work, dissipated, stored, .. } = run.energy;
     let residual = run.energy.residual();
     Ok(Trajectory {
@@ -136,7 +141,7 @@ pub fn simulate(
         belt_speed: run.belt_speed.into_pyarray(py).unbind(),
         stretch: run.stretch.into_pyarray(py).unbind(),
         mode_index: modes.into_pyarray(py).unbind(),
-        events: run.events.iter().map(|e| Py::new(py, event(e))).collect::<PyResult<_>>()?,
+        events: Py::new(py, Events::from(run.events.as_slice()))?,
         energy: Py::new(py, Energy { work, dissipated, stored, residual })?,
         steps: run.steps,
     })

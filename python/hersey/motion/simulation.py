@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -81,6 +82,9 @@ class Event(NamedTuple):
     guard: str
     stretch: float
     belt_speed: float
+
+
+_event_columns = attrgetter(*Event._fields)
 
 
 @dataclass(frozen=True)
@@ -338,15 +342,11 @@ def simulate(
         stretch=found.stretch,
         spring_force=train.stiffness * found.stretch,
         mode_index=found.mode_index,
-        events=tuple(_event(event) for event in found.events),
+        events=tuple(map(Event._make, zip(*_event_columns(found.events), strict=True))),
         energy=Energy(energy.work, energy.dissipated, energy.stored, energy.residual),
         steps=found.steps,
         check=_self_check(lambda: run("dormand-prince"), found) if check else None,
     )
-
-
-def _event(event: _core.Event) -> Event:
-    return Event(**{name: getattr(event, name) for name in Event._fields})
 
 
 def _self_check(run: Callable[[], _core.Trajectory], first: _core.Trajectory) -> SelfCheck:
@@ -355,7 +355,7 @@ def _self_check(run: Callable[[], _core.Trajectory], first: _core.Trajectory) ->
         other = run()
     except HerseyError as error:
         return SelfCheck(name, None, None, False, str(error))
-    changes = [[(e.from_mode, e.to_mode, e.guard) for e in motion.events] for motion in (first, other)]
+    changes = [(m.events.from_mode, m.events.to_mode, m.events.guard) for m in (first, other)]
     return SelfCheck(
         name,
         _difference(first.belt_speed, other.belt_speed),

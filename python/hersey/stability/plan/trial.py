@@ -229,7 +229,7 @@ class MachineSample:
             )
             if force:
                 turned = greatest_stretch(run.time, run.belt_speed, run.stretch, drive)
-                at_events = (abs(event.stretch) for event in run.events)
+                at_events = (abs(stretch) for stretch in run.events.stretch)
                 peak = self.train.stiffness * max(turned, *at_events, 0.0)
             state = float(run.belt_speed[-1]), float(run.stretch[-1])
             kind = self._settled(thermal.at(shape.wait + duration), shape.target, state, tolerance)
@@ -270,11 +270,12 @@ class MachineSample:
         return Outcome(shape.wait + ready, peak, "")
 
 
-def _last_held(events: list[_core.Event]) -> tuple[float, bool]:
+def _last_held(events: _core.Events) -> tuple[float, bool]:
     """When the belt last began to slide, and whether it is held at the end."""
-    if not events or events[-1].to_mode in _HELD:
+    if not events.time or events.to_mode[-1] in _HELD:
         return math.inf, True
-    return next((event.time for event in reversed(events) if event.from_mode in _HELD), 0.0), False
+    begun = zip(reversed(events.time), reversed(events.from_mode), strict=True)
+    return next((time for time, mode in begun if mode in _HELD), 0.0), False
 
 
 def greatest_stretch(
