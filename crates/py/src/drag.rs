@@ -1,6 +1,6 @@
 //! The drag law as an object that Python holds.
 
-use hersey_core::drag::{Closure, Drag, Warming};
+use hersey_core::drag::{Closure, Drag, TemperatureLaw};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 
@@ -73,9 +73,14 @@ impl Law {
     }
 
     /// The same law, varying with temperature.
-    fn warmed(&self, reference: f64, force_exponent: f64, speed_exponent: f64) -> PyResult<Self> {
-        let warming = Warming { reference, force_exponent, speed_exponent };
-        self.0.clone().warmed(warming).map(Self).map_err(raised)
+    fn with_temperature_law(
+        &self,
+        reference: f64,
+        force_exponent: f64,
+        speed_exponent: f64,
+    ) -> PyResult<Self> {
+        let temperature_law = TemperatureLaw { reference, force_exponent, speed_exponent };
+        self.0.clone().with_temperature_law(temperature_law).map(Self).map_err(raised)
     }
 
     /// The law at one temperature.

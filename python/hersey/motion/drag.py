@@ -154,7 +154,7 @@ class Drag(AnyDrag):
         if self.reference_temperature is None:
             return law
         reference = self.reference_temperature - self.temperature_zero
-        return law.warmed(
+        return law.with_temperature_law(
             reference, float(self.force_temperature_exponent), float(self.speed_temperature_exponent)
         )
 

@@ -28,7 +28,7 @@ pub enum Mode {
 
 /// How a law varies with temperature: forces as `(T/reference)^force_exponent`, speeds likewise.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Warming {
+pub struct TemperatureLaw {
     /// Temperature at which the law is given, in the scale of its exponents.
     pub reference: f64,
     /// Exponent of every force.
@@ -49,7 +49,7 @@ pub struct Drag {
     stick_speed: f64,
     closure: Closure,
     breakaway_force: f64,
-    warming: Option<Warming>,
+    temperature_law: Option<TemperatureLaw>,
 }
 
 impl Drag {
@@ -132,7 +132,7 @@ impl Drag {
             stick_speed,
             closure,
             breakaway_force: f64::NAN,
-            warming: None,
+            temperature_law: None,
         };
         let at_stick_speed = drag.branch_force(drag.branch(stick_speed), stick_speed);
         drag.breakaway_force = finite("breakaway force", std::f64::consts::E * at_stick_speed)?;
@@ -144,11 +144,11 @@ impl Drag {
     ///
     /// # Errors
     /// If a value is not finite, or the reference temperature is not positive in its scale.
-    pub fn warmed(mut self, warming: Warming) -> Result<Self, Error> {
-        above("reference_temperature", warming.reference, 0.0)?;
-        finite("force_temperature_exponent", warming.force_exponent)?;
-        finite("speed_temperature_exponent", warming.speed_exponent)?;
-        self.warming = Some(warming);
+    pub fn with_temperature_law(mut self, temperature_law: TemperatureLaw) -> Result<Self, Error> {
+        above("reference_temperature", temperature_law.reference, 0.0)?;
+        finite("force_temperature_exponent", temperature_law.force_exponent)?;
+        finite("speed_temperature_exponent", temperature_law.speed_exponent)?;
+        self.temperature_law = Some(temperature_law);
         Ok(self)
     }
 
@@ -157,12 +157,12 @@ impl Drag {
     /// # Errors
     /// If the temperature is not positive, or the law leaves the range of numbers there.
     pub fn at(&self, temperature: f64) -> Result<Self, Error> {
-        let Some(warming) = self.warming else { return Ok(self.clone()) };
-        let ratio = above("temperature", temperature, 0.0)? / warming.reference;
-        let force = ratio.powf(warming.force_exponent);
-        let speed = ratio.powf(warming.speed_exponent);
+        let Some(temperature_law) = self.temperature_law else { return Ok(self.clone()) };
+        let ratio = above("temperature", temperature, 0.0)? / temperature_law.reference;
+        let force = ratio.powf(temperature_law.force_exponent);
+        let speed = ratio.powf(temperature_law.speed_exponent);
         let mut drag = self.clone();
-        drag.warming = None;
+        drag.temperature_law = None;
         for (v, f) in &mut drag.knots {
             *v = above("transition speed at this temperature", *v * speed, 0.0)?;
             *f = above("drag at this temperature", *f * force, 0.0)?;
@@ -174,8 +174,8 @@ impl Drag {
 
     /// How the law varies with temperature, if it does.
     #[must_use]
-    pub fn warming(&self) -> Option<Warming> {
-        self.warming
+    pub fn temperature_law(&self) -> Option<TemperatureLaw> {
+        self.temperature_law
     }
 
     /// Speed `v_t` where the mixed and the EHL branch meet.

@@ -6,7 +6,7 @@
 
 use super::event::Event;
 use super::hybrid::Motion;
-use super::lap::{Lap, Pace, Section, overtaking, release};
+use super::lap::{Extrapolation, Lap, Section, overtaking, release};
 use super::piece::Piece;
 use super::system::{Drivetrain, Integrator, Start, System};
 use crate::drag::{Closure, Drag, Mode};
@@ -148,7 +148,7 @@ struct Laps<'a> {
     previous: Option<Section>,
     /// The last whole lap, of a motion that has an end.
     whole: Option<StickSlipCycle>,
-    pace: Pace,
+    extrapolation: Extrapolation,
     /// Pieces since the last lap, and times that the belt overtook the drive.
     pieces: usize,
     overtakings: u32,
@@ -178,7 +178,7 @@ impl<'a> Laps<'a> {
             lap: Lap::starting_at(0.0),
             previous: None,
             whole: None,
-            pace: Pace::default(),
+            extrapolation: Extrapolation::default(),
             pieces: 0,
             overtakings: 0,
             count: 0,
@@ -261,11 +261,11 @@ impl<'a> Laps<'a> {
     /// Pass over laps that can be foreseen, if they can.
     fn skip_ahead(&mut self, section: &Section) -> bool {
         if section.stuck {
-            self.pace = Pace::default();
+            self.extrapolation = Extrapolation::default();
             return false;
         }
         let steady_pull = self.drag.force(self.drive_speed);
-        let Some(pull) = self.pace.ahead(section.pull, steady_pull) else { return false };
+        let Some(pull) = self.extrapolation.ahead(section.pull, steady_pull) else { return false };
         self.motion.resume(section.time, self.drive_speed, pull);
         (self.previous, self.lap) = (None, Lap::starting_at(section.time));
         true

@@ -2,7 +2,7 @@
 
 use super::cycle::{CycleKind, Span, StickSlipCycle, settle};
 use super::hybrid::Motion;
-use super::lanes::{Lanes, arrival, ride};
+use super::lanes::{Lanes, arrival, run_lanes};
 use super::piece::Piece;
 use super::system::{Drivetrain, Integrator, Start, System, checked_tolerance};
 use crate::drag::{Closure, Drag, Mode};
@@ -40,16 +40,16 @@ pub fn ensemble(belts: &[Belt], span: Span, tolerance: f64) -> Result<Vec<Outcom
     }
     let mut results: Vec<Option<Outcome>> = vec![None; belts.len()];
     let mut waiting = belts.iter().enumerate();
-    let board = |lanes: &mut Lanes, l: usize| {
+    let admit = |lanes: &mut Lanes, l: usize| {
         waiting.find_map(|(index, belt)| {
-            let mut rider = Rider::new(index, belt, span)?;
-            rider.start(belt.start, lanes, l, tolerance).then_some(rider)
+            let mut member = Member::new(index, belt, span)?;
+            member.start(belt.start, lanes, l, tolerance).then_some(member)
         })
     };
-    ride(tolerance, board, |rider, lanes, l| {
-        let verdict = rider.follow(lanes, l, span, tolerance);
+    run_lanes(tolerance, admit, |member, lanes, l| {
+        let verdict = member.follow(lanes, l, span, tolerance);
         if matches!(verdict, Verdict::Arrived) {
-            results[rider.index] = Some(Ok(rider.cycle()));
+            results[member.index] = Some(Ok(member.cycle()));
         }
         matches!(verdict, Verdict::Rides)
     });
@@ -109,7 +109,7 @@ impl Lap {
 }
 
 /// A belt on a lane.
-struct Rider {
+struct Member {
     index: usize,
     system: System,
     scale: Scale,
@@ -132,14 +132,14 @@ struct Rider {
     steady: bool,
 }
 
-/// What becomes of a rider.
+/// What becomes of a member.
 enum Verdict {
     Rides,
     Arrived,
     Leaves,
 }
 
-impl Rider {
+impl Member {
     /// The belt in scaled units, if its laps are plain.
     fn new(index: usize, belt: &Belt, span: Span) -> Option<Box<Self>> {
         let Belt { train, drag, drive_speed, .. } = belt;

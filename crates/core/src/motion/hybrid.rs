@@ -99,7 +99,7 @@ impl<'a> Motion<'a> {
         if self.steps > MAX_STEPS || self.runge_kutta_steps > MAX_RUNGE_KUTTA_STEPS {
             return Err(Error::TooLong { steps: self.steps, time: self.now.time });
         }
-        self.now.warm();
+        self.now.take_temperature();
         if self.phase.creeping
             && self.rate()[0] >= self.now.system.train.stiffness() * self.phase.speed
         {
@@ -140,7 +140,7 @@ impl<'a> Motion<'a> {
         self.now.time += piece.duration;
         [self.phase.pull, self.phase.speed, self.phase.bristle] = piece.state(piece.duration);
         let from = self.phase.mode;
-        self.now.warm();
+        self.now.take_temperature();
         self.cross(guard);
         self.events_at_once = if self.now.time > before { 0 } else { self.events_at_once + 1 };
         if self.events_at_once > MAX_EVENTS_AT_ONCE {

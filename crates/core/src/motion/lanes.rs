@@ -85,29 +85,29 @@ impl pulp::WithSimd for LaneStep<'_> {
     }
 }
 
-/// Fill the lanes by `board`, step them, and hand each step to `follow` until it says that its rider is done.
+/// Fill the lanes by `admit`, step them, and hand each step to `follow` until it says that its member is done.
 ///
-/// `board` may pass over riders; none means that no more wait.
-pub(crate) fn ride<R>(
+/// `admit` may pass over members; none means that no more wait.
+pub(crate) fn run_lanes<R>(
     tolerance: f64,
-    mut board: impl FnMut(&mut Lanes, usize) -> Option<R>,
+    mut admit: impl FnMut(&mut Lanes, usize) -> Option<R>,
     mut follow: impl FnMut(&mut R, &mut Lanes, usize) -> bool,
 ) {
     let arch = pulp::Arch::new();
     let mut lanes = Lanes::idle();
-    let mut riders: [Option<R>; LANES] = std::array::from_fn(|_| None);
+    let mut members: [Option<R>; LANES] = std::array::from_fn(|_| None);
     loop {
-        for (l, rider) in riders.iter_mut().enumerate() {
-            if rider.is_none() {
-                *rider = board(&mut lanes, l);
+        for (l, member) in members.iter_mut().enumerate() {
+            if member.is_none() {
+                *member = admit(&mut lanes, l);
             }
         }
-        if riders.iter().all(Option::is_none) {
+        if members.iter().all(Option::is_none) {
             return;
         }
         arch.dispatch(LaneStep { lanes: &mut lanes, tolerance });
-        for (l, seat) in riders.iter_mut().enumerate() {
-            if seat.as_mut().is_some_and(|rider| !follow(rider, &mut lanes, l)) {
+        for (l, seat) in members.iter_mut().enumerate() {
+            if seat.as_mut().is_some_and(|member| !follow(member, &mut lanes, l)) {
                 *seat = None;
             }
         }

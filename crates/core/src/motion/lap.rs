@@ -37,11 +37,11 @@ impl Section {
 /// The map from one overtaking to the next has one variable and cannot swap two orbits, so every state
 /// between here and where the laps are heading leads there too: part of the way can be skipped.
 #[derive(Default)]
-pub(super) struct Pace {
+pub(super) struct Extrapolation {
     pulls: Vec<f64>,
 }
 
-impl Pace {
+impl Extrapolation {
     /// Share of the way to the expected limit that is skipped.
     const SKIPPED: f64 = 0.7;
     /// Growth of a swing away from an unstable orbit that is skipped at once.

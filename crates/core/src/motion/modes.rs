@@ -3,7 +3,7 @@
 use super::event::Guard;
 use super::hybrid::Motion;
 use super::piece::{Condition, Phase, Piece};
-use super::taylor::Warmth;
+use super::taylor::ThermalFactors;
 use crate::drag::{Closure, Mode};
 
 impl Motion<'_> {
@@ -35,7 +35,7 @@ impl Motion<'_> {
         let net_force = pull - self.now.steady_drag(speed);
         let onward = self.rate()[0] - self.now.system.train.stiffness() * speed;
         let rising = net_force > 0.0 || (net_force == 0.0 && onward >= 0.0);
-        let x = self.now.unwarmed(speed);
+        let x = self.now.at_reference(speed);
         let mut branch = drag.branch(x);
         if !rising && branch > 0 && drag.upper_knot(branch - 1) == Some(x) && x > drag.stick_speed()
         {
@@ -85,7 +85,7 @@ impl Motion<'_> {
     /// Onto the next branch of the law.
     fn over_knot(&mut self) -> Mode {
         let drag = &self.now.system.drag;
-        let x = self.now.unwarmed(self.phase.speed);
+        let x = self.now.at_reference(self.phase.speed);
         let above = drag.upper_knot(self.phase.branch);
         let below = drag.lower_knot(self.phase.branch);
         // the knot that was reached is the nearer one
@@ -145,7 +145,7 @@ impl Motion<'_> {
         self.phase.creeping = self.phase.speed > 0.0 && !forward;
         self.phase.released = !self.phase.creeping;
         if forward && self.phase.speed >= self.now.speed(drag.stick_speed()) {
-            self.phase.branch = drag.branch(self.now.unwarmed(self.phase.speed));
+            self.phase.branch = drag.branch(self.now.at_reference(self.phase.speed));
             drag.branch_mode(self.phase.branch)
         } else {
             Mode::Microslip
@@ -163,7 +163,7 @@ impl Motion<'_> {
         if piece.duration.is_infinite() {
             return None;
         }
-        let mut watch = Watch::over(piece, self.now.warmth.as_ref());
+        let mut watch = Watch::over(piece, self.now.thermal.as_ref());
         let drag = &self.now.system.drag;
         match self.phase.mode {
             Mode::Stuck => {
@@ -211,16 +211,16 @@ impl Motion<'_> {
 /// The earliest guard met along a piece.
 struct Watch<'p> {
     piece: &'p Piece<'p>,
-    warmth: Option<&'p Warmth>,
+    thermal: Option<&'p ThermalFactors>,
     /// Speeds on the piece, where they are known at once.
     range: Option<(f64, f64)>,
     first: Option<(f64, Guard)>,
 }
 
 impl<'p> Watch<'p> {
-    fn over(piece: &'p Piece<'p>, warmth: Option<&'p Warmth>) -> Self {
-        let range = if warmth.is_none() { piece.speed_range() } else { None };
-        Self { piece, warmth, range, first: None }
+    fn over(piece: &'p Piece<'p>, thermal: Option<&'p ThermalFactors>) -> Self {
+        let range = if thermal.is_none() { piece.speed_range() } else { None };
+        Self { piece, thermal, range, first: None }
     }
 
     /// See whether `condition`, under which the mode goes on, ends on the piece, and before the others do.
@@ -228,7 +228,7 @@ impl<'p> Watch<'p> {
         if self.range.is_some_and(|range| condition.holds_over(range)) {
             return;
         }
-        if let Some(elapsed) = self.piece.end_of(condition, self.warmth)
+        if let Some(elapsed) = self.piece.end_of(condition, self.thermal)
             && self.first.is_none_or(|(earliest, _)| elapsed < earliest)
         {
             self.first = Some((elapsed, guard));

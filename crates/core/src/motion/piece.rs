@@ -2,7 +2,7 @@
 
 use super::polynomial::{ORDER, Polynomial, derivative, first_crossing, subtracted_from, value};
 use super::runge_kutta::{Flow, Formula, State};
-use super::taylor::{Series, Warmth};
+use super::taylor::{Series, ThermalFactors};
 use crate::drag::Mode;
 
 /// A moment of the motion, mirrored so that `speed >= 0`.
@@ -95,10 +95,14 @@ impl Piece<'_> {
     }
 
     /// When `condition` ends first within the piece.
-    pub(super) fn end_of(&self, condition: Condition, warmth: Option<&Warmth>) -> Option<f64> {
+    pub(super) fn end_of(
+        &self,
+        condition: Condition,
+        thermal: Option<&ThermalFactors>,
+    ) -> Option<f64> {
         match &self.path {
             Path::Series(series) => {
-                let g = condition.series(series, warmth, self.start.pull.signum());
+                let g = condition.series(series, thermal, self.start.pull.signum());
                 first_crossing(&g, self.duration)
             }
             Path::Steps { .. } => {
@@ -232,10 +236,10 @@ impl Condition {
         }
     }
 
-    fn series(self, series: &Series, warmth: Option<&Warmth>, towards: f64) -> Polynomial {
-        let scaled = |base: f64, factor: fn(&Warmth) -> &Polynomial| {
-            if let Some(warmth) = warmth {
-                return factor(warmth).map(|c| base * c);
+    fn series(self, series: &Series, thermal: Option<&ThermalFactors>, towards: f64) -> Polynomial {
+        let scaled = |base: f64, factor: fn(&ThermalFactors) -> &Polynomial| {
+            if let Some(thermal) = thermal {
+                return factor(thermal).map(|c| base * c);
             }
             let mut constant = [0.0; ORDER + 1];
             constant[0] = base;

@@ -6,7 +6,7 @@
 //! Appl. Math. 6 (1980).
 
 use super::schedule::Cubic;
-use crate::drag::{Closure, Drag, Warming};
+use crate::drag::{Closure, Drag, TemperatureLaw};
 
 /// Pull of the spring, belt speed, deflection of the bristles.
 pub(super) type State = [f64; 3];
@@ -20,7 +20,7 @@ pub(super) struct Flow<'a> {
     /// Branch of the law, or none below the stick speed.
     pub branch: Option<usize>,
     /// Temperature and how the law varies with it.
-    pub warming: Option<(Cubic, Warming)>,
+    pub temperature_law: Option<(Cubic, TemperatureLaw)>,
     pub rate: Cubic,
     pub stiffness: f64,
     pub mass: f64,
@@ -29,9 +29,9 @@ pub(super) struct Flow<'a> {
 impl Flow<'_> {
     /// Factors of forces and speeds at time `t`.
     pub(super) fn factors(&self, t: f64) -> (f64, f64) {
-        self.warming.map_or((1.0, 1.0), |(temperature, warming)| {
-            let ratio = horner(&temperature, t) / warming.reference;
-            (ratio.powf(warming.force_exponent), ratio.powf(warming.speed_exponent))
+        self.temperature_law.map_or((1.0, 1.0), |(temperature, temperature_law)| {
+            let ratio = horner(&temperature, t) / temperature_law.reference;
+            (ratio.powf(temperature_law.force_exponent), ratio.powf(temperature_law.speed_exponent))
         })
     }
 

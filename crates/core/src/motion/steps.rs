@@ -38,7 +38,7 @@ impl<'a> Motion<'a> {
     /// Whether the belt rests on a corner of the drag law, where rounding would switch modes for ever.
     fn on_a_corner(&self) -> bool {
         let Phase { mode, pull, speed, branch, .. } = self.phase;
-        if mode == Mode::Microslip || self.now.warmth.is_some() {
+        if mode == Mode::Microslip || self.now.thermal.is_some() {
             return false;
         }
         let drag = &self.now.system.drag;
@@ -58,11 +58,11 @@ impl<'a> Motion<'a> {
     /// The held belt keeps its speed while the pull grows.
     fn held_piece(&self, longest: f64) -> Piece<'a> {
         let series = held_series(&self.slip_start());
-        let duration = match &self.now.warmth {
+        let duration = match &self.now.thermal {
             // the guard is found inside the piece
             None if longest.is_infinite() => 1.01 * self.release_time(),
             None => longest,
-            Some(warmth) => {
+            Some(thermal) => {
                 // no longer than the series of the holding force is good for
                 let breakaway = self.now.system.drag.breakaway_force();
                 let holding = Series { pull: series.drag, ..series };
@@ -71,7 +71,7 @@ impl<'a> Motion<'a> {
                 // and not past the moment when the stick speed passes the belt: there another law holds it
                 let (speed, v_s) = (self.phase.speed, self.now.system.drag.stick_speed());
                 let side = if self.now.held_fast(self.phase.speed) { -1.0 } else { 1.0 };
-                let mut gap = warmth.speed.map(|c| side * v_s * c);
+                let mut gap = thermal.speed.map(|c| side * v_s * c);
                 gap[0] -= side * speed;
                 let apart = gap[0] > ROUNDING * speed;
                 let passing = if apart { first_crossing(&gap, good) } else { None };
@@ -127,7 +127,7 @@ impl<'a> Motion<'a> {
     fn slip_start(&self) -> SlipStart<'_> {
         let Phase { mode, branch, pull, speed, .. } = self.phase;
         let drag = &self.now.system.drag;
-        let x = self.now.unwarmed(speed);
+        let x = self.now.at_reference(speed);
         let (base, law) = match mode {
             Mode::Ehl | Mode::Mixed => {
                 (drag.branch_force(branch, x), Recurrence::power(drag.branch_exponent(branch), x))
@@ -147,7 +147,7 @@ impl<'a> Motion<'a> {
             speed,
             force,
             law,
-            warmth: self.now.warmth.as_ref(),
+            thermal: self.now.thermal.as_ref(),
         }
     }
 
@@ -176,7 +176,7 @@ impl<'a> Motion<'a> {
         Flow {
             drag: &self.now.system.drag,
             branch: sliding.then_some(self.phase.branch),
-            warming: self.now.warming(),
+            temperature_law: self.now.temperature_law(),
             rate: self.rate(),
             stiffness: self.now.system.train.stiffness(),
             mass: self.now.system.train.mass(),

@@ -3,8 +3,8 @@
 use super::event::ROUNDING;
 use super::schedule::Cubic;
 use super::system::{Drive, System};
-use super::taylor::Warmth;
-use crate::drag::Warming;
+use super::taylor::ThermalFactors;
+use crate::drag::TemperatureLaw;
 
 /// Drive and drag law at the time that the motion has reached.
 pub(super) struct Surroundings<'a> {
@@ -16,7 +16,7 @@ pub(super) struct Surroundings<'a> {
     /// When the drive or the temperature changes its formula.
     pub next_change: f64,
     /// How the law moves with the temperature, if it does.
-    pub warmth: Option<Warmth>,
+    pub thermal: Option<ThermalFactors>,
 }
 
 impl<'a> Surroundings<'a> {
@@ -28,10 +28,10 @@ impl<'a> Surroundings<'a> {
             drive_segment: system.drive.schedule().segment(0.0),
             temperature_segment: system.temperature.as_ref().map_or(0, |t| t.segment(0.0)),
             next_change: f64::INFINITY,
-            warmth: None,
+            thermal: None,
         };
         surroundings.find_next_change();
-        surroundings.warm();
+        surroundings.take_temperature();
         surroundings
     }
 
@@ -54,8 +54,8 @@ impl<'a> Surroundings<'a> {
     fn find_next_change(&mut self) {
         let drive = self.system.drive.schedule().end(self.drive_segment);
         let temperature = &self.system.temperature;
-        let warm = temperature.as_ref().map_or(f64::INFINITY, |t| t.end(self.temperature_segment));
-        self.next_change = drive.min(warm);
+        let segment_end = temperature.as_ref().map_or(f64::INFINITY, |t| t.end(self.temperature_segment));
+        self.next_change = drive.min(segment_end);
     }
 
     /// Enter the next segment of the schedules; a jump of the driving force, which is one of the pull, is returned.
@@ -79,61 +79,65 @@ impl<'a> Surroundings<'a> {
     }
 
     /// Course of the temperature from now on, and how the law varies with it.
-    pub(super) fn warming(&self) -> Option<(Cubic, Warming)> {
+    pub(super) fn temperature_law(&self) -> Option<(Cubic, TemperatureLaw)> {
         let temperature = self.system.temperature.as_ref()?;
-        let warming = self.system.drag.warming()?;
-        Some((temperature.about(self.temperature_segment, self.time), warming))
+        let temperature_law = self.system.drag.temperature_law()?;
+        Some((temperature.about(self.temperature_segment, self.time), temperature_law))
     }
 
     /// Take the law as it is now.
     #[inline]
-    pub(super) fn warm(&mut self) {
-        self.warmth = self.warming().map(|(temperature, warming)| {
-            let ratio = temperature.map(|c| c / warming.reference);
-            let mut warmth = Warmth::new(&ratio, warming.force_exponent, warming.speed_exponent);
-            let force = ratio[0].powf(warming.force_exponent);
-            let speed = ratio[0].powf(warming.speed_exponent);
-            warmth.force = warmth.force.map(|c| c * force);
-            warmth.speed = warmth.speed.map(|c| c * speed);
-            warmth.slowness = warmth.slowness.map(|c| c / speed);
-            warmth
+    pub(super) fn take_temperature(&mut self) {
+        self.thermal = self.temperature_law().map(|(temperature, temperature_law)| {
+            let ratio = temperature.map(|c| c / temperature_law.reference);
+            let mut thermal = ThermalFactors::new(
+                &ratio,
+                temperature_law.force_exponent,
+                temperature_law.speed_exponent,
+            );
+            let force = ratio[0].powf(temperature_law.force_exponent);
+            let speed = ratio[0].powf(temperature_law.speed_exponent);
+            thermal.force = thermal.force.map(|c| c * force);
+            thermal.speed = thermal.speed.map(|c| c * speed);
+            thermal.slowness = thermal.slowness.map(|c| c / speed);
+            thermal
         });
     }
 
     /// A speed of the law as it is now.
     #[inline]
     pub(super) fn speed(&self, base: f64) -> f64 {
-        self.warmth.as_ref().map_or(base, |warmth| base * warmth.speed[0])
+        self.thermal.as_ref().map_or(base, |thermal| base * thermal.speed[0])
     }
 
     /// A force of the law as it is now.
     #[inline]
     pub(super) fn force(&self, base: f64) -> f64 {
-        self.warmth.as_ref().map_or(base, |warmth| base * warmth.force[0])
+        self.thermal.as_ref().map_or(base, |thermal| base * thermal.force[0])
     }
 
     /// A belt speed in the terms of the law as it was given.
     #[inline]
-    pub(super) fn unwarmed(&self, speed: f64) -> f64 {
-        self.warmth.as_ref().map_or(speed, |warmth| speed * warmth.slowness[0])
+    pub(super) fn at_reference(&self, speed: f64) -> f64 {
+        self.thermal.as_ref().map_or(speed, |thermal| speed * thermal.slowness[0])
     }
 
     /// Whether a belt held at `speed` is faster than the stick speed, which may move past it, or about to be.
     pub(super) fn held_fast(&self, speed: f64) -> bool {
-        let (x, v_s) = (self.unwarmed(speed), self.system.drag.stick_speed());
-        let falling = self.warmth.as_ref().is_some_and(|warmth| warmth.speed[1] < 0.0);
+        let (x, v_s) = (self.at_reference(speed), self.system.drag.stick_speed());
+        let falling = self.thermal.as_ref().is_some_and(|thermal| thermal.speed[1] < 0.0);
         if (x - v_s).abs() <= ROUNDING * v_s { falling } else { x > v_s }
     }
 
     /// What can hold a belt at `speed`; a law that moves may leave a held belt above the stick speed.
     pub(super) fn holding_force(&self, speed: f64) -> f64 {
-        let (drag, x) = (&self.system.drag, self.unwarmed(speed));
+        let (drag, x) = (&self.system.drag, self.at_reference(speed));
         let fast = x > drag.stick_speed();
         self.force(if fast { drag.force(x) } else { drag.holding_force(x) })
     }
 
     /// Drag in steady sliding at `speed`.
     pub(super) fn steady_drag(&self, speed: f64) -> f64 {
-        self.force(self.system.drag.force(self.unwarmed(speed)))
+        self.force(self.system.drag.force(self.at_reference(speed)))
     }
 }

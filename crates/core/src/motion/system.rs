@@ -137,7 +137,7 @@ impl System {
         if let Some(temperature) = schedule.steady() {
             return Ok(Self { train, drag: drag.at(temperature)?, drive, temperature: None });
         }
-        let temperature = drag.warming().map(|_| schedule);
+        let temperature = drag.temperature_law().map(|_| schedule);
         Ok(Self { train, drag: drag.clone(), drive, temperature })
     }
 

@@ -41,7 +41,7 @@ pub(super) struct Series {
 
 /// How forces and speeds of the law move during a step, relative to its start.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Warmth {
+pub(super) struct ThermalFactors {
     /// Factor of every force.
     pub force: Polynomial,
     /// Factor of every speed.
@@ -50,7 +50,7 @@ pub(super) struct Warmth {
     pub slowness: Polynomial,
 }
 
-impl Warmth {
+impl ThermalFactors {
     /// From the course of the temperature and the exponents of force and speed.
     pub(super) fn new(temperature: &Cubic, force_exponent: f64, speed_exponent: f64) -> Self {
         let mut t = [0.0; ORDER + 1];
@@ -73,10 +73,10 @@ pub(super) struct SlipStart<'a> {
     pub rate: Cubic,
     pub pull: f64,
     pub speed: f64,
-    /// Drag at the start, before any warmth.
+    /// Drag at the start, before temperature has any part in it.
     pub force: f64,
     pub law: Recurrence,
-    pub warmth: Option<&'a Warmth>,
+    pub thermal: Option<&'a ThermalFactors>,
 }
 
 /// A slip series, as work for the best instruction set.
@@ -96,9 +96,9 @@ impl pulp::WithSimd for Slip<'_> {
 #[inline(always)]
 #[allow(clippy::inline_always)] // so that it is compiled for the instruction set it is dispatched to
 fn slip_series(start: &SlipStart) -> Series {
-    match start.warmth {
+    match start.thermal {
         None => plain_series(start),
-        Some(warmth) => warm_series(start, warmth),
+        Some(thermal) => thermal_series(start, thermal),
     }
 }
 
@@ -136,19 +136,19 @@ fn plain_series(start: &SlipStart) -> Series {
 }
 
 /// The same with a law that moves with temperature: its speeds enter as `q = u/v(T)`, its forces as a factor.
-fn warm_series(start: &SlipStart, warmth: &Warmth) -> Series {
+fn thermal_series(start: &SlipStart, thermal: &ThermalFactors) -> Series {
     let (mut p, mut u, mut f) = ([0.0; ORDER + 1], [0.0; ORDER + 1], [0.0; ORDER + 1]);
     let (mut q, mut rate, mut g) = ([0.0; ORDER + 1], [0.0; ORDER + 1], [0.0; ORDER + 1]);
-    (p[0], u[0], f[0]) = (start.pull, start.speed, start.force * warmth.force[0]);
-    (q[0], g[0]) = (start.speed * warmth.slowness[0], start.force);
+    (p[0], u[0], f[0]) = (start.pull, start.speed, start.force * thermal.force[0]);
+    (q[0], g[0]) = (start.speed * thermal.slowness[0], start.force);
     for n in 1..=ORDER {
         u[n] = (p[n - 1] - f[n - 1]) / start.mass * INVERSE[n];
         let driven = if n < 5 { start.rate[n - 1] } else { 0.0 };
         p[n] = (driven - start.stiffness * u[n - 1]) * INVERSE[n];
-        q[n] = product(&u, &warmth.slowness, n);
+        q[n] = product(&u, &thermal.slowness, n);
         rate[n] = POWERS[n] * q[n];
         g[n] = drag_term(start.law, n, &q, &rate, &g);
-        f[n] = product(&g, &warmth.force, n);
+        f[n] = product(&g, &thermal.force, n);
     }
     Series { pull: p, speed: u, drag: f }
 }
@@ -184,11 +184,11 @@ pub(super) fn held_series(start: &SlipStart) -> Series {
         let pulled = if j == 0 { driven - start.stiffness * start.speed } else { *driven };
         p[j + 1] = pulled * INVERSE[j + 1];
     }
-    if let Some(warmth) = start.warmth {
-        let q = warmth.slowness.map(|c| start.speed * c);
+    if let Some(thermal) = start.thermal {
+        let q = thermal.slowness.map(|c| start.speed * c);
         let holding = composed(start.law, &q, start.force);
         for (n, c) in f.iter_mut().enumerate() {
-            *c = product(&holding, &warmth.force, n);
+            *c = product(&holding, &thermal.force, n);
         }
     }
     Series { pull: p, speed: u, drag: f }
@@ -203,8 +203,8 @@ pub(super) fn creep_series(start: &SlipStart, stick_speed: f64) -> Series {
     let (mut p, mut u) = ([0.0; ORDER + 1], [0.0; ORDER + 1]);
     let (mut log, mut x) = ([0.0; ORDER + 1], [0.0; ORDER + 1]);
     (p[0], u[0]) = (start.pull, start.speed);
-    x[0] = start.speed / stick_speed * start.warmth.map_or(1.0, |warmth| warmth.slowness[0]);
-    let growth = start.warmth.map_or([0.0; ORDER + 1], |warmth| logarithm(&warmth.force));
+    x[0] = start.speed / stick_speed * start.thermal.map_or(1.0, |thermal| thermal.slowness[0]);
+    let growth = start.thermal.map_or([0.0; ORDER + 1], |thermal| logarithm(&thermal.force));
     for j in 0..ORDER {
         let n = j + 1;
         let driven = if j < 4 { start.rate[j] } else { 0.0 };
@@ -212,7 +212,7 @@ pub(super) fn creep_series(start: &SlipStart, stick_speed: f64) -> Series {
         let sum: f64 = (1..n).map(|i| POWERS[i] * log[i] * p[n - i]).sum();
         log[n] = (p[n] - sum * INVERSE[n]) / p[0];
         x[n] = growth[n] - log[n];
-        u[n] = stick_speed * start.warmth.map_or(x[n], |warmth| product(&x, &warmth.speed, n));
+        u[n] = stick_speed * start.thermal.map_or(x[n], |thermal| product(&x, &thermal.speed, n));
     }
     Series { pull: p, speed: u, drag: p.map(|c| -c) }
 }

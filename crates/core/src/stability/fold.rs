@@ -10,7 +10,7 @@
 //! back in time from the slowest point, where the motion forgets what forward it would blow up. The drive
 //! speed at which both arrive with the same pull is found by the secant method, each on its own lane.
 
-use crate::motion::lanes::{Lanes, arrival, ride};
+use crate::motion::lanes::{Lanes, arrival, run_lanes};
 
 /// What remains of a belt with two power branches once units are chosen to suit it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,13 +67,13 @@ pub(super) fn folds(
 ) -> Vec<Option<Fold>> {
     let mut found = vec![None; laps.len()];
     let mut waiting = laps.iter().enumerate();
-    let board = |lanes: &mut Lanes, l: usize| {
+    let admit = |lanes: &mut Lanes, l: usize| {
         waiting.find_map(|(index, lap)| {
             let mut seeker = Seeker::new(index, *lap);
             seeker.forward(lanes, l, &start).then_some(seeker)
         })
     };
-    ride(tolerance, board, |seeker, lanes, l| match seeker.follow(lanes, l, &start) {
+    run_lanes(tolerance, admit, |seeker, lanes, l| match seeker.follow(lanes, l, &start) {
         Next::Goes => true,
         Next::Found(fold) => {
             found[seeker.index] = Some(fold);
