@@ -38,7 +38,7 @@ def test_transition_speed_within_ten_percent(fits: list[hersey.DampingSurface]) 
     truth = testbench.Truth()
     for fit in fits:
         assert fit.transition is not None
-        expected = float(truth.transition_speed(np.array(fit.reference_temperature)))
+        expected = float(truth.transition_speed(np.array(fit.reference_temperature - 273.15)))
         assert fit.transition.speed.value == pytest.approx(expected, rel=0.1)
 
 
