@@ -188,6 +188,48 @@ def test_every_flag_is_in_the_docs() -> None:
                     assert f"`{flag}`" in text, f"{name} {flag}"
 
 
+#: A dotted name below the package, or a file of it, in prose or code.
+_NAMED = re.compile(r"(?<![\w./-])hersey((?:\.[A-Za-z_]\w*)+)")
+_FILE = re.compile(r"python/hersey/([\w/]+\.py)\b|`([\w/]+/\w+\.py)`")
+#: What ends like a module and is none: files that carry the name.
+_OF_FILES = {"toml"}
+
+
+def test_the_docs_name_nothing_that_is_gone() -> None:
+    """Every ``hersey.x.y`` in prose resolves, to a module or to what stands in one; every file is there."""
+    texts = [*(ROOT / "docs").glob("*.md"), *ROOT.glob("*.md"), *(ROOT / "benchmarks").glob("*.md")]
+    seen = 0
+    for path in [*texts, *modules().values()]:
+        text = path.read_text()
+        for dotted in _NAMED.findall(text):
+            parts = dotted.strip(".").split(".")
+            if parts[0] in _OF_FILES:
+                continue
+            seen += 1
+            assert resolves(parts), f"{path.name} names hersey{dotted}"
+        for inside, other in _FILE.findall(text) if path in texts else []:
+            assert (PACKAGE / inside).is_file() if inside else (ROOT / other).is_file(), (
+                f"{path.name}: {other}"
+            )
+    assert seen > 100
+
+
+def resolves(parts: list[str]) -> bool:
+    """Whether ``hersey`` followed by these names is there."""
+    import importlib
+
+    thing: Any = hersey
+    for i, name in enumerate(parts):
+        if not hasattr(thing, name):
+            try:
+                thing = importlib.import_module(".".join(("hersey", *parts[: i + 1])))
+            except ImportError:
+                return False
+        else:
+            thing = getattr(thing, name)
+    return True
+
+
 def tracked() -> list[Path]:
     listed = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True)
     return [ROOT / line for line in listed.stdout.splitlines() if (ROOT / line).is_file()]
