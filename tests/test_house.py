@@ -15,7 +15,8 @@ import pytest
 import hersey
 from hersey import errors
 from hersey.cli.application import VERBS, load
-from tests.conftest import ROOT
+from tests.conftest import ROOT, SLOW
+from tests.mutants import counted, table
 
 PACKAGE = ROOT / "python" / "hersey"
 #: Rooms in the order in which data passes through them: each may import only those before it.
@@ -252,8 +253,29 @@ def test_the_repository_names_no_machine_and_no_registry() -> None:
             assert host not in text, f"{path.name} names {host}"
 
 
+def test_the_list_of_slow_tests_names_none_that_is_gone() -> None:
+    for line in SLOW:
+        path, _, test = line.partition("::")
+        assert (ROOT / path).exists(), line
+        assert not test or f"def {test}" in (ROOT / path).read_text(), line
+
+
 def test_files_have_one_subject() -> None:
     for path in tracked():
         if path.suffix in {".py", ".rs", ".js"}:
             assert len(path.read_text().splitlines()) <= 720, f"{path.name} is long: split it"
             assert not re.fullmatch(r"(utils?|helpers?|misc|common)", path.stem)
+
+
+def test_planted_faults_are_counted_by_module() -> None:
+    lines = [
+        "    hersey.damping.design.x_design__mutmut_1: killed",
+        "    hersey.damping.design.xǁTestDesignǁsummary__mutmut_2: survived",
+        "    hersey.damping.design.x__error__mutmut_11: no tests",
+        "    hersey.verdict.regimes.x_regime_of__mutmut_1: killed",
+        "something else",
+    ]
+    outcomes = counted(lines)
+    assert outcomes["hersey.damping.design"] == {"killed": 1, "survived": 1, "no tests": 1}
+    assert outcomes["hersey.verdict.regimes"]["killed"] == 1
+    assert "1 killed     1 survived  1 no tests" in table(outcomes)
