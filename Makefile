@@ -5,7 +5,8 @@ SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
 SOURCES := $(shell find crates -name '*.rs' -o -name Cargo.toml) Cargo.toml pyproject.toml
 
-.PHONY: help build demo test lint format typecheck test-rust test-python browser fuzz benchmark clean
+.PHONY: help build demo test quick lint format typecheck test-rust test-python browser fuzz benchmark \
+  mutants mutants-python mutants-rust clean
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -52,6 +53,9 @@ test-rust: ## tests of the core
 test-python: build browser ## tests of the package and the page
 	$(BIN)/python -m pytest -n auto
 
+quick: build ## the tests of the package that take a moment, while working
+	$(BIN)/python -m pytest -n auto -m "not slow" --ignore tests/browser
+
 # The page is tested in a real Chromium; Playwright drives the one of the system.
 browser: ## install Chromium if there is none
 	@command -v chromium >/dev/null || command -v chromium-browser >/dev/null || { \
@@ -61,6 +65,26 @@ browser: ## install Chromium if there is none
 fuzz: ## 100,000 random parameter sets through the motion core (minutes; FUZZ_SEED=1)
 	cargo test --release --quiet --package hersey-core --test fuzz -- --ignored --nocapture
 
+mutants: mutants-python mutants-rust ## faults planted one by one: how many do the tests see? (hours)
+
+# FILES='hersey.damping.design.*' takes one module; CORES=16 so many at once. What is changed is a copy, laid out
+# as src/, where mutmut looks for a package; tests that the code before any change fails stop it.
+FILES ?=
+CORES ?= $(shell nproc)
+mutants-python: build ## the same in damping and verdict; FILES='hersey.damping.design.*' for a module
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt --group mutants
+	rm -rf build/mutants && mkdir -p build/mutants
+	cp -r tests examples pyproject.toml build/mutants && cp -r python build/mutants/src
+	cd build/mutants && $(CURDIR)/$(BIN)/python -m mutmut run --max-children $(CORES) $(FILES) > run.txt || \
+	  { tail -5 run.txt; exit 1; }
+	cd build/mutants && $(CURDIR)/$(BIN)/python -m mutmut results --all true | \
+	  $(CURDIR)/$(BIN)/python tests/mutants.py
+
+mutants-rust: ## the same in the core's lubrication
+	@test -x build/tools/bin/cargo-mutants || cargo install --locked --quiet --root build/tools cargo-mutants
+	PATH="$(CURDIR)/build/tools/bin:$$PATH" cargo mutants --output build --jobs $(CORES) \
+	  --file 'crates/core/src/lubrication/**' || true
+
 benchmark: build ## ratios against peers, printed and written to benchmarks/RESULTS.md
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt --group benchmark
 	$(BIN)/python benchmarks/read_csv.py
@@ -68,6 +92,7 @@ benchmark: build ## ratios against peers, printed and written to benchmarks/RESU
 	$(BIN)/python -m benchmarks.fold
 	$(BIN)/python -m benchmarks.reynolds
 	$(BIN)/python -m benchmarks.candidates
+	$(BIN)/python benchmarks/start.py
 
 clean: ## remove everything that was built
 	rm -rf .venv build target Cargo.lock

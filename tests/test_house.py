@@ -15,7 +15,8 @@ import pytest
 import hersey
 from hersey import errors
 from hersey.cli.application import VERBS, load
-from tests.conftest import ROOT
+from tests.conftest import ROOT, SLOW
+from tests.mutants import counted, table
 
 PACKAGE = ROOT / "python" / "hersey"
 #: Rooms in the order in which data passes through them: each may import only those before it.
@@ -192,6 +193,48 @@ def test_every_flag_is_in_the_docs() -> None:
                     assert f"`{flag}`" in text, f"{name} {flag}"
 
 
+#: A dotted name below the package, or a file of it, in prose or code.
+_NAMED = re.compile(r"(?<![\w./-])hersey((?:\.[A-Za-z_]\w*)+)")
+_FILE = re.compile(r"python/hersey/([\w/]+\.py)\b|`([\w/]+/\w+\.py)`")
+#: What ends like a module and is none: files that carry the name.
+_OF_FILES = {"toml"}
+
+
+def test_the_docs_name_nothing_that_is_gone() -> None:
+    """Every ``hersey.x.y`` in prose resolves, to a module or to what stands in one; every file is there."""
+    texts = [*(ROOT / "docs").glob("*.md"), *ROOT.glob("*.md"), *(ROOT / "benchmarks").glob("*.md")]
+    seen = 0
+    for path in [*texts, *modules().values()]:
+        text = path.read_text()
+        for dotted in _NAMED.findall(text):
+            parts = dotted.strip(".").split(".")
+            if parts[0] in _OF_FILES:
+                continue
+            seen += 1
+            assert resolves(parts), f"{path.name} names hersey{dotted}"
+        for inside, other in _FILE.findall(text) if path in texts else []:
+            assert (PACKAGE / inside).is_file() if inside else (ROOT / other).is_file(), (
+                f"{path.name}: {other}"
+            )
+    assert seen > 100
+
+
+def resolves(parts: list[str]) -> bool:
+    """Whether ``hersey`` followed by these names is there."""
+    import importlib
+
+    thing: Any = hersey
+    for i, name in enumerate(parts):
+        if not hasattr(thing, name):
+            try:
+                thing = importlib.import_module(".".join(("hersey", *parts[: i + 1])))
+            except ImportError:
+                return False
+        else:
+            thing = getattr(thing, name)
+    return True
+
+
 def tracked() -> list[Path]:
     listed = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True)
     return [ROOT / line for line in listed.stdout.splitlines() if (ROOT / line).is_file()]
@@ -214,8 +257,29 @@ def test_the_repository_names_no_machine_and_no_registry() -> None:
             assert host not in text, f"{path.name} names {host}"
 
 
+def test_the_list_of_slow_tests_names_none_that_is_gone() -> None:
+    for line in SLOW:
+        path, _, test = line.partition("::")
+        assert (ROOT / path).exists(), line
+        assert not test or f"def {test}" in (ROOT / path).read_text(), line
+
+
 def test_files_have_one_subject() -> None:
     for path in tracked():
         if path.suffix in {".py", ".rs", ".js"}:
             assert len(path.read_text().splitlines()) <= 720, f"{path.name} is long: split it"
             assert not re.fullmatch(r"(utils?|helpers?|misc|common)", path.stem)
+
+
+def test_planted_faults_are_counted_by_module() -> None:
+    lines = [
+        "    hersey.damping.design.x_design__mutmut_1: killed",
+        "    hersey.damping.design.xǁTestDesignǁsummary__mutmut_2: survived",
+        "    hersey.damping.design.x__error__mutmut_11: no tests",
+        "    hersey.verdict.regimes.x_regime_of__mutmut_1: killed",
+        "something else",
+    ]
+    outcomes = counted(lines)
+    assert outcomes["hersey.damping.design"] == {"killed": 1, "survived": 1, "no tests": 1}
+    assert outcomes["hersey.verdict.regimes"]["killed"] == 1
+    assert "1 killed     1 survived  1 no tests" in table(outcomes)
