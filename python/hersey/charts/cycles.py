@@ -23,7 +23,7 @@ def trace_chart(record: CycleRecord, drive: IdentifiedDrive | None = None, *, un
     unit
         Of the trace, for the axes.
     """
-    label = {"force": "Force", "speed": "Stretch"}[record.quantity] + (f" ({unit})" if unit else "")
+    label = _label(record.quantity, unit)
     panels: list[alt.Chart | Chart] = [_trace(record, label)]
     if record.slips:
         panels.append(_slips(record, label))
@@ -33,6 +33,20 @@ def trace_chart(record: CycleRecord, drive: IdentifiedDrive | None = None, *, un
     panels_together = alt.vconcat(*panels, spacing=16).resolve_scale(color="independent")
     stacked: Chart = panels_together.properties(title=title)
     return stacked
+
+
+def drive_chart(drive: IdentifiedDrive, *, unit: str = "") -> Chart:
+    """Return the mean cycle with the motion of the drive that was identified from it."""
+    decided = "" if drive.decided else " (not decided)"
+    subtitle = f"closure {drive.closure}{decided}; within {100 * drive.misfit:.2g} % of the drop"
+    chart: Chart = _cycle(drive, _label("force", unit)).properties(
+        title=alt.Title("Identified drive", subtitle=subtitle), height=300
+    )
+    return chart
+
+
+def _label(quantity: str, unit: str) -> str:
+    return {"force": "Force", "speed": "Stretch"}[quantity] + (f" ({unit})" if unit else "")
 
 
 def _heading(record: CycleRecord, drive: IdentifiedDrive | None) -> list[str]:

@@ -11,7 +11,7 @@ from hersey.charts.style import HEIGHT, INK, WIDTH, Chart, Row, logarithmic, plo
 from hersey.document.film_part import film_points
 from hersey.document.parts import FilmPoint
 from hersey.lubrication.film import REGIMES, Film
-from hersey.units import celsius
+from hersey.units import celsius, rpm
 from hersey.verdict.evidence import MeasuredFilm
 
 #: Shades of the regimes that stay apart in grey.
@@ -24,14 +24,28 @@ _LEAST = ((-2.0, 4.0), (-1.0, 3.0))
 _U = 1e-10
 
 
-def film_chart(film: Film, names: list[str], measured: MeasuredFilm | None = None) -> Chart:
-    """Return the regime chart with the points of a film on it, over the Stribeck curve if there is a log."""
+def film_chart(film: Film, names: list[str] | None = None, measured: MeasuredFilm | None = None) -> Chart:
+    """Return the regime chart with the points of a film on it, over the Stribeck curve if there is a log.
+
+    Points without ``names`` are called by their speed and temperature.
+    """
+    names = _places(film) if names is None else names
     dwells = []
     if measured is not None and measured.predicted is not film:
         dwells = film_points(measured.predicted, [""] * measured.speed.size)
     chart = regime_chart(film_points(film, names), dwells, film.nip.layer_factor)
     if measured is None:
         return chart
+    stacked: Chart = alt.vconcat(chart, _stribeck(measured), spacing=24).resolve_scale(
+        color="independent", shape="independent"
+    )
+    return stacked
+
+
+def measured_chart(measured: MeasuredFilm) -> Chart:
+    """Return where the dwells of a log lie on the regime chart, over their Stribeck curve."""
+    dwells = film_points(measured.predicted, [""] * measured.speed.size)
+    chart = regime_chart([], dwells, measured.predicted.nip.layer_factor)
     stacked: Chart = alt.vconcat(chart, _stribeck(measured), spacing=24).resolve_scale(
         color="independent", shape="independent"
     )
@@ -145,6 +159,12 @@ def _stribeck(measured: MeasuredFilm) -> Chart:
     )
     title = alt.Title("Stribeck curve", subtitle=subtitle)
     return alt.layer(*layers).properties(width=WIDTH, height=HEIGHT, title=title)
+
+
+def _places(film: Film) -> list[str]:
+    speed, kelvin = np.broadcast_arrays(film.speed, film.temperature)
+    pairs = zip(rpm(speed).ravel().tolist(), celsius(kelvin).ravel().tolist(), strict=True)
+    return [f"{v:.3g} rpm, {t:.0f} °C" for v, t in pairs]
 
 
 def _row(point: FilmPoint) -> Row:
