@@ -3,6 +3,7 @@
 =============  ====================================================
 style          sizes, colours, the smallest pieces
 labels         where texts stand, so that none covers another
+thinning       fewer samples to draw, the extremes among them
 runtime        the Vega runtime, inlined in every page
 render         from a chart to the content of a file
 analysis       the charts of the analysis document
@@ -35,7 +36,7 @@ PICTURES = (".html", *FIGURES)
 #: Module and function that draw each kind of result, by the name of its type.
 CHARTS = {
     "TorqueLog": ("log", "log_chart"),
-    "Inspection": ("inspection", "findings_chart"),
+    "Inspection": ("inspection", "channels_chart"),
     "SteadyPoints": ("damping", "steady_chart"),
     "DampingSurface": ("damping", "surface_chart"),
     "ModelComparison": ("damping", "models_chart"),
@@ -69,9 +70,12 @@ def chart_of(result: object, **choices: Any) -> Chart:
     ParameterError
         If such a thing has no chart.
     """
-    place = next((CHARTS[kind.__name__] for kind in type(result).__mro__ if kind.__name__ in CHARTS), None)
+    names = [kind.__name__ for kind in type(result).__mro__]
+    place = next((CHARTS[name] for name in names if name in CHARTS), None)
     if place is None:
-        raise ParameterError(f"there is no chart of a {type(result).__name__}: {', '.join(CHARTS)} have one")
+        raise ParameterError(
+            f"there is no chart of an object of type {type(result).__name__}: {', '.join(CHARTS)} have one"
+        )
     from hersey.charts.style import unchecked
 
     module, function = place

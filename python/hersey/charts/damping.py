@@ -36,7 +36,7 @@ from hersey.units import celsius, rpm
 #: Speeds at which a law is drawn, temperatures at which a surface is, and candidates that are listed.
 _SPEEDS, _TEMPERATURES, _LISTED = 60, 4, 10
 #: Share of the speed by which marks of two temperatures stand apart.
-_APART = 0.03
+_APART = 0.045
 _SPEED = "Drive speed (rpm)"
 
 
@@ -157,7 +157,7 @@ def logs_chart(comparison: LogComparison) -> Chart:
     y = alt.Y("ratio:Q", title="Damping of B over A (no unit)", scale=alt.Scale(zero=False))
     tips = [tip("speed", "speed (rpm)"), tip("ratio", "B over A"), tip("low", "95 % from"), tip("high", "to")]
     bars = plot(rows).mark_rule(strokeWidth=2)
-    dots = plot(rows).mark_point(filled=True, size=60, opacity=1)
+    dots = plot(rows).mark_point(filled=True, size=40, opacity=1)
     layers = [
         *level(1.0, "no change"),
         bars.encode(x=x, y=alt.Y("low:Q"), y2=alt.Y2("high:Q"), color=color),

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import altair as alt
 import numpy as np
-from tsdownsample import MinMaxLTTBDownsampler
 
 from hersey.arrays import FloatArray
 from hersey.charts.style import BLUE, INK, ORANGE, WIDTH, Chart, Row, plot
+from hersey.charts.thinning import kept
 from hersey.errors import InsufficientDataError
 from hersey.inspection.inspecting import ChannelReport, FileReport, Inspection
 from hersey.inspection.raw import raw_channels
@@ -36,6 +36,11 @@ def inspection_chart(paths: Sequence[str | Path], inspection: Inspection) -> Cha
     title = alt.Title("Channels as recorded", subtitle=", ".join(file.name for file in inspection.files[:4]))
     stacked: Chart = alt.vconcat(*panels, spacing=10).properties(title=title)
     return stacked
+
+
+def channels_chart(inspection: Inspection, *, paths: Sequence[str | Path] = ()) -> Chart:
+    """Return the channels as recorded if the ``paths`` of the files are given, or else where faults begin."""
+    return inspection_chart(paths, inspection) if paths else findings_chart(inspection)
 
 
 def findings_chart(inspection: Inspection) -> Chart:
@@ -126,13 +131,10 @@ def _panels(path: Path, report: FileReport) -> list[alt.LayerChart]:
 
 def _panel(channel: ChannelReport, values: FloatArray, time: FloatArray | None, title: str) -> alt.LayerChart:
     x = np.arange(1.0, values.size + 1.0) if time is None else time - np.nanmin(time)
-    good = np.flatnonzero(np.isfinite(values) & np.isfinite(x))
-    kept = good
-    if good.size > _POINTS:
-        kept = good[MinMaxLTTBDownsampler().downsample(np.ascontiguousarray(values[good]), n_out=_POINTS)]
+    index = kept(values, _POINTS, known=x)
     rows: list[Row] = [
         {"x": float(f"{a:.7g}"), "y": float(f"{b:.6g}"), "index": i}
-        for i, (a, b) in enumerate(zip(x[kept].tolist(), values[kept].tolist(), strict=True))
+        for i, (a, b) in enumerate(zip(x[index].tolist(), values[index].tolist(), strict=True))
     ]
     marks: list[Row] = [
         {"x": float(x[f.first]), "y": float(values[f.first]), "kind": f.kind}

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import altair as alt
 import numpy as np
-from tsdownsample import MinMaxLTTBDownsampler
 
-from hersey.arrays import FloatArray, IntArray
+from hersey.arrays import FloatArray
 from hersey.charts.style import BLUE, INK, WIDTH, Chart, Row, plot, rows_of, tip, torque_unit
-from hersey.log.torque_log import Run, TorqueLog
+from hersey.charts.thinning import kept
+from hersey.log.torque_log import TorqueLog
 from hersey.units import celsius, rpm
 
-#: Points drawn of a log, shared out among its runs; the extremes are kept.
-_POINTS = 3000
+#: Points drawn of a log, shared out among its runs, and least of one run.
+_POINTS, _LEAST = 3000, 200
 _AXIS, _HEIGHT = 52, 130
 
 
@@ -44,9 +44,9 @@ def _subtitle(log: TorqueLog) -> str:
 def _panel(log: TorqueLog, starts: FloatArray, name: str, values: list[FloatArray], *, timed: bool) -> Chart:
     rows: list[Row] = []
     for number, (run, of_run) in enumerate(zip(log.runs, values, strict=True)):
-        kept = _kept(run, of_run, max(200, _POINTS // len(log.runs)))
-        time = starts[number] + run.time[kept] - run.time[0]
-        rows += rows_of(time=time, value=of_run[kept], run=[number] * kept.size)
+        index = kept(of_run, max(_LEAST, _POINTS // len(log.runs)))
+        time = starts[number] + run.time[index] - run.time[0]
+        rows += rows_of(time=time, value=of_run[index], run=[number] * index.size)
     axis = alt.Axis(labels=timed, ticks=timed)
     domain = [0.0, float(starts[-1])]
     x = alt.X(
@@ -61,14 +61,3 @@ def _panel(log: TorqueLog, starts: FloatArray, name: str, values: list[FloatArra
     ends = plot(rows_of(time=starts[1:-1])).mark_rule(color=INK, strokeDash=[2, 3])
     layers = [line.encode(x=x, y=y, detail=alt.Detail("run:N"), tooltip=tips), ends.encode(x=x)]
     return alt.layer(*layers, width=WIDTH, height=_HEIGHT)
-
-
-def _kept(run: Run, values: FloatArray, points: int) -> IntArray:
-    """Indices of the samples to draw."""
-    known = np.flatnonzero(np.isfinite(values))
-    if known.size <= points:
-        return known
-    chosen = MinMaxLTTBDownsampler().downsample(
-        np.ascontiguousarray(run.time[known]), np.ascontiguousarray(values[known]), n_out=points
-    )
-    return np.asarray(known[chosen])

@@ -10,6 +10,7 @@ import altair as alt
 import numpy as np
 from altair.utils.schemapi import debug_mode
 
+from hersey.charts.labels import apart
 from hersey.units import celsius
 
 WIDTH, HEIGHT = 680, 340
@@ -92,11 +93,23 @@ def level(value: float, name: str, *, lift: float = 0.0, width: int = WIDTH) -> 
 
     ``lift`` moves the name up by pixels, away from that of a level nearby.
     """
-    mark = plot([{"level": value, "name": name}])
-    y = alt.Y("level:Q")
+    mark = plot([{"value": value, "name": name}])
+    y = alt.Y("value:Q")
     rule = mark.mark_rule(color=INK, strokeDash=[4, 3], strokeWidth=1).encode(y=y)
     text = mark.mark_text(align="left", dx=6, dy=-lift, color=INK, fontSize=12)
     return [rule, text.encode(x=alt.value(width), y=y, text=alt.Text("name:N"))]
+
+
+def levels(marks: list[tuple[float, str]], domain: tuple[float, float], height: float) -> list[alt.Chart]:
+    """Return levels across a chart of ``height`` pixels with this ``domain``, their names apart."""
+    low, high = domain
+    heights = [height * (value - low) / (high - low) for value, _ in marks]
+    lifts = [place - up for place, up in zip(apart(heights), heights, strict=True)]
+    return [
+        layer
+        for (value, name), lift in zip(marks, lifts, strict=True)
+        for layer in level(value, name, lift=lift)
+    ]
 
 
 def zoom() -> alt.Parameter:

@@ -41,7 +41,7 @@ def inspect(
 
     It works on logs that cannot be fitted too, and says why they cannot.
     """
-    from hersey.charts.inspection import inspection_chart
+    from hersey.charts import chart_of
     from hersey.charts.render import picture
     from hersey.files.writing import write_atomically
     from hersey.inspection import inspect as inspected
@@ -72,7 +72,7 @@ def inspect(
         write_atomically(kept, proposal, overwrite=True)
     if figure is not None:
         with working("drawing the channels"):
-            chart = inspection_chart(logs, found)
+            chart = chart_of(found, paths=logs)
             write_atomically(figure, picture(chart, figure.suffix), overwrite=True)
     if as_json:
         print(json.dumps(found.document(), indent=1))

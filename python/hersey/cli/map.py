@@ -42,7 +42,7 @@ def map_(
 
     With --json the whole map goes to stdout, and a picture is drawn only if --out is given.
     """
-    from hersey.charts.operating_map import map_chart
+    from hersey.charts import chart_of
     from hersey.charts.render import picture
     from hersey.files.writing import write_atomically
     from hersey.machine.machine import read_machine
@@ -67,7 +67,7 @@ def map_(
         )
     if path is not None:
         with working("drawing the map"):
-            chart = map_chart(drawn, tooltips=path.suffix == ".html")
+            chart = chart_of(drawn, tooltips=path.suffix == ".html")
             write_atomically(path, picture(chart, path.suffix), overwrite=True)
     if as_json:
         print(json.dumps(drawn.document(), indent=1))
