@@ -24,7 +24,7 @@ class Bundler:
 @pytest.fixture
 def bundler(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Bundler:
     counting = Bundler()
-    monkeypatch.setattr(module.vl_convert, "javascript_bundle", counting)
+    monkeypatch.setattr("vl_convert.javascript_bundle", counting)
     monkeypatch.setattr(module, "user_cache_path", lambda name: tmp_path / name)
     return counting
 

@@ -3,17 +3,83 @@
 =============  ====================================================
 style          sizes, colours, the smallest pieces
 labels         where texts stand, so that none covers another
+thinning       fewer samples to draw, the extremes among them
 runtime        the Vega runtime, inlined in every page
 render         from a chart to the content of a file
 analysis       the charts of the analysis document
+log            speed, torque and temperature over time
+inspection     the channels of a log, and their faults
+damping        dwells, surface, candidates, two logs, the next dwells
+regime         exponents against what each regime predicts
 film           the regime chart and the Stribeck curve
-inspection     the channels of a log
+motion         a trajectory, and the lap to which it settles
 cycles         trace, cycles and fitted motion
+hysteresis     what the belt does at which drive speed
 operating_map  the operating map
 plan           a drive profile and the motion
 =============  ====================================================
 """
 
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+from hersey.errors import ParameterError
+
+if TYPE_CHECKING:
+    from hersey.charts.style import Chart
+
 #: Kinds of file of a figure, and of a picture that may also be a page: it has tooltips and needs no network.
 FIGURES = (".png", ".svg", ".pdf")
 PICTURES = (".html", *FIGURES)
+#: Module and function that draw each kind of result, by the name of its type.
+CHARTS = {
+    "TorqueLog": ("log", "log_chart"),
+    "Inspection": ("inspection", "channels_chart"),
+    "SteadyPoints": ("damping", "steady_chart"),
+    "DampingSurface": ("damping", "surface_chart"),
+    "ModelComparison": ("damping", "models_chart"),
+    "LogComparison": ("damping", "logs_chart"),
+    "TestDesign": ("damping", "design_chart"),
+    "Regime": ("regime", "regime_chart"),
+    "Film": ("film", "film_chart"),
+    "MeasuredFilm": ("film", "measured_chart"),
+    "Trajectory": ("motion", "trajectory_chart"),
+    "StickSlipCycle": ("motion", "cycle_chart"),
+    "CycleRecord": ("cycles", "trace_chart"),
+    "IdentifiedDrive": ("cycles", "drive_chart"),
+    "HysteresisBand": ("hysteresis", "band_chart"),
+    "OperatingMap": ("operating_map", "map_chart"),
+    "Plan": ("plan", "plan_chart"),
+}
+
+
+def chart_of(result: object, **choices: Any) -> Chart:
+    """Return the chart of a result; its module is loaded when it is first drawn.
+
+    Parameters
+    ----------
+    result
+        Of a type in `CHARTS`.
+    choices
+        What its function takes beside the result, as ``tooltips=False`` of an operating map.
+
+    Raises
+    ------
+    ParameterError
+        If such a thing has no chart.
+    """
+    names = [kind.__name__ for kind in type(result).__mro__]
+    place = next((CHARTS[name] for name in names if name in CHARTS), None)
+    if place is None:
+        raise ParameterError(
+            f"there is no chart of an object of type {type(result).__name__}: {', '.join(CHARTS)} have one"
+        )
+    from hersey.charts.style import unchecked
+
+    module, function = place
+    draw = getattr(importlib.import_module(f"hersey.charts.{module}"), function)
+    with unchecked():
+        chart: Chart = draw(result, **choices)
+    return chart

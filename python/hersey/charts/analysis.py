@@ -13,6 +13,7 @@ import numpy as np
 
 from hersey.charts import FIGURES
 from hersey.charts.film import regime_chart
+from hersey.charts.regime import exponent_chart, exponent_row
 from hersey.charts.render import picture
 from hersey.charts.style import (
     HEIGHT,
@@ -22,7 +23,8 @@ from hersey.charts.style import (
     Row,
     logarithmic,
     plot,
-    ramp,
+    temperature_channels,
+    temperature_name,
     tip,
     torque_unit,
     unchecked,
@@ -35,7 +37,6 @@ from hersey.units import celsius, rpm
 _OVERLAP = 1.004
 #: Width kept for the axis of charts that share a time axis, so that they line up.
 _AXIS = 42
-_SHAPES = ("circle", "square", "triangle-up", "diamond", "cross", "triangle-down")
 
 
 def charts(document: Analysis) -> dict[str, Chart]:
@@ -161,72 +162,18 @@ def residuals(document: Analysis) -> Chart:
 
 def regime(document: Analysis) -> Chart:
     """Exponent of damping per temperature and branch with its interval, against the named hypotheses."""
-    rows: list[Row] = [
-        {
-            "where": "all" if b.temperature is None else f"{celsius(b.temperature):.0f} °C",
-            "order": b.temperature or 0.0,
-            "branch": {"ehl": "rising torque", "mixed": "falling torque", "all": "all speeds"}[b.branch],
-            "value": b.exponent.value,
-            "low": b.exponent.low,
-            "high": b.exponent.high,
-            "speeds": f"{rpm(b.speed_low):.3g} to {rpm(b.speed_high):.3g} rpm, {b.points} dwells",
-        }
-        for b in document.regime.exponents
-    ]
     c = document.fit.coefficients["c"]
-    rows.append(
-        {
-            "where": "surface",
-            "order": 1e6,
-            "branch": "rising torque" if document.fit.transition else "all speeds",
-            "value": c.value,
-            "low": c.low,
-            "high": c.high,
-            "speeds": f"{document.fit.points} dwells together",
-        }
-    )
-    named: list[Row] = [
-        {"name": h.name, "low": h.low if h.low is not None else -1.4, "high": h.high}
-        for h in document.regime.hypotheses
-    ]
-    bands = [h for h in named if h["high"] != h["low"]]
-    lines = [h for h in named if h["high"] == h["low"]]
-    least = min([-1.3, *(r["low"] for r in rows)])
-    scale = alt.Scale(domain=[least - 0.05, max([0.1, *(r["high"] for r in rows)])], nice=False)
-    y = alt.Y("value:Q", title="exponent of damping in speed", scale=scale)
-    band = (
-        plot(bands)
-        .mark_rect(color="#bbb", opacity=0.5, clip=True)
-        .encode(y=alt.Y("low:Q", scale=scale), y2="high:Q")
-    )
-    line = plot(lines).mark_rule(color=INK, strokeDash=[4, 3]).encode(y=alt.Y("low:Q", scale=scale))
-    labels = [{"name": h["name"], "y": (max(h["low"], least) + h["high"]) / 2} for h in named]
-    text = (
-        plot(labels)
-        .mark_text(align="left", dx=6, color=INK)
-        .encode(x=alt.value(WIDTH), y=alt.Y("y:Q", scale=scale), text="name:N")
-    )
-    x = alt.X("where:N", title=None, sort=alt.SortField("order"), axis=alt.Axis(labelAngle=0))
-    tips = [tip("value", "exponent"), tip("low", "95 % from"), tip("high", "to"), alt.Tooltip("speeds:N")]
-    kinds = ["rising torque", "falling torque", "all speeds"]
-    kinds = [k for k in kinds if any(r["branch"] == k for r in rows)]
-    looks = {
-        "rising torque": ("#1f4e9c", "circle"),
-        "falling torque": ("#d9730d", "square"),
-        "all speeds": ("#555", "diamond"),
+    surface: Row = {
+        "where": "surface",
+        "order": 1e6,
+        "branch": "rising torque" if document.fit.transition else "all speeds",
+        "value": c.value,
+        "low": c.low,
+        "high": c.high,
+        "speeds": f"{document.fit.points} dwells together",
     }
-    legend = alt.Legend(orient="top", title=None)
-    colors = alt.Scale(domain=kinds, range=[looks[k][0] for k in kinds])
-    shapes = alt.Scale(domain=kinds, range=[looks[k][1] for k in kinds])
-    color = alt.Color("branch:N", scale=colors, legend=legend)
-    shape = alt.Shape("branch:N", scale=shapes, legend=legend)
-    base = plot(rows)
-    bars = base.mark_rule(strokeWidth=3).encode(x=x, y=alt.Y("low:Q", scale=scale), y2="high:Q", color=color)
-    dots = base.mark_point(filled=True, size=90).encode(x=x, y=y, color=color, shape=shape, tooltip=tips)
-    title = alt.Title(
-        "Exponent of damping, with 95 % intervals", subtitle="against what each regime predicts"
-    )
-    return alt.layer(band, line, text, bars, dots).properties(title=title, width=WIDTH, height=HEIGHT)
+    rows = [exponent_row(branch) for branch in document.regime.exponents]
+    return exponent_chart([*rows, surface], [(h.name, h.low, h.high) for h in document.regime.hypotheses])
 
 
 def film(document: Analysis) -> Chart | None:
@@ -306,7 +253,7 @@ def _against_speed(document: Analysis, quantity: str, title: str, scale: float) 
         {
             "speed": rpm(v),
             "y": scale * b * (v if quantity == "torque" else 1.0),
-            "level": _level(c.temperature),
+            "level": temperature_name(c.temperature),
         }
         for c in document.fit.curves
         for v, b in zip(c.speed, c.damping, strict=True)
@@ -352,7 +299,7 @@ def _point_row(p: Point, scale: float) -> Row:
     return {
         "speed": rpm(abs(p.speed)),
         "temperature": None if p.temperature is None else celsius(p.temperature),
-        "level": _level(p.group_temperature),
+        "level": temperature_name(p.group_temperature),
         "torque_shown": abs(p.torque) * scale,
         "damping_shown": p.damping * scale,
         "residual": 100.0 * float(np.expm1(p.residual)),
@@ -361,20 +308,9 @@ def _point_row(p: Point, scale: float) -> Row:
     }
 
 
-def _level(kelvin: float | None) -> float:
-    """Temperature as legends name it; 0 where none was recorded."""
-    return 0.0 if kelvin is None else float(round(celsius(kelvin)))
-
-
 def _temperature_channels(document: Analysis) -> tuple[alt.Color, alt.Shape]:
-    """Colour by lightness and shape, so that temperatures survive greyscale."""
-    levels = sorted({_level(p.group_temperature) for p in document.points})
-    legend = alt.Legend(title="°C") if document.fit.temperature_range else None
-    shapes = [_SHAPES[i % len(_SHAPES)] for i in range(len(levels))]
-    return (
-        alt.Color("level:N", scale=alt.Scale(domain=levels, range=ramp(len(levels))), legend=legend),
-        alt.Shape("level:N", scale=alt.Scale(domain=levels, range=shapes), legend=legend),
-    )
+    kelvin = [p.group_temperature for p in document.points]
+    return temperature_channels(kelvin, legend=document.fit.temperature_range is not None)
 
 
 def _speed(field: str, domain: list[float] | None = None) -> alt.X:

@@ -23,7 +23,7 @@ def trace_chart(record: CycleRecord, drive: IdentifiedDrive | None = None, *, un
     unit
         Of the trace, for the axes.
     """
-    label = {"force": "Force", "speed": "Stretch"}[record.quantity] + (f" ({unit})" if unit else "")
+    label = _label(record.quantity, unit)
     panels: list[alt.Chart | Chart] = [_trace(record, label)]
     if record.slips:
         panels.append(_slips(record, label))
@@ -33,6 +33,20 @@ def trace_chart(record: CycleRecord, drive: IdentifiedDrive | None = None, *, un
     panels_together = alt.vconcat(*panels, spacing=16).resolve_scale(color="independent")
     stacked: Chart = panels_together.properties(title=title)
     return stacked
+
+
+def drive_chart(drive: IdentifiedDrive, *, unit: str = "") -> Chart:
+    """Return the mean cycle with the motion of the drive that was identified from it."""
+    decided = "" if drive.decided else " (not decided)"
+    subtitle = f"closure {drive.closure}{decided}; within {100 * drive.misfit:.2g} % of the drop"
+    chart: Chart = _cycle(drive, _label("force", unit)).properties(
+        title=alt.Title("Identified drive", subtitle=subtitle), height=300
+    )
+    return chart
+
+
+def _label(quantity: str, unit: str) -> str:
+    return {"force": "Force", "speed": "Stretch"}[quantity] + f" ({unit or 'as recorded'})"
 
 
 def _heading(record: CycleRecord, drive: IdentifiedDrive | None) -> list[str]:
@@ -63,7 +77,8 @@ def _trace(record: CycleRecord, label: str) -> Chart:
     first, last = _window(record)
     step = max(1, (last - first) // _DRAWN)
     samples = record.samples
-    rows = rows_of(time=samples.time[first:last:step], force=samples.value[first:last:step])
+    time = samples.time[first:last:step]
+    rows = rows_of(time=time, force=samples.value[first:last:step], index=range(time.size))
     inside = (record.slip_time >= samples.time[first]) & (record.slip_time <= samples.time[last - 1])
     middle = 0.5 * (record.force_max + record.force_min)
     marks = rows_of(time=record.slip_time[inside], force=middle[inside])
@@ -91,8 +106,9 @@ def _slips(record: CycleRecord, label: str) -> alt.Chart:
 
 def _cycle(drive: IdentifiedDrive, label: str) -> Chart:
     wave = drive.waveform
-    rows = rows_of(time=1e3 * wave.offset, force=wave.force, line=["mean of the laps"] * wave.offset.size)
-    fitted = rows_of(time=1e3 * wave.offset, force=drive.fitted, line=["fitted motion"] * wave.offset.size)
+    time, size = 1e3 * wave.offset, wave.offset.size
+    rows = rows_of(time=time, force=wave.force, line=["mean of the laps"] * size)
+    fitted = rows_of(time=time, force=drive.fitted, line=["fitted motion"] * size, index=range(size))
     names = alt.Scale(domain=["mean of the laps", "fitted motion"], range=[ORANGE, BLUE])
     legend = alt.Legend(title=None, orient="bottom-right", fillColor="white", padding=4)
     x = alt.X("time:Q", title="Time from the middle of the slip (ms)", scale=alt.Scale(nice=False))

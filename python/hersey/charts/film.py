@@ -2,36 +2,55 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import altair as alt
 import numpy as np
 
 from hersey import _core
-from hersey.arrays import pointwise
+from hersey.arrays import FloatArray, IntArray, pointwise
+from hersey.charts.labels import Labels
 from hersey.charts.style import HEIGHT, INK, WIDTH, Chart, Row, logarithmic, plot
 from hersey.document.film_part import film_points
 from hersey.document.parts import FilmPoint
 from hersey.lubrication.film import REGIMES, Film
-from hersey.units import celsius
+from hersey.units import celsius, rpm
 from hersey.verdict.evidence import MeasuredFilm
 
 #: Shades of the regimes that stay apart in grey.
 _SHADES = ("#f4f1de", "#e8b4a0", "#b7d3e9", "#8fae8b")
 #: Cells of the chart to a side, and decades shown beyond the points.
 _CELLS, _MARGIN = 90, 1.5
+#: Most points that are named, and the width of a letter in pixels.
+_NAMED, _LETTER = 8, 5.6
 #: The chart shows at least this.
 _LEAST = ((-2.0, 4.0), (-1.0, 3.0))
 #: Speed parameter at which the chart is computed: the regimes depend on g_V and g_E alone.
 _U = 1e-10
 
 
-def film_chart(film: Film, names: list[str], measured: MeasuredFilm | None = None) -> Chart:
-    """Return the regime chart with the points of a film on it, over the Stribeck curve if there is a log."""
+def film_chart(film: Film, names: list[str] | None = None, measured: MeasuredFilm | None = None) -> Chart:
+    """Return the regime chart with the points of a film on it, over the Stribeck curve if there is a log.
+
+    Points without ``names`` are called by their speed and temperature.
+    """
+    names = _places(film) if names is None else names
     dwells = []
     if measured is not None and measured.predicted is not film:
         dwells = film_points(measured.predicted, [""] * measured.speed.size)
     chart = regime_chart(film_points(film, names), dwells, film.nip.layer_factor)
     if measured is None:
         return chart
+    stacked: Chart = alt.vconcat(chart, _stribeck(measured), spacing=24).resolve_scale(
+        color="independent", shape="independent"
+    )
+    return stacked
+
+
+def measured_chart(measured: MeasuredFilm) -> Chart:
+    """Return where the dwells of a log lie on the regime chart, over their Stribeck curve."""
+    dwells = film_points(measured.predicted, [""] * measured.speed.size)
+    chart = regime_chart([], dwells, measured.predicted.nip.layer_factor)
     stacked: Chart = alt.vconcat(chart, _stribeck(measured), spacing=24).resolve_scale(
         color="independent", shape="independent"
     )
@@ -48,15 +67,12 @@ def _regimes(points: list[Row], dwells: list[Row], layer_factor: float) -> Chart
     spans = [_span([row["g_v"] for row in known], _LEAST[0]), _span([row["g_e"] for row in known], _LEAST[1])]
     x = alt.X("g_v:Q", title="viscosity parameter g_V = G W^1.5/U^0.5 (no unit)", scale=_log(spans[0]))
     y = alt.Y("g_e:Q", title="elasticity parameter g_E = W/U^0.5 (no unit)", scale=_log(spans[1]))
-    cells, labels = _cells(spans, layer_factor)
+    cells, regime = _cells(spans, layer_factor)
     shade = alt.Scale(domain=list(REGIMES), range=list(_SHADES))
     area = (
         plot(cells)
         .mark_rect(clip=True, strokeWidth=0)
         .encode(x=x, x2="g_v2:Q", y=y, y2="g_e2:Q", color=alt.Color("regime:N", scale=shade, legend=None))
-    )
-    names_of = (
-        plot(labels).mark_text(color=INK, fontSize=12, fontStyle="italic").encode(x=x, y=y, text="regime:N")
     )
     dots = (
         plot([row for row in dwells if row["g_v"] > 0])
@@ -70,21 +86,36 @@ def _regimes(points: list[Row], dwells: list[Row], layer_factor: float) -> Chart
             x=x, y=y, tooltip=["name:N", "regime:N", alt.Tooltip("h:Q", title="h_min (um)", format=".3~g")]
         )
     )
-    text = (
-        plot([row for row in points if row["g_v"] > 0] if len(points) <= 8 else [])
-        .mark_text(align="left", dx=9, color=INK, fontSize=11)
-        .encode(x=x, y=y, text="name:N")
-    )
     hidden = "" if known else " No point is shown: alpha is not known, g_V = 0."
     subtitle = [
         "U = eta u/(E'R) with the mean speed u, W = w/(E'R), G = alpha E'; colour: the law that holds."
         + hidden
     ]
-    if dwells:
+    if dwells and points:
         subtitle.append("Large: points of the machine. Small: dwells of the log.")
     title = alt.Title("Regimes of the film", subtitle=subtitle)
-    chart: Chart = alt.layer(area, names_of, dots, marks, text)
-    return chart.properties(width=WIDTH, height=HEIGHT, title=title)
+    texts = _texts(points if len(points) <= _NAMED else [], spans, regime)
+    return alt.layer(area, dots, marks, *texts, width=WIDTH, height=HEIGHT, title=title)
+
+
+def _texts(points: list[Row], spans: list[tuple[float, float]], regime: IntArray) -> list[alt.Chart]:
+    """Names of the points, and of each regime where it is roomiest, none over another."""
+    labels = Labels(WIDTH, HEIGHT, letter=_LETTER)
+    (left, right), (bottom, top) = spans
+    for row in points:
+        if row["g_v"] > 0:
+            across = WIDTH * (np.log10(row["g_v"]) - left) / (right - left)
+            up = HEIGHT * (np.log10(row["g_e"]) - bottom) / (top - bottom)
+            labels.beside(row["name"], float(across), float(up), "points")
+    for name, *column in _columns_of(regime):
+        labels.inside(name, [(column[0], column[1], column[2])], "regimes")
+    layers = []
+    for style, look in (("regimes", {"fontSize": 12, "fontStyle": "italic"}), ("points", {"fontSize": 11})):
+        places = [t for t in labels.texts if t.style == style]
+        placed = [{"across": t.across, "down": HEIGHT - t.up, "name": t.text} for t in places]
+        x, y = (alt.X("across:Q", scale=None, axis=None), alt.Y("down:Q", scale=None, axis=None))
+        layers.append(plot(placed).mark_text(color=INK, **look).encode(x=x, y=y, text=alt.Text("name:N")))
+    return layers
 
 
 def _stribeck(measured: MeasuredFilm) -> Chart:
@@ -147,6 +178,12 @@ def _stribeck(measured: MeasuredFilm) -> Chart:
     return alt.layer(*layers).properties(width=WIDTH, height=HEIGHT, title=title)
 
 
+def _places(film: Film) -> list[str]:
+    speed, kelvin = np.broadcast_arrays(film.speed, film.temperature)
+    pairs = zip(rpm(speed).ravel().tolist(), celsius(kelvin).ravel().tolist(), strict=True)
+    return [f"{v:.3g} rpm, {t:.0f} °C" for v, t in pairs]
+
+
 def _row(point: FilmPoint) -> Row:
     return {
         "name": point.name,
@@ -169,15 +206,15 @@ def _log(span: tuple[float, float]) -> alt.Scale:
     return alt.Scale(type="log", domain=[10.0 ** span[0], 10.0 ** span[1]], nice=False)
 
 
-def _cells(spans: list[tuple[float, float]], softness: float) -> tuple[list[Row], list[Row]]:
-    """Cells of the chart with their regime, and each regime's name at the middle of its cells."""
+def _cells(spans: list[tuple[float, float]], softness: float) -> tuple[list[Row], IntArray]:
+    """Cells of the chart, neighbours of one regime as one, and the regime of each, shape (across, up)."""
     edges = [np.linspace(low, high, _CELLS + 1) for low, high in spans]
     middle = [0.5 * (edge[1:] + edge[:-1]) for edge in edges]
     v, e = np.meshgrid(*middle, indexing="ij")
     g_v, g_e = 10.0**v, 10.0**e
     w = g_e * np.sqrt(_U)
-    found = pointwise(_core.line_film, g_v * np.sqrt(_U) / w**1.5, _U, 1.0, w, 1.0, 1.0, softness)
-    regime = found.regime.astype(int)
+    states = pointwise(_core.line_film, g_v * np.sqrt(_U) / w**1.5, _U, 1.0, w, 1.0, 1.0, softness)
+    regime = states.regime.astype(int)
     cells = []
     for i in range(_CELLS):
         # Neighbours of one regime are one cell.
@@ -194,13 +231,14 @@ def _cells(spans: list[tuple[float, float]], softness: float) -> tuple[list[Row]
                     }
                 )
                 start = j
-    labels = [
-        {
-            "g_v": 10.0 ** v[regime == k].mean(),
-            "g_e": 10.0 ** np.quantile(e[regime == k], 0.12),
-            "regime": REGIMES[k],
-        }
-        for k in range(len(REGIMES))
-        if (regime == k).mean() > 0.03
-    ]
-    return cells, labels
+    return cells, regime
+
+
+def _columns_of(regime: IntArray) -> Iterator[tuple[str, FloatArray, FloatArray, FloatArray]]:
+    """Each regime's columns of cells in pixels: where they are across, from where they reach to where."""
+    across = (np.arange(_CELLS) + 0.5) * WIDTH / _CELLS
+    cell = HEIGHT / _CELLS
+    for k, name in enumerate(REGIMES):
+        inside = regime == k
+        low = np.argmax(inside, axis=1)
+        yield name, across, cell * low, cell * (low + inside.sum(axis=1))

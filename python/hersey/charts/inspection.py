@@ -7,10 +7,10 @@ from pathlib import Path
 
 import altair as alt
 import numpy as np
-from tsdownsample import MinMaxLTTBDownsampler
 
 from hersey.arrays import FloatArray
-from hersey.charts.style import BLUE, ORANGE, WIDTH, Chart, Row, plot
+from hersey.charts.style import BLUE, INK, ORANGE, WIDTH, Chart, Row, plot
+from hersey.charts.thinning import kept
 from hersey.errors import InsufficientDataError
 from hersey.inspection.inspecting import ChannelReport, FileReport, Inspection
 from hersey.inspection.raw import raw_channels
@@ -38,6 +38,77 @@ def inspection_chart(paths: Sequence[str | Path], inspection: Inspection) -> Cha
     return stacked
 
 
+def channels_chart(inspection: Inspection, *, paths: Sequence[str | Path] = ()) -> Chart:
+    """Return the channels as recorded if the ``paths`` of the files are given, or else where faults begin."""
+    return inspection_chart(paths, inspection) if paths else findings_chart(inspection)
+
+
+def findings_chart(inspection: Inspection) -> Chart:
+    """Return where the faults of each channel begin; the samples themselves are in the files alone.
+
+    Raises
+    ------
+    InsufficientDataError
+        If there is no channel.
+    """
+    panels = [_findings(report) for report in inspection.files if report.channels]
+    if not panels:
+        raise InsufficientDataError("there is no channel to draw")
+    title = alt.Title("What the channels hold", subtitle=_told(inspection))
+    return alt.vconcat(*panels, spacing=18, title=title)
+
+
+def _told(inspection: Inspection) -> str:
+    support = inspection.support
+    if support is None:
+        return inspection.problem[:110]
+    return f"{support.dwells} dwells at {support.speeds} speeds, {len(support.temperatures)} temperatures"
+
+
+def _findings(report: FileReport) -> Chart:
+    """One line per channel from its first row to its last, a mark where each kind of fault begins."""
+    names = [f"{c.name}, {c.role}" if c.role else c.name for c in report.channels]
+    lines = [
+        {"channel": name, "row": 1, "end": c.traits.rows, "text": _range(c)}
+        for name, c in zip(names, report.channels, strict=True)
+    ]
+    faults: list[Row] = [
+        {"channel": name, "row": fault.first + 1, "kind": fault.kind, "rows": fault.rows}
+        for name, channel in zip(names, report.channels, strict=True)
+        for fault in channel.traits.faults
+    ]
+    x = alt.X(
+        "row:Q",
+        title="Row (number)",
+        scale=alt.Scale(domain=[0, max(report.rows, 1)], nice=False),
+        axis=alt.Axis(tickCount=8),
+    )
+    y = alt.Y("channel:N", title=None, sort=names, axis=alt.Axis(labelLimit=220))
+    kinds = sorted({fault["kind"] for fault in faults})
+    legend = alt.Legend(title="fault begins", orient="bottom") if kinds else None
+    shape = alt.Shape("kind:N", scale=alt.Scale(domain=kinds), legend=legend)
+    bar = plot(lines).mark_rule(strokeWidth=3, color=BLUE, opacity=0.55)
+    text = plot(lines).mark_text(align="left", dx=8, fontSize=11, color=INK)
+    dots = plot(faults).mark_point(filled=True, color=ORANGE, size=90, opacity=1)
+    tips = [alt.Tooltip("kind:N", title="fault"), alt.Tooltip("rows:Q", title="rows concerned")]
+    layers = [
+        bar.encode(x=x, x2=alt.X2("end:Q"), y=y),
+        text.encode(x=alt.value(WIDTH), y=y, text=alt.Text("text:N")),
+        dots.encode(x=x, y=y, shape=shape, tooltip=tips),
+    ]
+    clean = "" if faults else ", no fault found"
+    heading = alt.Title(
+        report.name, subtitle=f"{report.rows} rows{clean}; right: least to greatest", fontSize=12
+    )
+    return alt.layer(*layers, title=heading, width=WIDTH, height=26 * len(names))
+
+
+def _range(channel: ChannelReport) -> str:
+    unit = f" {channel.unit}" if channel.unit else ""
+    missing = f", {channel.traits.missing} missing" if channel.traits.missing else ""
+    return f"{channel.traits.low:.4g} to {channel.traits.high:.4g}{unit}{missing}"
+
+
 def _panels(path: Path, report: FileReport) -> list[alt.LayerChart]:
     raw = {channel.column.path: channel for channel in raw_channels(path).channels}
     alive = [c for c in report.channels if all(fault.kind != "constant" for fault in c.traits.faults)]
@@ -60,13 +131,10 @@ def _panels(path: Path, report: FileReport) -> list[alt.LayerChart]:
 
 def _panel(channel: ChannelReport, values: FloatArray, time: FloatArray | None, title: str) -> alt.LayerChart:
     x = np.arange(1.0, values.size + 1.0) if time is None else time - np.nanmin(time)
-    good = np.flatnonzero(np.isfinite(values) & np.isfinite(x))
-    kept = good
-    if good.size > _POINTS:
-        kept = good[MinMaxLTTBDownsampler().downsample(np.ascontiguousarray(values[good]), n_out=_POINTS)]
+    index = kept(values, _POINTS, known=x)
     rows: list[Row] = [
         {"x": float(f"{a:.7g}"), "y": float(f"{b:.6g}"), "index": i}
-        for i, (a, b) in enumerate(zip(x[kept].tolist(), values[kept].tolist(), strict=True))
+        for i, (a, b) in enumerate(zip(x[index].tolist(), values[index].tolist(), strict=True))
     ]
     marks: list[Row] = [
         {"x": float(x[f.first]), "y": float(values[f.first]), "kind": f.kind}

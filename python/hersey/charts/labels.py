@@ -11,7 +11,7 @@ from hersey.arrays import FloatArray
 
 #: Left, bottom, right and top, pixels.
 Box = tuple[float, float, float, float]
-#: Width of a letter, height of a line of text, pixels.
+#: Width of a letter of a bold name, height of a line of text, pixels.
 _LETTER, _LINE = 7.0, 15.0
 #: Where a point's name may stand above or below it, the nearest first.
 _ROWS = (17.0, -17.0, 33.0, -33.0, 49.0, -49.0)
@@ -31,37 +31,41 @@ class Text:
     across: float
     up: float
     style: str
+    half: float  #: half its width
 
     @property
     def box(self) -> Box:
         """What it covers."""
-        half = _half(self.text)
-        return self.across - half, self.up - _LINE / 2, self.across + half, self.up + _LINE / 2
+        left, right = self.across - self.half, self.across + self.half
+        return left, self.up - _LINE / 2, right, self.up + _LINE / 2
 
 
 class Labels:
-    """Texts of a chart of ``width`` by ``height`` pixels; the first placed have their choice."""
+    """Texts of a chart of ``width`` by ``height`` pixels; the first placed have their choice.
 
-    def __init__(self, width: float, height: float) -> None:
-        self.width, self.height = width, height
+    A ``letter`` is so many pixels wide on average.
+    """
+
+    def __init__(self, width: float, height: float, letter: float = _LETTER) -> None:
+        self.width, self.height, self._letter = width, height, letter
         self.texts: list[Text] = []
         self._taken: list[Box] = []
 
     def beside(self, text: str, across: float, up: float, style: str) -> None:
         """Name a point, on the first side where there is room, or above it where there is none."""
         self._taken.append((across - _MARK, up - _MARK, across + _MARK, up + _MARK))
-        away = _half(text) + _BESIDE
+        away = self._half(text) + _BESIDE
         sides = [(away, 0.0), (-away, 0.0), *((dx, dy) for dy in _ROWS for dx in (0.0, away, -away))]
         for dx, dy in sides:
-            if self._put(Text(text, across + dx, up + dy, style)):
+            if self._put(text, across + dx, up + dy, style):
                 return
-        self._put(Text(text, across, up + _ROWS[0], style), force=True)
+        self._put(text, across, up + _ROWS[0], style, force=True)
 
     def along(self, text: str, line: Sequence[tuple[float, float]], style: str) -> None:
         """Name a line, above its far end or as near to it as there is room, or else below, or not at all."""
         for away in (8.0, -9.0):
             for across, up in reversed(line):
-                if self._put(Text(text, across - _half(text) - 4.0, up + away, style)):
+                if self._put(text, across - self._half(text) - 4.0, up + away, style):
                     return
 
     def inside(
@@ -78,30 +82,34 @@ class Labels:
         places = [place for part in parts for place in self._rooms(text, *part, preferred)]
         if places:
             _, across, up = max(places, key=lambda place: place[0])
-            self._put(Text(text, across, up, style))
+            self._put(text, across, up, style)
 
     def _rooms(
         self, text: str, across: FloatArray, low: FloatArray, high: FloatArray, preferred: Box
     ) -> Iterable[tuple[float, float, float]]:
         """Room around each place where the text fits, and that place."""
-        half = _half(text) + 4.0
+        half = self._half(text) + 4.0
         for middle in np.arange(half, self.width - half, _ACROSS).tolist():
             left, right = middle - half, middle + half
             columns = np.append(across[(across > left) & (across < right)], [left, right])
             floor = float(np.interp(columns, across, low).max())
             ceiling = float(np.interp(columns, across, high).min())
             for up in np.arange(floor + _LINE / 2, ceiling - _LINE / 2, _UP).tolist():
-                if self._is_free(Text(text, middle, up, "").box):
+                if self._is_free(Text(text, middle, up, "", half - 4.0).box):
                     liked = _contains(preferred, (left, up - _LINE, right, up + _LINE))
                     room = min(up - floor, ceiling - up, _ROOMY) + _PREFERENCE * liked
                     yield room - 0.05 * abs(middle - self.width / 2), middle, up
 
-    def _put(self, text: Text, *, force: bool = False) -> bool:
-        if not (force or self._is_free(text.box)):
+    def _put(self, text: str, across: float, up: float, style: str, *, force: bool = False) -> bool:
+        placed = Text(text, across, up, style, self._half(text))
+        if not (force or self._is_free(placed.box)):
             return False
-        self._taken.append(text.box)
-        self.texts.append(text)
+        self._taken.append(placed.box)
+        self.texts.append(placed)
         return True
+
+    def _half(self, text: str) -> float:
+        return 0.5 * self._letter * len(text)
 
     def _is_free(self, box: Box) -> bool:
         return _contains((0.0, 0.0, self.width, self.height), box, edges=True) and not any(
@@ -129,10 +137,6 @@ def apart(ups: Sequence[float], gap: float = _LINE) -> list[float]:
 def _bottom(cluster: list[float], gap: float) -> float:
     """Lower end of names stacked about their mean height."""
     return sum(cluster) / len(cluster) - 0.5 * gap * len(cluster)
-
-
-def _half(text: str) -> float:
-    return 0.5 * _LETTER * len(text)
 
 
 def _contains(outer: Box, inner: Box, *, edges: bool = False) -> bool:

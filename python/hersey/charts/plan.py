@@ -5,12 +5,14 @@ from __future__ import annotations
 import altair as alt
 import numpy as np
 
-from hersey.charts.style import BLUE, INK, ORANGE, WIDTH, Chart, Row, level, plot, tip
+from hersey.charts.style import BLUE, INK, ORANGE, WIDTH, Chart, Row, level, levels, plot, tip
 from hersey.errors import InsufficientDataError
 from hersey.motion.schedule import Schedule
 from hersey.stability.plan.result import Plan
 from hersey.units import celsius
 
+#: Height of the panel of speeds.
+_HEIGHT = 260
 #: Width kept for the axes, so that the panels line up.
 _AXIS = 46
 _KEY = "V*: above it stick-slip dies out by itself. v_t: below it steady sliding is unstable."
@@ -52,21 +54,22 @@ def _speeds(plan: Plan, window: tuple[float, float]) -> Chart:
     scale, unit = (1e3, "mm/s") if plan.target_speed < 1.0 else (1.0, "m/s")
     top = max(plan.peak_speed, float(plan.response.belt_speed.max()))
     times = np.asarray(plan.schedule.times, dtype=float)
-    drive = [
+    drive: list[Row] = [
         {"time": max(t, window[0]), "value": v * scale, "line": "drive"}
         for t, v in zip(times.tolist(), np.asarray(plan.schedule.values).tolist(), strict=True)
         if t >= window[0] or t == times[times <= window[0]].max()
     ]
     drive.append({"time": window[1], "value": plan.target_speed * scale, "line": "drive"})
+    for index, row in enumerate(drive):
+        row["index"] = index
     belt = _rows(plan, plan.response.belt_speed * scale, "belt, nominal parameters")
     legend = alt.Legend(title=None, orient="top-right", fillColor="white", padding=4, symbolSize=500)
     names = ["drive", "belt, nominal parameters"]
+    domain = (min(0.0, 1.05 * scale * float(plan.response.belt_speed.min())), 1.08 * top * scale)
     y = alt.Y(
         "value:Q",
         title=f"Speed ({unit})",
-        scale=alt.Scale(
-            domain=[min(0.0, 1.05 * scale * float(plan.response.belt_speed.min())), 1.08 * top * scale]
-        ),
+        scale=alt.Scale(domain=list(domain)),
         axis=alt.Axis(minExtent=_AXIS),
     )
     lines = (
@@ -83,10 +86,11 @@ def _speeds(plan: Plan, window: tuple[float, float]) -> Chart:
             tooltip=[tip("time", "time (s)"), tip("value", f"speed ({unit})")],
         )
     )
-    rules = level(plan.transition_speed * scale, "v_t", lift=-4.0)
+    marks = [(plan.transition_speed * scale, "v_t")]
     if plan.fold_speed < _SHOWN * top:
-        rules += level(plan.fold_speed * scale, "V*", lift=4.0)
-    return alt.layer(*rules, lines, *_ready(plan)).properties(width=WIDTH, height=260)
+        marks.append((plan.fold_speed * scale, "V*"))
+    layers = [*levels(marks, domain, _HEIGHT), lines, *_ready(plan)]
+    return alt.layer(*layers, width=WIDTH, height=_HEIGHT)
 
 
 def _force(plan: Plan, window: tuple[float, float]) -> Chart:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from typing import Any, ClassVar
 
@@ -9,10 +10,16 @@ import altair as alt
 import numpy as np
 from altair.utils.schemapi import debug_mode
 
+from hersey.charts.labels import apart
+from hersey.units import celsius
+
 WIDTH, HEIGHT = 680, 340
 #: Ink for words and rules, the first and the second colour of lines.
 INK, BLUE, ORANGE = "#333", "#1f4e9c", "#d9730d"
+_SHAPES = ("circle", "square", "triangle-up", "diamond", "cross", "triangle-down")
 Row = dict[str, Any]
+#: A pale rim around words, so that lines do not run through them.
+RIM: Row = {"color": "white", "stroke": "white", "strokeWidth": 3.5, "strokeJoin": "round"}
 Chart = alt.LayerChart | alt.FacetChart | alt.VConcatChart
 
 
@@ -32,6 +39,24 @@ class _Inline:
 def plot(rows: list[Row]) -> alt.Chart:
     """Return a chart of rows, to which marks and channels are given."""
     return alt.Chart(alt.Data(values=_Inline(rows)))
+
+
+def temperature_name(kelvin: float | None) -> float:
+    """Return a temperature as legends name it, whole degC; 0 where none was recorded."""
+    return 0.0 if kelvin is None else float(round(celsius(kelvin)))
+
+
+def temperature_channels(
+    kelvin: Sequence[float | None], *, legend: bool = True
+) -> tuple[alt.Color, alt.Shape]:
+    """Return colour by lightness and shape of the field ``level``, so that temperatures survive greyscale."""
+    levels = sorted({temperature_name(t) for t in kelvin})
+    named = alt.Legend(title="°C", symbolOpacity=1) if legend else None
+    shapes = [_SHAPES[i % len(_SHAPES)] for i in range(len(levels))]
+    return (
+        alt.Color("level:N", scale=alt.Scale(domain=levels, range=ramp(len(levels))), legend=named),
+        alt.Shape("level:N", scale=alt.Scale(domain=levels, range=shapes), legend=named),
+    )
 
 
 def unchecked() -> AbstractContextManager[None]:
@@ -68,11 +93,23 @@ def level(value: float, name: str, *, lift: float = 0.0, width: int = WIDTH) -> 
 
     ``lift`` moves the name up by pixels, away from that of a level nearby.
     """
-    mark = plot([{"level": value, "name": name}])
-    y = alt.Y("level:Q")
+    mark = plot([{"value": value, "name": name}])
+    y = alt.Y("value:Q")
     rule = mark.mark_rule(color=INK, strokeDash=[4, 3], strokeWidth=1).encode(y=y)
     text = mark.mark_text(align="left", dx=6, dy=-lift, color=INK, fontSize=12)
     return [rule, text.encode(x=alt.value(width), y=y, text=alt.Text("name:N"))]
+
+
+def levels(marks: list[tuple[float, str]], domain: tuple[float, float], height: float) -> list[alt.Chart]:
+    """Return levels across a chart of ``height`` pixels with this ``domain``, their names apart."""
+    low, high = domain
+    heights = [height * (value - low) / (high - low) for value, _ in marks]
+    lifts = [place - up for place, up in zip(apart(heights), heights, strict=True)]
+    return [
+        layer
+        for (value, name), lift in zip(marks, lifts, strict=True)
+        for layer in level(value, name, lift=lift)
+    ]
 
 
 def zoom() -> alt.Parameter:

@@ -81,12 +81,12 @@ def cycles(
         with working("identifying the drive"):
             drive = identify_drive(record, known=values, closures=tuple(closures.replace(" ", "").split(",")))
     if figure is not None:
-        from hersey.charts.cycles import trace_chart
+        from hersey.charts import chart_of
         from hersey.charts.render import picture
 
         shown = "share of the weight" if given.unit == "1" else given.unit
         with working("drawing"):
-            drawn = picture(trace_chart(record, drive, unit=shown), figure.suffix)
+            drawn = picture(chart_of(record, drive=drive, unit=shown), figure.suffix)
         write_atomically(figure, drawn, overwrite=True)
     if as_json:
         driven = None if drive is None else drive.to_dict()

@@ -86,11 +86,11 @@ def film(
     predicted, names = _predicted(machine, measured, kelvin, belt_speed)
     notes = check_film(machine, predicted, measured)
     if figure is not None:
-        from hersey.charts.film import film_chart
+        from hersey.charts import chart_of
         from hersey.charts.render import picture
 
         with working("drawing"):
-            chart = film_chart(predicted, names, measured)
+            chart = chart_of(predicted, names=names, measured=measured)
             content = picture(chart, figure.suffix)
         write_atomically(figure, content, overwrite=True)
     if as_json:

@@ -71,11 +71,11 @@ def inspect(
         proposal = propose_mapping(logs[0], channels=channels, units=units)
         write_atomically(kept, proposal, overwrite=True)
     if figure is not None:
-        from hersey.charts.inspection import inspection_chart
+        from hersey.charts import chart_of
         from hersey.charts.render import picture
 
         with working("drawing the channels"):
-            chart = inspection_chart(logs, found)
+            chart = chart_of(found, paths=logs)
             write_atomically(figure, picture(chart, figure.suffix), overwrite=True)
     if as_json:
         print_json("inspect", found.to_dict())

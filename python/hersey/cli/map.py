@@ -64,11 +64,11 @@ def map_(
             threads=os.cpu_count() or 1,
         )
     if path is not None:
-        from hersey.charts.operating_map import map_chart
+        from hersey.charts import chart_of
         from hersey.charts.render import picture
 
         with working("drawing the map"):
-            chart = map_chart(drawn, tooltips=path.suffix == ".html")
+            chart = chart_of(drawn, tooltips=path.suffix == ".html")
             write_atomically(path, picture(chart, path.suffix), overwrite=True)
     if as_json:
         print_json("map", drawn.to_dict())

@@ -110,11 +110,11 @@ def plan(
             progress=progress,
         )
     if found.found and figure is not None:
-        from hersey.charts.plan import plan_chart
+        from hersey.charts import chart_of
         from hersey.charts.render import picture
 
         with working("drawing"):
-            content = picture(plan_chart(found, temperature=warming), figure.suffix)
+            content = picture(chart_of(found, temperature=warming), figure.suffix)
         write_atomically(figure, content, overwrite=True)
     if found.found and out is not None:
         write_atomically(out, found.table(), overwrite=True)

@@ -7,10 +7,11 @@ from itertools import pairwise
 
 import altair as alt
 
+from hersey.charts.motion import mode_strip
 from hersey.charts.style import WIDTH, Chart, level
 from hersey.motion.simulation import StickSlipCycle, Trajectory
 from hersey.paper_figures.figure import ABOUT, ROUNDING, Claim, PaperFigure, Verdict, shown
-from hersey.paper_figures.panels import mode_strip, trace
+from hersey.paper_figures.panels import trace
 from hersey.paper_figures.sweep import DAMPING, DRIVE_SPEED, STIFFNESS, Case
 
 #: The sticking friction that the paper gives for its baseline (Eq. 29), and half of its last digit.

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-from itertools import pairwise
 from typing import Any
 
 import altair as alt
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.charts.style import BLUE, INK, WIDTH, Chart, Row, plot, ramp, rows_of
+from hersey.charts.style import BLUE, INK, Chart, Row, plot, ramp, rows_of
 from hersey.motion.schedule import Schedule
 from hersey.motion.simulation import Trajectory
 from hersey.paper_figures.judges import Quantity
@@ -18,14 +17,6 @@ from hersey.paper_figures.sweep import Sweep
 
 #: Colour and shape of the three values traced: each alone tells them apart, also in greyscale.
 COLORS, SHAPES = ramp(3), ("circle", "square", "triangle-up")
-#: Names and colours of the modes, dark to light by speed.
-MODES = {
-    "stuck": ("stuck", BLUE),
-    "creep": ("creep", "#7a3b9c"),
-    "microslip": ("microslip", "#777"),
-    "mixed": ("mixed: drag falls with speed", "#d9730d"),
-    "ehl": ("EHL: drag rises with speed", "#f2c14e"),
-}
 #: Width of one of two panels that stand side by side under a full one.
 _HALF = 292
 #: Width kept for the vertical axes, so that stacked panels line up.
@@ -68,35 +59,6 @@ def driven(
     rows: list[Row] = [{"time": t, "value": v, "corner": i} for i, (t, v) in enumerate(corners)]
     dashed = plot(rows).mark_line(color=INK, strokeDash=[5, 3], strokeWidth=1.4)
     return alt.layer(line, dashed.encode(x=_time("time:Q", end, timed), y="value:Q", order="corner:Q"))
-
-
-def mode_strip(run: Trajectory) -> alt.Chart:
-    """The modes of a motion as a strip; the legend leaves out those too short to be seen."""
-    end = float(run.time[-1])
-    times = [0.0, *(event.time for event in run.events), end]
-    modes = [str(run.mode[0]), *(event.to_mode for event in run.events)]
-    spans: list[Row] = [
-        {"from": a, "to": b, "mode": MODES.get(mode, (mode, INK))[0]}
-        for (a, b), mode in zip(pairwise(times), modes, strict=True)
-    ]
-    seen = {span["mode"] for span in spans if span["to"] - span["from"] > end / WIDTH}
-    color = alt.Color(
-        "mode:N",
-        title="mode",
-        scale=alt.Scale(
-            domain=[name for name, _ in MODES.values()], range=[hue for _, hue in MODES.values()]
-        ),
-        legend=alt.Legend(
-            orient="bottom", titleOrient="left", values=[name for name, _ in MODES.values() if name in seen]
-        ),
-    )
-    chart: alt.Chart = (
-        plot(spans)
-        .mark_rect()
-        .encode(x=_time("from:Q", end, timed=True), x2="to:Q", color=color)
-        .properties(width=WIDTH, height=26)
-    )
-    return chart
 
 
 def trend_panel(

@@ -17,7 +17,7 @@ from hersey.charts.operating_map.regions import (
     name_regions,
     regions,
 )
-from hersey.charts.style import BLUE, INK, Chart, Row, plot
+from hersey.charts.style import BLUE, INK, RIM, Chart, Row, plot
 from hersey.stability.operating_map import OperatingMap
 from hersey.units import rpm
 
@@ -65,8 +65,7 @@ def _texts(labels: Labels, frame: Frame) -> list[alt.Chart]:
                 rows.append({"x": x, "y": 1e3 * y, "text": text.text})
         if rows:
             base = plot(rows).encode(x=temperature_axis(frame), y=speed_axis(frame), text="text:N")
-            rim = {**look, "color": "white", "stroke": "white", "strokeWidth": 3.5, "strokeJoin": "round"}
-            layers += [base.mark_text(**rim), base.mark_text(**look)]
+            layers += [base.mark_text(**(look | RIM)), base.mark_text(**look)]
     return layers
 
 
