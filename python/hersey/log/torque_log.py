@@ -136,7 +136,7 @@ class TorqueLog(Result):
         return "\n".join([*lines, *(f"corrected: {correction}" for correction in self.corrections)])
 
     def to_dict(self) -> dict[str, Any]:
-        """Return files, runs with their ranges in SI, and corrections; the rows themselves are in `to_frame`."""
+        """Return files, runs with their ranges (SI) and corrections; the rows are in `to_frame`."""
         return json_record(
             {
                 "rows": self.rows,
