@@ -8,7 +8,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import altair as alt
 import jsonschema
+import polars as pl
 import pytest
 from typer.testing import CliRunner
 
@@ -16,6 +18,7 @@ import hersey
 from hersey.cli import app
 from hersey.document.parts import PRINTED, SCHEMA_VERSION, Analysis, Part
 from hersey.document.saved_fit import read_fit
+from hersey.paper_figures.figure import Claim, OwnFigure, Verdict
 from tests.conftest import ROOT
 
 EXAMPLES = ROOT / "examples"
@@ -37,6 +40,7 @@ ARGUMENTS: dict[str, list[str]] = {
     "sweep": ["SCENARIO"],
     "hysteresis": ["--drive-speed", "1.2", "--from-speed", "2.5", "--to-speed", "1.2"],
     "map": [MACHINE, "--fit", "FIT"],
+    "figures": ["--out", "FIGURES"],
     "plan": [MACHINE, "--fit", "FIT", "--target", "60 mm/s", "--at", "150 degC"],
 }
 #: Names of fields that the header of every print has.
@@ -62,17 +66,26 @@ def printed(arguments: Sequence[str]) -> Any:
     return json.loads(result.stdout)
 
 
+def figure() -> OwnFigure:
+    """A figure of one point, for those that take long to simulate."""
+    point = alt.Chart(pl.DataFrame({"x": [1.0]})).mark_point().encode(x="x")
+    claim = Claim("Fig. 9", "it holds", "by eye", Verdict.HOLDS, "seen", {"far": float("inf")})
+    return OwnFigure("point", "A point", point, (claim,), {"x": (1.0, float("nan"))})
+
+
 @pytest.fixture(scope="module")
 def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
     """A finished fit and a scenario."""
     folder = tmp_path_factory.mktemp("json")
     (folder / "scenario.toml").write_text(SCENARIO)
     (folder / "fit.json").write_text(json.dumps(printed(["fit", BENCH, *TARE])))
-    return {"FIT": str(folder / "fit.json"), "SCENARIO": str(folder / "scenario.toml")}
+    own = {"FIGURES": str(folder / "figures")}
+    return own | {"FIT": str(folder / "fit.json"), "SCENARIO": str(folder / "scenario.toml")}
 
 
 @pytest.mark.parametrize("name", PRINTED)
-def test_a_command_prints_its_part(name: str, files: dict[str, str]) -> None:
+def test_a_command_prints_its_part(name: str, files: dict[str, str], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("hersey.paper_figures.all_figures", lambda: [figure()])
     document = printed([name, *(files.get(argument, argument) for argument in ARGUMENTS[name])])
     assert document["schema_version"] == SCHEMA_VERSION
     assert document["hersey_version"] == hersey.__version__
