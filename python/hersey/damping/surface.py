@@ -293,7 +293,7 @@ class DampingSurface(Result):
         >>> import hersey
         >>> surface = hersey.fit(hersey.read("examples/bench.csv").steady(tare="standing"))
         >>> surface.predict("25 rpm", "150 degC").torque.round(3)
-        array([0.303])
+        array([0.912])
         """
         speeds = np.abs(np.asarray(speed, dtype=float))
         self._warn_outside("speed", speeds, self.speed_range)
