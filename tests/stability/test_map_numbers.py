@@ -29,7 +29,7 @@ def surface(points: hersey.SteadyPoints) -> DampingSurface:
 
 
 @pytest.fixture(scope="module")
-def fuser() -> Machine:
+def machine() -> Machine:
     return read_machine(ROOT / "examples" / "machine.toml")
 
 

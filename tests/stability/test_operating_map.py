@@ -41,7 +41,7 @@ def surface(points: hersey.SteadyPoints) -> DampingSurface:
 
 
 @pytest.fixture(scope="module")
-def fuser() -> Machine:
+def machine() -> Machine:
     return read_machine(ROOT / "examples" / "machine.toml")
 
 
@@ -253,7 +253,7 @@ def test_bad_draws_are_refused(surface: DampingSurface, arguments: dict[str, Any
         ({"temperatures": [200.0, 390.0]}, "above 0 degC"),
         ({"speeds": [0.0, 1.0]}, "ascend from above 0"),
         ({"speeds": [0.2, 0.1]}, "ascend"),
-        ({"speeds": ["fast", 1.0]}, "speeds is not a number"),
+        ({"speeds": {"fast": 1.0}}, "speeds is not a number"),
         ({"points": [OperatingPoint("freezer", 0.1, 255.0)]}, "255 K"),
         ({"stick_speed": 1.0}, "stick_speed"),
     ],
