@@ -153,7 +153,7 @@ _SPELLINGS = (
 _ALPHABET = re.compile(r"[A-Za-z0-9_°ºµμΩ%℃℉\s.·*/^()⁻¹²³-]{0,60}")
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _FACTORED = re.compile(rf"\s*({_NUMBER})?\s*\*?\s*([A-Za-z°ºµμ%℃℉/(1].*?)\s*(?:/\s*({_NUMBER}))?\s*")
-_POWER = re.compile(r"(?<=[A-Za-z)])(\*\*|\^)-?[1-4](?![\d.*^])")
+_POWER = re.compile(r"(?<=[A-Za-z)])(\*\*|\^)-?[1-4](?![\d.^]|\*\*)")
 _TERM = re.compile(r"([*/]?)([A-Za-zµμ]+|1)(?:(?:\*\*|\^)(-?[1-4]))?")
 _ANGLES = re.compile(r"radian|degree|rev|turn|cycle|arc")
 _ENERGIES = re.compile(r"joule|watt|volt|calorie|erg|british")

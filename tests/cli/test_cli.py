@@ -43,7 +43,7 @@ def test_report_prints_verdict_and_path(bench_csv: Path, tmp_path: Path) -> None
 def test_json_goes_to_a_pipe_alone(bench_csv: Path, tmp_path: Path) -> None:
     result = run("report", bench_csv, "--json", cwd=tmp_path)
     document = json.loads(result.stdout)
-    assert document["schema_version"] == "1"
+    assert document["schema_version"] == "2"
     assert document["command"].startswith("hersey report")
     assert list(tmp_path.iterdir()) == []
     fit = json.loads(run("fit", bench_csv, "--json", cwd=tmp_path).stdout)

@@ -75,7 +75,7 @@ def test_logs_that_share_nothing_are_refused() -> None:
 
 def test_the_comparison_is_one_document() -> None:
     found = compare(dwells(LAW, VALUES), dwells(LAW, VALUES, seed=5))
-    plain = json.loads(json.dumps(found.document(), allow_nan=False))
+    plain = json.loads(json.dumps(found.to_dict(), allow_nan=False))
     assert (
         np.shape(plain["ratio"])
         == np.shape(plain["low"])

@@ -218,7 +218,7 @@ def test_the_summary_and_the_document_say_the_same_numbers() -> None:
     ) in lines
     c = next(c for c in found.changes if c.name == "c")
     assert f"  c: {c.of_a:.4g} and {c.of_b:.4g}, B - A = {c.change}, p = {c.p_value:.2g}" in lines
-    plain = found.document()
+    plain = found.to_dict()
     assert (plain["a"], plain["b"], plain["candidate"], plain["verdict"]) == (
         "new",
         "aged",

@@ -106,7 +106,7 @@ def test_what_cannot_be_asked_is_refused(straight: ModelComparison) -> None:
 
 def test_the_design_is_one_document(bent: ModelComparison) -> None:
     found = design(bent, count=2, quantity="c below")
-    plain = json.loads(json.dumps(found.document(), allow_nan=False))
+    plain = json.loads(json.dumps(found.to_dict(), allow_nan=False))
     assert len(plain["points"]) == 2
     assert plain["quantity"] == "c below the transition"
     text = found.summary()

@@ -224,7 +224,7 @@ def test_the_points_in_words(bent: ModelComparison, straight: ModelComparison) -
 
 def test_the_document_holds_every_number(bent: ModelComparison) -> None:
     found = design(bent, count=2, quantity="transition speed", seed=3)
-    assert found.document() == {
+    assert found.to_dict() == {
         "quantity": "transition speed",
         "unit": "rad/s",
         "error_now": found.error_now,

@@ -159,6 +159,6 @@ def test_records_without_an_answer_are_refused() -> None:
 
 def test_the_document_is_json() -> None:
     drive: IdentifiedDrive = identify(record(5), closures=("retained",))
-    document = json.loads(json.dumps(drive.document()))
+    document = json.loads(json.dumps(drive.to_dict()))
     assert set(document["best_fit"]) == set(OF_THE_BELT)
     assert document["estimates"]["stiffness"]["low"] < 1000 < document["estimates"]["stiffness"]["high"]

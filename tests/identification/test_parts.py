@@ -94,7 +94,7 @@ def test_missing_samples_are_counted_and_said() -> None:
     sentence = "13 samples are missing; no cycle across a gap that hides part of it is used"
     assert sentence in record.notes
     assert f"- {sentence}" in record.summary().splitlines()
-    assert sentence in record.document()["notes"]
+    assert sentence in record.to_dict()["notes"]
     assert not [note for note in cycles(time, force).notes if "missing" in note]
 
 
@@ -178,7 +178,7 @@ def test_figures_in_words() -> None:
         f"stiffness     {record.stiffness:.5g} N/m (slope / speed)",
     ]
     assert record.summary("N m").splitlines()[-1].endswith("N m/rad (slope / speed)")
-    document = record.document()
+    document = record.to_dict()
     assert document["slips"] == 40
     assert document["slip_time"] == record.slip_time.tolist()
     assert document["drop"] == pytest.approx(drop._asdict())
@@ -394,7 +394,7 @@ def test_a_drive_in_words(drive: IdentifiedDrive) -> None:
     assert f"stiffness          {drive.estimates['stiffness']} N/m" in lines
     assert f"free_period        {drive.derived['free_period']} s" in lines
     assert f"mean cycle within {drive.misfit:.2%} of the drop" in lines
-    document = drive.document()
+    document = drive.to_dict()
     assert document["known"] == dict(drive.known)
     assert document["best_fit"] == dict(drive.values)
     assert document["estimates"]["mass"]["error"] == drive.estimates["mass"].error

@@ -196,7 +196,7 @@ def test_the_example_log(root: Path) -> None:
     assert found.support.rejected["stick-slip"] > 500
     assert [f for f in found.findings if "missing" not in f] == []
     assert "cannot tell" not in found.summary()
-    assert json.loads(json.dumps(found.document()))["files"][0]["channels"][1]["traits"]["step"] == 0.0005
+    assert json.loads(json.dumps(found.to_dict()))["files"][0]["channels"][1]["traits"]["step"] == 0.0005
 
 
 def thinned(tmp_path: Path, keep: pl.Expr, seed: int = 3) -> Path:

@@ -72,7 +72,7 @@ def test_the_same_seed_gives_the_same_plan() -> None:
     given = case(1003)
     plans = [planned(given, seed=3) for _ in range(2)]
     assert plans[0].rows() == plans[1].rows()
-    assert plans[0].document() == plans[1].document()
+    assert plans[0].to_dict() == plans[1].to_dict()
 
 
 @pytest.mark.parametrize(

@@ -414,13 +414,13 @@ def test_what_a_plan_says(plan: Plan) -> None:
     assert [tuple(map(float, line.split(","))) for line in plan.table().splitlines()[1:]] == [
         pytest.approx(row, rel=1e-11) for row in plan.rows()
     ]
-    document = plan.document()
+    document = plan.to_dict()
     assert document["rows"] == [{"time": t, "drive_speed": v} for t, v in plan.rows()]
     assert document["warnings"] == list(plan.warnings)
     assert document["failures"] == dict(plan.failures)
     assert document["share_low"] == plan.share_low
     assert document["uses"][0] == {"name": "speed", "limit": 4.0, "used": plan.peak_speed}
-    assert replace(plan, fold_speed=math.inf).document()["fold_speed"] is None
+    assert replace(plan, fold_speed=math.inf).to_dict()["fold_speed"] is None
 
 
 def test_what_forbids_a_plan_in_numbers() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Annotated
 
@@ -11,7 +12,7 @@ from hersey.cli.options import (
     AsJson,
     Force,
 )
-from hersey.cli.outputs import may_write_folder
+from hersey.cli.outputs import may_write_folder, print_json
 from hersey.cli.progress import working
 
 
@@ -35,7 +36,7 @@ def figures(
     with working("drawing"):
         paper.write(drawn, out, overwrite=force)
     if as_json:
-        print(paper.as_json(drawn))
+        print_json("figures", json.loads(paper.as_json(drawn)))
         return
     for figure in drawn:
         print(figure.heading)

@@ -385,9 +385,8 @@ def test_a_comparison_as_text_line_by_line() -> None:
 
 def test_a_comparison_as_plain_data() -> None:
     found = made()
-    plain = found.document()
+    plain = found.to_dict()
     _, chosen, _ = found.candidates
-    assert plain["hersey_version"] == "1.2.3"
     assert plain["dwells"] == 72
     assert plain["clustered_by"] == "level"
     assert plain["reference_speed"] == DATA.reference_speed
@@ -450,27 +449,30 @@ def test_a_comparison_as_plain_data() -> None:
         "log_viscosity": c.shifts.tolist(),
         "verdict": c.verdict,
     }
-    assert made(collapse=None).document()["hersey_collapse"] is None
+    assert made(collapse=None).to_dict()["hersey_collapse"] is None
 
 
 def test_energies_as_plain_data() -> None:
     found = made()
-    plain, e = found.document()["activation_energy"], found.energies
+    plain, e = found.to_dict()["activation_energy"], found.energies
     assert isinstance(plain, dict)
     for name, energy in (("torque", e.torque), ("viscosity", e.viscosity), ("transition", e.transition)):
         assert energy is not None
         numbers = {"value": energy.value, "error": energy.error, "low": energy.low, "high": energy.high}
-        assert plain[name]["J/mol"] == numbers
-        assert plain[name]["cal/mol"] == {k: pytest.approx(v / 4.184, rel=1e-12) for k, v in numbers.items()}
+        assert plain[name]["joule_per_mol"] == numbers
+        assert plain[name]["calorie_per_mol"] == {
+            k: pytest.approx(v / 4.184, rel=1e-12) for k, v in numbers.items()
+        }
     assert e.power is not None
     assert plain["power"]["value"] == e.power.value
     assert plain["p_value"] == e.p_value
     assert plain["verdict"] == e.verdict
     assert plain["local"] == [
-        {"temperature": t, "J/mol": pytest.approx(2.4 * R * t, rel=1e-12)} for t in (363.0, 400.0, 453.0)
+        {"temperature": t, "joule_per_mol": pytest.approx(2.4 * R * t, rel=1e-12)}
+        for t in (363.0, 400.0, 453.0)
     ]
     none = activation_energies(None, None, found.chosen.fit, DATA)
-    plain = made(energies=none).document()["activation_energy"]
+    plain = made(energies=none).to_dict()["activation_energy"]
     assert isinstance(plain, dict)
     assert plain["torque"] is plain["power"] is plain["viscosity"] is plain["transition"] is None
     assert plain["local"] == []

@@ -265,7 +265,7 @@ def test_comparison_of_a_log_is_one_document(points: hersey.SteadyPoints) -> Non
     ):
         assert heading in text
     assert "seed 7" in text
-    plain = json.loads(json.dumps(found.document(), allow_nan=False))
+    plain = json.loads(json.dumps(found.to_dict(), allow_nan=False))
     assert plain["chosen"] == found.chosen.candidate.key
     assert len(plain["candidates"]) == len(found.candidates)
     assert sum(r["akaike_weight"] for r in plain["candidates"]) == pytest.approx(1.0)

@@ -10,12 +10,14 @@ stability   bands, maps, plans
 models      candidates, comparisons of logs, designs
 inspection  what a log holds
 cycles      cycles of a trace and the drive behind them
+figures     the paper's figures, drawn anew
 analysis    the whole document
 ==========  ==================================================
 """
 
 from hersey.document.parts.analysis import Analysis
 from hersey.document.parts.cycles import CyclesPart, DrivePart
+from hersey.document.parts.figures import FiguresPart
 from hersey.document.parts.film import FilmPart, FilmPoint, FilmStatesPart, MeasuredFilmPart, VerdictPart
 from hersey.document.parts.fit import (
     BranchPart,
@@ -60,6 +62,7 @@ PRINTED: dict[str, type[Part]] = {
     "hysteresis": BandPart,
     "map": MapPart,
     "plan": PlanPart,
+    "figures": FiguresPart,
 }
 
 __all__ = [
@@ -76,6 +79,7 @@ __all__ = [
     "DesignPart",
     "DisturbancePart",
     "DrivePart",
+    "FiguresPart",
     "FilmPart",
     "FilmPoint",
     "FilmStatesPart",

@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import Literal
 
 from hersey.document.parts.cycles import CyclesPart
+from hersey.document.parts.figures import FiguresPart
 from hersey.document.parts.film import FilmPart
 from hersey.document.parts.fit import FitPart, RegimePart
 from hersey.document.parts.inspection import InspectionPart
@@ -44,3 +45,4 @@ class Analysis(Part):
     band: BandPart | None = None
     map: MapPart | None = None
     plan: PlanPart | None = None
+    figures: FiguresPart | None = None

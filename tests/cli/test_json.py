@@ -1,0 +1,176 @@
+"""What each command prints with --json: its part of the document, by its schema, and whole when read back."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import altair as alt
+import jsonschema
+import polars as pl
+import pytest
+from typer.testing import CliRunner
+
+import hersey
+from hersey.cli import app
+from hersey.document.parts import PRINTED, SCHEMA_VERSION, Analysis, Part
+from hersey.document.saved_fit import read_fit
+from hersey.paper_figures.figure import Claim, OwnFigure, Verdict
+from tests.conftest import ROOT
+
+EXAMPLES = ROOT / "examples"
+BENCH = str(EXAMPLES / "bench.csv")
+MACHINE = str(EXAMPLES / "machine.toml")
+TRACE = str(EXAMPLES / "stick-slip.csv")
+TARE = ["--tare", "standing"]
+#: Arguments that make each command print its part, all of it and quickly.
+ARGUMENTS: dict[str, list[str]] = {
+    "inspect": [BENCH],
+    "report": [BENCH, *TARE, "--machine", MACHINE],
+    "fit": [BENCH, *TARE],
+    "models": [BENCH, *TARE, "--bootstrap", "0", "--isothermal"],
+    "design": [BENCH, *TARE, "--count", "1"],
+    "compare": [BENCH, BENCH, *TARE],
+    "cycles": [TRACE, "--drive-speed", "20 mm/s", "--identify", "--closures", "retained"],
+    "film": [MACHINE, "--log", BENCH, *TARE],
+    "simulate": ["--check"],
+    "sweep": ["SCENARIO"],
+    "hysteresis": ["--drive-speed", "1.2", "--from-speed", "2.5", "--to-speed", "1.2"],
+    "map": [MACHINE, "--fit", "FIT"],
+    "figures": ["--out", "FIGURES"],
+    "plan": [MACHINE, "--fit", "FIT", "--target", "60 mm/s", "--at", "150 degC"],
+}
+#: Names of fields that the header of every print has.
+HEADER = {"schema_version", "hersey_version", "command"}
+SCENARIO = """
+[parameters]
+stiffness = [500, 1000]
+mass = 1
+transition_force = 50
+transition_speed = 1
+ehl_exponent = -0.7
+mixed_exponent = -1.2
+stick_speed = 0.01
+drive_speed = {from = 0.5, to = 3.0, count = 3}
+[options]
+units = "consistent"
+"""
+
+
+def printed(arguments: Sequence[str]) -> Any:
+    result = CliRunner().invoke(app, [*arguments, "--json"], catch_exceptions=False)
+    assert result.exit_code == 0, result.output
+    return json.loads(result.stdout)
+
+
+def figure() -> OwnFigure:
+    """A figure of one point, for those that take long to simulate."""
+    point = alt.Chart(pl.DataFrame({"x": [1.0]})).mark_point().encode(x="x")
+    claim = Claim("Fig. 9", "it holds", "by eye", Verdict.HOLDS, "seen", {"far": float("inf")})
+    return OwnFigure("point", "A point", point, (claim,), {"x": (1.0, float("nan"))})
+
+
+@pytest.fixture(scope="module")
+def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
+    """A finished fit and a scenario."""
+    folder = tmp_path_factory.mktemp("json")
+    (folder / "scenario.toml").write_text(SCENARIO)
+    (folder / "fit.json").write_text(json.dumps(printed(["fit", BENCH, *TARE])))
+    own = {"FIGURES": str(folder / "figures")}
+    return own | {"FIT": str(folder / "fit.json"), "SCENARIO": str(folder / "scenario.toml")}
+
+
+@pytest.mark.parametrize("name", PRINTED)
+def test_a_command_prints_its_part(name: str, files: dict[str, str], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("hersey.paper_figures.all_figures", lambda: [figure()])
+    document = printed([name, *(files.get(argument, argument) for argument in ARGUMENTS[name])])
+    assert document["schema_version"] == SCHEMA_VERSION
+    assert document["hersey_version"] == hersey.__version__
+    assert document["command"].startswith("hersey")
+    part = PRINTED[name]
+    if part is not Analysis:
+        document = {key: value for key, value in document.items() if key not in HEADER}
+    jsonschema.validate(document, part.model_json_schema())
+    again = part.model_validate(document)
+    assert json.loads(again.model_dump_json()) == document
+    with pytest.raises(ValueError, match="unheard_of"):
+        part.model_validate({**document, "unheard_of": 1})
+
+
+def test_every_command_with_json_has_a_part() -> None:
+    import typer
+
+    group: Any = typer.main.get_command(app)
+    with_json = {
+        name
+        for name in group.list_commands(None)
+        if any(parameter.name == "as_json" for parameter in group.get_command(None, name).params)
+    }
+    assert with_json == set(PRINTED) == set(ARGUMENTS)
+
+
+def test_a_printed_fit_is_read_back(files: dict[str, str]) -> None:
+    surface = hersey.fit(hersey.read(BENCH).steady(tare="standing"))
+    again = read_fit(files["FIT"])
+    assert again.to_dict() == surface.to_dict()
+
+
+def test_each_part_can_stand_in_the_document() -> None:
+    """A result's part is an optional field of the whole; what a fit prints are fields of it too."""
+    held = {field.annotation for field in Analysis.model_fields.values()}
+    for name, part in PRINTED.items():
+        if name == "fit":
+            assert set(part.model_fields) <= set(Analysis.model_fields)
+        elif part is not Analysis:
+            assert part in held or (part | None) in held, name
+
+
+def test_the_docs_list_every_part() -> None:
+    """The table of docs/document.md is that of the code: command, part, and what the part says of itself."""
+    text = (ROOT / "docs" / "document.md").read_text()
+    rows = re.findall(r"^\| `hersey (\w+) --json` \| `(\w+)` \| (.*?) \|$", text, re.M)
+    expected = [(name, part.__name__, first_line(part)) for name, part in PRINTED.items()]
+    assert rows == expected
+
+
+def first_line(part: type[Part]) -> str:
+    return (part.__doc__ or "").split("\n", 1)[0]
+
+
+def test_every_part_says_what_it_is() -> None:
+    seen: set[type[Part]] = set()
+
+    def look(part: type[Part]) -> None:
+        if part in seen:
+            return
+        seen.add(part)
+        assert (part.__doc__ or "").endswith("."), part
+        for field in part.model_fields.values():
+            for kind in parts_in(field.annotation):
+                look(kind)
+
+    look(Analysis)
+    assert len(seen) > 50
+
+
+def parts_in(annotation: Any) -> list[type[Part]]:
+    from typing import get_args
+
+    if isinstance(annotation, type) and issubclass(annotation, Part):
+        return [annotation]
+    return [part for inner in get_args(annotation) for part in parts_in(inner)]
+
+
+def test_fit_builds_no_simulation(files: dict[str, str], monkeypatch: pytest.MonkeyPatch) -> None:
+    import hersey.document.assembly as assembly
+
+    def refuse(*_: object, **__: object) -> None:
+        raise AssertionError("a fit needs no simulation")
+
+    monkeypatch.setattr(assembly, "stick_slip", refuse)
+    monkeypatch.setattr(assembly, "simulate", refuse)
+    assert Path(files["FIT"]).exists()
+    assert set(printed(["fit", BENCH, *TARE])) == HEADER | {"files", "points", "fit", "regime"}

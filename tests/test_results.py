@@ -1,0 +1,236 @@
+"""Every result answers alike: in words, as JSON, as a table, in one line, and with a chart in a notebook."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import altair as alt
+import numpy as np
+import polars as pl
+import pytest
+
+import hersey
+from hersey import testbench
+from hersey.document.parts import (
+    BandPart,
+    ComparisonPart,
+    CyclesPart,
+    DesignPart,
+    DrivePart,
+    FilmPart,
+    FitPart,
+    InspectionPart,
+    LogPart,
+    MapPart,
+    MeasuredFilmPart,
+    ModelsPart,
+    Part,
+    PlanPart,
+    PointsPart,
+    RegimePart,
+    StickSlipPart,
+    TrajectoryPart,
+    VerdictPart,
+)
+from hersey.result import LINE, Result, json_value, table_of
+from hersey.verdict.evidence import verdict
+from tests.conftest import ROOT
+
+BENCH = ROOT / "examples" / "bench.csv"
+TRAIN = hersey.Drivetrain(1000, 1)
+DRAG = hersey.Drag(50, 1, ehl_exponent=-0.7, mixed_exponent=-1.2, stick_speed=0.01)
+
+
+@cache
+def log() -> hersey.TorqueLog:
+    return hersey.read(BENCH)
+
+
+@cache
+def points() -> hersey.SteadyPoints:
+    return log().steady(tare="standing")
+
+
+@cache
+def surface() -> hersey.DampingSurface:
+    return hersey.fit(points())
+
+
+@cache
+def machine() -> hersey.Machine:
+    return hersey.read_machine(ROOT / "examples" / "machine.toml")
+
+
+@cache
+def models() -> hersey.ModelComparison:
+    return hersey.compare_models(points(), bootstrap=0, cross_validate=False)
+
+
+@cache
+def run() -> hersey.Trajectory:
+    return hersey.simulate(TRAIN, DRAG, drive_speed=1.0, duration=10.0, samples=10001)
+
+
+@cache
+def record() -> hersey.CycleRecord:
+    return hersey.cycles(run().time, run().spring_force, drive_speed=1.0)
+
+
+@cache
+def measured() -> hersey.MeasuredFilm:
+    contact, lubricant = machine().contact, machine().lubricant
+    assert contact is not None
+    assert lubricant is not None
+    return hersey.measured_film(points(), surface(), contact, lubricant)
+
+
+def film() -> hersey.Film:
+    contact, lubricant = machine().contact, machine().lubricant
+    assert contact is not None
+    assert lubricant is not None
+    return hersey.film_thickness(contact, lubricant, speed=[2.0, 8.0], temperature=400.0)
+
+
+def map_() -> hersey.OperatingMap:
+    m = machine()
+    return hersey.operating_map(
+        surface(),
+        m.train,
+        roll_radius=m.roll_radius,
+        stick_speed=m.stick_speed,
+        points=m.points,
+        temperatures=[380.0, 420.0],
+        speeds=[0.01, 0.1],
+        draws=2,
+    )
+
+
+def plan() -> hersey.Plan:
+    limits = hersey.Limits(speed=4, acceleration=10)
+    return hersey.plan_profile(TRAIN, DRAG, target_speed=1.2, limits=limits)
+
+
+def judged() -> Any:
+    contact, lubricant = machine().contact, machine().lubricant
+    assert contact is not None
+    assert lubricant is not None
+    return verdict(measured(), surface(), contact, lubricant)
+
+
+#: How each result is made, and the part of the document that holds it.
+RESULTS: dict[str, tuple[Callable[[], Any], type[Part]]] = {
+    "TorqueLog": (log, LogPart),
+    "SteadyPoints": (points, PointsPart),
+    "DampingSurface": (surface, FitPart),
+    "Regime": (lambda: hersey.regime(points(), surface()), RegimePart),
+    "Film": (film, FilmPart),
+    "MeasuredFilm": (measured, MeasuredFilmPart),
+    "Verdict": (judged, VerdictPart),
+    "Trajectory": (run, TrajectoryPart),
+    "StickSlipCycle": (lambda: hersey.stick_slip(TRAIN, DRAG, drive_speed=1.0), StickSlipPart),
+    "HysteresisBand": (lambda: hersey.hysteresis(TRAIN, DRAG), BandPart),
+    "OperatingMap": (map_, MapPart),
+    "Plan": (plan, PlanPart),
+    "ModelComparison": (models, ModelsPart),
+    "LogComparison": (lambda: hersey.compare(points(), points()), ComparisonPart),
+    "TestDesign": (lambda: hersey.design(models(), count=1), DesignPart),
+    "Inspection": (lambda: hersey.inspect(BENCH), InspectionPart),
+    "CycleRecord": (record, CyclesPart),
+    "IdentifiedDrive": (
+        lambda: hersey.identify(record(), known={"mass": 1.0}, closures=("retained",)),
+        DrivePart,
+    ),
+}
+
+
+@pytest.fixture(autouse=True)
+def drawn_simply(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A chart of one point for every result: which chart a result has is the concern of the charts."""
+    dot = alt.Chart(pl.DataFrame({"x": [1.0]})).mark_point().encode(x="x")
+    monkeypatch.setattr("hersey.charts.chart_of", lambda _: dot, raising=False)
+
+
+@pytest.mark.parametrize("name", RESULTS)
+def test_a_result_answers(name: str) -> None:
+    make, part = RESULTS[name]
+    result = make()
+    assert isinstance(result, Result)
+    assert type(result).__name__ == name
+    assert result.summary().strip()
+    line = repr(result)
+    assert line.startswith(f"<{name}: ")
+    assert "\n" not in line
+    assert len(line) < 160
+    plain = result.to_dict()
+    assert json.loads(json.dumps(plain, allow_nan=False)) == plain
+    document = part.model_validate(plain)
+    assert part.model_validate_json(document.model_dump_json()) == document
+    assert set(plain) <= set(document.model_dump())
+    check_units(result.to_frame())
+    page = result._repr_html_()
+    assert page.startswith("<pre>")
+    assert "<svg" in page
+    assert "<script" not in page
+    assert "src=" not in page
+
+
+def check_units(table: pl.DataFrame) -> None:
+    assert table.height > 0
+    if "unit" in table.columns and "value" in table.columns:
+        assert table["unit"].null_count() == 0
+        return
+    for name, kind in table.schema.items():
+        assert not kind.is_float() or name.endswith(")") or name == "effective_rows", name
+
+
+def test_every_public_result_is_looked_at() -> None:
+    kinds = {name for name in hersey.__all__ if isinstance(getattr(hersey, name), type)}
+    results = {name for name in kinds if issubclass(getattr(hersey, name), Result)}
+    assert results == set(RESULTS) - {"Verdict"}
+
+
+def test_a_table_carries_the_numbers() -> None:
+    """Values of the frames are those of the results, in the unit of the column."""
+    assert log().to_frame().height == log().rows
+    assert log().to_frame()["speed (rad/s)"].to_numpy() == pytest.approx(log().runs[0].speed)
+    assert points().to_frame()["torque (N m)"].to_numpy() == pytest.approx(points().column("torque"))
+    edges = map_().to_frame()
+    assert edges["upper (m/s)"].to_list() == map_().upper.tolist()
+    assert edges["temperature (K)"].to_list() == [380.0, 420.0]
+    c = surface().to_frame().filter(pl.col("name") == "c")
+    assert c["value"].item() == surface().c.value
+    steps = plan().to_frame()
+    assert list(steps.iter_rows()) == plan().rows()
+    assert film().to_frame()["torque (N m)"].to_numpy() == pytest.approx(film().torque)
+
+
+def test_text_of_others_is_escaped_in_a_notebook(tmp_path: Path) -> None:
+    path = tmp_path / "<b>log.csv"
+    testbench.run(seed=3).write(path)
+    page = hersey.read(path)._repr_html_()
+    assert "<b>" not in page
+    assert "&lt;b&gt;log" in page
+
+
+def test_a_long_headline_is_cut() -> None:
+    class Long(Result):
+        def summary(self) -> str:
+            return "word " * 100 + "\nmore"
+
+    assert len(repr(Long())) == LINE + 2
+    assert repr(Long()).endswith("…>")
+
+
+def test_json_values_hold_no_number_that_is_none() -> None:
+    event = hersey.SafeStep(2.5, 1.2, True, 0.01, float("inf"))
+    assert json_value(event)["ramp_time"] is None
+    assert json_value({"a": (np.float64(1.0), np.nan, np.array([1, 2]))}) == {"a": [1.0, None, [1, 2]]}
+
+
+def test_a_table_of_facts_leaves_out_what_is_missing() -> None:
+    table = table_of([("length", 2.0, "m"), ("mass", None, "kg")])
+    assert table.rows() == [("length", 2.0, "m")]
