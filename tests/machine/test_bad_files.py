@@ -7,6 +7,8 @@ anew; look at every line that changes.
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
@@ -282,6 +284,8 @@ CORPUS: dict[str, tuple[Callable[[Path], Any], str, list[tuple[str, str]]]] = {
             ("[options]", "[option]"),
             ("[options]", "[[options]]"),
             ("[options]", "[options]\nspeed = 1\ncolour = 2"),
+            ("[options]", "[options]\nzip = 'no'"),
+            ("[options]", "[options]\nclosure = 3"),
             ("[options]", "[options]\ntolerance = '1e-9'"),
             ("[options]", "[options]\nduration = '1 s'"),
             ("[options]", "[options]\nbristle_stiffness = true"),
@@ -362,6 +366,12 @@ def test_every_message_names_its_file_and_none_is_left_over() -> None:
     assert len(messages) > 150
     for case, message in messages.items():
         assert message == "read" or case.split(":")[0] in message, case
+
+
+def test_hersey_itself_does_not_wait_for_pydantic() -> None:
+    asked = "import sys, hersey, hersey.cli; hersey.read; print('pydantic' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", asked], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "False"
 
 
 def write_messages() -> None:
