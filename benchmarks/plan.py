@@ -225,15 +225,10 @@ def evolved(search: Search, budget: int, seed: int) -> None:
     def spent(*_: object, **__: object) -> bool:
         return trials_of(search) >= budget
 
-    sides = 4 if given_constant(search) else 5
+    sides = 4 if len(search.waits()) == 1 else 5  # no wait helps where the temperature stays
     differential_evolution(
         value, [(0.0, 1.0)] * sides, rng=seed, maxiter=100_000, tol=0.0, polish=False, callback=spent
     )
-
-
-def given_constant(search: Search) -> bool:
-    """Return whether no wait can help, because the temperature stays."""
-    return len(search.waits()) == 1
 
 
 def compared(number: int, seeds: int) -> None:
