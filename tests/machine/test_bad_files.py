@@ -368,6 +368,36 @@ def test_every_message_names_its_file_and_none_is_left_over() -> None:
         assert message == "read" or case.split(":")[0] in message, case
 
 
+#: Values of every type that TOML has.
+ODD = (
+    "true",
+    "1",
+    "-1.5",
+    "nan",
+    "1e400",
+    "9" * 400,
+    '""',
+    '"x"',
+    "[]",
+    "[[]]",
+    '[["a", "b"]]',
+    "{}",
+    "1979-05-27",
+)
+
+
+@pytest.mark.parametrize("file", CORPUS)
+def test_a_value_of_any_type_is_read_or_refused_in_one_line(file: str, tmp_path: Path) -> None:
+    good = CORPUS[file][1]
+    lines = good.splitlines()
+    for number, line in enumerate(lines):
+        key, sign, _ = line.partition(" = ")
+        for value in ODD if sign and not line.startswith("#") else ():
+            text = "\n".join([*lines[:number], f"{key} = {value}", *lines[number + 1 :]])
+            answer = told(tmp_path, file, text)
+            assert answer == "read" or (file in answer and "\n" not in answer), f"{key} = {value}: {answer}"
+
+
 def test_hersey_itself_does_not_wait_for_pydantic() -> None:
     asked = "import sys, hersey, hersey.cli; hersey.read; print('pydantic' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", asked], capture_output=True, text=True, check=True)

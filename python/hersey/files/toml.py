@@ -39,6 +39,8 @@ Tables = TypeVar("Tables")
 
 #: Messages that go on with the sentence which the name of a value or a table begins, or with the name.
 _GOES_ON = re.compile(r"(is|has|holds|lacks|needs) |\.")
+#: No value of a file comes near this; a whole number of a file may have any number of digits.
+_LARGEST = 1e300
 #: The way out where a value is none of the type that is needed.
 _WAY_OUT = {
     "string_type": "write a text",
@@ -96,7 +98,7 @@ class Quantity:
         return self.parsed(given)
 
     def _number(self, given: object) -> float:
-        if isinstance(given, bool) or not isinstance(given, int | float) or not math.isfinite(given):
+        if isinstance(given, bool) or not isinstance(given, int | float) or not abs(given) < _LARGEST:
             such = f" such as {self.example}" if self.example else ""
             raise ParameterError(f"is {given!r}: write a number{such}")
         return float(given)
@@ -149,7 +151,7 @@ def read_toml(path: str | Path) -> dict[str, Any]:
     path = Path(path)
     try:
         return tomllib.loads(read_text(path))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:  # a number of thousands of digits is no TOMLDecodeError
         raise ParameterError(f"{path.name} is not valid TOML: {error}") from None
 
 
@@ -200,7 +202,8 @@ def _told(kind: str, loc: tuple[str | int, ...], given: object, about: Mapping[s
             return f"{_place(loc, {})} has no key '{about['key']}': {', '.join(about['known'])} are known"
         case "dataclass_type" | "dict_type":
             return f"{_place(loc, given)} is not a table: write [{loc[0]}]"
-    return f"{_place(loc, given)} is {given!r}: {_WAY_OUT[kind].format(**about)}"
+    way_out = _WAY_OUT.get(kind, "another kind of value is needed")
+    return f"{_place(loc, given)} is {given!r}: {way_out.format(**about)}"
 
 
 def _place(loc: tuple[str | int, ...], given: object) -> str:
