@@ -4,7 +4,10 @@ Of every plan: the share of fresh draws (another seed, tolerance 1e-11) that sli
 and keep all limits; and the quickest of a grid of up-over-down profiles that passes the plan's own rules on
 its own draws. Infeasible drives are counted and left out.
 
-Usage: python -m benchmarks.plan [--cases 200] [--first 0]
+With ``--compare``, the search alone against `scipy.optimize.differential_evolution` on the same family, the
+same draws and the same rule of what works: the quickest profile found, and the trials of a machine it took.
+
+Usage: python -m benchmarks.plan [--cases 200] [--first 0] [--compare]
 """
 
 from __future__ import annotations
@@ -17,19 +20,26 @@ import time
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.optimize import differential_evolution
 
 import hersey
 from hersey.machine.machine import Limits
 from hersey.machine.uncertainty import Uncertainty
+from hersey.stability.hysteresis import hysteresis
 from hersey.stability.plan import Plan, plan_profile
 from hersey.stability.plan.draws import drawn
 from hersey.stability.plan.obstacles import Reach
 from hersey.stability.plan.planner import Unknown
-from hersey.stability.plan.trial import Shape, TemperatureProfile, rounded
+from hersey.stability.plan.search import Room, Search
+from hersey.stability.plan.trial import MachineSample, Shape, TemperatureProfile, rounded
 
 CONFIDENCE = 0.95
 FRESH = 1000
 GRID = (0.0, 0.15, 0.3, 0.6, 1.0, 2.0, 4.0)
+#: Seeds of the comparison, and trials of the evolution as multiples of those of the own search.
+SEEDS, BUDGETS = 3, (1, 3)
+#: Longest rise, hold and fall of the evolution, laps; what is so much slower than its best counts as failed.
+LONGEST, BELOW = 12.0, 1.5
 
 
 @dataclass(frozen=True)
@@ -177,12 +187,83 @@ def brute_force(given: Case, plan: Plan, seed: int) -> tuple[float, Shape | None
     return best, found
 
 
+def search_of(given: Case, draws: int, seed: int) -> Search:
+    """Return the search of a case as the planner sets it up; ``draws`` is the seed of the machines."""
+    thermal, reach = TemperatureProfile(given.temperature), Reach.of(given.limits, None)
+    end = thermal.at(thermal.end)
+    band = hysteresis(given.train, given.drag, temperature=end, sensitivity=False)
+    trials = Unknown(given.train, given.drag, given.uncertainty, {}, draws).trials(
+        CONFIDENCE, thermal, reach.force
+    )
+    room = Room(given.limits.speed or 3.0 * band.upper, reach.acceleration)
+    return Search(MachineSample(given.train, given.drag), trials, thermal, given.target, room, seed=seed)
+
+
+def trials_of(search: Search) -> int:
+    """Return how many motions of a machine a search has followed."""
+    return search.count + search.trials.count
+
+
+def evolved(search: Search, budget: int, seed: int) -> None:
+    """Let differential evolution search, until it has followed so many motions."""
+    lap, room, target = search.nominal.lap, search.room, search.target
+    limit = [math.inf]
+    worst = 100.0 * lap + search.thermal.end
+
+    def shape(row: np.ndarray) -> Shape:
+        peak = target + row[0] * max(room.speed - target, 0.0)
+        rise, hold, fall = (LONGEST * lap * x**2 for x in row[1:4])
+        return room.shape(target, peak, rise, hold, fall, row[4] * search.thermal.end if len(row) > 4 else 0)
+
+    def value(row: np.ndarray) -> float:
+        took = search.attempt(shape(row), limit[0])
+        if took == math.inf:
+            return 2.0 * worst
+        limit[0] = min(limit[0], took * BELOW)
+        return took
+
+    def spent(*_: object, **__: object) -> bool:
+        return trials_of(search) >= budget
+
+    sides = 4 if len(search.waits()) == 1 else 5  # no wait helps where the temperature stays
+    differential_evolution(
+        value, [(0.0, 1.0)] * sides, rng=seed, maxiter=100_000, tol=0.0, polish=False, callback=spent
+    )
+
+
+def compared(number: int, seeds: int) -> None:
+    """Print a line for each seed: times in laps and trials of the own search and of the evolution."""
+    given = case(number)
+    for seed in range(seeds):
+        row: dict[str, object] = {"case": number, "seed": seed}
+        own = search_of(given, number + 1, seed)
+        begin = time.perf_counter()
+        own.run()
+        if own.best is None:
+            return
+        lap = own.nominal.lap
+        row |= {"own": own.time / lap, "trials": trials_of(own), "s": time.perf_counter() - begin}
+        for budget in BUDGETS:
+            other = search_of(given, number + 1, seed)
+            begin = time.perf_counter()
+            evolved(other, budget * trials_of(own), seed)
+            took = time.perf_counter() - begin
+            row[f"evolved {budget}"] = other.time / own.time
+            row[f"s {budget}"] = took
+        print(json.dumps(row), flush=True)
+
+
 def main() -> None:
     """Print one line of JSON per case."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--cases", type=int, default=200)
     parser.add_argument("--first", type=int, default=0)
+    parser.add_argument("--compare", action="store_true")
     asked = parser.parse_args()
+    if asked.compare:
+        for number in range(asked.first, asked.first + asked.cases):
+            compared(number, SEEDS)
+        return
     feasible, number = 0, asked.first
     while feasible < asked.cases:
         given, seed = case(number), number + 1

@@ -109,7 +109,7 @@ def test_units_and_names_of_a_csv_file(tmp_path: Path) -> None:
     with pytest.raises(UnitError, match=r"pull has no unit: give --unit N"):
         read_trace(path, value="pull")
     path.write_text("time [s],force [N]\n0,1\n1,l0\n")
-    with pytest.raises(UnreadableLogError, match=r"column force \[N\]: row 2 is 'l0', which is no number"):
+    with pytest.raises(UnreadableLogError, match=r"line 3, column 'force': 'l0' is not a number"):
         read_trace(path)
     path.write_text("time [s],a,b\n0,1,2\n")
     with pytest.raises(ChannelError, match="holds no force, torque or speed"):

@@ -83,8 +83,8 @@ def test_the_command_writes_and_counts(tmp_path: Path) -> None:
     [
         ("mass = 1", "", "lacks 'mass'"),
         ("mass = 1", "mass = -1", "mass is -1"),
-        ("mass = 1", "mass = '1 kg'", "plain number"),
-        ("mass = 1", "mass = true", "plain number"),
+        ("mass = 1", "mass = '1 kg'", "write a number"),
+        ("mass = 1", "mass = true", "write a number"),
         ("mass = 1", "mass = []", "empty"),
         ("mass = 1", "mass = nan", "mass"),
         ("mass = 1", "weight = 1", "weight"),

@@ -1,13 +1,141 @@
-"""Opening a TOML file, with errors that a person can act on."""
+"""A TOML file into tables, with errors that a person can act on.
+
+A table is a pydantic dataclass that says of each value what it is and what is believed::
+
+    @dataclass(frozen=True)
+    class Spring(Table):
+        stiffness: Annotated[float, Quantity("stiffness", 1.0, 1e10)]
+
+Read from a file the value is a string with its unit, ``"11 N/mm"``; made in Python it is in SI already.
+"""
 
 from __future__ import annotations
 
+import math
+import re
 import tomllib
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass as plain_dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, NamedTuple, TypeVar
 
-from hersey.errors import ParameterError
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    TypeAdapter,
+    ValidationError,
+    ValidationInfo,
+    model_validator,
+)
+from pydantic.dataclasses import dataclass
+from pydantic_core import CoreSchema, PydanticCustomError, core_schema
+
+from hersey.errors import ParameterError, UnitError
 from hersey.files.text import read_text
+from hersey.units import KINDS, parse
+
+Tables = TypeVar("Tables")
+
+#: Messages that go on with the sentence which the name of a value or a table begins, or with the name.
+_GOES_ON = re.compile(r"(is|has|holds|lacks|needs) |\.")
+#: No value of a file comes near this; a whole number of a file may have any number of digits.
+_LARGEST = 1e300
+#: The way out where a value is none of the type that is needed.
+_WAY_OUT = {
+    "string_type": "write a text",
+    "bool_type": "write true or false",
+    "literal_error": "write {expected}",
+}
+
+
+class Reading(NamedTuple):
+    """The file that is read, and whether its values are plain numbers in consistent units."""
+
+    path: Path
+    plain: bool = False
+
+
+@plain_dataclass(frozen=True)
+class Quantity:
+    """What a value is: kind of unit (none for a plain number), believed range in SI, an example."""
+
+    kind: str | None
+    low: float = -math.inf
+    high: float = math.inf
+    example: str = ""
+
+    def __get_pydantic_core_schema__(self, *_: object) -> CoreSchema:
+        """Let pydantic ask `checked`."""
+        return core_schema.with_info_plain_validator_function(self.checked)
+
+    def checked(self, given: Any, info: ValidationInfo[Any]) -> float:
+        """Return the value in SI if it is believed; what is made in Python is in SI."""
+        if info.context is None:
+            return float(given) if isinstance(given, int) else given
+        value = self._number(given) if self.kind is None or info.context.plain else self._with_unit(given)
+        if self.low > 0 >= value:
+            raise ParameterError(f"is {given}: it must be greater than 0")
+        if not self.low <= value <= self.high:
+            believed = f"{self.low:g} to {self.high:g} {self.unit}".rstrip()
+            raise ParameterError(f"is {given}: {believed} is believed")
+        return value
+
+    @property
+    def unit(self) -> str:
+        """SI unit, empty for a plain number."""
+        return KINDS[self.kind][0] if self.kind else ""
+
+    def parsed(self, text: str) -> float:
+        """Return the SI value of a string with its unit."""
+        assert self.kind is not None
+        return parse(self.kind, text)
+
+    def _with_unit(self, given: object) -> float:
+        if not isinstance(given, str):
+            such = f', such as "{self.example}"' if self.example else ""
+            raise UnitError(f"is {given}: write a string with its unit{such}")
+        return self.parsed(given)
+
+    def _number(self, given: object) -> float:
+        if isinstance(given, bool) or not isinstance(given, int | float) or not abs(given) < _LARGEST:
+            such = f" such as {self.example}" if self.example else ""
+            raise ParameterError(f"is {given!r}: write a number{such}")
+        return float(given)
+
+
+def _share(given: object, info: ValidationInfo[Any]) -> object:
+    if info.context is None:
+        return given
+    match = re.fullmatch(r"\s*(\d+\.?\d*)\s*%\s*", given) if isinstance(given, str) else None
+    if match is None or not 0 < float(match[1]) < 1000:
+        raise ParameterError(f"is {given!r}: write a share such as '20 %'")
+    return float(match[1]) / 100
+
+
+def _not_blank(text: str, info: ValidationInfo[Any]) -> str:
+    if info.context is not None and not text.strip():
+        raise ParameterError(f"is {text!r}: write a text")
+    return text
+
+
+#: A share such as ``"20 %"``, and a text that is not blank.
+Share = Annotated[float, BeforeValidator(_share)]
+Text = Annotated[str, AfterValidator(_not_blank)]
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table of a file, whose keys are all known."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _known(cls, table: Any) -> Any:
+        known = cls.__pydantic_fields__  # type: ignore[attr-defined]
+        unknown = sorted(set(table) - set(known)) if isinstance(table, dict) else []
+        if unknown:
+            raise PydanticCustomError("unknown", "{key}", {"key": unknown[0], "known": list(known)})
+        return table
 
 
 def read_toml(path: str | Path) -> dict[str, Any]:
@@ -23,5 +151,72 @@ def read_toml(path: str | Path) -> dict[str, Any]:
     path = Path(path)
     try:
         return tomllib.loads(read_text(path))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:  # a number of thousands of digits is no TOMLDecodeError
         raise ParameterError(f"{path.name} is not valid TOML: {error}") from None
+
+
+def read_tables(path: str | Path, kind: type[Tables], *, plain: bool = False) -> Tables:
+    """Return a file as the tables of ``kind``; ``plain``: its values are numbers in consistent units.
+
+    Raises
+    ------
+    MissingFileError, ParameterError, UnitError
+        Each names the file and the key, and says the way out.
+    """
+    path = Path(path)
+    try:
+        return TypeAdapter(kind).validate_python(read_toml(path), context=Reading(path, plain))
+    except ValidationError as error:
+        raise _mistake(path.name, error) from None
+
+
+@contextmanager
+def naming(place: str) -> Iterator[None]:
+    """Put file and place before the message of what is raised inside."""
+    try:
+        yield
+    except (ParameterError, UnitError) as error:
+        raise _named(place, error) from None
+
+
+def _mistake(file: str, error: ValidationError) -> ParameterError | UnitError:
+    """The first mistake in our own words; what is missing comes after what is wrong."""
+    first = min(error.errors(), key=lambda mistake: mistake["type"] == "missing")
+    about = first.get("ctx", {})
+    if first["type"] == "value_error":
+        return _named(f"{file}: {_place(first['loc'], first['input'])}", about["error"])
+    return ParameterError(f"{file}: {_told(first['type'], first['loc'], first['input'], about)}")
+
+
+def _told(kind: str, loc: tuple[str | int, ...], given: object, about: Mapping[str, Any]) -> str:
+    """What is wrong, and the way out, of a mistake that pydantic knows."""
+    match kind:
+        case "missing" if len(loc) == 1:
+            return f"there is no table [{loc[0]}]"
+        case "missing":
+            return f"{_place(loc[:-1], {})} lacks '{loc[-1]}'"
+        case "unknown" if not loc:
+            tables = ", ".join(f"[{name}]" for name in about["known"])
+            return f"there is no table '{about['key']}': {tables} are known"
+        case "unknown":
+            return f"{_place(loc, {})} has no key '{about['key']}': {', '.join(about['known'])} are known"
+        case "dataclass_type" | "dict_type":
+            return f"{_place(loc, given)} is not a table: write [{loc[0]}]"
+    way_out = _WAY_OUT.get(kind, "another kind of value is needed")
+    return f"{_place(loc, given)} is {given!r}: {way_out.format(**about)}"
+
+
+def _place(loc: tuple[str | int, ...], given: object) -> str:
+    """``[table]``, ``points 1`` or ``table.key``; the number of a value in a list is left out."""
+    if len(loc) == 1 and isinstance(given, dict):
+        return f"[{loc[0]}]"
+    rows = f" {loc[1] + 1}" if len(loc) > 1 and isinstance(loc[1], int) else ""
+    return ".".join([f"{loc[0]}{rows}", *(name for name in loc[1:] if isinstance(name, str))])
+
+
+def _named(place: str, error: Exception) -> ParameterError | UnitError:
+    """The error with the place before its message."""
+    text = str(error)
+    goes_on = _GOES_ON.match(text)
+    told = f"{place}{'' if text.startswith('.') else ' ' if goes_on else ': '}{text}"
+    return UnitError(told) if isinstance(error, UnitError) else ParameterError(told)

@@ -10,7 +10,7 @@ waveform          the mean cycle of a trace, and of the model
 independence      which parameters a trace tells apart, in words
 drive_fit         the drive that makes the mean cycle, and others that do nearly as well
 identified_drive  closure, parameters and intervals from the fits
-trace_file        a trace read from CSV or MAT
+trace_file        a trace read from a file of any format of a log
 ================  ======================================================================
 
 A trace is the force of the spring (or the torque of a torsional spring) against time at one constant drive

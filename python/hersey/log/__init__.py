@@ -6,6 +6,7 @@ text         CSV and its relatives
 recording    what a file of any other format holds: channels with clocks of their own
 formats      one reader per format, and which one opens a file
 channels     which column plays which role
+columns      columns as they stand, for readers with roles of their own
 assembly     from a recording to a run on the clock of the torque
 reading      `read`: from files to a log
 corrections  what lies between sensor and film, taken off with a record
@@ -16,8 +17,20 @@ A further format is one more context manager that yields a `Recording`, entered 
 """
 
 from hersey.log.channels import ChannelChoice
+from hersey.log.columns import OpenColumns, open_columns
 from hersey.log.formats import READERS
 from hersey.log.reading import list_channels, read
 from hersey.log.torque_log import Channel, LogFile, Run, TorqueLog
 
-__all__ = ["READERS", "Channel", "ChannelChoice", "LogFile", "Run", "TorqueLog", "list_channels", "read"]
+__all__ = [
+    "READERS",
+    "Channel",
+    "ChannelChoice",
+    "LogFile",
+    "OpenColumns",
+    "Run",
+    "TorqueLog",
+    "list_channels",
+    "open_columns",
+    "read",
+]

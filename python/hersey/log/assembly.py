@@ -127,18 +127,18 @@ class Assembly:
 
     def _part(self, role: str, choices: dict[str, ChannelChoice], torque: Column | None) -> _Part:
         file = self.source.name
-        found = None
+        channel = None
         if torque is not None and not choices[role].name:  # the part of the file that holds the torque first
             beside = tuple(c for c in self.columns if c.group == torque.group and c != torque)
-            found = find_channel(role, beside, choices[role], file)
-        if found is None:
-            found = find_channel(role, self.columns, choices[role], file)
-        if found is None:
+            channel = find_channel(role, beside, choices[role], file)
+        if channel is None:
+            channel = find_channel(role, self.columns, choices[role], file)
+        if channel is None:
             error = no_channel(role, self.columns, file)
             if role == "temperature":
                 error.args = (*error.args, "or say --isothermal to leave temperature out")
             raise error
-        column, unit = found
+        column, unit = channel
         for other in getattr(self, "parts", {}).values():
             if other.column == column:
                 raise ChannelError(f"{file}: column '{column}' cannot be both {other.role} and {role}")
@@ -173,13 +173,13 @@ class Assembly:
             for c in self.columns
             if c != column and self._may_time(c, signal, column, bool(choice.name))
         )
-        found = find_channel("time", beside, choice, file) if beside or choice.name else None
-        if found is None:
+        clock = find_channel("time", beside, choice, file) if beside or choice.name else None
+        if clock is None:
             raise ChannelError(
                 f"{file}: no time channel with {signal.rows} samples stands beside '{column}' among "
                 f"{', '.join(repr(str(c)) for c in self.columns[:40])}: name it with --time"
             )
-        chosen, unit = found
+        chosen, unit = clock
         tick = f"column {chosen.index}"
         if tick not in self._clocks:
             with np.errstate(over="ignore", invalid="ignore"):
@@ -258,11 +258,12 @@ def nothing_to_read(recording: Recording, file: str) -> ChannelError:
 
 def _aligned(part: _Part, torque: _Part) -> str:
     """What was done to a channel with a clock of its own."""
-    own, its = (float(np.median(np.diff(p.time))) for p in (part, torque))
+    step, of_torque = (float(np.median(np.diff(p.time))) for p in (part, torque))
     longest = float(np.max(np.diff(part.time)))
-    faster = "; it was recorded faster, values between were passed over" if own < 0.75 * its else ""
+    faster = "; it was recorded faster, values between were passed over" if step < 0.75 * of_torque else ""
     return (
-        f"{part.role} '{part.column.path}' has a clock of its own ({_rate(own)}, torque {_rate(its)}): "
+        f"{part.role} '{part.column.path}' has a clock of its own ({_rate(step)}, "
+        f"torque {_rate(of_torque)}): "
         f"interpolated linearly onto the torque's, over {longest:.3g} s at the most{faster}"
     )
 

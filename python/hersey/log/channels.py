@@ -66,31 +66,32 @@ def no_channel(role: str, columns: tuple[Column, ...], file: str) -> ChannelErro
     return ChannelError(f"{file}: no {role} column among {_listed(columns)}: name it with --{role}")
 
 
-def _named(role: str, columns: tuple[Column, ...], name: str, file: str) -> Column:
-    def spellings(c: Column) -> set[str]:
-        return {
-            c.name,
-            c.path,
-            str(c),
-            f"{c.path} ({c.unit})",
-            f"{c.name} ({c.unit})",
-            f"{c.name} [{c.unit}]",
-        }
-
-    found = [c for c in columns if name in spellings(c)]
-    found = found or [c for c in columns if name.lower() in {s.lower() for s in spellings(c)}]
+def called(name: str, columns: tuple[Column, ...]) -> list[Column]:
+    """Return the columns that a person may mean by a name; ``name#2`` is the second one of a name."""
+    exact = [c for c in columns if name in _spellings(c)]
+    same = exact or [c for c in columns if name.lower() in {s.lower() for s in _spellings(c)}]
     repeated = re.fullmatch(r"(.+)#([1-9]\d?)", name)
-    if not found and repeated:  # the second column of a name is name#2
-        found = [c for c in columns if repeated[1].lower() in {s.lower() for s in spellings(c)}]
-        found = found[int(repeated[2]) - 1 : int(repeated[2])]
-    if not found:
+    if same or not repeated:
+        return same
+    same = [c for c in columns if repeated[1].lower() in {s.lower() for s in _spellings(c)}]
+    return same[int(repeated[2]) - 1 : int(repeated[2])]
+
+
+def _spellings(c: Column) -> set[str]:
+    with_unit = (f"{c.path} ({c.unit})", f"{c.name} ({c.unit})", f"{c.name} [{c.unit}]", f"{c.name}_{c.unit}")
+    return {c.name, c.path, str(c), *with_unit}
+
+
+def _named(role: str, columns: tuple[Column, ...], name: str, file: str) -> Column:
+    same = called(name, columns)
+    if not same:
         raise ChannelError(f"{file}: --{role}: there is no column '{name}'; the file has {_listed(columns)}")
-    if len(found) > 1 and len({c.path for c in found}) == 1:
-        raise _repeated(role, found, file)
-    if len(found) > 1:
-        listed = " or ".join(f"'{c}'" for c in found)
-        raise ChannelError(f"{file}: --{role}: '{name}' could be {listed}: say --{role} '{found[0].path}'")
-    return found[0]
+    if len(same) > 1 and len({c.path for c in same}) == 1:
+        raise _repeated(role, same, file)
+    if len(same) > 1:
+        listed = " or ".join(f"'{c}'" for c in same)
+        raise ChannelError(f"{file}: --{role}: '{name}' could be {listed}: say --{role} '{same[0].path}'")
+    return same[0]
 
 
 def _repeated(role: str, columns: list[Column], file: str) -> ChannelError:

@@ -8,15 +8,17 @@ written with its unit.
 from __future__ import annotations
 
 import json
-import math
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
+
+from pydantic import BeforeValidator, ValidationInfo
+from pydantic.dataclasses import dataclass
 
 from hersey.errors import ChannelError, HerseyError, ParameterError, UnitError
-from hersey.files.toml import read_toml
+from hersey.files.toml import Quantity, Table, Text, naming, read_tables
 from hersey.log import corrections
 from hersey.log.channels import ROLES, ChannelChoice, find_channel
 from hersey.log.corrections import Corrected
@@ -24,7 +26,7 @@ from hersey.log.reading import list_channels, read
 from hersey.log.text.delimited import Progress
 from hersey.log.text.layout import Column
 from hersey.log.torque_log import LogFile
-from hersey.units import conversion, parse, registry
+from hersey.units import conversion, registry
 
 #: A mapping for every log in its directory; one for a single log is called after it, ``bench.hersey.toml``.
 FILE_NAME = "hersey.toml"
@@ -34,60 +36,104 @@ _AMOUNT = re.compile(
     rf"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*({_FACTOR}(?:\s*[*/.·]\s*{_FACTOR}){{0,4}})\s*"
 )
 
-#: Keys of each role's table, and the kind of value: a key of `_LIMITS`, ``text`` or ``log``.
-_KEYS: dict[str, dict[str, str]] = {
-    "time": {"channel": "text", "unit": "text"},
-    "torque": {
-        "channel": "text",
-        "unit": "text",
-        "sign": "sign",
-        "motor_constant": "motor constant",
-        "tare": "torque",
-        "no_load": "no-load torque",
-        "gear_ratio": "gear ratio",
-        "efficiency": "efficiency",
-        "inertia": "moment of inertia",
-    },
-    "speed": {"channel": "text", "unit": "text", "sign": "sign", "gear_ratio": "gear ratio"},
-    "temperature": {
-        "channel": "text",
-        "unit": "text",
-        "offset": "temperature difference",
-        "time_constant": "duration",
-    },
-}
-#: SI unit (empty for plain numbers), an example, least and greatest value believed.
-_LIMITS: dict[str, tuple[str, str, float, float]] = {
-    "motor constant": ("N*m/A", "35 mN*m/A", 1e-6, 1e3),
-    "torque": ("N*m", "4 mN*m", -1e6, 1e6),
-    "no-load torque": ("N*m", "4 mN*m", 0.0, 1e6),
-    "gear ratio": ("", "12.5", 1e-4, 1e4),
-    "efficiency": ("", "0.9", 0.05, 1.0),
-    "moment of inertia": ("kg*m^2", "2e-4 kg*m^2", 1e-12, 1e6),
-    "temperature difference": ("K", "-1.5 K", -100.0, 100.0),
-    "duration": ("s", "4 s", 1e-3, 1e4),
-}
+#: SI units of what no log holds.
+_UNITS = {"motor constant": "N*m/A", "moment of inertia": "kg*m^2", "temperature difference": "K"}
+
+
+class _Amount(Quantity):
+    """A quantity of a kind that no log holds."""
+
+    @property
+    def unit(self) -> str:
+        """SI unit."""
+        return _UNITS[str(self.kind)]
+
+    def parsed(self, text: str) -> float:
+        """Return the SI value of a text such as ``"35 mN*m/A"``."""
+        match = _AMOUNT.fullmatch(text)
+        try:
+            if match is None:
+                raise ValueError(text)
+            unit = registry.parse_units(re.sub("[.·]", "*", match[2]))
+            if self.kind == "temperature difference" and str(unit).startswith("degree"):
+                raise ValueError(text)
+            return float(registry.Quantity(float(match[1]), unit).to(self.unit).magnitude)
+        except Exception:  # pint raises many kinds, from its tokenizer too
+            raise UnitError(
+                f"is '{text}': write a number and a unit of {self.kind}, such as \"{self.example}\""
+            ) from None
+
+
+class _NoLoad(Quantity):
+    """A torque, or a log of it beside the mapping, unless its path is absolute."""
+
+    def checked(self, given: Any, info: ValidationInfo[Any]) -> Any:
+        """Return the torque in SI or the path."""
+        if info.context is None or not isinstance(given, str) or _AMOUNT.fullmatch(given):
+            return super().checked(given, info)
+        named = info.context.path.parent / given
+        if not named.is_file():
+            raise ParameterError(f"is '{given}': write a torque such as \"4 mN*m\", or a log that is there")
+        return named
+
+
+def _sign(given: object) -> object:
+    if isinstance(given, bool) or given not in (1, -1):
+        raise ParameterError(f"is {given!r}: write 1 or -1")
+    return given
+
+
+_Sign = Annotated[int, BeforeValidator(_sign)]
+_GearRatio = Annotated[float, Quantity(None, 1e-4, 1e4, "12.5")]
 
 
 @dataclass(frozen=True)
-class RoleMapping:
-    """What a mapping says of one role, in SI; ``channel`` and ``unit`` are empty where the log is to tell."""
+class RoleMapping(Table):
+    """What a mapping says of one role; ``channel`` and ``unit`` are empty where the log is to tell."""
 
-    channel: str = ""
-    unit: str = ""
-    sign: int = 1
-    gear_ratio: float = 1.0
-    efficiency: float = 1.0
-    tare: float = 0.0
-    no_load: float | Path = 0.0
-    inertia: float = 0.0
-    motor_constant: float | None = None
-    offset: float = 0.0
-    time_constant: float = 0.0
+    channel: Text = ""
+    unit: Text = ""
 
 
 @dataclass(frozen=True)
-class LogMapping:
+class TorqueMapping(RoleMapping):
+    """What it says of the torque, in SI; ``no_load`` is a torque or a log."""
+
+    sign: _Sign = 1
+    motor_constant: Annotated[float, _Amount("motor constant", 1e-6, 1e3, "35 mN*m/A")] | None = None
+    tare: Annotated[float, Quantity("torque", -1e6, 1e6, "4 mN*m")] = 0.0
+    no_load: Annotated[float | Path, _NoLoad("torque", 0.0, 1e6, "4 mN*m")] = 0.0
+    gear_ratio: _GearRatio = 1.0
+    efficiency: Annotated[float, Quantity(None, 0.05, 1.0, "0.9")] = 1.0
+    inertia: Annotated[float, _Amount("moment of inertia", 1e-12, 1e6, "2e-4 kg*m^2")] = 0.0
+
+
+@dataclass(frozen=True)
+class SpeedMapping(RoleMapping):
+    """What it says of the speed."""
+
+    sign: _Sign = 1
+    gear_ratio: _GearRatio = 1.0
+
+
+@dataclass(frozen=True)
+class TemperatureMapping(RoleMapping):
+    """What it says of the temperature, in SI: film minus reading, and the lag of the sensor."""
+
+    offset: Annotated[float, _Amount("temperature difference", -100.0, 100.0, "-1.5 K")] = 0.0
+    time_constant: Annotated[float, Quantity("time", 1e-3, 1e4, "4 s")] = 0.0
+
+
+@dataclass(frozen=True)
+class _Roles(Table):
+    time: RoleMapping = field(default_factory=RoleMapping)
+    torque: TorqueMapping = field(default_factory=TorqueMapping)
+    speed: SpeedMapping = field(default_factory=SpeedMapping)
+    temperature: TemperatureMapping = field(default_factory=TemperatureMapping)
+
+
+@dataclass(frozen=True)
+class LogMapping(_Roles):
     """Roles of the channels of a log, and what must be corrected.
 
     Attributes
@@ -98,21 +144,17 @@ class LogMapping:
         File that it was read from, or none.
     """
 
-    time: RoleMapping = field(default_factory=RoleMapping)
-    torque: RoleMapping = field(default_factory=RoleMapping)
-    speed: RoleMapping = field(default_factory=RoleMapping)
-    temperature: RoleMapping = field(default_factory=RoleMapping)
     source: Path | None = None
 
     @property
     def channels(self) -> dict[str, str]:
         """Column name by role, where one is stated, as `hersey.read` takes it."""
-        return {role: own.channel for role in ROLES if (own := getattr(self, role)).channel}
+        return {role: channel for role in ROLES if (channel := getattr(self, role).channel)}
 
     @property
     def units(self) -> dict[str, str]:
         """Unit by role, where one is stated, as `hersey.read` takes it; amperes stand in the place of N m."""
-        stated = {role: own.unit for role in ROLES if (own := getattr(self, role)).unit}
+        stated = {role: unit for role in ROLES if (unit := getattr(self, role).unit)}
         if self.torque.motor_constant is not None:
             stated["torque"] = f"{_ampere(self.torque.unit):.12g} N*m"
         return stated
@@ -167,18 +209,22 @@ def read_mapping(path: str | Path) -> LogMapping:
         Each names the file and the key.
     """
     path = Path(path)
-    document = read_toml(path)
-    unknown = sorted(set(document) - set(ROLES))
-    if unknown:
-        raise ParameterError(f"{path.name}: there is no table '{unknown[0]}': {', '.join(ROLES)} are known")
-    roles = {role: _role(path, role, document[role]) for role in ROLES if role in document}
-    mapping = LogMapping(**roles, source=path)
-    if mapping.torque.motor_constant is not None:
-        try:
-            _ampere(mapping.torque.unit)
-        except UnitError as error:
-            raise UnitError(f"{path.name}: torque.unit: {error}") from None
+    mapping = LogMapping(**vars(read_tables(path, _Roles)), source=path)
+    for role in ROLES:
+        with naming(f"{path.name}: {role}.unit"):
+            _check_unit(role, getattr(mapping, role).unit, mapping.torque.motor_constant)
     return mapping
+
+
+def _check_unit(role: str, unit: str, motor_constant: float | None) -> None:
+    if role == "torque" and motor_constant is not None:
+        _ampere(unit)
+    elif unit:
+        try:
+            conversion(role, unit)
+        except UnitError as error:
+            hint = "; a motor's current needs motor_constant" if role == "torque" else ""
+            raise UnitError(f"{error}{hint}") from None
 
 
 def find_mapping(path: str | Path) -> Path | None:
@@ -221,14 +267,14 @@ def read_with_mapping(
     ()
     """
     files = [paths] if isinstance(paths, str | Path) else list(paths)
-    own = _without_temperature if isothermal else dict
+    needed = _without_temperature if isothermal else dict
     chosen = mapping if isinstance(mapping, LogMapping) else mapping_of(files, mapping)
     chosen = _outranked(chosen, channels or {}, units or {})
     try:
         log = read(
             files,
-            channels={**own(chosen.channels), **(channels or {})},
-            units={**own(chosen.units), **(units or {})},
+            channels={**needed(chosen.channels), **(channels or {})},
+            units={**needed(chosen.units), **(units or {})},
             isothermal=isothermal,
             drop_missing=drop_missing,
             progress=progress,
@@ -296,13 +342,13 @@ _EXAMPLES = {
 
 def _proposed(role: str, columns: tuple[Column, ...], choice: ChannelChoice, file: str) -> list[str]:
     try:
-        found = find_channel(role, columns, choice, file)
+        channel = find_channel(role, columns, choice, file)
         said = "no channel of the log is called so or has such a unit"
     except HerseyError as error:
-        found, said = None, str(error).removeprefix(f"{file}: ")
-    if found is None:
+        channel, said = None, str(error).removeprefix(f"{file}: ")
+    if channel is None:
         return [f"# [{role}]", f"# {said}", '# channel = ""', '# unit = ""']
-    column, unit = found
+    column, unit = channel
     stated = [f"channel = {_quoted(column.path)}", f"unit = {_quoted(unit.unit)}"]
     return [f"[{role}]", *stated, *_EXAMPLES[role]]
 
@@ -321,11 +367,11 @@ def mapping_of(files: Sequence[str | Path], stated: str | Path | None = None) ->
     """
     if stated is not None:
         return read_mapping(stated)
-    found = {find_mapping(file) for file in files}
-    if len(found) > 1:
-        names = ", ".join(sorted(f"'{path.name}'" if path else "none" for path in found))
+    beside = {find_mapping(file) for file in files}
+    if len(beside) > 1:
+        names = ", ".join(sorted(f"'{path.name}'" if path else "none" for path in beside))
         raise ParameterError(f"the logs have different mappings ({names}): name one with --mapping")
-    only = next(iter(found), None)
+    only = next(iter(beside), None)
     return LogMapping() if only is None else read_mapping(only)
 
 
@@ -350,84 +396,6 @@ def _as_written(file: LogFile, mapping: LogMapping) -> LogFile:
     unit = mapping.torque.unit or "A"
     used = tuple(replace(c, unit=unit) if c.role == "torque" else c for c in file.channels)
     return replace(file, notes=notes, channels=used)
-
-
-def _role(path: Path, role: str, table: object) -> RoleMapping:
-    if not isinstance(table, dict):
-        raise ParameterError(f"{path.name}: {role} is not a table: write [{role}]")
-    known = _KEYS[role]
-    unknown = sorted(set(table) - set(known))
-    if unknown:
-        raise ParameterError(f"{path.name}: [{role}] has no key '{unknown[0]}': {', '.join(known)} are known")
-    values = {key: _value(path, f"{role}.{key}", value, known[key]) for key, value in table.items()}
-    if "unit" in values and "motor_constant" not in values and values["unit"]:
-        try:
-            conversion(role, values["unit"])
-        except UnitError as error:
-            hint = "; a motor's current needs motor_constant" if role == "torque" else ""
-            raise UnitError(f"{path.name}: {role}.unit: {error}{hint}") from None
-    return RoleMapping(**values)
-
-
-def _value(path: Path, key: str, value: object, kind: str) -> Any:
-    if kind == "text":
-        if not isinstance(value, str) or not value.strip():
-            raise ParameterError(f"{path.name}: {key} is {value!r}: write a text")
-        return value
-    if kind == "sign":
-        if isinstance(value, bool) or value not in (1, -1):
-            raise ParameterError(f"{path.name}: {key} is {value!r}: write 1 or -1")
-        return value
-    if kind == "no-load torque" and isinstance(value, str) and _AMOUNT.fullmatch(value) is None:
-        return _other_log(path, key, value)
-    si, example, low, high = _LIMITS[kind]
-    number = _amount(path, key, value, kind) if si else _plain(path, key, value, example)
-    if not low <= number <= high:
-        raise ParameterError(
-            f"{path.name}: {key} is {value}: {low:g} to {high:g} {si}".rstrip() + " is believed"
-        )
-    return number
-
-
-def _plain(path: Path, key: str, value: object, example: str) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        raise ParameterError(f"{path.name}: {key} is {value!r}: write a number such as {example}")
-    return float(value)
-
-
-def _amount(path: Path, key: str, value: object, kind: str) -> float:
-    """SI value of a text such as ``"35 mN*m/A"``."""
-    si, example, *_ = _LIMITS[kind]
-    if not isinstance(value, str):
-        raise UnitError(f'{path.name}: {key} is {value}: write a string with its unit, such as "{example}"')
-    if kind in ("torque", "no-load torque", "duration"):
-        try:
-            return parse("time" if kind == "duration" else "torque", value)
-        except UnitError as error:
-            raise UnitError(f"{path.name}: {key}: {error}") from None
-    match = _AMOUNT.fullmatch(value)
-    try:
-        if match is None:
-            raise ValueError(value)
-        unit = registry.parse_units(re.sub("[.·]", "*", match[2]))
-        if kind == "temperature difference" and str(unit).startswith("degree"):
-            raise ValueError(value)
-        number = float(registry.Quantity(float(match[1]), unit).to(si).magnitude)
-    except Exception:  # pint raises many kinds, from its tokenizer too
-        raise UnitError(
-            f"{path.name}: {key} is '{value}': write a number and a unit of {kind}, such as \"{example}\""
-        ) from None
-    return number
-
-
-def _other_log(path: Path, key: str, value: str) -> Path:
-    """A log named in a mapping, beside it unless its path is absolute."""
-    named = path.parent / value
-    if not named.is_file():
-        raise ParameterError(
-            f"{path.name}: {key} is '{value}': write a torque such as \"4 mN*m\", or a log that is there"
-        )
-    return named
 
 
 def _ampere(unit: str) -> float:

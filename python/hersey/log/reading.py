@@ -103,18 +103,18 @@ def list_channels(path: Any) -> list[tuple[str, str]]:
     ('Drive torque', 'N*m')
     """
     if is_frame(path):
-        found = columns(frame_recording(path)[0])
+        listed = columns(frame_recording(path)[0])
     elif reader := opener(path := Path(path)):
         with opened(path, reader) as recording:
-            found = columns(recording)
-            if not found and recording.nothing:
+            listed = columns(recording)
+            if not listed and recording.nothing:
                 raise nothing_to_read(recording, path.name)
     else:
-        found = delimited_columns(path)
-    names = [column.path for column in found]
+        listed = delimited_columns(path)
+    names = [column.path for column in listed]
     return [
         (f"{name}#{names[:i].count(name) + 1}" if names.count(name) > 1 else name, column.unit)
-        for i, (name, column) in enumerate(zip(names, found, strict=True))
+        for i, (name, column) in enumerate(zip(names, listed, strict=True))
     ]
 
 

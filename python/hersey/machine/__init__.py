@@ -4,7 +4,7 @@
 machine              `Machine` and the file as a whole; limits and operating points
 nip                  the tables of contact and lubricant
 uncertainty          how far a parameter is known
-temperature_profile  temperature against time, from a CSV file
+temperature_profile  temperature against time, from a file
 ===================  ==============================================================
 """
 

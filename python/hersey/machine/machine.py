@@ -3,39 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass as plain_dataclass
+from dataclasses import field
 from pathlib import Path
+from typing import Annotated, Any
 
-from hersey.errors import ParameterError, UnitError
-from hersey.files.toml import read_toml
-from hersey.files.toml_values import values
+from pydantic import BeforeValidator
+from pydantic.dataclasses import dataclass
+
+from hersey.errors import ParameterError
+from hersey.files.toml import Quantity, Table, Text, naming, read_tables
 from hersey.lubrication.contact import Contact
 from hersey.lubrication.lubricant import Lubricant
-from hersey.machine.nip import read_contact, read_lubricant
+from hersey.machine.nip import ContactTable, LubricantTable
 from hersey.machine.uncertainty import Uncertainty, read_uncertainty
 from hersey.motion.simulation import Drivetrain
 
-#: Kind of unit, least and greatest value that a sliding drive could have, in SI.
-_DRIVETRAIN = {
-    "stiffness": ("stiffness", 1.0, 1e10),
-    "mass": ("mass", 1e-6, 1e6),
-    "roll_radius": ("length", 1e-5, 100.0),
-    "stick_speed": ("belt speed", 1e-9, 10.0),
-}
-_LIMITS = {
-    "motor_torque": ("torque", 1e-6, 1e6),
-    "roll_friction": (None, 1e-3, 10.0),
-    "nip_load": ("force", 1e-3, 1e7),
-    "acceleration": ("acceleration", 1e-6, 1e5),
-    "speed": ("belt speed", 1e-6, 1e3),
-    "spring_force": ("force", 1e-6, 1e7),
-}
-_POINT = {"speed": ("belt speed", 1e-6, 1e3), "temperature": ("temperature", 150.0, 1000.0)}
-_TABLES = ("drivetrain", "limits", "contact", "lubricant", "points", "uncertainty")
+_Speed = Annotated[float, Quantity("belt speed", 1e-6, 1e3)]
 
 
 @dataclass(frozen=True)
-class Limits:
+class Limits(Table):
     """What the machine can bear, in SI; none where nothing is stated.
 
     ``motor_torque`` (N m) at the roll, ``roll_friction`` (coefficient) and ``nip_load`` (N), whose product is
@@ -43,12 +31,12 @@ class Limits:
     ``spring_force`` (N) in the gear train.
     """
 
-    motor_torque: float | None = None
-    roll_friction: float | None = None
-    nip_load: float | None = None
-    acceleration: float | None = None
-    speed: float | None = None
-    spring_force: float | None = None
+    motor_torque: Annotated[float, Quantity("torque", 1e-6, 1e6)] | None = None
+    roll_friction: Annotated[float, Quantity(None, 1e-3, 10.0)] | None = None
+    nip_load: Annotated[float, Quantity("force", 1e-3, 1e7)] | None = None
+    acceleration: Annotated[float, Quantity("acceleration", 1e-6, 1e5)] | None = None
+    speed: _Speed | None = None
+    spring_force: Annotated[float, Quantity("force", 1e-6, 1e7)] | None = None
 
     @property
     def grip(self) -> float | None:
@@ -59,15 +47,15 @@ class Limits:
 
 
 @dataclass(frozen=True)
-class OperatingPoint:
+class OperatingPoint(Table):
     """A named state of the machine: belt speed (m/s) and temperature (K)."""
 
-    name: str
-    speed: float
-    temperature: float
+    name: Text
+    speed: _Speed
+    temperature: Annotated[float, Quantity("temperature", 150.0, 1000.0)]
 
 
-@dataclass(frozen=True)
+@plain_dataclass(frozen=True)
 class Machine:
     """The machine, in SI.
 
@@ -80,7 +68,7 @@ class Machine:
     mass: float
     roll_radius: float
     stick_speed: float
-    limits: Limits = Limits()
+    limits: Limits = field(default_factory=Limits)
     points: tuple[OperatingPoint, ...] = ()
     uncertainty: Mapping[str, Uncertainty] = field(default_factory=dict)
     contact: Contact | None = None
@@ -90,6 +78,31 @@ class Machine:
     def train(self) -> Drivetrain:
         """The drivetrain of the motion."""
         return Drivetrain(self.stiffness, self.mass)
+
+
+@dataclass(frozen=True)
+class _DrivetrainTable(Table):
+    stiffness: Annotated[float, Quantity("stiffness", 1.0, 1e10)]
+    mass: Annotated[float, Quantity("mass", 1e-6, 1e6)]
+    roll_radius: Annotated[float, Quantity("length", 1e-5, 100.0)]
+    stick_speed: Annotated[float, Quantity("belt speed", 1e-9, 10.0)]
+
+
+def _named(rows: object) -> object:
+    """Points, those without a name called after their number."""
+    if not isinstance(rows, list):
+        raise ParameterError("is no list: write each point as a table of its own, [[points]]")
+    return [{"name": f"point {i}", **row} if isinstance(row, dict) else row for i, row in enumerate(rows, 1)]
+
+
+@dataclass(frozen=True)
+class _MachineFile(Table):
+    drivetrain: _DrivetrainTable
+    limits: Limits = field(default_factory=Limits)
+    contact: ContactTable | None = None
+    lubricant: LubricantTable | None = None
+    points: Annotated[tuple[OperatingPoint, ...], BeforeValidator(_named)] = ()
+    uncertainty: dict[str, Any] = field(default_factory=dict)
 
 
 def read_machine(path: str | Path) -> Machine:
@@ -106,62 +119,22 @@ def read_machine(path: str | Path) -> Machine:
         Each names the file and the key.
     """
     path = Path(path)
-    document = read_toml(path)
-    if not isinstance(document.get("drivetrain"), dict):
-        raise ParameterError(f"{path.name}: there is no table [drivetrain]")
-    unknown = sorted(set(document) - set(_TABLES))
-    if unknown:
-        raise ParameterError(f"{path.name}: there is no table '{unknown[0]}': {', '.join(_TABLES)} are known")
-    own = values(path.name, "drivetrain", document["drivetrain"], _DRIVETRAIN)
-    for key in _DRIVETRAIN:
-        if key not in own:
-            raise ParameterError(f"{path.name}: [drivetrain] lacks '{key}'")
-    limits = values(path.name, "limits", document.get("limits", {}), _LIMITS)
+    tables = read_tables(path, _MachineFile)
+    uncertainty, contact, lubricant = {}, None, None
+    for parameter, text in tables.uncertainty.items():
+        with naming(f"{path.name}: uncertainty.{parameter}"):
+            uncertainty[parameter] = read_uncertainty(parameter, text)
+    if tables.contact is not None:
+        with naming(f"{path.name}: [contact]"):
+            contact = tables.contact.contact(tables.drivetrain.roll_radius, tables.limits.nip_load)
+    if tables.lubricant is not None:
+        with naming(f"{path.name}: [lubricant]"):
+            lubricant = tables.lubricant.lubricant()
     return Machine(
-        **own,
-        limits=Limits(**limits),
-        points=_points(path.name, document.get("points", [])),
-        uncertainty=_uncertainty(path.name, document.get("uncertainty", {})),
-        contact=_contact(path.name, document, own["roll_radius"], limits.get("nip_load")),
-        lubricant=read_lubricant(path.name, document["lubricant"]) if "lubricant" in document else None,
+        **vars(tables.drivetrain),
+        limits=tables.limits,
+        points=tables.points,
+        uncertainty=uncertainty,
+        contact=contact,
+        lubricant=lubricant,
     )
-
-
-def _points(file: str, rows: object) -> tuple[OperatingPoint, ...]:
-    if not isinstance(rows, list):
-        raise ParameterError(f"{file}: write each point as a table of its own, [[points]]")
-    points = []
-    for number, row in enumerate(rows, 1):
-        where = f"points {number}"
-        if not isinstance(row, dict):
-            raise ParameterError(f"{file}: {where} is not a table: write [[points]]")
-        name = row.get("name", f"point {number}")
-        if not isinstance(name, str) or not name.strip():
-            raise ParameterError(f"{file}: {where}: name is not a text")
-        stated = values(file, where, {key: v for key, v in row.items() if key != "name"}, _POINT)
-        for key in _POINT:
-            if key not in stated:
-                raise ParameterError(f"{file}: {where} lacks '{key}'")
-        points.append(OperatingPoint(name, **stated))
-    return tuple(points)
-
-
-def _uncertainty(file: str, table: object) -> dict[str, Uncertainty]:
-    if not isinstance(table, dict):
-        raise ParameterError(f"{file}: uncertainty is not a table: write [uncertainty]")
-    uncertainties = {}
-    for key, text in table.items():
-        try:
-            uncertainties[key] = read_uncertainty(key, text)
-        except UnitError as error:
-            raise UnitError(f"{file}: uncertainty.{key}: {error}") from None
-        except ParameterError as error:
-            raise error.within(f"{file}: uncertainty.{key}") from None
-    return uncertainties
-
-
-def _contact(file: str, document: Mapping[str, object], radius: float, load: float | None) -> Contact | None:
-    """The contact, with radius and load from the other tables where its own does not state them."""
-    if "contact" not in document:
-        return None
-    return read_contact(file, document["contact"], roll_radius=radius, load=load)

@@ -1,25 +1,27 @@
-"""A temperature profile from a CSV file: when the machine will be how warm."""
+"""A temperature profile from a file: when the machine will be how warm."""
 
 from __future__ import annotations
 
-import csv
-import re
 from contextlib import suppress
 from pathlib import Path
 
-from hersey.errors import ChannelError, ParameterError, UnreadableLogError
-from hersey.files.text import read_text
+from hersey.arrays import FloatArray
+from hersey.errors import ChannelError, ParameterError, UnitError, UnreadableLogError
+from hersey.log.columns import OpenColumns, open_columns
+from hersey.log.formats import opener
+from hersey.log.text.layout import Column
 from hersey.motion.schedule import Schedule
-from hersey.units import Conversion, conversion
+from hersey.units import conversion
 
 #: Points above which a temperature profile is no longer read: it is searched and simulated many times.
 MOST_POINTS = 2000
-#: Bytes that so many points could fill.
+#: Bytes of text that so many points could fill.
 _MOST_BYTES = 1_000_000
+_UNITS = {"time": "s", "temperature": "degC"}
 
 
 def read_temperature_profile(path: str | Path) -> Schedule:
-    """Read columns such as ``time [s]`` and ``temperature [degC]``, separated by commas or semicolons.
+    """Read columns such as ``time [s]`` and ``temperature [degC]`` of a file of any format of a log.
 
     Time is counted from the moment at which the drive could start; straight lines join the points.
 
@@ -29,54 +31,48 @@ def read_temperature_profile(path: str | Path) -> Schedule:
         Each names the file, and the line or column.
     """
     path = Path(path)
-    rows = [line for line in _text(path).splitlines() if line.strip() and not line.startswith("#")]
-    if len(rows) < 2:
-        raise UnreadableLogError(f"{path.name}: it needs a line of names and at least one point")
-    if len(rows) > MOST_POINTS + 1:
-        raise ParameterError(f"{path.name}: {len(rows) - 1} points, but {MOST_POINTS} are possible: thin it")
-    separator = ";" if ";" in rows[0] else ","
-    table = list(csv.reader(rows, delimiter=separator))
-    columns = {role: _column(path.name, table[0], role) for role in ("time", "temperature")}
-    times, values = [], []
-    for number, row in enumerate(table[1:], 2):
-        time, value = (_number(path.name, number, row, *columns[role]) for role in columns)
-        times.append(time)
-        values.append(value)
+    _refuse_long_text(path)
+    with open_columns(path) as opened:
+        if opened.headless:
+            raise UnreadableLogError(f"{path.name}: it needs a line of names and at least one point")
+        temperature = _column(opened, "temperature")
+        times = opened.clock(temperature)
+        if times is None:
+            time = _column(opened, "time")
+            times, values = opened.numbers(time, temperature, complete=True)
+            times = _in_si(path.name, "time", time, times)
+        else:
+            values = opened.numbers(temperature, complete=True)[0]
+    if values.size > MOST_POINTS:
+        raise ParameterError(f"{path.name}: {values.size} points, but {MOST_POINTS} are possible: thin it")
     try:
-        return Schedule(times, values)
+        return Schedule(times, _in_si(path.name, "temperature", temperature, values))
     except ParameterError as error:
         raise error.within(path.name) from None
 
 
-def _text(path: Path) -> str:
+def _refuse_long_text(path: Path) -> None:
     with suppress(OSError):  # reading it says what is wrong
-        if path.is_file() and path.stat().st_size > _MOST_BYTES:
+        if path.is_file() and path.stat().st_size > _MOST_BYTES and opener(path) is None:
             raise ParameterError(
                 f"{path.name} is too long for a temperature profile: {MOST_POINTS} points are possible"
             )
+
+
+def _column(opened: OpenColumns, role: str) -> Column:
+    named = [column for column in opened.columns if column.name.lower().startswith(role)]
+    example = f"write '{role} [{_UNITS[role]}]' in the first line"
+    if len(named) != 1:
+        what = "more than one column" if named else "no column"
+        raise ChannelError(f"{opened.file}: {what} named {role}: {example}")
+    if not named[0].unit:
+        raise ChannelError(f"{opened.file}: {role} has no unit: {example}")
+    return named[0]
+
+
+def _in_si(file: str, role: str, column: Column, values: FloatArray) -> FloatArray:
     try:
-        return read_text(path)
-    except UnicodeDecodeError:
-        raise UnreadableLogError(f"{path.name} is not text in UTF-8") from None
-
-
-def _column(file: str, names: list[str], role: str) -> tuple[int, Conversion]:
-    found = [i for i, name in enumerate(names) if name.strip().lower().startswith(role)]
-    if len(found) != 1:
-        what = "no column" if not found else "more than one column"
-        raise ChannelError(f"{file}: {what} named {role}: write '{role} [{_UNITS[role]}]' in the first line")
-    unit = re.search(r"[\[(](.+)[\])]", names[found[0]])
-    if unit is None:
-        raise ChannelError(f"{file}: {role} has no unit: write '{role} [{_UNITS[role]}]' in the first line")
-    return found[0], conversion(role, unit[1])
-
-
-_UNITS = {"time": "s", "temperature": "degC"}
-
-
-def _number(file: str, line: int, row: list[str], column: int, unit: Conversion) -> float:
-    text = row[column].strip() if column < len(row) else ""
-    try:
-        return unit.scale * float(text) + unit.offset
-    except ValueError:
-        raise UnreadableLogError(f"{file}: line {line}: '{text}' is no number") from None
+        unit = conversion(role, column.unit)
+    except UnitError as error:
+        raise UnitError(f"{file}: column '{column.path}': {error}") from None
+    return unit.scale * values + unit.offset

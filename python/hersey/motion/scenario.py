@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass as plain_dataclass
+from dataclasses import field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
+from pydantic import StrictBool, ValidationInfo
+from pydantic.dataclasses import dataclass
 
 from hersey.arrays import FloatArray
-from hersey.errors import ParameterError, UnitError
-from hersey.files.toml import read_toml
+from hersey.errors import ParameterError
+from hersey.files.toml import Quantity, Table, naming, read_tables, read_toml
 from hersey.motion.drag import Drag
-from hersey.motion.parameters import KINDS, PARAMETERS
+from hersey.motion.parameters import PARAMETERS
 from hersey.motion.simulation import TOLERANCE, Drivetrain
 from hersey.motion.sweep import sweep
-from hersey.units import parse
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -24,20 +26,8 @@ if TYPE_CHECKING:
 #: Most parameter sets of one sweep, which fit in some gigabytes.
 MOST_SETS = 20_000_000
 
-_TABLES = ("parameters", "options")
-_OPTIONS = (
-    "closure",
-    "bristle_stiffness",
-    "bristle_damping",
-    "start",
-    "duration",
-    "tolerance",
-    "units",
-    "zip",
-)
 
-
-@dataclass(frozen=True)
+@plain_dataclass(frozen=True)
 class Scenario:
     """Parameters (SI, or numbers in consistent units) and options of a sweep."""
 
@@ -86,6 +76,74 @@ class Scenario:
         )
 
 
+class _Values(Quantity):
+    """A value, a list of them, or a table ``{from, to, count}``."""
+
+    def checked(self, given: Any, info: ValidationInfo[Any]) -> Any:
+        """Return the values in SI, shape (count,)."""
+        if isinstance(given, dict):
+            return self._between(given, info)
+        if given == []:
+            raise ParameterError("is empty")
+        many = given if isinstance(given, list) else [given]
+        return np.array([super(_Values, self).checked(value, info) for value in many])
+
+    def _between(self, table: dict[str, Any], info: ValidationInfo[Any]) -> FloatArray:
+        keys = ("from", "to", "count", "spacing")
+        if unknown := sorted(set(table) - set(keys)):
+            raise ParameterError(f"has no key '{unknown[0]}': {', '.join(keys)} are known")
+        if lacking := [key for key in keys[:3] if key not in table]:
+            raise ParameterError(f"lacks '{lacking[0]}'")
+        ends = []
+        for key in keys[:2]:
+            with naming(f".{key}"):
+                ends.append(super().checked(table[key], info))
+        count, spacing = table["count"], table.get("spacing", "linear")
+        if not isinstance(count, int) or isinstance(count, bool) or not 1 <= count <= MOST_SETS:
+            raise ParameterError(f".count is {count}: write a whole number from 1 to {MOST_SETS:.0e}")
+        if spacing not in ("linear", "log"):
+            raise ParameterError(f".spacing is {spacing!r}: write linear or log")
+        if spacing == "log" and not ends[0] * ends[1] > 0:
+            raise ParameterError("needs two values of one sign, and none zero, for log spacing")
+        spaced = np.geomspace if spacing == "log" else np.linspace
+        return np.asarray(spaced(ends[0], ends[1], count), dtype=float)
+
+
+_Force = Annotated[Any, _Values("force")]
+_Speed = Annotated[Any, _Values("belt speed")]
+_Exponent = Annotated[Any, _Values(None)]
+
+
+@dataclass(frozen=True)
+class _ParametersTable(Table):
+    stiffness: Annotated[Any, _Values("stiffness")]
+    mass: Annotated[Any, _Values("mass")]
+    transition_force: _Force
+    transition_speed: _Speed
+    ehl_exponent: _Exponent
+    mixed_exponent: _Exponent
+    stick_speed: _Speed
+    drive_speed: _Speed
+
+
+@dataclass(frozen=True)
+class _OptionsTable(Table):
+    closure: str = "retained"
+    bristle_stiffness: Annotated[float, Quantity("stiffness")] | None = None
+    bristle_damping: Annotated[float, Quantity("translational damping")] | None = None
+    start: str = "rest"
+    duration: Annotated[float, Quantity("time")] | None = None
+    tolerance: Annotated[float, Quantity(None)] = TOLERANCE
+    units: Literal["SI", "consistent"] = "SI"
+    zip: StrictBool = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class _ScenarioFile(Table):
+    options: _OptionsTable = field(default_factory=_OptionsTable)
+    parameters: _ParametersTable
+
+
 def read_scenario(path: str | Path) -> Scenario:
     """Read a scenario: a table ``[parameters]`` with all eight, and ``[options]``.
 
@@ -99,96 +157,16 @@ def read_scenario(path: str | Path) -> Scenario:
         Each names the file and the key.
     """
     path = Path(path)
-    document = read_toml(path)
-    _refuse_unknown(path.name, "table", document, _TABLES)
-    options = _table(path.name, document, "options", required=False)
-    given = _table(path.name, document, "parameters", required=True)
-    _refuse_unknown(path.name, "option", options, _OPTIONS)
-    _refuse_unknown(path.name, "parameter", given, PARAMETERS)
-    units = options.get("units", "SI")
-    if units not in ("SI", "consistent"):
-        raise ParameterError(
-            f"{path.name}: options.units is {units!r}: 'SI' (each value with its unit) or 'consistent'"
-        )
-    plain = units == "consistent"
-    parameters = {}
-    for name in PARAMETERS:
-        if name not in given:
-            raise ParameterError(f"{path.name}: [parameters] lacks '{name}'")
-        where = f"{path.name}: parameters.{name}"
-        parameters[name] = _values(where, None if plain else KINDS[name], given[name])
-
-    def option(name: str, kind: str, default: float | None) -> float | None:
-        if name not in options:
-            return default
-        return float(_number(f"{path.name}: options.{name}", None if plain else kind, options[name]))
-
-    tolerance = _number(f"{path.name}: options.tolerance", None, options.get("tolerance", TOLERANCE))
-    scenario = Scenario(
-        parameters=parameters,
-        closure=str(options.get("closure", "retained")),
-        bristle_stiffness=option("bristle_stiffness", "stiffness", None),
-        bristle_damping=option("bristle_damping", "translational damping", None),
-        start=str(options.get("start", "rest")),
-        duration=option("duration", "time", None),
-        tolerance=tolerance,
-        zip=bool(options.get("zip", False)),
-    )
+    tables = read_tables(path, _ScenarioFile, plain=_is_plain(read_toml(path).get("options")))
+    options = {key: value for key, value in vars(tables.options).items() if key != "units"}
+    scenario = Scenario(parameters=vars(tables.parameters), **options)
     if scenario.sets > MOST_SETS:
         raise ParameterError(f"{path.name}: {scenario.sets:.3g} parameter sets are more than {MOST_SETS:.0e}")
     return scenario
 
 
-def _table(file: str, document: dict[str, Any], name: str, *, required: bool) -> dict[str, Any]:
-    table = document.get(name, None if required else {})
-    if not isinstance(table, dict):
-        raise ParameterError(f"{file}: there is no table [{name}]")
-    return table
-
-
-def _refuse_unknown(file: str, what: str, given: dict[str, Any], known: tuple[str, ...]) -> None:
-    unknown = sorted(set(given) - set(known))
-    if unknown:
-        raise ParameterError(f"{file}: there is no {what} '{unknown[0]}': {', '.join(known)}")
-
-
-def _values(where: str, kind: str | None, given: object) -> FloatArray:
-    if isinstance(given, list):
-        if not given:
-            raise ParameterError(f"{where} is empty")
-        return np.array([_number(where, kind, item) for item in given])
-    if isinstance(given, dict):
-        _refuse_unknown(where, "key", given, ("from", "to", "count", "spacing"))
-        for key in ("from", "to", "count"):
-            if key not in given:
-                raise ParameterError(f"{where} lacks '{key}'")
-        low, high = (_number(f"{where}.{key}", kind, given[key]) for key in ("from", "to"))
-        count, spacing = given["count"], given.get("spacing", "linear")
-        if not isinstance(count, int) or isinstance(count, bool) or not 1 <= count <= MOST_SETS:
-            raise ParameterError(
-                f"{where}.count is {count}: a whole number from 1 to {MOST_SETS:.0e} is needed"
-            )
-        if spacing == "linear":
-            return np.linspace(low, high, count)
-        if spacing != "log":
-            raise ParameterError(f"{where}.spacing is {spacing!r}: linear or log")
-        if not low * high > 0:
-            raise ParameterError(f"{where}: log spacing needs two values of one sign, and none zero")
-        return np.asarray(np.geomspace(low, high, count))
-    return np.array([_number(where, kind, given)])
-
-
-def _number(where: str, kind: str | None, given: object) -> float:
-    if kind is None:
-        if isinstance(given, bool) or not isinstance(given, (int, float)):
-            raise ParameterError(f"{where} is {given!r}: a plain number is needed")
-        return float(given)
-    if not isinstance(given, str):
-        raise UnitError(f"{where} is {given}: write a string with its unit")
-    try:
-        return parse(kind, given)
-    except UnitError as error:
-        raise UnitError(f"{where}: {error}") from None
+def _is_plain(options: object) -> bool:
+    return isinstance(options, dict) and options.get("units") == "consistent"
 
 
 def rows(result: xr.Dataset, suffix: str) -> bytes:

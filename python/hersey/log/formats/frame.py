@@ -53,7 +53,7 @@ def column_signal(
     name: str, kind: pl.DataType, rows: int, load: Callable[[], pl.Series], unit: str = ""
 ) -> Signal:
     """Return a column as a signal; time stamps and durations come in s."""
-    plain, found = (name, unit) if unit else split_unit(name)
+    plain, stated = (name, unit) if unit else split_unit(name)
 
     def numbers() -> FloatArray:
         series = load()
@@ -65,7 +65,7 @@ def column_signal(
             return seconds(series.cast(pl.Datetime("ns")).to_numpy())
         return floats(series.cast(pl.Float64).fill_null(np.nan).to_numpy())
 
-    return Signal(plain, "s" if kind.is_temporal() else found, rows, numbers)
+    return Signal(plain, "s" if kind.is_temporal() else stated, rows, numbers)
 
 
 def _same(series: pl.Series) -> pl.Series:

@@ -40,9 +40,9 @@ def open_hdf5(path: Path) -> Iterator[Recording]:
                 return
             seen.append(item.id)
             _check_kind(h5py, name, item)
-            found = list(_data_set(name, item))
-            signals.extend(found)
-            if not found:
+            vectors = list(_data_set(name, item))
+            signals.extend(vectors)
+            if not vectors:
                 others.append(f"'{name}' ({item.dtype}, {'x'.join(map(str, item.shape or ()))})")
 
         file.visititems(visit)

@@ -38,8 +38,8 @@ def open_matlab(path: Path) -> Iterator[Recording]:
     others: list[str] = []
     with warnings.catch_warnings(record=True) as heard:
         warnings.simplefilter("always")
-        found = loadmat(path, chars_as_strings=True)
-    for name, value in found.items():
+        variables = loadmat(path, chars_as_strings=True)
+    for name, value in variables.items():
         if not name.startswith("__"):
             _walk(name, value, "", signals, others, 0)
     objects = [o for o in others if "object" in o]
@@ -52,19 +52,19 @@ def open_matlab(path: Path) -> Iterator[Recording]:
 
 
 def _walk(name: str, value: Any, group: str, signals: list[Signal], others: list[str], depth: int) -> None:
-    shown = f"'{group}/{name}'" if group else f"'{name}'"
+    place = f"'{group}/{name}'" if group else f"'{name}'"
     if not isinstance(value, np.ndarray) or type(value).__name__ == "MatlabOpaque":
-        others.append(f"{shown} (object of MATLAB)")
+        others.append(f"{place} (object of MATLAB)")
     elif value.dtype.names and value.size == 1 and depth < _DEPTH:
         _walk_struct(name, value.reshape(-1)[0], group, signals, others, depth)
     elif value.dtype.kind in "iufb":
-        found = array_signals(name, value.shape, lambda: value, group=group)
-        signals.extend(found)
-        if not found:
-            others.append(f"{shown} ({'x'.join(map(str, value.shape))})")
+        vectors = array_signals(name, value.shape, lambda: value, group=group)
+        signals.extend(vectors)
+        if not vectors:
+            others.append(f"{place} ({'x'.join(map(str, value.shape))})")
     else:
         what = {"O": "cells", "U": "text", "S": "text", "c": "complex"}.get(value.dtype.kind, "structs")
-        others.append(f"{shown} ({what})")
+        others.append(f"{place} ({what})")
 
 
 def _walk_struct(

@@ -20,9 +20,9 @@ def array_signals(
     The longer side of a matrix is the one that counts samples.
     """
     sides = [n for n in shape if n != 1]
-    plain, found = (name, unit) if unit else split_unit(name)
+    plain, stated = (name, unit) if unit else split_unit(name)
     if len(sides) == 1:
-        return [Signal(plain, found, sides[0], lambda: floats(load()).reshape(-1), group=group)]
+        return [Signal(plain, stated, sides[0], lambda: floats(load()).reshape(-1), group=group)]
     if len(sides) != 2 or not 0 < min(sides) <= _WIDEST:
         return []
     across = len(shape) == 2 and shape[1] > shape[0]
@@ -34,4 +34,4 @@ def array_signals(
 
         return take
 
-    return [Signal(f"{plain}#{i + 1}", found, max(sides), column(i), group=group) for i in range(min(sides))]
+    return [Signal(f"{plain}#{i + 1}", stated, max(sides), column(i), group=group) for i in range(min(sides))]

@@ -27,6 +27,7 @@ from hersey.log.torque_log import LARGEST, Channel, LogFile, Run
 from hersey.units import Conversion
 
 BLOCK = 1 << 25
+_WAY_OUT = "mend the file, or say --drop-missing to leave such rows out (they will be counted)"
 
 Progress = Callable[[int, int], None]
 _NULLS = sorted({s for word in MISSING for s in (word, word.upper(), word.capitalize())} | {"NaN"})
@@ -60,7 +61,7 @@ def read_delimited(
         raise MissingFileError(f"{path} cannot be read: {error.strerror}") from None
     arrays = table.arrays()
     run = Run(name, arrays["time"], arrays["torque"], arrays["speed"], arrays.get("temperature"))
-    channels = tuple(Channel(role, column.name, si.unit) for role, (column, si) in table.found.items())
+    channels = tuple(Channel(role, column.name, si.unit) for role, (column, si) in table.channels.items())
     log = LogFile(
         name,
         table.digest.hexdigest(),
@@ -83,9 +84,40 @@ def delimited_columns(path: Path) -> tuple[Column, ...]:
     UnreadableLogError
         If the file holds no table.
     """
+    layout = delimited_layout(path)
+    return tuple(column for column in layout.columns if column.index not in layout.texts)
+
+
+def delimited_layout(path: Path) -> Layout:
+    """Return the layout of a text file.
+
+    Raises
+    ------
+    MissingFileError, UnreadableLogError
+        If it cannot be opened, or holds no table.
+    """
+    try:
+        with path.open("rb") as file:
+            return find_layout(file.read(SNIFFED), path.name)
+    except OSError as error:
+        raise MissingFileError(f"{path} cannot be read: {error.strerror}") from None
+
+
+def delimited_numbers(path: Path, chosen: Sequence[Column], *, complete: bool) -> list[FloatArray]:
+    """Return columns as written (time stamps in s), shape (rows,), NaN where a number is missing.
+
+    Raises
+    ------
+    UnreadableLogError
+        If a cell is no number, naming line and column; if ``complete``, also if one is missing.
+    """
     with path.open("rb") as file:
         layout = find_layout(file.read(SNIFFED), path.name)
-    return tuple(column for column in layout.columns if column.index not in layout.texts)
+        end = end_of_table(file, path.stat().st_size, layout)
+        as_written = {str(i): (column, Conversion(column.unit, 1.0, 0.0)) for i, column in enumerate(chosen)}
+        table = _Table(path.name, layout, as_written, drop_missing=not complete)
+        file.seek(0)
+        return table.numbers(file, end.byte)
 
 
 def _channels(
@@ -96,7 +128,7 @@ def _channels(
     used = [role for role in ROLES if not (role == "temperature" and isothermal)]
     if layout.headless and not all(choices[role].name for role in used):
         raise UnreadableLogError(layout.headless)
-    found: dict[str, tuple[Column, Conversion]] = {}
+    chosen: dict[str, tuple[Column, Conversion]] = {}
     for role in sorted(used, key=lambda r: r != "torque"):  # without it the rest is of no use
         channel = find_channel(role, layout.named, choices[role], name)
         if channel is None:
@@ -104,11 +136,11 @@ def _channels(
             if role == "temperature":
                 error.args = (*error.args, "or say --isothermal to leave temperature out")
             raise error
-        other = next((r for r, (column, _) in found.items() if column == channel[0]), None)
+        other = next((r for r, (column, _) in chosen.items() if column == channel[0]), None)
         if other:
             raise ChannelError(f"{name}: column '{channel[0]}' cannot be both {other} and {role}")
-        found[role] = channel
-    return {role: found[role] for role in used}
+        chosen[role] = channel
+    return {role: chosen[role] for role in used}
 
 
 @dataclass
@@ -126,10 +158,10 @@ class _Table:
     """The table of one file while it is being read."""
 
     def __init__(
-        self, name: str, layout: Layout, found: dict[str, tuple[Column, Conversion]], drop_missing: bool
+        self, name: str, layout: Layout, channels: dict[str, tuple[Column, Conversion]], drop_missing: bool
     ) -> None:
-        self.name, self.layout, self.found, self.drop_missing = name, layout, found, drop_missing
-        self.parts: dict[str, list[FloatArray]] = {role: [] for role in found}
+        self.name, self.layout, self.channels, self.drop_missing = name, layout, channels, drop_missing
+        self.parts: dict[str, list[FloatArray]] = {role: [] for role in channels}
         self.digest = hashlib.sha256()
         self.missing = 0
         self.stamps = {i: Stamps(style) for i, style in layout.stamps.items()}
@@ -137,7 +169,7 @@ class _Table:
 
     @property
     def columns(self) -> list[Column]:
-        return [column for column, _ in self.found.values()]
+        return [column for column, _ in self.channels.values()]
 
     def read(self, file: BinaryIO, end: int, size: int, progress: Progress | None) -> None:
         """Read the table, which ends at byte ``end`` of ``size``."""
@@ -149,6 +181,23 @@ class _Table:
                 progress(done, size)
         self.digest.update(file.read())
 
+    def numbers(self, file: BinaryIO, end: int) -> list[FloatArray]:
+        """The columns as written, NaN where a number is missing and may be."""
+        parts: list[list[FloatArray]] = [[] for _ in self.columns]
+        for text, line, _ in _blocks(file, end, self.layout, self.digest.update):
+            block = self._cleaned(text, line)
+            if block.lines:
+                self._keep(block, parts)
+        return [np.concatenate(values) if values else np.empty(0) for values in parts]
+
+    def _keep(self, block: _Block, parts: list[list[FloatArray]]) -> None:
+        values = self._parsed(block)
+        gone = ~np.logical_and.reduce([np.isfinite(column) for column in values])
+        if gone.any() and not self.drop_missing:
+            raise self._missing(block, values, int(np.argmax(gone)), "mend the file")
+        for part, column in zip(parts, values, strict=True):
+            part.append(np.where(np.isfinite(column), column, np.nan))
+
     def notes(self) -> list[str]:
         """What was done to time stamps."""
         columns = [column for column in self.columns if column.index in self.stamps]
@@ -156,7 +205,7 @@ class _Table:
 
     def arrays(self) -> dict[str, FloatArray]:
         arrays = {}
-        for role in self.found:  # one after another, so that only one is held twice
+        for role in self.channels:  # one after another, so that only one is held twice
             parts = self.parts.pop(role)
             arrays[role] = np.concatenate(parts) if parts else np.empty(0)
         if arrays["time"].size < 2:
@@ -194,7 +243,7 @@ class _Table:
             raise self._missing(block, values, int(np.argmax(gone)))
         self.missing += int(gone.sum())
         kept = np.flatnonzero(~gone) if gone.any() else None
-        for (role, (column, si)), numbers in zip(self.found.items(), values, strict=True):
+        for (role, (column, si)), numbers in zip(self.channels.items(), values, strict=True):
             chosen = numbers if kept is None else numbers[kept]
             with np.errstate(over="ignore"):
                 converted = chosen * si.scale + si.offset
@@ -247,8 +296,8 @@ class _Table:
         if fast:
             return [by_index[c.index].cast(pl.Float64).fill_null(np.nan).to_numpy() for c in self.columns]
         values = [self._values(c, by_index[c.index].fill_null("")) for c in self.columns]
-        found = [v for v in values if v is not None]
-        return found if len(found) == len(values) else self._parsed_slowly(block)
+        readable = [v for v in values if v is not None]
+        return readable if len(readable) == len(values) else self._parsed_slowly(block)
 
     def _values(self, column: Column, cells: pl.Series) -> FloatArray | None:
         """Cells of text as numbers or as time stamps in s; None if one of them is neither."""
@@ -289,14 +338,16 @@ class _Table:
             f"'{cells[row][:40]}' is not a {what}"
         )
 
-    def _missing(self, block: _Block, values: list[FloatArray], row: int) -> UnreadableLogError:
+    def _missing(
+        self, block: _Block, values: list[FloatArray], row: int, way_out: str = _WAY_OUT
+    ) -> UnreadableLogError:
         cells = block.cells(row, self.layout.separator)
         column = next(c for c, v in zip(self.columns, values, strict=True) if not np.isfinite(v[row]))
         cell = cells[column.index] if column.index < len(cells) else ""
-        shown = f"'{cell[:40]}' stands" if cell else "nothing stands"
+        what = f"'{cell[:40]}' stands" if cell else "nothing stands"
         return UnreadableLogError(
-            f"{self.name}, line {block.lines[row]}, column '{column.name}': {shown} where a number is "
-            "needed; mend the file, or say --drop-missing to leave such rows out (they will be counted)"
+            f"{self.name}, line {block.lines[row]}, column '{column.name}': {what} where a number is "
+            f"needed; {way_out}"
         )
 
 

@@ -96,7 +96,7 @@ def find_layout(start: bytes, name: str) -> Layout:
     ]
     if not numbered:
         raise UnreadableLogError(f"{name} is empty: a header and rows of numbers are needed")
-    table = max((_table(numbered, separator) for separator in ";\t,|"), key=lambda t: t.score)
+    table = max((_table(numbered, separator) for separator in ";\t|,"), key=lambda t: t.score)
     if table.score == 0:
         raise UnreadableLogError(
             f"{name} has a header but no rows of numbers below it"
@@ -176,15 +176,20 @@ def _table(numbered: list[tuple[int, str]], separator: str) -> _Table:
     best = _Table(separator, 0, 0, 0)
     for width in widths:
         rows = [len(row) == width and _mostly_numbers(row) for row in cells]
-        count = sum(rows)
-        if count and count * width > best.score:
-            best = _Table(separator, width, _first_of_block(rows), count * width)
+        # cells that are none speak against a separator: "0,5;1,5" is no row of "0", "5;1" and "5"
+        score = sum(sum(map(_may_be_number, row)) for row, is_row in zip(cells, rows, strict=True) if is_row)
+        if score > best.score:
+            best = _Table(separator, width, _first_of_block(rows), score)
     return best
+
+
+def _may_be_number(cell: str) -> bool:
+    return is_missing(cell) or looks_numeric(cell) or is_stamp(cell)
 
 
 def _mostly_numbers(row: list[str]) -> bool:
     filled = [cell for cell in row if not is_missing(cell)]
-    numbers = sum(looks_numeric(cell) or is_stamp(cell) for cell in filled)
+    numbers = sum(map(_may_be_number, filled))
     return (numbers > 0 and 2 * numbers > len(filled)) or (not filled and any(row))
 
 

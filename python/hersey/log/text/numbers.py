@@ -95,9 +95,9 @@ def style_of(cells: list[str]) -> NumberStyle:
     readable = sum(plain.is_number(cell) for cell in cells)
     for style in _THOUSANDS:
         if any(style.is_number(cell) for cell in telling):
-            found = NumberStyle(_decimal_comma_beside(style, cells), style.thousands)
-            if sum(found.is_number(cell) for cell in cells) > readable:
-                return found
+            marked = NumberStyle(_decimal_comma_beside(style, cells), style.thousands)
+            if sum(marked.is_number(cell) for cell in cells) > readable:
+                return marked
     return plain
 
 

@@ -37,8 +37,8 @@ class StampStyle:
             text = "2000-01-01 " + text
         if self.format.endswith("%z"):
             text = text.str.replace("Z$", "+0000").str.replace(r" ?([+-]\d\d):?(\d\d)$", "$1$2")
-        found = text.str.to_datetime(self.format, time_unit="ns", strict=False)
-        return found.dt.replace_time_zone(None) if self.format.endswith("%z") else found
+        stamps = text.str.to_datetime(self.format, time_unit="ns", strict=False)
+        return stamps.dt.replace_time_zone(None) if self.format.endswith("%z") else stamps
 
 
 _ISO = r"\d{4}[-/]\d{1,2}[-/]\d{1,2}[T ]"
@@ -89,9 +89,9 @@ class Stamps:
     def note(self, column: str) -> str:
         """What was done, for the notes of the log."""
         first = datetime.datetime(1970, 1, 1) + datetime.timedelta(microseconds=(self.first or 0) // 1000)
-        shown = first.strftime("%H:%M:%S" if self.style.name == "a time of day" else "%Y-%m-%d %H:%M:%S")
+        since = first.strftime("%H:%M:%S" if self.style.name == "a time of day" else "%Y-%m-%d %H:%M:%S")
         passed = f", past midnight {self.midnights} time(s)" if self.midnights else ""
-        return f"'{column}' holds {self.style.name}: read in s since {shown}{passed}"
+        return f"'{column}' holds {self.style.name}: read in s since {since}{passed}"
 
     def _past_midnight(self, times: FloatArray) -> FloatArray:
         """A time of day that falls by more than half a day has passed midnight."""

@@ -62,14 +62,14 @@ def drawn(
     ``samples`` holds draws that go together (of equal length): rows of it are taken at random. Where it and
     ``uncertainty`` name the same parameter, the samples hold.
     """
-    own = {**vars(train), **vars(drag)}
+    nominal = {**vars(train), **vars(drag)}
     columns: dict[str, FloatArray] = {}
     for name in [*uncertainty, *samples]:
-        if name not in OF_THE_BELT or name not in own:
-            known = ", ".join(key for key in OF_THE_BELT if key in own)
+        if name not in OF_THE_BELT or name not in nominal:
+            known = ", ".join(key for key in OF_THE_BELT if key in nominal)
             raise ParameterError(f"uncertainty: '{name}' is no parameter of this drive: {known}")
     for name in sorted(set(uncertainty) - set(samples)):
-        columns[name] = uncertainty[name].draw(rng, float(own[name]), count)
+        columns[name] = uncertainty[name].draw(rng, float(nominal[name]), count)
     if samples:
         rows = {name: np.asarray(values, dtype=float).ravel() for name, values in samples.items()}
         sizes = {values.size for values in rows.values()}
@@ -82,8 +82,8 @@ def drawn(
 
 def neighbours(train: Drivetrain, drag: AnyDrag) -> list[MachineSample]:
     """Return the machine, and those with one parameter a little off: no profile may stand on the edge."""
-    own = {name: float(v) for name, v in {**vars(train), **vars(drag)}.items() if name in OF_THE_BELT}
-    moved = [{name: value * (1.0 + by)} for name, value in own.items() for by in (-_EDGE, _EDGE)]
+    nominal = {name: float(v) for name, v in {**vars(train), **vars(drag)}.items() if name in OF_THE_BELT}
+    moved = [{name: value * (1.0 + by)} for name, value in nominal.items() for by in (-_EDGE, _EDGE)]
     return [MachineSample(train, drag), *(_machine(train, drag, values) for values in moved)]
 
 
@@ -117,9 +117,9 @@ class Trials:
         ready, late = [], []
         for i, machine in enumerate(self.machines):
             self.count += 1
-            found = machine.trial(shape, self.thermal, self.force_limit).ready
-            ready.append(found)
-            if found >= best:
+            time = machine.trial(shape, self.thermal, self.force_limit).ready
+            ready.append(time)
+            if time >= best:
                 late.append(i)
                 if len(late) > self.allowed:
                     self._to_front(late)
@@ -128,8 +128,8 @@ class Trials:
 
     def peak(self, shape: Shape) -> float:
         """Return the spring force that all but the allowed machines keep below; infinite if it fails."""
-        found = [m.trial(shape, self.thermal, force=True) for m in self.machines]
-        return self.kept([f.peak_force if f.ready < math.inf else math.inf for f in found])
+        outcomes = [m.trial(shape, self.thermal, force=True) for m in self.machines]
+        return self.kept([f.peak_force if f.ready < math.inf else math.inf for f in outcomes])
 
     def kept(self, values: Sequence[float]) -> float:
         """Return the value that all but the allowed machines keep below."""

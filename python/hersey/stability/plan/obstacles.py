@@ -102,8 +102,8 @@ def obstacles(
         return (Obstacle("target_speed", target, _up(lowest * 1.01), text),)
     if not searched and _least_force(trials, target) <= reach.force:
         return ()
-    found = [*_of_force(search, reach), *(_of_room(search, reach, greatest) if searched else [])]
-    return tuple(found) or (_together(search, limits),)
+    reasons = [*_of_force(search, reach), *(_of_room(search, reach, greatest) if searched else [])]
+    return tuple(reasons) or (_together(search, limits),)
 
 
 def _lowest_target(trials: Trials, target: float) -> float:
@@ -133,10 +133,10 @@ def _of_force(search: Search, reach: Reach) -> list[Obstacle]:
     if not reach.forces:
         return []
     free = _relaxed(search, search.room, math.inf)
-    found = free.least(lambda _, outcome: outcome.peak_force)
-    if found is None:
+    easiest = free.least(lambda _, outcome: outcome.peak_force)
+    if easiest is None:
         return []
-    force = free.trials.peak(found[1])
+    force = free.trials.peak(easiest[1])
     short = {name: limit for name, limit in reach.forces.items() if limit < force}
     return [
         _obstacle(name, limit * reach.factors[name], force * reach.factors[name])
@@ -146,20 +146,20 @@ def _of_force(search: Search, reach: Reach) -> list[Obstacle]:
 
 def _of_room(search: Search, reach: Reach, greatest: float) -> list[Obstacle]:
     """Obstacles of speed and of acceleration, each if a profile works without it."""
-    found = []
+    reasons = []
     if reach.speed < math.inf:
         free = _relaxed(
             search, replace(search.room, speed=max(greatest, reach.speed)), search.trials.force_limit
         )
         least = free.least(lambda shape, _: shape.peak)
         if least is not None and (peak := free.slower(least[1]).peak) > reach.speed:
-            found.append(_obstacle("speed", reach.speed, peak))
+            reasons.append(_obstacle("speed", reach.speed, peak))
     if reach.acceleration < math.inf:
         free = _relaxed(search, replace(search.room, acceleration=math.inf), search.trials.force_limit)
         least = free.least(lambda shape, _: shape.acceleration)
         if least is not None and reach.acceleration < least[0] < math.inf:
-            found.append(_obstacle("acceleration", reach.acceleration, least[0]))
-    return found
+            reasons.append(_obstacle("acceleration", reach.acceleration, least[0]))
+    return reasons
 
 
 def _relaxed(search: Search, room: Room, force: float) -> Search:

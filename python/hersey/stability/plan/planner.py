@@ -222,7 +222,7 @@ class Unknown:
         machines = self.draws(number, max(_FRESH, math.ceil(10.0 / (1.0 - confidence))))
         laps = thermal.end / machines[0].lap
         long = _LONG if laps < _LONG_LAPS else 1
-        found = [
+        outcomes = [
             machine.trial(
                 shape,
                 thermal,
@@ -233,23 +233,25 @@ class Unknown:
             )
             for i, machine in enumerate(machines)
         ]
-        failures = Counter(_failures(found, duration))
-        good = len(found) - failures.total()
-        share = good / len(found)
+        failures = Counter(_failures(outcomes, duration))
+        good = len(outcomes) - failures.total()
+        share = good / len(outcomes)
         return Proof(
             duration=duration,
             share=share,
-            share_low=share if len(found) == 1 else lower_bound(good, len(found), _STATED),
-            draws=len(found),
+            share_low=share if len(outcomes) == 1 else lower_bound(good, len(outcomes), _STATED),
+            draws=len(outcomes),
             failures=dict(sorted(failures.items())),
-            peak_force=float(np.quantile([f.peak_force for f in found], confidence, method="higher")),
-            accepted=good == 1 if len(found) == 1 else lower_bound(good, len(found), _LEVEL) >= confidence,
+            peak_force=float(np.quantile([f.peak_force for f in outcomes], confidence, method="higher")),
+            accepted=good == 1
+            if len(outcomes) == 1
+            else lower_bound(good, len(outcomes), _LEVEL) >= confidence,
             machines=machines,
         )
 
 
-def _failures(found: Iterable[Outcome], duration: float) -> Iterable[str]:
-    for outcome in found:
+def _failures(outcomes: Iterable[Outcome], duration: float) -> Iterable[str]:
+    for outcome in outcomes:
         if outcome.ready > duration * (1.0 + ROUNDING):
             yield outcome.why or "sticks longer"
 

@@ -89,7 +89,7 @@ class Search:
         self.progress = progress
         self.best: Shape | None = None
         self.time = math.inf
-        self.found: list[tuple[float, Shape]] = []
+        self.working: list[tuple[float, Shape]] = []
         self.known: list[Shape] = []
         self.count = 0
 
@@ -121,7 +121,7 @@ class Search:
         everyone = [*self.trials.machines, *machines]
         self.trials = Trials(everyone, allowed, self.thermal, self.trials.force_limit)
         self.known += [shape for _, shape in self._apart(_KEPT)]
-        self.found, self.best, self.time = [], None, math.inf
+        self.working, self.best, self.time = [], None, math.inf
         longer = {
             replace(shape, rise=shape.rise * up, hold=shape.hold * on, fall=shape.fall * down)
             for shape in self.known
@@ -146,9 +146,9 @@ class Search:
             if i % 64 == 0:
                 self._report(i, len(tried))
             moved = replace(shape, wait=wait)
-            found = self.nominal.trial(moved, self.thermal, self.trials.force_limit, force=True)
-            if found.ready < math.inf:
-                rows.append((demand(moved, found), moved))
+            outcome = self.nominal.trial(moved, self.thermal, self.trials.force_limit, force=True)
+            if outcome.ready < math.inf:
+                rows.append((demand(moved, outcome), moved))
         rows.sort(key=_time)
         even = rows[:: max(1, len(rows) // _PROBED)]
         return next((row for row in even if self.trials.time(row[1]) < math.inf), None)
@@ -200,7 +200,7 @@ class Search:
         time = self.trials.time(shape, below)
         if time >= below:
             return math.inf
-        self.found.append((time, shape))
+        self.working.append((time, shape))
         if time < self.time:
             self.best, self.time = shape, time
         return time
@@ -251,7 +251,7 @@ class Search:
         assert self.best is not None
         while late - early > _WAIT_STEP * self.best.ramps:
             middle = 0.5 * (early + late)
-            tried = [replace(shape, wait=middle) for _, shape in sorted(self.found, key=_time)[:8]]
+            tried = [replace(shape, wait=middle) for _, shape in sorted(self.working, key=_time)[:8]]
             works = [self.attempt(shape) < math.inf for shape in tried]
             if any(works) or self._at_wait(grid, middle, 0, len(grid)):
                 late = middle
@@ -286,22 +286,22 @@ class Search:
         """Profiles of the grid a little slower than the best, one for each peak speed: other valleys."""
         assert self.best is not None
         most, seen = self.time * _VALLEYS, set[float]()
-        found: list[tuple[float, Shape]] = []
+        slower: list[tuple[float, Shape]] = []
         for j, shape in enumerate(self.grid()):
             moved = replace(shape, wait=self.best.wait)
             if j % 64 == 0:
                 self._report(j, _OTHERS * 1000)
-            if moved.end >= most or len(found) >= _OTHERS:
+            if moved.end >= most or len(slower) >= _OTHERS:
                 break
             if moved.peak not in seen and (time := self.attempt(moved, most)) < math.inf:
                 seen.add(moved.peak)
-                found.append((time, moved))
-        return found
+                slower.append((time, moved))
+        return slower
 
     def _apart(self, count: int) -> list[tuple[float, Shape]]:
         """The quickest of the profiles found that differ from one another."""
         chosen: list[tuple[float, Shape]] = []
-        for time, shape in sorted(self.found, key=_time):
+        for time, shape in sorted(self.working, key=_time):
             if all(_differ(shape, other) for _, other in chosen):
                 chosen.append((time, shape))
                 if len(chosen) == count:
@@ -323,9 +323,9 @@ class Search:
                 moved = self._moved(shape, up * span, rise * size, hold * size, fall * size, wait)
                 if moved.end < time:
                     break
-            found = self.attempt(moved, time)
-            if found < time:
-                time, shape = found, moved
+            quicker = self.attempt(moved, time)
+            if quicker < time:
+                time, shape = quicker, moved
         return time, shape
 
     def _descend(self, valley: tuple[float, Shape]) -> None:
@@ -355,9 +355,9 @@ class Search:
         span, size = step * max(self.room.speed - self.target, 0.0), step * shape.ramps
         for up, rise, hold, fall in itertools.product((0, -1, 1), repeat=4):
             moved = self._moved(shape, up * span, rise * size, hold * size, fall * size, 0.0)
-            found = self.attempt(moved, time)
-            if found < time:
-                return found, moved
+            quicker = self.attempt(moved, time)
+            if quicker < time:
+                return quicker, moved
         return None
 
     def _moved(self, shape: Shape, up: float, rise: float, hold: float, fall: float, wait: float) -> Shape:
