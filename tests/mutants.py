@@ -1,4 +1,4 @@
-"""Faults planted one by one and what became of them, per module: mutmut's list comes in by a pipe."""
+"""Faults planted one by one and what became of them: `make mutants-python` pipes the list of mutmut in."""
 
 from __future__ import annotations
 
@@ -27,8 +27,7 @@ def table(outcomes: dict[str, Counter[str]]) -> str:
         count = outcomes[module]
         rest = [f"{n} {what}" for what, n in sorted(count.items()) if what not in ("killed", "survived")]
         lines.append(
-            f"{module:48s} {count['killed']:5d} killed {count['survived']:5d} survived  "
-            f"{', '.join(rest)}".rstrip()
+            f"{module:48s} {count['killed']:5d} killed {count['survived']:5d} survived  " + ", ".join(rest)
         )
     return "\n".join(lines)
 
