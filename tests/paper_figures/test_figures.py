@@ -385,7 +385,7 @@ def test_files_of_each_kind_are_written(tmp_path: Path) -> None:
 @pytest.fixture
 def no_drawing(monkeypatch: pytest.MonkeyPatch) -> None:
     """Rendering takes seconds: the tests of how files are handled do without."""
-    monkeypatch.setattr(files, "picture", lambda _, suffix: suffix.encode())
+    monkeypatch.setattr(files, "picture", lambda _, suffix: suffix.removeprefix(".").encode())
 
 
 @pytest.mark.usefixtures("no_drawing")
