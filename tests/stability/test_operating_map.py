@@ -173,7 +173,7 @@ def test_what_is_uncertain_widens_the_interval_of_the_fold(
 
 
 def test_the_interval_of_the_transition_is_that_of_the_fit(surface: DampingSurface) -> None:
-    reference = surface.reference_temperature + 273.15
+    reference = surface.reference_temperature
     draws = surface.drag_samples(20000, 1, **AT, temperature=reference)
     assert surface.transition is not None
     for name, estimate, scale in (
