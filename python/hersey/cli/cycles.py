@@ -83,10 +83,10 @@ def cycles(
         from hersey.charts.cycles import trace_chart
         from hersey.charts.render import rendered
 
-        shown = "share of the weight" if given.unit == "1" else given.unit
+        unit_text = "share of the weight" if given.unit == "1" else given.unit
         with working("drawing"):
-            drawn = rendered(trace_chart(record, drive, unit=shown))[figure.suffix.removeprefix(".")]
-        write_atomically(figure, drawn, overwrite=True)
+            picture = rendered(trace_chart(record, drive, unit=unit_text))[figure.suffix.removeprefix(".")]
+        write_atomically(figure, picture, overwrite=True)
     if as_json:
         driven = None if drive is None else drive.to_dict()
         print_json("cycles", record.to_dict() | {"unit": given.unit, "drive": driven})

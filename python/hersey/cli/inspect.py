@@ -57,7 +57,7 @@ def inspect(
     channels = {role: name for role in roles if (name := getattr(reading, role))}
     units = {role: unit for role in roles if (unit := getattr(reading, f"{role}_unit"))}
     with working("looking at the channels"):
-        found = inspected(
+        inspection = inspected(
             logs,
             mapping=reading.mapping or None,
             channels=channels,
@@ -71,12 +71,12 @@ def inspect(
         write_atomically(kept, proposal, overwrite=True)
     if figure is not None:
         with working("drawing the channels"):
-            chart = inspection_chart(logs, found)
+            chart = inspection_chart(logs, inspection)
             write_atomically(figure, rendered_map(chart, figure.suffix), overwrite=True)
     if as_json:
-        print_json("inspect", found.to_dict())
+        print_json("inspect", inspection.to_dict())
         return
-    print(found.summary())
+    print(inspection.summary())
     if kept is not None:
         print(f"mapping: {kept}")
     if figure is not None:
