@@ -33,8 +33,8 @@ def compare(
 
     of_a, of_b = (reading.points(reading.log([path])) for path in (a, b))
     with working("comparing"):
-        found = compared(of_a, of_b, names=(str(a), str(b)))
+        comparison = compared(of_a, of_b, names=(str(a), str(b)))
     if as_json:
-        print_json("compare", found.to_dict())
+        print_json("compare", comparison.to_dict())
         return
-    print(found.summary())
+    print(comparison.summary())

@@ -84,10 +84,10 @@ def cycles(
         from hersey.charts import chart_of
         from hersey.charts.render import picture
 
-        shown = "share of the weight" if given.unit == "1" else given.unit
+        unit_text = "share of the weight" if given.unit == "1" else given.unit
         with working("drawing"):
-            drawn = picture(chart_of(record, drive=drive, unit=shown), figure.suffix)
-        write_atomically(figure, drawn, overwrite=True)
+            picture = rendered(trace_chart(record, drive, unit=unit_text))[figure.suffix.removeprefix(".")]
+        write_atomically(figure, picture, overwrite=True)
     if as_json:
         driven = None if drive is None else drive.to_dict()
         print_json("cycles", record.to_dict() | {"unit": given.unit, "drive": driven})

@@ -40,7 +40,7 @@ def design(
     points = reading.points(reading.log(logs))
     with working("fitting the candidates"):
         fitted = compare_models(points, bootstrap=0, cross_validate=False)
-    found = designed(
+    proposal = designed(
         fitted,
         count=count,
         quantity=quantity,
@@ -49,9 +49,9 @@ def design(
         seed=seed,
     )
     if as_json:
-        print_json("design", found.to_dict())
+        print_json("design", proposal.to_dict())
         return
-    print(found.summary())
+    print(proposal.summary())
 
 
 def _range(kind: str, flag: str, text: str) -> tuple[float, float] | None:

@@ -58,7 +58,7 @@ def inspect(
     channels = {role: name for role in roles if (name := getattr(reading, role))}
     units = {role: unit for role in roles if (unit := getattr(reading, f"{role}_unit"))}
     with working("looking at the channels"):
-        found = inspected(
+        inspection = inspected(
             logs,
             mapping=reading.mapping or None,
             channels=channels,
@@ -75,12 +75,12 @@ def inspect(
         from hersey.charts.render import picture
 
         with working("drawing the channels"):
-            chart = chart_of(found, paths=logs)
-            write_atomically(figure, picture(chart, figure.suffix), overwrite=True)
+            chart = inspection_chart(logs, inspection)
+            write_atomically(figure, rendered_map(chart, figure.suffix), overwrite=True)
     if as_json:
-        print_json("inspect", found.to_dict())
+        print_json("inspect", inspection.to_dict())
         return
-    print(found.summary())
+    print(inspection.summary())
     if kept is not None:
         print(f"mapping: {kept}")
     if figure is not None:

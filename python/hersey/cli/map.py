@@ -53,7 +53,7 @@ def map_(
     machine = read_machine(machine_file)
     surface = reading.surface(logs, fit_file)
     with working("finding the bands"):
-        drawn = operating_map(
+        map_of_belt = operating_map(
             surface,
             machine.train,
             roll_radius=machine.roll_radius,
@@ -68,12 +68,12 @@ def map_(
         from hersey.charts.render import picture
 
         with working("drawing the map"):
-            chart = chart_of(drawn, tooltips=path.suffix == ".html")
-            write_atomically(path, picture(chart, path.suffix), overwrite=True)
+            chart = map_chart(map_of_belt, tooltips=picture.suffix == ".html")
+            write_atomically(picture, rendered_map(chart, picture.suffix), overwrite=True)
     if as_json:
-        print_json("map", drawn.to_dict())
+        print_json("map", map_of_belt.to_dict())
         return
-    print(drawn.summary())
-    for warning in drawn.warnings:
+    print(map_of_belt.summary())
+    for warning in map_of_belt.warnings:
         print(f"- {warning}")
     print(f"map: {path}")

@@ -37,8 +37,8 @@ def models(
     with working("reducing to dwells"):
         points = reading.points(log)
     with bar("fitting", unit="candidates") as progress:
-        found = compare_models(points, bootstrap=bootstrap, seed=seed, progress=progress)
+        comparison = compare_models(points, bootstrap=bootstrap, seed=seed, progress=progress)
     if as_json:
-        print_json("models", found.to_dict())
+        print_json("models", comparison.to_dict())
         return
-    print(found.summary())
+    print(comparison.summary())

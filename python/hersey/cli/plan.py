@@ -96,7 +96,7 @@ def plan(
     surface = reading.surface(logs, fit_file)
     drag, samples = _drag(surface, machine, kelvin, seed, course=warming is not None)
     with bar("planning", unit="profiles") as progress:
-        found = plan_profile(
+        planned = plan_profile(
             machine.train,
             drag,
             target_speed=wanted,
@@ -109,23 +109,23 @@ def plan(
             seed=seed,
             progress=progress,
         )
-    if found.found and figure is not None:
-        from hersey.charts import chart_of
-        from hersey.charts.render import picture
+    if planned.found and figure is not None:
+        from hersey.charts.plan import plan_chart
+        from hersey.charts.render import rendered
 
         with working("drawing"):
-            content = picture(chart_of(found, temperature=warming), figure.suffix)
+            content = rendered(plan_chart(planned, temperature=warming))[figure.suffix.removeprefix(".")]
         write_atomically(figure, content, overwrite=True)
-    if found.found and out is not None:
-        write_atomically(out, found.table(), overwrite=True)
+    if planned.found and out is not None:
+        write_atomically(out, planned.table(), overwrite=True)
     if as_json:
-        print_json("plan", found.to_dict())
+        print_json("plan", planned.to_dict())
     else:
-        typer.echo(found.summary())
+        typer.echo(planned.summary())
         for what, written in (("profile", out), ("figure", figure)):
-            if found.found and written is not None:
+            if planned.found and written is not None:
                 typer.echo(f"{what}: {written}")
-    if not found.found:
+    if not planned.found:
         raise typer.Exit(IMPOSSIBLE)
 
 
