@@ -97,7 +97,7 @@ def test_the_stick_speed_moves_with_the_temperature_asked_for(points: hersey.Ste
     machine = read_machine(ROOT / "examples" / "machine.toml")
     whole = surface.drag(roll_radius=0.015, stick_speed=machine.stick_speed)
     for kelvin in (373.15, 453.15):
-        drag, samples = _drag(surface, machine, kelvin, 3, course=False)
+        drag, samples = _drag(surface, machine, kelvin, 3, varies=False)
         assert drag == whole.at(kelvin)
         assert drag.stick_speed != machine.stick_speed
         expected = surface.drag_samples(
@@ -105,9 +105,9 @@ def test_the_stick_speed_moves_with_the_temperature_asked_for(points: hersey.Ste
         )
         for name, values in expected.items():
             assert samples[name].tolist() == values.tolist()
-        other = _drag(surface, machine, kelvin, 4, course=False)[1]
+        other = _drag(surface, machine, kelvin, 4, varies=False)[1]
         assert other["transition_speed"].tolist() != samples["transition_speed"].tolist()
-    drag, samples = _drag(surface, machine, None, 3, course=True)
+    drag, samples = _drag(surface, machine, None, 3, varies=True)
     assert drag == whole
     at_reference = surface.drag_samples(
         4000, 3, roll_radius=0.015, stick_speed=machine.stick_speed, temperature=whole.reference_temperature
@@ -129,7 +129,7 @@ def test_draws_are_asked_for_at_the_stick_speed_of_their_temperature(
         return draw(self, *given, **named)
 
     monkeypatch.setattr(type(surface), "drag_samples", watched)
-    _drag(surface, machine, 453.15, 3, course=False)
+    _drag(surface, machine, 453.15, 3, varies=False)
     whole = surface.drag(roll_radius=0.015, stick_speed=machine.stick_speed)
     assert asked == [whole.at(453.15).stick_speed]
 

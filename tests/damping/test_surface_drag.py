@@ -98,7 +98,7 @@ def test_drag_at_one_temperature(surface: DampingSurface) -> None:
     assert surface.transition is not None
     assert drag.mixed_exponent == surface.transition.mixed_exponent.value
     assert drag.stick_speed == STICK
-    assert not drag.warms
+    assert not drag.varies_with_temperature
 
 
 def test_drag_of_a_transition_below_the_slowest_dwell_does_not_warn(surface: DampingSurface) -> None:
@@ -112,7 +112,7 @@ def test_drag_of_a_transition_below_the_slowest_dwell_does_not_warn(surface: Dam
 def test_drag_that_varies_with_temperature_is_the_drag_at_each(scale: str) -> None:
     surface = exact(scale)
     warm = surface.drag(roll_radius=RADIUS, stick_speed=STICK)
-    assert warm.warms
+    assert warm.varies_with_temperature
     assert surface.reference_temperature is not None
     zero = 273.15 if scale == "degC" else 0.0
     assert warm.reference_temperature == surface.reference_temperature
@@ -134,7 +134,7 @@ def test_drag_of_an_isothermal_law() -> None:
     at = surface.transition.speed.value
     assert drag.transition_speed == pytest.approx(at * RADIUS)
     assert drag.transition_force == pytest.approx(float(surface.torque(at)) / RADIUS)
-    assert not drag.warms
+    assert not drag.varies_with_temperature
 
 
 def draws(surface: DampingSurface, count: int = 4000, seed: int = 1, celsius: float | None = None) -> dict:

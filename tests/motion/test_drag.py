@@ -46,7 +46,7 @@ def test_all_forces_and_all_speeds_move_with_temperature(kelvin: float) -> None:
     assert law.transition_speed == pytest.approx(2 * ratio**0.5, rel=1e-12)
     assert law.stick_speed == pytest.approx(0.01 * ratio**0.5, rel=1e-12)
     assert (law.ehl_exponent, law.mixed_exponent, law.closure) == (-0.7, -1.3, "retained")
-    assert not law.warms
+    assert not law.varies_with_temperature
     assert law.temperature_zero == 0.0
     speeds = np.array([0.02, 0.5, 6.0])
     np.testing.assert_allclose(WARM.force(speeds, kelvin), law.force(speeds), rtol=1e-12)
@@ -58,8 +58,8 @@ def test_a_law_in_kelvin_counts_from_zero() -> None:
 
 
 def test_temperature_is_given_where_it_is_needed() -> None:
-    assert WARM.warms
-    assert not PLAIN.warms
+    assert WARM.varies_with_temperature
+    assert not PLAIN.varies_with_temperature
     assert PLAIN.at(None) is PLAIN
     with pytest.raises(ParameterError, match=r"^the drag varies with temperature: give temperature$"):
         WARM.at(None)

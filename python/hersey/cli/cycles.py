@@ -86,8 +86,8 @@ def cycles(
 
         unit_text = "share of the weight" if given.unit == "1" else given.unit
         with working("drawing"):
-            picture = rendered(trace_chart(record, drive, unit=unit_text))[figure.suffix.removeprefix(".")]
-        write_atomically(figure, picture, overwrite=True)
+            drawing = picture(chart_of(record, drive=drive, unit=unit_text), figure.suffix)
+        write_atomically(figure, drawing, overwrite=True)
     if as_json:
         driven = None if drive is None else drive.to_dict()
         print_json("cycles", record.to_dict() | {"unit": given.unit, "drive": driven})

@@ -75,8 +75,8 @@ def inspect(
         from hersey.charts.render import picture
 
         with working("drawing the channels"):
-            chart = inspection_chart(logs, inspection)
-            write_atomically(figure, rendered_map(chart, figure.suffix), overwrite=True)
+            chart = chart_of(inspection, paths=logs)
+            write_atomically(figure, picture(chart, figure.suffix), overwrite=True)
     if as_json:
         print_json("inspect", inspection.to_dict())
         return

@@ -68,8 +68,8 @@ def map_(
         from hersey.charts.render import picture
 
         with working("drawing the map"):
-            chart = map_chart(map_of_belt, tooltips=picture.suffix == ".html")
-            write_atomically(picture, rendered_map(chart, picture.suffix), overwrite=True)
+            chart = chart_of(map_of_belt, tooltips=path.suffix == ".html")
+            write_atomically(path, picture(chart, path.suffix), overwrite=True)
     if as_json:
         print_json("map", map_of_belt.to_dict())
         return

@@ -46,7 +46,7 @@ def plan(
         str, typer.Option(help="Target speed of the belt, as '60 mm/s', or of the roll, as '40 rpm'.")
     ] = "",
     at: Annotated[str, typer.Option(help="Temperature, as '150 degC'.")] = "",
-    course: Annotated[
+    profile_file: Annotated[
         Path | None,
         typer.Option(
             "--temperature-profile",
@@ -74,14 +74,14 @@ def plan(
 
     Exit code 1 says that no profile exists; then nothing is written.
     """
-    inputs = reading.inputs(machine_file, logs, fit_file, course)
+    inputs = reading.inputs(machine_file, logs, fit_file, profile_file)
     if out is not None and figure is not None and out.absolute() == figure.absolute():
         raise OutputError(f"--out and --figure both name {out}: name two files")
     if figure is not None:
         may_draw(figure, force, inputs)
     if out is not None:
         may_write(out, force, inputs)
-    if at and course is not None:
+    if at and profile_file is not None:
         raise ParameterError("give either --at or --temperature-profile")
 
     from hersey.files.writing import write_atomically
@@ -92,15 +92,15 @@ def plan(
     machine = read_machine(machine_file)
     wanted = _target(target, machine)
     kelvin = temperature_of(at)
-    warming = None if course is None else read_temperature_profile(course)
+    profile = None if profile_file is None else read_temperature_profile(profile_file)
     surface = reading.surface(logs, fit_file)
-    drag, samples = _drag(surface, machine, kelvin, seed, course=warming is not None)
+    drag, samples = _drag(surface, machine, kelvin, seed, varies=profile is not None)
     with bar("planning", unit="profiles") as progress:
         planned = plan_profile(
             machine.train,
             drag,
             target_speed=wanted,
-            temperature=warming,
+            temperature=profile,
             limits=machine.limits,
             roll_radius=machine.roll_radius,
             uncertainty=machine.uncertainty,
@@ -110,11 +110,11 @@ def plan(
             progress=progress,
         )
     if planned.found and figure is not None:
-        from hersey.charts.plan import plan_chart
-        from hersey.charts.render import rendered
+        from hersey.charts import chart_of
+        from hersey.charts.render import picture
 
         with working("drawing"):
-            content = rendered(plan_chart(planned, temperature=warming))[figure.suffix.removeprefix(".")]
+            content = picture(chart_of(planned, temperature=profile), figure.suffix)
         write_atomically(figure, content, overwrite=True)
     if planned.found and out is not None:
         write_atomically(out, planned.table(), overwrite=True)
@@ -144,22 +144,22 @@ def _target(text: str, machine: Machine) -> float:
 
 
 def _drag(
-    surface: DampingSurface, machine: Machine, kelvin: float | None, seed: int, *, course: bool
+    surface: DampingSurface, machine: Machine, kelvin: float | None, seed: int, *, varies: bool
 ) -> tuple[Drag, dict[str, FloatArray]]:
     """The fitted drag, at one temperature or varying with it, and draws of what the fit leaves open."""
     import warnings
 
-    if surface.b is not None and kelvin is None and not course:
+    if surface.b is not None and kelvin is None and not varies:
         raise ParameterError(
             "the drag varies with temperature: give --at '150 degC' or --temperature-profile"
         )
-    if surface.b is None and (kelvin is not None or course):
+    if surface.b is None and (kelvin is not None or varies):
         raise ParameterError("the log is isothermal: leave out --at and --temperature-profile")
     # One stick speed is known, at the law's reference temperature: it goes with the transition speed.
     drag = surface.drag(roll_radius=machine.roll_radius, stick_speed=machine.stick_speed)
     if kelvin is not None:
         drag = drag.at(kelvin)
-    at = drag.reference_temperature if course else kelvin
+    at = drag.reference_temperature if varies else kelvin
     with warnings.catch_warnings():  # the fit's own command says how many draws have no falling branch
         warnings.simplefilter("ignore")
         samples = surface.drag_samples(

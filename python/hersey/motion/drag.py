@@ -33,17 +33,17 @@ class AnyDrag:
         raise NotImplementedError
 
     @property
-    def warms(self) -> bool:
+    def varies_with_temperature(self) -> bool:
         """Whether the law varies with temperature."""
         return False
 
     @takes_si(temperature="temperature")
     def law_at(self, temperature: float | None) -> _core.Law:
         """Return the law at one temperature, K; none for a law that does not vary."""
-        if self.warms != (temperature is not None):
+        if self.varies_with_temperature != (temperature is not None):
             reason = "the drag varies with temperature: give temperature"
             other = "temperature is given, but the drag does not vary with it"
-            raise ParameterError(reason if self.warms else other)
+            raise ParameterError(reason if self.varies_with_temperature else other)
         return self.law() if temperature is None else self.law().at(temperature - self.temperature_zero)
 
     @property
@@ -57,14 +57,16 @@ class AnyDrag:
 
         Zero below if the belt is held before, infinite above if drag never rises so far.
         """
-        found = (self.law_at(temperature) if self.warms else self.law()).speeds_of(float(force))
+        found = (self.law_at(temperature) if self.varies_with_temperature else self.law()).speeds_of(
+            float(force)
+        )
         return found.slower, found.faster
 
     @takes_si(speed="belt speed", temperature="temperature")
     def force(self, speed: ArrayLike, temperature: float | None = None) -> FloatArray:
         """Return the drag force in steady sliding at each speed, with its sign."""
         speeds = np.asarray(speed, dtype=float)
-        law = self.law_at(temperature) if self.warms else self.law()
+        law = self.law_at(temperature) if self.varies_with_temperature else self.law()
         return law.force(np.ascontiguousarray(speeds.ravel())).reshape(speeds.shape)
 
 
@@ -121,7 +123,7 @@ class Drag(AnyDrag):
         return cls(transition_torque / roll_radius, transition_speed * roll_radius, **rest)  # type: ignore[arg-type]
 
     @property
-    def warms(self) -> bool:
+    def varies_with_temperature(self) -> bool:
         """Whether the law varies with temperature."""
         return self.reference_temperature is not None
 
@@ -129,7 +131,7 @@ class Drag(AnyDrag):
     def at(self, temperature: float | None) -> Drag:
         """Return the law at one temperature, K, as one that does not vary; itself if it does not vary."""
         law = self.law_at(temperature)
-        if not self.warms:
+        if not self.varies_with_temperature:
             return self
         return replace(
             self,

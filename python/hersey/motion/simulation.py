@@ -311,9 +311,9 @@ def simulate(
         raise ParameterError(f"samples is {samples}: at least 2 are needed")
     if (drive_speed is None) == (drive_torque is None):
         raise ParameterError("give either drive_speed or drive_torque")
-    if drag.warms and temperature is None:
+    if drag.varies_with_temperature and temperature is None:
         raise ParameterError("the drag varies with temperature: give temperature")
-    if temperature is not None and not drag.warms:
+    if temperature is not None and not drag.varies_with_temperature:
         raise ParameterError("temperature is given, but the drag does not vary with it")
     given = drive_speed if drive_speed is not None else drive_torque
     drive = Schedule.of(given if given is not None else 0.0)

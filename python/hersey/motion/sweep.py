@@ -90,7 +90,7 @@ def sweep(
     """
     import xarray as xr
 
-    if not isinstance(drag, Drag) or drag.warms:
+    if not isinstance(drag, Drag) or drag.varies_with_temperature:
         raise ParameterError("a sweep needs a Drag at one temperature")
     if start not in ("rest", "steady"):
         raise ParameterError(f"start '{start}' is not known: rest or steady")

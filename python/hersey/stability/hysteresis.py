@@ -283,7 +283,7 @@ def hysteresis_sweep(
 
     if not isinstance(drag, Drag):
         raise ParameterError("a sweep needs a Drag")
-    if drag.warms != (temperature is not None):
+    if drag.varies_with_temperature != (temperature is not None):
         drag.law_at(None if temperature is None else 300.0)
     varied: dict[str, ArrayLike | None] = {
         "stiffness": stiffness,

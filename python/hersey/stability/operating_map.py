@@ -194,10 +194,10 @@ class OperatingMap(Result):
     @takes_si(temperature="temperature", speed="belt speed")
     def look_up(self, temperature: ArrayLike | None, speed: ArrayLike) -> list[MapState]:
         """Return the states of arrays, broadcast together and flattened, as `state_at` does for one."""
-        if (temperature is None) == self.drag.warms:
+        if (temperature is None) == self.drag.varies_with_temperature:
             reason = "the map is one of temperatures: give one, in K"
             other = "temperature is given, but the fit is isothermal"
-            raise ParameterError(reason if self.drag.warms else other)
+            raise ParameterError(reason if self.drag.varies_with_temperature else other)
         speeds = numbers_of("speed", speed)
         kelvin = numbers_of("temperature", 0.0 if temperature is None else temperature)
         try:
@@ -321,7 +321,7 @@ def operating_map(
         torque_limit=limit,
         limited_by=limited_by,
         speed_limit=limits.speed,
-        measured_temperature=surface.temperature_range if drag.warms else None,
+        measured_temperature=surface.temperature_range if drag.varies_with_temperature else None,
         measured_speed=reach,
         points=(),
         uncertain=uncertain,
@@ -339,7 +339,7 @@ def operating_map(
 def _temperatures(
     surface: DampingSurface, drag: Drag, points: Sequence[OperatingPoint], given: ArrayLike | None
 ) -> FloatArray | None:
-    if surface.temperature_range is None or not drag.warms:
+    if surface.temperature_range is None or not drag.varies_with_temperature:
         if given is not None:
             raise ParameterError("temperatures are given, but the fit is isothermal: leave them out")
         return None
@@ -491,7 +491,7 @@ def _middle(values: FloatArray) -> tuple[float, float]:
 
 
 def _placed(drawn: OperatingMap, point: OperatingPoint) -> PlacedPoint:
-    temperature = point.temperature if drawn.drag.warms else None
+    temperature = point.temperature if drawn.drag.varies_with_temperature else None
     return PlacedPoint(point.name, point.speed, point.temperature, drawn.state_at(temperature, point.speed))
 
 
