@@ -336,7 +336,7 @@ def test_shear_that_warms(machine: Machine, contact: Contact, oil: Lubricant) ->
     eta = float(oil.viscosity(350.0))
     for rise, said in ((2.5, True), (1.9, False)):
         speed = np.sqrt(rise * 8 * 0.1 / eta) / 15e-3
-        text = f"shear varies_with_temperature the film by up to {rise:.2g} K over its walls: it is thinner than stated"
+        text = f"shear warms the film by up to {rise:.2g} K over its walls: it is thinner than stated"
         assert (text in check_film(machine, film_at(contact, oil, speed=float(speed)))) == said
 
 

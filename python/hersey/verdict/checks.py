@@ -128,7 +128,7 @@ def _check_lubricant(lubricant: Lubricant, film: Film) -> list[str]:
         )
         if rise > _WARM:
             found.append(
-                f"shear varies_with_temperature the film by up to {rise:.2g} K over its walls: it is thinner than stated"
+                f"shear warms the film by up to {rise:.2g} K over its walls: it is thinner than stated"
             )
     return found
 
