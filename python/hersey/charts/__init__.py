@@ -3,7 +3,6 @@
 =============  ====================================================
 style          sizes, colours, the smallest pieces
 labels         where texts stand, so that none covers another
-thinning       fewer samples to draw, the extremes among them
 runtime        the Vega runtime, inlined in every page
 render         from a chart to the content of a file
 analysis       the charts of the analysis document

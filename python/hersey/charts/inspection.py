@@ -10,7 +10,7 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.charts.style import BLUE, INK, ORANGE, WIDTH, Chart, Row, plot
-from hersey.charts.thinning import kept
+from hersey.document.thinning import kept
 from hersey.errors import InsufficientDataError
 from hersey.inspection.inspecting import ChannelReport, FileReport, Inspection
 from hersey.inspection.raw import raw_channels

@@ -7,7 +7,7 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.charts.style import BLUE, INK, WIDTH, Chart, Row, plot, rows_of, tip, torque_unit
-from hersey.charts.thinning import kept
+from hersey.document.thinning import kept
 from hersey.log.torque_log import TorqueLog
 from hersey.units import celsius, rpm
 

@@ -4,6 +4,7 @@
 parts      one part per result, versioned and validated
 assembly   from a log to the document
 film_part  the film of the nip
+thinning   fewer samples to show, the extremes among them
 saved_fit  a fit read back from its JSON
 =========  ================================================
 """

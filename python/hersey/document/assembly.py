@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
-from tsdownsample import MinMaxLTTBDownsampler
 
 from hersey import _core
 from hersey.arrays import FloatArray
@@ -33,9 +32,9 @@ from hersey.document.parts import (
     Timeline,
     TransitionAt,
 )
+from hersey.document.thinning import kept
 from hersey.errors import ExtrapolationWarning, ParameterError
 from hersey.log import TorqueLog
-from hersey.log.torque_log import Run
 from hersey.machine.machine import Machine
 from hersey.motion.drag import Drag
 from hersey.motion.simulation import Drivetrain, simulate, stick_slip
@@ -354,7 +353,7 @@ def _simulated(
     period = 1.0 / cycle.frequency if cycle.frequency else 10.0 * (train.mass / train.stiffness) ** 0.5
     first = drag.breakaway_force / train.stiffness / speed
     run = simulate(train, drag, drive_speed=speed, duration=first + 6.0 * period, samples=4001)
-    kept = MinMaxLTTBDownsampler().downsample(run.time, run.belt_speed, n_out=1500)
+    samples = kept(run.belt_speed, 1500)
     return SimulationPart(
         title=title,
         source=source,
@@ -375,9 +374,9 @@ def _simulated(
         frequency=cycle.frequency,
         stuck_fraction=cycle.stuck_fraction,
         speed_max=cycle.speed_max,
-        time=run.time[kept].tolist(),
-        belt_speed=run.belt_speed[kept].tolist(),
-        spring_force=run.spring_force[kept].tolist(),
+        time=run.time[samples].tolist(),
+        belt_speed=run.belt_speed[samples].tolist(),
+        spring_force=run.spring_force[samples].tolist(),
         transition_speed=drag.transition_speed,
         drive_speed=speed,
     )
@@ -394,9 +393,10 @@ def _timeline(log: TorqueLog) -> Timeline:
         times: list[float] = []
         values: list[float] = []
         for run, start in zip(log.runs, starts, strict=True):
-            kept = _thinned(run, name, each)
-            times += np.round(run.time[kept] + start, 4).tolist()
-            values += [float(f"{v:.6g}") for v in getattr(run, name)[kept]]
+            channel = getattr(run, name)
+            thinned = kept(channel, each)
+            times += np.round(run.time[thinned] + start, 4).tolist()
+            values += [float(f"{v:.6g}") for v in channel[thinned]]
         return Series(time=times, value=values)
 
     return Timeline(
@@ -405,16 +405,6 @@ def _timeline(log: TorqueLog) -> Timeline:
         temperature=series("temperature") if log.has_temperature else None,
         starts=starts,
     )
-
-
-def _thinned(run: Run, name: str, count: int) -> np.ndarray[tuple[int], np.dtype[np.integer]]:
-    values = getattr(run, name)
-    if values.size <= count:
-        return np.arange(values.size)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # unevenly spaced times are fine for display
-        kept = MinMaxLTTBDownsampler().downsample(np.ascontiguousarray(values), n_out=count)
-    return np.asarray(kept).astype(np.intp)
 
 
 def load(text: str) -> Analysis:

@@ -54,7 +54,8 @@ impl<'a> Surroundings<'a> {
     fn find_next_change(&mut self) {
         let drive = self.system.drive.schedule().end(self.drive_segment);
         let temperature = &self.system.temperature;
-        let segment_end = temperature.as_ref().map_or(f64::INFINITY, |t| t.end(self.temperature_segment));
+        let segment_end =
+            temperature.as_ref().map_or(f64::INFINITY, |t| t.end(self.temperature_segment));
         self.next_change = drive.min(segment_end);
     }
 
