@@ -1,0 +1,192 @@
+"""From a fitted surface and a machine to the operating map."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from hersey.damping.surface import DampingSurface
+from hersey.errors import InsufficientDataError, ParameterError
+from hersey.machine.machine import Limits, OperatingPoint
+from hersey.machine.uncertainty import Uncertainty
+from hersey.motion.simulation import Drivetrain
+from hersey.stability.operating_map.edges import contour, edges_at, laws_at
+from hersey.stability.operating_map.intervals import FOLD_DRAWS, intervals
+from hersey.stability.operating_map.result import OperatingMap
+from hersey.stability.operating_map.state import PlacedPoint
+from hersey.stability.operating_map.window import shown_speeds, shown_temperatures
+from hersey.units import convert, takes_si
+
+if TYPE_CHECKING:
+    pass
+
+
+@takes_si(roll_radius="length", stick_speed="belt speed", temperatures="temperature", speeds="belt speed")
+def operating_map(
+    surface: DampingSurface,
+    train: Drivetrain,
+    *,
+    roll_radius: float,
+    stick_speed: float,
+    limits: Limits | None = None,
+    points: Sequence[OperatingPoint] = (),
+    uncertainty: Mapping[str, Uncertainty] | None = None,
+    temperatures: ArrayLike | None = None,
+    speeds: ArrayLike | None = None,
+    seed: int = 0,
+    draws: int = FOLD_DRAWS,
+    threads: int = 1,
+) -> OperatingMap:
+    """Return what the belt does at each temperature and drive speed.
+
+    Parameters
+    ----------
+    surface
+        The fitted surface; it must have a transition.
+    train
+        Stiffness (N/m) and mass (kg) at the belt.
+    roll_radius, stick_speed
+        m and m/s, as in `DampingSurface.drag`; the stick speed is that at the fit's reference temperature
+        and moves with temperature as the transition speed does.
+    limits
+        What the drive can bear: ``motor_torque``, or ``roll_friction`` with ``nip_load``, gives the stall.
+    points
+        Operating points to judge.
+    uncertainty
+        How far ``stiffness``, ``mass`` and ``stick_speed`` are known, for the interval of V*; what it says of
+        other parameters is left alone, since the fit knows them better.
+    temperatures
+        K, ascending; by default the measured range and the points, and a little beyond.
+    speeds
+        m/s, ascending; by default all that the bands, the dwells and the points need.
+    seed
+        Of the draws for the intervals.
+    draws, threads
+        For the interval of V*, which takes most of the time.
+
+    Raises
+    ------
+    InsufficientDataError
+        If the data show no falling branch: then there is no stick-slip to map.
+    ParameterError
+        If a value is out of range, with its name.
+
+    Examples
+    --------
+    >>> from hersey import fit, read
+    >>> surface = fit(read("examples/bench.csv").steady(tare="standing"))
+    >>> map_ = operating_map(surface, Drivetrain(11e3, 11.0), roll_radius=0.015, stick_speed=3e-4)
+    >>> [map_.state_at(180 + 273.15, v).state for v in (0.02, 0.045, 0.12)]
+    ['stick_slip', 'bistable', 'smooth']
+    """
+    limits = limits or Limits()
+    if draws < 1:
+        raise ParameterError(f"draws is {draws}: at least 1 is needed")
+    if surface.transition is None:
+        raise InsufficientDataError(
+            f"no operating map: the data show no falling branch ({surface.rejected_transition}); "
+            "record slower dwells, until torque rises as the drive slows"
+        )
+    drag = surface.drag(roll_radius=roll_radius, stick_speed=stick_speed)
+    reach = surface.speed_range[0] * roll_radius, surface.speed_range[1] * roll_radius
+    kelvin = shown_temperatures(surface, drag, points, temperatures)
+    edges = edges_at(train, drag, kelvin)
+    shown = shown_speeds(edges, reach, points, limits.speed, speeds)
+    laws = laws_at(drag, kelvin)
+    limit, limited_by = torque_limit(limits, roll_radius)
+    below, above = contour(laws, np.inf if limit is None else limit / roll_radius)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        transition_interval, upper_interval, uncertain = intervals(
+            surface, train, drag, kelvin, uncertainty or {}, roll_radius, seed, draws, threads
+        )
+    map_ = OperatingMap(
+        temperature=kelvin,
+        speed=shown,
+        **edges,
+        transition_interval=transition_interval,
+        upper_interval=upper_interval,
+        stall_below=below,
+        stall_above=above,
+        torque=np.array([law.force(shown) for law in laws]) * roll_radius,
+        torque_limit=limit,
+        limited_by=limited_by,
+        speed_limit=limits.speed,
+        measured_temperature=surface.temperature_range if drag.varies_with_temperature else None,
+        measured_speed=reach,
+        points=(),
+        uncertain=uncertain,
+        warnings=(),
+        roll_radius=float(roll_radius),
+        train=train,
+        drag=drag,
+    )
+    placed = tuple(_placed(map_, point) for point in points)
+    said = list(dict.fromkeys(str(w.message) for w in caught))
+    said += _remarks(map_, placed, stick_speed)
+    return replace(map_, points=placed, warnings=tuple(said))
+
+
+def torque_limit(limits: Limits, roll_radius: float) -> tuple[float | None, str]:
+    """The torque on the roll (N m) at which the belt slips on it or the motor gives up, and which."""
+    known = []
+    if limits.grip is not None:
+        known.append((limits.grip * roll_radius, "roll friction"))
+    if limits.motor_torque is not None:
+        known.append((limits.motor_torque, "motor torque"))
+    return min(known) if known else (None, "")
+
+
+def _placed(map_: OperatingMap, point: OperatingPoint) -> PlacedPoint:
+    temperature = point.temperature if map_.drag.varies_with_temperature else None
+    return PlacedPoint(point.name, point.speed, point.temperature, map_.state_at(temperature, point.speed))
+
+
+def _remarks(map_: OperatingMap, points: Sequence[PlacedPoint], stick_speed: float) -> list[str]:
+    """What a reader of the map must know, one sentence each."""
+    hot = map_.drag.reference_temperature
+    where = "" if hot is None else f" at {convert(hot, 'K', 'degC'):.0f} degC"
+    counted = " and ".join(["the fit", *(name.replace("_", " ") for name in map_.uncertain)])
+    said = [
+        f"V* depends on the stick speed, {1e3 * stick_speed:.3g} mm/s{where} here, which nobody measures; "
+        f"its interval counts {counted}"
+        + ("" if "stick_speed" in map_.uncertain else ": state how far stick_speed is known")
+    ]
+    if map_.temperature is None:
+        said.append("the fit is isothermal: the map holds at the temperature of the log, for the points too")
+    if map_.torque_limit is None:
+        said.append("no stall is shown: state motor_torque, or roll_friction and nip_load, among the limits")
+    else:
+        rest = max(law.breakaway_force for law in laws_at(map_.drag, map_.temperature)) * map_.roll_radius
+        said.append(
+            f"stall counts steady sliding beyond {map_.torque_limit:.3g} N m ({map_.limited_by}); "
+            f"a belt at rest can bear {rest:.3g} N m before it starts"
+        )
+    for p in points:
+        within = _within(map_, p)
+        if within:
+            said.append(f"{p.name}: within the 95 % interval of {within}, so the verdict is not certain")
+        if p.at.extrapolated:
+            said.append(f"{p.name}: extrapolated, no dwell lies that far out")
+    if map_.speed_limit is not None:
+        fast = [p for p in points if p.speed > map_.speed_limit]
+        said += [f"{p.name}: faster than the drive, {1e3 * map_.speed_limit:.3g} mm/s" for p in fast]
+    return said
+
+
+def _within(map_: OperatingMap, point: PlacedPoint) -> str:
+    """The edge whose interval holds the point, if any."""
+    named = {"the transition speed": map_.transition_interval, "V*": map_.upper_interval}
+    for name, interval in named.items():
+        low, high = (
+            edge[0] if map_.temperature is None else np.interp(point.temperature, map_.temperature, edge)
+            for edge in interval
+        )
+        if low <= point.speed <= high:
+            return f"{name} ({1e3 * low:.3g} to {1e3 * high:.3g} mm/s)"
+    return ""

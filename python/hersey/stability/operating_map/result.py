@@ -1,0 +1,195 @@
+"""The operating map, what can be asked of it, and its words."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hersey.arrays import FloatArray, numbers_of
+from hersey.errors import ParameterError
+from hersey.motion.drag import Drag
+from hersey.motion.simulation import Drivetrain
+from hersey.result import Result, json_record
+from hersey.stability.operating_map.edges import check_temperatures, contour, edges_at, laws_at
+from hersey.stability.operating_map.state import MapState, PlacedPoint
+from hersey.units import convert, takes_si
+
+if TYPE_CHECKING:
+    import polars as pl
+
+#: Temperatures of the summary.
+_ROWS = 5
+
+
+@dataclass(frozen=True, repr=False)
+class OperatingMap(Result):
+    """Speeds (m/s) that divide the behaviour at each temperature (K), shape (n,).
+
+    ``temperature`` is None for an isothermal fit, whose map has one column. ``upper`` is infinite beyond
+    10,000 transition speeds. Intervals, shape (2, n), hold 95 % of the draws; ``upper_interval`` counts the
+    fit and the parameters in ``uncertain``. Drag exceeds ``torque_limit`` (N m, set by ``limited_by``) from
+    ``stall_above`` up (infinite if never) and, on the falling branch, up to ``stall_below`` (0 if never).
+    ``torque`` in N m, shape (n, m), is that of steady sliding at ``speed``, shape (m,). The measured ranges
+    bound the dwells.
+    """
+
+    temperature: FloatArray | None
+    speed: FloatArray
+    lower: FloatArray
+    transition: FloatArray
+    upper: FloatArray
+    transition_interval: FloatArray
+    upper_interval: FloatArray
+    stall_below: FloatArray
+    stall_above: FloatArray
+    torque: FloatArray
+    torque_limit: float | None
+    limited_by: str
+    speed_limit: float | None
+    measured_temperature: tuple[float, float] | None
+    measured_speed: tuple[float, float]
+    points: tuple[PlacedPoint, ...]
+    uncertain: tuple[str, ...]
+    warnings: tuple[str, ...]
+    roll_radius: float
+    train: Drivetrain
+    drag: Drag
+
+    @takes_si(temperature="temperature", speed="belt speed")
+    def state_at(self, temperature: float | None, speed: float) -> MapState:
+        """Return the state at a temperature (K; None for an isothermal fit) and a drive speed (m/s).
+
+        The bands are computed there, not interpolated.
+
+        Raises
+        ------
+        ParameterError
+            If the speed or the temperature is not one that the law allows.
+        """
+        return self.look_up(temperature, speed)[0]
+
+    @takes_si(temperature="temperature", speed="belt speed")
+    def states(self, temperature: ArrayLike | None, speed: ArrayLike) -> NDArray[np.str_]:
+        """Return the name of the state for arrays of temperature (K) and speed (m/s), broadcast together."""
+        shape = np.broadcast_shapes(
+            np.shape(temperature if temperature is not None else 0.0), np.shape(speed)
+        )
+        names = [state.state for state in self.look_up(temperature, speed)]
+        return np.array(names).reshape(shape)
+
+    @takes_si(torque="torque")
+    def contour(self, torque: float) -> tuple[FloatArray, FloatArray]:
+        """Return the speeds (m/s) of a torque (N m) at each temperature: falling branch, rising branch.
+
+        0 on the falling branch where torque stays below it down to the stick speed; both the transition
+        speed where torque is never so small.
+        """
+        return contour(laws_at(self.drag, self.temperature), torque / self.roll_radius)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the whole map in SI; None stands for a speed beyond all that was searched."""
+        return json_record(vars(self))
+
+    def to_frame(self) -> pl.DataFrame:
+        """Return the dividing speeds at each temperature (one row if isothermal)."""
+        import polars as pl
+
+        speeds = {
+            "lower": self.lower,
+            "transition": self.transition,
+            "transition 95 % low": self.transition_interval[0],
+            "transition 95 % high": self.transition_interval[1],
+            "upper": self.upper,
+            "upper 95 % low": self.upper_interval[0],
+            "upper 95 % high": self.upper_interval[1],
+            "stall below": self.stall_below,
+            "stall above": self.stall_above,
+        }
+        columns = {} if self.temperature is None else {"temperature (K)": self.temperature}
+        return pl.DataFrame({**columns, **{f"{name} (m/s)": values for name, values in speeds.items()}})
+
+    def headline(self) -> str:
+        """Return the ranges of temperature and speed."""
+        low, high = _mm(float(self.speed[0])), _mm(float(self.speed[-1]))
+        hot = (
+            ""
+            if self.temperature is None
+            else f", {_celsius(self.temperature[0])} to {_celsius(self.temperature[-1])}"
+        )
+        return f"{low} to {high} mm/s{hot}, {len(self.points)} points"
+
+    def summary(self) -> str:
+        """Return the dividing speeds at a few temperatures, and the points, as text."""
+        return _summary(self)
+
+    @takes_si(temperature="temperature", speed="belt speed")
+    def look_up(self, temperature: ArrayLike | None, speed: ArrayLike) -> list[MapState]:
+        """Return the states of arrays, broadcast together and flattened, as `state_at` does for one."""
+        if (temperature is None) == self.drag.varies_with_temperature:
+            reason = "the map is one of temperatures: give one, in K"
+            other = "temperature is given, but the fit is isothermal"
+            raise ParameterError(reason if self.drag.varies_with_temperature else other)
+        speeds = numbers_of("speed", speed)
+        kelvin = numbers_of("temperature", 0.0 if temperature is None else temperature)
+        try:
+            speeds, kelvin = (a.ravel() for a in np.broadcast_arrays(speeds, kelvin))
+        except ValueError:
+            raise ParameterError("speed and temperature do not fit together") from None
+        if not np.all((speeds > 0) & np.isfinite(speeds)):
+            raise ParameterError(f"speed is {float(speeds.min()):g}: it must be greater than 0")
+        levels, place = np.unique(kelvin, return_inverse=True)
+        if temperature is not None:
+            check_temperatures(levels, self.drag)
+        found = edges_at(self.train, self.drag, None if temperature is None else levels)
+        laws = laws_at(self.drag, None if temperature is None else levels)
+        rows = zip(speeds.tolist(), kelvin.tolist(), place.ravel().tolist(), strict=True)
+        return [self._state(laws[i], {k: float(v[i]) for k, v in found.items()}, t, v) for v, t, i in rows]
+
+    def _state(self, law: Drag, edges: Mapping[str, float], kelvin: float, speed: float) -> MapState:
+        torque = float(law.force(speed)) * self.roll_radius
+        if self.torque_limit is not None and torque > self.torque_limit:
+            state = "stall"
+        elif speed < edges["lower"]:
+            state = "stick_slip"
+        elif speed < edges["transition"]:
+            state = "swing"
+        else:
+            state = "bistable" if speed < edges["upper"] else "smooth"
+        low, high = self.measured_speed
+        cold, hot = self.measured_temperature or (-np.inf, np.inf)
+        outside = not (low <= speed <= high and cold <= kelvin <= hot)
+        return MapState(state, torque, **edges, extrapolated=outside)
+
+
+def _summary(map_: OperatingMap) -> str:
+    columns = range(map_.lower.size)
+    if map_.temperature is not None and map_.measured_temperature is not None:
+        asked = np.linspace(*map_.measured_temperature, _ROWS)
+        columns = np.unique(np.searchsorted(map_.temperature, asked).clip(0, map_.lower.size - 1)).tolist()
+    head = ("temperature", "stick-slip below", "transition [95 %]", "smooth above V* [95 %]", "stall from")
+    lines = ["".join(f"{text:<26s}" for text in head) + "(speeds in mm/s)"]
+    for i in columns:
+        edges = (map_.transition, map_.transition_interval), (map_.upper, map_.upper_interval)
+        shown = [f"{_mm(e[i])} [{_mm(low[i])}, {_mm(high[i])}]" for e, (low, high) in edges]
+        where = "as in the log" if map_.temperature is None else _celsius(map_.temperature[i])
+        stall = "never" if np.isinf(map_.stall_above[i]) else _mm(map_.stall_above[i])
+        cells = (where, _mm(map_.lower[i]), *shown, stall if map_.torque_limit else "not known")
+        lines.append("".join(f"{text:<26s}" for text in cells).rstrip())
+    for point in map_.points:
+        where = f"{_mm(point.speed)} mm/s" + (
+            "" if map_.temperature is None else f", {_celsius(point.temperature)}"
+        )
+        lines.append(f"{point.name} ({where}, {point.at.torque:.3g} N m): {point.at.verdict()}")
+    return "\n".join(lines)
+
+
+def _mm(speed: float) -> str:
+    return f"{1e3 * speed:.3g}" if speed < 0.1 else f"{1e3 * speed:.0f}"
+
+
+def _celsius(kelvin: float) -> str:
+    return f"{convert(kelvin, 'K', 'degC'):.0f} degC"
