@@ -87,7 +87,7 @@ def test_a_mistake_ends_in_one_line(tmp_path: Path) -> None:
         (["--least-drop", "5 mm"], "--least-drop"),
         (["--value", "pull"], "there is no column 'pull': it has time [s], force [N]"),
         (["--quantity", "heat"], "quantity 'heat' is not known"),
-        (["--figure", "fit.bmp"], "name a file that ends in .png"),
+        (["--figure", "fit.bmp"], "name a file that ends in .html"),
     ],
 )
 def test_mistakes_are_named(arguments: list[str], message: str) -> None:

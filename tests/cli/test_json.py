@@ -12,13 +12,13 @@ import altair as alt
 import jsonschema
 import polars as pl
 import pytest
-from typer.testing import CliRunner
 
 import hersey
-from hersey.cli import app
+from hersey.cli.application import VERBS, load
 from hersey.document.parts import PRINTED, SCHEMA_VERSION, Analysis, Part
 from hersey.document.saved_fit import read_fit
 from hersey.paper_figures.figure import Claim, OwnFigure, Verdict
+from tests.cli.command import run
 from tests.conftest import ROOT
 
 EXAMPLES = ROOT / "examples"
@@ -61,9 +61,9 @@ units = "consistent"
 
 
 def printed(arguments: Sequence[str]) -> Any:
-    result = CliRunner().invoke(app, [*arguments, "--json"], catch_exceptions=False)
-    assert result.exit_code == 0, result.output
-    return json.loads(result.stdout)
+    done = run(*arguments, "--json", cwd=ROOT)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
 
 
 def figure() -> OwnFigure:
@@ -101,14 +101,7 @@ def test_a_command_prints_its_part(name: str, files: dict[str, str], monkeypatch
 
 
 def test_every_command_with_json_has_a_part() -> None:
-    import typer
-
-    group: Any = typer.main.get_command(app)
-    with_json = {
-        name
-        for name in group.list_commands(None)
-        if any(parameter.name == "as_json" for parameter in group.get_command(None, name).params)
-    }
+    with_json = {name for name in VERBS if any(p.name == "as_json" for p in load(name).params)}
     assert with_json == set(PRINTED) == set(ARGUMENTS)
 
 

@@ -29,7 +29,7 @@ from hersey.errors import InsufficientDataError, ParameterError
 from tests.damping.candidates.cases import even, hand_fit, inputs
 from tests.damping.candidates.test_comparison import REFERENCE, dwells
 
-R = 8.314462618
+R = 8.31446261815324
 STRAIGHT = Law(Thermal(KELVIN, REFERENCE), ONE)
 VALUES = [0.1, -2.4, -0.7]
 DATA = even(STRAIGHT, VALUES)

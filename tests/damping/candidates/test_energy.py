@@ -16,7 +16,7 @@ from hersey.damping.candidates.thermal import ARRHENIUS, CELSIUS, VFT, Thermal
 from tests.damping.candidates.cases import hand_fit, some_covariance
 from tests.damping.candidates.test_comparison import REFERENCE, TEMPERATURES, dwells
 
-R = 8.314462618
+R = 8.31446261815324
 UNIT = R * REFERENCE
 HELD_LAW = Law(Thermal(ARRHENIUS, REFERENCE), HELD)
 FREE_LAW = Law(Thermal(ARRHENIUS, REFERENCE), FREE)

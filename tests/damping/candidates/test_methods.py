@@ -28,7 +28,7 @@ from tests.damping.candidates.test_comparison import REFERENCE, dwells
 
 STRAIGHT = Law(Thermal(KELVIN, REFERENCE), ONE)
 VALUES = [0.1, -2.4, -0.7]
-R = 8.314462618
+R = 8.31446261815324
 #: Reference speed of the grid: the geometric mean of 0.4 and 16 rad/s.
 W = np.sqrt(0.4 * 16.0)
 

@@ -9,7 +9,7 @@ from scipy import stats
 from hersey.damping.candidates.viscosity import viscosity_laws
 from hersey.errors import InsufficientDataError, ParameterError
 
-R = 8.314462618
+R = 8.31446261815324
 KELVIN = np.linspace(300.0, 420.0, 13)
 
 
