@@ -243,6 +243,17 @@ def test_candidates_by_how_much_worse_they_are() -> None:
     assert [name for name, text in texts.items() if "chosen" in text] == [models().chosen.candidate.key]
 
 
+def test_dwells_beside_the_chosen_law_have_two_standard_errors() -> None:
+    comparison = models()
+    rows = next(
+        data
+        for data in layers("ModelComparison")
+        if {"torque", "low", "high"} <= data[0].keys() and len(data) == len(comparison.data)
+    )
+    shares = [row["high"] / row["torque"] - 1.0 for row in rows]
+    assert shares == pytest.approx((2 * comparison.data.torque_error).tolist(), rel=1e-3)
+
+
 def test_two_logs_that_are_the_same() -> None:
     assert column("LogComparison", "ratio") == pytest.approx(np.ones(result_of("LogComparison").ratio.size))
     assert column("LogComparison", "low") == pytest.approx(result_of("LogComparison").low.ravel())

@@ -14,6 +14,7 @@ from hersey.charts.cycles import trace_chart
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.identification.cycle_record import CycleRecord, Scatter, cycles
 from hersey.identification.detection import running_width
+from hersey.identification.drive_fit import DriveFit
 from hersey.identification.identified_drive import IdentifiedDrive, identify
 from hersey.identification.independence import directions, in_words
 from hersey.identification.sampling import even_samples
@@ -465,3 +466,19 @@ def test_the_chart_of_a_trace_in_numbers(drive: IdentifiedDrive) -> None:
     assert "closure retained (not decided), within" in undecided
     quiet = cycles(record.samples.time, np.random.default_rng(0).normal(size=record.samples.value.size))
     assert len(trace_chart(quiet).to_dict(validate=False)["vconcat"]) == 1
+
+
+def test_the_covariance_of_a_fit_is_that_of_the_mean_of_its_laps(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What each lap asks of the values, by least squares; their mean scatters as the covariance over n."""
+    known = {"stick_speed": 0.01, "transition_speed": 1.0, "ehl_exponent": -0.7, "mixed_exponent": -1.2}
+    record = record_of(3, noise=5.0, seconds=9.0)
+    wave = mean_waveform(record)
+    fit = DriveFit(wave, record, known, "retained")
+    monkeypatch.setattr(DriveFit, "_level_error", lambda _: 0.0)
+    laps = np.nan_to_num((wave.laps - wave.force) / wave.error)
+    period = np.nan_to_num((wave.period - fit.period) / fit.period_error)
+    changes = np.column_stack([laps, period]) @ np.linalg.pinv(fit.jacobian()).T
+    n = changes.shape[0]
+    assert n < 30  # where n - 1 for n shows
+    expected = changes.T @ changes / (n * (n - 1))
+    np.testing.assert_allclose(fit.covariance(0.0), expected[:-1, :-1], rtol=1e-6)

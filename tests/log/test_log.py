@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from dataclasses import replace
 from pathlib import Path
 
@@ -348,3 +349,23 @@ def test_a_number_that_reads_in_two_ways_is_refused(tmp_path: Path) -> None:
     )
     with pytest.raises(hersey.HerseyError, match=r"line 3, column 'Speed': '1\.299' is not a number"):
         hersey.read(path)
+
+
+def test_the_hash_is_of_all_bytes_also_of_what_follows_the_table(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text(HEADER + BODY + "Mean,0.6,61,150\nTest completed at 21:02:28\n")
+    (file,) = hersey.read(path).files
+    assert file.sha256 == hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+@pytest.mark.parametrize(
+    "setpoint", ["Speed set", "Speed cmd", "Speed target", "Drehzahl Soll", "nominal speed"]
+)
+def test_a_set_point_is_not_taken_for_what_was_measured(setpoint: str, tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text(
+        f"t [s],Torque [N*m],{setpoint} [rpm],Speed [rpm],Temp [degC]\n"
+        + "".join(f"{i / 10},0.3,99,60,150\n" for i in range(30))
+    )
+    log = hersey.read(path)
+    assert log.runs[0].speed == pytest.approx(60 * np.pi / 30)

@@ -298,3 +298,19 @@ def test_a_film_over_a_grid_has_the_shape_of_the_grid() -> None:
     assert float(film.minimum[1, 0]) == pytest.approx(float(one.minimum), rel=1e-12)
     assert float(film.temperature[2, 1]) == 373.15
     assert float(film.speed[2, 0]) == 9.0
+
+
+def test_the_oils_of_the_table() -> None:
+    """Stachowiak and Batchelor, Engineering Tribology, Table 2.3: mPa s, 1e-9/Pa at 30, 60 and 100 degC."""
+    table = {
+        "spindle oil": ((18.6, 6.3, 2.4), (20.0, 16.0, 13.0)),
+        "light machine oil": ((45.0, 12.0, 3.9), (28.0, 20.0, 16.0)),
+        "heavy machine oil": ((153.0, 34.0, 9.1), (23.7, 20.5, 15.8)),
+        "cylinder oil": ((810.0, 135.0, 26.8), (34.0, 28.0, 22.0)),
+    }
+    assert set(EXAMPLES) == set(table)
+    for name, (viscosities, alphas) in table.items():
+        oil = EXAMPLES[name]
+        for celsius, eta, alpha in zip((30.0, 60.0, 100.0), viscosities, alphas, strict=True):
+            assert float(oil.viscosity(celsius + 273.15)) == pytest.approx(1e-3 * eta, rel=1e-9)
+            assert float(oil.alpha(celsius + 273.15)) == pytest.approx(1e-9 * alpha, rel=1e-9)

@@ -235,3 +235,10 @@ def test_central_film_of_moes(load: float, material: float) -> None:
         (rigid ** (7 / 3) + elastic ** (7 / 3)) ** (3 * s / 7) + (hard**-3.5 + both**-3.5) ** (-2 * s / 7)
     ) ** (1 / s)
     assert solution.central_thickness / radius / np.sqrt(speed) == pytest.approx(fit, rel=0.09)
+
+
+def test_profiles_cannot_be_overwritten() -> None:
+    solution = solve_line_contact(0.01, 1e4, 0.5, 0.05, effective_modulus=1e7, nodes=65)
+    for profile in (solution.x, solution.pressure, solution.film_thickness):
+        with pytest.raises(ValueError, match="read-only"):
+            profile[0] = 1.0

@@ -413,3 +413,18 @@ def write_messages() -> None:
 
 if __name__ == "__main__":
     write_messages()
+
+
+def test_what_is_stated_of_the_lubricant_is_kept(tmp_path: Path) -> None:
+    text = (ROOT / "examples" / "machine.toml").read_text()
+    head, _, rest = text.partition("[lubricant]")
+    tail = rest[rest.index("\n[") :] if "\n[" in rest else ""
+    path = tmp_path / "machine.toml"
+    path.write_text(
+        head
+        + '[lubricant]\nexample = "cylinder oil"\nuncertainty = "20 %"\nconductivity = "0.14 W/m/K"\n'
+        + tail
+    )
+    lubricant = read_machine(path).lubricant
+    assert lubricant is not None
+    assert (lubricant.uncertainty, lubricant.conductivity) == (pytest.approx(0.2), pytest.approx(0.14))

@@ -382,6 +382,13 @@ def test_a_fit_is_read_back_as_it_was(surface: DampingSurface, fit_json: Path) -
             assert getattr(again, name) == value, name
 
 
+def test_a_fit_knows_the_program_that_made_it(fit_json: Path, tmp_path: Path) -> None:
+    document = json.loads(fit_json.read_text()) | {"hersey_version": "0.0.9"}
+    path = tmp_path / "old.json"
+    path.write_text(json.dumps(document))
+    assert read_fit(path).version == "0.0.9"
+
+
 @pytest.mark.parametrize(
     ("change", "field"),
     [

@@ -515,3 +515,21 @@ def test_a_chart_with_a_wait_and_a_course(plan: Plan) -> None:
         assert row["value"] == pytest.approx(course.at(row["time"]) - 273.15)
     assert (rows(line)[0]["time"], rows(line)[-1]["time"]) == (0.0, 30.0)
     assert rows(rule)[0]["time"] == 7.0
+
+
+def test_each_proof_has_draws_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The search draws from stream 0; every proof asks for a stream that it has not seen."""
+    asked: list[int] = []
+    draws = Unknown.draws
+
+    def watched(self: Unknown, number: int, count: int) -> list[MachineSample]:
+        asked.append(number)
+        return draws(self, number, count)
+
+    monkeypatch.setattr(Unknown, "draws", watched)
+    unknown = Unknown(TRAIN, DRAG, {"mass": Uncertainty(share=0.2)}, {}, 1)
+    shape, steady = Shape(1.9, 3.0, 0.3, 0.4, 0.5), TemperatureProfile(None)
+    unknown.trials(0.9, steady, math.inf)
+    for number in (1, 2):
+        unknown.verify(shape, 1.25, steady, math.inf, 0.5, number)
+    assert asked == [0, 1, 2]
