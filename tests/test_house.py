@@ -7,6 +7,7 @@ import inspect
 import pickle
 import re
 import subprocess
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,7 @@ import hersey
 from hersey import errors
 from hersey.cli.application import VERBS, load
 from tests.conftest import ROOT, SLOW
-from tests.mutants import counted, table
+from tests.mutants import files_for, named, sample, table
 
 PACKAGE = ROOT / "python" / "hersey"
 #: Rooms in the order in which data passes through them: each may import only those before it.
@@ -271,15 +272,20 @@ def test_files_have_one_subject() -> None:
             assert not re.fullmatch(r"(utils?|helpers?|misc|common)", path.stem)
 
 
-def test_planted_faults_are_counted_by_module() -> None:
+def test_planted_faults_are_drawn_by_a_seed_and_counted() -> None:
     lines = [
-        "    hersey.damping.design.x_design__mutmut_1: killed",
-        "    hersey.damping.design.xǁTestDesignǁsummary__mutmut_2: survived",
-        "    hersey.damping.design.x__error__mutmut_11: no tests",
-        "    hersey.verdict.regimes.x_regime_of__mutmut_1: killed",
+        "    hersey.damping.design.x_design__mutmut_1: not checked",
+        "    hersey.damping.design.xǁTestDesignǁsummary__mutmut_2: not checked",
+        "    hersey.verdict.regimes.x_judged__mutmut_1: not checked",
         "something else",
     ]
-    outcomes = counted(lines)
-    assert outcomes["hersey.damping.design"] == {"killed": 1, "survived": 1, "no tests": 1}
-    assert outcomes["hersey.verdict.regimes"]["killed"] == 1
-    assert "1 killed     1 survived  1 no tests" in table(outcomes)
+    faults = named(lines)
+    assert {module: len(each) for module, each in faults.items()} == {
+        "hersey.damping.design": 2,
+        "hersey.verdict.regimes": 1,
+    }
+    assert len(sample(faults, [], 1, 1)) == 2
+    assert sample(faults, ["hersey.verdict.*"], 9, 1) == ["hersey.verdict.regimes.x_judged__mutmut_1"]
+    assert files_for("hersey.damping.candidates.energy", ROOT)[0] == "tests/damping/candidates/test_energy.py"
+    outcomes = {"hersey.damping.design": Counter({True: 3, False: 1})}
+    assert table(outcomes).endswith("3 of     4 seen, 75%")

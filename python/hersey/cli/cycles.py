@@ -20,9 +20,7 @@ if TYPE_CHECKING:
 
 
 def cycles(
-    trace: Annotated[
-        Path, typer.Argument(metavar="TRACE", help="CSV with a heading 'time (s),force (N)', or MAT file.")
-    ],
+    trace: Annotated[Path, typer.Argument(metavar="TRACE", help="Trace in any format that a log may have.")],
     drive_speed: Annotated[
         str, typer.Option(help="Speed of the drive, as '20 mm/s', or '3 rpm' with a torque.")
     ] = "",

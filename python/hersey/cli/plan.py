@@ -50,8 +50,8 @@ def plan(
         Path | None,
         typer.Option(
             "--temperature-profile",
-            metavar="CSV",
-            help="Instead: temperature against time, 'time (s),temperature (degC)'.",
+            metavar="FILE",
+            help="Instead: temperature against time, in any format that a log may have.",
         ),
     ] = None,
     confidence: Annotated[
