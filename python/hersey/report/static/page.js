@@ -137,7 +137,8 @@ function points() {
 
 function hypotheses() {
   const element = table(report, ["hypothesis", "exponent", "p-value", "", "meaning"], data.regime.hypotheses.map((h) => {
-    const range = h.low === null ? `below ${h.high}` : h.low === h.high ? String(h.high) : `${h.low} to ${h.high}`;
+    const [low, high] = [digits(h.low, 3), digits(h.high, 3)];
+    const range = h.low === null ? `below ${high}` : low === high ? high : `${low} to ${high}`;
     return [h.name, range, h.p_value < 1e-4 ? "< 0.0001" : h.p_value.toFixed(4), h.consistent ? "agrees" : "rejected", h.meaning];
   }), [2]);
   data.regime.hypotheses.forEach((h, i) => { if (h.consistent) element.tBodies[0].rows[i].className = "kept"; });
