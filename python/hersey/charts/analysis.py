@@ -347,9 +347,9 @@ def _trace(rows: list[Row], title: str) -> alt.Chart:
 
 
 def _timeline(
-    document: Analysis, series: Series, title: str, shown: Callable[[float], float], heading: str | None
+    document: Analysis, series: Series, title: str, in_unit: Callable[[float], float], heading: str | None
 ) -> Chart:
-    values = [float(f"{shown(v):.5g}") for v in series.value]
+    values = [float(f"{in_unit(v):.5g}") for v in series.value]
     rows = [{"time": t, "value": v} for t, v in zip(series.time, values, strict=True)]
     starts = document.timeline.starts
     dwells = [{"from": starts[p.run] + p.start, "to": starts[p.run] + p.end} for p in document.points]

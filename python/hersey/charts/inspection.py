@@ -112,10 +112,10 @@ def _range(channel: ChannelReport) -> str:
 def _panels(path: Path, report: FileReport) -> list[alt.LayerChart]:
     raw = {channel.column.path: channel for channel in raw_channels(path).channels}
     alive = [c for c in report.channels if all(fault.kind != "constant" for fault in c.traits.faults)]
-    shown = sorted(alive, key=lambda c: not c.role)
-    shown = [c for c in shown if c.role != "time" and c.name != c.clock][:_PANELS]
+    channels = sorted(alive, key=lambda c: not c.role)
+    channels = [c for c in channels if c.role != "time" and c.name != c.clock][:_PANELS]
     panels = []
-    for channel in shown:
+    for channel in channels:
         values = raw[channel.name].values
         clock = raw[channel.name].clock
         time = clock if clock is not None else getattr(raw.get(channel.clock), "values", None)

@@ -32,8 +32,8 @@ def log_chart(log: TorqueLog) -> Chart:
             )
         )
     last = len(panels) - 1
-    drawn = [_panel(log, starts, name, values, timed=i == last) for i, (name, values) in enumerate(panels)]
-    return alt.vconcat(*drawn, spacing=8, title=alt.Title("The log as recorded", subtitle=_subtitle(log)))
+    charts = [_panel(log, starts, name, values, timed=i == last) for i, (name, values) in enumerate(panels)]
+    return alt.vconcat(*charts, spacing=8, title=alt.Title("The log as recorded", subtitle=_subtitle(log)))
 
 
 def _subtitle(log: TorqueLog) -> str:

@@ -124,9 +124,9 @@ def main() -> None:
 
 
 def _fail(message: str, code: int = 2) -> None:
-    shown = "".join(c if c.isprintable() else "?" for c in " ".join(message.split()))
-    if shown:
-        print(f"hersey: {shown}", file=sys.stderr)
+    text = "".join(c if c.isprintable() else "?" for c in " ".join(message.split()))
+    if text:
+        print(f"hersey: {text}", file=sys.stderr)
     sys.exit(code)
 
 

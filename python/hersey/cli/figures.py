@@ -32,13 +32,13 @@ def figures(
     from hersey import paper_figures as paper
 
     with working("simulating"):
-        drawn = paper.all_figures()
+        drawings = paper.all_figures()
     with working("drawing"):
-        paper.write(drawn, out, overwrite=force)
+        paper.write(drawings, out, overwrite=force)
     if as_json:
-        print_json("figures", json.loads(paper.as_json(drawn)))
+        print_json("figures", json.loads(paper.as_json(drawings)))
         return
-    for figure in drawn:
+    for figure in drawings:
         print(figure.heading)
         for claim in figure.claims:
             print(f"  {claim.verdict.value}: {claim.statement} ({claim.evidence})")

@@ -170,15 +170,15 @@ def takes(group: type, name: str) -> Callable[[Callable[..., None]], Callable[..
     """Give a command with a parameter of that name the options of a group, before ``--json``."""
 
     def decorate(command: Callable[..., None]) -> Callable[..., None]:
-        own = inspect.signature(command, eval_str=True).parameters
+        parameters = inspect.signature(command, eval_str=True).parameters
         types = get_type_hints(group, include_extras=True)
         keyword = inspect.Parameter.KEYWORD_ONLY
         options = [
             inspect.Parameter(field.name, keyword, default=field.default, annotation=types[field.name])
             for field in fields(group)
         ]
-        before = [p.replace(kind=keyword) for n, p in own.items() if n not in (name, *_LAST)]
-        after = [p.replace(kind=keyword) for n, p in own.items() if n in _LAST]
+        before = [p.replace(kind=keyword) for n, p in parameters.items() if n not in (name, *_LAST)]
+        after = [p.replace(kind=keyword) for n, p in parameters.items() if n in _LAST]
 
         @functools.wraps(command)
         def run(**given: Any) -> None:

@@ -185,7 +185,7 @@ def _splits(data: Observations, single: LawFit, exponent: float) -> list[tuple[f
     residuals = _unimodal_residuals(torque[order])
     scatter = scatter_beyond(residuals, single.errors[order], max(scaled.size // 2, 1))
     weights = 1.0 / (single.errors[order] ** 2 + scatter**2 + 1e-18)
-    found = []
+    splits = []
     for i in np.nonzero(np.diff(scaled[order]) > 0.5 * SAME_SPEED)[0]:
         below = np.asarray(scaled <= 0.5 * (scaled[order][i] + scaled[order][i + 1]))
         if _enough(data, below) and _enough(data, ~below):
@@ -195,8 +195,8 @@ def _splits(data: Observations, single: LawFit, exponent: float) -> list[tuple[f
                 values = torque[order][side]
                 curve = optimize.isotonic_regression(values, weights=weights[side], increasing=rising)
                 chi += float(np.sum(weights[side] * (values - curve.x) ** 2))
-            found.append((chi, below))
-    return sorted(found, key=lambda f: f[0])
+            splits.append((chi, below))
+    return sorted(splits, key=lambda f: f[0])
 
 
 def _unimodal_residuals(torque: FloatArray) -> FloatArray:

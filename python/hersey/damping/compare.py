@@ -83,11 +83,11 @@ class LogComparison(Result):
         lines.append(f"damping of B over A, mean over the shared range: {self.mean_ratio}")
         for row, kelvin in enumerate(self.temperatures if self.temperatures.size else [None]):
             hot = "" if kelvin is None else f"{convert(float(kelvin), 'K', 'degC'):.0f} degC: "
-            shown = []
+            ratios = []
             for i in (0, self.speeds.size // 2, self.speeds.size - 1):
                 ends = f"[{self.low[row, i]:.3f}, {self.high[row, i]:.3f}]"
-                shown.append(f"{rpm(float(self.speeds[i])):.3g} rpm {self.ratio[row, i]:.3f} {ends}")
-            lines.append(f"  {hot}{'; '.join(shown)}")
+                ratios.append(f"{rpm(float(self.speeds[i])):.3g} rpm {self.ratio[row, i]:.3f} {ends}")
+            lines.append(f"  {hot}{'; '.join(ratios)}")
         for change in self.changes:
             how = "B/A" if change.is_ratio else "B - A"
             lines.append(
@@ -160,7 +160,9 @@ def compare(
     if of_a.fit.law.thermal is None:
         temperatures = np.empty(0)
     flat = _flat(speeds, temperatures)
-    (y_a, g_a), (y_b, g_b) = (_law_at(r, found.data, *flat) for r, found in ((of_a, first), (of_b, second)))
+    (y_a, g_a), (y_b, g_b) = (
+        _law_at(r, comparison.data, *flat) for r, comparison in ((of_a, first), (of_b, second))
+    )
     difference = y_b - y_a
     covariance = g_a @ of_a.fit.covariance @ g_a.T + g_b @ of_b.fit.covariance @ g_b.T
     freedom = min(of_a.fit.freedom, of_b.fit.freedom)
@@ -339,9 +341,9 @@ def _verdict(
 
 def _notes(a: ModelComparison, b: ModelComparison, common: CandidateFit) -> tuple[str, ...]:
     notes = []
-    for name, found in (("A", a), ("B", b)):
-        if found.chosen.candidate != common.candidate:
-            notes.append(f"{name} alone would be given {found.chosen.candidate.name}.")
+    for name, comparison in (("A", a), ("B", b)):
+        if comparison.chosen.candidate != common.candidate:
+            notes.append(f"{name} alone would be given {comparison.chosen.candidate.name}.")
     if a.chosen.fit.law.broken != b.chosen.fit.law.broken:
         notes.append("Only one of the two shows a falling branch within its range.")
     return tuple(notes)

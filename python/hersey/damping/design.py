@@ -159,13 +159,13 @@ def _wanted(comparison: ModelComparison, quantity: str) -> Quantity | None:
         return None
     known = quantities(comparison.chosen.fit, comparison.data)
     exact = [q for q in known if q.name == quantity]
-    found = exact or [q for q in known if q.name.lower().startswith(quantity.lower())]
-    if len(found) != 1:
+    matches = exact or [q for q in known if q.name.lower().startswith(quantity.lower())]
+    if len(matches) != 1:
         listed = ", ".join(f"'{q.name}'" for q in known)
         raise ParameterError(
-            f"'{quantity}' names {len(found) or 'no'} parameters of this law: take one of {listed}"
+            f"'{quantity}' names {len(matches) or 'no'} parameters of this law: take one of {listed}"
         )
-    return found[0]
+    return matches[0]
 
 
 def _dwells_to_try(

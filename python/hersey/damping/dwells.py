@@ -174,9 +174,9 @@ def steady_points(
     offset, offset_error = standing if tare == "standing" and standing is not None else (0.0, 0.0)
     rows: list[dict[str, object]] = []
     rejected: list[Rejection] = []
-    for index, (run, found) in enumerate(zip(log.runs, segments, strict=True)):
+    for index, (run, run_segments) in enumerate(zip(log.runs, segments, strict=True)):
         previous: float | None = None
-        for segment in found:
+        for segment in run_segments:
             result = _reduce(run, index, segment, previous, offset, min_dwell, rotation)
             if isinstance(result, Rejection):
                 rejected.append(result)
@@ -187,8 +187,8 @@ def steady_points(
     if not rows:
         raise InsufficientDataError(_nothing_steady(log, rejected, min_dwell))
     table = pl.DataFrame(rows, schema_overrides={"temperature": pl.Float64, "temperature_error": pl.Float64})
-    shown = None if standing is None else standing[0]
-    return SteadyPoints(table, tuple(rejected), offset, shown, log, offset_error)
+    standing_torque = None if standing is None else standing[0]
+    return SteadyPoints(table, tuple(rejected), offset, standing_torque, log, offset_error)
 
 
 @dataclass(frozen=True)
@@ -277,8 +277,8 @@ def _same_dwell(run: Run, before: _Segment, after: _Segment) -> bool:
 def _standing_torque(log: TorqueLog, segments: list[list[_Segment]]) -> tuple[float, float] | None:
     """Mean torque while the drive stands, and its standard error, N m."""
     parts = []
-    for run, found in zip(log.runs, segments, strict=True):
-        for s in found:
+    for run, run_segments in zip(log.runs, segments, strict=True):
+        for s in run_segments:
             if s.standing and s.steady:
                 trim = (s.end - s.start) // 10
                 parts.append(run.torque[s.start + trim : s.end - trim])

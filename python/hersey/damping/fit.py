@@ -54,8 +54,8 @@ def fit(points: SteadyPoints, *, temperature_scale: str = "degC") -> DampingSurf
     refused = why_no_transition(data, single, branches)
     if refused:
         return _surface(points, data, single, None, refused, temperature_scale)
-    found = transition(data, single, branches)
-    return _surface(points, data, branches.fit, found, "", temperature_scale)
+    measured_transition = transition(data, single, branches)
+    return _surface(points, data, branches.fit, measured_transition, "", temperature_scale)
 
 
 def _require_temperatures(data: Observations, scale: str) -> None:
@@ -85,7 +85,7 @@ def _surface(
     points: SteadyPoints,
     data: Observations,
     fit: LawFit,
-    found: Transition | None,
+    measured_transition: Transition | None,
     refused: str,
     scale: str,
 ) -> DampingSurface:
@@ -99,7 +99,7 @@ def _surface(
         a=coefficients["a"],
         b=coefficients.get("b"),
         c=coefficients["c"],
-        transition=found,
+        transition=measured_transition,
         temperature_scale=scale,
         reference_speed=data.reference_speed,
         reference_temperature=data.reference_kelvin,

@@ -233,10 +233,10 @@ class DampingSurface(Result):
         if temperature is not None and self.reference_temperature is not None:
             x = self._log_temperature(temperature)
         slowest = np.log(stick_speed / roll_radius / self.reference_speed)
-        kept, drawn, failed = self._draws(count, seed, x, slowest)
+        kept, total, failed = self._draws(count, seed, x, slowest)
         if failed:
             warnings.warn(
-                f"{failed} of {drawn} draws of the fit had no falling branch and were drawn again: "
+                f"{failed} of {total} draws of the fit had no falling branch and were drawn again: "
                 "the intervals hold for fits that have one",
                 stacklevel=3,
             )
@@ -260,7 +260,7 @@ class DampingSurface(Result):
         covariance[-1, -1] = max(covariance[-1, -1], meeting**2)
         freedom = max(self.freedom, 1)
         rng = np.random.default_rng(seed)
-        kept, drawn = np.empty((0, 5)), 0
+        kept, total = np.empty((0, 5)), 0
         while len(kept) < count:
             values = rng.multivariate_normal(np.zeros(self.values.size), covariance, size=count)
             values = self.values + values * np.sqrt(freedom / rng.chisquare(freedom, size=(count, 1)))
@@ -268,13 +268,13 @@ class DampingSurface(Result):
                 values = np.insert(values, 1, 0.0, axis=1)
             _, b, c, mixed, at = values.T
             falls = (c > -1.0) & (mixed < -1.0) & (at + _transition_exponents(b, c) * x > slowest)
-            kept, drawn = np.concatenate([kept, values[falls]]), drawn + count
-            if 2 * len(kept) < drawn:
+            kept, total = np.concatenate([kept, values[falls]]), total + count
+            if 2 * len(kept) < total:
                 raise InsufficientDataError(
-                    f"{drawn - len(kept)} of {drawn} draws of the fit have no falling branch: "
+                    f"{total - len(kept)} of {total} draws of the fit have no falling branch: "
                     "the data do not prove one; record more dwells below the transition"
                 )
-        return kept[:count], drawn, drawn - len(kept)
+        return kept[:count], total, total - len(kept)
 
     @takes_si(speed="speed", temperature="temperature")
     def predict(self, speed: Any, temperature: Any = None) -> Band:

@@ -162,11 +162,11 @@ def _curves(points: SteadyPoints, s: DampingSurface) -> list[Curve]:
     out = []
     speed, levels = np.abs(points.column("speed")), _group_temperatures(points)
     for level in dict.fromkeys(levels):
-        own = speed[[other == level for other in levels]]
+        speeds = speed[[other == level for other in levels]]
         kelvin = None if s.b is None else level
         at = s.transition_speed(kelvin)
-        grid = np.geomspace(own.min(), own.max(), 25)
-        grid = np.sort(np.append(grid, at)) if own.min() < at < own.max() else grid
+        grid = np.geomspace(speeds.min(), speeds.max(), 25)
+        grid = np.sort(np.append(grid, at)) if speeds.min() < at < speeds.max() else grid
         out.append(Curve(temperature=kelvin, speed=grid.tolist(), damping=_damping(s, grid, kelvin)))
     return out
 
@@ -208,12 +208,12 @@ def _damping(s: DampingSurface, speed: FloatArray, kelvin: float | None) -> list
 
 
 def _fit_part(points: SteadyPoints, s: DampingSurface) -> FitPart:
-    drawn = {
+    chart_parts = {
         "curves": _curves(points, s),
         "cells": _cells(s),
         "transition_curve": _transition_curve(s),
     }
-    return FitPart.model_validate(s.to_dict() | drawn)
+    return FitPart.model_validate(s.to_dict() | chart_parts)
 
 
 def _warnings(
@@ -297,15 +297,16 @@ def _direction_warnings(points: SteadyPoints, surface: DampingSurface) -> list[s
 def _fit_warnings(surface: DampingSurface) -> list[str]:
     out = []
     for name, estimate in surface.torque_space.items():
-        own = {"a": surface.a, "b": surface.b, "c": surface.c}[name]
+        coefficient = {"a": surface.a, "b": surface.b, "c": surface.c}[name]
         if (
-            own
+            coefficient
             and name != "a"
-            and abs(own.value - estimate.value) > max(0.005, 2.0 * np.hypot(own.error, estimate.error))
+            and abs(coefficient.value - estimate.value)
+            > max(0.005, 2.0 * np.hypot(coefficient.error, estimate.error))
         ):
             out.append(
-                f"Exponent {name} is {own.value:.3f} fitted in logarithms but {estimate.value:.3f} fitted in "
-                "torque: the power law does not hold over the whole range."
+                f"Exponent {name} is {coefficient.value:.3f} fitted in logarithms but {estimate.value:.3f} "
+                "fitted in torque: the power law does not hold over the whole range."
             )
     if surface.temperature_range:
         low, high = (celsius(t) for t in surface.temperature_range)

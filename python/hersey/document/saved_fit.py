@@ -105,13 +105,13 @@ def _derived(fit: FitPart) -> list[tuple[str, float, float]]:
     """Numbers that stand in the file twice: the field, its value, and what follows from ``values``."""
     thermal = "b" in fit.coefficients
     b, c = (fit.values[1] if thermal else 0.0), fit.values[1 + thermal]
-    found = [("coefficients.c", fit.coefficients["c"].value, c)]
+    derived = [("coefficients.c", fit.coefficients["c"].value, c)]
     if thermal:
-        found.append(("coefficients.b", fit.coefficients["b"].value, b))
+        derived.append(("coefficients.b", fit.coefficients["b"].value, b))
     if fit.transition is not None:
         mixed, at = fit.values[-2:]
         speed = fit.reference_speed * float(np.exp(at))
-        found += [
+        derived += [
             ("transition.speed", fit.transition.speed.value, speed),
             ("transition.mixed_exponent", fit.transition.mixed_exponent.value, mixed),
             (
@@ -120,7 +120,7 @@ def _derived(fit: FitPart) -> list[tuple[str, float, float]]:
                 transition_exponent(b, c),
             ),
         ]
-    return found
+    return derived
 
 
 def _is_covariance(matrix: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> bool:

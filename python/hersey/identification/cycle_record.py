@@ -248,8 +248,8 @@ def cycles(
     samples = even_samples(time, value, name=quantity)
     if quantity == "speed":
         samples = _stretch(samples, drive_speed)
-    found, least, window = found_falls(samples, least_drop)
-    return _record(samples, found, window, least, quantity, drive_speed, least_drop)
+    slips, least, window = found_falls(samples, least_drop)
+    return _record(samples, slips, window, least, quantity, drive_speed, least_drop)
 
 
 def _stretch(samples: Samples, drive_speed: float | None) -> Samples:
@@ -270,7 +270,7 @@ def _stretch(samples: Samples, drive_speed: float | None) -> Samples:
 
 def _record(
     samples: Samples,
-    found: Falls,
+    slips: Falls,
     window: int,
     least: float,
     quantity: str,
@@ -278,14 +278,14 @@ def _record(
     least_drop: float | None,
 ) -> CycleRecord:
     value, bridged = samples.value, np.concatenate([[0], np.cumsum(_long(samples.bridged, window))])
-    whole = bridged[found.bottom] == bridged[found.top]
-    top, bottom = found.top[whole], found.bottom[whole]
+    whole = bridged[slips.bottom] == bridged[slips.top]
+    top, bottom = slips.top[whole], slips.bottom[whole]
     kept = Falls(top, bottom)
     smooth = smoothed(value, window)
     middle = crossing(smooth, kept, 0.5) if top.size else np.empty(0)
     lasts = steep_lasts(value, kept, window) if top.size else np.empty(0)
     pair = (bridged[bottom[1:]] == bridged[top[:-1]]) & (top[1:] > bottom[:-1] + 1)
-    pair &= np.searchsorted(found.top, top[1:]) - np.searchsorted(found.top, top[:-1]) == 1
+    pair &= np.searchsorted(slips.top, top[1:]) - np.searchsorted(slips.top, top[:-1]) == 1
     period = np.diff(middle)[pair] * samples.interval
     slopes = _rise_slopes(samples, bottom[:-1][pair], top[1:][pair])
     crown = curved(value, window)
@@ -315,10 +315,10 @@ def _record(
 def _long(bridged: NDArray[np.bool_], window: int) -> NDArray[np.bool_]:
     """Gaps longer than what resolves a fall; a straight line across a shorter one does no harm."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], bridged, [False]]).astype(np.int8)))
-    found = np.zeros(bridged.size, dtype=bool)
+    long_gaps = np.zeros(bridged.size, dtype=bool)
     for first, last in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
-        found[first:last] = last - first > window
-    return found
+        long_gaps[first:last] = last - first > window
+    return long_gaps
 
 
 def _kind(

@@ -23,29 +23,29 @@ def found_falls(samples: Samples, least_drop: float | None) -> tuple[Falls, floa
     Also the least fall counted, and the width of that running median in samples.
     """
     value, size = samples.value, samples.value.size
-    window, found, least = 1, Falls(np.empty(0, np.intp), np.empty(0, np.intp)), 0.0
+    window, slips, least = 1, Falls(np.empty(0, np.intp), np.empty(0, np.intp)), 0.0
     widest = min(_WIDEST, max(1, size // 20))
     while window <= widest:
         least = max(least_turn(samples.noise, size, window), least_drop or 0.0)
-        found = falls(smoothed(value, window), least)
-        if found.top.size >= FEWEST_SLIPS:
+        slips = falls(smoothed(value, window), least)
+        if slips.top.size >= FEWEST_SLIPS:
             break
         window = 4 * window + 1
     for _ in range(2):
-        if found.top.size < FEWEST_SLIPS:
+        if slips.top.size < FEWEST_SLIPS:
             break
-        window = running_width(steep_lasts(value, found, window))
+        window = running_width(steep_lasts(value, slips, window))
         least = max(least_turn(samples.noise, size, window), least_drop or 0.0)
-        found = falls(smoothed(value, window), least)
-    return _refined(value, found, window), least, window
+        slips = falls(smoothed(value, window), least)
+    return _refined(value, slips, window), least, window
 
 
-def _refined(value: FloatArray, found: Falls, window: int) -> Falls:
+def _refined(value: FloatArray, slips: Falls, window: int) -> Falls:
     """Falls from where the running mean is greatest to where it is least; none that the ends cut off."""
-    inside = (found.top > window) & (found.bottom < value.size - 1 - window)
+    inside = (slips.top > window) & (slips.bottom < value.size - 1 - window)
     mean, reach = averaged(value, window), window // 2
     nearby = np.arange(-reach, reach + 1)
-    top, bottom = found.top[inside], found.bottom[inside]
+    top, bottom = slips.top[inside], slips.bottom[inside]
     if reach and top.size:
         top = top + nearby[np.argmax(mean[top[:, None] + nearby], axis=1)]
         bottom = bottom + nearby[np.argmin(mean[bottom[:, None] + nearby], axis=1)]
@@ -53,11 +53,11 @@ def _refined(value: FloatArray, found: Falls, window: int) -> Falls:
     return Falls(top[falling], bottom[falling])
 
 
-def steep_lasts(value: FloatArray, found: Falls, window: int) -> FloatArray:
+def steep_lasts(value: FloatArray, slips: Falls, window: int) -> FloatArray:
     """How many samples each fall lasts, from its steep part; what a running mean adds to it is taken off."""
     width = window // 2 | 1
     mean = averaged(value, width)
-    lasts = (crossing(mean, found, 0.9) - crossing(mean, found, 0.1)) / TEN_TO_NINETY
+    lasts = (crossing(mean, slips, 0.9) - crossing(mean, slips, 0.1)) / TEN_TO_NINETY
     return np.asarray(np.sqrt(np.maximum(lasts**2 - (width**2 - 1.0) / 12.0, 1.0)))
 
 

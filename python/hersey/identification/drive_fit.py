@@ -152,12 +152,12 @@ class DriveFit:
         return {name: self.known[name] if name in self.known else fitted[name] for name in OF_THE_BELT}
 
     def _lap(self, values: FloatArray) -> ModelLap | None:
-        own = self.parameters(values)
+        parameters = self.parameters(values)
         try:
-            drag = Drag(**{name: own[name] for name in OF_THE_BELT[2:]}, closure=self.closure)
+            drag = Drag(**{name: parameters[name] for name in OF_THE_BELT[2:]}, closure=self.closure)
         except ParameterError:
             return None
-        return model_lap(Drivetrain(own["stiffness"], own["mass"]), drag, self.drive_speed)
+        return model_lap(Drivetrain(parameters["stiffness"], parameters["mass"]), drag, self.drive_speed)
 
     def curve(self, values: FloatArray) -> FloatArray:
         """The model at the points of the mean cycle; its mean where the model has no cycle."""
@@ -220,7 +220,7 @@ class DriveFit:
         A parameter that the record hardly tells lies on a long ridge of nearly equal fits, and along it
         others change too, by more than a straight line would say.
         """
-        found = []
+        alternatives = []
         errors = self.errors(covariance)
         for index, name in enumerate(self.names):
             if errors[index] < TOLD and not self.at_bound(index):
@@ -228,8 +228,8 @@ class DriveFit:
             for start in self._moved(index, EXPONENT_MOVES if name in EXPONENTS else MOVES, covariance):
                 values, chi_square = self._solved(start, fixed=index)
                 if (chi_square - self.chi_square) / scale < ALIKE:
-                    found.append(values)
-        return found
+                    alternatives.append(values)
+        return alternatives
 
     def _moved(self, index: int, moves: tuple[float, ...], covariance: FloatArray) -> Iterator[FloatArray]:
         """Starts with one value moved, and the others along the ridge."""

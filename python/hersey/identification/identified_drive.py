@@ -126,8 +126,8 @@ class IdentifiedDrive(Result):
                 lines.append(f"{name:18s} {self.known[name]:.5g}{units.get(name, '')} (given)")
             else:
                 told = self.estimates.get(name)
-                shown = "not told by this record" if told is None else f"{told}{units.get(name, '')}"
-                lines.append(f"{name:18s} {shown}")
+                entry = "not told by this record" if told is None else f"{told}{units.get(name, '')}"
+                lines.append(f"{name:18s} {entry}")
         lines += [f"{name:18s} {estimate}{units.get(name, '')}" for name, estimate in self.derived.items()]
         lines.append(f"mean cycle within {self.misfit:.2%} of the drop")
         return "\n".join([*lines, *(f"- {text}" for text in (*self.not_told, *self.notes))])
@@ -253,9 +253,9 @@ def _intervals(
         gradient = _gradient(fit)
         errors = np.sqrt(np.maximum(np.diag(gradient @ covariance @ gradient.T), 0.0))
         drives = [fit.values, *fit.alternatives(covariance, scale)]
-        found = np.array([_quantities(fit, values[:-1]) for values in drives])
-        lows.append(np.min(found, axis=0) - reach * errors)
-        highs.append(np.max(found, axis=0) + reach * errors)
+        quantities = np.array([_quantities(fit, values[:-1]) for values in drives])
+        lows.append(np.min(quantities, axis=0) - reach * errors)
+        highs.append(np.max(quantities, axis=0) + reach * errors)
     low, high = np.min(lows, axis=0), np.max(highs, axis=0)
     middle = _quantities(near[0], near[0].values[:-1])
     bound = [fit.at_bound(index) for index in range(len(near[0].names)) for fit in near[:1]] + [False] * len(
@@ -278,10 +278,10 @@ def _estimate(name: str, value: float, low: float, high: float, reach: float) ->
 
 def _quantities(fit: DriveFit, values: FloatArray) -> FloatArray:
     """Fitted parameters (logarithms, exponents themselves) and the logarithms of `DERIVED`."""
-    own = fit.parameters(np.append(values, 0.0))
-    drag = Drag(**{name: own[name] for name in OF_THE_BELT[2:]}, closure=fit.closure)
-    free = 2.0 * np.pi * np.sqrt(own["mass"] / own["stiffness"])
-    held = float(drag.force(own["stick_speed"])) if fit.closure == "retained" else drag.breakaway_force
+    parameters = fit.parameters(np.append(values, 0.0))
+    drag = Drag(**{name: parameters[name] for name in OF_THE_BELT[2:]}, closure=fit.closure)
+    free = 2.0 * np.pi * np.sqrt(parameters["mass"] / parameters["stiffness"])
+    held = float(drag.force(parameters["stick_speed"])) if fit.closure == "retained" else drag.breakaway_force
     return np.concatenate([values, np.log([free, held, float(drag.force(fit.drive_speed))])])
 
 

@@ -31,12 +31,12 @@ def directions(names: tuple[str, ...], covariance: FloatArray) -> list[Direction
     These are the singular vectors of the scaled Jacobian, and the errors the inverses of its singular values.
     """
     variances, vectors = np.linalg.eigh(covariance)
-    found = []
+    principal = []
     for variance, vector in sorted(zip(variances, vectors.T, strict=True), key=lambda pair: -pair[0]):
         turned = vector * np.sign(vector[np.argmax(np.abs(vector))])
         parts = {n: float(v) for n, v in zip(names, turned, strict=True) if abs(v) >= _PART}
-        found.append(Direction(parts, float(np.sqrt(max(variance, 0.0)))))
-    return found
+        principal.append(Direction(parts, float(np.sqrt(max(variance, 0.0)))))
+    return principal
 
 
 def in_words(names: tuple[str, ...], covariance: FloatArray) -> list[str]:

@@ -106,12 +106,12 @@ def _bridged(grid: FloatArray, times: FloatArray, interval: float) -> NDArray[np
 
 def _noise(value: FloatArray) -> float:
     """Deviation of white noise, from differences of order 2 to 4: what is smooth cancels in one of them."""
-    found: list[float] = []
+    deviations: list[float] = []
     difference = np.diff(value)
     for gain in (6.0, 20.0, 70.0):  # sum of the squares of binomial coefficients
         difference = np.diff(difference)
-        found.append(float(np.median(np.abs(difference))) / (_MAD * gain**0.5))
-    return max(min(found), _step(value) / float(np.sqrt(12.0)))
+        deviations.append(float(np.median(np.abs(difference))) / (_MAD * gain**0.5))
+    return max(min(deviations), _step(value) / float(np.sqrt(12.0)))
 
 
 def _step(value: FloatArray) -> float:

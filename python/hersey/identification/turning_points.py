@@ -89,10 +89,10 @@ def _turns(value: FloatArray, least: float) -> IntArray:
     return np.asarray(turns, dtype=np.intp)
 
 
-def crossing(value: FloatArray, found: Falls, share: float) -> FloatArray:
+def crossing(value: FloatArray, slips: Falls, share: float) -> FloatArray:
     """Return where, in samples, each fall last passes the level at ``share`` of it below its top."""
-    top, length = found.top, found.bottom - found.top
-    level = value[top] - share * (value[top] - value[found.bottom])
+    top, length = slips.top, slips.bottom - slips.top
+    level = value[top] - share * (value[top] - value[slips.bottom])
     first = np.concatenate([[0], np.cumsum(length)[:-1]])
     place = np.arange(int(np.sum(length))) + np.repeat(top - first, length)
     above = np.where(value[place] >= np.repeat(level, length), place, np.repeat(top, length))

@@ -83,28 +83,28 @@ def traits(values: FloatArray, *, stands: bool = False) -> Traits:
     ``stands`` says that zero is a state in which the quantity may stay for long, as a speed does.
     """
     known = np.flatnonzero(np.isfinite(values))
-    own = values[known]
-    missing = values.size - own.size
-    if own.size < 2:
-        level = float(own[0]) if own.size else float("nan")
+    readings = values[known]
+    missing = values.size - readings.size
+    if readings.size < 2:
+        level = float(readings[0]) if readings.size else float("nan")
         return Traits(values.size, missing, level, level, level, None, None, 1, ())
-    low, high, median = float(own.min()), float(own.max()), float(np.median(own))
+    low, high, median = float(readings.min()), float(readings.max()), float(np.median(readings))
     if low == high:
-        fault = Fault("constant", own.size, int(known[0]), low)
+        fault = Fault("constant", readings.size, int(known[0]), low)
         return Traits(values.size, missing, low, high, median, None, None, 1, (fault,))
-    starts, lengths = equal_runs(own)
+    starts, lengths = equal_runs(readings)
     refresh = _refresh(starts, lengths)
-    alive = own[starts] if refresh > 1 else own
-    step = quantisation_step(own)
+    alive = readings[starts] if refresh > 1 else readings
+    step = quantisation_step(readings)
     noise = noise_of(alive)
-    lost = dropouts(own, stands=stands)
-    found = [
+    lost = dropouts(readings, stands=stands)
+    among_known = [
         *lost,
-        *spikes(np.where(own == 0.0, median, own) if lost else own),
-        *clipping(own, step, stands=stands),
-        *([] if refresh > 1 else stuck(own, step, stands=stands)),
+        *spikes(np.where(readings == 0.0, median, readings) if lost else readings),
+        *clipping(readings, step, stands=stands),
+        *([] if refresh > 1 else stuck(readings, step, stands=stands)),
     ]
-    faults = tuple(Fault(f.kind, f.rows, int(known[f.first]), f.value, f.places) for f in found)
+    faults = tuple(Fault(f.kind, f.rows, int(known[f.first]), f.value, f.places) for f in among_known)
     return Traits(values.size, missing, low, high, median, step, noise, refresh, faults)
 
 
@@ -219,7 +219,7 @@ def clipping(values: FloatArray, step: float | None, *, stands: bool = False) ->
     """Return plateaus at the greatest and least value of a channel that is noisy elsewhere."""
     starts, lengths = equal_runs(values)
     _, counts = np.unique(values, return_counts=True)
-    found = []
+    plateaus = []
     usual = int(counts[1:-1].max(initial=1))
     standing = STANDS * float(np.max(np.abs(values)))
     for limit in (float(values.max()), float(values.min())):
@@ -238,8 +238,8 @@ def clipping(values: FloatArray, step: float | None, *, stands: bool = False) ->
         least = CLIPPED_NOISE * step if step else 1e-9 * float(np.ptp(values))
         if equal <= PLATEAU_QUIET and noise > least:
             kind = "clipped above" if limit == values.max() else "clipped below"
-            found.append(Fault(kind, rows, int(starts[flat][0]), limit, int(np.count_nonzero(flat))))
-    return found
+            plateaus.append(Fault(kind, rows, int(starts[flat][0]), limit, int(np.count_nonzero(flat))))
+    return plateaus
 
 
 def stuck(values: FloatArray, step: float | None, *, stands: bool = False) -> list[Fault]:
@@ -252,7 +252,7 @@ def stuck(values: FloatArray, step: float | None, *, stands: bool = False) -> li
     idle = stands & (np.abs(held) <= STANDS * float(np.max(np.abs(values))))
     candidates = np.flatnonzero((lengths >= STUCK_ROWS) & ~idle)
     clipped = {fault.value for fault in clipping(values, step, stands=stands)}
-    found = []
+    stretches = []
     for run in candidates[np.argsort(-lengths[candidates])][:MOST_STRETCHES]:
         first, last = int(starts[run]), int(starts[run] + lengths[run])
         again = np.count_nonzero(held[candidates] == held[run])
@@ -266,11 +266,11 @@ def stuck(values: FloatArray, step: float | None, *, stands: bool = False) -> li
         same = float(np.mean(np.diff(beside) == 0.0))
         likely = max(same, 1.0 / values.size)
         if same <= QUIET and lengths[run] >= np.log(values.size / STUCK_CHANCE) / -np.log(likely):
-            found.append((first, int(lengths[run])))
-    if not found:
+            stretches.append((first, int(lengths[run])))
+    if not stretches:
         return []
-    first = min(found)[0]
-    return [Fault("stuck", sum(rows for _, rows in found), first, float(values[first]), len(found))]
+    first = min(stretches)[0]
+    return [Fault("stuck", sum(rows for _, rows in stretches), first, float(values[first]), len(stretches))]
 
 
 def _refresh(starts: IndexArray, lengths: IndexArray) -> int:

@@ -93,8 +93,8 @@ class Inspection(Result):
     def to_dict(self) -> dict[str, Any]:
         """Return everything; traits of a channel in its own unit, all else in SI."""
         document = json_record(vars(self))
-        for file, own in zip(document["files"], self.files, strict=True):
-            for clock, of in zip(file["clocks"], own.clocks, strict=True):
+        for file, report in zip(document["files"], self.files, strict=True):
+            for clock, of in zip(file["clocks"], report.clocks, strict=True):
                 clock["findings"] = of.findings()
         return document
 
@@ -154,9 +154,9 @@ class Inspection(Result):
         ]
         if not bare:
             return self.problem
-        shown = bare[0] if len(bare) == 1 else f"{bare[0]} and {len(bare) - 1} more"
+        names = bare[0] if len(bare) == 1 else f"{bare[0]} and {len(bare) - 1} more"
         return (
-            f"there is no torque channel in {shown}. If a channel is torque, name it with --torque; if one "
+            f"there is no torque channel in {names}. If a channel is torque, name it with --torque; if one "
             "is the motor's current, give its motor_constant in a mapping (--save-mapping)"
         )
 
@@ -265,16 +265,18 @@ def _tries(given: bool, helps: bool) -> tuple[bool, ...]:
 
 
 def _file_report(log: RawLog, choices: dict[str, ChannelChoice]) -> FileReport:
-    found, without = roles_of(log, choices)
-    role_of = {column.index: role for role, column in found.items()}
+    columns, without = roles_of(log, choices)
+    role_of = {column.index: role for role, column in columns.items()}
     clocks, clock_names = _clocks(log, role_of, choices)
     channels = []
     for channel in log.channels:
         role = role_of.get(channel.column.index, "")
-        shown = traits(channel.values, stands=role in ("torque", "speed") or _is_speed(channel))
-        findings = _findings(channel, shown, role) if role != "time" else ()
+        channel_traits = traits(channel.values, stands=role in ("torque", "speed") or _is_speed(channel))
+        findings = _findings(channel, channel_traits, role) if role != "time" else ()
         name = clock_names.get(channel.tick, "")
-        channels.append(ChannelReport(channel.column.path, channel.column.unit, role, name, shown, findings))
+        channels.append(
+            ChannelReport(channel.column.path, channel.column.unit, role, name, channel_traits, findings)
+        )
     rows = max((channel.values.size for channel in log.channels), default=0)
     return FileReport(log.name, log.format, rows, clocks, tuple(channels), without, log.notes, log.cut_off)
 
@@ -318,23 +320,25 @@ def _runs_on(values: FloatArray) -> bool:
     return values.size > 1 and float(np.nanmean(np.diff(values) >= 0)) > _RUNS_ON
 
 
-def _findings(channel: RawChannel, shown: Traits, role: str) -> tuple[str, ...]:
-    said = [_in_words(fault, shown, channel.column.unit, role) for fault in shown.faults]
+def _findings(channel: RawChannel, channel_traits: Traits, role: str) -> tuple[str, ...]:
+    said = [_in_words(fault, channel_traits, channel.column.unit, role) for fault in channel_traits.faults]
     if channel.odd:
         said.append(f"{channel.odd} cells hold no number")
-    if shown.missing > channel.odd:
-        said.append(f"{shown.missing - channel.odd} rows lack a number")
-    if shown.refresh > 1:
-        said.append(f"each value is held for {shown.refresh} rows: the sensor is slower than the log")
+    if channel_traits.missing > channel.odd:
+        said.append(f"{channel_traits.missing - channel.odd} rows lack a number")
+    if channel_traits.refresh > 1:
+        said.append(
+            f"each value is held for {channel_traits.refresh} rows: the sensor is slower than the log"
+        )
     if role in ("torque", "speed"):
-        said += _coarse(channel.values, shown, channel.column.unit)
+        said += _coarse(channel.values, channel_traits, channel.column.unit)
     return tuple(said)
 
 
-def _in_words(fault: Fault, shown: Traits, unit: str, role: str) -> str:
+def _in_words(fault: Fault, channel_traits: Traits, unit: str, role: str) -> str:
     value = f"{fault.value:.6g} {unit}".strip()
     at = f"from row {fault.first + 1}" if fault.places == 1 else f"at {fault.places} places"
-    rows = f"{fault.rows} row{'s' if fault.rows > 1 else ''} ({fault.rows / shown.rows:.2g} of all)"
+    rows = f"{fault.rows} row{'s' if fault.rows > 1 else ''} ({fault.rows / channel_traits.rows:.2g} of all)"
     if fault.kind == "constant":
         return f"{value} throughout: a dead channel, or nothing changed"
     if fault.kind == "stuck":
@@ -347,15 +351,22 @@ def _in_words(fault: Fault, shown: Traits, unit: str, role: str) -> str:
     return f"{fault.kind} at {value}: {rows} {at}"
 
 
-def _coarse(values: FloatArray, shown: Traits, unit: str) -> list[str]:
+def _coarse(values: FloatArray, channel_traits: Traits, unit: str) -> list[str]:
     """A step that the noise does not blur and that is large beside the small readings."""
     size = np.abs(values[np.isfinite(values) & (values != 0.0)])
-    if shown.step is None or not size.size or (shown.noise or 0.0) > DITHER * shown.step:
+    if (
+        channel_traits.step is None
+        or not size.size
+        or (channel_traits.noise or 0.0) > DITHER * channel_traits.step
+    ):
         return []
     small = float(np.quantile(size, 0.1))
-    if shown.step < COARSE * small:
+    if channel_traits.step < COARSE * small:
         return []
-    return [f"coarse: its step of {shown.step:.3g} {unit} is {shown.step / small:.0%} of its small readings"]
+    return [
+        f"coarse: its step of {channel_traits.step:.3g} {unit} is {channel_traits.step / small:.0%} "
+        "of its small readings"
+    ]
 
 
 #: Width of a name in the table, and findings of other channels shown at the most.
@@ -374,10 +385,10 @@ def _file_lines(file: FileReport, *, table: bool) -> list[str]:
     if not file.clocks:
         lines.append("  ! no channel is a clock: rates and gaps cannot be told; name it with --time")
     lines += _table(file) if table else []
-    found = [(c, finding) for c in file.channels for finding in c.findings]
-    found.sort(key=lambda pair: not pair[0].role)
-    lines += [f"  {'!' if c.role else '-'} {c.name}: {finding}" for c, finding in found[:_SHOWN]]
-    lines += [f"  - and {len(found) - _SHOWN} more (--json has them)"] if len(found) > _SHOWN else []
+    findings = [(c, finding) for c in file.channels for finding in c.findings]
+    findings.sort(key=lambda pair: not pair[0].role)
+    lines += [f"  {'!' if c.role else '-'} {c.name}: {finding}" for c, finding in findings[:_SHOWN]]
+    lines += [f"  - and {len(findings) - _SHOWN} more (--json has them)"] if len(findings) > _SHOWN else []
     lines += [f"  ! {role}: {why}" for role, why in file.without.items()]
     lines += [f"  - {note}" for note in file.notes]
     return lines

@@ -60,7 +60,7 @@ def raw_channels(path: str | Path) -> RawLog:
     if reader is None:
         return _of_text(path)
     with opened(path, reader) as recording:
-        found = []
+        channels = []
         notes = list(recording.notes)
         for index, signal in enumerate(recording.signals):
             column = Column(index, signal.name, signal.unit, signal.group)
@@ -72,16 +72,18 @@ def raw_channels(path: str | Path) -> RawLog:
                 continue
             unit = "" if signal.unit else counted_since(signal.name, values)[0]
             column = Column(index, signal.name, signal.unit or unit, signal.group)
-            found.append(RawChannel(column, values, clock=clock, tick=signal.tick or f"{signal.rows} rows"))
+            channels.append(
+                RawChannel(column, values, clock=clock, tick=signal.tick or f"{signal.rows} rows")
+            )
         kind, comments, cut_off = recording.format, recording.comments, recording.cut_off
         notes += [note for note in recording.notes if note not in notes]
-    return RawLog(path.name, kind, tuple(found), comments, tuple(notes), cut_off)
+    return RawLog(path.name, kind, tuple(channels), comments, tuple(notes), cut_off)
 
 
 def roles_of(log: RawLog, choices: dict[str, ChannelChoice]) -> tuple[dict[str, Column], dict[str, str]]:
     """Return the column that plays each role, and for each role without one the reason in words."""
     columns = tuple(channel.column for channel in log.channels)
-    found: dict[str, Column] = {}
+    roles: dict[str, Column] = {}
     without: dict[str, str] = {}
     for role in ROLES:
         try:
@@ -92,8 +94,8 @@ def roles_of(log: RawLog, choices: dict[str, ChannelChoice]) -> tuple[dict[str, 
         if channel is None:
             without[role] = f"there is no {role} channel"
         else:
-            found[role] = channel[0]
-    return found, without
+            roles[role] = channel[0]
+    return roles, without
 
 
 def _of_text(path: Path) -> RawLog:
@@ -106,13 +108,13 @@ def _of_text(path: Path) -> RawLog:
     if layout.encoding != "utf-8-sig":
         text = text.decode(layout.encoding, errors="replace").encode()
     frame = _frame(text, layout)
-    found = [
+    channels = [
         _text_channel(layout, column, frame[f"{column.index}"])
         for column in layout.named
         if column.index not in layout.texts and f"{column.index}" in frame.columns
     ]
     notes = (*layout.notes, *end.notes)
-    return RawLog(path.name, "text", tuple(found), layout.comments, notes, end.cut_off)
+    return RawLog(path.name, "text", tuple(channels), layout.comments, notes, end.cut_off)
 
 
 def _frame(text: bytes, layout: Layout) -> pl.DataFrame:

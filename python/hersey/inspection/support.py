@@ -103,16 +103,16 @@ def _speed(speed: FloatArray) -> Said:
 def _temperature(levels: tuple[float, ...], points: SteadyPoints) -> Said:
     if not levels:
         return [], ["anything of temperature: none was recorded"]
-    shown = _levels(levels)
+    temperatures = _levels(levels)
     if len(levels) == 1:
-        return [], [f"exponent b of temperature: all dwells are at {shown}; record other temperatures"]
+        return [], [f"exponent b of temperature: all dwells are at {temperatures}; record other temperatures"]
     kelvin, speed = points.column("temperature"), np.abs(points.column("speed"))
     if distinct_speeds(speed) > 1 and abs(np.corrcoef(np.log(speed), kelvin)[0, 1]) > TOGETHER:
         return [], ["b apart from c: speed and temperature vary together; record several speeds at each"]
     if levels[-1] - levels[0] < NARROW_TEMPERATURES:
-        span = f"only {levels[-1] - levels[0]:.0f} K ({shown})"
+        span = f"only {levels[-1] - levels[0]:.0f} K ({temperatures})"
         return [], [f"exponent b of temperature, well: the dwells span {span}; go beyond 30 K"]
-    can, cannot = [f"exponent b of temperature: {len(levels)} temperatures, {shown}"], []
+    can, cannot = [f"exponent b of temperature: {len(levels)} temperatures, {temperatures}"], []
     laws = "which law of temperature holds (power, Arrhenius, VFT)"
     if len(levels) > 3:
         can.append(laws)

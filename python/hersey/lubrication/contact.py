@@ -189,8 +189,8 @@ def nip_width(contact: Contact, *, load: ArrayLike | None = None, rule: str = "l
         )
     per_length, radius = loads / contact.length, contact.reduced_radius
     if rule == "hertz":
-        found = pointwise(partial(_core.hertz, line=True), per_length, radius, contact.effective_modulus)
-        return np.asarray(2.0 * found.half_width)
+        hertzian = pointwise(partial(_core.hertz, line=True), per_length, radius, contact.effective_modulus)
+        return np.asarray(2.0 * hertzian.half_width)
     rubber = (contact.rubber_thickness, contact.modulus, contact.poisson_ratio)
     return pointwise(_core.layer, per_length, radius, *rubber).width
 

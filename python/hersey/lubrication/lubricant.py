@@ -160,10 +160,10 @@ class Lubricant:
 
     def _at(self, temperature: ArrayLike) -> tuple[FloatArray, FloatArray]:
         try:
-            found = self._law.at(np.asarray(temperature, dtype=float))
+            state = self._law.at(np.asarray(temperature, dtype=float))
         except ParameterError as error:
             raise error.within(f"viscosity of {self.name}") from None
-        return found.viscosity, found.temperature_exponent
+        return state.viscosity, state.temperature_exponent
 
 
 def _pairs_in_si(name: str, kind: str, pairs: Sequence[tuple[Any, Any]]) -> tuple[tuple[Any, Any], ...]:

@@ -58,8 +58,8 @@ def film_thickness(
 
 def shear_stress(*, viscosity: ArrayLike, sliding_speed: ArrayLike, film_thickness: ArrayLike) -> FloatArray:
     """Return tau_s of Eq. 6, Pa: eta U/delta."""
-    drawn = np.asarray(viscosity, float) * np.asarray(sliding_speed, float)
-    return np.asarray(drawn / np.asarray(film_thickness, float))
+    eta_u = np.asarray(viscosity, float) * np.asarray(sliding_speed, float)
+    return np.asarray(eta_u / np.asarray(film_thickness, float))
 
 
 def torque_of_film(

@@ -176,38 +176,38 @@ def solve_line_contact(
         raise ParameterError(f"{missing} is not given: a layer needs its thickness and its Poisson ratio")
     slide = 2.0 * entrainment_speed if sliding_speed is None else sliding_speed
     layer = None if thickness is None or poisson is None else (float(thickness), float(poisson))
-    found = _core.line_contact(
+    solution = _core.line_contact(
         (float(radius), 0.5 * float(effective_modulus), float(load)),
         layer,
         (float(entrainment_speed), float(slide)),
         (float(viscosity), float(pressure_viscosity), thickening, bool(compressible)),
         min(max(int(nodes), 0), _MANY),
     )
-    for profile in (found.x, found.pressure, found.film_thickness):
+    for profile in (solution.x, solution.pressure, solution.film_thickness):
         profile.setflags(write=False)
     return LineContactSolution(
-        x=found.x,
-        pressure=found.pressure,
-        film_thickness=found.film_thickness,
-        central_thickness=found.central,
-        minimum_thickness=found.minimum,
-        couette=found.couette,
-        poiseuille=found.poiseuille,
-        roll_traction=found.traction_1,
-        base_traction=found.traction_2,
-        greatest_pressure=found.greatest_pressure,
-        outlet=found.outlet,
-        offset=found.offset,
-        length=found.length,
-        load_residual=found.load_residual,
-        flow_residual=found.flow_residual,
-        grid_error=found.grid_error,
-        by_speed=_exponents(found.by_speed),
-        by_load=_exponents(found.by_load),
-        friction=abs(found.traction_1) / load,
-        iterations=found.iterations,
-        stations=found.stations,
-        cautions=_cautions(found, radius, thickness, barus=thickening == "barus"),
+        x=solution.x,
+        pressure=solution.pressure,
+        film_thickness=solution.film_thickness,
+        central_thickness=solution.central,
+        minimum_thickness=solution.minimum,
+        couette=solution.couette,
+        poiseuille=solution.poiseuille,
+        roll_traction=solution.traction_1,
+        base_traction=solution.traction_2,
+        greatest_pressure=solution.greatest_pressure,
+        outlet=solution.outlet,
+        offset=solution.offset,
+        length=solution.length,
+        load_residual=solution.load_residual,
+        flow_residual=solution.flow_residual,
+        grid_error=solution.grid_error,
+        by_speed=_exponents(solution.by_speed),
+        by_load=_exponents(solution.by_load),
+        friction=abs(solution.traction_1) / load,
+        iterations=solution.iterations,
+        stations=solution.stations,
+        cautions=_cautions(solution, radius, thickness, barus=thickening == "barus"),
     )
 
 
@@ -228,13 +228,13 @@ def exponent(quantity: Quantity, solution: LineContactSolution) -> float:
     ParameterError
         If the quantity is not known.
     """
-    own = solution.by_speed
+    by_speed = solution.by_speed
     known = {
-        "damping": own.roll_traction - 1.0,
-        "torque": own.roll_traction,
-        "base_traction": own.base_traction,
-        "minimum_thickness": own.minimum_thickness,
-        "central_thickness": own.central_thickness,
+        "damping": by_speed.roll_traction - 1.0,
+        "torque": by_speed.roll_traction,
+        "base_traction": by_speed.base_traction,
+        "minimum_thickness": by_speed.minimum_thickness,
+        "central_thickness": by_speed.central_thickness,
     }
     if quantity not in known:
         raise ParameterError(f"quantity {quantity!r} is not known: {', '.join(known)}")
@@ -246,24 +246,24 @@ def _exponents(of: _core.Exponents) -> LineExponents:
 
 
 def _cautions(
-    found: _core.LineContact, radius: float, thickness: float | None, *, barus: bool
+    solution: _core.LineContact, radius: float, thickness: float | None, *, barus: bool
 ) -> tuple[str, ...]:
     """What a reader must know before the numbers are used."""
     cautions = []
-    if thickness is not None and -found.offset > _INDENTATION * thickness:
+    if thickness is not None and -solution.offset > _INDENTATION * thickness:
         cautions.append(
-            f"the layer is indented by {-found.offset / thickness:.0%} of its thickness: linear elasticity, "
-            f"meant for up to {_INDENTATION:.0%}, is a sketch there"
+            f"the layer is indented by {-solution.offset / thickness:.0%} of its thickness: linear "
+            f"elasticity, meant for up to {_INDENTATION:.0%}, is a sketch there"
         )
-    if found.outlet > _HALF_WIDTH * radius:
+    if solution.outlet > _HALF_WIDTH * radius:
         cautions.append(
-            f"the contact reaches {found.outlet / radius:.0%} of the radius from the axis: the roll is no "
+            f"the contact reaches {solution.outlet / radius:.0%} of the radius from the axis: the roll is no "
             "parabola"
         )
-    if found.grid_error > _GRID_ERROR:
-        cautions.append(f"the least film is good to {found.grid_error:.1%} on this grid: take more nodes")
-    if barus and found.greatest_pressure > _BARUS:
+    if solution.grid_error > _GRID_ERROR:
+        cautions.append(f"the least film is good to {solution.grid_error:.1%} on this grid: take more nodes")
+    if barus and solution.greatest_pressure > _BARUS:
         cautions.append(
-            f"Barus' law overstates viscosity at {found.greatest_pressure / 1e9:.2g} GPa: use roelands"
+            f"Barus' law overstates viscosity at {solution.greatest_pressure / 1e9:.2g} GPa: use roelands"
         )
     return tuple(cautions)

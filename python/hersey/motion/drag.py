@@ -57,10 +57,10 @@ class AnyDrag:
 
         Zero below if the belt is held before, infinite above if drag never rises so far.
         """
-        found = (self.law_at(temperature) if self.varies_with_temperature else self.law()).speeds_of(
+        speeds = (self.law_at(temperature) if self.varies_with_temperature else self.law()).speeds_of(
             float(force)
         )
-        return found.slower, found.faster
+        return speeds.slower, speeds.faster
 
     @takes_si(speed="belt speed", temperature="temperature")
     def force(self, speed: ArrayLike, temperature: float | None = None) -> FloatArray:
@@ -105,8 +105,8 @@ class Drag(AnyDrag):
     def __post_init__(self) -> None:
         """Bring the values to SI if they come with units, and let the core check them."""
         temperatures = dict.fromkeys(("reference_temperature", "temperature_zero"), "temperature")
-        own = {"transition_force": "force", "transition_speed": "belt speed"}
-        fields_in_si(self, {**own, **_KINDS, **temperatures})
+        kinds = {"transition_force": "force", "transition_speed": "belt speed"}
+        fields_in_si(self, {**kinds, **_KINDS, **temperatures})
         self.law()
 
     @classmethod

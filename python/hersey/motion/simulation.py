@@ -240,8 +240,8 @@ class StickSlipCycle(Result):
 
     def to_frame(self) -> pl.DataFrame:
         """Return the numbers with their units; the units named are SI, and stand for those given."""
-        own = {**vars(self), "stuck_fraction": self.stuck_fraction}
-        return table_of((name, own[name], unit) for name, unit in _CYCLE_UNITS.items())
+        values = {**vars(self), "stuck_fraction": self.stuck_fraction}
+        return table_of((name, values[name], unit) for name, unit in _CYCLE_UNITS.items())
 
 
 #: Units of a cycle, where the arguments are in SI.
@@ -334,18 +334,18 @@ def simulate(
             integrator,
         )
 
-    found = run("adaptive")
-    energy = found.energy
+    trajectory = run("adaptive")
+    energy = trajectory.energy
     return Trajectory(
-        time=found.time,
-        belt_speed=found.belt_speed,
-        stretch=found.stretch,
-        spring_force=train.stiffness * found.stretch,
-        mode_index=found.mode_index,
-        events=tuple(map(Event._make, zip(*_event_columns(found.events), strict=True))),
+        time=trajectory.time,
+        belt_speed=trajectory.belt_speed,
+        stretch=trajectory.stretch,
+        spring_force=train.stiffness * trajectory.stretch,
+        mode_index=trajectory.mode_index,
+        events=tuple(map(Event._make, zip(*_event_columns(trajectory.events), strict=True))),
         energy=Energy(energy.work, energy.dissipated, energy.stored, energy.residual),
-        steps=found.steps,
-        check=_self_check(lambda: run("dormand-prince"), found) if check else None,
+        steps=trajectory.steps,
+        check=_self_check(lambda: run("dormand-prince"), trajectory) if check else None,
     )
 
 
@@ -400,8 +400,8 @@ def stick_slip(
     """
     law = drag.law_at(temperature)
     state = _start(train, law, Schedule.of(drive_speed), None, start, is_torque=False, nudged=True)
-    found = _core.stick_slip(train._arguments, law, float(drive_speed), state, None, float(tolerance))
-    return StickSlipCycle(**{name: getattr(found, name) for name in StickSlipCycle.__dataclass_fields__})
+    cycle = _core.stick_slip(train._arguments, law, float(drive_speed), state, None, float(tolerance))
+    return StickSlipCycle(**{name: getattr(cycle, name) for name in StickSlipCycle.__dataclass_fields__})
 
 
 def steady_start(

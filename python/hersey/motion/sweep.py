@@ -96,7 +96,7 @@ def sweep(
         raise ParameterError(f"start '{start}' is not known: rest or steady")
     if threads < 1:
         raise ParameterError(f"threads is {threads}: at least 1 is needed")
-    own = {**vars(train), **vars(drag)}
+    parameters = {**vars(train), **vars(drag)}
     varied = {
         "stiffness": stiffness,
         "mass": mass,
@@ -107,10 +107,12 @@ def sweep(
         "stick_speed": stick_speed,
         "drive_speed": drive_speed,
     }
-    given = {name: numbers_of(name, own[name] if value is None else value) for name, value in varied.items()}
+    given = {
+        name: numbers_of(name, parameters[name] if value is None else value) for name, value in varied.items()
+    }
     axes, columns = together(given) if zip else crossed(given)
     shape = next(iter(columns.values())).shape
-    found = _core.sweep(
+    motions = _core.sweep(
         [np.ascontiguousarray(columns[name].ravel()) for name in PARAMETERS],
         (drag.closure, drag.bristle_stiffness, drag.bristle_damping),
         start == "steady",
@@ -119,17 +121,17 @@ def sweep(
         int(threads),
         progress,
     )
-    data = {name: (axes, getattr(found, name).reshape(shape)) for name in NUMBERS}
-    stuck = found.stick_duration * found.frequency
+    data = {name: (axes, getattr(motions, name).reshape(shape)) for name in NUMBERS}
+    stuck = motions.stick_duration * motions.frequency
     coordinates = {
         name: (axes, columns[name]) if zip and given[name].ndim else given[name] for name in PARAMETERS
     }
     return xr.Dataset(
         {
-            "kind": (axes, np.array(_core.KINDS)[found.kind_index].reshape(shape)),
+            "kind": (axes, np.array(_core.KINDS)[motions.kind_index].reshape(shape)),
             **data,
             "stuck_fraction": (axes, stuck.reshape(shape)),
-            "laps": (axes, found.laps.reshape(shape)),
+            "laps": (axes, motions.laps.reshape(shape)),
         },
         coords=coordinates,
         attrs={
@@ -137,6 +139,6 @@ def sweep(
             "start": start,
             "tolerance": tolerance,
             "hersey_version": _core.VERSION,
-            "failures": [f"set {failure.index}: {failure.error}" for failure in found.failures],
+            "failures": [f"set {failure.index}: {failure.error}" for failure in motions.failures],
         },
     )

@@ -81,16 +81,16 @@ def motions_of(case: Case) -> Motions:
     """Return the band, the stick-slip cycles along it, and the cycles without sticking."""
     band = hysteresis(case.train, case.drag, sensitivity=False)
     drive = np.linspace(SHOWN[0], band.upper * (1.0 - AT_FOLD), _VALUES)
-    found = sweep(case.train, case.drag, drive_speed=drive)
-    sticking = found.kind.values == "stick_slip"
+    swept = sweep(case.train, case.drag, drive_speed=drive)
+    sticking = swept.kind.values == "stick_slip"
     # close to v_t the small swing shrinks as the square root of nothing: it needs laps of its own
     start, end = case.stick_speed, case.drag.transition_speed
     slowest = np.r_[np.geomspace(start, 0.5 * end, 81), np.linspace(0.5 * end, 0.999 * end, 161)[1:]]
     return Motions(
         band,
         drive[sticking],
-        found.speed_min.values[sticking],
-        found.speed_max.values[sticking],
+        swept.speed_min.values[sticking],
+        swept.speed_max.values[sticking],
         cycles_without_sticking(case.train, case.drag, slowest=slowest),
     )
 

@@ -69,7 +69,7 @@ def chart_figure() -> OwnFigure:
     chart = chart_of()
     title = "V* of any drive"
     subtitle = "exponents of the paper; each curve is a stick speed v_s / v_t, named on it"
-    drawn = alt.vconcat(*(_panel(chart, closure) for closure in CLOSURES), spacing=18).properties(
+    panels = alt.vconcat(*(_panel(chart, closure) for closure in CLOSURES), spacing=18).properties(
         title=alt.Title(title, subtitle=subtitle, offset=14)
     )
     data = {"damping number F_t / (v_t sqrt(k m))": chart.damping}
@@ -79,7 +79,7 @@ def chart_figure() -> OwnFigure:
     for speed, curve in zip(STICK_SPEEDS, chart.released, strict=True):
         data[f"V*/v_t of laps released at v_s, v_s/v_t = {speed:g}"] = curve
     columns = {name: tuple(column.tolist()) for name, column in data.items()}
-    return OwnFigure("chart", title, drawn, (reads_baseline(chart), scales()), columns)
+    return OwnFigure("chart", title, panels, (reads_baseline(chart), scales()), columns)
 
 
 def chart_of() -> BandChart:
@@ -124,8 +124,8 @@ def scales() -> Claim:
     """Judge whether drives of one damping number and one v_s/v_t have one V*/v_t, whatever their size."""
     case = Case()
     number, stick = damping_number(case), case.stick_speed / case.drag.transition_speed
-    drawn = np.random.default_rng(SEED).uniform(-DECADES / 2.0, DECADES / 2.0, (3, DRIVES))
-    stiffness, mass, speed = 10.0**drawn
+    decades = np.random.default_rng(SEED).uniform(-DECADES / 2.0, DECADES / 2.0, (3, DRIVES))
+    stiffness, mass, speed = 10.0**decades
     given = {
         "stiffness": stiffness,
         "mass": mass,

@@ -298,15 +298,17 @@ def hysteresis_sweep(
         clash = [n for n in ("transition_force", "transition_speed", "stick_speed") if varied[n] is not None]
         if clash:
             raise ParameterError(f"{clash[0]} follows from the temperature: give one of them")
-    own = {**vars(train), **vars(drag)}
-    given = {name: numbers_of(name, own[name] if value is None else value) for name, value in varied.items()}
+    parameters = {**vars(train), **vars(drag)}
+    given = {
+        name: numbers_of(name, parameters[name] if value is None else value) for name, value in varied.items()
+    }
     if temperature is not None:
         given["temperature"] = numbers_of("temperature", temperature)
     axes, columns = together(given) if zip else crossed(given)
     shape = next(iter(columns.values())).shape
     if temperature is not None:
         columns = {**columns, **_at_temperatures(drag, columns["temperature"])}
-    found = _bands(columns, drag, tolerance, threads, progress, lower=lower)
+    bands = _bands(columns, drag, tolerance, threads, progress, lower=lower)
     coordinates = {
         name: (axes, columns[name]) if zip and values.ndim else values
         for name, values in given.items()
@@ -314,7 +316,7 @@ def hysteresis_sweep(
     }
     return xr.Dataset(
         {
-            name: (axes, getattr(found, name).reshape(shape).astype(_WHOLE.get(name, float)))
+            name: (axes, getattr(bands, name).reshape(shape).astype(_WHOLE.get(name, float)))
             for name in _COLUMNS
         },
         coords=coordinates,
@@ -322,7 +324,7 @@ def hysteresis_sweep(
             "closure": drag.closure,
             "tolerance": tolerance,
             "hersey_version": _core.VERSION,
-            "failures": [f"set {failure.index}: {failure.error}" for failure in found.failures],
+            "failures": [f"set {failure.index}: {failure.error}" for failure in bands.failures],
         },
     )
 
@@ -371,14 +373,14 @@ def cycles_without_sticking(
     if not bool(np.all((speeds >= low) & (speeds < high))):
         raise ParameterError(f"slowest is to lie from the stick speed {low:g} to below {high:g}")
     flat = np.ascontiguousarray(speeds.ravel())
-    found = _core.swings(train._arguments, law.law(), flat, float(tolerance))
-    if found is None:
+    swings = _core.swings(train._arguments, law.law(), flat, float(tolerance))
+    if swings is None:
         raise ParameterError("drag that does not fall below the transition and rise above has no cycles")
     return CyclesWithoutSticking(
         slowest=speeds,
-        fastest=found.fastest.reshape(speeds.shape),
-        drive_speed=found.drive_speed.reshape(speeds.shape),
-        stable=found.stable.reshape(speeds.shape),
+        fastest=swings.fastest.reshape(speeds.shape),
+        drive_speed=swings.drive_speed.reshape(speeds.shape),
+        stable=swings.stable.reshape(speeds.shape),
     )
 
 
@@ -413,8 +415,8 @@ def _sensitivities(
     """Relative change of the edges per relative change of each parameter, by central differences."""
     if drag is None:
         raise ParameterError("sensitivity needs a Drag: a table has no parameters to vary")
-    own = {**vars(train), **vars(drag)}
-    base = np.array([float(own[name]) for name in OF_THE_BELT])
+    parameters = {**vars(train), **vars(drag)}
+    base = np.array([float(parameters[name]) for name in OF_THE_BELT])
     factors = np.vstack([1 + _STEP * np.eye(len(OF_THE_BELT)), 1 - _STEP * np.eye(len(OF_THE_BELT))])
     columns = dict(zip(OF_THE_BELT, (base * factors).T, strict=True))
     edges = _bands(columns, drag, tolerance)
@@ -436,13 +438,13 @@ def _sampled(
     unknown = sorted(set(samples) - set(OF_THE_BELT))
     if unknown:
         raise ParameterError(f"samples: {unknown[0]} is not known: {', '.join(OF_THE_BELT)}")
-    own = {**vars(train), **vars(drag)}
-    given = {name: numbers_of(name, samples.get(name, own[name])) for name in OF_THE_BELT}
+    parameters = {**vars(train), **vars(drag)}
+    given = {name: numbers_of(name, samples.get(name, parameters[name])) for name in OF_THE_BELT}
     _, columns = together(given)
-    found = _bands(columns, drag, tolerance)
-    for failure in found.failures:
+    bands = _bands(columns, drag, tolerance)
+    for failure in bands.failures:
         raise failure.error.within(f"samples: draw {failure.index}")
-    return found
+    return bands
 
 
 def _middle(values: FloatArray) -> tuple[float, float]:

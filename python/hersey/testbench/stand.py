@@ -118,8 +118,8 @@ def run(*, seed: int = 0, truth: Truth | None = None, stand: Stand | None = None
     kept = random.random(time.size) >= stand.dropped
     columns = (time, measured, shown_speed, shown_temperature)
     digits = (DIGITS[0] + max(0, int(-np.log10(stand.sampling_interval))), *DIGITS[1:])
-    shown = zip(COLUMNS, columns, digits, strict=True)
-    table = pl.DataFrame({name: np.round(values[kept], places) for name, values, places in shown})
+    channels = zip(COLUMNS, columns, digits, strict=True)
+    table = pl.DataFrame({name: np.round(values[kept], places) for name, values, places in channels})
     return VirtualLog(table, truth, stand, seed)
 
 
@@ -210,10 +210,10 @@ def _measured_torque(
     ripple = 1.0 + stand.mesh_ripple * np.sin(stand.mesh_teeth * angle)
     inertial = stand.inertia * np.gradient(speed, stand.sampling_interval)
     scale = stand.torque_noise * np.where(speed > 0, np.abs(torque), 0.1 * float(np.max(torque)))
-    shown = torque * ripple + inertial + scale * _noise(stand, random, time.size) + stand.torque_offset
+    reading = torque * ripple + inertial + scale * _noise(stand, random, time.size) + stand.torque_offset
     if stand.torque_step > 0:
-        shown = np.round(shown / stand.torque_step) * stand.torque_step
-    return np.asarray(shown)
+        reading = np.round(reading / stand.torque_step) * stand.torque_step
+    return np.asarray(reading)
 
 
 def _noise(stand: Stand, random: np.random.Generator, count: int) -> FloatArray:

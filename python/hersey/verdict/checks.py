@@ -42,19 +42,19 @@ def check_film(machine: Machine, film: Film, measured: MeasuredFilm | None = Non
         What a log says, if there is one.
     """
     contact, lubricant = _both(machine)
-    found = [*_check_statements(machine, contact), *_check_contact(contact, film)]
-    found += _check_lubricant(lubricant, film)
+    notes = [*_check_statements(machine, contact), *_check_contact(contact, film)]
+    notes += _check_lubricant(lubricant, film)
     if contact.roughness is not None:
         least = float(film.lambda_ratio(contact.roughness).min())
         if least < LAMBDA_BANDS[1]:
             kind = "boundary" if least < LAMBDA_BANDS[0] else "mixed"
-            found.append(
+            notes.append(
                 f"predicted lambda ratio down to {least:.2g} (minimum film over composite rms roughness): by "
                 f"convention {kind} lubrication below {LAMBDA_BANDS[0 if kind == 'boundary' else 1]:g}"
             )
     if measured is not None:
-        found += _check_measured(measured, contact)
-    return tuple(found)
+        notes += _check_measured(measured, contact)
+    return tuple(notes)
 
 
 def _both(machine: Machine) -> tuple[Contact, Lubricant]:
@@ -65,56 +65,56 @@ def _both(machine: Machine) -> tuple[Contact, Lubricant]:
 
 
 def _check_statements(machine: Machine, contact: Contact) -> list[str]:
-    found = []
+    notes = []
     if abs(contact.roll_radius / machine.roll_radius - 1.0) > _SAME:
-        found.append(
+        notes.append(
             f"[contact] roll_radius is {1e3 * contact.roll_radius:.4g} mm, [drivetrain] roll_radius "
             f"{1e3 * machine.roll_radius:.4g} mm: one roll has one radius"
         )
     load = machine.limits.nip_load
     if load is not None and abs(contact.load / load - 1.0) > _SAME:
-        found.append(f"[contact] load is {contact.load:.4g} N, [limits] nip_load {load:.4g} N: say which")
-    return found
+        notes.append(f"[contact] load is {contact.load:.4g} N, [limits] nip_load {load:.4g} N: say which")
+    return notes
 
 
 def _check_contact(contact: Contact, film: Film) -> list[str]:
-    nip, found = film.nip, []
+    nip, notes = film.nip, []
     if not nip.paper_in_range:
         low, high = _core.NIP_RATIO_RANGE
-        found.append(
+        notes.append(
             f"nip/h = {nip.paper_width / contact.rubber_thickness:.2g} is outside the range of the "
             f"regression of Eq. 8, {low:g} to {high:g}: "
             f"it is {100 * (nip.paper_width / nip.width - 1):+.0f} % off the solved nip"
         )
     if nip.strain > MAX_STRAIN:
-        found.append(
+        notes.append(
             f"the rubber is strained by {100 * nip.strain:.0f} % (a^2/(2 R h)): linear elasticity ends near "
             f"{100 * MAX_STRAIN:.0f} %"
         )
     if not np.all(film.inlet_short) and np.any(film.regime == REGIMES.index("isoviscous-elastic")):
-        found.append("the inlet of the film is not short against rubber and nip: the soft law is rough there")
-    return found
+        notes.append("the inlet of the film is not short against rubber and nip: the soft law is rough there")
+    return notes
 
 
 def _check_lubricant(lubricant: Lubricant, film: Film) -> list[str]:
-    found = []
+    notes = []
     if lubricant.pressure_viscosity:
         thickening = float(np.max(lubricant.alpha(film.temperature)) * film.nip.pressure_max)
         if thickening < MIN_THICKENING:
-            found.append(
+            notes.append(
                 f"alpha p = {thickening:.2g}: pressure does not thicken this lubricant in this nip, so "
                 "Eqs. 5, 9 and 10 of the paper do not apply"
             )
     low, high = lubricant.temperature_range
     hottest, coldest = float(film.temperature.max()), float(film.temperature.min())
     if hottest > high + 0.5 or coldest < low - 0.5:
-        found.append(
+        notes.append(
             f"viscosity is extrapolated: known from {celsius(low):.0f} to {celsius(high):.0f} degC, used "
             f"from {celsius(coldest):.0f} to {celsius(hottest):.0f} degC"
         )
     for name, correction in film.corrections.items():
         if not np.all(correction.valid):
-            found.append(
+            notes.append(
                 f"{name}: the factor (down to {float(correction.factor.min()):.3g}) is outside the "
                 "validity of its rule"
             )
@@ -127,37 +127,37 @@ def _check_lubricant(lubricant: Lubricant, film: Film) -> list[str]:
             )
         )
         if rise > _WARM:
-            found.append(
+            notes.append(
                 f"shear warms the film by up to {rise:.2g} K over its walls: it is thinner than stated"
             )
-    return found
+    return notes
 
 
 def _check_measured(measured: MeasuredFilm, contact: Contact) -> list[str]:
-    found = []
+    notes = []
     highest = float(measured.friction.max())
     if highest > MAX_FILM_FRICTION:
-        found.append(
+        notes.append(
             f"friction coefficient {highest:.2g} is not a fluid film: above {MAX_FILM_FRICTION:g} surfaces "
             "touch, or torque holds more than the nip's drag"
         )
     if measured.grip is not None and highest > measured.grip:
-        found.append(
+        notes.append(
             f"friction coefficient {highest:.2g} exceeds that of belt on roll, {measured.grip:g}: "
             "it would slip"
         )
     factor = measured.calibration
     if not 1 / _FAR < factor.value < _FAR:
-        found.append(
+        notes.append(
             f"measured torque is {factor.value:.3g} times the predicted one: viscosity, nip or what the "
             "torque holds besides the film is not as stated; exponents are unaffected"
         )
     if measured.lambda_ratio is not None:
         thin = measured.lambda_ratio[measured.on_film > 0.5]
         if thin.size and float(thin.min()) < LAMBDA_BANDS[0]:
-            found.append(
+            notes.append(
                 f"the measured film is down to {float(thin.min()):.2g} of the roughness "
                 f"({1e6 * (contact.roughness or 0.0):.2g} um) where torque rises with speed: not thickness "
                 "alone makes this drag"
             )
-    return found
+    return notes

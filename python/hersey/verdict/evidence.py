@@ -225,9 +225,11 @@ def verdict(
     thermal_expected = _slope(contact, lubricant, speed, kelvin, in_speed=False)
     thermal = _thermal(surface, kelvin)
     energy = None if thermal is None else -_core.GAS_CONSTANT * kelvin * thermal.value
-    own = float(lubricant.activation_energy(kelvin))
+    lubricant_energy = float(lubricant.activation_energy(kelvin))
     text = _text(surface.c, expected, solved, predictions, held, thermal, thermal_expected)
-    return Verdict(surface.c, expected, solved, predictions, thermal, thermal_expected, energy, own, text)
+    return Verdict(
+        surface.c, expected, solved, predictions, thermal, thermal_expected, energy, lubricant_energy, text
+    )
 
 
 def solved_exponent(contact: Contact, lubricant: Lubricant, speed: float, temperature: float) -> float | None:

@@ -90,7 +90,7 @@ def _exponents(points: SteadyPoints, surface: DampingSurface) -> tuple[BranchExp
     hot = surface.b is not None
     level = torque * np.exp(-_warmth(points, surface))
     groups = list(groups_of_temperature(points.column("temperature"))) if hot else [np.arange(speed.size)]
-    found = []
+    exponents = []
     for group in groups:
         kelvin = float(np.mean(points.column("temperature")[group])) if hot else None
         at = surface.transition_speed(kelvin)
@@ -102,8 +102,8 @@ def _exponents(points: SteadyPoints, surface: DampingSurface) -> tuple[BranchExp
             if members.size > 2 and distinct_speeds(speed[members]) >= 3:
                 exponent = _slope(speed[members], level[members], error[members], surface)
                 low, high = float(speed[members].min()), float(speed[members].max())
-                found.append(BranchExponent(kelvin, branch, int(members.size), low, high, exponent))
-    return tuple(found)
+                exponents.append(BranchExponent(kelvin, branch, int(members.size), low, high, exponent))
+    return tuple(exponents)
 
 
 def _warmth(points: SteadyPoints, surface: DampingSurface) -> FloatArray:

@@ -59,8 +59,8 @@ def regions(bands: Bands, frame: Frame) -> alt.Chart:
         if HEIGHT * np.log(edges[1] / edges[0]).max() > _THIN * np.log(frame.high / frame.low)
         for x, low, high in zip(*map(np.ndarray.tolist, (frame.x, *edges)), strict=True)
     ]
-    shown = [r for r in REGIONS if any(row["region"] == r[1] for row in rows)]
-    scale = alt.Scale(domain=[r[1] for r in shown], range=[r[3] for r in shown])
+    entries = [r for r in REGIONS if any(row["region"] == r[1] for row in rows)]
+    scale = alt.Scale(domain=[r[1] for r in entries], range=[r[3] for r in entries])
     legend = alt.Legend(
         orient="bottom",
         title=None,

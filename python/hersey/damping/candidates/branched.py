@@ -117,9 +117,9 @@ class Law:
         one, *_ = np.linalg.lstsq(np.column_stack(plain) * root[:, None], log_torque * root, rcond=None)
         if not self.broken:
             return [self._assembled(one, q, [])]
-        found: list[tuple[float, FloatArray]] = []
+        ranked: list[tuple[float, FloatArray]] = []
         for _ in range(2):  # where the points part depends on how the transition moves
-            tried = found[0][1] if found else None
+            tried = ranked[0][1] if ranked else None
             for d in self._moves(one if tried is None else tried, first=tried is None):
                 reach = z - d * e_row[0] if e_row else z
                 for at in _corners(reach):
@@ -127,9 +127,9 @@ class Law:
                     design = np.column_stack([*plain, below])
                     linear, *_ = np.linalg.lstsq(design * root[:, None], log_torque * root, rcond=None)
                     cost = float(np.sum(weights * (log_torque - design @ linear) ** 2))
-                    found.append((cost, self._broken_start(linear, q, at, d)))
-            found.sort(key=lambda f: f[0])
-        return [values for _, values in found[:3]]
+                    ranked.append((cost, self._broken_start(linear, q, at, d)))
+            ranked.sort(key=lambda f: f[0])
+        return [values for _, values in ranked[:3]]
 
     def _moves(self, values: FloatArray, *, first: bool) -> list[float]:
         """Exponents of the transition in s(T) that a search begins with."""

@@ -104,5 +104,5 @@ def viscosity_candidates() -> tuple[Candidate, ...]:
 
 
 def _listed(data: Observations) -> str:
-    shown = ", ".join(f"{convert(float(t), 'K', 'degC'):.0f}" for t in data.temperatures)
-    return f"{data.temperatures.size} ({shown} degC)"
+    degrees = ", ".join(f"{convert(float(t), 'K', 'degC'):.0f}" for t in data.temperatures)
+    return f"{data.temperatures.size} ({degrees} degC)"

@@ -102,8 +102,8 @@ def temperature_collapse(data: Observations) -> HerseyCollapse:
     for per_step in (-2.0, -1.0, -0.5, 0.5, 1.0):
         candidates.append(np.asarray(per_step * np.arange(1.0, count + 1.0)))
     start = min(candidates, key=cost)
-    found = optimize.fmin(cost, start, maxfun=3000, xtol=1e-5, ftol=1e-10, disp=False)
-    shifts = np.append(0.0, np.asarray(found, dtype=np.float64))
+    optimum = optimize.fmin(cost, start, maxfun=3000, xtol=1e-5, ftol=1e-10, disp=False)
+    shifts = np.append(0.0, np.asarray(optimum, dtype=np.float64))
     return _judged(z + shifts[group], y, group, shifts, before)
 
 
@@ -145,11 +145,11 @@ def _judged(
 def _deviation(x: FloatArray, y: FloatArray, group: IntArray, fitted: int = 0) -> tuple[float, float, float]:
     """Root mean squares of the groups' deviations and of the scatter, and the p-value of no deviation."""
     common = _common(x, _knots(x))
-    own = [common]
+    columns = [common]
     for index in range(int(group.max()) + 1):
         member = (group == index) * 1.0
-        own.append(np.column_stack([member, member * (x - x[group == index].mean())]))
-    both = np.column_stack(own)
+        columns.append(np.column_stack([member, member * (x - x[group == index].mean())]))
+    both = np.column_stack(columns)
     r_common, r_own = y - common @ _solved(common, y), y - both @ _solved(both, y)
     s_common, s_own = float(r_common @ r_common), float(r_own @ r_own)
     rank_common, rank_own = (int(np.linalg.matrix_rank(m)) for m in (common, both))

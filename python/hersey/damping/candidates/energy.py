@@ -42,7 +42,7 @@ class ActivationEnergies:
 
     def lines(self) -> list[str]:
         """Return the energies as text, in kJ/mol and cal/mol."""
-        shown = []
+        lines = []
         named = (
             ("torque, apparent", self.torque),
             ("viscosity, from torque and its exponent", self.viscosity),
@@ -51,8 +51,8 @@ class ActivationEnergies:
         for name, energy in named:
             if energy is not None:
                 kj, cal = scaled(energy, 1e-3), scaled(energy, 1.0 / CALORIE)
-                shown.append(f"{name}: {kj} kJ/mol = {cal.value:.0f} [{cal.low:.0f}, {cal.high:.0f}] cal/mol")
-        return [*shown, self.verdict]
+                lines.append(f"{name}: {kj} kJ/mol = {cal.value:.0f} [{cal.low:.0f}, {cal.high:.0f}] cal/mol")
+        return [*lines, self.verdict]
 
 
 def scaled(energy: Estimate, factor: float) -> Estimate:

@@ -62,7 +62,7 @@ def orthogonal_fit(fit: LawFit, data: Observations) -> OrthogonalFit:
 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        found = odrpack.odr_fit(
+        regression = odrpack.odr_fit(
             law,
             np.vstack(given),
             corrected,
@@ -74,8 +74,8 @@ def orthogonal_fit(fit: LawFit, data: Observations) -> OrthogonalFit:
         )
     error = np.sqrt(np.maximum(np.diag(fit.covariance), 1e-300))
     share = float(np.mean((fit.errors**2 - data.torque_error**2) / fit.sigma**2))
-    shift = float(np.max(np.abs(found.beta - fit.values) / error))
-    return OrthogonalFit(np.asarray(found.beta), shift, max(share, 0.0), bool(found.success))
+    shift = float(np.max(np.abs(regression.beta - fit.values) / error))
+    return OrthogonalFit(np.asarray(regression.beta), shift, max(share, 0.0), bool(regression.success))
 
 
 def _inputs(inputs: Inputs, x: FloatArray) -> Inputs:

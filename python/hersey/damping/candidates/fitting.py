@@ -172,11 +172,11 @@ def search(
         rows = np.vstack([-slopes / sigma[:, None], np.append(np.zeros(full.size - 1), 1.0)])
         return np.asarray(rows[:, free])
 
-    found = minimise(residual, jacobian, base[free], precision=precision, calls=calls)
-    rows = np.zeros((found.jacobian.shape[0], start.size))
-    rows[:, free] = found.jacobian
+    minimum = minimise(residual, jacobian, base[free], precision=precision, calls=calls)
+    rows = np.zeros((minimum.jacobian.shape[0], start.size))
+    rows[:, free] = minimum.jacobian
     rows[-1, -1] = 1.0
-    return Minimum(whole(found.values), found.cost, rows)
+    return Minimum(whole(minimum.values), minimum.cost, rows)
 
 
 def left_out(fit: LawFit, data: Observations) -> FloatArray:
@@ -192,8 +192,8 @@ def left_out(fit: LawFit, data: Observations) -> FloatArray:
         groups = getattr(fit.law, "groups", 1)
         if groups > 1 and np.unique(data.inputs.group[kept]).size < groups:
             return out
-        found = search(fit.law, data.take(kept), fit.sigma[kept], start, precision=1e-6)
-        out[missing] = _residuals(fit.law, data.take(missing), found.values)
+        minimum = search(fit.law, data.take(kept), fit.sigma[kept], start, precision=1e-6)
+        out[missing] = _residuals(fit.law, data.take(missing), minimum.values)
     return out
 
 
@@ -213,15 +213,17 @@ def resampled(fit: LawFit, data: Observations, count: int, seed: int) -> FloatAr
     groups = getattr(fit.law, "groups", 1)
     for row in range(count):
         while True:
-            drawn = np.concatenate(
+            sample = np.concatenate(
                 [clusters[i] for i in random.integers(0, len(clusters), len(clusters))]
             ).astype(np.intp)
-            if np.unique(data.inputs.group[drawn]).size >= min(2, data.temperatures.size, 2) and (
-                groups == 1 or np.unique(data.inputs.group[drawn]).size == groups
+            if np.unique(data.inputs.group[sample]).size >= min(2, data.temperatures.size, 2) and (
+                groups == 1 or np.unique(data.inputs.group[sample]).size == groups
             ):
                 break
         disturbance = float(random.standard_normal())
-        refit = partial(search, fit.law, data.take(drawn), fit.sigma[drawn], tare=disturbance, precision=1e-6)
+        refit = partial(
+            search, fit.law, data.take(sample), fit.sigma[sample], tare=disturbance, precision=1e-6
+        )
         draws[row] = min((refit(s) for s in starts), key=lambda m: m.cost).values[:-1]
     return draws
 

@@ -82,11 +82,11 @@ def quantities(law_fit: LawFit, data: Observations) -> tuple[Quantity, ...]:
     """Return what the parameters of a fit are called, in which units, and their values."""
     law, w, kelvin = law_fit.law, data.reference_speed, data.reference_kelvin
     names = {name: index for index, name in enumerate(law.names)}
-    found = []
+    all_quantities = []
 
     def add(parameter: str, name: str, unit: str, of: Callable[[float], float]) -> None:
         if parameter in names:
-            found.append(Quantity(name, unit, names[parameter], of))
+            all_quantities.append(Quantity(name, unit, names[parameter], of))
 
     torque = "Coulomb torque" if not isinstance(law, Law) else "damping at reference"
     add(
@@ -117,7 +117,7 @@ def quantities(law_fit: LawFit, data: Observations) -> tuple[Quantity, ...]:
             add("d", "activation energy of the transition speed", "kJ/mol", lambda v: by_d * v)
         else:
             add("d", "exponent of the transition speed in temperature", "", float)
-    return tuple(found)
+    return tuple(all_quantities)
 
 
 def estimates(
@@ -223,8 +223,10 @@ def _crossing(fit: LawFit, data: Observations, parameter: int, error: float, tar
     warm, inside, outside = start, 0.0, None
     before, rise_before = 0.0, 0.0
     for step in np.arange(_STEP, _FARTHEST * quantile(fit.freedom) / 2.0, _STEP):
-        found = search(fit.law, data, fit.sigma, warm, held=(parameter, value + step * error), precision=1e-7)
-        rise = found.cost - fit.cost
+        minimum = search(
+            fit.law, data, fit.sigma, warm, held=(parameter, value + step * error), precision=1e-7
+        )
+        rise = minimum.cost - fit.cost
         if rise < target:
             inside, outside = step, None
         elif outside is None:
@@ -233,7 +235,7 @@ def _crossing(fit: LawFit, data: Observations, parameter: int, error: float, tar
             )
         if outside is not None and (not kinked or step > inside + 1.5):
             return value + error * float(outside)
-        warm, before, rise_before = found.values, float(step), float(np.sqrt(max(rise, 0.0)))
+        warm, before, rise_before = minimum.values, float(step), float(np.sqrt(max(rise, 0.0)))
     return float(np.sign(error) * np.inf)
 
 

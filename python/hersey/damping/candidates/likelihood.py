@@ -104,7 +104,7 @@ def minimise(
     if count < start.size:
         raise InsufficientDataError(f"{count} points cannot determine {start.size} parameters")
     with np.errstate(over="ignore", invalid="ignore"):  # of a covariance that is not used
-        found, *_ = optimize.leastsq(
+        solution, *_ = optimize.leastsq(
             shrunk,
             start,
             Dfun=weighted,
@@ -115,7 +115,7 @@ def minimise(
             factor=FIRST_STEP,
             maxfev=calls * (start.size + 1),
         )
-    values = np.asarray(found, dtype=np.float64)
+    values = np.asarray(solution, dtype=np.float64)
     u = residual(values)
     kept = np.sqrt(np.clip(limit / np.maximum(np.abs(u), 1e-300), 0.0, 1.0))
     return Minimum(values, float(np.sum(loss(u, limit))), np.asarray(kept[:, None] * slopes(values)))
@@ -169,6 +169,8 @@ def deviance(residuals: FloatArray, errors: FloatArray, limit: float = HUBER) ->
         return float(np.sum(loss(residuals / np.sqrt(variance), limit) + np.log(variance)))
 
     top = 3.0 * float(np.sqrt(np.mean(residuals**2))) + EXACT
-    found = optimize.minimize_scalar(cost, bounds=(0.0, top), method="bounded", options={"xatol": 1e-7 * top})
-    best = min((float(found.fun), float(found.x)), (cost(0.0), 0.0))
+    minimum = optimize.minimize_scalar(
+        cost, bounds=(0.0, top), method="bounded", options={"xatol": 1e-7 * top}
+    )
+    best = min((float(minimum.fun), float(minimum.x)), (cost(0.0), 0.0))
     return best[0] + constant, best[1]

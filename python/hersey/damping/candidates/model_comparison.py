@@ -118,52 +118,52 @@ class ModelComparison(Result):
         return pl.DataFrame(rows, infer_schema_length=None)
 
 
-def _summary(found: ModelComparison) -> str:
+def _summary(comparison: ModelComparison) -> str:
     """Return the table of candidates, the choice with its reasons, and what follows."""
-    data = found.data
+    data = comparison.data
     lines = [
         "[[Candidates]]  (same dwells, same robust likelihood of ln torque; numbers include the scatter)",
         f"    {'candidate':<66} {'numbers':>7} {'dAICc':>8} {'dBIC':>8} {'left out':>9} {'scatter':>8}",
     ]
-    lines += [_row(r, chosen=r is found.chosen) for r in found.candidates]
-    lines += [f"    not fitted: {name}: {why}" for name, why in found.refused]
-    lines += ["[[Choice]]", *(f"    {reason}" for reason in found.reasons)]
+    lines += [_row(r, chosen=r is comparison.chosen) for r in comparison.candidates]
+    lines += [f"    not fitted: {name}: {why}" for name, why in comparison.refused]
+    lines += ["[[Choice]]", *(f"    {reason}" for reason in comparison.reasons)]
     lines.append("[[Parameters]]  95 % intervals")
-    for parameter in found.parameters:
+    for parameter in comparison.parameters:
         lines += _parameter_lines(parameter)
-    counted = f"{found.bootstrap} resampled fits by {data.clustered_by}, seed {found.seed}"
-    lines.append(f"    (bootstrap: {counted if found.bootstrap else 'not asked for'})")
-    lines.append(f"    {found.orthogonal.verdict}")
+    counted = f"{comparison.bootstrap} resampled fits by {data.clustered_by}, seed {comparison.seed}"
+    lines.append(f"    (bootstrap: {counted if comparison.bootstrap else 'not asked for'})")
+    lines.append(f"    {comparison.orthogonal.verdict}")
     if data.inputs.kelvin is not None:
-        lines += ["[[Activation energy]]", *(f"    {line}" for line in found.energies.lines())]
-        lines += [_local(kelvin, energy) for kelvin, energy in found.energies.local]
-    if found.collapse is not None:
-        lines += ["[[Hersey collapse]]", f"    {found.collapse.verdict}"]
+        lines += ["[[Activation energy]]", *(f"    {line}" for line in comparison.energies.lines())]
+        lines += [_local(kelvin, energy) for kelvin, energy in comparison.energies.local]
+    if comparison.collapse is not None:
+        lines += ["[[Hersey collapse]]", f"    {comparison.collapse.verdict}"]
     return "\n".join(lines)
 
 
-def _document(found: ModelComparison) -> dict[str, object]:
+def _document(comparison: ModelComparison) -> dict[str, object]:
     """Return everything as plain data; energies in J/mol, angles in rad."""
     return {
-        "dwells": len(found.data),
-        "clustered_by": found.data.clustered_by,
-        "reference_speed": found.data.reference_speed,
-        "reference_temperature": found.data.reference_kelvin,
-        "temperatures": found.data.temperatures,
-        "candidates": [_candidate_document(r) for r in found.candidates],
-        "refused": [{"name": name, "reason": why} for name, why in found.refused],
-        "chosen": found.chosen.candidate.key,
-        "reasons": found.reasons,
-        "parameters": [_parameter_document(p) for p in found.parameters],
-        "bootstrap": {"draws": found.bootstrap, "seed": found.seed},
+        "dwells": len(comparison.data),
+        "clustered_by": comparison.data.clustered_by,
+        "reference_speed": comparison.data.reference_speed,
+        "reference_temperature": comparison.data.reference_kelvin,
+        "temperatures": comparison.data.temperatures,
+        "candidates": [_candidate_document(r) for r in comparison.candidates],
+        "refused": [{"name": name, "reason": why} for name, why in comparison.refused],
+        "chosen": comparison.chosen.candidate.key,
+        "reasons": comparison.reasons,
+        "parameters": [_parameter_document(p) for p in comparison.parameters],
+        "bootstrap": {"draws": comparison.bootstrap, "seed": comparison.seed},
         "errors_in_variables": {
-            "share": found.orthogonal.share,
-            "largest_shift": found.orthogonal.largest_shift,
-            "converged": found.orthogonal.converged,
-            "verdict": found.orthogonal.verdict,
+            "share": comparison.orthogonal.share,
+            "largest_shift": comparison.orthogonal.largest_shift,
+            "converged": comparison.orthogonal.converged,
+            "verdict": comparison.orthogonal.verdict,
         },
-        "activation_energy": _energy_document(found.energies),
-        "hersey_collapse": None if found.collapse is None else _collapse_document(found.collapse),
+        "activation_energy": _energy_document(comparison.energies),
+        "hersey_collapse": None if comparison.collapse is None else _collapse_document(comparison.collapse),
     }
 
 

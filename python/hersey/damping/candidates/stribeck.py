@@ -59,7 +59,7 @@ class StribeckLaw:
 
     def starts(self, inputs: Inputs, log_torque: FloatArray, weights: FloatArray) -> list[FloatArray]:
         """Return where to search from: Stribeck speeds across those measured, linear fits of the parts."""
-        found = []
+        ranked = []
         for e in (0.0, 5.0, 15.0) if self.thermal else (0.0,):
             z = inputs.log_speed + e * self._shape(inputs)[0]
             for at in np.linspace(z.min(), z.max(), 7):
@@ -71,11 +71,11 @@ class StribeckLaw:
                 level = float(np.log(parts[0]))
                 tail = [float(np.log(parts[1])) - level, float(np.log(parts[2])) - level, float(at)]
                 values = np.array([level, *([e] if self.thermal else []), *tail])
-                found.append(
+                ranked.append(
                     (float(np.sum(weights * (log_torque - self.predict(values, inputs)) ** 2)), values)
                 )
-        found.sort(key=lambda f: f[0])
-        return [values for _, values in found[:3]]
+        ranked.sort(key=lambda f: f[0])
+        return [values for _, values in ranked[:3]]
 
     def _shape(self, inputs: Inputs) -> tuple[FloatArray, FloatArray]:
         if self.thermal is None or inputs.kelvin is None:

@@ -96,7 +96,7 @@ def operating_map(
     reach = surface.speed_range[0] * roll_radius, surface.speed_range[1] * roll_radius
     kelvin = shown_temperatures(surface, drag, points, temperatures)
     edges = edges_at(train, drag, kelvin)
-    shown = shown_speeds(edges, reach, points, limits.speed, speeds)
+    speed_grid = shown_speeds(edges, reach, points, limits.speed, speeds)
     laws = laws_at(drag, kelvin)
     limit, limited_by = torque_limit(limits, roll_radius)
     below, above = contour(laws, np.inf if limit is None else limit / roll_radius)
@@ -107,13 +107,13 @@ def operating_map(
         )
     map_ = OperatingMap(
         temperature=kelvin,
-        speed=shown,
+        speed=speed_grid,
         **edges,
         transition_interval=transition_interval,
         upper_interval=upper_interval,
         stall_below=below,
         stall_above=above,
-        torque=np.array([law.force(shown) for law in laws]) * roll_radius,
+        torque=np.array([law.force(speed_grid) for law in laws]) * roll_radius,
         torque_limit=limit,
         limited_by=limited_by,
         speed_limit=limits.speed,

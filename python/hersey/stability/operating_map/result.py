@@ -144,10 +144,10 @@ class OperatingMap(Result):
         levels, place = np.unique(kelvin, return_inverse=True)
         if temperature is not None:
             check_temperatures(levels, self.drag)
-        found = edges_at(self.train, self.drag, None if temperature is None else levels)
+        edges = edges_at(self.train, self.drag, None if temperature is None else levels)
         laws = laws_at(self.drag, None if temperature is None else levels)
         rows = zip(speeds.tolist(), kelvin.tolist(), place.ravel().tolist(), strict=True)
-        return [self._state(laws[i], {k: float(v[i]) for k, v in found.items()}, t, v) for v, t, i in rows]
+        return [self._state(laws[i], {k: float(v[i]) for k, v in edges.items()}, t, v) for v, t, i in rows]
 
     def _state(self, law: Drag, edges: Mapping[str, float], kelvin: float, speed: float) -> MapState:
         torque = float(law.force(speed)) * self.roll_radius
@@ -174,10 +174,10 @@ def _summary(map_: OperatingMap) -> str:
     lines = ["".join(f"{text:<26s}" for text in head) + "(speeds in mm/s)"]
     for i in columns:
         edges = (map_.transition, map_.transition_interval), (map_.upper, map_.upper_interval)
-        shown = [f"{_mm(e[i])} [{_mm(low[i])}, {_mm(high[i])}]" for e, (low, high) in edges]
+        speeds = [f"{_mm(e[i])} [{_mm(low[i])}, {_mm(high[i])}]" for e, (low, high) in edges]
         where = "as in the log" if map_.temperature is None else _celsius(map_.temperature[i])
         stall = "never" if np.isinf(map_.stall_above[i]) else _mm(map_.stall_above[i])
-        cells = (where, _mm(map_.lower[i]), *shown, stall if map_.torque_limit else "not known")
+        cells = (where, _mm(map_.lower[i]), *speeds, stall if map_.torque_limit else "not known")
         lines.append("".join(f"{text:<26s}" for text in cells).rstrip())
     for point in map_.points:
         where = f"{_mm(point.speed)} mm/s" + (
