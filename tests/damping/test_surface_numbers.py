@@ -360,3 +360,13 @@ def test_the_summary_of_two_branches_says_where_they_move() -> None:
     assert "B = a T^b w^c    (B in N m s/rad, T in degC, w in rad/s)" in text
     assert f"]  rad/s at {float(surface.reference_temperature or 0.0) - 273.15:.4g} degC" in text
     assert f"w_t varies as T^{surface.transition.temperature_exponent:.3g} (fixed Hersey number)" in text
+
+
+@pytest.mark.parametrize("scale", ["degC", "K"])
+def test_in_torque_the_coefficients_are_of_the_scale_too(scale: str) -> None:
+    """An exact law: both fits find the same a, b and c."""
+    w, t = grid(SPEEDS, TEMPERATURES)
+    scaled = t + 273.15 if scale == "K" else t
+    surface = hersey.fit(points_of(w, 62.0 * scaled**-0.9 * w**0.3, t, 0.01), temperature_scale=scale)
+    for name, value in (("a", 62.0), ("b", -0.9), ("c", -0.7)):
+        assert surface.torque_space[name].value == pytest.approx(value, rel=1e-4)

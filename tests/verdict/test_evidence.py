@@ -437,3 +437,11 @@ def test_the_regime_chart_in_numbers(contact: Contact, oil: Lubricant, measured:
     )
     assert hidden["layer"][2]["data"]["values"] == []
     assert hidden["title"]["subtitle"][0].endswith(" No point is shown: alpha is not known, g_V = 0.")
+
+
+def test_an_exponent_that_no_regime_has_is_said_so(
+    measured: MeasuredFilm, surface: DampingSurface, contact: Contact, oil: Lubricant
+) -> None:
+    c = Estimate(-0.85, 0.001, -0.852, -0.848)
+    text = verdict(measured, replace(surface, c=c), contact, oil).text
+    assert ". The measured exponent agrees with no regime. " in text

@@ -264,3 +264,11 @@ def test_the_verdict_says_where_the_transition_moves(exponent: float, words: str
 
 def test_the_ice_point() -> None:
     assert celsius(273.15) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_the_verdict_names_the_scale_of_the_fit() -> None:
+    w, t = grid(np.geomspace(0.4, 15, 14), np.array([120.0, 150.0, 180.0]))
+    at = 1.5 * ((t + 273.15) / 423.15) ** 9.0
+    points = points_of(w, np.where(w > at, (w / at) ** 0.3, (w / at) ** -0.2), t, error=2e-3)
+    in_kelvin = hersey.fit(points, temperature_scale="K")
+    assert f" at {in_kelvin.reference_temperature:.0f} K" in hersey.regime(points, in_kelvin).verdict
