@@ -23,7 +23,7 @@ import numpy as np
 from scipy.optimize import differential_evolution
 
 import hersey
-from hersey.machine.machine import Limits
+from hersey.machine.limits import Limits
 from hersey.machine.uncertainty import Uncertainty
 from hersey.stability.hysteresis import hysteresis
 from hersey.stability.plan import Plan, plan_profile

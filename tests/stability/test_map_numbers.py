@@ -12,7 +12,8 @@ import pytest
 import hersey
 from hersey.charts.operating_map import map_chart
 from hersey.damping.surface import DampingSurface
-from hersey.machine.machine import Limits, Machine, OperatingPoint, read_machine
+from hersey.machine.limits import Limits, OperatingPoint
+from hersey.machine.machine import Machine, read_machine
 from hersey.machine.uncertainty import Uncertainty
 from hersey.stability.hysteresis import hysteresis, hysteresis_sweep
 from hersey.stability.operating_map import OperatingMap, operating_map

@@ -19,7 +19,8 @@ from hersey.damping.estimate import Estimate
 from hersey.damping.surface import DampingSurface
 from hersey.document.saved_fit import read_fit
 from hersey.errors import InsufficientDataError, MissingFileError, OutputError, ParameterError
-from hersey.machine.machine import Limits, Machine, OperatingPoint, read_machine
+from hersey.machine.limits import Limits, OperatingPoint
+from hersey.machine.machine import Machine, read_machine
 from hersey.stability.operating_map import STATES, OperatingMap, operating_map
 from tests.cli.command import run
 from tests.conftest import ROOT

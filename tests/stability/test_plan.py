@@ -14,7 +14,7 @@ from scipy.stats import binom
 
 import hersey
 from hersey.errors import ParameterError
-from hersey.machine.machine import Limits
+from hersey.machine.limits import Limits
 from hersey.machine.uncertainty import Uncertainty
 from hersey.stability.plan.draws import lower_bound, most_failures, needed
 from tests.cli.command import run

@@ -11,7 +11,7 @@ import pytest
 
 import hersey
 from hersey.charts.plan import plan_chart
-from hersey.machine.machine import Limits
+from hersey.machine.limits import Limits
 from hersey.machine.uncertainty import Uncertainty
 from hersey.motion.schedule import Schedule
 from hersey.motion.simulation import simulate

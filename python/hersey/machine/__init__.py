@@ -1,14 +1,16 @@
 """The machine's file: what the log cannot tell, each value with its unit.
 
 ===================  ==============================================================
-machine              `Machine` and the file as a whole; limits and operating points
+machine              `Machine` and the file as a whole
+limits               what the machine can bear; operating points
 nip                  the tables of contact and lubricant
 uncertainty          how far a parameter is known
 temperature_profile  temperature against time, from a file
 ===================  ==============================================================
 """
 
-from hersey.machine.machine import Limits, Machine, OperatingPoint, read_machine
+from hersey.machine.limits import Limits, OperatingPoint
+from hersey.machine.machine import Machine, read_machine
 from hersey.machine.temperature_profile import read_temperature_profile
 from hersey.machine.uncertainty import Uncertainty, read_uncertainty
 

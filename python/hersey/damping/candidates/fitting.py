@@ -15,7 +15,7 @@ import numpy as np
 
 from hersey.arrays import FloatArray, IntArray
 from hersey.damping.candidates.branched import LEAST_POWER, Law
-from hersey.damping.candidates.likelihood import HUBER, Minimum, deviance, minimise, scatter_beyond
+from hersey.damping.candidates.likelihood import HUBER, Minimum, aicc, bic, deviance, minimise, scatter_beyond
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.candidates.stribeck import StribeckLaw
 from hersey.damping.estimate import Estimate, estimate
@@ -67,8 +67,7 @@ class LawFit:
 
     def aicc_with(self, more: int) -> float:
         """Return the same if ``more`` numbers were chosen beside those of the law."""
-        k, n = self.parameters + more, self.residuals.size
-        return self.deviance + 2 * k + 2 * k * (k + 1) / max(n - k - 1, 1)
+        return aicc(self.deviance, self.parameters + more, self.residuals.size)
 
     def estimate(self, name: str) -> Estimate:
         """Return a parameter of the law with its interval by covariance."""
@@ -79,7 +78,7 @@ class LawFit:
     @property
     def bic(self) -> float:
         """Schwarz's criterion."""
-        return self.deviance + self.parameters * float(np.log(self.residuals.size))
+        return bic(self.deviance, self.parameters, self.residuals.size)
 
 
 def fit_law(law: AnyLaw, data: Observations, starts: list[FloatArray] | None = None) -> LawFit:

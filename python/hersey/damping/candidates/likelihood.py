@@ -174,3 +174,14 @@ def deviance(residuals: FloatArray, errors: FloatArray, limit: float = HUBER) ->
     )
     best = min((float(minimum.fun), float(minimum.x)), (cost(0.0), 0.0))
     return best[0] + constant, best[1]
+
+
+def aicc(deviance_: float, parameters: int, points: int) -> float:
+    """Return Akaike's criterion, corrected for few points (Hurvich and Tsai, Biometrika 76 (1989) 297)."""
+    few = parameters * (parameters + 1) / max(points - parameters - 1, 1)
+    return deviance_ + 2 * parameters + 2 * few
+
+
+def bic(deviance_: float, parameters: int, points: int) -> float:
+    """Return Schwarz's criterion."""
+    return deviance_ + parameters * float(np.log(points))

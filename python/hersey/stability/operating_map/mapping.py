@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from hersey.damping.surface import DampingSurface
 from hersey.errors import InsufficientDataError, ParameterError
-from hersey.machine.machine import Limits, OperatingPoint
+from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.uncertainty import Uncertainty
 from hersey.motion.simulation import Drivetrain
 from hersey.stability.operating_map.edges import contour, edges_at, laws_at

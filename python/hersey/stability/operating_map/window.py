@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from hersey.arrays import FloatArray, numbers_of
 from hersey.damping.surface import DampingSurface
 from hersey.errors import ParameterError
-from hersey.machine.machine import OperatingPoint
+from hersey.machine.limits import OperatingPoint
 from hersey.motion.drag import Drag
 from hersey.stability.operating_map.edges import check_temperatures
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hersey.errors import ParameterError
-from hersey.machine.machine import Limits
+from hersey.machine.limits import Limits
 from hersey.stability.plan.draws import Trials
 from hersey.stability.plan.search import Room, Search
 from hersey.stability.plan.trial import MachineSample, Shape

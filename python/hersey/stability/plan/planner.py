@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hersey.errors import ParameterError
-from hersey.machine.machine import Limits
+from hersey.machine.limits import Limits
 from hersey.machine.uncertainty import Uncertainty
 from hersey.motion.drag import AnyDrag
 from hersey.motion.schedule import Schedule

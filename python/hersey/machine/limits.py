@@ -1,0 +1,44 @@
+"""What the machine can bear, and the states in which it is run."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic.dataclasses import dataclass
+
+from hersey.files.toml import Quantity, Table, Text
+
+_Speed = Annotated[float, Quantity("belt speed", 1e-6, 1e3)]
+
+
+@dataclass(frozen=True)
+class Limits(Table):
+    """What the machine can bear, in SI; none where nothing is stated.
+
+    ``motor_torque`` (N m) at the roll, ``roll_friction`` (coefficient) and ``nip_load`` (N), whose product is
+    the drag at which the belt slips on the roll, ``acceleration`` (m/s^2) and ``speed`` (m/s) of the drive,
+    ``spring_force`` (N) in the gear train.
+    """
+
+    motor_torque: Annotated[float, Quantity("torque", 1e-6, 1e6)] | None = None
+    roll_friction: Annotated[float, Quantity(None, 1e-3, 10.0)] | None = None
+    nip_load: Annotated[float, Quantity("force", 1e-3, 1e7)] | None = None
+    acceleration: Annotated[float, Quantity("acceleration", 1e-6, 1e5)] | None = None
+    speed: _Speed | None = None
+    spring_force: Annotated[float, Quantity("force", 1e-6, 1e7)] | None = None
+
+    @property
+    def grip(self) -> float | None:
+        """Drag at which the belt slips on the roll (N), if friction and load are stated."""
+        if self.roll_friction is None or self.nip_load is None:
+            return None
+        return self.roll_friction * self.nip_load
+
+
+@dataclass(frozen=True)
+class OperatingPoint(Table):
+    """A named state of the machine: belt speed (m/s) and temperature (K)."""
+
+    name: Text
+    speed: _Speed
+    temperature: Annotated[float, Quantity("temperature", 150.0, 1000.0)]
