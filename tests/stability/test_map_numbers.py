@@ -13,25 +13,14 @@ import hersey
 from hersey.charts.operating_map import map_chart
 from hersey.damping.surface import DampingSurface
 from hersey.machine.limits import Limits, OperatingPoint
-from hersey.machine.machine import Machine, read_machine
+from hersey.machine.machine import Machine
 from hersey.machine.uncertainty import Uncertainty
 from hersey.stability.hysteresis import hysteresis, hysteresis_sweep
 from hersey.stability.operating_map import OperatingMap, operating_map
-from tests.conftest import ROOT
 
 AT: dict[str, Any] = {"roll_radius": 0.015, "stick_speed": 3e-4}
 KELVIN = np.array([400.0, 450.0, 468.0])
 RPM = 2 * np.pi / 60
-
-
-@pytest.fixture(scope="module")
-def surface(points: hersey.SteadyPoints) -> DampingSurface:
-    return hersey.fit(points)
-
-
-@pytest.fixture(scope="module")
-def machine() -> Machine:
-    return read_machine(ROOT / "examples" / "machine.toml")
 
 
 @pytest.fixture(scope="module")

@@ -20,7 +20,7 @@ from hersey.damping.surface import DampingSurface
 from hersey.document.saved_fit import read_fit
 from hersey.errors import InsufficientDataError, MissingFileError, OutputError, ParameterError
 from hersey.machine.limits import Limits, OperatingPoint
-from hersey.machine.machine import Machine, read_machine
+from hersey.machine.machine import Machine
 from hersey.stability.operating_map import STATES, OperatingMap, operating_map
 from tests.cli.command import run
 from tests.conftest import ROOT
@@ -35,16 +35,6 @@ SETTLES_TO = {
 AT: dict[str, Any] = {"roll_radius": 0.015, "stick_speed": 3e-4}
 #: Few draws: for tests that look at anything but the interval of V*.
 QUICK: dict[str, Any] = {**AT, "draws": 2}
-
-
-@pytest.fixture(scope="module")
-def surface(points: hersey.SteadyPoints) -> DampingSurface:
-    return hersey.fit(points)
-
-
-@pytest.fixture(scope="module")
-def machine() -> Machine:
-    return read_machine(ROOT / "examples" / "machine.toml")
 
 
 @pytest.fixture(scope="module")

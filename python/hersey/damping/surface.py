@@ -128,7 +128,7 @@ class DampingSurface(Result):
             return float("nan")
         if temperature is None or self.reference_temperature is None:
             return self.transition.speed.value
-        moved = self.transition.temperature_exponent * self._log_temperature(temperature)
+        moved = self.transition.temperature_exponent * self._checked_temperature(temperature)
         return float(self.transition.speed.value * np.exp(moved))
 
     @takes_si(roll_radius="length", stick_speed="belt speed", temperature="temperature")
@@ -231,7 +231,7 @@ class DampingSurface(Result):
         self.drag(roll_radius=roll_radius, stick_speed=stick_speed, temperature=temperature)
         x = 0.0
         if temperature is not None and self.reference_temperature is not None:
-            x = self._log_temperature(temperature)
+            x = self._checked_temperature(temperature)
         slowest = np.log(stick_speed / roll_radius / self.reference_speed)
         kept, total, failed = self._draws(count, seed, x, slowest)
         if failed:
@@ -366,16 +366,20 @@ class DampingSurface(Result):
         numbers = dict.fromkeys(("value", "error", "low", "high"), pl.Float64)
         return pl.DataFrame(rows, schema={"name": pl.String, **numbers, "unit": pl.String}, orient="row")
 
-    def _log_temperature(self, temperature: float) -> float:
-        """Logarithm of a temperature (K) over the reference, in the scale of the law."""
+    def log_temperature(self, kelvin: FloatArray) -> FloatArray:
+        """Return the logarithm of temperatures (K) over the reference, in the scale of the law; any shape."""
+        assert self._law.thermal is not None
+        return self._law.thermal.shape(kelvin)[0]
+
+    def _checked_temperature(self, temperature: float) -> float:
+        """The same for one temperature where the powers of the law have a meaning."""
         scaled = float(scaled_temperature(np.asarray(temperature, dtype=float), self.temperature_scale))
         if not (np.isfinite(scaled) and scaled > 0):
             raise ParameterError(
                 f"temperature is {temperature:g} K: a law in {self.temperature_scale} holds above 0 "
                 f"{self.temperature_scale} only"
             )
-        reference = scaled_temperature(np.asarray(self.reference_temperature), self.temperature_scale)
-        return float(np.log(scaled / reference))
+        return float(self.log_temperature(np.asarray(temperature, dtype=float)))
 
     def _warn_outside(self, name: str, values: FloatArray, limits: tuple[float, float] | None) -> None:
         if limits and (np.any(values < limits[0] * 0.999) or np.any(values > limits[1] * 1.001)):

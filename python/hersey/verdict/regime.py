@@ -6,12 +6,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy import stats
 
 from hersey.arrays import FloatArray
-from hersey.damping.candidates.thermal import scaled_temperature
 from hersey.damping.dwells import SteadyPoints, distinct_speeds, groups_of_temperature
-from hersey.damping.estimate import CONFIDENCE, Estimate
+from hersey.damping.estimate import Estimate, estimate
 from hersey.damping.surface import DampingSurface
 from hersey.result import Result, json_record
 from hersey.units import celsius, rpm
@@ -108,12 +106,9 @@ def _exponents(points: SteadyPoints, surface: DampingSurface) -> tuple[BranchExp
 
 def _warmth(points: SteadyPoints, surface: DampingSurface) -> FloatArray:
     """Logarithm of T^b of each dwell about the reference: dwells of a group differ by some kelvin."""
-    if surface.b is None or surface.reference_temperature is None:
+    if surface.b is None:
         return np.zeros(len(points))
-    scale = surface.temperature_scale
-    temperature = scaled_temperature(points.column("temperature"), scale)
-    reference = scaled_temperature(np.asarray(surface.reference_temperature), scale)
-    return np.asarray(surface.b.value * np.log(temperature / reference))
+    return np.asarray(surface.b.value * surface.log_temperature(points.column("temperature")))
 
 
 def _slope(speed: FloatArray, torque: FloatArray, error: FloatArray, surface: DampingSurface) -> Estimate:
@@ -123,8 +118,7 @@ def _slope(speed: FloatArray, torque: FloatArray, error: FloatArray, surface: Da
     centred = z - np.average(z, weights=weight)
     spread = float(np.sum(weight * centred**2))
     slope, deviation = float(np.sum(weight * centred * y)) / spread, spread**-0.5
-    reach = float(stats.t.ppf(0.5 + CONFIDENCE / 2, surface.freedom)) * deviation
-    return Estimate(slope, deviation, slope - reach, slope + reach)
+    return estimate(slope, deviation, surface.freedom)
 
 
 def _verdict(surface: DampingSurface, hypotheses: tuple[Hypothesis, ...]) -> str:

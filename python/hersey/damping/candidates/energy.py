@@ -16,7 +16,7 @@ from hersey.arrays import FloatArray
 from hersey.damping.candidates.branched import FREE, LEAST_POWER, Law
 from hersey.damping.candidates.fitting import LawFit
 from hersey.damping.candidates.observations import Observations
-from hersey.damping.estimate import Estimate, quantile
+from hersey.damping.estimate import Estimate, estimate, quantile
 
 #: Joules in a thermochemical calorie.
 CALORIE = 4.184
@@ -95,12 +95,7 @@ def activation_energies(
 def _linear(fit: LawFit, share: dict[str, float], offset: float = 0.0) -> Estimate:
     weights = np.array([share.get(name, 0.0) for name in fit.law.names])
     value = offset + float(weights @ fit.values)
-    return _with_error(value, float(np.sqrt(weights @ fit.covariance @ weights)), fit.freedom)
-
-
-def _with_error(value: float, error: float, freedom: int) -> Estimate:
-    reach = quantile(freedom) * error
-    return Estimate(value, error, value - reach, value + reach)
+    return estimate(value, float(np.sqrt(weights @ fit.covariance @ weights)), fit.freedom)
 
 
 def _ratio(fit: LawFit, per_unit: float) -> Estimate:
@@ -109,11 +104,10 @@ def _ratio(fit: LawFit, per_unit: float) -> Estimate:
     value = per_unit * float(e / (1.0 + c))
     slopes = _gradient(fit, e=per_unit / (1.0 + c), c=-per_unit * e / (1.0 + c) ** 2)
     error = float(np.sqrt(slopes @ fit.covariance @ slopes))
-    reach = quantile(fit.freedom) * error
     if value > 2 * error:
-        spread = float(np.exp(reach / value))
+        spread = float(np.exp(quantile(fit.freedom) * error / value))
         return Estimate(value, error, value / spread, value * spread)
-    return Estimate(value, error, value - reach, value + reach)
+    return estimate(value, error, fit.freedom)
 
 
 def _disagreement(fit: LawFit) -> float:

@@ -13,7 +13,7 @@ from hersey.damping.candidates.fitting import fit_law
 from hersey.damping.candidates.model_comparison import CandidateFit
 from hersey.damping.candidates.observations import Inputs, Observations
 from hersey.damping.candidates.thermal import ARRHENIUS
-from hersey.damping.estimate import Estimate, quantile
+from hersey.damping.estimate import Estimate, estimate
 from hersey.errors import InsufficientDataError, ParameterError
 
 
@@ -81,7 +81,4 @@ def viscosity_laws(kelvin: ArrayLike, viscosity: ArrayLike, *, relative_error: f
     assert data.reference_kelvin is not None
     per_unit = fit.law.thermal.energy(data.reference_kelvin)
     energy, error = per_unit * float(fit.values[1]), per_unit * float(np.sqrt(fit.covariance[1, 1]))
-    reach = quantile(fit.freedom) * error
-    return ViscosityLaws(
-        by_aicc, refused, choose(by_aicc), Estimate(energy, error, energy - reach, energy + reach)
-    )
+    return ViscosityLaws(by_aicc, refused, choose(by_aicc), estimate(energy, error, fit.freedom))
