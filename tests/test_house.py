@@ -28,6 +28,7 @@ ROOMS = (
     "arrays",
     "result",
     "files",
+    "processes",
     "log",
     "motion",
     "damping",

@@ -8,6 +8,7 @@ units           the one door for units
 arrays          numbers or arrays as arguments
 result          what every result can do
 files           text, TOML with units, writing whole or not at all
+processes       processes of our own for libraries that may break down
 log             a `TorqueLog` from any file
 motion          drag against speed, schedules, the motion of the belt, sweeps
 damping         dwells, the damping surface, candidate laws, comparison, design of tests

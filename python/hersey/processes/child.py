@@ -1,0 +1,192 @@
+"""A process that answers what it is asked, and never outlives its parent."""
+
+from __future__ import annotations
+
+import atexit
+import json
+import os
+import struct
+import subprocess
+import sys
+import threading
+import weakref
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any
+
+_LENGTHS = struct.Struct("<QQ")
+_SERVER = Path(__file__).with_name("server.py")
+#: Longest head of a reply, bytes: the rest of a reply is its block of bytes.
+_LONGEST_HEAD = 1 << 28
+
+
+class LostError(Exception):
+    """The process ended before it answered, or did not start.
+
+    ``code`` is its exit code, negative for the signal that ended it, and None if it did not start.
+    """
+
+    def __init__(self, message: str, code: int | None = None) -> None:
+        """Take what happened and the exit code."""
+        super().__init__(message)
+        self.code = code
+
+
+class FailedError(Exception):
+    """What was asked raised an exception of the ``kind`` named; its text is the message."""
+
+    def __init__(self, message: str, kind: str = "") -> None:
+        """Take the text and the kind."""
+        super().__init__(message)
+        self.kind = kind
+
+
+class Child:
+    """A process that runs a script's ``answer(request, payload)``; see `hersey.processes.server`.
+
+    It starts when it is first asked, stays for what comes next, and starts again after it was lost. Threads
+    wait for each other; a forked process has a child of its own. It ends with this process, even one that is
+    killed, and is ended by whatever interrupts a question (Ctrl-C).
+
+    Parameters
+    ----------
+    script
+        The script's path; it may import no more than it needs.
+    """
+
+    def __init__(self, script: Path) -> None:
+        """Remember the script: nothing is started yet."""
+        self._script = script
+        self._lock = threading.Lock()
+        self._process: subprocess.Popen[bytes] | None = None
+        self._lifeline = -1
+        _children.add(self)
+
+    def __del__(self) -> None:
+        """End the process of a child that nobody holds any more."""
+        self.stop()
+
+    def ask(self, request: dict[str, Any], payload: bytes = b"") -> tuple[dict[str, Any], bytes]:
+        """Return the reply to a request, and its block of bytes.
+
+        Raises
+        ------
+        LostError
+            If the process ends before it has answered.
+        FailedError
+            If the script raises an exception.
+        """
+        with self._lock, self._whole():
+            process = self._running()
+            head = json.dumps(request).encode()
+            self._write(process, _LENGTHS.pack(len(head), len(payload)) + head)
+            self._write(process, payload)
+            first, second = _LENGTHS.unpack(self._read(process, _LENGTHS.size))
+            if first > _LONGEST_HEAD:
+                raise LostError("its reply makes no sense")
+            answer, content = json.loads(self._read(process, first)), self._read(process, second)
+        if "failed" in answer:
+            raise FailedError(answer["message"], answer["failed"])
+        return answer["reply"], content
+
+    def stop(self) -> int | None:
+        """End the process, also one that another thread waits for; return its exit code."""
+        process, lifeline = self._process, self._lifeline
+        code = None
+        if process is not None:
+            with suppress(OSError):
+                process.kill()  # no harm to one that has ended
+            code = process.wait()
+        self._process, self._lifeline = None, -1
+        _close(process, lifeline)
+        return code
+
+    @contextmanager
+    def _whole(self) -> Iterator[None]:
+        """Stop the process after anything but a whole reply: its next would answer another question."""
+        try:
+            yield
+        except (EOFError, OSError, ValueError) as error:
+            code = self.stop()
+            raise LostError(str(error) or "the process ended before it answered", code) from None
+        except BaseException:
+            self.stop()
+            raise
+
+    def _running(self) -> subprocess.Popen[bytes]:
+        if self._process is not None and self._process.poll() is not None:
+            self.stop()  # lost while nothing was asked of it
+        return self._process or self._start()
+
+    def _start(self) -> subprocess.Popen[bytes]:
+        ours: tuple[int, ...] = ()
+        if os.name == "posix":
+            theirs, self._lifeline = os.pipe()
+            ours = (theirs,)
+        try:
+            # -P: without the folder of the server, whose modules would hide those of Python
+            self._process = subprocess.Popen(
+                [sys.executable, "-P", str(_SERVER), str(self._script), str(ours[0] if ours else -1)],
+                bufsize=0,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.DEVNULL,
+                pass_fds=ours,
+            )
+        finally:
+            for end in ours:
+                os.close(end)
+        return self._process
+
+    def _write(self, process: subprocess.Popen[bytes], content: bytes) -> None:
+        assert process.stdin is not None
+        rest = memoryview(content)
+        while rest:
+            rest = rest[process.stdin.write(rest) :]
+
+    def _read(self, process: subprocess.Popen[bytes], length: int) -> bytes:
+        assert process.stdout is not None
+        content = bytearray()
+        while len(content) < length:
+            part = process.stdout.read(min(length - len(content), 1 << 20))
+            if not part:
+                raise EOFError
+            content += part
+        return bytes(content)
+
+    def _leave_to_parent(self) -> None:
+        """Let go, in a forked process, of the child that is the parent's."""
+        process, lifeline = self._process, self._lifeline
+        self._lock, self._process, self._lifeline = threading.Lock(), None, -1
+        if process is not None:
+            process.returncode = 0  # none of ours to wait for
+        _close(process, lifeline)
+
+
+def _close(process: subprocess.Popen[bytes] | None, lifeline: int) -> None:
+    """Close our ends of the pipes: the last that a process started half-way needs to end."""
+    for stream in (process.stdin, process.stdout) if process is not None else ():
+        if stream is not None:
+            stream.close()
+    if lifeline >= 0:
+        with suppress(OSError):
+            os.close(lifeline)
+
+
+_children: weakref.WeakSet[Child] = weakref.WeakSet()
+
+
+def _leave_all() -> None:
+    for child in list(_children):
+        child._leave_to_parent()
+
+
+@atexit.register
+def _stop_all() -> None:
+    for child in list(_children):
+        child.stop()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_leave_all)

@@ -1,0 +1,82 @@
+"""What runs in a process of our own: it answers requests with a script's function, until there are no more.
+
+Run as ``python -P server.py SCRIPT LIFELINE`` by `hersey.processes.child`. The script defines
+``answer(request, payload)``, which returns a dictionary that JSON can hold and a block of bytes. A message is
+the length of its JSON and of its bytes (8 bytes each, little-endian), then both; the JSON of a reply holds
+``reply``, or ``failed`` (the kind of exception) and ``message``.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import runpy
+import signal
+import struct
+import sys
+from collections.abc import Callable
+from typing import Any, BinaryIO
+
+_LENGTHS = struct.Struct("<QQ")
+_Answer = Callable[[dict[str, Any], bytes], tuple[dict[str, Any], bytes]]
+
+
+def serve(answer: _Answer, requests: BinaryIO, replies: BinaryIO) -> None:
+    """Answer requests until their end."""
+    while lengths := requests.read(_LENGTHS.size):
+        if len(lengths) < _LENGTHS.size:
+            return
+        first, second = _LENGTHS.unpack(lengths)
+        request, payload = json.loads(requests.read(first)), requests.read(second)
+        if len(payload) < second:
+            return
+        try:
+            reply, content = answer(request, payload)
+            head = json.dumps({"reply": reply}).encode()
+        except BaseException as error:  # a panic of a compiled library is no Exception
+            head, content = json.dumps({"failed": type(error).__name__, "message": str(error)}).encode(), b""
+        replies.write(_LENGTHS.pack(len(head), len(content)) + head)
+        replies.write(content)
+        replies.flush()
+
+
+def die_with_parent(lifeline: int) -> None:
+    """Let the kernel end this process once nobody holds the other end of a pipe, whatever it does then.
+
+    A signal by the pipe and not by the parent's death (`PR_SET_PDEATHSIG`): that one comes already when the
+    thread ends that started the process. Elsewhere than on Linux the process ends with its requests.
+    """
+    if sys.platform == "linux" and lifeline >= 0:
+        import fcntl
+
+        signal.signal(signal.SIGIO, signal.SIG_DFL)  # which ends the process
+        fcntl.fcntl(lifeline, fcntl.F_SETOWN, os.getpid())
+        fcntl.fcntl(lifeline, fcntl.F_SETFL, os.O_RDONLY | os.O_NONBLOCK | os.O_ASYNC)
+        try:
+            gone = os.read(lifeline, 1) == b""
+        except BlockingIOError:
+            return
+        if gone:  # before the kernel was asked to watch
+            os._exit(1)
+
+
+def leave_no_core() -> None:
+    """Let a library that breaks down leave no image of the memory in the user's folder."""
+    if os.name == "posix":
+        import resource
+
+        resource.setrlimit(resource.RLIMIT_CORE, (0, resource.getrlimit(resource.RLIMIT_CORE)[1]))
+
+
+def main() -> None:
+    """Serve a script; what it prints goes nowhere."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the parent too, which stops its processes
+    die_with_parent(int(sys.argv[2]))
+    leave_no_core()
+    replies = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    serve(runpy.run_path(sys.argv[1])["answer"], sys.stdin.buffer, replies)
+
+
+if __name__ == "__main__":
+    main()
