@@ -5,6 +5,7 @@ from __future__ import annotations
 import atexit
 import json
 import os
+import socket
 import struct
 import subprocess
 import sys
@@ -61,14 +62,20 @@ class Child:
         self._lock = threading.Lock()
         self._process: subprocess.Popen[bytes] | None = None
         self._lifeline = -1
+        self._files: socket.socket | None = None
         _children.add(self)
 
     def __del__(self) -> None:
         """End the process of a child that nobody holds any more."""
         self.stop()
 
-    def ask(self, request: dict[str, Any], payload: bytes = b"") -> tuple[dict[str, Any], bytes]:
+    def ask(
+        self, request: dict[str, Any], payload: bytes = b"", file: int | None = None
+    ) -> tuple[dict[str, Any], bytes]:
         """Return the reply to a request, and its block of bytes.
+
+        ``file`` is the descriptor of an open file: the script gets one of its own as ``request["file"]``,
+        where the system can pass it (not on Windows).
 
         Raises
         ------
@@ -79,6 +86,9 @@ class Child:
         """
         with self._lock, self._whole():
             process = self._running()
+            if file is not None and self._files is not None:
+                socket.send_fds(self._files, [b"\0"], [file])
+                request = request | {"file": True}
             head = json.dumps(request).encode()
             self._write(process, _LENGTHS.pack(len(head), len(payload)) + head)
             self._write(process, payload)
@@ -92,14 +102,14 @@ class Child:
 
     def stop(self) -> int | None:
         """End the process, also one that another thread waits for; return its exit code."""
-        process, lifeline = self._process, self._lifeline
+        process, lifeline, files = self._process, self._lifeline, self._files
         code = None
         if process is not None:
             with suppress(OSError):
                 process.kill()  # no harm to one that has ended
             code = process.wait()
-        self._process, self._lifeline = None, -1
-        _close(process, lifeline)
+        self._process, self._lifeline, self._files = None, -1, None
+        _close(process, lifeline, files)
         return code
 
     @contextmanager
@@ -120,22 +130,23 @@ class Child:
         return self._process or self._start()
 
     def _start(self) -> subprocess.Popen[bytes]:
-        ours: tuple[int, ...] = ()
+        theirs: tuple[int, ...] = ()
         if os.name == "posix":
-            theirs, self._lifeline = os.pipe()
-            ours = (theirs,)
+            end, self._lifeline = os.pipe()
+            self._files, files = socket.socketpair()
+            theirs = (end, files.detach())
         try:
             # -P: without the folder of the server, whose modules would hide those of Python
             self._process = subprocess.Popen(
-                [sys.executable, "-P", str(_SERVER), str(self._script), str(ours[0] if ours else -1)],
+                [sys.executable, "-P", str(_SERVER), str(self._script), *map(str, theirs)],
                 bufsize=0,
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.DEVNULL,
-                pass_fds=ours,
+                pass_fds=theirs,
             )
         finally:
-            for end in ours:
+            for end in theirs:
                 os.close(end)
         return self._process
 
@@ -157,18 +168,20 @@ class Child:
 
     def _leave_to_parent(self) -> None:
         """Let go, in a forked process, of the child that is the parent's."""
-        process, lifeline = self._process, self._lifeline
-        self._lock, self._process, self._lifeline = threading.Lock(), None, -1
+        process, lifeline, files = self._process, self._lifeline, self._files
+        self._lock, self._process, self._lifeline, self._files = threading.Lock(), None, -1, None
         if process is not None:
             process.returncode = 0  # none of ours to wait for
-        _close(process, lifeline)
+        _close(process, lifeline, files)
 
 
-def _close(process: subprocess.Popen[bytes] | None, lifeline: int) -> None:
+def _close(process: subprocess.Popen[bytes] | None, lifeline: int, files: socket.socket | None) -> None:
     """Close our ends of the pipes: the last that a process started half-way needs to end."""
     for stream in (process.stdin, process.stdout) if process is not None else ():
         if stream is not None:
             stream.close()
+    if files is not None:
+        files.close()
     if lifeline >= 0:
         with suppress(OSError):
             os.close(lifeline)

@@ -1,7 +1,8 @@
 """What runs in a process of our own: it answers requests with a script's function, until there are no more.
 
-Run as ``python -P server.py SCRIPT LIFELINE`` by `hersey.processes.child`. The script defines
-``answer(request, payload)``, which returns a dictionary that JSON can hold and a block of bytes. A message is
+Run as ``python -P server.py SCRIPT [LIFELINE FILES]`` by `hersey.processes.child`: descriptors of a pipe and a
+socket, where the system can pass them. The script defines ``answer(request, payload)``, which returns a
+dictionary that JSON can hold and a block of bytes; ``request["file"]`` is the descriptor of a file. A message is
 the length of its JSON and of its bytes (8 bytes each, little-endian), then both; the JSON of a reply holds
 ``reply``, or ``failed`` (the kind of exception) and ``message``.
 """
@@ -12,6 +13,7 @@ import json
 import os
 import runpy
 import signal
+import socket
 import struct
 import sys
 from collections.abc import Callable
@@ -21,8 +23,8 @@ _LENGTHS = struct.Struct("<QQ")
 _Answer = Callable[[dict[str, Any], bytes], tuple[dict[str, Any], bytes]]
 
 
-def serve(answer: _Answer, requests: BinaryIO, replies: BinaryIO) -> None:
-    """Answer requests until their end."""
+def serve(answer: _Answer, requests: BinaryIO, replies: BinaryIO, files: int = -1) -> None:
+    """Answer requests until their end; ``files`` is the descriptor of the socket through which files come."""
     while lengths := requests.read(_LENGTHS.size):
         if len(lengths) < _LENGTHS.size:
             return
@@ -30,6 +32,8 @@ def serve(answer: _Answer, requests: BinaryIO, replies: BinaryIO) -> None:
         request, payload = json.loads(requests.read(first)), requests.read(second)
         if len(payload) < second:
             return
+        if request.get("file"):
+            request["file"] = received(files)
         try:
             reply, content = answer(request, payload)
             head = json.dumps({"reply": reply}).encode()
@@ -38,6 +42,12 @@ def serve(answer: _Answer, requests: BinaryIO, replies: BinaryIO) -> None:
         replies.write(_LENGTHS.pack(len(head), len(content)) + head)
         replies.write(content)
         replies.flush()
+
+
+def received(files: int) -> int:
+    """Return the descriptor of the next file that comes through a socket."""
+    with socket.socket(fileno=os.dup(files)) as end:
+        return socket.recv_fds(end, 1, 1)[1][0]
 
 
 def die_with_parent(lifeline: int) -> None:
@@ -71,11 +81,12 @@ def leave_no_core() -> None:
 def main() -> None:
     """Serve a script; what it prints goes nowhere."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the parent too, which stops its processes
-    die_with_parent(int(sys.argv[2]))
+    script, lifeline, files = sys.argv[1], *(int(end) for end in [*sys.argv[2:], "-1", "-1"][:2])
+    die_with_parent(lifeline)
     leave_no_core()
     replies = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    serve(runpy.run_path(sys.argv[1])["answer"], sys.stdin.buffer, replies)
+    serve(runpy.run_path(script)["answer"], sys.stdin.buffer, replies, files)
 
 
 if __name__ == "__main__":
