@@ -11,7 +11,7 @@ import polars as pl
 from hersey.arrays import FloatArray
 from hersey.errors import HerseyError
 from hersey.log.channels import ROLES, ChannelChoice, find_channel
-from hersey.log.formats import opened, opener
+from hersey.log.formats import format_of, opened
 from hersey.log.text.footer import end_of_table
 from hersey.log.text.layout import SNIFFED, Column, Layout, find_layout
 from hersey.log.text.numbers import MISSING
@@ -56,10 +56,10 @@ def raw_channels(path: str | Path) -> RawLog:
         If it cannot be read at all.
     """
     path = Path(path)
-    reader = opener(path)
-    if reader is None:
+    kind = format_of(path)
+    if kind is None:
         return _of_text(path)
-    with opened(path, reader) as recording:
+    with opened(path, kind) as recording:
         channels = []
         notes = list(recording.notes)
         for index, signal in enumerate(recording.signals):

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import hashlib
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
@@ -30,22 +28,6 @@ class _Part:
     tick: str
 
 
-@dataclass(frozen=True)
-class Source:
-    """Where a recording came from: name, SHA-256 and bytes."""
-
-    name: str
-    sha256: str
-    bytes: int
-
-
-def file_source(path: Path) -> Source:
-    """Return name, hash and size of a file."""
-    with path.open("rb") as file:
-        digest = hashlib.file_digest(file, "sha256").hexdigest()
-    return Source(path.name, digest, path.stat().st_size)
-
-
 class Assembly:
     """The channels of one recording that play a role, loaded while its file is open.
 
@@ -57,14 +39,12 @@ class Assembly:
         If the numbers of a channel cannot be read.
     """
 
-    def __init__(
-        self, recording: Recording, choices: dict[str, ChannelChoice], source: Source, *, isothermal: bool
-    ) -> None:
-        self.recording, self.source = recording, source
+    def __init__(self, recording: Recording, choices: dict[str, ChannelChoice], *, isothermal: bool) -> None:
+        self.recording, self.source = recording, recording.source
         if isothermal and choices["temperature"] != ChannelChoice():
             raise ChannelError("--isothermal leaves temperature out: give no --temperature beside it")
         if not recording.signals:
-            raise nothing_to_read(recording, source.name)
+            raise nothing_to_read(recording)
         self.columns = columns(recording)
         self._clocks: dict[str, tuple[FloatArray, str, Channel]] = {}
         self.parts = {"torque": self._part("torque", choices, None)}
@@ -248,8 +228,9 @@ def columns(recording: Recording) -> tuple[Column, ...]:
     )
 
 
-def nothing_to_read(recording: Recording, file: str) -> ChannelError:
+def nothing_to_read(recording: Recording) -> ChannelError:
     """Return the error for a recording without a channel of numbers."""
+    file = recording.source.name
     if recording.nothing:
         return ChannelError(f"{file}: {recording.nothing}")
     others = ", ".join(recording.others[:40]) or "nothing"

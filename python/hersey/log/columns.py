@@ -11,7 +11,7 @@ import numpy as np
 from hersey.arrays import FloatArray
 from hersey.errors import UnreadableLogError
 from hersey.log.assembly import columns, nothing_to_read
-from hersey.log.formats import opened, opener
+from hersey.log.formats import MAX_MEMORY, format_of, opened
 from hersey.log.recording import Recording
 from hersey.log.text.delimited import delimited_layout, delimited_numbers
 from hersey.log.text.layout import Column
@@ -28,7 +28,7 @@ class OpenColumns:
             layout = delimited_layout(path)
             self.columns, self.headless = layout.named, layout.headless
         elif not recording.signals:
-            raise nothing_to_read(recording, path.name)
+            raise nothing_to_read(recording)
         else:
             self.columns = columns(recording)
 
@@ -59,8 +59,8 @@ class OpenColumns:
 
 
 @contextmanager
-def open_columns(path: str | Path) -> Iterator[OpenColumns]:
-    """Open a file of any format that a log may have.
+def open_columns(path: str | Path, max_memory: float | str = MAX_MEMORY) -> Iterator[OpenColumns]:
+    """Open a file of any format that a log may have; ``max_memory`` as in `hersey.read`.
 
     Raises
     ------
@@ -74,9 +74,9 @@ def open_columns(path: str | Path) -> Iterator[OpenColumns]:
     ['time [s]', 'force [N]']
     """
     path = Path(path)
-    reader = opener(path)
-    if reader is None:
+    kind = format_of(path)
+    if kind is None:
         yield OpenColumns(path, None)
         return
-    with opened(path, reader) as recording:
+    with opened(path, kind, max_memory) as recording:
         yield OpenColumns(path, recording)

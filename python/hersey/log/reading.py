@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from hersey.errors import ParameterError
-from hersey.log.assembly import Assembly, Source, columns, file_source, nothing_to_read
+from hersey.log.assembly import Assembly, columns, nothing_to_read
 from hersey.log.channels import ROLES, ChannelChoice
-from hersey.log.formats import opened, opener
+from hersey.log.formats import MAX_MEMORY, format_of, opened
 from hersey.log.formats.frame import frame_recording, is_frame
 from hersey.log.text.delimited import Progress, delimited_columns, read_delimited
 from hersey.log.torque_log import LogFile, Run, TorqueLog
@@ -22,6 +22,7 @@ def read(
     units: dict[str, str] | None = None,
     isothermal: bool = False,
     drop_missing: bool = False,
+    max_memory: float | str = MAX_MEMORY,
     progress: Progress | None = None,
 ) -> TorqueLog:
     """Read one log, or several of one machine, each a run of its own.
@@ -40,6 +41,9 @@ def read(
         Leave temperature out.
     drop_missing
         Leave out rows in which a number is missing, and count them, instead of refusing them.
+    max_memory
+        What a file of any format but text may take while it is read, bytes or such as ``"8 GB"``: a small
+        file can hold a great many numbers.
     progress
         Called with bytes done and bytes in all.
 
@@ -66,14 +70,12 @@ def read(
     logs: list[LogFile] = []
     for number, file in enumerate(files, start=1):
         if is_frame(file):
-            recording, digest, size = frame_recording(file)
-            name = "frame" if len(files) == 1 else f"frame {number}"
-            assembly = Assembly(recording, choices, Source(name, digest, size), isothermal=isothermal)
+            recording = frame_recording(file, "frame" if len(files) == 1 else f"frame {number}")
+            assembly = Assembly(recording, choices, isothermal=isothermal)
             run, log = assembly.run(drop_missing=drop_missing)
-        elif reader := opener(path := Path(file)):
-            source = file_source(path)
-            with opened(path, reader) as recording:
-                assembly = Assembly(recording, choices, source, isothermal=isothermal)
+        elif kind := format_of(path := Path(file)):
+            with opened(path, kind, max_memory) as recording:
+                assembly = Assembly(recording, choices, isothermal=isothermal)
             run, log = assembly.run(drop_missing=drop_missing)
         else:
             run, log = read_delimited(
@@ -103,12 +105,12 @@ def list_channels(path: Any) -> list[tuple[str, str]]:
     ('Drive torque', 'N*m')
     """
     if is_frame(path):
-        listed = columns(frame_recording(path)[0])
-    elif reader := opener(path := Path(path)):
-        with opened(path, reader) as recording:
+        listed = columns(frame_recording(path))
+    elif kind := format_of(path := Path(path)):
+        with opened(path, kind) as recording:
             listed = columns(recording)
             if not listed and recording.nothing:
-                raise nothing_to_read(recording, path.name)
+                raise nothing_to_read(recording)
     else:
         listed = delimited_columns(path)
     names = [column.path for column in listed]

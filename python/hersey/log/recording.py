@@ -57,6 +57,15 @@ class Signal:
     group: str = ""
 
 
+@dataclass(frozen=True)
+class Source:
+    """Where a recording came from: name, SHA-256 and bytes."""
+
+    name: str
+    sha256: str
+    bytes: int
+
+
 @dataclass
 class Recording:
     """A file as recorded; ``notes`` grow while channels are loaded, ``cut_off``: its end is missing."""
@@ -68,6 +77,7 @@ class Recording:
     notes: list[str] = field(default_factory=list)
     cut_off: bool = False
     nothing: str = ""  #: why there are no signals, if the format can tell
+    source: Source = Source("", "", 0)
 
 
 def library(module: str, reads: str) -> Any:

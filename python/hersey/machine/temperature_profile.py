@@ -8,7 +8,7 @@ from pathlib import Path
 from hersey.arrays import FloatArray
 from hersey.errors import ChannelError, ParameterError, UnitError, UnreadableLogError
 from hersey.log.columns import OpenColumns, open_columns
-from hersey.log.formats import opener
+from hersey.log.formats import format_of
 from hersey.log.text.layout import Column
 from hersey.motion.schedule import Schedule
 from hersey.units import conversion
@@ -53,7 +53,7 @@ def read_temperature_profile(path: str | Path) -> Schedule:
 
 def _refuse_long_text(path: Path) -> None:
     with suppress(OSError):  # reading it says what is wrong
-        if path.is_file() and path.stat().st_size > _MOST_BYTES and opener(path) is None:
+        if path.is_file() and path.stat().st_size > _MOST_BYTES and format_of(path) is None:
             raise ParameterError(
                 f"{path.name} is too long for a temperature profile: {MOST_POINTS} points are possible"
             )

@@ -100,6 +100,11 @@ class Child:
             raise FailedError(answer["message"], answer["failed"])
         return answer["reply"], content
 
+    @property
+    def running(self) -> bool:
+        """Whether the process has started and was not lost."""
+        return self._process is not None and self._process.poll() is None
+
     def stop(self) -> int | None:
         """End the process, also one that another thread waits for; return its exit code."""
         process, lifeline, files = self._process, self._lifeline, self._files
@@ -125,7 +130,7 @@ class Child:
             raise
 
     def _running(self) -> subprocess.Popen[bytes]:
-        if self._process is not None and self._process.poll() is not None:
+        if not self.running:
             self.stop()  # lost while nothing was asked of it
         return self._process or self._start()
 

@@ -1,4 +1,4 @@
-"""What a process of our own may use while it reads a file of a stranger: little memory and time, no other file.
+"""What a process of our own may use while it reads a file of a stranger: bounds, and no other file.
 
 Limits are those of POSIX; the wall around files and the network is Landlock's (Linux 5.13 and later). Where a
 system lacks one of them the others still stand.
@@ -7,6 +7,7 @@ system lacks one of them the others still stand.
 from __future__ import annotations
 
 import ctypes
+import math
 import os
 import struct
 import sys
@@ -26,23 +27,39 @@ def limit_memory(extra: int) -> None:
     if sys.platform == "linux":
         import resource
 
-        pages = int(Path("/proc/self/statm").read_text().split()[0])
         ceiling = resource.getrlimit(resource.RLIMIT_AS)[1]
-        wanted = pages * resource.getpagesize() + extra
+        wanted = _memory_held() + extra
         limit = wanted if ceiling == resource.RLIM_INFINITY else min(wanted, ceiling)
         resource.setrlimit(resource.RLIMIT_AS, (limit, ceiling))
 
 
+def memory_left() -> float:
+    """Return how many bytes more this process may take, infinity without a limit."""
+    if sys.platform != "linux":
+        return math.inf
+    import resource
+
+    limit = resource.getrlimit(resource.RLIMIT_AS)[0]
+    return math.inf if limit == resource.RLIM_INFINITY else limit - _memory_held()
+
+
+def _memory_held() -> int:
+    pages = int(Path("/proc/self/statm").read_text().split()[0])
+    return pages * os.sysconf("SC_PAGE_SIZE")
+
+
 def limit_time(seconds: float) -> None:
-    """End this process after so much more processor time, s, by the signal `SIGXCPU`."""
+    """End this process after so much more processor time, s, by the signal `SIGXCPU`; infinity lifts it."""
     if os.name == "posix":
         import resource
 
         used = resource.getrusage(resource.RUSAGE_SELF)
-        limit = int(used.ru_utime + used.ru_stime + seconds) + 1
         ceiling = resource.getrlimit(resource.RLIMIT_CPU)[1]
-        if ceiling == resource.RLIM_INFINITY or limit < ceiling:
-            resource.setrlimit(resource.RLIMIT_CPU, (limit, ceiling))
+        limit = ceiling
+        if seconds < math.inf:
+            limit = math.ceil(used.ru_utime + used.ru_stime + seconds)
+            limit = limit if ceiling == resource.RLIM_INFINITY else min(limit, ceiling)
+        resource.setrlimit(resource.RLIMIT_CPU, (limit, ceiling))
 
 
 def only_read_libraries() -> bool:

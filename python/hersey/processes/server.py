@@ -1,9 +1,9 @@
 """What runs in a process of our own: it answers requests with a script's function, until there are no more.
 
-Run as ``python -P server.py SCRIPT [LIFELINE FILES]`` by `hersey.processes.child`: descriptors of a pipe and a
-socket, where the system can pass them. The script defines ``answer(request, payload)``, which returns a
-dictionary that JSON can hold and a block of bytes; ``request["file"]`` is the descriptor of a file. A message is
-the length of its JSON and of its bytes (8 bytes each, little-endian), then both; the JSON of a reply holds
+Run as ``python -P server.py SCRIPT [LIFELINE FILES]`` by `hersey.processes.child`: descriptors of a pipe and
+a socket, where the system can pass them. The script defines ``answer(request, payload)``, which returns a
+dictionary that JSON can hold and a block of bytes; ``request["file"]`` is the descriptor of a file. A message
+is the length of its JSON and of its bytes (8 bytes each, little-endian), then both; the JSON of a reply holds
 ``reply``, or ``failed`` (the kind of exception) and ``message``.
 """
 

@@ -1,10 +1,12 @@
 """Files of every format but text: one reader each.
 
 ===========  =================================================================
-opening      which reader opens a file: told by its first bytes, or its suffix
+opening      which format a file has, and opening it in a process of its own
+answering    what that process does: a reader opens the file, numbers are sent
 lvm          LabVIEW measurement files
 tdms         LabVIEW TDMS
-mdf          ASAM MDF, through asammdf in a process of its own, `mdf_worker`
+mdf          ASAM MDF, through asammdf
+formula      formulas that an MDF file carries, by a grammar of our own
 matlab       MATLAB files; their layout is walked first by `matlab_tags`
 hdf5         HDF5, and MATLAB 7.3
 matrices     numbers in rows and columns, as the two before hold them
@@ -13,6 +15,6 @@ frame        polars and pandas frames in memory
 ===========  =================================================================
 """
 
-from hersey.log.formats.opening import READERS, opened, opener
+from hersey.log.formats.opening import MAX_MEMORY, READERS, format_of, opened
 
-__all__ = ["READERS", "opened", "opener"]
+__all__ = ["MAX_MEMORY", "READERS", "format_of", "opened"]

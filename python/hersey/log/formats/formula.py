@@ -31,7 +31,7 @@ _WORD = re.compile(
 
 
 def evaluate(formula: str, values: Mapping[str, object]) -> FloatArray:
-    """Return the value of a formula in float64, shape (rows,), of the shape of its variables.
+    """Return the value of a formula in float64, shape (rows,), as its variables broadcast.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ def evaluate(formula: str, values: Mapping[str, object]) -> FloatArray:
                 stack.append(np.asarray(step.function(*reversed(arguments)), dtype=float))
             else:
                 stack.append(numbers[step] if isinstance(step, str) else np.asarray(step))
-    return stack.pop()
+    return np.broadcast_to(stack.pop(), np.broadcast_shapes(*(number.shape for number in numbers.values())))
 
 
 class _Call(NamedTuple):
@@ -71,7 +71,9 @@ _FUNCTIONS = {
     **{name: _Call(getattr(np, name), 1) for name in _ONE},
     **{name: _Call(getattr(np, f"arc{name[-3:]}"), 1) for name in ("asin", "acos", "atan")},
     **{name: _Call(getattr(np, name), 1) for name in ("arcsin", "arccos", "arctan")},
-    **{"ln": _Call(np.log, 1), "pow": _Call(np.power, 2), "arctan2": _Call(np.arctan2, 2)},
+    "ln": _Call(np.log, 1),
+    "pow": _Call(np.power, 2),
+    "arctan2": _Call(np.arctan2, 2),
 }
 
 

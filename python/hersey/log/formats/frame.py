@@ -12,7 +12,7 @@ import polars as pl
 
 from hersey.arrays import FloatArray
 from hersey.errors import ParameterError, UnreadableLogError
-from hersey.log.recording import Recording, Signal, floats, seconds, split_unit
+from hersey.log.recording import Recording, Signal, Source, floats, seconds, split_unit
 
 
 def is_frame(thing: object) -> bool:
@@ -22,8 +22,8 @@ def is_frame(thing: object) -> bool:
     )
 
 
-def frame_recording(frame: Any) -> tuple[Recording, str, int]:
-    """Return a frame as a recording, the SHA-256 of its numbers, and their size in bytes.
+def frame_recording(frame: Any, name: str = "frame") -> Recording:
+    """Return a frame as a recording, with the SHA-256 of its numbers and their size in bytes.
 
     Units stand in the names of the columns, or in ``frame.attrs["units"]`` (pandas) by column. An index of
     time stamps, or with a name, counts as a column.
@@ -35,18 +35,19 @@ def frame_recording(frame: Any) -> tuple[Recording, str, int]:
         raise ParameterError("frame.attrs['units'] is no dictionary of units by column")
     digest, size = hashlib.sha256(), 0
     signals, others = [], []
-    for name, series in columns:
+    for column, series in columns:
         kind = series.dtype
         if not (kind.is_numeric() or kind.is_temporal() or kind == pl.Boolean):
-            others.append(f"'{name}' ({kind})")
+            others.append(f"'{column}' ({kind})")
             continue
         numbers = np.ascontiguousarray(series.to_physical().to_numpy())
-        digest.update(name.encode() + numbers.tobytes())
+        digest.update(column.encode() + numbers.tobytes())
         size += numbers.nbytes
         signals.append(
-            column_signal(name, kind, len(series), partial(_same, series), str(units.get(name, "")))
+            column_signal(column, kind, len(series), partial(_same, series), str(units.get(column, "")))
         )
-    return Recording("frame", tuple(signals), tuple(others)), digest.hexdigest(), size
+    source = Source(name, digest.hexdigest(), size)
+    return Recording("frame", tuple(signals), tuple(others), source=source)
 
 
 def column_signal(

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 
@@ -17,20 +16,20 @@ MAGIC = b"\x89HDF\r\n\x1a\n"
 _UNITS = ("units", "unit", "Units", "Unit", "UNITS", "UNIT")
 #: MATLAB keeps the contents of cells and objects here.
 _HIDDEN = ("#refs#", "#subsystem#")
+_WAY_OUT = "copy what it refers to into the file itself, such as by h5repack or by h5py"
 
 
-def is_hdf5(path: Path) -> bool:
+def is_hdf5(start: bytes) -> bool:
     """Return whether a file starts as HDF5 does, at byte 0 or behind the 512 bytes of MATLAB."""
-    with path.open("rb") as file:
-        start = file.read(512 + len(MAGIC))
+    start = start[: 512 + len(MAGIC)]
     return start.startswith(MAGIC) or start[512:] == MAGIC
 
 
 @contextmanager
-def open_hdf5(path: Path) -> Iterator[Recording]:
+def open_hdf5(opened: BinaryIO, _name: str) -> Iterator[Recording]:
     """Open an HDF5 file: data sets of one or two dimensions, units in their attributes."""
     h5py = library("h5py", "HDF5 files")
-    with h5py.File(path, "r") as file:
+    with h5py.File(opened, "r") as file:
         signals: list[Signal] = []
         others: list[str] = []
         seen: list[Any] = []
@@ -40,12 +39,14 @@ def open_hdf5(path: Path) -> Iterator[Recording]:
                 return
             seen.append(item.id)
             _check_kind(h5py, name, item)
+            _check_place(name, item)
             vectors = list(_data_set(name, item))
             signals.extend(vectors)
             if not vectors:
                 others.append(f"'{name}' ({item.dtype}, {'x'.join(map(str, item.shape or ()))})")
 
         file.visititems(visit)
+        file.visititems_links(lambda name, link: _check_link(h5py, name, link))
         comments = tuple(f"{key}: {_text(value)}"[:200] for key, value in file.attrs.items())[:5]
         yield Recording("HDF5", tuple(signals), tuple(others), comments)
 
@@ -66,6 +67,17 @@ def _check_kind(h5py: Any, path: str, item: Any) -> None:
     """Numbers of a kind that no machine has come from a damaged description: they would be read wrongly."""
     if item.dtype.kind in "iuf" and not item.id.get_type().equal(h5py.h5t.py_create(item.dtype)):
         raise UnreadableLogError(f"data set '{path}' holds numbers of an unusual kind: the file is damaged")
+
+
+def _check_place(path: str, item: Any) -> None:
+    """Numbers in another file are not those that were hashed, nor those that a user means to give."""
+    if item.external or item.is_virtual:
+        raise UnreadableLogError(f"data set '{path}' keeps its numbers in another place: {_WAY_OUT}")
+
+
+def _check_link(h5py: Any, path: str, link: Any) -> None:
+    if isinstance(link, h5py.ExternalLink):
+        raise UnreadableLogError(f"'{path}' stands in another file, '{link.filename}': {_WAY_OUT}")
 
 
 def _column(item: Any, field: str) -> Callable[[], Any]:

@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 import polars as pl
@@ -58,17 +58,17 @@ class _Segment:
 
 
 @contextmanager
-def open_lvm(path: Path) -> Iterator[Recording]:
+def open_lvm(file: BinaryIO, name: str) -> Iterator[Recording]:
     """Open an LVM file; segments follow one another on the clock of their start times."""
-    data = path.read_bytes()
-    text = data.decode(encoding_of(data, path.name), errors="replace")
+    data = file.read()
+    text = data.decode(encoding_of(data, name), errors="replace")
     lines = [line.rstrip("\r") for line in text.split("\n")]
-    separator = _separator(lines, path.name)
+    separator = _separator(lines, name)
     recording = Recording("LVM", ())
     if lines[-1].strip():
         recording.cut_off = True
         recording.notes.append(f"line {len(lines)} has no end: it was left out")
-    general, segments = _segments(lines[:-1], separator, path.name)
+    general, segments = _segments(lines[:-1], separator, name)
     style = _style(general, segments)
     names = [segment.names for segment in segments]
     if any(other != names[0] for other in names):
@@ -82,7 +82,7 @@ def open_lvm(path: Path) -> Iterator[Recording]:
                 f"segment {number} of {len(segments)} holds {len(segment.rows)} of {promised:.0f} samples"
             )
     recording.comments = tuple(f"{k}: {v[0]}"[:200] for k, v in general.items() if v and v[0])[:5]
-    table = _Table(segments, style, path.name)
+    table = _Table(segments, style, name)
     recording.signals = tuple(table.signals())
     yield recording
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
-from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 from scipy.io import loadmat
@@ -24,24 +23,25 @@ _DEPTH = 4
 
 
 @contextmanager
-def open_matlab(path: Path) -> Iterator[Recording]:
+def open_matlab(file: BinaryIO, name: str) -> Iterator[Recording]:
     """Open a MATLAB file: vectors, columns of matrices, and fields of structs."""
-    if is_hdf5(path):
-        with open_hdf5(path) as recording:
+    start = file.read(1024)
+    file.seek(0)
+    if is_hdf5(start):
+        with open_hdf5(file, name) as recording:
             recording.format = "MATLAB v7.3"
             yield recording
         return
-    data = path.read_bytes()
-    if data[126:128] in (b"IM", b"MI"):
-        check_tags(data, path.name)
+    if start[126:128] in (b"IM", b"MI"):
+        check_tags(file.read(), name)
     signals: list[Signal] = []
     others: list[str] = []
     with warnings.catch_warnings(record=True) as heard:
         warnings.simplefilter("always")
-        variables = loadmat(path, chars_as_strings=True)
-    for name, value in variables.items():
-        if not name.startswith("__"):
-            _walk(name, value, "", signals, others, 0)
+        variables = loadmat(file, chars_as_strings=True)  # type: ignore[arg-type] # it takes files, too
+    for variable, value in variables.items():
+        if not variable.startswith("__"):
+            _walk(variable, value, "", signals, others, 0)
     objects = [o for o in others if "object" in o]
     nothing = (
         f"{', '.join(objects)}: tables and timetables can be opened by MATLAB alone; save them as "

@@ -10,6 +10,7 @@ import struct
 import zlib
 
 from hersey.errors import UnreadableLogError
+from hersey.processes.confinement import memory_left
 
 _HEADER = 128
 _INT8, _INT32, _UINT32, _MATRIX, _COMPRESSED, _UTF8 = 1, 5, 6, 14, 15, 16
@@ -26,6 +27,8 @@ _DEPTH = 20
 def check_tags(data: bytes, file: str) -> None:
     """Refuse a MATLAB v5 file whose elements do not follow one another up to its end.
 
+    A compressed element that holds more than this process may take raises `MemoryError`, before it is.
+
     Raises
     ------
     UnreadableLogError
@@ -35,13 +38,27 @@ def check_tags(data: bytes, file: str) -> None:
     try:
         for kind, start, end in _elements(data, _HEADER, len(data), order):
             if kind == _COMPRESSED:
-                inner = zlib.decompress(data[start:end])
+                inner = _unpacked(data[start:end], order)
                 for inner_kind, first, last in _elements(inner, 0, len(inner), order):
                     _check(inner, inner_kind, first, last, order, 0)
             else:
                 _check(data, kind, start, end, order, 0)
     except (_TagError, struct.error, zlib.error):
         raise UnreadableLogError(f"{file} cannot be read as MATLAB: it is damaged or cut off") from None
+
+
+def _unpacked(packed: bytes, order: str) -> bytes:
+    """A compressed element, which holds one other of the size that its tag says."""
+    unpacking = zlib.decompressobj()
+    tag = unpacking.decompress(packed, 8)
+    word, size = struct.unpack(f"{order}II", tag)
+    size = 0 if word >> 16 else size  # a small element holds its bytes in the tag
+    if 2 * size > memory_left():  # here, and in scipy
+        raise MemoryError
+    inner = tag + unpacking.decompress(unpacking.unconsumed_tail, size + 8)
+    if unpacking.decompress(unpacking.unconsumed_tail, 1) or not unpacking.eof:
+        raise _TagError
+    return inner
 
 
 class _TagError(Exception):

@@ -1,122 +1,149 @@
-"""ASAM MDF files (MF4, MDF 3), through asammdf: every channel on the raster of its own group."""
+"""ASAM MDF files (MF4, MDF 3), through asammdf: every channel on the raster of its own group.
+
+asammdf gives the formulas of a file to numexpr or sympy, and either can be made to run what stands in them.
+Both are replaced before asammdf is imported: a formula is evaluated by `formula`, or its channel refused.
+"""
 
 from __future__ import annotations
 
-import atexit
-import importlib.util
-import pickle
-import subprocess
+import io
 import sys
+import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
-from pathlib import Path
-from typing import Any
+from contextlib import contextmanager
+from functools import cache, partial
+from types import ModuleType
+from typing import Any, BinaryIO
+
+import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.errors import UnreadableLogError
-from hersey.log.recording import Recording, Signal, missing_library, split_unit
+from hersey.log.formats.formula import evaluate
+from hersey.log.recording import Recording, Signal, floats, library, listening, split_unit
+
+_MASTERS = (2, 3)  # channel types: master, virtual master
+_TIME = (0, 1)  # kinds of master: none given (MDF 3), time
+_BUS = ("CAN_", "LIN_", "FLX_", "ETH_", "MOST_", "K_LINE_")
+#: Variables of a formula in asammdf: the raw value, and parameters and constants of its own formulas.
+_VARIABLES = ("X", "X1", "P1", "P2", "P3", "P4", "P5", "P6", "INF", "NaN")
+#: What was wrong with the formulas met: asammdf goes on with raw values where one fails.
+_refusals: list[str] = []
 
 
 @contextmanager
-def open_mdf(path: Path) -> Iterator[Recording]:
+def open_mdf(file: BinaryIO, _name: str) -> Iterator[Recording]:
     """Open an MDF file; a channel of text or arrays is listed, and refused when it is asked for."""
-    reply = _worker.ask(path.name, "open", str(path.resolve()))
-    if isinstance(reply, str):
-        raise UnreadableLogError(f"{path.name} {reply}")
-    recording = Recording("MF4", (), notes=[f"asammdf warns: {words}" for words in reply["heard"]])
-    several = len({group for group, *_ in reply["channels"]}) > 1
-    recording.signals = tuple(
-        _signal(path.name, recording, channel, several) for channel in reply["channels"]
-    )
-    if reply["frames"]:
-        recording.nothing = (
-            f"it holds bus frames ({', '.join(reply['frames'])}) and no physical signals: decode it with the "
-            "database of the bus (DBC, ARXML), such as by asammdf's extract_bus_logging, and read the file "
-            "that this writes"
+    asammdf = _asammdf()
+    if file.read(8) == b"UnFinMF ":  # asammdf finishes it, which changes it
+        file.seek(0)
+        file = io.BytesIO(file.read())
+    with listening("asammdf") as heard, asammdf.MDF(file, process_bus_logging=False) as mdf:
+        channels, frames = _channels(mdf)
+        recording = Recording(
+            "MF4", (), notes=[f"asammdf warns: {words[:160]}" for words in dict.fromkeys(heard)]
         )
-    yield recording
+        several = len({group for group, *_ in channels}) > 1
+        recording.signals = tuple(_signal(mdf, recording, heard, channel, several) for channel in channels)
+        if frames:
+            recording.nothing = (
+                f"it holds bus frames ({', '.join(sorted(frames))}) and no physical signals: decode it with "
+                "the database of the bus (DBC, ARXML), such as by asammdf's extract_bus_logging, and read the "
+                "file that this writes"
+            )
+        yield recording
+
+
+@cache
+def _asammdf() -> Any:
+    """The library, with nothing in it that could run a formula, or write."""
+    ours = ModuleType("numexpr")
+    ours.__dict__.update(evaluate=_evaluated, __version__="0")
+    sys.modules["numexpr"] = ours
+    sys.modules["sympy"] = None  # type: ignore[assignment] # importing it fails
+    tempfile.NamedTemporaryFile = lambda *_, **__: io.BytesIO()  # type: ignore[assignment] # kept empty
+    asammdf = library("asammdf", "MF4 files")
+    from asammdf.blocks import v2_v3_blocks, v4_blocks
+
+    for blocks in (v2_v3_blocks, v4_blocks):
+        if blocks.evaluate is not _evaluated or blocks.lambdify is not None:
+            raise UnreadableLogError(
+                "cannot be read: this version of asammdf evaluates formulas in another way"
+            )
+    return asammdf
+
+
+def _evaluated(formula: str) -> FloatArray:
+    """What numexpr would return: the value of a formula of the variables of the function that asks."""
+    local = sys._getframe(1).f_locals
+    try:
+        return evaluate(formula, {name: local[name] for name in _VARIABLES if name in local})
+    except Exception as error:
+        _refusals.append(str(error))
+        raise
+
+
+def _channels(mdf: Any) -> tuple[list[tuple[int, int, str, str, int]], set[str]]:
+    """Group, index, name, unit and rows of each channel, and the kinds of bus frames."""
+    channels, frames = [], set()
+    for number, group in enumerate(mdf.groups):
+        rows = int(group.channel_group.cycles_nr)
+        for index, channel in enumerate(group.channels if rows else ()):
+            master = index == mdf.masters_db.get(number)
+            if channel.name.startswith(_BUS):
+                frames.add(channel.name.split(".")[0])
+            elif not master and getattr(channel, "channel_type", 0) not in _MASTERS:
+                unit = getattr(channel, "unit", "") or getattr(channel.conversion, "unit", "") or ""
+                channels.append((number, index, channel.name, str(unit).strip("\0 "), rows))
+    return channels, frames
 
 
 def _signal(
-    file: str, recording: Recording, channel: tuple[int, int, str, str, int], several: bool
+    mdf: Any, recording: Recording, heard: list[str], channel: tuple[int, int, str, str, int], several: bool
 ) -> Signal:
     group, index, full_name, unit, rows = channel
     name, ending = (full_name, unit) if unit else split_unit(full_name)
 
-    def get() -> dict[str, FloatArray]:
-        reply: dict[str, FloatArray] | str = _worker.ask(file, "get", group, index)
-        if isinstance(reply, str):
-            raise UnreadableLogError(f"channel '{full_name}' {reply}")
-        count = reply["times"].size
-        if reply["values"].size != count or count > rows:
+    def get() -> tuple[FloatArray, FloatArray]:
+        heard.clear()
+        _refusals.clear()
+        try:
+            values, times = _values(mdf, group, index)
+        except UnreadableLogError as error:
+            raise UnreadableLogError(f"channel '{full_name}' {error}") from None
+        if problem := next(iter([*_refusals, *(f"cannot be read: {words[:160]}" for words in heard)]), ""):
+            raise UnreadableLogError(f"channel '{full_name}' {problem}")
+        count = times.size
+        if values.size != count or count > rows:
             raise UnreadableLogError(
-                f"channel '{full_name}' has {reply['values'].size} values at {count} times, not {rows}"
+                f"channel '{full_name}' has {values.size} values at {count} times, not {rows}"
             )
         if count < rows and not recording.cut_off:
             recording.cut_off = True
             recording.notes.append(f"'{full_name}' has {count} of {rows} values: the rest is missing")
-        return reply
+        return values, times
 
+    def part(which: int) -> FloatArray:
+        return get()[which]
+
+    clock = f"group {group}"
     return Signal(
-        name,
-        ending,
-        rows,
-        lambda: get()["values"],
-        lambda: get()["times"],
-        f"group {group}",
-        str(group) if several else "",
+        name, ending, rows, partial(part, 0), partial(part, 1), clock, str(group) if several else ""
     )
 
 
-class _Worker:
-    """The process that runs asammdf, started for the first file and again after it was lost."""
-
-    def __init__(self) -> None:
-        self._process: subprocess.Popen[bytes] | None = None
-
-    def ask(self, file: str, *request: object) -> Any:
-        """Return the reply to a request.
-
-        Raises
-        ------
-        UnreadableLogError
-            If asammdf is not installed, or the file brought its process down.
-        """
-        process = self._process or self._start()
-        assert process.stdin is not None
-        assert process.stdout is not None
-        try:
-            pickle.dump(request, process.stdin)
-            process.stdin.flush()
-            return pickle.load(process.stdout)
-        except (EOFError, OSError, pickle.UnpicklingError):
-            self.stop()
-            raise UnreadableLogError(f"{file} is damaged: asammdf broke down over it") from None
-        except BaseException:  # interrupted half-way: what comes next would be the wrong reply
-            self.stop()
-            raise
-
-    def stop(self) -> None:
-        """End the process."""
-        process, self._process = self._process, None
-        if process is not None:
-            with suppress(OSError):
-                process.kill()
-            process.communicate()
-
-    def _start(self) -> subprocess.Popen[bytes]:
-        if importlib.util.find_spec("asammdf") is None:
-            raise missing_library("asammdf", "MF4 files")
-        script = str(Path(__file__).with_name("mdf_worker.py"))
-        # -P: without the folder of the script, whose modules would hide those of Python
-        self._process = subprocess.Popen(
-            [sys.executable, "-P", script],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-        )
-        return self._process
-
-
-_worker = _Worker()
-atexit.register(_worker.stop)
+def _values(mdf: Any, group: int, index: int) -> tuple[FloatArray, FloatArray]:
+    """Values and times of a channel, s."""
+    master = mdf.masters_db.get(group)
+    channels = mdf.groups[group].channels
+    if master is None or getattr(channels[master], "sync_type", 1) not in _TIME:
+        raise UnreadableLogError("was recorded against no clock")
+    signal = mdf.get(group=group, index=index)
+    values = signal.samples
+    if values.ndim != 1 or values.dtype.kind not in "iufb":
+        what = "arrays" if values.ndim != 1 or values.dtype.names else "text"
+        raise UnreadableLogError(f"holds {what}, not numbers")
+    values = values.astype(float)
+    if signal.invalidation_bits is not None:
+        values[signal.invalidation_bits.astype(bool)] = np.nan
+    return values, floats(signal.timestamps)

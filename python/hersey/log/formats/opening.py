@@ -1,47 +1,57 @@
-"""Which reader opens a file: told by its first bytes, or by its suffix where those say nothing."""
+"""Which format a file has, told by its first bytes or its suffix, and opening it in a process of its own.
+
+The libraries that read binary files were not written for files of strangers: some run code, some end the
+process, some take all memory. So they run in a process that may open no other file and has bounds of memory
+and time; what comes out of it are names and numbers.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager
+import signal
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from functools import partial
 from pathlib import Path
+from typing import Any
 
-from polars.exceptions import PanicException
+import numpy as np
 
+from hersey import errors
+from hersey.arrays import FloatArray
 from hersey.errors import HerseyError, MissingFileError, UnreadableLogError
-from hersey.log.formats.hdf5 import MAGIC as HDF5
-from hersey.log.formats.hdf5 import open_hdf5
-from hersey.log.formats.lvm import open_lvm
-from hersey.log.formats.matlab import open_matlab
-from hersey.log.formats.mdf import open_mdf
-from hersey.log.formats.parquet import open_parquet
-from hersey.log.formats.tdms import open_tdms
-from hersey.log.recording import Recording
+from hersey.files.reading import OpenFile, open_once
+from hersey.log.recording import Recording, Signal, Source
+from hersey.processes.child import Child, FailedError, LostError
+from hersey.units import parse
 
-Opener = Callable[[Path], AbstractContextManager[Recording]]
+#: What a file may take while it is read, bytes, where the user does not say otherwise.
+MAX_MEMORY = 2e9
+#: Processor time for a file, s, and per byte of it: far more than a sound one needs.
+_TIME, _TIME_PER_BYTE = 5.0, 2e-6
+_SCRIPT = Path(__file__).with_name("answering.py")
 
-#: Readers by suffix; what is not listed is read as delimited text.
-READERS: dict[str, Opener] = {
-    ".tdms": open_tdms,
-    ".mf4": open_mdf,
-    ".mdf": open_mdf,
-    ".mat": open_matlab,
-    ".h5": open_hdf5,
-    ".hdf5": open_hdf5,
-    ".hdf": open_hdf5,
-    ".parquet": open_parquet,
-    ".lvm": open_lvm,
+#: Formats by suffix, each the module here that reads it; what is not listed is read as delimited text.
+READERS = {
+    ".tdms": "tdms",
+    ".mf4": "mdf",
+    ".mdf": "mdf",
+    ".mat": "matlab",
+    ".h5": "hdf5",
+    ".hdf5": "hdf5",
+    ".hdf": "hdf5",
+    ".parquet": "parquet",
+    ".lvm": "lvm",
 }
 #: First bytes of a format, which outrank the suffix.
-_STARTS: tuple[tuple[bytes, Opener], ...] = (
-    (b"TDSm", open_tdms),
-    (b"MDF     ", open_mdf),
-    (b"UnFinMF ", open_mdf),
-    (b"MATLAB 5.0 MAT-file", open_matlab),
-    (b"MATLAB 7.3 MAT-file", open_matlab),
-    (HDF5, open_hdf5),
-    (b"PAR1", open_parquet),
-    (b"LabVIEW Measurement", open_lvm),
+_STARTS = (
+    (b"TDSm", "tdms"),
+    (b"MDF     ", "mdf"),
+    (b"UnFinMF ", "mdf"),
+    (b"MATLAB 5.0 MAT-file", "matlab"),
+    (b"MATLAB 7.3 MAT-file", "matlab"),
+    (b"\x89HDF\r\n\x1a\n", "hdf5"),
+    (b"PAR1", "parquet"),
+    (b"LabVIEW Measurement", "lvm"),
 )
 _UNREADABLE = {
     b"PK\x03\x04": "a workbook or an archive: save the sheet as CSV",
@@ -49,8 +59,8 @@ _UNREADABLE = {
 }
 
 
-def opener(path: Path) -> Opener | None:
-    """Return the reader of a file, or None if it is to be read as delimited text.
+def format_of(path: Path) -> str | None:
+    """Return the format of a file, one of those in `READERS`, or None if it is to be read as delimited text.
 
     Raises
     ------
@@ -75,29 +85,148 @@ def opener(path: Path) -> Opener | None:
         if start.startswith(magic):
             raise UnreadableLogError(f"{path.name} is {what}")
     plain = start.removeprefix(b"\xef\xbb\xbf")
-    return next((o for magic, o in _STARTS if plain.startswith(magic)), READERS.get(path.suffix.lower()))
+    return next(
+        (kind for magic, kind in _STARTS if plain.startswith(magic)), READERS.get(path.suffix.lower())
+    )
 
 
 @contextmanager
-def opened(path: Path, reader: Opener) -> Iterator[Recording]:
-    """Open a file and see to it that whatever a library stumbles over ends in one clear line.
+def opened(path: Path, kind: str, max_memory: float | str = MAX_MEMORY) -> Iterator[Recording]:
+    """Open a file of a format, and see to it that whatever a library stumbles over ends in one clear line.
 
     Raises
     ------
+    MissingFileError
+        If it is not there, or cannot be read.
     UnreadableLogError
-        If the file is damaged, cut off, or not of this format.
+        If it is damaged, cut off, not of this format, changes meanwhile, or takes more memory than it may.
     """
-    recording: Recording | None = None
-    try:
-        with reader(path) as recording:
-            yield recording
-    except HerseyError as error:
-        if path.name not in str(error):
-            raise type(error)(f"{path.name}: {error}") from None
-        raise
-    except (Exception, PanicException) as error:  # libraries raise of every kind on damaged bytes
-        what = recording.format if recording else reader.__name__.removeprefix("open_").upper()
-        told = str(error).splitlines()[0][:160] if str(error) else type(error).__name__
-        raise UnreadableLogError(
-            f"{path.name} cannot be read as {what}: the file is damaged, cut off or of another kind ({told})"
-        ) from error
+    limit = parse("memory", max_memory) if isinstance(max_memory, str) else float(max_memory)
+    with open_once(path) as file:
+        try:
+            digest = file.sha256()
+            reader = _Reader(file, kind, limit)
+            try:
+                yield reader.recording(Source(path.name, digest, file.size))
+            finally:
+                reader.close()
+        except HerseyError as error:
+            file.refuse_change()  # which is why it could not be read
+            if path.name not in str(error):
+                raise type(error)(f"{path.name}: {error}") from None
+            raise
+        file.refuse_change()
+        file.growth(digest)
+
+
+class _Reader:
+    """A file while it is read: its own process, and how much of the memory is left."""
+
+    #: Processes that wait for a file, each with the libraries that it has imported so far.
+    _waiting: list[Child] = []  # noqa: RUF012 # shared on purpose
+
+    def __init__(self, file: OpenFile, kind: str, limit: float) -> None:
+        self.file, self.kind, self.limit, self.left = file, kind, limit, limit
+        try:  # not `if`: another thread may take the last one
+            self.child = self._waiting.pop()
+        except IndexError:
+            self.child = Child(_SCRIPT)
+
+    def close(self) -> None:
+        """Close the file there, and let the process wait for the next."""
+        if self.child.running:
+            with suppress(LostError):
+                self.child.ask({"do": "close"})
+        self._waiting.append(self.child)
+
+    def recording(self, source: Source) -> Recording:
+        """What the file holds."""
+        about, _ = self._asked(
+            {
+                "do": "open",
+                "format": self.kind,
+                "name": self.file.path.name,
+                "path": str(self.file.path.resolve()),
+                "memory": int(self.limit),
+                "time": _TIME + _TIME_PER_BYTE * source.bytes,
+            },
+            self.file.file.fileno(),
+        )
+        signals = about.pop("signals")
+        recording = Recording(
+            about["format"],
+            (),
+            tuple(map(_plain, about["others"])),
+            tuple(map(_plain, about["comments"])),
+            list(map(_plain, about["notes"])),
+            about["cut_off"],
+            _plain(about["nothing"]),
+            source,
+        )
+        recording.signals = tuple(self._signal(recording, i, about) for i, about in enumerate(signals))
+        return recording
+
+    def _signal(self, recording: Recording, index: int, about: dict[str, Any]) -> Signal:
+        rows = int(about["rows"])
+        numbers = partial(self._numbers, recording, index, rows)
+        return Signal(
+            _plain(about["name"]),
+            _plain(about["unit"]),
+            rows,
+            partial(numbers, "load"),
+            partial(numbers, "clock") if about["clock"] else None,
+            about["tick"],
+            _plain(about["group"]),
+        )
+
+    def _numbers(self, recording: Recording, index: int, rows: int, what: str) -> FloatArray:
+        self.left -= 8 * rows
+        if self.left < 0:
+            raise self._too_large()
+        about, content = self._asked({"do": what, "index": index})
+        recording.notes[:] = map(_plain, about["notes"])
+        recording.cut_off = about["cut_off"]
+        return np.frombuffer(content, dtype=float).copy()
+
+    def _asked(self, request: dict[str, Any], file: int | None = None) -> tuple[dict[str, Any], bytes]:
+        try:
+            return self.child.ask(request, file=file)
+        except FailedError as error:
+            raise self._failure(error.kind, str(error)) from None
+        except LostError as error:
+            raise self._loss(error.code) from None
+
+    def _failure(self, kind: str, message: str) -> HerseyError:
+        """The error that a reader raised: one of ours, or one of a library on damaged bytes."""
+        known = getattr(errors, kind, None)
+        if isinstance(known, type) and issubclass(known, HerseyError):
+            return known(_plain(message))
+        if kind == "MemoryError" or "allocat" in message:
+            return self._too_large()
+        told = _plain(message).partition("\n")[0][:160] or kind
+        return UnreadableLogError(
+            f"{self.file.path.name} cannot be read as {self.kind.upper()}: the file is damaged, cut off or "
+            f"of another kind ({told})"
+        )
+
+    def _loss(self, code: int | None) -> UnreadableLogError:
+        name = self.file.path.name
+        if code == -getattr(signal, "SIGXCPU", 0):
+            return UnreadableLogError(
+                f"{name} takes more processor time than a sound file of its size: it is damaged, or made to"
+            )
+        return UnreadableLogError(
+            f"{name} is damaged, or takes more than {self.limit / 1e9:g} GB of memory (--max-memory): the "
+            "library that reads it broke down"
+        )
+
+    def _too_large(self) -> UnreadableLogError:
+        return UnreadableLogError(
+            f"{self.file.path.name} takes more than {self.limit / 1e9:g} GB of memory: if it may, raise the "
+            "limit with --max-memory '8 GB' (max_memory=\"8 GB\" in Python)"
+        )
+
+
+def _plain(text: str) -> str:
+    """Text of a file as UTF-8 can hold it."""
+    return text.encode("utf-8", errors="replace").decode()

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import os
-import sys
+import io
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import partial
-from pathlib import Path
+from typing import BinaryIO
 
 import polars as pl
 
@@ -16,35 +15,19 @@ from hersey.log.recording import Recording
 
 
 @contextmanager
-def open_parquet(path: Path) -> Iterator[Recording]:
+def open_parquet(file: BinaryIO, _name: str) -> Iterator[Recording]:
     """Open a Parquet file: columns of numbers or time stamps, units in their names."""
-    with _silence():
-        table = pl.scan_parquet(path)
-        schema = table.collect_schema()
-        rows = int(table.select(pl.len()).collect().item())
+    table = pl.scan_parquet(io.BytesIO(file.read()))  # its bytes: a name polars would take as a pattern
+    schema = table.collect_schema()
+    rows = int(table.select(pl.len()).collect().item())
     signals, others = [], []
-    for name, kind in schema.items():
+    for column, kind in schema.items():
         if kind.is_numeric() or kind.is_temporal() or kind == pl.Boolean:
-            signals.append(column_signal(name, kind, rows, partial(_column, table, name)))
+            signals.append(column_signal(column, kind, rows, partial(_column, table, column)))
         else:
-            others.append(f"'{name}' ({kind})")
+            others.append(f"'{column}' ({kind})")
     yield Recording("Parquet", tuple(signals), tuple(others))
 
 
 def _column(table: pl.LazyFrame, name: str) -> pl.Series:
-    with _silence():
-        return table.select(pl.col(name)).collect().to_series()
-
-
-@contextmanager
-def _silence() -> Iterator[None]:
-    """Keep polars from writing to the terminal where a damaged page makes it panic."""
-    sys.stderr.flush()
-    kept, nowhere = os.dup(2), os.open(os.devnull, os.O_WRONLY)
-    try:
-        os.dup2(nowhere, 2)
-        yield
-    finally:
-        os.dup2(kept, 2)
-        os.close(kept)
-        os.close(nowhere)
+    return table.select(pl.col(name)).collect().to_series()

@@ -5,8 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
-from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 
@@ -23,13 +22,12 @@ _UNITS = ("unit_string", "NI_UnitDescription", "Unit", "unit", "units")
 
 
 @contextmanager
-def open_tdms(path: Path) -> Iterator[Recording]:
+def open_tdms(opened: BinaryIO, _name: str) -> Iterator[Recording]:
     """Open a TDMS file; channels with ``wf_increment`` carry their own clock."""
     nptdms = library("nptdms", "TDMS files")
     with (
         listening("nptdms") as heard,
-        path.open("rb") as stream,
-        nptdms.TdmsFile.open(stream) as file,
+        nptdms.TdmsFile.open(opened) as file,
     ):
         channels = [channel for group in file.groups() for channel in group.channels()]
         several = len({channel.group_name for channel in channels}) > 1

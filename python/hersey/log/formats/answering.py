@@ -1,0 +1,102 @@
+"""The process in which files are read: a reader opens one, and its numbers are sent as they are asked for.
+
+Run by `hersey.processes.server`. Requests: ``open`` (a file, its format and name, bounds of memory and time),
+``load`` and ``clock`` (the numbers of one signal), ``close``.
+"""
+
+from __future__ import annotations
+
+import importlib
+import math
+import sys
+import warnings
+from contextlib import AbstractContextManager, suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, BinaryIO
+
+_PACKAGE = str(Path(__file__).parents[3])
+if _PACKAGE not in sys.path:
+    sys.path.append(_PACKAGE)
+
+from hersey.processes.confinement import limit_memory, limit_time, only_read_libraries  # noqa: E402
+
+if TYPE_CHECKING:
+    from hersey.log.recording import Recording
+
+only_read_libraries()  # before anything else runs, threads above all
+
+
+class _Open:
+    """The file that is open."""
+
+    def __init__(self) -> None:
+        self.file: BinaryIO | None = None
+        self.context: AbstractContextManager[Recording] | None = None
+        self.recording: Recording | None = None
+
+    def open(self, request: dict[str, Any]) -> dict[str, Any]:
+        """Open a file and say what it holds."""
+        reader = importlib.import_module(f"hersey.log.formats.{request['format']}")
+        limit_memory(request["memory"])
+        limit_time(request["time"])
+        self.file = open(request.get("file") or request["path"], "rb")  # noqa: PTH123, SIM115 # by number; see `close`
+        self.file.seek(0)  # the place in a file that was passed is shared
+        self.context = getattr(reader, f"open_{request['format']}")(self.file, request["name"])
+        self.recording = recording = self.context.__enter__()
+        return self.state() | {
+            "format": recording.format,
+            "others": recording.others,
+            "comments": recording.comments,
+            "nothing": recording.nothing,
+            "signals": [
+                {
+                    "name": signal.name,
+                    "unit": signal.unit,
+                    "rows": signal.rows,
+                    "clock": signal.clock is not None,
+                    "tick": signal.tick,
+                    "group": signal.group,
+                }
+                for signal in recording.signals
+            ],
+        }
+
+    def state(self) -> dict[str, Any]:
+        """What may change while numbers are loaded."""
+        assert self.recording is not None
+        return {"notes": self.recording.notes, "cut_off": self.recording.cut_off}
+
+    def numbers(self, what: str, index: int) -> bytes:
+        """The values of a signal, or its clock, as float64."""
+        assert self.recording is not None
+        signal = self.recording.signals[index]
+        source = signal.clock if what == "clock" else signal.load
+        assert source is not None
+        return source().tobytes()
+
+    def close(self) -> None:
+        """Close the file; one that could not be opened may fail at that, too."""
+        context, file = self.context, self.file
+        self.__init__()  # type: ignore[misc] # as if nothing had been opened
+        with suppress(Exception):
+            if context is not None:
+                context.__exit__(None, None, None)
+        if file is not None:
+            file.close()
+        limit_time(math.inf)
+
+
+_open = _Open()
+
+
+def answer(request: dict[str, Any], _payload: bytes) -> tuple[dict[str, Any], bytes]:
+    """Answer one request."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        if request["do"] == "open":
+            return _open.open(request), b""
+        if request["do"] == "close":
+            _open.close()
+            return {}, b""
+        content = _open.numbers(request["do"], request["index"])
+    return _open.state(), content
