@@ -48,7 +48,7 @@ if TYPE_CHECKING:
     from hersey.errors import HerseyError
     from hersey.identification import CycleRecord, IdentifiedDrive, cycles, identify
     from hersey.inspection import Inspection, inspect
-    from hersey.log import TorqueLog, read
+    from hersey.log import TorqueLog, memory_limit, read
     from hersey.log.mapping import read_with_mapping
     from hersey.lubrication.contact import Contact, nip_width
     from hersey.lubrication.film import Film, drag_torque, film_thickness
@@ -82,7 +82,7 @@ if TYPE_CHECKING:
 #: Where each public name lives.
 _HOMES = {
     "errors": "HerseyError",
-    "log": "TorqueLog read",
+    "log": "TorqueLog memory_limit read",
     "log.mapping": "read_with_mapping",
     "motion.schedule": "Schedule",
     "motion.drag": "Drag DragTable",
@@ -166,6 +166,7 @@ __all__ = [
     "identify",
     "inspect",
     "measured_film",
+    "memory_limit",
     "nip_width",
     "operating_map",
     "plan_profile",

@@ -64,6 +64,10 @@ class ParameterError(HerseyError, ValueError):
         self.quantity, self.value, self.limit, self.unit, self.index = quantity, value, limit, unit, index
 
 
+class ForkedError(HerseyError, RuntimeError):
+    """A process forked from one whose threads it would need."""
+
+
 class UnfinishedError(HerseyError, RuntimeError):
     """A computation on sound input that did not come to its end.
 

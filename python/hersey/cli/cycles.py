@@ -10,6 +10,7 @@ import typer
 from hersey.cli.options import (
     AsJson,
     Force,
+    MaxMemory,
 )
 from hersey.cli.outputs import may_draw, print_json
 from hersey.cli.progress import working
@@ -47,6 +48,7 @@ def cycles(
     figure: Annotated[
         Path | None, typer.Option("--figure", help="Draw trace, slips and fit: .html, .png, .svg or .pdf.")
     ] = None,
+    max_memory: MaxMemory = "2 GB",
     as_json: AsJson = False,
     force: Force = False,
 ) -> None:
@@ -63,8 +65,10 @@ def cycles(
     from hersey.identification.cycle_record import cycles as find_cycles
     from hersey.identification.identified_drive import identify as identify_drive
     from hersey.identification.trace_file import read_trace
+    from hersey.log import memory_limit
 
-    given = read_trace(trace, quantity=quantity, time=time, value=value, time_unit=time_unit, unit=unit)
+    with memory_limit(max_memory):
+        given = read_trace(trace, quantity=quantity, time=time, value=value, time_unit=time_unit, unit=unit)
     speed = _drive_speed(drive_speed, given)
     values = _known(known or [], given)
     record = find_cycles(

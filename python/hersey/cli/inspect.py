@@ -51,13 +51,14 @@ def inspect(
 
     from hersey.files.writing import write_atomically
     from hersey.inspection import inspect as inspected
+    from hersey.log import memory_limit
     from hersey.log.mapping import propose_mapping
     from hersey.units import parse
 
     roles = ("time", "torque", "speed", "temperature")
     channels = {role: name for role in roles if (name := getattr(reading, role))}
     units = {role: unit for role in roles if (unit := getattr(reading, f"{role}_unit"))}
-    with working("looking at the channels"):
+    with working("looking at the channels"), memory_limit(reading.max_memory):
         inspection = inspected(
             logs,
             mapping=reading.mapping or None,
@@ -68,13 +69,14 @@ def inspect(
             min_dwell=parse("time", reading.min_dwell),
         )
     if kept is not None:
-        proposal = propose_mapping(logs[0], channels=channels, units=units)
+        with memory_limit(reading.max_memory):
+            proposal = propose_mapping(logs[0], channels=channels, units=units)
         write_atomically(kept, proposal, overwrite=True)
     if figure is not None:
         from hersey.charts import chart_of
         from hersey.charts.render import picture
 
-        with working("drawing the channels"):
+        with working("drawing the channels"), memory_limit(reading.max_memory):
             chart = chart_of(inspection, paths=logs)
             write_atomically(figure, picture(chart, figure.suffix), overwrite=True)
     if as_json:

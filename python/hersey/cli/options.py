@@ -33,6 +33,9 @@ MachineFile = Annotated[
     typer.Option("--machine", metavar="TOML", help="Drivetrain of the machine, for the simulation."),
 ]
 AsJson = Annotated[bool, typer.Option("--json", help="Print the whole result as JSON.")]
+MaxMemory = Annotated[
+    str, typer.Option(help="Memory that a file of any format but text may take while it is read.")
+]
 Force = Annotated[bool, typer.Option("--force", help="Replace files that exist.")]
 
 
@@ -63,6 +66,7 @@ class Reading:
     drop_missing: Annotated[
         bool, typer.Option("--drop-missing", help="Leave out rows in which a number is missing.")
     ] = False
+    max_memory: MaxMemory = "2 GB"
     min_dwell: Annotated[str, typer.Option(help="Shortest dwell, with its unit.")] = "2 s"
     tare: Annotated[str, typer.Option(help="none, or standing: subtract the torque read while standing.")] = (
         "none"
@@ -79,10 +83,11 @@ class Reading:
 
     def log(self, paths: list[Path]) -> TorqueLog:
         """Read the files as one log, with a progress bar."""
+        from hersey.log import memory_limit
         from hersey.log.mapping import read_with_mapping
 
         roles = ("time", "torque", "speed", "temperature")
-        with bar("reading") as progress:
+        with bar("reading") as progress, memory_limit(self.max_memory):
             done = read_with_mapping(
                 paths,
                 mapping=self.mapping or None,

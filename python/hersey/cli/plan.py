@@ -85,6 +85,7 @@ def plan(
         raise ParameterError("give either --at or --temperature-profile")
 
     from hersey.files.writing import write_atomically
+    from hersey.log import memory_limit
     from hersey.machine.machine import read_machine
     from hersey.machine.temperature_profile import read_temperature_profile
     from hersey.stability.plan import plan_profile
@@ -92,7 +93,8 @@ def plan(
     machine = read_machine(machine_file)
     wanted = _target(target, machine)
     kelvin = temperature_of(at)
-    profile = None if profile_file is None else read_temperature_profile(profile_file)
+    with memory_limit(reading.max_memory):
+        profile = None if profile_file is None else read_temperature_profile(profile_file)
     surface = reading.surface(logs, fit_file)
     drag, samples = _drag(surface, machine, kelvin, seed, varies=profile is not None)
     with bar("planning", unit="profiles") as progress:

@@ -18,7 +18,7 @@ A further format is one more context manager that yields a `Recording`, entered 
 
 from hersey.log.channels import ChannelChoice
 from hersey.log.columns import OpenColumns, open_columns
-from hersey.log.formats import READERS
+from hersey.log.formats import READERS, memory_limit
 from hersey.log.reading import list_channels, read
 from hersey.log.torque_log import Channel, LogFile, Run, TorqueLog
 
@@ -31,6 +31,7 @@ __all__ = [
     "Run",
     "TorqueLog",
     "list_channels",
+    "memory_limit",
     "open_columns",
     "read",
 ]

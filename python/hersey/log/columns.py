@@ -11,7 +11,7 @@ import numpy as np
 from hersey.arrays import FloatArray
 from hersey.errors import UnreadableLogError
 from hersey.log.assembly import columns, nothing_to_read
-from hersey.log.formats import MAX_MEMORY, format_of, opened
+from hersey.log.formats import format_of, opened
 from hersey.log.recording import Recording
 from hersey.log.text.delimited import delimited_layout, delimited_numbers
 from hersey.log.text.layout import Column
@@ -59,8 +59,8 @@ class OpenColumns:
 
 
 @contextmanager
-def open_columns(path: str | Path, max_memory: float | str = MAX_MEMORY) -> Iterator[OpenColumns]:
-    """Open a file of any format that a log may have; ``max_memory`` as in `hersey.read`.
+def open_columns(path: str | Path) -> Iterator[OpenColumns]:
+    """Open a file of any format that a log may have.
 
     Raises
     ------
@@ -78,5 +78,5 @@ def open_columns(path: str | Path, max_memory: float | str = MAX_MEMORY) -> Iter
     if kind is None:
         yield OpenColumns(path, None)
         return
-    with opened(path, kind, max_memory) as recording:
+    with opened(path, kind) as recording:
         yield OpenColumns(path, recording)

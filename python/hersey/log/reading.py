@@ -9,7 +9,7 @@ from typing import Any
 from hersey.errors import ParameterError
 from hersey.log.assembly import Assembly, columns, nothing_to_read
 from hersey.log.channels import ROLES, ChannelChoice
-from hersey.log.formats import MAX_MEMORY, format_of, opened
+from hersey.log.formats import format_of, opened
 from hersey.log.formats.frame import frame_recording, is_frame
 from hersey.log.text.delimited import Progress, delimited_columns, read_delimited
 from hersey.log.torque_log import LogFile, Run, TorqueLog
@@ -22,7 +22,6 @@ def read(
     units: dict[str, str] | None = None,
     isothermal: bool = False,
     drop_missing: bool = False,
-    max_memory: float | str = MAX_MEMORY,
     progress: Progress | None = None,
 ) -> TorqueLog:
     """Read one log, or several of one machine, each a run of its own.
@@ -41,9 +40,6 @@ def read(
         Leave temperature out.
     drop_missing
         Leave out rows in which a number is missing, and count them, instead of refusing them.
-    max_memory
-        What a file of any format but text may take while it is read, bytes or such as ``"8 GB"``: a small
-        file can hold a great many numbers.
     progress
         Called with bytes done and bytes in all.
 
@@ -74,7 +70,7 @@ def read(
             assembly = Assembly(recording, choices, isothermal=isothermal)
             run, log = assembly.run(drop_missing=drop_missing)
         elif kind := format_of(path := Path(file)):
-            with opened(path, kind, max_memory) as recording:
+            with opened(path, kind) as recording:
                 assembly = Assembly(recording, choices, isothermal=isothermal)
             run, log = assembly.run(drop_missing=drop_missing)
         else:

@@ -15,6 +15,6 @@ frame        polars and pandas frames in memory
 ===========  =================================================================
 """
 
-from hersey.log.formats.opening import MAX_MEMORY, READERS, format_of, opened
+from hersey.log.formats.opening import READERS, format_of, memory_limit, opened
 
-__all__ = ["MAX_MEMORY", "READERS", "format_of", "opened"]
+__all__ = ["READERS", "format_of", "memory_limit", "opened"]

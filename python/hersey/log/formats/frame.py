@@ -13,6 +13,7 @@ import polars as pl
 from hersey.arrays import FloatArray
 from hersey.errors import ParameterError, UnreadableLogError
 from hersey.log.recording import Recording, Signal, Source, floats, seconds, split_unit
+from hersey.processes.forks import refuse_after_fork
 
 
 def is_frame(thing: object) -> bool:
@@ -28,6 +29,7 @@ def frame_recording(frame: Any, name: str = "frame") -> Recording:
     Units stand in the names of the columns, or in ``frame.attrs["units"]`` (pandas) by column. An index of
     time stamps, or with a name, counts as a column.
     """
+    refuse_after_fork()
     columns = _columns(frame)
     attributes = getattr(frame, "attrs", None)
     units = attributes.get("units", {}) if isinstance(attributes, dict) else {}

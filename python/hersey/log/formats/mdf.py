@@ -48,8 +48,8 @@ def open_mdf(file: BinaryIO, _name: str) -> Iterator[Recording]:
         if frames:
             recording.nothing = (
                 f"it holds bus frames ({', '.join(sorted(frames))}) and no physical signals: decode it with "
-                "the database of the bus (DBC, ARXML), such as by asammdf's extract_bus_logging, and read the "
-                "file that this writes"
+                "the database of the bus (DBC, ARXML), such as by asammdf's extract_bus_logging, and read "
+                "the file that this writes"
             )
         yield recording
 

@@ -7,9 +7,11 @@ and time; what comes out of it are names and numbers.
 
 from __future__ import annotations
 
+import math
 import signal
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from contextvars import ContextVar
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -18,16 +20,19 @@ import numpy as np
 
 from hersey import errors
 from hersey.arrays import FloatArray
-from hersey.errors import HerseyError, MissingFileError, UnreadableLogError
+from hersey.errors import HerseyError, MissingFileError, ParameterError, UnreadableLogError
 from hersey.files.reading import OpenFile, open_once
 from hersey.log.recording import Recording, Signal, Source
 from hersey.processes.child import Child, FailedError, LostError
+from hersey.processes.forks import refuse_after_fork
 from hersey.units import parse
 
-#: What a file may take while it is read, bytes, where the user does not say otherwise.
-MAX_MEMORY = 2e9
+#: What a file may take while it is read, bytes.
+_memory = ContextVar("memory", default=2e9)
 #: Processor time for a file, s, and per byte of it: far more than a sound one needs.
 _TIME, _TIME_PER_BYTE = 5.0, 2e-6
+#: The libraries alone need some of it.
+_LEAST = 1e8
 _SCRIPT = Path(__file__).with_name("answering.py")
 
 #: Formats by suffix, each the module here that reads it; what is not listed is read as delimited text.
@@ -68,6 +73,8 @@ def format_of(path: Path) -> str | None:
         If the file is not there, is no ordinary file, or cannot be read.
     UnreadableLogError
         If it is of a kind that is known and not read.
+    ForkedError
+        If it is text, and this process was forked from one that has read some.
     """
     try:
         if path.exists() and not path.is_file():
@@ -84,14 +91,44 @@ def format_of(path: Path) -> str | None:
     for magic, what in _UNREADABLE.items():
         if start.startswith(magic):
             raise UnreadableLogError(f"{path.name} is {what}")
-    plain = start.removeprefix(b"\xef\xbb\xbf")
-    return next(
-        (kind for magic, kind in _STARTS if plain.startswith(magic)), READERS.get(path.suffix.lower())
+    start = start.removeprefix(b"\xef\xbb\xbf")
+    kind = next(
+        (kind for magic, kind in _STARTS if start.startswith(magic)), READERS.get(path.suffix.lower())
     )
+    if kind is None:
+        refuse_after_fork()  # text goes through polars, here
+    return kind
 
 
 @contextmanager
-def opened(path: Path, kind: str, max_memory: float | str = MAX_MEMORY) -> Iterator[Recording]:
+def memory_limit(limit: str) -> Iterator[None]:
+    """Let each file that is read inside take so much memory, such as ``"8 GB"``, instead of 2 GB.
+
+    A small file can hold a great many numbers. Text takes no more than its size, and has no limit.
+
+    Raises
+    ------
+    UnitError, ParameterError
+        If it is no such size.
+
+    Examples
+    --------
+    >>> import hersey
+    >>> with hersey.memory_limit("8 GB"):
+    ...     log = hersey.read("examples/bench.csv")
+    """
+    size = parse("memory", limit)
+    if not _LEAST <= size < math.inf:
+        raise ParameterError(f"the limit of memory is {limit}: it must be at least 100 MB")
+    token = _memory.set(size)
+    try:
+        yield
+    finally:
+        _memory.reset(token)
+
+
+@contextmanager
+def opened(path: Path, kind: str) -> Iterator[Recording]:
     """Open a file of a format, and see to it that whatever a library stumbles over ends in one clear line.
 
     Raises
@@ -101,11 +138,10 @@ def opened(path: Path, kind: str, max_memory: float | str = MAX_MEMORY) -> Itera
     UnreadableLogError
         If it is damaged, cut off, not of this format, changes meanwhile, or takes more memory than it may.
     """
-    limit = parse("memory", max_memory) if isinstance(max_memory, str) else float(max_memory)
     with open_once(path) as file:
         try:
             digest = file.sha256()
-            reader = _Reader(file, kind, limit)
+            reader = _Reader(file, kind, _memory.get())
             try:
                 yield reader.recording(Source(path.name, digest, file.size))
             finally:
@@ -223,7 +259,7 @@ class _Reader:
     def _too_large(self) -> UnreadableLogError:
         return UnreadableLogError(
             f"{self.file.path.name} takes more than {self.limit / 1e9:g} GB of memory: if it may, raise the "
-            "limit with --max-memory '8 GB' (max_memory=\"8 GB\" in Python)"
+            "limit with --max-memory '8 GB' (hersey.memory_limit in Python)"
         )
 
 
