@@ -1,6 +1,7 @@
 """Files as a command is given them, and as it leaves them.
 
 =======  ==================================================================
+reading  a file that may change while it is read
 text     opening a text file
 toml     a TOML file into tables: what each value is, and what is believed
 writing  writing whole or not at all

@@ -1,0 +1,138 @@
+"""Reading a file that another program may be writing: it is opened once, and compared at the end.
+
+Size, times and place tell a change. Where a file has grown, or is so young that its times could hide one, its
+first bytes are hashed once more: that tells a logger which appends from a program that writes anew.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import BinaryIO
+
+from hersey.errors import HerseyError, MissingFileError, UnreadableLogError
+
+_WAY_OUT = "wait until the logger has closed it, or copy it first"
+_CHUNK = 1 << 20
+#: Coarsest step of the times that a file system keeps, ns.
+_STEP = 2_000_000_000
+
+
+class OpenFile:
+    """A file open for reading, ``size`` bytes long when it was opened."""
+
+    def __init__(self, path: Path, file: BinaryIO) -> None:
+        """Note what the file is now."""
+        self.path, self.file = path, file
+        self._before, self._opened = os.fstat(file.fileno()), time.time_ns()
+        self.size = self._before.st_size
+
+    def change(self) -> str:
+        """Return in words what became of the file since it was opened; empty if nothing did."""
+        before, now = self._before, os.fstat(self.file.fileno())
+        if now.st_size != before.st_size:
+            what = "grew" if now.st_size > before.st_size else "shrank"
+            return f"it {what} from {before.st_size} to {now.st_size} bytes"
+        if (now.st_mtime_ns, now.st_ctime_ns) != (before.st_mtime_ns, before.st_ctime_ns):
+            return "it was written to"
+        return "" if self._is_there() else "it was moved, removed or replaced"
+
+    def refuse_change(self) -> None:
+        """Raise if the file is no longer what it was when it was opened.
+
+        Raises
+        ------
+        UnreadableLogError
+            It names the file, the change and the way out.
+        """
+        if change := self.change():
+            raise self._changed(change)
+
+    def growth(self, sha256: str) -> list[str]:
+        """Return notes on a file that a logger still appends to; ``sha256`` is that of the bytes read.
+
+        Raises
+        ------
+        UnreadableLogError
+            If its first ``size`` bytes, or the file behind the path, are no longer the same.
+        """
+        now = os.fstat(self.file.fileno()).st_size
+        grown = now > self.size and self._is_there()
+        if not grown:
+            self.refuse_change()
+        if (grown or self._is_young()) and self._sha256() != sha256:
+            raise self._changed("it was written anew")
+        if not grown:
+            return []
+        read = f"its first {self.size} bytes were used"
+        return [f"the file grew from {self.size} to {now} bytes while it was read: {read}"]
+
+    def _changed(self, change: str) -> UnreadableLogError:
+        return UnreadableLogError(f"{self.path.name} changed while it was read: {change}: {_WAY_OUT}")
+
+    def _is_young(self) -> bool:
+        """Whether a change right after the opening could bear the same time as the one before it."""
+        return self._opened - self._before.st_mtime_ns < _STEP
+
+    def _is_there(self) -> bool:
+        """Whether the path still leads to this file."""
+        try:
+            return os.path.samestat(self.path.stat(), self._before)
+        except OSError:
+            return False
+
+    def _sha256(self) -> str:
+        """Hash of the first ``size`` bytes as they are now."""
+        digest, left = hashlib.sha256(), self.size
+        self.file.seek(0)
+        while left and (chunk := self.file.read(min(_CHUNK, left))):
+            digest.update(chunk)
+            left -= len(chunk)
+        return digest.hexdigest()
+
+
+@contextmanager
+def open_once(path: str | Path) -> Iterator[OpenFile]:
+    """Open a file; what became of it meanwhile is for the caller to ask.
+
+    Raises
+    ------
+    MissingFileError
+        If it is not there, or cannot be read.
+    """
+    path = Path(path)
+    try:
+        with path.open("rb") as file:
+            yield OpenFile(path, file)
+    except HerseyError:
+        raise
+    except FileNotFoundError:
+        raise MissingFileError(f"{path}: there is no such file") from None
+    except OSError as error:
+        raise MissingFileError(f"{path} cannot be read: {error.strerror}") from None
+
+
+@contextmanager
+def unchanged(path: str | Path) -> Iterator[BinaryIO]:
+    """Open a file once and yield it, open for reading; refuse it at the end if it changed.
+
+    What fails because it changed meanwhile is told as that change.
+
+    Raises
+    ------
+    MissingFileError
+        If it is not there, or cannot be read.
+    UnreadableLogError
+        If it grew, shrank, was written to, moved or replaced.
+    """
+    with open_once(path) as opened:
+        try:
+            yield opened.file
+        except Exception:
+            opened.refuse_change()
+            raise
+        opened.refuse_change()
