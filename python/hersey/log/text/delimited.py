@@ -96,6 +96,18 @@ class DelimitedFile:
         self.opened, self.layout = opened, find_layout(file.read(min(size, SNIFFED)), opened.path.name)
         self.end = end_of_table(file, size, self.layout)
 
+    def text(self) -> tuple[bytes, list[str]]:
+        """Return the file up to the end of the table, and notes if a logger appends to it.
+
+        Raises
+        ------
+        UnreadableLogError
+            If the file is no longer what it was, unless it has only grown.
+        """
+        self.opened.file.seek(0)
+        text = self.opened.file.read(self.opened.size)
+        return text[: self.end.byte], self.opened.growth(hashlib.sha256(text).hexdigest())
+
     def numbers(self, chosen: Sequence[Column], *, complete: bool) -> list[FloatArray]:
         """Return columns as written (time stamps in s), shape (rows,), NaN where a number is missing.
 

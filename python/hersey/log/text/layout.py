@@ -99,10 +99,7 @@ def find_layout(start: bytes, name: str) -> Layout:
     if not numbered:
         raise UnreadableLogError(f"{name} is empty: a header and rows of numbers are needed")
     table = max((_table(numbered, separator) for separator in ";\t|,"), key=lambda t: t.score)
-    if table.width > MOST_COLUMNS:
-        raise UnreadableLogError(
-            f"{name} has {table.width} columns: {MOST_COLUMNS} at the most are read, export those that matter"
-        )
+    refuse_columns(name, table.width)
     if table.score == 0:
         raise UnreadableLogError(
             f"{name} has a header but no rows of numbers below it"
@@ -133,6 +130,49 @@ def find_layout(start: bytes, name: str) -> Layout:
         notes,
         headless,
     )
+
+
+def refuse_columns(place: str, count: int) -> None:
+    """Raise if a table has more columns than are read.
+
+    Raises
+    ------
+    UnreadableLogError
+        It says how many are.
+    """
+    if count > MOST_COLUMNS:
+        raise UnreadableLogError(
+            f"{place} has {count} columns: {MOST_COLUMNS} at the most are read, export those that matter"
+        )
+
+
+def refuse_long_name(place: str, column: int, name: str) -> None:
+    """Raise if the name of a column, counted from 1, is longer than is read.
+
+    Raises
+    ------
+    UnreadableLogError
+        It says how long a name may be.
+    """
+    if len(name) > LONGEST_NAME:
+        raise UnreadableLogError(
+            f"{place}: the name of column {column} has {len(name)} characters: "
+            f"{LONGEST_NAME} at the most are read"
+        )
+
+
+def refuse_ragged(place: str, rows: int, columns: int, size: int) -> None:
+    """Raise if most rows lack cells: a file of ``size`` bytes would become a table many times as large.
+
+    Raises
+    ------
+    UnreadableLogError
+        It says how many cells the rows should have.
+    """
+    if rows * columns > 8 * size + 1_000_000:
+        raise UnreadableLogError(
+            f"{place}: most of its {rows} rows lack cells, {columns} are named: remove columns that are empty"
+        )
 
 
 @dataclass(frozen=True)
@@ -280,11 +320,7 @@ def _columns(table: _Table, numbered: list[tuple[int, str]], file: str) -> tuple
     columns = []
     for index in range(table.width):
         name = header[index] if index < len(header) and header[index] else f"#{index + 1}"
-        if len(name) > LONGEST_NAME:
-            raise UnreadableLogError(
-                f"{file}, line {line}: the name of column {index + 1} has {len(name)} characters: "
-                f"{LONGEST_NAME} at the most are read"
-            )
+        refuse_long_name(f"{file}, line {line}", index + 1, name)
         unit = units[index].strip("[]() ") if index < len(units) else ""
         match = NAME_WITH_UNIT.fullmatch(name)
         if match and not unit:
