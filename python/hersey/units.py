@@ -152,7 +152,9 @@ _SPELLINGS = (
     (r"mils?", "thou"),
 )
 _ALPHABET = re.compile(r"[A-Za-z0-9_°ºµμΩ%℃℉\s.·*/^()⁻¹²³-]{0,60}")
-_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+#: Characters of a unit, and of a quantity, at the most: the patterns below take longer than linear.
+_LONGEST_UNIT, _LONGEST_QUANTITY = 100, 160
+_NUMBER = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
 _FACTORED = re.compile(rf"\s*({_NUMBER})?\s*\*?\s*([A-Za-z°ºµμ%℃℉/(1].*?)\s*(?:/\s*({_NUMBER}))?\s*")
 _POWER = re.compile(r"(?<=[A-Za-z)])(\*\*|\^)-?[1-4](?![\d.^]|\*\*)")
 _TERM = re.compile(r"([*/]?)([A-Za-zµμ]+|1)(?:(?:\*\*|\^)(-?[1-4]))?")
@@ -183,6 +185,9 @@ def conversion(kind: str, unit: str) -> Conversion:
         If the unit is unknown, or could be read in two ways.
     """
     si, example = KINDS[kind]
+    if len(unit) > _LONGEST_UNIT:
+        told = f"'{unit[:20]}...' of {len(unit)} characters, {_LONGEST_UNIT} at the most"
+        raise UnitError(f"unknown unit {told}: write one such as {example}")
     factor, text = _split_factor(unit.strip(), unit, example)
     line, standard = _from_table(text), _from_table(si)
     if line and standard and line[2] == standard[2]:
@@ -225,10 +230,9 @@ def _from_registry(kind: str, text: str, unit: str) -> tuple[float, float]:
         If the unit is unknown, of another kind, or could be read in two ways.
     """
     si, example = KINDS[kind]
-    try:
-        parsed = registry.parse_units(text)
-    except Exception as error:  # pint raises many kinds, from its tokenizer too
-        raise UnitError(f"unknown unit '{unit}': write one such as {example}") from error
+    parsed = _parsed(text)
+    if parsed is None:
+        raise UnitError(f"unknown unit '{unit}': write one such as {example}")
     names = " ".join(str(name) for name in parsed._units)
     if kind == "speed" and parsed.dimensionality == {"[time]": -1} and not _ANGLES.search(names):
         raise UnitError(f"unit '{unit}' of a speed could count revolutions or radians: write rev/s or rad/s")
@@ -244,6 +248,15 @@ def _from_registry(kind: str, text: str, unit: str) -> tuple[float, float]:
         raise UnitError(f"unit '{unit}' is a difference of temperatures: write degC or K")
     zero, far = (float(registry.Quantity(x, parsed).to(si).magnitude) for x in (0.0, 1e6))
     return (far - zero) / 1e6, zero
+
+
+@lru_cache(maxsize=4096)
+def _parsed(text: str) -> Any:
+    """The unit of pint, or None if it knows none such."""
+    try:
+        return registry.parse_units(text)
+    except Exception:  # pint raises many kinds, from its tokenizer too
+        return None
 
 
 def _wrong_kind(kind: str, unit: str) -> WrongKindError:
@@ -276,6 +289,9 @@ def parse(kind: str, text: str) -> float:
         If there is no number, no unit, or a unit of another kind.
     """
     example = KINDS[kind][1]
+    if len(text) > _LONGEST_QUANTITY:
+        told = f"'{text[:20]}...' has {len(text)} characters, {_LONGEST_QUANTITY} at the most"
+        raise UnitError(f"{told}: write a number and a unit of {kind}, such as '1 {example}'")
     match = re.fullmatch(rf"\s*({_NUMBER})\s*([A-Za-z°ºµμ%℃℉].*?)\s*", text)
     if match is None:
         raise UnitError(f"'{text}' needs a number and a unit of {kind}, such as '1 {example}'")

@@ -47,7 +47,7 @@ CHANGES: dict[str, tuple[Callable[[Path], object], str]] = {
 
 def read_while(path: Path, happens: Callable[[Path], object], raised: Exception | None = None) -> None:
     with unchanged(path) as file:
-        assert file.read() == BYTES
+        assert file.file.read() == BYTES
         happens(path)
         if raised is not None:
             raise raised
@@ -66,7 +66,7 @@ def test_a_change_is_told_with_the_way_out(change: str, file: Path) -> None:
 
 def test_a_file_left_alone_passes(file: Path) -> None:
     with unchanged(file) as opened:
-        assert opened.read() == BYTES
+        assert opened.file.read() == BYTES
     with open_once(file) as watched:
         assert watched.size == 400
         assert watched.growth(hashlib.sha256(BYTES).hexdigest()) == []

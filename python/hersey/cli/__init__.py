@@ -5,6 +5,7 @@ application  the program: its verbs, errors in one line, Ctrl-C
 options      options that several verbs share, and the reading of a log by them
 outputs      files that a verb writes: refused early, never replaced unasked
 progress     spinner and bar on a terminal
+terminal     the one way to print for people: nothing that steers a terminal passes
 report ...   one module per verb
 ===========  ==================================================================
 

@@ -11,6 +11,7 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperCommand, TyperGroup
 
+from hersey.cli.terminal import say, warnings_said
 from hersey.errors import HerseyError
 
 #: The verbs in the order of the help, with the first sentence of each, which stands here too so that the list
@@ -103,7 +104,8 @@ def main() -> None:
     signal.signal(signal.SIGTERM, _interrupt)
     code: int | None = None
     try:
-        code = app(standalone_mode=False)
+        with warnings_said():
+            code = app(standalone_mode=False)
     except HerseyError as error:
         _fail(str(error))
     except (KeyboardInterrupt, typer.Abort):
@@ -124,9 +126,9 @@ def main() -> None:
 
 
 def _fail(message: str, code: int = 2) -> None:
-    text = "".join(c if c.isprintable() else "?" for c in " ".join(message.split()))
+    text = " ".join(message.split())
     if text:
-        print(f"hersey: {text}", file=sys.stderr)
+        say(f"hersey: {text}", file=sys.stderr)
     sys.exit(code)
 
 
@@ -139,5 +141,5 @@ def _root(version: Annotated[bool, typer.Option("--version", help="Print the ver
     if version:
         from hersey import __version__
 
-        print(f"hersey {__version__}")
+        say(f"hersey {__version__}")
         raise typer.Exit

@@ -14,6 +14,7 @@ from hersey.cli.options import (
 )
 from hersey.cli.outputs import print_json
 from hersey.cli.progress import working
+from hersey.cli.terminal import say
 
 
 @reads_logs
@@ -37,4 +38,4 @@ def compare(
     if as_json:
         print_json("compare", comparison.to_dict())
         return
-    print(comparison.summary())
+    say(comparison.summary())

@@ -14,6 +14,7 @@ from hersey.cli.options import (
 )
 from hersey.cli.outputs import may_draw, print_json
 from hersey.cli.progress import working
+from hersey.cli.terminal import say
 from hersey.errors import ParameterError, UnitError, WrongKindError
 
 if TYPE_CHECKING:
@@ -94,11 +95,11 @@ def cycles(
         driven = None if drive is None else drive.to_dict()
         print_json("cycles", record.to_dict() | {"unit": given.unit, "drive": driven})
         return
-    typer.echo(record.summary(given.unit))
+    say(record.summary(given.unit))
     if drive is not None:
-        typer.echo("\n" + drive.summary(given.unit))
+        say("\n" + drive.summary(given.unit))
     if figure is not None:
-        typer.echo(f"figure: {figure}")
+        say(f"figure: {figure}")
 
 
 def _drive_speed(text: str, given: TraceFile) -> float | None:

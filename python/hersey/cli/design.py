@@ -14,6 +14,7 @@ from hersey.cli.options import (
 )
 from hersey.cli.outputs import print_json
 from hersey.cli.progress import working
+from hersey.cli.terminal import say
 from hersey.errors import ParameterError
 
 
@@ -51,7 +52,7 @@ def design(
     if as_json:
         print_json("design", proposal.to_dict())
         return
-    print(proposal.summary())
+    say(proposal.summary())
 
 
 def _range(kind: str, flag: str, text: str) -> tuple[float, float] | None:

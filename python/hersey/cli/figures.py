@@ -14,6 +14,7 @@ from hersey.cli.options import (
 )
 from hersey.cli.outputs import may_write_folder, print_json
 from hersey.cli.progress import working
+from hersey.cli.terminal import say
 
 
 def figures(
@@ -39,7 +40,7 @@ def figures(
         print_json("figures", json.loads(paper.as_json(drawings)))
         return
     for figure in drawings:
-        print(figure.heading)
+        say(figure.heading)
         for claim in figure.claims:
-            print(f"  {claim.verdict.value}: {claim.statement} ({claim.evidence})")
-    print(f"figures: {out}")
+            say(f"  {claim.verdict.value}: {claim.statement} ({claim.evidence})")
+    say(f"figures: {out}")

@@ -16,6 +16,7 @@ from hersey.cli.options import (
 )
 from hersey.cli.outputs import may_draw, print_json
 from hersey.cli.progress import working
+from hersey.cli.terminal import say
 from hersey.errors import ParameterError
 
 if TYPE_CHECKING:
@@ -96,9 +97,9 @@ def film(
     if as_json:
         print_json("film", film_document(predicted, names, measured, says, notes))
         return
-    print(_text(predicted, names, measured, says, notes))
+    say(_text(predicted, names, measured, says, notes))
     if figure is not None:
-        print(f"figure: {figure}")
+        say(f"figure: {figure}")
 
 
 def _predicted(

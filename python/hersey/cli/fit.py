@@ -10,6 +10,7 @@ from hersey.cli.options import (
 )
 from hersey.cli.outputs import print_json
 from hersey.cli.progress import working
+from hersey.cli.terminal import say
 
 
 @reads_logs
@@ -34,5 +35,5 @@ def fit(
     if as_json:
         print_json("fit", fit_document(log, points, surface))
         return
-    print(surface.summary())
-    print(regime(points, surface).verdict)
+    say(surface.summary())
+    say(regime(points, surface).verdict)

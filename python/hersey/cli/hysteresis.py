@@ -13,6 +13,7 @@ from hersey.cli.options import (
 )
 from hersey.cli.outputs import print_json
 from hersey.cli.progress import working
+from hersey.cli.terminal import say
 from hersey.errors import ParameterError
 
 
@@ -70,4 +71,4 @@ def hysteresis(
             else "any ramp is safe"
         )
         lines.append(f"From {step.from_speed:g} to {step.to_speed:g} at once it {does}; {ramp}.")
-    print("\n".join(lines))
+    say("\n".join(lines))

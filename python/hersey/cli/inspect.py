@@ -16,6 +16,7 @@ from hersey.cli.options import (
 )
 from hersey.cli.outputs import may_draw, may_write, print_json
 from hersey.cli.progress import working
+from hersey.cli.terminal import say
 
 
 @reads_logs
@@ -82,8 +83,8 @@ def inspect(
     if as_json:
         print_json("inspect", inspection.to_dict())
         return
-    print(inspection.summary())
+    say(inspection.summary())
     if kept is not None:
-        print(f"mapping: {kept}")
+        say(f"mapping: {kept}")
     if figure is not None:
-        print(f"figure: {figure}")
+        say(f"figure: {figure}")

@@ -18,6 +18,7 @@ from hersey.cli.options import (
 )
 from hersey.cli.outputs import may_draw, print_json
 from hersey.cli.progress import working
+from hersey.cli.terminal import say
 
 
 @reads_logs
@@ -73,7 +74,7 @@ def map_(
     if as_json:
         print_json("map", map_of_belt.to_dict())
         return
-    print(map_of_belt.summary())
+    say(map_of_belt.summary())
     for warning in map_of_belt.warnings:
-        print(f"- {warning}")
-    print(f"map: {path}")
+        say(f"- {warning}")
+    say(f"map: {path}")

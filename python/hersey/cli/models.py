@@ -14,6 +14,7 @@ from hersey.cli.options import (
 )
 from hersey.cli.outputs import print_json
 from hersey.cli.progress import bar, working
+from hersey.cli.terminal import say
 
 
 @reads_logs
@@ -41,4 +42,4 @@ def models(
     if as_json:
         print_json("models", comparison.to_dict())
         return
-    print(comparison.summary())
+    say(comparison.summary())

@@ -8,11 +8,17 @@ import shlex
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import typer
 
 from hersey.charts import PICTURES
 from hersey.errors import OutputError
+from hersey.files.text import printable
+from hersey.files.writing import SUFFIX
+
+if TYPE_CHECKING:
+    from pydantic import BaseModel
 
 
 def command() -> str:
@@ -28,6 +34,11 @@ def print_json(name: str, result: object) -> None:
     part = PRINTED[name].model_validate(result)
     header = {"schema_version": SCHEMA_VERSION, "hersey_version": _core.VERSION, "command": command()}
     print(json.dumps(header | part.model_dump(mode="json"), indent=1, allow_nan=False))
+
+
+def print_document(document: BaseModel) -> None:
+    """Print a whole document, every sign beyond ASCII as its code."""
+    print(json.dumps(document.model_dump(mode="json"), indent=1, allow_nan=False))
 
 
 def may_write(path: Path, force: bool, inputs: Sequence[Path] = ()) -> None:
@@ -47,7 +58,7 @@ def may_write(path: Path, force: bool, inputs: Sequence[Path] = ()) -> None:
             raise
         raise OutputError(f"{path} cannot be written: {error.strerror}") from None
     if exists and not force:
-        asked = sys.stdin.isatty() and typer.confirm(f"{path} exists. Replace it?", err=True)
+        asked = sys.stdin.isatty() and typer.confirm(printable(f"{path} exists. Replace it?"), err=True)
         if not asked:
             raise OutputError(f"{path} exists: say --force to replace it, or name another file")
 
@@ -57,7 +68,7 @@ def may_write_folder(folder: Path, force: bool, flag: str = "--figures") -> None
     try:
         if folder.exists() and not folder.is_dir():
             raise OutputError(f"{folder} is a file: {flag} needs a directory")
-        if folder.is_dir() and any(folder.iterdir()) and not force:
+        if folder.is_dir() and any(map(_counts, folder.iterdir())) and not force:
             raise OutputError(f"{folder} is not empty: say --force to write the figures into it")
         if not folder.parent.is_dir():
             raise OutputError(f"{folder}: there is no directory {folder.parent}")
@@ -65,6 +76,11 @@ def may_write_folder(folder: Path, force: bool, flag: str = "--figures") -> None
         if isinstance(error, OutputError):
             raise
         raise OutputError(f"{folder} cannot be written: {error.strerror}") from None
+
+
+def _counts(file: Path) -> bool:
+    """Whether a file is more than what a command that was killed left of its own."""
+    return not (file.name.startswith(".") and file.suffix == SUFFIX)
 
 
 def may_draw(

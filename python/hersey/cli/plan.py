@@ -18,6 +18,7 @@ from hersey.cli.options import (
 )
 from hersey.cli.outputs import may_draw, may_write, print_json
 from hersey.cli.progress import bar, working
+from hersey.cli.terminal import say
 from hersey.errors import OutputError, ParameterError, WrongKindError
 
 if TYPE_CHECKING:
@@ -123,10 +124,10 @@ def plan(
     if as_json:
         print_json("plan", planned.to_dict())
     else:
-        typer.echo(planned.summary())
+        say(planned.summary())
         for what, written in (("profile", out), ("figure", figure)):
             if planned.found and written is not None:
-                typer.echo(f"{what}: {written}")
+                say(f"{what}: {written}")
     if not planned.found:
         raise typer.Exit(IMPOSSIBLE)
 

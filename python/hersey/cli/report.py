@@ -15,8 +15,9 @@ from hersey.cli.options import (
     Reading,
     reads_logs,
 )
-from hersey.cli.outputs import command, may_write, may_write_folder
+from hersey.cli.outputs import command, may_write, may_write_folder, print_document
 from hersey.cli.progress import working
+from hersey.cli.terminal import say
 
 
 @reads_logs
@@ -67,10 +68,10 @@ def report(
         with working("writing the figures"):
             write_figures(document, figures)
     if as_json:
-        print(document.model_dump_json(indent=1))
+        print_document(document)
         return
-    print(document.regime.verdict)
+    say(document.regime.verdict)
     for warning in document.warnings:
-        print(f"- {warning}")
-    print(document.fit.summary)
-    print(f"report: {page}")
+        say(f"- {warning}")
+    say(document.fit.summary)
+    say(f"report: {page}")

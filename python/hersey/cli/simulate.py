@@ -14,6 +14,7 @@ from hersey.cli.options import (
     takes,
 )
 from hersey.cli.outputs import may_write, print_json
+from hersey.cli.terminal import say
 
 
 @takes(Belt, "belt")
@@ -74,4 +75,4 @@ def simulate(
         lines.append(f"energy balance: {run.energy.residual:.1e} of the energy turned over is missing")
     if run is not None and run.check is not None:
         lines.append(str(run.check))
-    print("\n".join(lines))
+    say("\n".join(lines))

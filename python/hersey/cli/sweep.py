@@ -13,6 +13,7 @@ from hersey.cli.options import (
 )
 from hersey.cli.outputs import may_write, print_json
 from hersey.cli.progress import bar, working
+from hersey.cli.terminal import say
 from hersey.errors import OutputError
 
 
@@ -50,10 +51,10 @@ def sweep(
         print_json("sweep", counted)
         return
     for kind, share in counted["kinds"].items():
-        print(f"{kind.replace('_', ' '):16s}{share}")
+        say(f"{kind.replace('_', ' '):16s}{share}")
     for name, (low, high) in counted["stick_slip"].items():
-        print(f"  {name.replace('_', ' '):16s}{low:.6g} to {high:.6g}")
+        say(f"  {name.replace('_', ' '):16s}{low:.6g} to {high:.6g}")
     for failure in counted["failures"]:
-        print(f"- {failure}")
+        say(f"- {failure}")
     if out is not None:
-        print(f"sweep: {out}")
+        say(f"sweep: {out}")

@@ -15,6 +15,7 @@ from hersey.cli.options import (
 )
 from hersey.cli.outputs import may_write
 from hersey.cli.progress import bar, working
+from hersey.cli.terminal import say
 from hersey.errors import OutputError, ParameterError
 
 #: Largest log that `testbench --size` writes, bytes.
@@ -59,7 +60,7 @@ def testbench(
             document = log.truth_document()
     if truth is not None:
         write_atomically(truth, json.dumps(document, indent=1) + "\n", overwrite=True)
-    print(f"synthetic log (seed {seed}): {out}")
+    say(f"synthetic log (seed {seed}): {out}")
 
 
 def _write_long(path: Path, size: int, seed: int) -> None:

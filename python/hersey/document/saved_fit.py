@@ -73,7 +73,11 @@ def _check(path: Path, document: _FitFile) -> None:
         ("torque_space", set(fit.torque_space) == set(fit.coefficients), "the names of the coefficients"),
         ("reference_speed", fit.reference_speed > 0, "greater than 0"),
         ("reference_temperature", (fit.reference_temperature is not None) == thermal, "there if b is"),
-        ("reference_temperature", (fit.reference_temperature or 1.0) > 0, "greater than 0"),
+        (
+            "reference_temperature",
+            fit.reference_temperature is None or fit.reference_temperature > 0,
+            "greater than 0",
+        ),
         ("temperature_range", (fit.temperature_range is not None) == thermal, "there if b is"),
         *((name, r is None or 0 < r[0] <= r[1], "ascending, greater than 0") for name, r in ranges),
         ("values", len(fit.values) == size, f"{size} numbers"),

@@ -2,7 +2,7 @@
 
 =======  ==================================================================
 reading  a file that may change while it is read
-text     opening a text file
+text     opening a text file, and text that may be shown
 toml     a TOML file into tables: what each value is, and what is believed
 writing  writing whole or not at all
 =======  ==================================================================

@@ -52,6 +52,17 @@ class OpenFile:
         if change := self.change():
             raise self._changed(change)
 
+    def refuse_loss(self) -> None:
+        """Raise if the file is no longer what it was, unless it has only grown.
+
+        Raises
+        ------
+        UnreadableLogError
+            It names the file, the change and the way out.
+        """
+        if not self._has_grown():
+            self.refuse_change()
+
     def growth(self, sha256: str) -> list[str]:
         """Return notes on a file that a logger still appends to; ``sha256`` is that of the bytes read.
 
@@ -60,10 +71,8 @@ class OpenFile:
         UnreadableLogError
             If its first ``size`` bytes, or the file behind the path, are no longer the same.
         """
-        now = os.fstat(self.file.fileno()).st_size
-        grown = now > self.size and self._is_there()
-        if not grown:
-            self.refuse_change()
+        self.refuse_loss()
+        grown, now = self._has_grown(), os.fstat(self.file.fileno()).st_size
         if (grown or self._is_young()) and self.sha256() != sha256:
             raise self._changed("it was written anew")
         if not grown:
@@ -77,6 +86,9 @@ class OpenFile:
     def _is_young(self) -> bool:
         """Whether a change right after the opening could bear the same time as the one before it."""
         return self._opened - self._before.st_mtime_ns < _STEP
+
+    def _has_grown(self) -> bool:
+        return os.fstat(self.file.fileno()).st_size > self.size and self._is_there()
 
     def _is_there(self) -> bool:
         """Whether the path still leads to this file."""
@@ -117,8 +129,29 @@ def open_once(path: str | Path) -> Iterator[OpenFile]:
 
 
 @contextmanager
-def unchanged(path: str | Path) -> Iterator[BinaryIO]:
-    """Open a file once and yield it, open for reading; refuse it at the end if it changed.
+def appended(path: str | Path) -> Iterator[OpenFile]:
+    """Open once a file to which a logger may append; ask its `growth` when it is read.
+
+    What fails because it changed in any other way is told as that change.
+
+    Raises
+    ------
+    MissingFileError
+        If it is not there, or cannot be read.
+    UnreadableLogError
+        If reading fails and the file shrank, was written to, moved or replaced.
+    """
+    with open_once(path) as opened:
+        try:
+            yield opened
+        except Exception:
+            opened.refuse_loss()
+            raise
+
+
+@contextmanager
+def unchanged(path: str | Path) -> Iterator[OpenFile]:
+    """Open a file once, and refuse it at the end if it changed.
 
     What fails because it changed meanwhile is told as that change.
 
@@ -131,7 +164,7 @@ def unchanged(path: str | Path) -> Iterator[BinaryIO]:
     """
     with open_once(path) as opened:
         try:
-            yield opened.file
+            yield opened
         except Exception:
             opened.refuse_change()
             raise

@@ -1,29 +1,71 @@
-"""Opening a text file that a command was given, with errors that a person can act on."""
+"""Text that a command was given, with errors that a person can act on, and text that it may show."""
 
 from __future__ import annotations
 
+import unicodedata
 from pathlib import Path
 
-from hersey.errors import MissingFileError
+from hersey.errors import MissingFileError, ParameterError
+
+#: Bytes of a text file at the most: what is read from it takes many times as much memory.
+MOST_BYTES = 64_000_000
+#: Characters of a value that a message shows.
+_SHOWN = 60
 
 
-def read_text(path: Path) -> str:
+def read_text(path: Path, *, most: int = MOST_BYTES) -> str:
     """Return the text, UTF-8, with or without its mark.
 
     Raises
     ------
     MissingFileError
         If there is no such file, it is no ordinary one, or it cannot be read.
+    ParameterError
+        If it has more than ``most`` bytes.
     UnicodeDecodeError
         If it is not UTF-8: what that means is for the caller to say.
     """
     try:
         if path.exists() and not path.is_file():
             raise MissingFileError(f"{path} is no ordinary file")
-        return path.read_text(encoding="utf-8-sig")
+        with path.open("rb") as file:
+            text = file.read(most + 1)
     except MissingFileError:
         raise
     except FileNotFoundError:
         raise MissingFileError(f"{path}: there is no such file") from None
     except OSError as error:
         raise MissingFileError(f"{path} cannot be read: {error.strerror}") from None
+    if len(text) > most:
+        raise ParameterError(f"{path.name} has over {most} bytes: no such file is as long")
+    return text.decode("utf-8-sig").replace("\r\n", "\n")
+
+
+def printable(text: str) -> str:
+    r"""Return a text that steers no terminal: what is no visible character stands as its code, as ``\x1b``.
+
+    Line ends stay, blanks of every kind become a plain one.
+
+    Examples
+    --------
+    >>> print(printable("Torque\x1b[2J"))
+    Torque\x1b[2J
+    """
+    if text.isascii() and text.isprintable():
+        return text
+    return "".join(char if char.isprintable() or char == "\n" else _code(char) for char in text)
+
+
+def _code(char: str) -> str:
+    if char == "\t" or unicodedata.category(char) == "Zs":
+        return " "
+    return char.encode("unicode_escape").decode()
+
+
+def shown(value: object) -> str:
+    """Return a value of a file as a message shows it, cut where it is long."""
+    try:
+        text = repr(value)
+    except ValueError:  # an integer with more digits than Python writes
+        return "a number of thousands of digits"
+    return text if len(text) <= _SHOWN else f"{text[:_SHOWN]}..."

@@ -31,16 +31,30 @@ from pydantic import (
 from pydantic.dataclasses import dataclass
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
-from hersey.errors import ParameterError, UnitError
-from hersey.files.text import read_text
+from hersey.errors import HerseyError, ParameterError, UnitError
+from hersey.files.text import read_text, shown
 from hersey.units import KINDS, parse
 
 Tables = TypeVar("Tables")
 
 #: Messages that go on with the sentence which the name of a value or a table begins, or with the name.
 _GOES_ON = re.compile(r"(is|has|holds|lacks|needs) |\.")
-#: No value of a file comes near this; a whole number of a file may have any number of digits.
+#: No value of a file comes near this.
 _LARGEST = 1e300
+_SHARE = re.compile(r"([0-9]+(?:\.[0-9]*)?)\s*%")
+#: Bytes of a file, characters of a text, dots of a key, and tables within tables at the most.
+_MOST_BYTES, _LONGEST_TEXT, _MOST_DOTS, _DEEPEST = 4_000_000, 1000, 20, 20
+#: Whole numbers of TOML have 64 bits.
+_WHOLE = 1 << 63
+#: Parts of a document, so far as dots in a key are told from dots in a text; what is none ends the search.
+_PART = re.compile(
+    r"""
+    \"{3}(?:[^\\]|\\.)*?\"{3,5} | '{3}.*?'{3,5}
+    | "(?:[^"\\\n]|\\.)*" | '[^'\n]*'
+    | \#[^\n]* | [A-Za-z0-9_+:-]+ | [\ \t]+ | [.,=\n\r{}\[\]]
+    """,
+    re.DOTALL | re.VERBOSE,
+)
 #: The way out where a value is none of the type that is needed.
 _WAY_OUT = {
     "string_type": "write a text",
@@ -75,10 +89,10 @@ class Quantity:
             return float(given) if isinstance(given, int) else given
         value = self._number(given) if self.kind is None or info.context.plain else self._with_unit(given)
         if self.low > 0 >= value:
-            raise ParameterError(f"is {given}: it must be greater than 0")
+            raise ParameterError(f"is {_written(given)}: it must be greater than 0")
         if not self.low <= value <= self.high:
             believed = f"{self.low:g} to {self.high:g} {self.unit}".rstrip()
-            raise ParameterError(f"is {given}: {believed} is believed")
+            raise ParameterError(f"is {_written(given)}: {believed} is believed")
         return value
 
     @property
@@ -94,28 +108,28 @@ class Quantity:
     def _with_unit(self, given: object) -> float:
         if not isinstance(given, str):
             such = f', such as "{self.example}"' if self.example else ""
-            raise UnitError(f"is {given}: write a string with its unit{such}")
+            raise UnitError(f"is {_written(given)}: write a string with its unit{such}")
         return self.parsed(given)
 
     def _number(self, given: object) -> float:
         if isinstance(given, bool) or not isinstance(given, int | float) or not abs(given) < _LARGEST:
             such = f" such as {self.example}" if self.example else ""
-            raise ParameterError(f"is {given!r}: write a number{such}")
+            raise ParameterError(f"is {shown(given)}: write a number{such}")
         return float(given)
 
 
 def _share(given: object, info: ValidationInfo[Any]) -> object:
     if info.context is None:
         return given
-    match = re.fullmatch(r"\s*(\d+\.?\d*)\s*%\s*", given) if isinstance(given, str) else None
+    match = _SHARE.fullmatch(given.strip()) if isinstance(given, str) and len(given) < 60 else None
     if match is None or not 0 < float(match[1]) < 1000:
-        raise ParameterError(f"is {given!r}: write a share such as '20 %'")
+        raise ParameterError(f"is {shown(given)}: write a share such as '20 %'")
     return float(match[1]) / 100
 
 
 def _not_blank(text: str, info: ValidationInfo[Any]) -> str:
     if info.context is not None and not text.strip():
-        raise ParameterError(f"is {text!r}: write a text")
+        raise ParameterError(f"is {shown(text)}: write a text")
     return text
 
 
@@ -150,9 +164,55 @@ def read_toml(path: str | Path) -> dict[str, Any]:
     """
     path = Path(path)
     try:
-        return tomllib.loads(read_text(path))
+        text = read_text(path, most=_MOST_BYTES)
+        _refuse_long_keys(text)
+        document = tomllib.loads(text)
+    except HerseyError:
+        raise
     except (ValueError, RecursionError) as error:  # a number of thousands of digits is no TOMLDecodeError
         raise ParameterError(f"{path.name} is not valid TOML: {error}") from None
+    with naming(path.name):
+        _refuse_large(document)
+    return document
+
+
+def _refuse_long_keys(text: str) -> None:
+    """Refuse keys such as ``a.a.a.a`` of hundreds of parts, which take the parser longer than linear."""
+    dots = end = 0
+    for part in _PART.finditer(text):
+        if part.start() != end:
+            return  # the parser stops here too
+        end = part.end()
+        if part[0] == ".":
+            dots += 1
+        elif part[0][0] in ",=\n\r{}[]#":
+            dots = 0
+        if dots > _MOST_DOTS:
+            raise ValueError(f"a key has over {_MOST_DOTS} dots")
+
+
+def _refuse_large(document: dict[str, Any]) -> None:
+    """Refuse values that no file of ours holds, so that what follows may look at each as it likes."""
+    level: list[Any] = [document]
+    for _ in range(_DEEPEST):
+        within: list[Any] = []
+        for value in level:
+            if isinstance(value, dict):
+                within += [*value, *value.values()]
+            elif isinstance(value, list):
+                within += value
+            elif isinstance(value, int) and not -_WHOLE <= value < _WHOLE:
+                raise ParameterError("is not valid TOML: a whole number has over 64 bits")
+            elif isinstance(value, str) and len(value) > _LONGEST_TEXT:
+                raise ParameterError(f"has a text of {len(value)} characters: {_LONGEST_TEXT} at the most")
+        level = within
+    if level:
+        raise ParameterError(f"has over {_DEEPEST} tables or lists within each other")
+
+
+def _written(given: object) -> str:
+    """A value as the file has it, cut where it is long."""
+    return shown(given).strip("'") if isinstance(given, str) else shown(given)
 
 
 def read_tables(path: str | Path, kind: type[Tables], *, plain: bool = False) -> Tables:
@@ -203,7 +263,7 @@ def _told(kind: str, loc: tuple[str | int, ...], given: object, about: Mapping[s
         case "dataclass_type" | "dict_type":
             return f"{_place(loc, given)} is not a table: write [{loc[0]}]"
     way_out = _WAY_OUT.get(kind, "another kind of value is needed")
-    return f"{_place(loc, given)} is {given!r}: {way_out.format(**about)}"
+    return f"{_place(loc, given)} is {shown(given)}: {way_out.format(**about)}"
 
 
 def _place(loc: tuple[str | int, ...], given: object) -> str:

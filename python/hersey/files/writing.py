@@ -8,6 +8,11 @@ from pathlib import Path
 
 from hersey.errors import OutputError
 
+#: End of the name of a file that is not whole yet.
+SUFFIX = ".part"
+#: Bytes of the name that it shall get in its own, which has a few more.
+_NAME_BYTES = 200
+
 
 def write_atomically(path: Path, content: str | bytes, *, overwrite: bool) -> None:
     """Write a file whole or not at all; never over an existing one unless told to.
@@ -22,7 +27,7 @@ def write_atomically(path: Path, content: str | bytes, *, overwrite: bool) -> No
     if path.exists() and not overwrite:
         raise OutputError(f"{path} exists: say --force to replace it, or name another file with --out")
     try:
-        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")
+        handle, temporary = temporary_beside(path)
     except OSError as error:
         raise OutputError(f"{path} cannot be written: {error.strerror}") from None
     try:
@@ -35,6 +40,16 @@ def write_atomically(path: Path, content: str | bytes, *, overwrite: bool) -> No
         if isinstance(error, OSError):
             raise OutputError(f"{path} cannot be written: {error.strerror}") from None
         raise
+
+
+def temporary_beside(path: Path) -> tuple[int, str]:
+    """Open a new file beside another, called after it, for what shall replace it once it is whole.
+
+    What a process that was killed leaves is never opened again. A name has 255 bytes at the most, so the last
+    characters of a long one are left out.
+    """
+    name = os.fsencode(path.name)[:_NAME_BYTES].decode(errors="ignore")
+    return tempfile.mkstemp(dir=path.parent, prefix=f".{name}.", suffix=SUFFIX)
 
 
 def _umask() -> int:

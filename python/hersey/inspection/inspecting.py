@@ -286,13 +286,14 @@ def _clocks(
 ) -> tuple[tuple[Clock, ...], dict[str, str]]:
     """Each clock of the file once, and its name by tick."""
     clocks: dict[str, Clock] = {}
+    by_tick: dict[str, list[RawChannel]] = {}
     for channel in log.channels:
-        if channel.tick in clocks:
-            continue
+        by_tick.setdefault(channel.tick, []).append(channel)
+    for beside in by_tick.values():
+        channel = beside[0]
         if channel.clock is not None:
             clocks[channel.tick] = clock_of(f"of {channel.column.path}", channel.clock)
             continue
-        beside = [c for c in log.channels if c.tick == channel.tick]
         time = next((c for c in beside if role_of.get(c.column.index) == "time"), None)
         time = time or next((c for c in beside if _is_time(c)), None)
         if time is not None:

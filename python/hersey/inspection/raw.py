@@ -12,9 +12,9 @@ from hersey.arrays import FloatArray
 from hersey.errors import HerseyError
 from hersey.log.channels import ROLES, ChannelChoice, find_channel
 from hersey.log.formats import format_of, opened
-from hersey.log.text.footer import end_of_table
-from hersey.log.text.layout import SNIFFED, Column, Layout, find_layout
-from hersey.log.text.numbers import MISSING
+from hersey.log.text.delimited import open_delimited
+from hersey.log.text.layout import Column, Layout, refuse_ragged, split
+from hersey.log.text.numbers import MISSING, NumberStyle
 from hersey.log.text.stamps import Stamps, counted_since
 
 _NULLS = sorted({s for word in MISSING for s in (word, word.upper(), word.capitalize())} | {"NaN"})
@@ -99,12 +99,10 @@ def roles_of(log: RawLog, choices: dict[str, ChannelChoice]) -> tuple[dict[str, 
 
 
 def _of_text(path: Path) -> RawLog:
-    size = path.stat().st_size
-    with path.open("rb") as file:
-        layout = find_layout(file.read(SNIFFED), path.name)
-        end = end_of_table(file, size, layout)
-        file.seek(0)
-        text = file.read(end.byte)
+    with open_delimited(path) as file:
+        layout, end = file.layout, file.end
+        text, growth = file.text()
+    refuse_ragged(path.name, text.count(b"\n"), len(layout.columns), len(text))
     if layout.encoding != "utf-8-sig":
         text = text.decode(layout.encoding, errors="replace").encode()
     frame = _frame(text, layout)
@@ -113,7 +111,7 @@ def _of_text(path: Path) -> RawLog:
         for column in layout.named
         if column.index not in layout.texts and f"{column.index}" in frame.columns
     ]
-    notes = (*layout.notes, *end.notes)
+    notes = (*layout.notes, *end.notes, *growth)
     return RawLog(path.name, "text", tuple(channels), layout.comments, notes, end.cut_off)
 
 
@@ -140,12 +138,30 @@ def _frame(text: bytes, layout: Layout) -> pl.DataFrame:
             new_columns=[f"{column.index}" for column in layout.columns],
         )
 
-    if layout.style.is_plain:
+    # padded cells, or words among the numbers, are no plain ones: as text, then
+    for types in (numbers, {}) if layout.style.is_plain else ({},):
         try:
-            return read(numbers)
+            table = read(types)
         except pl.exceptions.PolarsError:
-            pass  # padded cells, or words among the numbers: cell by cell, then
-    return read({})
+            continue
+        lines = text.count(b"\n") + (not text.endswith(b"\n")) - (layout.first_line - 1)
+        if b'"' in text and table.height < lines:
+            break  # a quote without its end takes in the lines below it
+        return table
+    return _line_by_line(text, layout)
+
+
+def _line_by_line(text: bytes, layout: Layout) -> pl.DataFrame:
+    """The table with columns of text, where a quote may lack its end."""
+    width, comment = len(layout.columns), layout.comment.encode()
+    columns: list[list[str]] = [[] for _ in range(width)]
+    for line in text.split(b"\n")[layout.first_line - 1 :]:
+        if not line.strip() or line.startswith(comment):
+            continue
+        cells = split(line.decode("utf-8", errors="replace").rstrip("\r"), layout.separator)
+        for index, column in enumerate(columns):
+            column.append(cells[index] if index < len(cells) else "")
+    return pl.DataFrame({f"{index}": column for index, column in enumerate(columns)})
 
 
 def _text_channel(layout: Layout, column: Column, cells: pl.Series) -> RawChannel:
@@ -155,14 +171,9 @@ def _text_channel(layout: Layout, column: Column, cells: pl.Series) -> RawChanne
     cells = cells.fill_null("")
     style = layout.stamps.get(column.index)
 
-    def read(part: pl.Series) -> FloatArray | None:
-        return Stamps(style).seconds(part) if style else layout.style.values(part)
-
-    values = read(cells)
-    if values is not None:
-        return RawChannel(column, values, tick="rows")
-    strange = {cell for cell in cells.unique().to_list() if read(pl.Series([cell], dtype=pl.String)) is None}
-    odd = cells.is_in(sorted(strange))
-    values = read(cells.set(odd, ""))
+    written: Stamps | NumberStyle = layout.style if style is None else Stamps(style)
+    odd = ~written.readable(cells)
+    cells = cells.set(odd, "")
+    values = written.seconds(cells) if isinstance(written, Stamps) else written.values(cells)
     assert values is not None
     return RawChannel(column, values, odd=int(odd.sum()), tick="rows")

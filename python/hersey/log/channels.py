@@ -54,7 +54,7 @@ def find_channel(
     if not candidates:
         return None
     if len(candidates) > 1:
-        listed = " or ".join(f"'{c}'" for c in candidates)
+        listed = _either([str(c) for c in candidates])
         if len({c.path for c in candidates}) == 1:
             raise _repeated(role, candidates, file)
         raise ChannelError(f"{file}: {role} could be {listed}: choose with --{role} '{candidates[0].path}'")
@@ -70,7 +70,7 @@ def called(name: str, columns: tuple[Column, ...]) -> list[Column]:
     """Return the columns that a person may mean by a name; ``name#2`` is the second one of a name."""
     exact = [c for c in columns if name in _spellings(c)]
     same = exact or [c for c in columns if name.lower() in {s.lower() for s in _spellings(c)}]
-    repeated = re.fullmatch(r"(.+)#([1-9]\d?)", name)
+    repeated = re.fullmatch(r"(.+)#([1-9][0-9]?)", name)
     if same or not repeated:
         return same
     same = [c for c in columns if repeated[1].lower() in {s.lower() for s in _spellings(c)}]
@@ -89,15 +89,21 @@ def _named(role: str, columns: tuple[Column, ...], name: str, file: str) -> Colu
     if len(same) > 1 and len({c.path for c in same}) == 1:
         raise _repeated(role, same, file)
     if len(same) > 1:
-        listed = " or ".join(f"'{c}'" for c in same)
+        listed = _either([str(c) for c in same])
         raise ChannelError(f"{file}: --{role}: '{name}' could be {listed}: say --{role} '{same[0].path}'")
     return same[0]
 
 
 def _repeated(role: str, columns: list[Column], file: str) -> ChannelError:
     path = columns[0].path
-    listed = " or ".join(f"'{path}#{i + 1}'" for i in range(len(columns)))
+    listed = _either([f"{path}#{i + 1}" for i in range(len(columns))])
     return ChannelError(f"{file}: {len(columns)} columns are called '{path}': choose with --{role} {listed}")
+
+
+def _either(names: list[str]) -> str:
+    """Names to choose from, the first of them where there are very many."""
+    listed = " or ".join(f"'{name}'" for name in names[:_SHOWN])
+    return listed + (f" or {len(names) - _SHOWN} more" if len(names) > _SHOWN else "")
 
 
 def _listed(columns: tuple[Column, ...]) -> str:

@@ -7,7 +7,7 @@ written with its unit.
 
 from __future__ import annotations
 
-import json
+import os
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import field, replace
@@ -18,6 +18,7 @@ from pydantic import BeforeValidator, ValidationInfo
 from pydantic.dataclasses import dataclass
 
 from hersey.errors import ChannelError, HerseyError, ParameterError, UnitError
+from hersey.files.text import printable
 from hersey.files.toml import Quantity, Table, Text, naming, read_tables
 from hersey.log import corrections
 from hersey.log.channels import ROLES, ChannelChoice, find_channel
@@ -33,11 +34,18 @@ FILE_NAME = "hersey.toml"
 _SUFFIX = ".hersey.toml"
 _FACTOR = r"[A-Za-zµμ]{1,20}(?:(?:\^|\*\*)[1-4])?"  # nothing that pint would compute for ever
 _AMOUNT = re.compile(
-    rf"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*({_FACTOR}(?:\s*[*/.·]\s*{_FACTOR}){{0,4}})\s*"
+    rf"([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)\s*({_FACTOR}(?:\s*[*/.·]\s*{_FACTOR}){{0,4}})"
 )
+
+#: Characters of an amount at the most: the pattern takes longer than linear.
+_LONGEST_AMOUNT = 160
 
 #: SI units of what no log holds.
 _UNITS = {"motor constant": "N*m/A", "moment of inertia": "kg*m^2", "temperature difference": "K"}
+
+
+def _amount(text: str) -> re.Match[str] | None:
+    return _AMOUNT.fullmatch(text.strip()) if len(text) <= _LONGEST_AMOUNT else None
 
 
 class _Amount(Quantity):
@@ -50,7 +58,7 @@ class _Amount(Quantity):
 
     def parsed(self, text: str) -> float:
         """Return the SI value of a text such as ``"35 mN*m/A"``."""
-        match = _AMOUNT.fullmatch(text)
+        match = _amount(text)
         try:
             if match is None:
                 raise ValueError(text)
@@ -69,10 +77,10 @@ class _NoLoad(Quantity):
 
     def checked(self, given: Any, info: ValidationInfo[Any]) -> Any:
         """Return the torque in SI or the path."""
-        if info.context is None or not isinstance(given, str) or _AMOUNT.fullmatch(given):
+        if info.context is None or not isinstance(given, str) or _amount(given):
             return super().checked(given, info)
         named = info.context.path.parent / given
-        if not named.is_file():
+        if not os.path.isfile(named):  # noqa: PTH113 - a name too long for the system is none
             raise ParameterError(f"is '{given}': write a torque such as \"4 mN*m\", or a log that is there")
         return named
 
@@ -231,7 +239,8 @@ def find_mapping(path: str | Path) -> Path | None:
     """Return the mapping of a log: ``bench.hersey.toml`` beside it, or `FILE_NAME` in its directory."""
     log = Path(path)
     beside = (log.parent / f"{log.stem}{_SUFFIX}", log.parent / FILE_NAME)
-    return next((candidate for candidate in beside if candidate.is_file()), None)
+    # a name that the system finds too long is no file
+    return next((candidate for candidate in beside if os.path.isfile(candidate)), None)  # noqa: PTH113
 
 
 def read_with_mapping(
@@ -311,7 +320,7 @@ def propose_mapping(
     """
     path = Path(path)
     columns = tuple(Column(index, name, unit) for index, (name, unit) in enumerate(list_channels(path)))
-    lines = [f"# Channels of {path.name}, proposed by hersey inspect: look at it and mend it."]
+    lines = [f"# Channels of {_in_comment(path.name)}, proposed by hersey inspect: look at it and mend it."]
     for role in ("torque", "speed", "temperature", "time"):
         choice = ChannelChoice((channels or {}).get(role, ""), (units or {}).get(role, ""))
         lines += [*_proposed(role, columns, choice, path.name), ""]
@@ -347,14 +356,24 @@ def _proposed(role: str, columns: tuple[Column, ...], choice: ChannelChoice, fil
     except HerseyError as error:
         channel, said = None, str(error).removeprefix(f"{file}: ")
     if channel is None:
-        return [f"# [{role}]", f"# {said}", '# channel = ""', '# unit = ""']
+        return [f"# [{role}]", f"# {_in_comment(said)}", '# channel = ""', '# unit = ""']
     column, unit = channel
     stated = [f"channel = {_quoted(column.path)}", f"unit = {_quoted(unit.unit)}"]
     return [f"[{role}]", *stated, *_EXAMPLES[role]]
 
 
+def _in_comment(text: str) -> str:
+    return printable(text).replace("\n", " ")
+
+
 def _quoted(text: str) -> str:
-    return json.dumps(text, ensure_ascii=False)  # a JSON string is one of TOML
+    """A text as TOML writes it: what is no visible character stands as its code."""
+    escaped = text.replace("\\", "\\\\").replace('"', '\\"')
+    return '"' + "".join(c if c.isprintable() else _code(c) for c in escaped) + '"'
+
+
+def _code(char: str) -> str:
+    return "?" if "\ud800" <= char <= "\udfff" else f"\\U{ord(char):08X}"  # half a pair is no character
 
 
 def mapping_of(files: Sequence[str | Path], stated: str | Path | None = None) -> LogMapping:

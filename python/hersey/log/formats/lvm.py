@@ -15,11 +15,12 @@ import polars as pl
 from hersey.arrays import FloatArray
 from hersey.errors import UnreadableLogError
 from hersey.log.recording import Recording, Signal, split_unit
-from hersey.log.text.layout import encoding_of
-from hersey.log.text.numbers import NumberStyle, is_missing
+from hersey.log.text.layout import encoding_of, refuse_columns, refuse_long_name, refuse_ragged
+from hersey.log.text.numbers import LONGEST_NUMBER, NumberStyle, is_missing
 
 _END = "***End_of_Header***"
 _X = "X_Value"
+_TIME = re.compile(r"([0-9]{2}:[0-9]{2}:[0-9]{2})[.,]?([0-9]*)")
 #: A segment starts with one of these where no blank line stands before it.
 _HEADS = ("Channels",)
 
@@ -36,7 +37,7 @@ class _Segment:
     def start(self, channel: int) -> datetime.datetime | None:
         """Absolute time at which a channel starts, if the header says it."""
         date, time = (self._cell(key, channel) for key in ("Date", "Time"))
-        match = re.fullmatch(r"(\d\d:\d\d:\d\d)[.,]?(\d*)", time)
+        match = _TIME.fullmatch(time[:LONGEST_NUMBER])
         try:
             day = datetime.datetime.fromisoformat(f"{date.replace('/', '-')}T{match[1]}" if match else "")
         except ValueError:
@@ -71,6 +72,7 @@ def open_lvm(file: BinaryIO, name: str) -> Iterator[Recording]:
     general, segments = _segments(lines[:-1], separator, name)
     style = _style(general, segments)
     names = [segment.names for segment in segments]
+    _refuse_size(name, segments, len(data))
     if any(other != names[0] for other in names):
         raise UnreadableLogError(
             f"line {segments[-1].line}: a segment has other channels: split the file there"
@@ -85,6 +87,15 @@ def open_lvm(file: BinaryIO, name: str) -> Iterator[Recording]:
     table = _Table(segments, style, name)
     recording.signals = tuple(table.signals())
     yield recording
+
+
+def _refuse_size(file: str, segments: list[_Segment], size: int) -> None:
+    """Refuse more columns, longer names, and rows that lack more cells than any log has."""
+    names = segments[0].names
+    refuse_columns(file, len(names))
+    for number, name in enumerate(names, start=1):
+        refuse_long_name(f"{file}, line {segments[0].line - 1}", number, name)
+    refuse_ragged(file, sum(len(segment.rows) for segment in segments), len(names), size)
 
 
 def _separator(lines: list[str], file: str) -> str:
@@ -129,9 +140,7 @@ def _segments(lines: list[str], separator: str, file: str) -> tuple[dict[str, li
 
 def _names(row: list[str]) -> list[str]:
     names = row[: row.index("Comment")] if "Comment" in row else row
-    while names and not names[-1]:
-        names = names[:-1]
-    return names
+    return names[: max((i + 1 for i, name in enumerate(names) if name), default=0)]
 
 
 def _style(general: dict[str, list[str]], segments: list[_Segment]) -> NumberStyle:
@@ -150,6 +159,12 @@ class _Table:
         names = segments[0].names
         self.columns = [i for i, name in enumerate(names) if name != _X]
         self.names = [names[i] for i in self.columns]
+        self.times: dict[int, int | None] = {}  # column with the times of each channel, if the file has one
+        time: int | None = None
+        for i, name in enumerate(names):
+            if name == _X:
+                time = i if any(row[i : i + 1] > [""] for row in segments[0].rows) else None
+            self.times[i] = time
 
     def signals(self) -> Iterator[Signal]:
         for channel, column in enumerate(self.columns):
@@ -162,7 +177,7 @@ class _Table:
                 sum(rows),
                 lambda column=column, rows=rows: self._values(column, rows),  # type: ignore[misc]
                 lambda channel=channel, rows=rows: self._clock(channel, rows),  # type: ignore[misc]
-                repr((rows, self._x(column), [self._step(s, channel) for s in self.segments])),
+                repr((rows, self.times[column], [self._step(s, channel) for s in self.segments])),
             )
 
     def _rows(self, segment: _Segment, column: int) -> int:
@@ -191,12 +206,6 @@ class _Table:
             )
         return values
 
-    def _x(self, column: int) -> int | None:
-        """The column with the times of a channel, if the file has one."""
-        before = [i for i, name in enumerate(self.segments[0].names[:column]) if name == _X]
-        filled = any(row[i : i + 1] > [""] for i in before[-1:] for row in self.segments[0].rows)
-        return before[-1] if before and filled else None
-
     def _step(self, segment: _Segment, channel: int) -> tuple[object, ...]:
         numbers = (segment.number(key, channel, self.style) for key in ("X0", "Delta_X"))
         return (segment.start(channel), *numbers)
@@ -213,7 +222,7 @@ class _Table:
         return np.asarray((zero if isinstance(zero, float) else 0.0) + step * np.arange(count), dtype=float)
 
     def _clock(self, channel: int, rows: list[int]) -> FloatArray:
-        column = self._x(self.columns[channel])
+        column = self.times[self.columns[channel]]
         starts = [segment.start(channel) for segment in self.segments]
         known = [start for start in (s.start(0) for s in self.segments) if start is not None]
         parts: list[FloatArray] = []

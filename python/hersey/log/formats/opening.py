@@ -21,7 +21,7 @@ import numpy as np
 from hersey import errors
 from hersey.arrays import FloatArray
 from hersey.errors import HerseyError, MissingFileError, ParameterError, UnreadableLogError
-from hersey.files.reading import OpenFile, open_once
+from hersey.files.reading import OpenFile, unchanged
 from hersey.log.recording import Recording, Signal, Source
 from hersey.processes.child import Child, FailedError, LostError
 from hersey.processes.forks import refuse_after_fork
@@ -138,20 +138,17 @@ def opened(path: Path, kind: str) -> Iterator[Recording]:
     UnreadableLogError
         If it is damaged, cut off, not of this format, changes meanwhile, or takes more memory than it may.
     """
-    with open_once(path) as file:
+    with unchanged(path) as file:
+        digest = file.sha256()
+        reader = _Reader(file, kind, _memory.get())
         try:
-            digest = file.sha256()
-            reader = _Reader(file, kind, _memory.get())
-            try:
-                yield reader.recording(Source(path.name, digest, file.size))
-            finally:
-                reader.close()
+            yield reader.recording(Source(path.name, digest, file.size))
         except HerseyError as error:
-            file.refuse_change()  # which is why it could not be read
             if path.name not in str(error):
-                raise type(error)(f"{path.name}: {error}") from None
+                raise error.within(path.name) from None
             raise
-        file.refuse_change()
+        finally:
+            reader.close()
         file.growth(digest)
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import codecs
 import hashlib
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
@@ -17,7 +18,8 @@ import numpy as np
 import polars as pl
 
 from hersey.arrays import FloatArray
-from hersey.errors import ChannelError, MissingFileError, UnreadableLogError
+from hersey.errors import ChannelError, UnreadableLogError
+from hersey.files.reading import OpenFile, appended
 from hersey.log.channels import ROLES, ChannelChoice, find_channel, no_channel
 from hersey.log.text.footer import end_of_table
 from hersey.log.text.layout import SNIFFED, Column, Layout, find_layout, split
@@ -26,7 +28,9 @@ from hersey.log.text.stamps import Stamps
 from hersey.log.torque_log import LARGEST, Channel, LogFile, Run
 from hersey.units import Conversion
 
-BLOCK = 1 << 25
+BLOCK = 1 << 22
+#: Bytes of a line at the most.
+LONGEST_LINE = 1 << 25
 _WAY_OUT = "mend the file, or say --drop-missing to leave such rows out (they will be counted)"
 
 Progress = Callable[[int, int], None]
@@ -49,16 +53,11 @@ def read_delimited(
         Each names the file, and the line and column where that applies.
     """
     name = path.name
-    try:
-        size = path.stat().st_size
-        with path.open("rb") as file:
-            layout = find_layout(file.read(SNIFFED), name)
-            end = end_of_table(file, size, layout)
-            table = _Table(name, layout, _channels(layout, choices, isothermal, name), drop_missing)
-            file.seek(0)
-            table.read(file, end.byte, size, progress)
-    except OSError as error:
-        raise MissingFileError(f"{path} cannot be read: {error.strerror}") from None
+    with open_delimited(path) as file:
+        layout, end, size = file.layout, file.end, file.opened.size
+        table = _Table(name, layout, _channels(layout, choices, isothermal, name), drop_missing)
+        table.read(file.opened, end.byte, progress)
+        growth = file.opened.growth(table.digest.hexdigest())
     arrays = table.arrays()
     run = Run(name, arrays["time"], arrays["torque"], arrays["speed"], arrays.get("temperature"))
     channels = tuple(Channel(role, column.name, si.unit) for role, (column, si) in table.channels.items())
@@ -71,7 +70,7 @@ def read_delimited(
         channels,
         layout.comments,
         end.cut_off,
-        (*layout.notes, *table.notes(), *end.notes),
+        (*layout.notes, *table.notes(), *end.notes, *growth),
     )
     return run, log
 
@@ -88,6 +87,56 @@ def delimited_columns(path: Path) -> tuple[Column, ...]:
     return tuple(column for column in layout.columns if column.index not in layout.texts)
 
 
+class DelimitedFile:
+    """A text table while its file is open: whoever looks at it sees the same bytes."""
+
+    def __init__(self, opened: OpenFile) -> None:
+        """Find where the table starts, what its columns are, and where it ends."""
+        file, size = opened.file, opened.size
+        self.opened, self.layout = opened, find_layout(file.read(min(size, SNIFFED)), opened.path.name)
+        self.end = end_of_table(file, size, self.layout)
+
+    def text(self) -> tuple[bytes, list[str]]:
+        """Return the file up to the end of the table, and notes if a logger appends to it.
+
+        Raises
+        ------
+        UnreadableLogError
+            If the file is no longer what it was, unless it has only grown.
+        """
+        self.opened.file.seek(0)
+        text = self.opened.file.read(self.opened.size)
+        return text[: self.end.byte], self.opened.growth(hashlib.sha256(text).hexdigest())
+
+    def numbers(self, chosen: Sequence[Column], *, complete: bool) -> list[FloatArray]:
+        """Return columns as written (time stamps in s), shape (rows,), NaN where a number is missing.
+
+        Raises
+        ------
+        UnreadableLogError
+            If a cell is no number, naming line and column; if ``complete``, also if one is missing; if the
+            file is no longer what it was, unless it has only grown.
+        """
+        as_written = {str(i): (column, Conversion(column.unit, 1.0, 0.0)) for i, column in enumerate(chosen)}
+        table = _Table(self.opened.path.name, self.layout, as_written, drop_missing=not complete)
+        numbers = table.numbers(self.opened, self.end.byte)
+        self.opened.growth(table.digest.hexdigest())
+        return numbers
+
+
+@contextmanager
+def open_delimited(path: Path) -> Iterator[DelimitedFile]:
+    """Open a text table once.
+
+    Raises
+    ------
+    MissingFileError, UnreadableLogError
+        If it cannot be opened, or holds no table.
+    """
+    with appended(path) as opened:
+        yield DelimitedFile(opened)
+
+
 def delimited_layout(path: Path) -> Layout:
     """Return the layout of a text file.
 
@@ -96,11 +145,8 @@ def delimited_layout(path: Path) -> Layout:
     MissingFileError, UnreadableLogError
         If it cannot be opened, or holds no table.
     """
-    try:
-        with path.open("rb") as file:
-            return find_layout(file.read(SNIFFED), path.name)
-    except OSError as error:
-        raise MissingFileError(f"{path} cannot be read: {error.strerror}") from None
+    with open_delimited(path) as file:
+        return file.layout
 
 
 def delimited_numbers(path: Path, chosen: Sequence[Column], *, complete: bool) -> list[FloatArray]:
@@ -111,13 +157,8 @@ def delimited_numbers(path: Path, chosen: Sequence[Column], *, complete: bool) -
     UnreadableLogError
         If a cell is no number, naming line and column; if ``complete``, also if one is missing.
     """
-    with path.open("rb") as file:
-        layout = find_layout(file.read(SNIFFED), path.name)
-        end = end_of_table(file, path.stat().st_size, layout)
-        as_written = {str(i): (column, Conversion(column.unit, 1.0, 0.0)) for i, column in enumerate(chosen)}
-        table = _Table(path.name, layout, as_written, drop_missing=not complete)
-        file.seek(0)
-        return table.numbers(file, end.byte)
+    with open_delimited(path) as file:
+        return file.numbers(chosen, complete=complete)
 
 
 def _channels(
@@ -171,24 +212,31 @@ class _Table:
     def columns(self) -> list[Column]:
         return [column for column, _ in self.channels.values()]
 
-    def read(self, file: BinaryIO, end: int, size: int, progress: Progress | None) -> None:
-        """Read the table, which ends at byte ``end`` of ``size``."""
-        for text, line, done in _blocks(file, end, self.layout, self.digest.update):
-            block = self._cleaned(text, line)
+    def read(self, opened: OpenFile, end: int, progress: Progress | None) -> None:
+        """Read the table, which ends at byte ``end``."""
+        for block, done in self._blocks(opened, end):
             if block.lines:
                 self._add(block)
             if progress:
-                progress(done, size)
-        self.digest.update(file.read())
+                progress(done, opened.size)
 
-    def numbers(self, file: BinaryIO, end: int) -> list[FloatArray]:
+    def numbers(self, opened: OpenFile, end: int) -> list[FloatArray]:
         """The columns as written, NaN where a number is missing and may be."""
         parts: list[list[FloatArray]] = [[] for _ in self.columns]
-        for text, line, _ in _blocks(file, end, self.layout, self.digest.update):
-            block = self._cleaned(text, line)
+        for block, _ in self._blocks(opened, end):
             if block.lines:
                 self._keep(block, parts)
         return [np.concatenate(values) if values else np.empty(0) for values in parts]
+
+    def _blocks(self, opened: OpenFile, end: int) -> Iterator[tuple[_Block, int]]:
+        """Lines of the table, and bytes read so far; what follows the table is hashed with it."""
+        opened.file.seek(0)
+        for text, line, done in _blocks(opened.file, end, self.layout, self.name, self.digest.update):
+            yield self._cleaned(text, line), done
+        left = opened.size - end
+        while left and (chunk := opened.file.read(min(left, BLOCK))):
+            self.digest.update(chunk)
+            left -= len(chunk)
 
     def _keep(self, block: _Block, parts: list[list[FloatArray]]) -> None:
         values = self._parsed(block)
@@ -352,7 +400,7 @@ class _Table:
 
 
 def _blocks(
-    file: BinaryIO, end: int, layout: Layout, hashed: Callable[[bytes], None]
+    file: BinaryIO, end: int, layout: Layout, name: str, hashed: Callable[[bytes], None]
 ) -> Iterator[tuple[bytes, int, int]]:
     """Yield whole lines of UTF-8 text, the line number of the first, and bytes read so far."""
     plain = layout.encoding == "utf-8-sig"
@@ -365,10 +413,24 @@ def _blocks(
         done += len(chunk)
         text = rest + (decoder.decode(chunk, final=not more).encode() if decoder else chunk)
         last = text.rfind(b"\n") + 1 if more else len(text)
+        if more and not last and len(text) > LONGEST_LINE:
+            raise UnreadableLogError(f"{name}: a line has over {LONGEST_LINE} bytes: no log has such")
         block, rest = text[:last], text[last:]
-        while skip and block:
-            _, _, block = block.partition(b"\n")
-            skip, line = skip - 1, line + 1
+        if skip:
+            above = _end_of_lines(block, skip)
+            passed = block.count(b"\n", 0, above)
+            skip, line, block = skip - passed, line + passed, block[above:]
         if block and not block.isspace():
             yield block, line, done
         line += block.count(b"\n")
+
+
+def _end_of_lines(text: bytes, count: int) -> int:
+    """Byte behind the first ``count`` lines, or behind the last one if there are fewer."""
+    end = 0
+    for _ in range(count):
+        following = text.find(b"\n", end) + 1
+        if not following:
+            return len(text)
+        end = following
+    return end

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 from typing import BinaryIO
+
+import numpy as np
 
 from hersey.log.text.layout import Layout, split
 from hersey.log.text.numbers import is_missing, looks_numeric
@@ -34,32 +37,38 @@ def end_of_table(file: BinaryIO, size: int, layout: Layout) -> TableEnd:
     file.seek(start := max(0, size - _TAIL) // 4 * 4)
     encoding = layout.encoding
     if encoding == "utf-16":
-        mark = _byte_order(file)
-        encoding = "utf-16-be" if mark == b"\xfe\xff" else "utf-16-le"
+        encoding = "utf-16-be" if _byte_order(file) == b"\xfe\xff" else "utf-16-le"
         file.seek(start)
-    lines = (
-        file.read(size - start).decode(encoding.removesuffix("-sig"), errors="surrogateescape").split("\n")
-    )
-    lines = lines[1:] if start else lines[layout.first_line - 1 :]
-    if len(lines) < 2:
+    stored = _stored_lines(file.read(size - start), encoding)
+    stored = stored[1:] if start else stored[layout.first_line - 1 :]
+    if len(stored) < 2:
         return TableEnd(size)
+    lines = [line.decode(encoding.removesuffix("-sig"), errors="replace").rstrip("\n") for line in stored]
     notes: list[str] = []
-    removed = ""
+    left_out = 0  # lines
     cut_off, short = _is_cut_off(lines, layout)
     if short:
-        removed = lines.pop()
-        notes.append(f"the last line, '{_shown(removed)}', was cut off: it was left out")
-        lines.append("")
+        left_out = 1
+        notes.append(f"the last line, '{_shown(lines[-1])}', was cut off: it was left out")
+        lines[-1] = ""
     elif lines[-1].strip():
         notes.append(f"the last line, '{_shown(lines[-1])}', has no end: its last number may lack digits")
     summary = _summary(lines, layout)
     if summary:
-        text = "\n".join(lines[-summary:])
-        removed = text + removed
+        left_out = summary
         words = [line for line in lines[-summary:] if line.strip()]
         notes.append(f"{len(words)} line(s) below the table were left out: '{_shown(words[0])}'")
-    length = len(removed.encode(encoding.removesuffix("-sig"), errors="surrogateescape"))
+    length = sum(map(len, stored[-left_out:])) if left_out else 0
     return TableEnd(size - length, cut_off, tuple(notes))
+
+
+def _stored_lines(text: bytes, encoding: str) -> list[bytes]:
+    """Lines as they are stored, each with its line end; the last, which may be empty, has none."""
+    if not encoding.startswith("utf-16"):
+        return [*(line + b"\n" for line in text.split(b"\n")[:-1]), text.rpartition(b"\n")[2]]
+    kind = ">u2" if encoding == "utf-16-be" else "<u2"
+    ends = 2 * (np.flatnonzero(np.frombuffer(text, kind, count=len(text) // 2) == ord("\n")) + 1)
+    return [text[a:b] for a, b in itertools.pairwise([0, *ends.tolist(), len(text)])]
 
 
 def _byte_order(file: BinaryIO) -> bytes:
@@ -124,4 +133,4 @@ def _is_summary(line: str, layout: Layout) -> bool:
 
 
 def _shown(line: str) -> str:
-    return line.strip()[:60].encode("utf-8", errors="replace").decode()
+    return line.strip()[:60]

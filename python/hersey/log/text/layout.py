@@ -5,7 +5,6 @@ from __future__ import annotations
 import codecs
 import csv
 import re
-from collections import Counter
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -19,8 +18,11 @@ from hersey.units import KINDS, conversion
 SNIFFED = 1 << 17
 _COMMENTS = ("#", "~", "//")
 _NOT_CP1252 = (b"\x81", b"\x8d", b"\x8f", b"\x90", b"\x9d")
-#: ``Torque [N*m]`` or ``Torque (N*m)``.
-NAME_WITH_UNIT = re.compile(r"(.*?)\s*(?:\[([^\]]*)\]|\(([^)]*)\))\s*")
+#: Columns of a table, and characters of a name at the most: no log has as many.
+MOST_COLUMNS = 5000
+LONGEST_NAME = 1000
+#: ``Torque [N*m]`` or ``Torque (N*m)``; no part can match in two ways, so that the time is linear.
+NAME_WITH_UNIT = re.compile(r"(.*?)(?:\[([^\[\]]*)\]|\(([^()]*)\))\s*")
 
 
 @dataclass(frozen=True)
@@ -97,6 +99,7 @@ def find_layout(start: bytes, name: str) -> Layout:
     if not numbered:
         raise UnreadableLogError(f"{name} is empty: a header and rows of numbers are needed")
     table = max((_table(numbered, separator) for separator in ";\t|,"), key=lambda t: t.score)
+    refuse_columns(name, table.width)
     if table.score == 0:
         raise UnreadableLogError(
             f"{name} has a header but no rows of numbers below it"
@@ -127,6 +130,49 @@ def find_layout(start: bytes, name: str) -> Layout:
         notes,
         headless,
     )
+
+
+def refuse_columns(place: str, count: int) -> None:
+    """Raise if a table has more columns than are read.
+
+    Raises
+    ------
+    UnreadableLogError
+        It says how many are.
+    """
+    if count > MOST_COLUMNS:
+        raise UnreadableLogError(
+            f"{place} has {count} columns: {MOST_COLUMNS} at the most are read, export those that matter"
+        )
+
+
+def refuse_long_name(place: str, column: int, name: str) -> None:
+    """Raise if the name of a column, counted from 1, is longer than is read.
+
+    Raises
+    ------
+    UnreadableLogError
+        It says how long a name may be.
+    """
+    if len(name) > LONGEST_NAME:
+        raise UnreadableLogError(
+            f"{place}: the name of column {column} has {len(name)} characters: "
+            f"{LONGEST_NAME} at the most are read"
+        )
+
+
+def refuse_ragged(place: str, rows: int, columns: int, size: int) -> None:
+    """Raise if most rows lack cells: a file of ``size`` bytes would become a table many times as large.
+
+    Raises
+    ------
+    UnreadableLogError
+        It says how many cells the rows should have.
+    """
+    if rows * columns > 8 * size + 1_000_000:
+        raise UnreadableLogError(
+            f"{place}: most of its {rows} rows lack cells, {columns} are named: remove columns that are empty"
+        )
 
 
 @dataclass(frozen=True)
@@ -172,15 +218,18 @@ def encoding_of(start: bytes, name: str) -> str:
 def _table(numbered: list[tuple[int, str]], separator: str) -> _Table:
     """The longest reading of the lines as rows of numbers with this separator."""
     cells = [split(line, separator) for _, line in numbered]
-    widths = Counter(len(row) for row in cells if len(row) > 1)
-    best = _Table(separator, 0, 0, 0)
-    for width in widths:
-        rows = [len(row) == width and _mostly_numbers(row) for row in cells]
-        # cells that are none speak against a separator: "0,5;1,5" is no row of "0", "5;1" and "5"
-        score = sum(sum(map(_may_be_number, row)) for row, is_row in zip(cells, rows, strict=True) if is_row)
-        if score > best.score:
-            best = _Table(separator, width, _first_of_block(rows), score)
-    return best
+    lines: dict[int, list[int]] = {}  # of rows, by their width
+    for number, row in enumerate(cells):
+        if len(row) > 1 and _mostly_numbers(row):
+            lines.setdefault(len(row), []).append(number)
+    # cells that are none speak against a separator: "0,5;1,5" is no row of "0", "5;1" and "5"
+    scores = {width: sum(sum(map(_may_be_number, cells[n])) for n in own) for width, own in lines.items()}
+    width = max(scores, key=lambda w: scores[w], default=0)
+    if not width or not scores[width]:
+        return _Table(separator, 0, 0, 0)
+    rows = set(lines[width])
+    first = _first_of_block([number in rows for number in range(len(cells))])
+    return _Table(separator, width, first, scores[width])
 
 
 def _may_be_number(cell: str) -> bool:
@@ -196,13 +245,14 @@ def _mostly_numbers(row: list[str]) -> bool:
 def _first_of_block(rows: list[bool]) -> int:
     """Index of the first row of the table: preambles too have a line of numbers here and there."""
     first = next(i for i, row in enumerate(rows) if row)
+    left = sum(rows)  # rows from the first on
     while (
         gap := next((i for i in range(first, min(first + 3, len(rows))) if not rows[i]), None)
     ) is not None:
         later = next((i for i in range(gap, len(rows)) if rows[i]), None)
-        if later is None or sum(rows[later:]) < sum(rows[first:gap]):
+        if later is None or left - (gap - first) < gap - first:
             break
-        first = later
+        first, left = later, left - (gap - first)
     return first
 
 
@@ -270,10 +320,11 @@ def _columns(table: _Table, numbered: list[tuple[int, str]], file: str) -> tuple
     columns = []
     for index in range(table.width):
         name = header[index] if index < len(header) and header[index] else f"#{index + 1}"
+        refuse_long_name(f"{file}, line {line}", index + 1, name)
         unit = units[index].strip("[]() ") if index < len(units) else ""
         match = NAME_WITH_UNIT.fullmatch(name)
         if match and not unit:
-            name, unit = match[1] or f"#{index + 1}", match[2] if match[2] is not None else match[3]
+            name, unit = match[1].rstrip() or f"#{index + 1}", match[2] if match[2] is not None else match[3]
         columns.append(Column(index, name, unit.strip()))
     return tuple(columns)
 

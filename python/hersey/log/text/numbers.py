@@ -21,7 +21,7 @@ MISSING = (
 )
 #: Thousands marks: no-break, narrow and thin spaces are written for a blank.
 BLANKS = " \u00a0\u202f\u2009"
-_EXPONENT = r"([eE][-+]?\d+)?"
+_EXPONENT = r"([eE][-+]?[0-9]+)?"  # \d would take the digits of every script
 
 
 @dataclass(frozen=True)
@@ -39,11 +39,11 @@ class NumberStyle:
     @cached_property
     def _pattern(self) -> re.Pattern[str]:
         mark = "," if self.decimal_comma else r"\."
-        plain = rf"[-+]?(\d+{mark}?\d*|{mark}\d+){_EXPONENT}"
+        plain = rf"[-+]?([0-9]+{mark}?[0-9]*|{mark}[0-9]+){_EXPONENT}"
         if not self.thousands:
             return re.compile(plain)
         group = f"[{BLANKS}]" if self.thousands == " " else re.escape(self.thousands)
-        return re.compile(rf"{plain}|[-+]?\d{{1,3}}({group}\d{{3}})+({mark}\d*)?{_EXPONENT}")
+        return re.compile(rf"{plain}|[-+]?[0-9]{{1,3}}({group}[0-9]{{3}})+({mark}[0-9]*)?{_EXPONENT}")
 
     def is_number(self, cell: str) -> bool:
         """Return whether a cell is a finite number in this style."""
@@ -55,24 +55,33 @@ class NumberStyle:
             cell = cell.replace(mark, "")
         return float(cell.replace(",", ".") if self.decimal_comma else cell)
 
+    def readable(self, cells: pl.Series) -> pl.Series:
+        """Return for each cell of text whether it is a number or stands for a missing one."""
+        text = cells.str.strip_chars()
+        good = text.str.contains(f"^(?:{self._pattern.pattern})$") & (text.str.len_chars() <= LONGEST_NUMBER)
+        return _missing(text) | good.fill_null(False)
+
     def values(self, cells: pl.Series) -> FloatArray | None:
         """Return cells of text as numbers, NaN where one is missing, or None if some are no numbers."""
-        text = cells.str.strip_chars()
-        missing = text.is_null() | text.str.to_lowercase().is_in(MISSING)
-        good = text.str.contains(f"^(?:{self._pattern.pattern})$") & (text.str.len_chars() <= LONGEST_NUMBER)
-        if not (missing | good).fill_null(True).all():
+        if not self.readable(cells).all():
             return None
+        text = cells.str.strip_chars()
+        missing = _missing(text)
         for mark in BLANKS if self.thousands == " " else self.thousands:
             text = text.str.replace_all(mark, "", literal=True)
         if self.decimal_comma:
             text = text.str.replace_all(",", ".", literal=True)
-        numbers = text.set(missing.fill_null(True), None).cast(pl.Float64, strict=True)
+        numbers = text.set(missing, None).cast(pl.Float64, strict=True)
         return np.asarray(numbers.fill_null(np.nan).to_numpy(), dtype=float)
 
 
 def is_missing(cell: str) -> bool:
     """Return whether a cell stands for a value that was not measured."""
     return cell.lower() in MISSING
+
+
+def _missing(text: pl.Series) -> pl.Series:
+    return text.is_null() | text.str.to_lowercase().is_in(MISSING).fill_null(True)
 
 
 def decimal_comma(cells: list[str]) -> bool:
@@ -103,7 +112,7 @@ def style_of(cells: list[str]) -> NumberStyle:
 
 def looks_numeric(cell: str) -> bool:
     """Return whether a cell is a number in some style."""
-    if not _LIKELY.fullmatch(cell):
+    if len(cell) > LONGEST_NUMBER or not _LIKELY.fullmatch(cell):
         return False
     return any(style.is_number(cell) for style in (_POINT, _COMMA, *_THOUSANDS))
 
@@ -120,6 +129,6 @@ _THOUSANDS = (
     *(NumberStyle(comma, mark) for mark in " '" for comma in (False, True)),
 )
 _THOUSANDS_SURELY = re.compile(
-    rf"\d([.,])\d{{3}}\1\d{{3}}(\D|$)|\d,\d{{3}}\.|\d\.\d{{3}},|\d[{BLANKS}']\d{{3}}(\D|$)"
+    rf"\d([.,])\d{{3}}\1\d{{3}}(\D|$)|\d,\d{{3}}\.|\d\.\d{{3}},|\d[{BLANKS}']\d{{3}}(\D|$)", re.ASCII
 )
-_LIKELY = re.compile(rf"[-+]?[\d.,][\d.,'{BLANKS}]*([eE][-+]?\d+)?")
+_LIKELY = re.compile(rf"[-+]?[\d.,][\d.,'{BLANKS}]*([eE][-+]?\d+)?", re.ASCII)

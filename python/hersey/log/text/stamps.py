@@ -12,7 +12,7 @@ import polars as pl
 from hersey.arrays import FloatArray
 from hersey.log.text.numbers import is_missing
 
-_CLOCK = r"\d{1,2}:\d\d:\d\d([.,]\d{1,9})?"
+_CLOCK = r"[0-9]{1,2}:[0-9]{2}:[0-9]{2}([.,][0-9]{1,9})?"
 _DAY = 86400.0
 #: Units of a count since 1970 by its size, between 2001 and 2049.
 _EPOCHS = ((1e9, "s"), (1e12, "ms"), (1e15, "us"), (1e18, "ns"))
@@ -36,16 +36,16 @@ class StampStyle:
         if self.name == "a time of day":
             text = "2000-01-01 " + text
         if self.format.endswith("%z"):
-            text = text.str.replace("Z$", "+0000").str.replace(r" ?([+-]\d\d):?(\d\d)$", "$1$2")
+            text = text.str.replace("Z$", "+0000").str.replace(r" ?([+-][0-9]{2}):?([0-9]{2})$", "$1$2")
         stamps = text.str.to_datetime(self.format, time_unit="ns", strict=False)
         return stamps.dt.replace_time_zone(None) if self.format.endswith("%z") else stamps
 
 
-_ISO = r"\d{4}[-/]\d{1,2}[-/]\d{1,2}[T ]"
+_ISO = r"[0-9]{4}[-/][0-9]{1,2}[-/][0-9]{1,2}[T ]"
 _STYLES = (
     StampStyle("an ISO date", _ISO + _CLOCK, "%Y-%m-%d %H:%M:%S%.f"),
-    StampStyle("an ISO date", _ISO + _CLOCK + r"( ?Z| ?[+-]\d\d:?\d\d)", "%Y-%m-%d %H:%M:%S%.f%z"),
-    StampStyle("a German date", r"\d{1,2}\.\d{1,2}\.\d{4} " + _CLOCK, "%d.%m.%Y %H:%M:%S%.f"),
+    StampStyle("an ISO date", _ISO + _CLOCK + r"( ?Z| ?[+-][0-9]{2}:?[0-9]{2})", "%Y-%m-%d %H:%M:%S%.f%z"),
+    StampStyle("a German date", r"[0-9]{1,2}\.[0-9]{1,2}\.[0-9]{4} " + _CLOCK, "%d.%m.%Y %H:%M:%S%.f"),
     StampStyle("a time of day", _CLOCK, "%Y-%m-%d %H:%M:%S%.f"),
 )
 
@@ -76,15 +76,18 @@ class Stamps:
     def seconds(self, cells: pl.Series) -> FloatArray | None:
         """Return the times, NaN where one is missing, or None if a cell is no time stamp."""
         stamps = self.style.stamps(cells)
-        missing = np.array([cell is None or is_missing(cell.strip()) for cell in cells]) | False
         gone = stamps.is_null().to_numpy()
-        if (gone & ~missing).any():
+        if not _readable(cells, stamps).all():
             return None
         ticks = stamps.dt.timestamp("ns").fill_null(0).to_numpy()
         if self.first is None and not gone.all():
             self.first = int(ticks[~gone][0])
         times = np.where(gone, np.nan, (ticks - (self.first or 0)) * 1e-9)
         return self._past_midnight(times) if self.style.name == "a time of day" else times
+
+    def readable(self, cells: pl.Series) -> pl.Series:
+        """Return for each cell of text whether it is a time stamp or stands for a missing one."""
+        return _readable(cells, self.style.stamps(cells))
 
     def note(self, column: str) -> str:
         """What was done, for the notes of the log."""
@@ -102,6 +105,11 @@ class Stamps:
             self._last, self.midnights = float(times[known[-1]]), int(nights[-1])
             times[known] += _DAY * nights
         return times
+
+
+def _readable(cells: pl.Series, stamps: pl.Series) -> pl.Series:
+    missing = [cell is None or is_missing(cell.strip()) for cell in cells]
+    return stamps.is_not_null() | pl.Series(missing, dtype=pl.Boolean)
 
 
 def is_clock_name(name: str) -> bool:
