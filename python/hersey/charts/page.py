@@ -1,7 +1,7 @@
 """What every page is made of, and what it may do: run its own two scripts, and nothing else.
 
-All that comes from a file of the user goes in as JSON, in blocks that no browser runs or takes for markup; the
-scripts put it on screen as text.
+All that comes from a file of the user goes in as JSON, in blocks that no browser runs or takes for markup;
+the scripts put it on screen as text.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def page(*, title: str, style: str, body: str, data: Mapping[str, object], scrip
         '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">',
         '<meta name="viewport" content="width=device-width, initial-scale=1">',
         f'<meta http-equiv="Content-Security-Policy" content="{policy(scripts)}">',
-        f"<title>{html.escape(title)}</title>",
+        f"<title>{html.escape(_encodable(title))}</title>",
         f"<style>\n{style}\n</style>\n</head>\n<body>\n{body}",
         *(
             f'<script type="application/json" id="{name}">{embedded(content)}</script>'
@@ -48,7 +48,7 @@ def page(*, title: str, style: str, body: str, data: Mapping[str, object], scrip
 
 
 def policy(scripts: list[str]) -> str:
-    """Return the content security policy of a page: these scripts run, byte by byte; nothing is loaded or sent.
+    """Return the content security policy of a page: these scripts run, and nothing is loaded or sent.
 
     Styles are open: Vega sets its own where it draws, and a style can load nothing.
     """
@@ -63,6 +63,11 @@ def embedded(content: object) -> str:
     """Return JSON that no browser can take for markup."""
     text = json.dumps(content, ensure_ascii=True, separators=(",", ":"), allow_nan=False)
     return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
+
+
+def _encodable(text: str) -> str:
+    """The text without halves of a pair of surrogates, which no file holds."""
+    return text.encode(errors="replace").decode()
 
 
 def _normal(script: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from typing import Any
 
 from hersey.charts import PICTURES
@@ -11,13 +12,24 @@ from hersey.charts.style import Chart, Row
 from hersey.charts.vega import drawn
 from hersey.errors import OutputError
 
+#: Longest text in a chart, pixels: names may have any length, and pictures would grow with them.
+_LONGEST = 1500
 #: Looks that all charts share.
 _CONFIG: dict[str, Row] = {
     "view": {"stroke": "#999"},
-    "axis": {"gridColor": "#e3e3e3", "labelFontSize": 12, "titleFontSize": 13},
+    "axis": {"gridColor": "#e3e3e3", "labelFontSize": 12, "titleFontSize": 13, "titleLimit": _LONGEST},
     "legend": {"labelFontSize": 12, "titleFontSize": 12},
-    "title": {"anchor": "start", "fontSize": 15, "subtitleColor": "#555", "subtitleFontSize": 12},
+    "text": {"limit": _LONGEST},
+    "title": {
+        "anchor": "start",
+        "fontSize": 15,
+        "limit": _LONGEST,
+        "subtitleColor": "#555",
+        "subtitleFontSize": 12,
+    },
 }
+#: Characters that no XML may hold, so no SVG: control signs, halves of a pair of surrogates.
+_NOT_XML = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 
 
 def picture(chart: Chart, suffix: str) -> bytes:
@@ -62,8 +74,11 @@ def _page(specification: Row) -> str:
 def _rounded(value: Any) -> Any:
     """The same with six significant digits: more cannot be seen, and files grow with them.
 
-    A number that JSON does not know is None, as Vega takes it.
+    A number that JSON does not know is None, as Vega takes it; what no picture can hold of a text is a sign
+    for such.
     """
+    if isinstance(value, str):
+        return _NOT_XML.sub("\ufffd", value)
     if isinstance(value, float):
         return float(f"{value:.6g}") if math.isfinite(value) else None
     if isinstance(value, dict):
