@@ -3,7 +3,9 @@
 =============  ====================================================
 style          sizes, colours, the smallest pieces
 labels         where texts stand, so that none covers another
+vega           drawing and bundling, in a process of their own (`vega_script` runs there)
 runtime        the Vega runtime, inlined in every page
+page           what every page is made of, and what it may do
 render         from a chart to the content of a file
 analysis       the charts of the analysis document
 log            speed, torque and temperature over time

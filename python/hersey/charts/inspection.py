@@ -83,7 +83,9 @@ def _findings(report: FileReport) -> Chart:
         scale=alt.Scale(domain=[0, max(report.rows, 1)], nice=False),
         axis=alt.Axis(tickCount=8),
     )
-    y = alt.Y("channel:N", title=None, sort=names, axis=alt.Axis(labelLimit=220))
+    # A domain, not a sort: Vega-Lite makes an expression of a sort, and these are names from a file.
+    order = alt.Scale(domain=list(dict.fromkeys(names)))
+    y = alt.Y("channel:N", title=None, scale=order, axis=alt.Axis(labelLimit=220))
     kinds = sorted({fault["kind"] for fault in faults})
     legend = alt.Legend(title="fault begins", orient="bottom") if kinds else None
     shape = alt.Shape("kind:N", scale=alt.Scale(domain=kinds), legend=legend)

@@ -2,24 +2,34 @@
 
 from __future__ import annotations
 
-import html
-from collections.abc import Callable
+import math
+import re
 from typing import Any
 
-import vl_convert
-
 from hersey.charts import PICTURES
-from hersey.charts.runtime import VEGA_LITE, embedded, runtime
+from hersey.charts.page import page
 from hersey.charts.style import Chart, Row
+from hersey.charts.vega import drawn
 from hersey.errors import OutputError
 
+#: Longest text in a chart, pixels: names may have any length, and pictures would grow with them.
+_LONGEST = 1500
 #: Looks that all charts share.
 _CONFIG: dict[str, Row] = {
     "view": {"stroke": "#999"},
-    "axis": {"gridColor": "#e3e3e3", "labelFontSize": 12, "titleFontSize": 13},
+    "axis": {"gridColor": "#e3e3e3", "labelFontSize": 12, "titleFontSize": 13, "titleLimit": _LONGEST},
     "legend": {"labelFontSize": 12, "titleFontSize": 12},
-    "title": {"anchor": "start", "fontSize": 15, "subtitleColor": "#555", "subtitleFontSize": 12},
+    "text": {"limit": _LONGEST},
+    "title": {
+        "anchor": "start",
+        "fontSize": 15,
+        "limit": _LONGEST,
+        "subtitleColor": "#555",
+        "subtitleFontSize": 12,
+    },
 }
+#: Characters that no XML may hold, so no SVG: control signs, halves of a pair of surrogates.
+_NOT_XML = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 
 
 def picture(chart: Chart, suffix: str) -> bytes:
@@ -28,12 +38,14 @@ def picture(chart: Chart, suffix: str) -> bytes:
     Raises
     ------
     OutputError
-        If the suffix is none of these.
+        If the suffix is none of these, or the chart cannot be drawn, such as for lack of memory.
     """
     if suffix not in PICTURES:
         raise OutputError(f"'{suffix}' is no kind of picture: name a file that ends in {', '.join(PICTURES)}")
-    content = _WRITERS[suffix](specification_of(chart))
-    return content.encode() if isinstance(content, str) else content
+    specification = specification_of(chart)
+    if suffix == ".html":
+        return _page(specification).encode()
+    return drawn(specification, suffix.removeprefix("."))
 
 
 def specification_of(chart: Chart) -> Row:
@@ -50,49 +62,32 @@ def specification_of(chart: Chart) -> Row:
 
 def _page(specification: Row) -> str:
     title = specification.get("title", {})
-    return _PAGE.format(
-        title=html.escape(title["text"] if isinstance(title, dict) and "text" in title else "Chart"),
-        runtime=runtime(),
-        chart=embedded(specification),
+    return page(
+        title=title["text"] if isinstance(title, dict) and "text" in title else "Chart",
+        style="body { margin: 2rem; font-family: sans-serif }",
+        body='<div id="chart"></div>',
+        data={"specification": specification},
+        script=_SCRIPT,
     )
 
 
-def _svg(specification: Row) -> str:
-    return vl_convert.vegalite_to_svg(specification, vl_version=VEGA_LITE)
-
-
-def _png(specification: Row) -> bytes:
-    return vl_convert.vegalite_to_png(specification, vl_version=VEGA_LITE, scale=2)
-
-
-def _pdf(specification: Row) -> bytes:
-    return vl_convert.vegalite_to_pdf(specification, vl_version=VEGA_LITE)
-
-
-_WRITERS: dict[str, Callable[[Row], str | bytes]] = {
-    ".html": _page,
-    ".svg": _svg,
-    ".png": _png,
-    ".pdf": _pdf,
-}
-
-
 def _rounded(value: Any) -> Any:
-    """The same with six significant digits: more cannot be seen, and files grow with them."""
+    """The same with six significant digits: more cannot be seen, and files grow with them.
+
+    A number that JSON does not know is None, as Vega takes it; what no picture can hold of a text is a sign
+    for such.
+    """
+    if isinstance(value, str):
+        return _NOT_XML.sub("\ufffd", value)
     if isinstance(value, float):
-        return float(f"{value:.6g}")
+        return float(f"{value:.6g}") if math.isfinite(value) else None
     if isinstance(value, dict):
         return {key: _rounded(item) for key, item in value.items()}
     return [_rounded(item) for item in value] if isinstance(value, list) else value
 
 
-_PAGE = """<!doctype html>
-<html lang="en">
-<meta charset="utf-8">
-<title>{title}</title>
-<style>body {{ margin: 2rem; font-family: sans-serif }}</style>
-<div id="chart"></div>
-<script>{runtime}</script>
-<script>vegaEmbed("#chart", {chart}, {{renderer: "svg", actions: false}});</script>
-</html>
+_SCRIPT = """
+const specification = JSON.parse(document.getElementById("specification").textContent);
+await window.vegaEmbed("#chart", specification, { renderer: "svg", actions: false, ast: true });
+document.body.dataset.ready = "true";
 """

@@ -4,19 +4,14 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
-import json
 from importlib.metadata import version
 from pathlib import Path
 
-import altair as alt
-import vl_convert
 from platformdirs import user_cache_path
 
+from hersey.charts.vega import VEGA_LITE, bundled
 from hersey.errors import OutputError
 from hersey.files.writing import write_atomically
-
-#: Version of Vega-Lite that altair speaks, as vl-convert names it.
-VEGA_LITE = alt.SCHEMA_VERSION.removeprefix("v").rsplit(".", 1)[0]
 
 
 def runtime() -> str:
@@ -24,21 +19,20 @@ def runtime() -> str:
 
     Bundling takes longer than all else that a report needs, so its result is kept in the user's cache; a
     script there that was changed or cut off is bundled anew.
+
+    Raises
+    ------
+    OutputError
+        If it cannot be bundled, such as for lack of memory.
     """
     path = user_cache_path("hersey") / f"vega-embed-{version('vl-convert-python')}-{VEGA_LITE}.js"
     kept = _kept(path)
     if kept is not None:
         return kept
-    script = vl_convert.javascript_bundle("window.vegaEmbed = vegaEmbed;", vl_version=VEGA_LITE)
+    script = bundled("window.vegaEmbed = vegaEmbed;")
     script = script.replace("</script", "<\\/script")
     _keep(path, script)
     return script
-
-
-def embedded(content: object) -> str:
-    """Return JSON that no browser can take for markup."""
-    text = json.dumps(content, ensure_ascii=True, separators=(",", ":"), allow_nan=False)
-    return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
 
 
 def _kept(path: Path) -> str | None:

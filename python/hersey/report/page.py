@@ -10,10 +10,11 @@ from importlib import resources
 from typing import Any
 
 from hersey.charts.analysis import charts
+from hersey.charts.page import page
 from hersey.charts.render import specification_of
-from hersey.charts.runtime import embedded, runtime
 from hersey.document.parts import Analysis
 
+_STATIC = ("html", "css", "js")
 # Samples that only the charts need: the page carries them once.
 _DRAWN: Any = {
     "timeline": True,
@@ -24,14 +25,13 @@ _DRAWN: Any = {
 
 def render(document: Analysis) -> str:
     """Return the page as HTML text."""
-    page = resources.files("hersey.report") / "static"
+    static = resources.files("hersey.report") / "static"
+    body, style, script = ((static / f"page.{kind}").read_text(encoding="utf-8") for kind in _STATIC)
     specifications = {name: specification_of(chart) for name, chart in charts(document).items()}
-    parts = {
-        "css": (page / "page.css").read_text(encoding="utf-8"),
-        "document": embedded(document.model_dump(mode="json", exclude=_DRAWN)),
-        "charts": embedded(specifications),
-        "runtime": runtime(),
-        "script": (page / "page.js").read_text(encoding="utf-8"),
-    }
-    pieces = (page / "page.html").read_text(encoding="utf-8").split("@@")
-    return "".join(parts[piece] if i % 2 else piece for i, piece in enumerate(pieces))
+    return page(
+        title="hersey report",
+        style=style,
+        body=body,
+        data={"document": document.model_dump(mode="json", exclude=_DRAWN), "charts": specifications},
+        script=script,
+    )

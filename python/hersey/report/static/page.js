@@ -52,6 +52,7 @@ async function chart(parent, name) {
   place.id = `chart-${name}`;
   await window.vegaEmbed(place, charts[name], {
     renderer: "svg",
+    ast: true,
     actions: { export: true, source: false, compiled: false, editor: false },
     downloadFileName: `hersey-${name}`,
   });
