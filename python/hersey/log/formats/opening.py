@@ -7,7 +7,7 @@ and time; what comes out of it are names and numbers.
 
 from __future__ import annotations
 
-import math
+import re
 import signal
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -25,7 +25,6 @@ from hersey.files.reading import OpenFile, unchanged
 from hersey.log.recording import Recording, Signal, Source
 from hersey.processes.child import Child, FailedError, LostError
 from hersey.processes.forks import refuse_after_fork
-from hersey.units import parse
 
 #: What a file may take while it is read, bytes.
 _memory = ContextVar("memory", default=2e9)
@@ -108,7 +107,7 @@ def memory_limit(limit: str) -> Iterator[None]:
 
     Raises
     ------
-    UnitError, ParameterError
+    ParameterError
         If it is no such size.
 
     Examples
@@ -117,9 +116,10 @@ def memory_limit(limit: str) -> Iterator[None]:
     >>> with hersey.memory_limit("8 GB"):
     ...     log = hersey.read("examples/bench.csv")
     """
-    size = parse("memory", limit)
-    if not _LEAST <= size < math.inf:
-        raise ParameterError(f"the limit of memory is {limit}: it must be at least 100 MB")
+    match = re.fullmatch(r"\s*([0-9]{1,6}(?:\.[0-9]{1,6})?)\s*([MGT])B\s*", limit)
+    size = float(match[1]) * {"M": 1e6, "G": 1e9, "T": 1e12}[match[2]] if match else 0.0
+    if size < _LEAST:
+        raise ParameterError(f"the limit of memory is {limit!r}: write a size of 100 MB or more, as '8 GB'")
     token = _memory.set(size)
     try:
         yield
