@@ -13,9 +13,8 @@ from typing import TYPE_CHECKING
 import typer
 
 from hersey.charts import PICTURES
+from hersey.cli.terminal import printable
 from hersey.errors import OutputError
-from hersey.files.text import printable
-from hersey.files.writing import SUFFIX
 
 if TYPE_CHECKING:
     from pydantic import BaseModel
@@ -80,6 +79,8 @@ def may_write_folder(folder: Path, force: bool, flag: str = "--figures") -> None
 
 def _counts(file: Path) -> bool:
     """Whether a file is more than what a command that was killed left of its own."""
+    from hersey.files.writing import SUFFIX
+
     return not (file.name.startswith(".") and file.suffix == SUFFIX)
 
 

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import sys
+import unicodedata
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any, TextIO
-
-from hersey.files.text import printable
 
 
 def say(*lines: str, file: TextIO | None = None) -> None:
@@ -32,3 +31,24 @@ def warnings_said() -> Iterator[None]:
         yield
     finally:
         warnings.formatwarning = usual
+
+
+def printable(text: str) -> str:
+    r"""Return a text that steers no terminal: what is no visible character stands as its code, as ``\x1b``.
+
+    Line ends stay, blanks of every kind become a plain one.
+
+    Examples
+    --------
+    >>> print(printable("Torque\x1b[2J"))
+    Torque\x1b[2J
+    """
+    if text.isascii() and text.isprintable():
+        return text
+    return "".join(char if char.isprintable() or char == "\n" else _code(char) for char in text)
+
+
+def _code(char: str) -> str:
+    if char == "\t" or unicodedata.category(char) == "Zs":
+        return " "
+    return char.encode("unicode_escape").decode()

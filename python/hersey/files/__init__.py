@@ -2,7 +2,7 @@
 
 =======  ==================================================================
 reading  a file that may change while it is read
-text     opening a text file, and text that may be shown
+text     opening a text file, and values of it in messages
 toml     a TOML file into tables: what each value is, and what is believed
 writing  writing whole or not at all
 =======  ==================================================================

@@ -1,8 +1,7 @@
-"""Text that a command was given, with errors that a person can act on, and text that it may show."""
+"""Text that a command was given, with errors that a person can act on, and values as messages show them."""
 
 from __future__ import annotations
 
-import unicodedata
 from pathlib import Path
 
 from hersey.errors import MissingFileError, ParameterError
@@ -39,27 +38,6 @@ def read_text(path: Path, *, most: int = MOST_BYTES) -> str:
     if len(text) > most:
         raise ParameterError(f"{path.name} has over {most} bytes: no such file is as long")
     return text.decode("utf-8-sig").replace("\r\n", "\n")
-
-
-def printable(text: str) -> str:
-    r"""Return a text that steers no terminal: what is no visible character stands as its code, as ``\x1b``.
-
-    Line ends stay, blanks of every kind become a plain one.
-
-    Examples
-    --------
-    >>> print(printable("Torque\x1b[2J"))
-    Torque\x1b[2J
-    """
-    if text.isascii() and text.isprintable():
-        return text
-    return "".join(char if char.isprintable() or char == "\n" else _code(char) for char in text)
-
-
-def _code(char: str) -> str:
-    if char == "\t" or unicodedata.category(char) == "Zs":
-        return " "
-    return char.encode("unicode_escape").decode()
 
 
 def shown(value: object) -> str:

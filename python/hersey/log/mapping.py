@@ -18,7 +18,6 @@ from pydantic import BeforeValidator, ValidationInfo
 from pydantic.dataclasses import dataclass
 
 from hersey.errors import ChannelError, HerseyError, ParameterError, UnitError
-from hersey.files.text import printable
 from hersey.files.toml import Quantity, Table, Text, naming, read_tables
 from hersey.log import corrections
 from hersey.log.channels import ROLES, ChannelChoice, find_channel
@@ -363,7 +362,7 @@ def _proposed(role: str, columns: tuple[Column, ...], choice: ChannelChoice, fil
 
 
 def _in_comment(text: str) -> str:
-    return printable(text).replace("\n", " ")
+    return "".join(c if c.isprintable() else _code(c) for c in text)
 
 
 def _quoted(text: str) -> str:
