@@ -31,6 +31,7 @@ from hersey.charts.style import (
     zoom,
 )
 from hersey.document.parts import Analysis, Point, Series
+from hersey.files.writing import write_atomically
 from hersey.units import celsius, rpm
 
 #: Cells of a surface overlap a little: seams would shine through otherwise.
@@ -234,7 +235,7 @@ def write_figures(document: Analysis, folder: Path) -> list[Path]:
     for name, chart in charts(document).items():
         for suffix in FIGURES:
             path = folder / f"{name}{suffix}"
-            path.write_bytes(picture(chart, suffix))
+            write_atomically(path, picture(chart, suffix), overwrite=True)
             written.append(path)
     return written
 

@@ -1,13 +1,14 @@
 """The commands: each mirrors a verb of the package and computes nothing of its own.
 
-===========  ==================================================================
-application  the program: its verbs, errors in one line, Ctrl-C
-options      options that several verbs share, and the reading of a log by them
-outputs      files that a verb writes: refused early, never replaced unasked
-progress     spinner and bar on a terminal
-terminal     the one way to print for people: nothing that steers a terminal passes
-report ...   one module per verb
-===========  ==================================================================
+============  ==================================================================
+application   the program: its verbs, errors in one line
+interruption  Ctrl-C, whatever the program is in the midst of
+options       options that several verbs share, and the reading of a log by them
+outputs       files that a verb writes: refused early, never replaced unasked
+progress      spinner and bar on a terminal
+terminal      the one way to print for people: nothing that steers a terminal passes
+report ...    one module per verb
+============  ==================================================================
 
 A mistake of the user's ends in one line on stderr and exit code 2. The version is printed without loading
 the program, the list of verbs without loading a verb.
@@ -31,9 +32,15 @@ def main() -> None:
 
         print(f"hersey {__version__}")
         return
-    from hersey.cli.application import main as run
+    from hersey.cli.interruption import end, interruptible
 
-    run()
+    try:
+        with interruptible():
+            from hersey.cli.application import main as run
+
+            run()
+    except KeyboardInterrupt:
+        end()
 
 
 def __getattr__(name: str) -> Any:

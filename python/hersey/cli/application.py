@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import importlib
 import os
-import signal
 import sys
 from typing import Annotated, Any
 
 import typer
 from typer.core import TyperCommand, TyperGroup
 
+from hersey.cli.interruption import INTERRUPTED
 from hersey.cli.terminal import say, warnings_said
 from hersey.errors import HerseyError
 
@@ -55,8 +55,6 @@ VERBS = {
         "Write a log of the virtual test stand: synthetic, with a known truth, for tests and for learning."
     ),
 }
-#: Exit code after Ctrl-C, as shells have it.
-INTERRUPTED = 130
 
 
 def load(name: str) -> Any:
@@ -101,15 +99,14 @@ app = typer.Typer(
 
 def main() -> None:
     """Run the command line."""
-    signal.signal(signal.SIGTERM, _interrupt)
     code: int | None = None
     try:
         with warnings_said():
             code = app(standalone_mode=False)
     except HerseyError as error:
         _fail(str(error))
-    except (KeyboardInterrupt, typer.Abort):
-        code = INTERRUPTED
+    except typer.Abort:
+        raise KeyboardInterrupt from None
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # nothing is left to flush into it
         sys.exit(0)
@@ -120,20 +117,16 @@ def main() -> None:
         if usage is None:
             raise
         _fail(usage())
-    if code == INTERRUPTED:
-        _fail("interrupted", code=INTERRUPTED)
+    if code == INTERRUPTED:  # which is what typer makes of it
+        raise KeyboardInterrupt
     sys.exit(code or 0)
 
 
-def _fail(message: str, code: int = 2) -> None:
+def _fail(message: str) -> None:
     text = " ".join(message.split())
     if text:
         say(f"hersey: {text}", file=sys.stderr)
-    sys.exit(code)
-
-
-def _interrupt(_signal: int, _frame: object) -> None:
-    raise KeyboardInterrupt
+    sys.exit(2)
 
 
 @app.callback(invoke_without_command=True)

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
-import tempfile
 from pathlib import Path
 from typing import Annotated
 
@@ -65,23 +63,13 @@ def testbench(
 
 def _write_long(path: Path, size: int, seed: int) -> None:
     from hersey import testbench as stand
+    from hersey.files.writing import written
 
-    part: Path | None = None
-    try:
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=".hersey-", suffix=".part")
-        part = Path(name)
-        with os.fdopen(handle, "w", encoding="utf-8") as file, bar("writing") as progress:
-            done = 0
-            for text in stand.long_log(bytes_wanted=size, seed=seed):
-                file.write(text)
-                done += len(text)
-                progress(min(done, size), size)
-        part.replace(path)
-    except OSError as error:
-        raise OutputError(f"{path} cannot be written: {error.strerror}") from None
-    finally:
-        if part is not None:
-            part.unlink(missing_ok=True)
+    with written(path, overwrite=True) as file, bar("writing") as progress:
+        done = 0
+        for text in stand.long_log(bytes_wanted=size, seed=seed):
+            done += file.write(text.encode())
+            progress(min(done, size), size)
 
 
 def _bytes(text: str) -> int:

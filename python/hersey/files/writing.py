@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import os
-import tempfile
+import secrets
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import BinaryIO
 
 from hersey.errors import OutputError
 
@@ -12,6 +15,8 @@ from hersey.errors import OutputError
 SUFFIX = ".part"
 #: Bytes of the name that it shall get in its own, which has a few more.
 _NAME_BYTES = 200
+#: Files that are not whole yet.
+_unfinished: set[Path] = set()
 
 
 def write_atomically(path: Path, content: str | bytes, *, overwrite: bool) -> None:
@@ -22,37 +27,47 @@ def write_atomically(path: Path, content: str | bytes, *, overwrite: bool) -> No
     OutputError
         If the file exists and ``overwrite`` is false, or it cannot be written.
     """
+    with written(path, overwrite=overwrite) as file:
+        file.write(content.encode("utf-8") if isinstance(content, str) else content)
+
+
+@contextmanager
+def written(path: Path, *, overwrite: bool) -> Iterator[BinaryIO]:
+    """Yield a new file that takes the place of ``path`` at the end, or goes if anything fails meanwhile.
+
+    What a process that was killed leaves beside the path is never opened again.
+
+    Raises
+    ------
+    OutputError
+        If the file exists and ``overwrite`` is false, or it cannot be written.
+    """
     if path.is_dir():
         raise OutputError(f"{path} is a directory: name a file in it")
     if path.exists() and not overwrite:
         raise OutputError(f"{path} exists: say --force to replace it, or name another file with --out")
+    part = _part(path)
+    _unfinished.add(part)  # before it is there, so that no moment is without it
     try:
-        handle, temporary = temporary_beside(path)
+        with part.open("xb") as file:
+            yield file
+        part.replace(path)
     except OSError as error:
         raise OutputError(f"{path} cannot be written: {error.strerror}") from None
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(content.encode("utf-8") if isinstance(content, str) else content)
-        Path(temporary).chmod(0o666 & ~_umask())
-        Path(temporary).replace(path)
-    except BaseException as error:
-        Path(temporary).unlink(missing_ok=True)
-        if isinstance(error, OSError):
-            raise OutputError(f"{path} cannot be written: {error.strerror}") from None
-        raise
+    finally:
+        with suppress(OSError):
+            part.unlink(missing_ok=True)
+        _unfinished.discard(part)
 
 
-def temporary_beside(path: Path) -> tuple[int, str]:
-    """Open a new file beside another, called after it, for what shall replace it once it is whole.
+def remove_unfinished() -> None:
+    """Remove every file that is not whole: for a process that ends at once."""
+    for part in list(_unfinished):
+        with suppress(OSError):
+            part.unlink(missing_ok=True)
 
-    What a process that was killed leaves is never opened again. A name has 255 bytes at the most, so the last
-    characters of a long one are left out.
-    """
+
+def _part(path: Path) -> Path:
+    """A new name beside a path; one has 255 bytes at the most, so the last of a long one are left out."""
     name = os.fsencode(path.name)[:_NAME_BYTES].decode(errors="ignore")
-    return tempfile.mkstemp(dir=path.parent, prefix=f".{name}.", suffix=SUFFIX)
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
+    return path.with_name(f".{name}.{secrets.token_hex(8)}{SUFFIX}")

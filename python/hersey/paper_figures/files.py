@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import json
-import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
 from hersey.charts import FIGURES
 from hersey.charts.render import picture
 from hersey.errors import OutputError
+from hersey.files.writing import write_atomically
 from hersey.paper_figures.figure import ABOUT, Figure
 from hersey.result import json_value
 
@@ -23,7 +23,7 @@ and ranges that the paper names. *About* means within {ABOUT:g} of an exponent, 
 def write(figures: Sequence[Figure], folder: Path, *, overwrite: bool = False) -> list[Path]:
     """Write each figure as SVG, PNG and PDF, with ``figures.md`` and ``figures.json``; return the paths.
 
-    Everything is written aside and moved into place at the end, so that no file is ever half there.
+    Everything is drawn before anything is written, and each file is written whole.
 
     Raises
     ------
@@ -41,13 +41,10 @@ def write(figures: Sequence[Figure], folder: Path, *, overwrite: bool = False) -
     contents |= {"figures.md": markdown(figures).encode(), "figures.json": as_json(figures).encode()}
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(dir=folder, prefix=".figures.") as aside:
-            for name, content in contents.items():
-                (Path(aside) / name).write_bytes(content)
-            for path in paths:
-                (Path(aside) / path.name).replace(path)
     except OSError as error:
         raise OutputError(f"{folder} cannot be written: {error.strerror}") from None
+    for path in paths:
+        write_atomically(path, contents[path.name], overwrite=overwrite)
     return paths
 
 

@@ -17,6 +17,7 @@ import polars as pl
 from hersey import _core
 from hersey.arrays import FloatArray
 from hersey.errors import ParameterError
+from hersey.files.writing import write_atomically
 from hersey.motion.drag import Drag
 from hersey.motion.simulation import Drivetrain, simulate
 from hersey.testbench.truth import RPM, Truth
@@ -79,12 +80,11 @@ class VirtualLog:
 
     def write(self, file: TextIO | Path) -> None:
         """Write the log as CSV, headed by a line that calls it synthetic."""
+        text = f"{PREAMBLE}, seed {self.seed}\n{self.table.write_csv()}"
         if isinstance(file, Path):
-            with file.open("w", encoding="utf-8") as opened:
-                return self.write(opened)
-        file.write(f"{PREAMBLE}, seed {self.seed}\n")
-        file.write(self.table.write_csv())
-        return None
+            write_atomically(file, text, overwrite=True)
+        else:
+            file.write(text)
 
 
 def run(*, seed: int = 0, truth: Truth | None = None, stand: Stand | None = None) -> VirtualLog:

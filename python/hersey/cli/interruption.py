@@ -1,0 +1,67 @@
+"""Ctrl-C, whatever the program is in the midst of.
+
+Python raises `KeyboardInterrupt` between two of its own steps, so a library that computes for long in its own
+language delays it, and one that catches every exception swallows it. A thread of ours sees the signal at
+once, gives the program a moment to end by itself, and else ends it.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import socket
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import NoReturn
+
+#: Exit code after Ctrl-C, as shells have it.
+INTERRUPTED = 130
+#: Time that the program has to end by itself, s.
+_PATIENCE = 0.25
+_ending = threading.Lock()
+
+
+@contextmanager
+def interruptible() -> Iterator[None]:
+    """Raise `KeyboardInterrupt` on Ctrl-C and on SIGTERM; end the process where that does not end it."""
+    if threading.current_thread() is not threading.main_thread():  # which alone sees signals
+        yield
+        return
+    ours, theirs = socket.socketpair()
+    theirs.setblocking(False)
+    before = signal.signal(signal.SIGTERM, _raise)
+    wakeup = signal.set_wakeup_fd(theirs.fileno(), warn_on_full_buffer=False)
+    threading.Thread(target=_watch, args=(ours,), daemon=True).start()
+    try:
+        yield
+    finally:
+        signal.set_wakeup_fd(wakeup)
+        signal.signal(signal.SIGTERM, before)
+        theirs.close()  # which ends the thread
+
+
+def end() -> NoReturn:
+    """End at once: nothing half-written stays, and processes of ours end with this one."""
+    _ending.acquire()  # never given back: the first to come here ends the process
+    from hersey.files.writing import remove_unfinished
+
+    remove_unfinished()
+    shown_cursor = "\x1b[?25h" if sys.stderr.isatty() else ""  # a bar hides it
+    sys.stderr.write(f"{shown_cursor}hersey: interrupted\n")
+    sys.stderr.flush()
+    os._exit(INTERRUPTED)
+
+
+def _watch(signals: socket.socket) -> None:
+    with signals:
+        while number := signals.recv(1):
+            if number[0] in (signal.SIGINT, signal.SIGTERM):
+                time.sleep(_PATIENCE)
+                end()
+
+
+def _raise(_signal: int, _frame: object) -> None:
+    raise KeyboardInterrupt
