@@ -31,6 +31,7 @@ from hersey.charts.style import (
     zoom,
 )
 from hersey.document.parts import Analysis, Point, Series
+from hersey.files.writing import write_atomically
 from hersey.units import celsius, rpm
 
 #: Cells of a surface overlap a little: seams would shine through otherwise.
@@ -228,15 +229,16 @@ def timeline_temperature(document: Analysis) -> Chart | None:
 
 
 def write_figures(document: Analysis, folder: Path) -> list[Path]:
-    """Write every chart as SVG, PNG and PDF and return the paths."""
+    """Write every chart as SVG, PNG and PDF and return the paths; all are drawn before one is written."""
+    pictures = {
+        folder / f"{name}{suffix}": picture(chart, suffix)
+        for name, chart in charts(document).items()
+        for suffix in FIGURES
+    }
     folder.mkdir(parents=True, exist_ok=True)
-    written = []
-    for name, chart in charts(document).items():
-        for suffix in FIGURES:
-            path = folder / f"{name}{suffix}"
-            path.write_bytes(picture(chart, suffix))
-            written.append(path)
-    return written
+    for path, content in pictures.items():
+        write_atomically(path, content, overwrite=True)
+    return list(pictures)
 
 
 def _torque_unit(document: Analysis) -> tuple[float, str]:
