@@ -2,46 +2,15 @@
 
 from __future__ import annotations
 
-import shutil
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, Page, sync_playwright
+from playwright.sync_api import Browser
 
 from hersey.charts.analysis import charts
 from hersey.document.parts import Analysis
 from hersey.report.page import render
-
-ARGUMENTS = ["--no-sandbox", "--disable-gpu", "--disable-background-networking", "--disable-component-update"]
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    chromium = shutil.which("chromium") or shutil.which("chromium-browser")
-    assert chromium, "Chromium is missing: make browser installs it"
-    with sync_playwright() as playwright:
-        opened = playwright.chromium.launch(executable_path=chromium, args=ARGUMENTS)
-        yield opened
-        opened.close()
-
-
-class Opened:
-    """A page and what happened on it."""
-
-    def __init__(self, browser: Browser, path: Path) -> None:
-        self.errors: list[str] = []
-        self.requests: list[str] = []
-        self.dialogs: list[str] = []
-        self.page: Page = browser.new_page(viewport={"width": 1000, "height": 900})
-        self.page.on("pageerror", lambda e: self.errors.append(str(e)))
-        self.page.on(
-            "console", lambda m: self.errors.append(m.text) if m.type in ("error", "warning") else None
-        )
-        self.page.on("request", lambda r: self.requests.append(r.url))
-        self.page.on("dialog", lambda d: (self.dialogs.append(d.message), d.dismiss()))
-        self.page.goto(path.as_uri())
-        self.page.wait_for_selector("body[data-ready]", timeout=60_000)
+from tests.browser.opening import Opened
 
 
 @pytest.fixture(scope="module")
@@ -52,9 +21,7 @@ def opened(browser: Browser, document: Analysis, tmp_path_factory: pytest.TempPa
 
 
 def test_it_draws_without_errors_and_without_network(opened: Opened) -> None:
-    assert opened.page.get_attribute("body", "data-ready") == "true"
-    assert opened.errors == []
-    assert all(url.startswith(("file:", "data:", "blob:")) for url in opened.requests)
+    opened.assert_quiet()
 
 
 def test_the_verdict_comes_first(opened: Opened, document: Analysis) -> None:
@@ -99,36 +66,6 @@ def test_a_tooltip_shows_the_numbers_of_a_dwell(opened: Opened) -> None:
     text = opened.page.text_content("#vg-tooltip-element") or ""
     assert "speed (rpm)" in text
     assert "torque (" in text
-
-
-def test_hostile_names_are_shown_and_not_run(browser: Browser, document: Analysis, tmp_path: Path) -> None:
-    hostile = "<img src=x onerror=alert(1)></script><script>alert(2)</script>"
-    file = document.files[0].model_copy(
-        update={
-            "name": hostile,
-            "comments": [hostile],
-            "channels": [c.model_copy(update={"name": hostile}) for c in document.files[0].channels],
-        }
-    )
-    rejected = [r.model_copy(update={"reason": hostile}) for r in document.quality.rejected]
-    changed = document.model_copy(
-        update={
-            "title": hostile,
-            "files": [file],
-            "warnings": [hostile],
-            "command": hostile,
-            "quality": document.quality.model_copy(update={"rejected": rejected}),
-            "simulation": document.simulation.model_copy(update={"title": hostile}),
-        }
-    )
-    path = tmp_path / "hostile.html"
-    path.write_text(render(changed), encoding="utf-8")
-    opened = Opened(browser, path)
-    assert opened.page.text_content("h1") == hostile
-    assert opened.page.locator("#warnings li").all_text_contents() == [hostile]
-    assert opened.page.locator("main img").count() == 0
-    assert opened.dialogs == []
-    assert opened.errors == []
 
 
 def test_it_prints(opened: Opened, tmp_path: Path) -> None:

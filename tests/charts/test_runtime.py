@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from hersey.charts import runtime as module
-from hersey.charts.runtime import embedded, runtime
+from hersey.charts.runtime import runtime
 
 
 class Bundler:
@@ -16,15 +16,15 @@ class Bundler:
     def __init__(self) -> None:
         self.calls = 0
 
-    def __call__(self, snippet: str, vl_version: str) -> str:
+    def __call__(self, snippet: str) -> str:
         self.calls += 1
-        return f"/* {vl_version} </script> */ {snippet}"
+        return f"/* </script> */ {snippet}"
 
 
 @pytest.fixture
 def bundler(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Bundler:
     counting = Bundler()
-    monkeypatch.setattr("vl_convert.javascript_bundle", counting)
+    monkeypatch.setattr(module, "bundled", counting)
     monkeypatch.setattr(module, "user_cache_path", lambda name: tmp_path / name)
     return counting
 
@@ -50,8 +50,3 @@ def test_without_a_cache_it_is_bundled_each_time(bundler: Bundler, tmp_path: Pat
     (tmp_path / "hersey").write_text("a file where the folder would be")
     assert runtime() == runtime()
     assert bundler.calls == 2
-
-
-def test_embedded_text_is_no_markup() -> None:
-    text = embedded({"title": "</script><!-- & -->"})
-    assert not set("<>&") & set(text)

@@ -40,10 +40,13 @@ def answer(request, payload):
             open(request["sign"], "w").write(str(os.getpid()))
             ctypes.PyDLL(None).sleep(600)
 """
+#: Signals do not end a read here, as with libraries that have handlers of their own.
 PARENT = """
+import signal
 import sys
 from pathlib import Path
 from hersey.processes.child import Child
+signal.siginterrupt(signal.SIGINT, False)
 child = Child(Path(sys.argv[1]))
 child.ask({"what": "hold", "sign": sys.argv[2]})
 """

@@ -229,15 +229,16 @@ def timeline_temperature(document: Analysis) -> Chart | None:
 
 
 def write_figures(document: Analysis, folder: Path) -> list[Path]:
-    """Write every chart as SVG, PNG and PDF and return the paths."""
+    """Write every chart as SVG, PNG and PDF and return the paths; all are drawn before one is written."""
+    pictures = {
+        folder / f"{name}{suffix}": picture(chart, suffix)
+        for name, chart in charts(document).items()
+        for suffix in FIGURES
+    }
     folder.mkdir(parents=True, exist_ok=True)
-    written = []
-    for name, chart in charts(document).items():
-        for suffix in FIGURES:
-            path = folder / f"{name}{suffix}"
-            write_atomically(path, picture(chart, suffix), overwrite=True)
-            written.append(path)
-    return written
+    for path, content in pictures.items():
+        write_atomically(path, content, overwrite=True)
+    return list(pictures)
 
 
 def _torque_unit(document: Analysis) -> tuple[float, str]:

@@ -161,4 +161,5 @@ def _panel(channel: ChannelReport, values: FloatArray, time: FloatArray | None, 
     heading = alt.Title(
         name + role, subtitle=said[:110] or "nothing found", anchor="start", fontSize=11, subtitleFontSize=10
     )
-    return alt.LayerChart(layer=[line, point], width=WIDTH, height=_HEIGHT, title=heading)
+    layers = [line, point] if marks else [line]
+    return alt.LayerChart(layer=layers, width=WIDTH, height=_HEIGHT, title=heading)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import atexit
 import json
 import os
+import select
 import socket
 import struct
 import subprocess
@@ -14,12 +15,15 @@ import weakref
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 _LENGTHS = struct.Struct("<QQ")
 _SERVER = Path(__file__).with_name("server.py")
 #: Longest head of a reply, bytes: the rest of a reply is its block of bytes.
 _LONGEST_HEAD = 1 << 28
+#: Where pipes can be waited for, and the time after which to look up, ms.
+_POLL = getattr(select, "poll", None)
+_LOOK_UP = 100
 
 
 class LostError(Exception):
@@ -153,18 +157,24 @@ class Child:
         finally:
             for end in theirs:
                 os.close(end)
+        if _POLL is not None and self._process.stdin is not None:
+            os.set_blocking(
+                self._process.stdin.fileno(), False
+            )  # a write waits for room where Ctrl-C is heard
         return self._process
 
     def _write(self, process: subprocess.Popen[bytes], content: bytes) -> None:
         assert process.stdin is not None
         rest = memoryview(content)
         while rest:
-            rest = rest[process.stdin.write(rest) :]
+            _wait_for(process.stdin)
+            rest = rest[process.stdin.write(rest) or 0 :]
 
     def _read(self, process: subprocess.Popen[bytes], length: int) -> bytes:
         assert process.stdout is not None
         content = bytearray()
         while len(content) < length:
+            _wait_for(process.stdout)
             part = process.stdout.read(min(length - len(content), 1 << 20))
             if not part:
                 raise EOFError
@@ -178,6 +188,20 @@ class Child:
         if process is not None:
             process.returncode = 0  # none of ours to wait for
         _close(process, lifeline, files)
+
+
+def _wait_for(stream: IO[bytes]) -> None:
+    """Wait until a pipe can be read or written, and let Ctrl-C through.
+
+    A library with a handler of its own for signals may have the kernel go on with a read that one came into,
+    and Python then never hears of it; this waiting ends with a signal, and looks up now and then for one that
+    came just before.
+    """
+    if _POLL is not None:
+        poll = _POLL()
+        poll.register(stream, select.POLLOUT if stream.writable() else select.POLLIN)
+        while not poll.poll(_LOOK_UP):
+            pass
 
 
 def _close(process: subprocess.Popen[bytes] | None, lifeline: int, files: socket.socket | None) -> None:
