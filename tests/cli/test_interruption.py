@@ -1,0 +1,101 @@
+"""Ctrl-C in every command at random moments: gone at once, outputs whole or absent, nothing left behind."""
+
+from __future__ import annotations
+
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from hersey.cli.application import VERBS
+from tests.conftest import ROOT
+
+EXAMPLES = ROOT / "examples"
+BENCH = [str(EXAMPLES / "bench.csv"), "--tare", "standing"]
+MACHINE = str(EXAMPLES / "machine.toml")
+#: Each verb with an input that keeps it busy, and roughly how long on a quiet machine, s.
+TYPED: dict[str, tuple[list[str], float]] = {
+    "report": ([*BENCH, "--machine", MACHINE, "--out", "r.html", "--figures", "pictures"], 4.0),
+    "inspect": ([BENCH[0], "--figure", "i.png"], 2.0),
+    "fit": ([*BENCH, "--json"], 1.5),
+    "models": (BENCH, 3.0),
+    "film": ([MACHINE, "--figure", "f.svg"], 2.0),
+    "map": ([MACHINE, *BENCH, "--out", "m.png"], 4.0),
+    "plan": (
+        [MACHINE, *BENCH, "--target", "60 mm/s", "--at", "150 degC", "--out", "p.csv", "--figure", "p.png"],
+        8.0,
+    ),
+    "compare": ([*BENCH, BENCH[0], "--json"], 2.5),
+    "design": (BENCH, 2.0),
+    "cycles": ([str(EXAMPLES / "stick-slip.csv"), "--drive-speed", "20 mm/s", "--identify"], 3.0),
+    "simulate": (["--csv", "s.csv", "--figure", "s.png"], 1.0),
+    "sweep": ([str(EXAMPLES / "scenario.toml"), "--out", "s.parquet"], 0.8),
+    "hysteresis": (["--closure", "lugre", "--bristle-stiffness", "1e5", "--bristle-damping", "100"], 2.0),
+    "figures": (["--out", "figures"], 9.0),
+    "testbench": (["--size", "60 MB", "--out", "log.csv"], 3.0),
+}
+#: Says when the program can be interrupted: what Python does before is not ours.
+READY = "import sys; from hersey.cli import interruption, main; print('ready', flush=True); main()"
+#: Processor time that ending may take, s: of a clock, half a second is asked on a machine that is not busy.
+LONGEST = 0.5
+
+
+def test_every_verb_is_tried() -> None:
+    assert TYPED.keys() == VERBS.keys()
+
+
+@pytest.mark.parametrize("verb", TYPED)
+@pytest.mark.parametrize("moment", range(3))
+def test_ctrl_c_ends_a_command(verb: str, moment: int, tmp_path: Path) -> None:
+    typed, lasts = TYPED[verb]
+    process = subprocess.Popen(
+        [sys.executable, "-c", READY, verb, *typed],
+        cwd=tmp_path,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    )
+    assert process.stdout is not None
+    assert process.stderr is not None
+    assert process.stdout.readline() == b"ready\n"
+    time.sleep(random.Random(f"{verb} {moment}").uniform(0, 0.9 * lasts))
+    before = processor_time(process.pid)
+    os.kill(process.pid, signal.SIGTERM if moment == 2 else signal.SIGINT)
+    stdout, stderr = process.stdout.read(), process.stderr.read()
+    _, status, used = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    assert process.returncode in (130, 0, -signal.SIGINT)  # it may have come to its end
+    if process.returncode == 130:
+        assert stderr.decode().splitlines()[-1] == "hersey: interrupted"
+        assert "Traceback" not in stderr.decode()
+        assert used.ru_utime + used.ru_stime - before < LONGEST
+        assert not stdout or verb not in ("fit", "compare"), "a part of its JSON"
+    for path in tmp_path.rglob("*"):
+        assert path.is_dir() or is_whole(path), path
+
+
+def processor_time(process: int) -> float:
+    """Processor time of a process and of what it has waited for, s; the children's counts are left out."""
+    fields = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def is_whole(path: Path) -> bool:
+    """Whether a file ends as one of its kind does."""
+    content = path.read_bytes()
+    ends = {
+        ".html": lambda: content.rstrip().endswith(b"</html>"),
+        ".png": lambda: content.endswith(b"IEND\xaeB`\x82"),
+        ".svg": lambda: content.rstrip().endswith(b"</svg>"),
+        ".pdf": lambda: content.rstrip().endswith(b"%%EOF"),
+        ".csv": lambda: content.endswith(b"\n"),
+        ".parquet": lambda: content.endswith(b"PAR1"),
+        ".json": lambda: bool(json.loads(content)),
+        ".md": lambda: content.endswith(b"\n"),
+    }
+    return ends[path.suffix]()
