@@ -68,6 +68,36 @@ def test_a_tooltip_shows_the_numbers_of_a_dwell(opened: Opened) -> None:
     assert "torque (" in text
 
 
+def test_shift_and_wheel_zoom(opened: Opened) -> None:
+    """By an expression of Vega, interpreted: the page forbids to compile it."""
+    place = opened.page.locator("#chart-torque svg.marks")
+    place.scroll_into_view_if_needed()
+    before = place.locator(".role-axis-label text").all_text_contents()
+    box = place.bounding_box()
+    assert box is not None
+    opened.page.mouse.move(box["x"] + 0.4 * box["width"], box["y"] + 0.5 * box["height"])
+    opened.page.keyboard.down("Shift")
+    opened.page.mouse.wheel(0, -600)
+    opened.page.wait_for_function(
+        """(before) => before !== [...document.querySelectorAll("#chart-torque svg.marks .role-axis-label text")]
+          .map((e) => e.textContent).join("|")""",
+        arg="|".join(before),
+    )
+    opened.page.keyboard.up("Shift")
+    opened.assert_quiet()
+
+
+@pytest.mark.parametrize(("number", "start"), [(0, b"<svg"), (1, b"\x89PNG")])
+def test_a_chart_can_be_saved(opened: Opened, number: int, start: bytes) -> None:
+    menu = opened.page.locator("#chart-regime details")
+    if menu.get_attribute("open") is None:
+        menu.locator("summary").click()
+    with opened.page.expect_download() as download:
+        menu.locator("a").nth(number).click()
+    assert download.value.path().read_bytes().startswith(start)
+    assert opened.violations == []
+
+
 def test_it_prints(opened: Opened, tmp_path: Path) -> None:
     pdf = opened.page.pdf(format="A4", path=str(tmp_path / "report.pdf"))
     assert pdf.startswith(b"%PDF")

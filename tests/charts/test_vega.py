@@ -85,11 +85,14 @@ def test_an_interrupt_ends_command_and_renderer(tmp_path: Path, arguments: list[
         stderr=subprocess.PIPE,
         text=True,
     )
-    while not sign.exists():
-        assert process.poll() is None
-        time.sleep(0.01)
-    process.send_signal(signal.SIGINT)
-    _, told = process.communicate(timeout=60.0)
+    try:
+        while not sign.exists():
+            assert process.poll() is None
+            time.sleep(0.01)
+        process.send_signal(signal.SIGINT)
+        _, told = process.communicate(timeout=60.0)
+    finally:
+        process.kill()
     assert (process.returncode, told) == (130, "hersey: interrupted\n")
     assert not Path(f"/proc/{sign.read_text()}").exists()
     written = [path.name for path in place.iterdir()]

@@ -213,11 +213,14 @@ def test_it_ends_with_its_parent(script: Path, tmp_path: Path, end: signal.Signa
     parent = subprocess.Popen(
         [sys.executable, "-c", PARENT, str(script), str(sign)], stderr=subprocess.DEVNULL
     )
-    wait_until(lambda: sign.exists() and sign.read_text())
-    pid = int(sign.read_text())
-    assert not is_gone(pid)
-    parent.send_signal(end)
-    assert parent.wait(60.0) == -end
+    try:
+        wait_until(lambda: sign.exists() and sign.read_text())
+        pid = int(sign.read_text())
+        assert not is_gone(pid)
+        parent.send_signal(end)
+        assert parent.wait(60.0) == -end
+    finally:
+        parent.kill()
     wait_until(lambda: is_gone(pid))
 
 
