@@ -5,7 +5,7 @@ SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
 SOURCES := $(shell find crates -name '*.rs' -o -name Cargo.toml) Cargo.toml pyproject.toml
 
-.PHONY: help build demo test quick lint format typecheck test-rust test-python browser fuzz benchmark \
+.PHONY: help build demo test quick lint format typecheck test-rust test-python browser lowest fuzz benchmark \
   mutants mutants-python mutants-rust clean
 .DEFAULT_GOAL := help
 
@@ -61,6 +61,14 @@ browser: ## install Chromium if there is none
 	@command -v chromium >/dev/null || command -v chromium-browser >/dev/null || { \
 	  root=$$(test "$$(id -u)" = 0 || echo sudo); \
 	  $$root apt-get update -qq && $$root apt-get install -y -qq --no-install-recommends chromium >/dev/null; }
+
+lowest: build ## the tests at the lowest versions of everything we depend on (minutes)
+	rm -rf build/lowest && mkdir -p build && $(PYTHON) -m venv build/lowest
+	$(BIN)/python tests/lowest.py pyproject.toml > build/lowest/constraints.txt
+	build/lowest/bin/python -m pip install --quiet --disable-pip-version-check -c build/lowest/constraints.txt \
+	  '.[formats]' hypothesis lmfit pandas pytest pytest-xdist
+	build/lowest/bin/python -m pip check
+	build/lowest/bin/python -m pytest -n auto -m "not slow" --ignore tests/browser
 
 fuzz: ## 100,000 random parameter sets through the motion core (minutes; FUZZ_SEED=1)
 	cargo test --release --quiet --package hersey-core --test fuzz -- --ignored --nocapture
