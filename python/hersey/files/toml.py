@@ -179,9 +179,7 @@ def read_toml(path: str | Path) -> dict[str, Any]:
 def _refuse_long_keys(text: str) -> None:
     """Refuse keys such as ``a.a.a.a`` of hundreds of parts, which take the parser longer than linear."""
     dots = end = 0
-    for part in _PART.finditer(text):
-        if part.start() != end:
-            return  # the parser stops here too
+    while part := _PART.match(text, end):  # the parser stops where this does
         end = part.end()
         if part[0] == ".":
             dots += 1

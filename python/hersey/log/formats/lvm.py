@@ -20,6 +20,8 @@ from hersey.log.text.numbers import LONGEST_NUMBER, NumberStyle, is_missing
 
 _END = "***End_of_Header***"
 _X = "X_Value"
+#: So few cells are read one by one, which a frame would take longer for.
+_FEW = 200
 _TIME = re.compile(r"([0-9]{2}:[0-9]{2}:[0-9]{2})[.,]?([0-9]*)")
 #: A segment starts with one of these where no blank line stands before it.
 _HEADS = ("Channels",)
@@ -197,6 +199,8 @@ class _Table:
 
     def _numbers(self, segment: _Segment, column: int, rows: int) -> FloatArray:
         cells = [row[column] if column < len(row) else "" for row in segment.rows[:rows]]
+        if len(cells) < _FEW and all(map(self.style.is_number, cells)):
+            return np.array([self.style.value(cell) for cell in cells])
         values = self.style.values(pl.Series(cells, dtype=pl.String))
         if values is None:
             bad = next(i for i, c in enumerate(cells) if not (is_missing(c) or self.style.is_number(c)))
