@@ -17,4 +17,4 @@ def lowest(document: str) -> list[str]:
 
 
 if __name__ == "__main__":
-    print(*lowest(Path(sys.argv[1]).read_text()), sep="\n")
+    sys.stdout.write("\n".join([*lowest(Path(sys.argv[1]).read_text()), ""]))

@@ -79,7 +79,8 @@ def test_shift_and_wheel_zoom(opened: Opened) -> None:
     opened.page.keyboard.down("Shift")
     opened.page.mouse.wheel(0, -600)
     opened.page.wait_for_function(
-        """(before) => before !== [...document.querySelectorAll("#chart-torque svg.marks .role-axis-label text")]
+        """(before) => before !== [
+          ...document.querySelectorAll("#chart-torque svg.marks .role-axis-label text")]
           .map((e) => e.textContent).join("|")""",
         arg="|".join(before),
     )

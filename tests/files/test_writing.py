@@ -23,16 +23,17 @@ from hersey.files.writing import write_atomically
 def die(*_):
     os.kill(os.getpid(), signal.SIGKILL)
 
-def torn(handle, mode):
+def torn(path, mode):  # in the place of a method
     class File:
         def __enter__(self): return self
         def __exit__(self, *_): pass
         def write(self, content):
             os.write(handle, content[: len(content) // 2])
             die()
+    handle = os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY)
     return File()
 
-where = {"write": ("os.fdopen", torn), "replace": ("pathlib.Path.replace", die)}[sys.argv[2]]
+where = {"write": ("pathlib.Path.open", torn), "replace": ("pathlib.Path.replace", die)}[sys.argv[2]]
 with mock.patch(*where):
     write_atomically(Path(sys.argv[1]), b"new" * 1000, overwrite=True)
 """
