@@ -70,13 +70,11 @@ def test_the_table_ends_at_the_same_line_in_every_encoding(below: str, encoding:
 
 @pytest.mark.parametrize("cell", ['"', '"a', '"1.5', 'x"y', '""', '"""'])
 def test_a_quote_without_its_end_is_looked_at(cell: str, tmp_path: Path) -> None:
-    """Polars refuses it, or takes in the lines below: neither loses a row."""
+    """Polars refuses it, or takes in the lines below as far as another quote: neither loses a row."""
     log = tmp_path / "log.csv"
-    log.write_text(
-        "Note,"
-        + HEADER
-        + "".join(f"{cell if i == 9 else 'a'},{r}\n" for i, r in enumerate(ROWS.splitlines()))
-    )
+    notes = {9: cell, 20: 'a"'}
+    rows = [f"{notes.get(i, 'a')},{row}\n" for i, row in enumerate(ROWS.splitlines())]
+    log.write_text("Note," + HEADER + "".join(rows))
     (file,) = inspect(log).files
     assert file.rows == 40
     assert [c.traits.high for c in file.channels if c.role == "time"] == [39.0]
