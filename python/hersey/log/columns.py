@@ -13,24 +13,23 @@ from hersey.errors import UnreadableLogError
 from hersey.log.assembly import columns, nothing_to_read
 from hersey.log.formats import format_of, opened
 from hersey.log.recording import Recording
-from hersey.log.text.delimited import delimited_layout, delimited_numbers
+from hersey.log.text.delimited import DelimitedFile, open_delimited
 from hersey.log.text.layout import Column
 
 
 class OpenColumns:
     """The columns of a file while it is open."""
 
-    def __init__(self, path: Path, recording: Recording | None) -> None:
-        """Look at a recording, or at a text table where there is none."""
-        self.file, self._path, self._recording = path.name, path, recording
+    def __init__(self, file: str, source: Recording | DelimitedFile) -> None:
+        """Look at a recording or at a text table; ``file`` is its name in messages."""
+        self.file, self._source = file, source
         self.headless = ""  #: why the columns of a text table have no names, or empty
-        if recording is None:
-            layout = delimited_layout(path)
-            self.columns, self.headless = layout.named, layout.headless
-        elif not recording.signals:
-            raise nothing_to_read(recording)
+        if isinstance(source, DelimitedFile):
+            self.columns, self.headless = source.layout.named, source.layout.headless
+        elif not source.signals:
+            raise nothing_to_read(source)
         else:
-            self.columns = columns(recording)
+            self.columns = columns(source)
 
     def numbers(self, *chosen: Column, complete: bool = False) -> list[FloatArray]:
         """Return columns in the unit as written, shape (rows,), NaN where a number is missing.
@@ -40,9 +39,9 @@ class OpenColumns:
         UnreadableLogError
             If a cell is no number, naming line and column; if ``complete``, also if one is missing.
         """
-        if self._recording is None:
-            return delimited_numbers(self._path, chosen, complete=complete)
-        arrays = [self._recording.signals[column.index].load() for column in chosen]
+        if isinstance(self._source, DelimitedFile):
+            return self._source.numbers(chosen, complete=complete)
+        arrays = [self._source.signals[column.index].load() for column in chosen]
         for column, values in zip(chosen, arrays, strict=True):
             if complete and not np.isfinite(values).all():
                 row = int(np.argmin(np.isfinite(values)))
@@ -54,7 +53,7 @@ class OpenColumns:
 
     def clock(self, column: Column) -> FloatArray | None:
         """Return the time of each sample of a column, s, or None if a column of the file holds it."""
-        clock = self._recording.signals[column.index].clock if self._recording else None
+        clock = None if isinstance(self._source, DelimitedFile) else self._source.signals[column.index].clock
         return clock() if clock else None
 
 
@@ -76,7 +75,8 @@ def open_columns(path: str | Path) -> Iterator[OpenColumns]:
     path = Path(path)
     kind = format_of(path)
     if kind is None:
-        yield OpenColumns(path, None)
+        with open_delimited(path) as table:
+            yield OpenColumns(path.name, table)
         return
     with opened(path, kind) as recording:
-        yield OpenColumns(path, recording)
+        yield OpenColumns(path.name, recording)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -109,11 +110,13 @@ def list_channels(path: Any) -> list[tuple[str, str]]:
                 raise nothing_to_read(recording)
     else:
         listed = delimited_columns(path)
-    names = [column.path for column in listed]
-    return [
-        (f"{name}#{names[:i].count(name) + 1}" if names.count(name) > 1 else name, column.unit)
-        for i, (name, column) in enumerate(zip(names, listed, strict=True))
-    ]
+    counts, seen = Counter(column.path for column in listed), Counter[str]()
+    names = []
+    for column in listed:
+        seen[column.path] += 1
+        repeated = f"#{seen[column.path]}" if counts[column.path] > 1 else ""
+        names.append((f"{column.path}{repeated}", column.unit))
+    return names
 
 
 def _listed(paths: Any) -> list[Any]:
