@@ -5,6 +5,7 @@
 mod drag;
 mod ensemble;
 mod errors;
+mod interrupt;
 mod lubrication;
 mod motion;
 mod reynolds;
@@ -49,6 +50,7 @@ mod _core {
         module.add("FILM_CONSTANTS", super::lubrication::FILM_CONSTANTS)?;
         module.add("FILM_SPEED_EXPONENTS", super::lubrication::speed_exponents())?;
         module.add("GAS_CONSTANT", hersey_core::lubrication::viscosity::GAS_CONSTANT)?;
+        module.add("MOST_STEPS", hersey_core::work::MOST_STEPS)?;
         module.add("NUDGE", hersey_core::motion::NUDGE)?;
         module.add("NIP_RATIO_RANGE", hersey_core::lubrication::paper::NIP_RATIO_RANGE)?;
         module.add("VERSION", env!("CARGO_PKG_VERSION"))
