@@ -107,7 +107,7 @@ mod tests {
             asked.get() > 2
         };
         let work = Work::new(u64::MAX, &stop);
-        let steps = (0..).take_while(|_| work.take(1).is_ok()).count();
+        let steps = (0..9 * BETWEEN).take_while(|_| work.take(1).is_ok()).count();
         assert_eq!((u64::try_from(steps).unwrap(), asked.get()), (2 * BETWEEN, 3));
         assert_eq!(work.apart(5).take(1), Err(Error::Stopped));
     }

@@ -11,6 +11,8 @@ use hersey_core::stability::{bands, swings};
 use hersey_core::{Error, Work};
 
 const BRISTLES: Closure = Closure::LuGre { bristle_stiffness: 1e5, bristle_damping: 100.0 };
+/// Work that tells only how it ended.
+type Call = fn(&Work) -> Result<(), Error>;
 /// Longer than anybody waits.
 const FOR_EVER: f64 = 1e300;
 
@@ -51,7 +53,7 @@ fn film(nodes: usize, work: &Work) -> Result<(), Error> {
 }
 
 /// Everything that can last, by name.
-fn long_calls() -> Vec<(&'static str, fn(&Work) -> Result<(), Error>)> {
+fn long_calls() -> Vec<(&'static str, Call)> {
     vec![
         ("motion", |work| motion(Closure::Retained, work)),
         ("motion with bristles", |work| motion(BRISTLES, work)),
@@ -92,11 +94,8 @@ fn whatever_lasts_stops_when_it_is_asked_to() {
         let (train, drag) = belt(Closure::Retained);
         swings(&train, &drag, &[0.1; 99], 1e-11, work).map(drop)
     };
-    let mut calls: Vec<(&str, Box<dyn Fn(&Work) -> Result<(), Error>>)> =
-        vec![("bands", Box::new(many)), ("swings", Box::new(swing))];
-    for (name, call) in long_calls() {
-        calls.push((name, Box::new(call)));
-    }
+    let mut calls = long_calls();
+    calls.extend([("bands", many as Call), ("swings", swing as Call)]);
     for (name, call) in calls {
         // at once, and somewhere on the way
         for patience in [0, 1, 7] {

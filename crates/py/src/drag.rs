@@ -5,7 +5,7 @@ use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 
 use crate::errors::{raised, refused};
-use crate::interrupt::interruptible;
+use crate::interrupt::{copied, interruptible};
 
 /// A drag law.
 #[pyclass(frozen, module = "hersey._core")]
@@ -95,7 +95,7 @@ impl Law {
         py: Python<'py>,
         speed: PyReadonlyArray1<'py, f64>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let speeds = speed.as_array().to_owned();
+        let speeds = copied(py, &speed)?;
         let forces = interruptible(py, u64::MAX, |work| {
             speeds
                 .iter()

@@ -12,7 +12,7 @@ use pyo3::prelude::*;
 
 use crate::drag::{ClosureArguments, closure_from};
 use crate::errors::{Failure, raised, raised_at};
-use crate::interrupt::{PATIENCE, interruptible};
+use crate::interrupt::{PATIENCE, copied, interruptible};
 
 /// Names behind the indices of kinds; the last is for motion that cannot be continued.
 pub const KINDS: [&str; 5] = ["steady_sliding", "oscillation", "stick_slip", "unsettled", "failed"];
@@ -98,17 +98,14 @@ pub fn sweep<'py>(
     most_steps: u64,
 ) -> PyResult<Sweep> {
     let columns: Vec<Vec<f64>> =
-        parameters.iter().map(|column| column.as_array().iter().copied().collect()).collect();
+        parameters.iter().map(|column| copied(py, column)).collect::<PyResult<_>>()?;
     let sets = columns[0].len();
     let closure = closure_from(closure)?;
     let belt = |i: usize| {
         let set = std::array::from_fn(|c| columns[c][i]);
         belt_of(set, closure, steady).map_err(|error| (i, error))
     };
-    let belts = interruptible(py, u64::MAX, |work| {
-        let each = |i: usize| work.take(1).map(|()| belt(i));
-        (0..sets).map(each).collect::<Result<Result<Vec<_>, _>, _>>()
-    })?;
+    let belts = each(py, sets, belt)?;
     let belts = belts.map_err(|(i, error)| match sets {
         1 => raised(error),
         _ => raised_at("set", i, error),
@@ -117,6 +114,15 @@ pub fn sweep<'py>(
     let follow = |belts: &[Belt], work: &Work| ensemble(belts, span, tolerance, work);
     let results = in_chunks(py, &belts, CHUNK, threads, progress, most_steps, follow)?;
     Sweep::new(py, &results)
+}
+
+/// What `make` makes of each of so many sets, or of the first that it refuses.
+pub fn each<T: Send, E: Send>(
+    py: Python<'_>,
+    sets: usize,
+    make: impl Fn(usize) -> Result<T, E> + Sync,
+) -> PyResult<Result<Vec<T>, E>> {
+    interruptible(py, u64::MAX, |work| (0..sets).map(|i| work.take(1).map(|()| make(i))).collect())
 }
 
 /// The belt of a parameter set, in the order of `sweep`.

@@ -8,12 +8,37 @@ use std::time::{Duration, Instant};
 
 use hersey_core::Error;
 use hersey_core::work::Work;
+use numpy::ndarray::Dimension;
+use numpy::{PyReadonlyArray, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
 use crate::errors::raised;
 
 /// How often progress is told and an interrupt noticed.
 pub const PATIENCE: Duration = Duration::from_millis(50);
+
+/// Numbers that are copied between two looks for a signal.
+const AT_ONCE: usize = 1 << 18;
+
+/// Look for a signal on a thread that has let go of the interpreter.
+#[allow(clippy::redundant_closure_for_method_calls)] // the method is not general enough in its lifetime
+fn signalled() -> PyResult<()> {
+    Python::attach(|py| py.check_signals())
+}
+
+/// The numbers of an array in the order of its last axis; what a signal raises ends it.
+pub fn copied<D: Dimension>(
+    py: Python<'_>,
+    array: &PyReadonlyArray<'_, f64, D>,
+) -> PyResult<Vec<f64>> {
+    let (view, mut numbers) = (array.as_array(), Vec::with_capacity(array.len()));
+    let mut rest = view.iter();
+    while numbers.len() < view.len() {
+        py.check_signals()?;
+        numbers.extend(rest.by_ref().take(AT_ONCE));
+    }
+    Ok(numbers)
+}
 
 /// What `computation` makes of so much work, without the interpreter's lock; what a signal raises ends it.
 pub fn interruptible<R: Send>(
@@ -26,7 +51,7 @@ pub fn interruptible<R: Send>(
         let stop = || {
             if interrupt.get().is_none() && looked.get().elapsed() >= PATIENCE {
                 looked.set(Instant::now());
-                if let Err(raised) = Python::attach(Python::check_signals) {
+                if let Err(raised) = signalled() {
                     // it is empty until here, and then no more
                     let _ = interrupt.set(raised);
                 }

@@ -37,12 +37,15 @@ mod _core {
     #[pymodule_export]
     use super::stability::{Band, Bands, Swings, band, bands, swings};
 
+    use numpy::PyArrayMethods;
     use pyo3::prelude::*;
 
     /// The names behind the indices of modes and kinds, and the version of the crate.
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
         use hersey_core::drag::Mode;
+        // what NumPy must import is imported now, and not where a signal may cut in
+        numpy::PyArray1::<f64>::zeros(module.py(), 0, false).readonly();
         let modes = [Mode::Ehl, Mode::Mixed, Mode::Microslip, Mode::Stuck];
         module.add("MODES", modes.map(super::motion::mode_name))?;
         module.add("KINDS", super::ensemble::KINDS)?;

@@ -12,7 +12,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::errors::{raised, raised_at, refused};
-use crate::interrupt::interruptible;
+use crate::interrupt::{copied, interruptible};
 
 /// Arrays of one shape, one for each quantity.
 type Columns<'py, const N: usize> = [PyReadonlyArrayDyn<'py, f64>; N];
@@ -51,10 +51,9 @@ fn mapped<const IN: usize, R: Send>(
     if columns.iter().any(|column| column.as_array().shape() != shape) {
         return Err(refused("shape", "the arrays differ in shape".to_owned()));
     }
-    py.check_signals()?;
-    let columns: [Vec<f64>; IN] =
-        std::array::from_fn(|c| columns[c].as_array().iter().copied().collect());
-    let points = columns[0].len();
+    let columns: Vec<Vec<f64>> =
+        columns.iter().map(|column| copied(py, column)).collect::<PyResult<_>>()?;
+    let points = columns.first().map_or(0, Vec::len);
     let results = interruptible(py, u64::MAX, |work| {
         let point = |i: usize| {
             work.take(POINT)?;

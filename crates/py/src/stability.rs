@@ -9,9 +9,9 @@ use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 
 use crate::drag::{ClosureArguments, Law, closure_from};
-use crate::ensemble::{column, failures, in_chunks};
+use crate::ensemble::{column, each, failures, in_chunks};
 use crate::errors::{Failure, raised, raised_at};
-use crate::interrupt::interruptible;
+use crate::interrupt::{copied, interruptible};
 
 /// Belts that one thread takes at a time.
 const CHUNK: usize = 64;
@@ -113,15 +113,14 @@ pub fn bands<'py>(
     most_steps: u64,
 ) -> PyResult<Bands> {
     let columns: Vec<Vec<f64>> =
-        parameters.iter().map(|column| column.as_array().iter().copied().collect()).collect();
+        parameters.iter().map(|column| copied(py, column)).collect::<PyResult<_>>()?;
     let closure = closure_from(closure)?;
     let belt = |i: usize| -> Result<(Drivetrain, Drag), Error> {
         let [k, m, force, speed, ehl, mixed, stick] = std::array::from_fn(|c| columns[c][i]);
         Ok((Drivetrain::new(k, m)?, Drag::new(force, speed, ehl, mixed, stick, closure)?))
     };
-    let belts = (0..columns[0].len())
-        .map(|i| belt(i).map_err(|error| raised_at("set", i, error)))
-        .collect::<PyResult<Vec<_>>>()?;
+    let belts = each(py, columns[0].len(), |i| belt(i).map_err(|error| (i, error)))?
+        .map_err(|(i, error)| raised_at("set", i, error))?;
     let bands =
         |belts: &[(Drivetrain, Drag)], work: &Work| stability::bands(belts, lower, tolerance, work);
     let found = in_chunks(py, &belts, CHUNK, threads, progress, most_steps, bands)?;
@@ -148,7 +147,7 @@ pub fn swings(
     tolerance: f64,
 ) -> PyResult<Option<Swings>> {
     let train = Drivetrain::new(train.0, train.1).map_err(raised)?;
-    let slowest: Vec<f64> = slowest.as_array().iter().copied().collect();
+    let slowest = copied(py, &slowest)?;
     let found = interruptible(py, MOST_STEPS, |work| {
         stability::swings(&train, &drag.0, &slowest, tolerance, work)
     })?;

@@ -16,8 +16,8 @@ const LONGEST_STEP: f64 = 3.0;
 /// Decay over the time in question, in e-folds, from which the rising branch counts as stiff.
 const STIFF: f64 = 30.0;
 
-/// What a Runge-Kutta step costs, tried and looked at for guards, in Taylor steps.
-const RUNGE_KUTTA: u64 = 40;
+/// What an implicit and an explicit Runge-Kutta step cost, tried and looked at for guards, in Taylor steps.
+const RUNGE_KUTTA: (u64, u64) = (40, 10);
 
 /// Time over that until a held belt is released from which the rest is left to the pieces after.
 const FAR: f64 = 1e6;
@@ -198,9 +198,9 @@ impl<'a> Motion<'a> {
 
     fn steps_piece(&mut self, longest: f64) -> Result<Piece<'a>, Error> {
         let (system, flow) = (self.now.system, self.flow());
-        let formula = match self.integrator {
-            Integrator::Adaptive => Formula::Radau,
-            Integrator::DormandPrince => Formula::DormandPrince,
+        let (formula, cost) = match self.integrator {
+            Integrator::Adaptive => (Formula::Radau, RUNGE_KUTTA.0),
+            Integrator::DormandPrince => (Formula::DormandPrince, RUNGE_KUTTA.1),
         };
         let (scales, tolerance) = (self.scales(), self.tolerance);
         let state = self.phase.state();
@@ -218,7 +218,7 @@ impl<'a> Motion<'a> {
             if tries > MAX_TRIES {
                 return Err(Error::Stalled { time: self.now.time });
             }
-            self.work.take(RUNGE_KUTTA).map_err(|error| error.at_time(self.now.time))?;
+            self.work.take(cost).map_err(|error| error.at_time(self.now.time))?;
             if let Some((_, errors)) = formula.step(&flow, &state, duration, &scales, tolerance) {
                 let error =
                     (0..3).map(|i| errors[i].abs() / (tolerance * scales[i])).fold(0.0, f64::max);

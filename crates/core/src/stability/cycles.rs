@@ -39,20 +39,17 @@ pub fn swings(
     above("stiffness", train.stiffness(), 0.0)?;
     let Some(lap) = slip_lap(train, drag) else { return Ok(None) };
     let transition = drag.transition_speed();
-    for speed in slowest {
-        at_least("slowest", *speed, drag.stick_speed())?;
-        below("slowest", *speed, transition)?;
-    }
+    let many = work.apart(u64::MAX);
     // a cycle is stable where its drive speed rises with its slowest speed: where a slower drive swings wider
-    let laps: Vec<SlipLap> = slowest
-        .iter()
-        .flat_map(|speed| {
-            let own = speed / transition;
-            let most = 0.5 * (1.0 + own);
-            [own, own * (1.0 - NEAR), own * (1.0 + NEAR)]
-                .map(|s| SlipLap { slowest: s.min(most), ..lap })
-        })
-        .collect();
+    let mut laps = Vec::with_capacity(3 * slowest.len());
+    for speed in slowest {
+        many.take(1)?;
+        at_least("slowest", *speed, drag.stick_speed())?;
+        let own = below("slowest", *speed, transition)? / transition;
+        let most = 0.5 * (1.0 + own);
+        let beside = [own, own * (1.0 - NEAR), own * (1.0 + NEAR)];
+        laps.extend(beside.map(|s| SlipLap { slowest: s.min(most), ..lap }));
+    }
     let found = cycles(&laps, tolerance, work)?;
     let (triples, _) = found.as_chunks::<3>();
     Ok(Some(
