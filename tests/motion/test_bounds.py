@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import time
 from collections.abc import Callable
 from dataclasses import replace
@@ -11,7 +12,7 @@ import numpy as np
 import pytest
 
 from hersey import Drag, Drivetrain, simulate, stick_slip
-from hersey.errors import HerseyError, ParameterError, UnfinishedError
+from hersey.errors import ParameterError, UnfinishedError
 from hersey.lubrication.reynolds import solve_line_contact
 from hersey.motion.sweep import sweep
 from hersey.stability.hysteresis import hysteresis, hysteresis_sweep
@@ -58,10 +59,8 @@ def test_values_out_of_all_measure_end(
 ) -> None:
     begun = time.process_time()
     for value in EXTREME if name[-8:] != "exponent" else (-100.0, -2.0, -1.0, 0.0, 30.0, *EXTREME):
-        try:
+        with contextlib.suppress(ParameterError, UnfinishedError):
             call(*belt(name, value, closure))
-        except (ParameterError, UnfinishedError) as error:
-            assert str(error)
     assert time.process_time() - begun < LONG
 
 
@@ -75,10 +74,8 @@ def test_films_out_of_all_measure_end(name: str, thickness: float | None) -> Non
     begun = time.process_time()
     for value in EXTREME:
         given = {**nip, "effective_modulus": 2.63e6, "nodes": 101, name: value}
-        try:
+        with contextlib.suppress(ParameterError, UnfinishedError):
             solve_line_contact(**given, thickness=thickness, poisson=thickness and 0.49)
-        except HerseyError as error:
-            assert str(error)
     assert time.process_time() - begun < 10 * LONG
 
 
@@ -107,7 +104,7 @@ def test_a_belt_of_a_sweep_that_takes_too_long_is_among_the_failures() -> None:
 def test_a_band_allows_its_motions_only_so_much_together() -> None:
     with pytest.raises(UnfinishedError) as caught:
         hysteresis(TRAIN, BRISTLES, most_steps=FEW)
-    assert caught.value.steps in (FEW, 20 * FEW)
+    assert caught.value.steps in (FEW, 6 * FEW)
 
 
 @pytest.mark.parametrize(("ehl", "mixed"), [(-0.7, -0.7), (-1.2, -1.2), (-1.2, -0.7)])

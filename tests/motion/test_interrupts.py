@@ -1,7 +1,7 @@
 """Ctrl-C in the midst of each call that can last: the call ends with KeyboardInterrupt, and soon.
 
-Each call would last minutes or hours. It runs in a process of its own, which is interrupted once it has worked
-for a while; what is measured is its processor time afterwards, which a busy machine does not lengthen.
+Each call would last minutes or hours. It runs in a process of its own, which is interrupted once it has
+worked; what is measured is its processor time afterwards, which a busy machine does not lengthen.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The parameters of a belt's motion: names in the order of the core, kinds of units, and how many of all may be."""
+"""The parameters of a motion: names in the order of the core, kinds of units, and how many of all may be."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from hersey import _core
 from hersey.arrays import FloatArray
 from hersey.errors import ParameterError
 
-#: Work that a motion may take: steps of a microsecond or so. A step of a stiff motion, or with bristles, is 40.
+#: Work that a motion may take, in steps of a microsecond or so; a stiff one, or with bristles, counts for 40.
 MOST_STEPS: int = _core.MOST_STEPS
 #: Most parameter sets of one sweep, which fit in some gigabytes.
 MOST_SETS = 20_000_000

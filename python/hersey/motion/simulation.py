@@ -391,8 +391,8 @@ def stick_slip(
 
     Between the transition speed and the fold both sliding and stick-slip exist, and the start decides.
     ``steady`` starts sliding with the drive but for a nudge of 0.1 % in speed, since an unstable balance is
-    nothing that a belt can keep; a pair is the belt speed and the stretch to start from. ``most_steps`` is the
-    work that the motion may take, as for `simulate`.
+    nothing that a belt can keep; a pair is the belt speed and the stretch to start from. ``most_steps`` is
+    the work that the motion may take, as for `simulate`.
 
     Raises
     ------

@@ -201,7 +201,7 @@ def hysteresis(
         milliseconds, that is for a `Drag` with ``retained`` or ``stiction``.
     most_steps
         Work that each motion may take, as for `simulate`, where edges are found by simulation; all together
-        may take as much, with a smooth closure 20 times that.
+        may take as much, with a smooth closure six times that.
 
     Raises
     ------
@@ -273,9 +273,9 @@ def hysteresis_sweep(
 ) -> xr.Dataset:
     """Return the band of each combination of parameters, as `hysteresis` does for one.
 
-    Axes, ``zip``, ``threads`` and ``progress`` are those of `sweep`, ``most_steps`` that of `hysteresis`. ``temperature`` (K) is needed if the
-    drag varies with it, and takes the place of the transition force and of all speeds. Without ``lower`` the
-    lower edge is left out (not a number), which takes a tenth of the time.
+    Axes, ``zip``, ``threads`` and ``progress`` are those of `sweep`, ``most_steps`` that of `hysteresis`.
+    ``temperature`` (K) is needed if the drag varies with it, and takes the place of the transition force and
+    of all speeds. Without ``lower`` the lower edge is left out (not a number): a tenth of the time.
 
     Returns
     -------

@@ -59,7 +59,7 @@ const FASTEST: f64 = 1e4;
 /// Work of all motions of a belt together, over what one of them may take.
 const MOTIONS: u64 = 1;
 /// The same for smooth closures.
-const MOTIONS_SMOOTH: u64 = 20;
+const MOTIONS_SMOOTH: u64 = 6;
 
 /// The band of each belt, without its lower edge (not a number) unless `lower` asks for it: it costs ten times
 /// the fold. What `work` allows is for each motion.
