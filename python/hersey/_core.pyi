@@ -14,6 +14,7 @@ __all__ = [
     "GAS_CONSTANT",
     "KINDS",
     "MODES",
+    "MOST_STEPS",
     "NIP_RATIO_RANGE",
     "NUDGE",
     "REGIMES",
@@ -71,6 +72,7 @@ FILM_SPEED_EXPONENTS: list[float]
 GAS_CONSTANT: float
 KINDS: list[str]
 MODES: list[str]
+MOST_STEPS: int
 NIP_RATIO_RANGE: tuple[float, float]
 NUDGE: float
 REGIMES: list[str]
@@ -425,6 +427,7 @@ def simulate(
     samples: int,
     tolerance: float,
     integrator: str,
+    most_steps: int,
 ) -> Trajectory: ...
 def steady_start(train: tuple[float, float], drag: Law, speed: float, nudged: bool) -> State: ...
 def stick_slip(
@@ -434,6 +437,7 @@ def stick_slip(
     start: tuple[float, float],
     duration: float | None,
     tolerance: float,
+    most_steps: int,
 ) -> Cycle: ...
 def sweep(
     parameters: Sequence[_Floats],
@@ -443,8 +447,9 @@ def sweep(
     tolerance: float,
     threads: int,
     progress: Callable[[int, int], object] | None,
+    most_steps: int,
 ) -> Sweep: ...
-def band(train: tuple[float, float], drag: Law, tolerance: float) -> Band: ...
+def band(train: tuple[float, float], drag: Law, tolerance: float, most_steps: int) -> Band: ...
 def bands(
     parameters: Sequence[_Floats],
     closure: _Closure,
@@ -452,6 +457,7 @@ def bands(
     tolerance: float,
     threads: int,
     progress: Callable[[int, int], object] | None,
+    most_steps: int,
 ) -> Bands: ...
 def swings(train: tuple[float, float], drag: Law, slowest: _Floats, tolerance: float) -> Swings | None: ...
 def line_contact(

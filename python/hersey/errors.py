@@ -72,7 +72,8 @@ class UnfinishedError(HerseyError, RuntimeError):
     """A computation on sound input that did not come to its end.
 
     ``quantity`` and ``value`` (in ``unit``) tell where a solution was lost, ``time`` is that which a motion
-    had reached; ``index`` as in `ParameterError`. Each is None where it is not known.
+    had reached; ``steps`` are those that were allowed, where they did not suffice; ``index`` as in
+    `ParameterError`. Each is None where it is not known.
     """
 
     def __init__(
@@ -82,11 +83,13 @@ class UnfinishedError(HerseyError, RuntimeError):
         value: float | None = None,
         unit: str | None = None,
         time: float | None = None,
+        steps: int | None = None,
         index: int | None = None,
     ) -> None:
         """Take the message and what is known of the end."""
         super().__init__(*message)
-        self.quantity, self.value, self.unit, self.time, self.index = quantity, value, unit, time, index
+        self.quantity, self.value, self.unit = quantity, value, unit
+        self.time, self.steps, self.index = time, steps, index
 
 
 class OutputError(HerseyError, OSError):

@@ -55,11 +55,32 @@ pub enum Error {
         /// That value.
         value: f64,
     },
-    /// The motion takes more steps than anybody would wait for.
+    /// The motion takes more steps than are allowed.
     TooLong {
-        /// Steps taken.
-        steps: usize,
+        /// Steps allowed.
+        steps: u64,
         /// Model time reached.
+        time: f64,
+    },
+    /// The work takes more steps than are allowed.
+    WorkSpent {
+        /// Steps allowed.
+        steps: u64,
+    },
+    /// A numerical solution takes more steps than are allowed.
+    GivenUp {
+        /// Name of the quantity that was led to its value step by step.
+        quantity: &'static str,
+        /// The value that it had reached.
+        value: f64,
+        /// Steps allowed.
+        steps: u64,
+    },
+    /// The caller does not wait for the end.
+    Stopped,
+    /// No step of the motion ends in a number.
+    Stalled {
+        /// Model time at which it happens.
         time: f64,
     },
     /// Events pile up at one instant.
@@ -105,8 +126,22 @@ impl fmt::Display for Error {
             Self::TooLong { steps, time } => {
                 write!(
                     f,
-                    "after {steps} steps the motion has reached time {time:e} only: values too far apart"
+                    "after {steps} steps, all that are allowed, the motion has reached time {time:e} only: {MORE}"
                 )
+            }
+            Self::WorkSpent { steps } => {
+                write!(f, "no end after {steps} steps, all that are allowed: {MORE}")
+            }
+            Self::GivenUp { quantity, value, steps } => {
+                write!(
+                    f,
+                    "after {steps} steps, all that are allowed, the solution has come to {quantity} {value:e} \
+                     only: try a lighter load or a faster film"
+                )
+            }
+            Self::Stopped => write!(f, "stopped before the end"),
+            Self::Stalled { time } => {
+                write!(f, "no step from time {time:e} on ends in a number: values too far apart")
             }
             Self::Chattering { guard, time } => {
                 write!(f, "the motion switches without end at time {time:e} (guard: {guard})")
@@ -121,6 +156,9 @@ impl fmt::Display for Error {
     }
 }
 
+/// The way out of a motion that is too long.
+const MORE: &str = "values too far apart, or allow more by most_steps";
+
 impl std::error::Error for Error {}
 
 impl Error {
@@ -134,8 +172,13 @@ impl Error {
             | Self::NotBelow { quantity, .. }
             | Self::TooFew { quantity, .. }
             | Self::Backwards { quantity, .. }
+            | Self::GivenUp { quantity, .. }
             | Self::NotConverged { quantity, .. } => Some(quantity),
-            Self::TooLong { .. } | Self::Chattering { .. } => None,
+            Self::TooLong { .. }
+            | Self::WorkSpent { .. }
+            | Self::Stopped
+            | Self::Stalled { .. }
+            | Self::Chattering { .. } => None,
         }
     }
 
@@ -148,8 +191,14 @@ impl Error {
             | Self::TooLarge { value, .. }
             | Self::NotBelow { value, .. }
             | Self::Backwards { value, .. }
+            | Self::GivenUp { value, .. }
             | Self::NotConverged { value, .. } => Some(value),
-            Self::TooFew { .. } | Self::TooLong { .. } | Self::Chattering { .. } => None,
+            Self::TooFew { .. }
+            | Self::TooLong { .. }
+            | Self::WorkSpent { .. }
+            | Self::Stopped
+            | Self::Stalled { .. }
+            | Self::Chattering { .. } => None,
         }
     }
 
@@ -170,7 +219,20 @@ impl Error {
     #[must_use]
     pub fn time(&self) -> Option<f64> {
         match *self {
-            Self::TooLong { time, .. } | Self::Chattering { time, .. } => Some(time),
+            Self::TooLong { time, .. } | Self::Stalled { time } | Self::Chattering { time, .. } => {
+                Some(time)
+            }
+            _ => None,
+        }
+    }
+
+    /// Steps that were allowed, where they did not suffice.
+    #[must_use]
+    pub fn steps(&self) -> Option<u64> {
+        match *self {
+            Self::TooLong { steps, .. }
+            | Self::WorkSpent { steps }
+            | Self::GivenUp { steps, .. } => Some(steps),
             _ => None,
         }
     }
@@ -185,7 +247,21 @@ impl Error {
     /// Whether the input was sound and the computation did not come to its end.
     #[must_use]
     pub fn is_unfinished(&self) -> bool {
-        matches!(self, Self::TooLong { .. } | Self::Chattering { .. } | Self::NotConverged { .. })
+        matches!(
+            self,
+            Self::TooLong { .. }
+                | Self::WorkSpent { .. }
+                | Self::GivenUp { .. }
+                | Self::Stopped
+                | Self::Stalled { .. }
+                | Self::Chattering { .. }
+                | Self::NotConverged { .. }
+        )
+    }
+
+    /// The same of a motion that has reached `time`.
+    pub(crate) fn at_time(self, time: f64) -> Self {
+        if let Self::WorkSpent { steps } = self { Self::TooLong { steps, time } } else { self }
     }
 }
 
@@ -203,6 +279,18 @@ const UNITS: [(&[&str], &str); 11] = [
     (&["film thickness", "flooded film", "supplied layer", "rubber thickness"], "m"),
     (&["radius", "roll length", "radius along the motion", "radius across the motion"], "m"),
 ];
+
+/// The results, each its own, unless the work on one was stopped.
+pub(crate) fn unless_stopped<T>(
+    results: impl Iterator<Item = Result<T, Error>>,
+) -> Result<Vec<Result<T, Error>>, Error> {
+    results
+        .map(|result| match result {
+            Err(Error::Stopped) => Err(Error::Stopped),
+            other => Ok(other),
+        })
+        .collect()
+}
 
 /// `value` if it is finite.
 pub(crate) fn finite(quantity: &'static str, value: f64) -> Result<f64, Error> {
@@ -262,7 +350,17 @@ mod tests {
         assert_eq!((long.quantity(), long.time()), (None, Some(1.5)));
         let lost = Error::NotConverged { quantity: "entrainment_speed", value: 0.1 };
         assert_eq!((lost.unit(), lost.value()), (Some("m/s"), Some(0.1)));
-        assert!(long.is_unfinished() && lost.is_unfinished());
+        assert!(long.is_unfinished() && lost.is_unfinished() && Error::Stopped.is_unfinished());
+        let spent = Error::WorkSpent { steps: 9 };
+        assert_eq!((spent.at_time(1.5), small.at_time(1.5)), (long, small));
+        let given_up = Error::GivenUp { quantity: "entrainment_speed", value: 0.1, steps: 9 };
+        assert_eq!((given_up.unit(), given_up.value()), (Some("m/s"), Some(0.1)));
+        let stalled = Error::Stalled { time: 1.5 };
+        assert!(stalled.is_unfinished() && stalled.time() == Some(1.5));
+        for error in [long, spent, given_up] {
+            assert!(error.is_unfinished() && error.steps() == Some(9), "{error}");
+            assert!(error.to_string().contains("9 steps"), "{error}");
+        }
         assert!(Error::Chattering { guard: "reversal", time: 0.0 }.is_unfinished());
     }
 

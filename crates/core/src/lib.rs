@@ -3,6 +3,7 @@
 //! | module                    | responsibility                                                                     |
 //! |---------------------------|------------------------------------------------------------------------------------|
 //! | `error`                   | the closed list of ways an input can be wrong, or a computation can end unfinished |
+//! | `work`                    | how much work a computation may do, and whether anybody still waits for it         |
 //! | `lubrication::viscosity`  | viscosity against temperature, pressure and shear rate                             |
 //! | `lubrication::contact`    | moduli, Hertz, rubber hardness                                                     |
 //! | `lubrication::layer`      | a rigid cylinder pressed into a bonded elastic layer: nip width and pressure       |
@@ -41,5 +42,7 @@ pub mod error;
 pub mod lubrication;
 pub mod motion;
 pub mod stability;
+pub mod work;
 
 pub use error::Error;
+pub use work::Work;

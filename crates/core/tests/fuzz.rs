@@ -2,6 +2,7 @@
 //!
 //! The suite runs a thousand; `make fuzz` runs 100,000 and prints the count of each outcome.
 
+use hersey_core::Work;
 use hersey_core::drag::{Closure, Drag};
 use hersey_core::motion::{CycleKind, Drivetrain, Integrator, Start, System, simulate, stick_slip};
 use std::collections::BTreeMap;
@@ -71,7 +72,7 @@ fn check(random: &mut Random) -> &'static str {
     let system = System::at_speed(train, &drag, drive).unwrap();
     let duration = 20.0 * train.time_scale() + 2.0 * force / (stiffness * transition);
     // near steady sliding the kinetic energy is many times the work done, which asks for its own digit
-    let run = simulate(&system, start, duration, 11, 1e-10, Integrator::Adaptive)
+    let run = simulate(&system, start, duration, 11, 1e-10, Integrator::Adaptive, &Work::default())
         .unwrap_or_else(|e| panic!("{e}: {case}"));
     assert!(run.belt_speed.iter().chain(&run.stretch).all(|x| x.is_finite()), "{case}");
     assert!(run.energy.residual().abs() < 1e-8, "energy {:e}: {case}", run.energy.residual());

@@ -4,7 +4,7 @@ use hersey_core::drag::{Closure, Drag, Mode};
 use hersey_core::motion::{
     CycleKind, Drivetrain, Integrator, Start, System, Trajectory, stick_slip,
 };
-use hersey_core::{Error, motion};
+use hersey_core::{Error, Work, motion};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
@@ -49,7 +49,15 @@ fn simulate(
     tolerance: f64,
 ) -> Result<Trajectory, Error> {
     let system = System::at_speed(*train, drag, drive_speed)?;
-    motion::simulate(&system, start, duration, samples, tolerance, Integrator::Adaptive)
+    motion::simulate(
+        &system,
+        start,
+        duration,
+        samples,
+        tolerance,
+        Integrator::Adaptive,
+        &Work::default(),
+    )
 }
 
 proptest! {

@@ -4,7 +4,7 @@ use hersey_core::drag::{Closure, Drag, Mode};
 use hersey_core::motion::{
     CycleKind, Drivetrain, Integrator, Start, System, Trajectory, stick_slip,
 };
-use hersey_core::{Error, motion};
+use hersey_core::{Error, Work, motion};
 
 fn baseline() -> (Drivetrain, Drag) {
     let drag = Drag::new(50.0, 1.0, -0.7, -1.2, 0.01, Closure::Retained).unwrap();
@@ -22,7 +22,15 @@ fn simulate(
     tolerance: f64,
 ) -> Result<Trajectory, Error> {
     let system = System::at_speed(*train, drag, drive_speed)?;
-    motion::simulate(&system, start, duration, samples, tolerance, Integrator::Adaptive)
+    motion::simulate(
+        &system,
+        start,
+        duration,
+        samples,
+        tolerance,
+        Integrator::Adaptive,
+        &Work::default(),
+    )
 }
 
 fn assert_close(found: f64, expected: f64, relative: f64) {

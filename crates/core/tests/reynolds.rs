@@ -1,8 +1,8 @@
 //! Line contacts against limits and refinement.
 
-use hersey_core::Error;
 use hersey_core::lubrication::reynolds::elasticity::{Kernel, layer_factor};
 use hersey_core::lubrication::reynolds::{Fluid, Foundation, LineContact, Thickening};
+use hersey_core::{Error, Work};
 
 fn contact(contact_modulus: f64, entrainment_speed: f64) -> LineContact {
     LineContact {
@@ -24,14 +24,15 @@ fn contact(contact_modulus: f64, entrainment_speed: f64) -> LineContact {
 #[test]
 fn rigid_roll_is_martin() {
     let case = contact(1e14, 0.01);
-    let film = case.solve(401).expect("rigid").summary;
+    let film = case.solve(401, &Work::default()).expect("rigid").summary;
     let number = film.minimum * case.load / (case.fluid.viscosity * 0.01 * case.radius);
     assert!((number / 4.892 - 1.0).abs() < 2e-3, "{number}");
 }
 
 #[test]
 fn least_film_converges_at_second_order() {
-    let least = |nodes| contact(1e6, 0.1).solve(nodes).expect("soft").summary.minimum;
+    let least =
+        |nodes| contact(1e6, 0.1).solve(nodes, &Work::default()).expect("soft").summary.minimum;
     let films = [101, 201, 401].map(least);
     let order = ((films[1] - films[0]) / (films[2] - films[1])).log2();
     println!("order {order:.2}");
@@ -43,7 +44,7 @@ fn exponents_are_those_of_neighbouring_solutions() {
     let at = |factor: f64, load: f64| {
         let mut case = contact(1e6, 0.1 * factor);
         case.load *= load;
-        case.solve(401).expect("soft")
+        case.solve(401, &Work::default()).expect("soft")
     };
     let (here, faster, heavier) = (at(1.0, 1.0), at(1.2, 1.0), at(1.0, 1.2));
     let slope = |a: f64, b: f64| (b / a).ln() / 1.2_f64.ln();
@@ -72,7 +73,7 @@ fn influence_answers_a_wave_with_its_compliance() {
     let (wave, poisson) = (1.3_f64, 0.47);
     let kernel = Kernel::new(Foundation::Layer { thickness: 1.0, poisson });
     let nodes: Vec<f64> = (0..=1600_u32).map(|i| f64::from(i) * 0.05 - 40.0).collect();
-    let influence = kernel.influence(&nodes);
+    let influence = kernel.influence(&nodes, &Work::default()).unwrap();
     let deflection: f64 =
         nodes.iter().zip(influence.hats.row(800)).map(|(x, hat)| hat * (wave * x).cos()).sum();
     let expected = std::f64::consts::PI * layer_factor(wave, poisson) / wave;
@@ -82,13 +83,16 @@ fn influence_answers_a_wave_with_its_compliance() {
 #[test]
 fn what_cannot_be_solved_says_so() {
     assert!(matches!(
-        LineContact { load: -1.0, ..contact(1e6, 0.1) }.solve(101),
+        LineContact { load: -1.0, ..contact(1e6, 0.1) }.solve(101, &Work::default()),
         Err(Error::TooSmall { quantity: "load", .. })
     ));
-    assert!(matches!(contact(1e6, 0.1).solve(3), Err(Error::TooSmall { quantity: "nodes", .. })));
+    assert!(matches!(
+        contact(1e6, 0.1).solve(3, &Work::default()),
+        Err(Error::TooSmall { quantity: "nodes", .. })
+    ));
     let wide = Foundation::Layer { thickness: 1e-3, poisson: 0.6 };
     assert!(matches!(
-        LineContact { foundation: wide, ..contact(1e6, 0.1) }.solve(101),
+        LineContact { foundation: wide, ..contact(1e6, 0.1) }.solve(101, &Work::default()),
         Err(Error::TooLarge { quantity: "poisson", .. })
     ));
 }

@@ -5,6 +5,7 @@ use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 
 use crate::errors::{raised, refused};
+use crate::interrupt::{copied, interruptible};
 
 /// A drag law.
 #[pyclass(frozen, module = "hersey._core")]
@@ -93,9 +94,15 @@ impl Law {
         &self,
         py: Python<'py>,
         speed: PyReadonlyArray1<'py, f64>,
-    ) -> Bound<'py, PyArray1<f64>> {
-        let forces: Vec<f64> = speed.as_array().iter().map(|v| self.0.force(*v)).collect();
-        forces.into_pyarray(py)
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let speeds = copied(py, &speed)?;
+        let forces = interruptible(py, u64::MAX, |work| {
+            speeds
+                .iter()
+                .map(|v| work.take(1).map(|()| self.0.force(*v)))
+                .collect::<Result<Vec<_>, _>>()
+        })?;
+        Ok(forces.into_pyarray(py))
     }
 
     /// Speeds below and above the transition with a drag of `force`.

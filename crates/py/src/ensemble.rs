@@ -2,16 +2,17 @@
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;
-use std::time::Duration;
 
 use hersey_core::Error;
 use hersey_core::drag::{Closure, Drag};
 use hersey_core::motion::{Belt, Drivetrain, Outcome, Span, Start, StickSlipCycle, ensemble};
+use hersey_core::work::Work;
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 
 use crate::drag::{ClosureArguments, closure_from};
 use crate::errors::{Failure, raised, raised_at};
+use crate::interrupt::{PATIENCE, copied, interruptible};
 
 /// Names behind the indices of kinds; the last is for motion that cannot be continued.
 pub const KINDS: [&str; 5] = ["steady_sliding", "oscillation", "stick_slip", "unsettled", "failed"];
@@ -22,8 +23,8 @@ const FAILED: u8 = 4;
 /// Belts that one thread takes at a time.
 const CHUNK: usize = 512;
 
-/// How often progress is told and an interrupt noticed.
-const PATIENCE: Duration = Duration::from_millis(50);
+/// More threads than this are no use to anybody.
+const MOST_THREADS: usize = 256;
 
 /// What each parameter set settles to: arrays of one length, and the failures.
 #[pyclass(frozen, get_all, module = "hersey._core")]
@@ -94,24 +95,34 @@ pub fn sweep<'py>(
     tolerance: f64,
     threads: usize,
     progress: Option<Py<PyAny>>,
+    most_steps: u64,
 ) -> PyResult<Sweep> {
     let columns: Vec<Vec<f64>> =
-        parameters.iter().map(|column| column.as_array().iter().copied().collect()).collect();
+        parameters.iter().map(|column| copied(py, column)).collect::<PyResult<_>>()?;
     let sets = columns[0].len();
     let closure = closure_from(closure)?;
     let belt = |i: usize| {
         let set = std::array::from_fn(|c| columns[c][i]);
         belt_of(set, closure, steady).map_err(|error| (i, error))
     };
-    let belts = py.detach(|| (0..sets).map(belt).collect::<Result<Vec<_>, _>>());
+    let belts = each(py, sets, belt)?;
     let belts = belts.map_err(|(i, error)| match sets {
         1 => raised(error),
         _ => raised_at("set", i, error),
     })?;
     let span = duration.map_or(Span::UntilClosed, Span::Lasting);
-    let follow = |belts: &[Belt]| ensemble(belts, span, tolerance);
-    let results = in_chunks(py, &belts, CHUNK, threads, progress, follow)?;
+    let follow = |belts: &[Belt], work: &Work| ensemble(belts, span, tolerance, work);
+    let results = in_chunks(py, &belts, CHUNK, threads, progress, most_steps, follow)?;
     Sweep::new(py, &results)
+}
+
+/// What `make` makes of each of so many sets, or of the first that it refuses.
+pub fn each<T: Send, E: Send>(
+    py: Python<'_>,
+    sets: usize,
+    make: impl Fn(usize) -> Result<T, E> + Sync,
+) -> PyResult<Result<Vec<T>, E>> {
+    interruptible(py, u64::MAX, |work| (0..sets).map(|i| work.take(1).map(|()| make(i))).collect())
 }
 
 /// The belt of a parameter set, in the order of `sweep`.
@@ -124,14 +135,17 @@ fn belt_of(set: [f64; 8], closure: Closure, steady: bool) -> Result<Belt, Error>
     Ok(Belt { train, drag, drive_speed, start })
 }
 
-/// What `work` makes of `items`, chunk by chunk, spread over `threads`; ends early when Python is interrupted.
+/// What `computation` makes of `items`, chunk by chunk, spread over `threads`; ends early when Python is interrupted.
+///
+/// Each chunk is told how many steps the work on one item may take.
 pub fn in_chunks<T: Sync, R: Clone + Send>(
     py: Python<'_>,
     items: &[T],
     chunk: usize,
     threads: usize,
     progress: Option<Py<PyAny>>,
-    work: impl Fn(&[T]) -> Result<Vec<R>, Error> + Sync,
+    most_steps: u64,
+    computation: impl Fn(&[T], &Work) -> Result<Vec<R>, Error> + Sync,
 ) -> PyResult<Vec<R>> {
     let chunks: Vec<&[T]> = items.chunks(chunk).collect();
     let mut done: Vec<Vec<R>> = vec![Vec::new(); chunks.len()];
@@ -147,14 +161,16 @@ pub fn in_chunks<T: Sync, R: Clone + Send>(
     py.detach(|| {
         std::thread::scope(|scope| {
             let (send, receive) = mpsc::channel();
-            for _ in 0..threads.clamp(1, chunks.len().max(1)) {
+            for _ in 0..threads.min(MOST_THREADS).clamp(1, chunks.len().max(1)) {
                 let (send, next, cancelled, chunks) = (send.clone(), &next, &cancelled, &chunks);
-                let work = &work;
+                let computation = &computation;
                 scope.spawn(move || {
+                    let stop = || cancelled.load(Ordering::Relaxed);
                     while !cancelled.load(Ordering::Relaxed) {
                         let index = next.fetch_add(1, Ordering::Relaxed);
                         let Some(chunk) = chunks.get(index) else { break };
-                        if send.send((index, work(chunk))).is_err() {
+                        let results = computation(chunk, &Work::new(most_steps, &stop));
+                        if send.send((index, results)).is_err() {
                             break;
                         }
                     }

@@ -42,6 +42,7 @@ pub fn exception<'py>(
     fields.set_item("unit", error.unit())?;
     if error.is_unfinished() {
         fields.set_item("time", error.time())?;
+        fields.set_item("steps", error.steps())?;
     } else {
         fields.set_item("limit", error.limit())?;
     }

@@ -5,6 +5,7 @@
 mod drag;
 mod ensemble;
 mod errors;
+mod interrupt;
 mod lubrication;
 mod motion;
 mod reynolds;
@@ -36,12 +37,15 @@ mod _core {
     #[pymodule_export]
     use super::stability::{Band, Bands, Swings, band, bands, swings};
 
+    use numpy::PyArrayMethods;
     use pyo3::prelude::*;
 
     /// The names behind the indices of modes and kinds, and the version of the crate.
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
         use hersey_core::drag::Mode;
+        // what NumPy must import is imported now, and not where a signal may cut in
+        numpy::PyArray1::<f64>::zeros(module.py(), 0, false).readonly();
         let modes = [Mode::Ehl, Mode::Mixed, Mode::Microslip, Mode::Stuck];
         module.add("MODES", modes.map(super::motion::mode_name))?;
         module.add("KINDS", super::ensemble::KINDS)?;
@@ -49,6 +53,7 @@ mod _core {
         module.add("FILM_CONSTANTS", super::lubrication::FILM_CONSTANTS)?;
         module.add("FILM_SPEED_EXPONENTS", super::lubrication::speed_exponents())?;
         module.add("GAS_CONSTANT", hersey_core::lubrication::viscosity::GAS_CONSTANT)?;
+        module.add("MOST_STEPS", hersey_core::work::MOST_STEPS)?;
         module.add("NUDGE", hersey_core::motion::NUDGE)?;
         module.add("NIP_RATIO_RANGE", hersey_core::lubrication::paper::NIP_RATIO_RANGE)?;
         module.add("VERSION", env!("CARGO_PKG_VERSION"))

@@ -12,11 +12,15 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::errors::{raised, raised_at, refused};
+use crate::interrupt::{copied, interruptible};
 
 /// Arrays of one shape, one for each quantity.
 type Columns<'py, const N: usize> = [PyReadonlyArrayDyn<'py, f64>; N];
 /// An array of that shape.
 type Array = Py<PyArrayDyn<f64>>;
+
+/// What a rule costs at a point, in steps of work: the dearest solves a contact anew.
+const POINT: u64 = 16;
 
 /// What a rule makes of the points of some arrays.
 struct Mapped<R> {
@@ -31,6 +35,7 @@ impl<R> Mapped<R> {
         py: Python<'_>,
         of: impl Fn(&R) -> T,
     ) -> PyResult<Py<PyArrayDyn<T>>> {
+        py.check_signals()?;
         let flat: Vec<T> = self.results.iter().map(of).collect();
         Ok(flat.into_pyarray(py).reshape(self.shape.as_slice())?.unbind())
     }
@@ -46,13 +51,16 @@ fn mapped<const IN: usize, R: Send>(
     if columns.iter().any(|column| column.as_array().shape() != shape) {
         return Err(refused("shape", "the arrays differ in shape".to_owned()));
     }
-    let columns: [Vec<f64>; IN] =
-        std::array::from_fn(|c| columns[c].as_array().iter().copied().collect());
-    let points = columns[0].len();
-    let results = py.detach(|| {
-        let point = |i: usize| rule(std::array::from_fn(|c| columns[c][i])).map_err(|e| (i, e));
-        (0..points).map(point).collect::<Result<Vec<_>, _>>()
-    });
+    let columns: Vec<Vec<f64>> =
+        columns.iter().map(|column| copied(py, column)).collect::<PyResult<_>>()?;
+    let points = columns.first().map_or(0, Vec::len);
+    let results = interruptible(py, u64::MAX, |work| {
+        let point = |i: usize| {
+            work.take(POINT)?;
+            Ok(rule(std::array::from_fn(|c| columns[c][i])).map_err(|e| (i, e)))
+        };
+        (0..points).map(point).collect::<Result<Result<Vec<_>, _>, _>>()
+    })?;
     let results = results.map_err(|(i, error)| match points {
         1 => raised(error),
         _ => raised_at("point", i, error),

@@ -8,6 +8,7 @@ use pyo3::prelude::*;
 use crate::drag::Law;
 use crate::ensemble::KINDS;
 use crate::errors::{raised, refused};
+use crate::interrupt::interruptible;
 
 /// Times, values, and cubics between the times unless the values are joined by straight lines.
 type ScheduleArguments = (Vec<f64>, Vec<f64>, Option<Vec<[f64; 4]>>);
@@ -116,6 +117,7 @@ pub fn simulate(
     samples: usize,
     tolerance: f64,
     integrator: &str,
+    most_steps: u64,
 ) -> PyResult<Trajectory> {
     let train = Drivetrain::new(train.0, train.1).map_err(raised)?;
     let drive = match drive {
@@ -130,9 +132,9 @@ pub fn simulate(
         "dormand-prince" => Integrator::DormandPrince,
         other => return Err(refused("integrator", format!("unknown integrator '{other}'"))),
     };
-    let run = py
-        .detach(|| motion::simulate(&system, start, duration, samples, tolerance, integrator))
-        .map_err(raised)?;
+    let run = interruptible(py, most_steps, |work| {
+        motion::simulate(&system, start, duration, samples, tolerance, integrator, work)
+    })?;
     let modes: Vec<u8> = run.mode.iter().map(|m| *m as u8).collect();
     let motion::Energy { work, dissipated, stored, .. } = run.energy;
     let residual = run.energy.residual();
@@ -149,6 +151,7 @@ pub fn simulate(
 
 /// What the motion settles to, or its last whole lap within `duration`.
 #[pyfunction]
+#[allow(clippy::too_many_arguments)] // the Python layer names them all
 pub fn stick_slip(
     py: Python<'_>,
     train: (f64, f64),
@@ -157,13 +160,14 @@ pub fn stick_slip(
     start: (f64, f64),
     duration: Option<f64>,
     tolerance: f64,
+    most_steps: u64,
 ) -> PyResult<Cycle> {
     let train = Drivetrain::new(train.0, train.1).map_err(raised)?;
     let start = Start { belt_speed: start.0, stretch: start.1 };
     let span = duration.map_or(Span::UntilClosed, Span::Lasting);
-    let cycle = py
-        .detach(|| motion::settle(&train, &drag.0, drive_speed, start, span, tolerance))
-        .map_err(raised)?;
+    let cycle = interruptible(py, most_steps, |work| {
+        motion::settle(&train, &drag.0, drive_speed, start, span, tolerance, work)
+    })?;
     Ok(Cycle {
         kind: KINDS[cycle.kind as usize],
         frequency: cycle.frequency,

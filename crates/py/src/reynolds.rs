@@ -1,10 +1,12 @@
 //! The numerical film of a line contact.
 
 use hersey_core::lubrication::reynolds::{self, Fluid, Foundation, LineSolution, Thickening};
+use hersey_core::work::MOST_STEPS;
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 
-use crate::errors::{raised, refused};
+use crate::errors::refused;
+use crate::interrupt::interruptible;
 
 /// Exponents of speed or load.
 #[pyclass(frozen, get_all, module = "hersey._core")]
@@ -109,6 +111,6 @@ pub fn line_contact(
         sliding_speed: speeds.1,
         fluid: Fluid { viscosity, pressure_viscosity, thickening, compressible },
     };
-    let found = py.detach(|| contact.solve(nodes)).map_err(raised)?;
+    let found = interruptible(py, MOST_STEPS, |work| contact.solve(nodes, work))?;
     LineContact::new(py, found)
 }

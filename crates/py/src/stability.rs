@@ -4,12 +4,14 @@ use hersey_core::Error;
 use hersey_core::drag::Drag;
 use hersey_core::motion::Drivetrain;
 use hersey_core::stability::{self, Method, Swing};
+use hersey_core::work::{MOST_STEPS, Work};
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 
 use crate::drag::{ClosureArguments, Law, closure_from};
-use crate::ensemble::{column, failures, in_chunks};
+use crate::ensemble::{column, each, failures, in_chunks};
 use crate::errors::{Failure, raised, raised_at};
+use crate::interrupt::{copied, interruptible};
 
 /// Belts that one thread takes at a time.
 const CHUNK: usize = 64;
@@ -72,12 +74,17 @@ fn few(laps: usize) -> u32 {
 
 /// The band of one belt, for any law.
 #[pyfunction]
-pub fn band(py: Python<'_>, train: (f64, f64), drag: &Law, tolerance: f64) -> PyResult<Band> {
+pub fn band(
+    py: Python<'_>,
+    train: (f64, f64),
+    drag: &Law,
+    tolerance: f64,
+    most_steps: u64,
+) -> PyResult<Band> {
     let belt = [(Drivetrain::new(train.0, train.1).map_err(raised)?, drag.0.clone())];
-    let found = py
-        .detach(|| stability::bands(&belt, true, tolerance))
-        .and_then(|mut bands| bands.remove(0))
-        .map_err(raised)?;
+    let found = interruptible(py, most_steps, |work| {
+        stability::bands(&belt, true, tolerance, work).and_then(|mut bands| bands.remove(0))
+    })?;
     Ok(Band {
         lower: found.lower,
         transition: found.transition,
@@ -103,19 +110,20 @@ pub fn bands<'py>(
     tolerance: f64,
     threads: usize,
     progress: Option<Py<PyAny>>,
+    most_steps: u64,
 ) -> PyResult<Bands> {
     let columns: Vec<Vec<f64>> =
-        parameters.iter().map(|column| column.as_array().iter().copied().collect()).collect();
+        parameters.iter().map(|column| copied(py, column)).collect::<PyResult<_>>()?;
     let closure = closure_from(closure)?;
     let belt = |i: usize| -> Result<(Drivetrain, Drag), Error> {
         let [k, m, force, speed, ehl, mixed, stick] = std::array::from_fn(|c| columns[c][i]);
         Ok((Drivetrain::new(k, m)?, Drag::new(force, speed, ehl, mixed, stick, closure)?))
     };
-    let belts = (0..columns[0].len())
-        .map(|i| belt(i).map_err(|error| raised_at("set", i, error)))
-        .collect::<PyResult<Vec<_>>>()?;
-    let work = |belts: &[(Drivetrain, Drag)]| stability::bands(belts, lower, tolerance);
-    let found = in_chunks(py, &belts, CHUNK, threads, progress, work)?;
+    let belts = each(py, columns[0].len(), |i| belt(i).map_err(|error| (i, error)))?
+        .map_err(|(i, error)| raised_at("set", i, error))?;
+    let bands =
+        |belts: &[(Drivetrain, Drag)], work: &Work| stability::bands(belts, lower, tolerance, work);
+    let found = in_chunks(py, &belts, CHUNK, threads, progress, most_steps, bands)?;
     Bands::new(py, &found)
 }
 
@@ -139,9 +147,10 @@ pub fn swings(
     tolerance: f64,
 ) -> PyResult<Option<Swings>> {
     let train = Drivetrain::new(train.0, train.1).map_err(raised)?;
-    let slowest: Vec<f64> = slowest.as_array().iter().copied().collect();
-    let found =
-        py.detach(|| stability::swings(&train, &drag.0, &slowest, tolerance)).map_err(raised)?;
+    let slowest = copied(py, &slowest)?;
+    let found = interruptible(py, MOST_STEPS, |work| {
+        stability::swings(&train, &drag.0, &slowest, tolerance, work)
+    })?;
     let swings = |found: Vec<Swing>| {
         let number = |of: fn(&Swing) -> f64| PyArray1::from_iter(py, found.iter().map(of)).unbind();
         Swings {

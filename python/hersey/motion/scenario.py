@@ -16,15 +16,12 @@ from hersey.arrays import FloatArray
 from hersey.errors import ParameterError
 from hersey.files.toml import Quantity, Table, naming, read_tables, read_toml
 from hersey.motion.drag import Drag
-from hersey.motion.parameters import PARAMETERS
+from hersey.motion.parameters import MOST_SETS, PARAMETERS
 from hersey.motion.simulation import TOLERANCE, Drivetrain
 from hersey.motion.sweep import sweep
 
 if TYPE_CHECKING:
     import xarray as xr
-
-#: Most parameter sets of one sweep, which fit in some gigabytes.
-MOST_SETS = 20_000_000
 
 
 @plain_dataclass(frozen=True)

@@ -20,6 +20,7 @@ from hersey import _core
 from hersey.arrays import FloatArray
 from hersey.errors import HerseyError, ParameterError
 from hersey.motion.drag import AnyDrag
+from hersey.motion.parameters import MOST_STEPS, whole
 from hersey.motion.schedule import Schedule
 from hersey.result import Result, json_record, table_of
 from hersey.units import fields_in_si, takes_si
@@ -274,6 +275,7 @@ def simulate(
     start: str | tuple[float, float] = "rest",
     tolerance: float = TOLERANCE,
     check: bool = False,
+    most_steps: float = MOST_STEPS,
 ) -> Trajectory:
     """Return the motion over ``duration``, its events located to rounding.
 
@@ -291,11 +293,16 @@ def simulate(
         pair of belt speed and stretch.
     check
         Also integrate with Dormand and Prince's Runge-Kutta pair and report the difference.
+    most_steps
+        Work that the motion may take, in steps of a microsecond or so; a step of a stiff motion, or with
+        bristles, counts for 40.
 
     Raises
     ------
     ParameterError
         If a value is out of range, with its name.
+    UnfinishedError
+        If the work does not suffice, or the motion cannot be continued.
 
     Examples
     --------
@@ -307,8 +314,7 @@ def simulate(
     >>> abs(run.energy.residual) < 1e-8, run.check.same_events
     (True, True)
     """
-    if samples < 2:
-        raise ParameterError(f"samples is {samples}: at least 2 are needed")
+    count, steps = whole("samples", samples, 2), whole("most_steps", most_steps)
     if (drive_speed is None) == (drive_torque is None):
         raise ParameterError("give either drive_speed or drive_torque")
     if drag.varies_with_temperature and temperature is None:
@@ -329,9 +335,10 @@ def simulate(
             None if course is None else course.arguments,
             state,
             float(duration),
-            int(samples),
+            count,
             float(tolerance),
             integrator,
+            steps,
         )
 
     trajectory = run("adaptive")
@@ -378,17 +385,21 @@ def stick_slip(
     temperature: float | None = None,
     start: str | tuple[float, float] = "rest",
     tolerance: float = TOLERANCE,
+    most_steps: float = MOST_STEPS,
 ) -> StickSlipCycle:
     """Return what the motion settles to at constant drive speed, coming from ``start``.
 
     Between the transition speed and the fold both sliding and stick-slip exist, and the start decides.
     ``steady`` starts sliding with the drive but for a nudge of 0.1 % in speed, since an unstable balance is
-    nothing that a belt can keep; a pair is the belt speed and the stretch to start from.
+    nothing that a belt can keep; a pair is the belt speed and the stretch to start from. ``most_steps`` is
+    the work that the motion may take, as for `simulate`.
 
     Raises
     ------
     ParameterError
         If a value is out of range, with its name.
+    UnfinishedError
+        If the work does not suffice, or the motion cannot be continued.
 
     Examples
     --------
@@ -400,7 +411,8 @@ def stick_slip(
     """
     law = drag.law_at(temperature)
     state = _start(train, law, Schedule.of(drive_speed), None, start, is_torque=False, nudged=True)
-    cycle = _core.stick_slip(train._arguments, law, float(drive_speed), state, None, float(tolerance))
+    steps = whole("most_steps", most_steps)
+    cycle = _core.stick_slip(train._arguments, law, float(drive_speed), state, None, float(tolerance), steps)
     return StickSlipCycle(**{name: getattr(cycle, name) for name in StickSlipCycle.__dataclass_fields__})
 
 

@@ -12,7 +12,7 @@ from hersey import _core
 from hersey.arrays import crossed, numbers_of, together
 from hersey.errors import ParameterError
 from hersey.motion.drag import Drag
-from hersey.motion.parameters import KINDS, PARAMETERS
+from hersey.motion.parameters import KINDS, MOST_STEPS, PARAMETERS, refuse_too_many, whole
 from hersey.motion.simulation import TOLERANCE, Drivetrain
 from hersey.units import takes_si
 
@@ -51,6 +51,7 @@ def sweep(
     threads: int = 1,
     tolerance: float = TOLERANCE,
     progress: Callable[[int, int], object] | None = None,
+    most_steps: float = MOST_STEPS,
 ) -> xr.Dataset:
     """Return what each combination of parameters settles to, as `stick_slip` does for one.
 
@@ -69,6 +70,8 @@ def sweep(
         Threads to use. The result is the same, bit for bit, for any number.
     progress
         Called with (done, all) some twenty times a second; what it raises ends the sweep.
+    most_steps
+        Work that each belt may take, as for `simulate`; one that does not suffice is among the failures.
 
     Returns
     -------
@@ -94,8 +97,7 @@ def sweep(
         raise ParameterError("a sweep needs a Drag at one temperature")
     if start not in ("rest", "steady"):
         raise ParameterError(f"start '{start}' is not known: rest or steady")
-    if threads < 1:
-        raise ParameterError(f"threads is {threads}: at least 1 is needed")
+    workers, steps = whole("threads", threads), whole("most_steps", most_steps)
     parameters = {**vars(train), **vars(drag)}
     varied = {
         "stiffness": stiffness,
@@ -110,6 +112,7 @@ def sweep(
     given = {
         name: numbers_of(name, parameters[name] if value is None else value) for name, value in varied.items()
     }
+    refuse_too_many(given.values(), zip=zip)
     axes, columns = together(given) if zip else crossed(given)
     shape = next(iter(columns.values())).shape
     motions = _core.sweep(
@@ -118,8 +121,9 @@ def sweep(
         start == "steady",
         None if duration is None else float(duration),
         float(tolerance),
-        int(threads),
+        workers,
         progress,
+        steps,
     )
     data = {name: (axes, getattr(motions, name).reshape(shape)) for name in NUMBERS}
     stuck = motions.stick_duration * motions.frequency

@@ -19,7 +19,7 @@ from hersey import _core
 from hersey.arrays import FloatArray, crossed, numbers_of, together
 from hersey.errors import ParameterError
 from hersey.motion.drag import AnyDrag, Drag
-from hersey.motion.parameters import KINDS, OF_THE_BELT
+from hersey.motion.parameters import KINDS, MOST_STEPS, OF_THE_BELT, refuse_too_many, whole
 from hersey.motion.simulation import Drivetrain
 from hersey.result import Result, json_record, table_of
 from hersey.units import takes_si
@@ -184,6 +184,7 @@ def hysteresis(
     samples: Mapping[str, ArrayLike] | None = None,
     sensitivity: bool | None = None,
     tolerance: float = TOLERANCE,
+    most_steps: float = MOST_STEPS,
 ) -> HysteresisBand:
     """Return the band of drive speeds where the past decides whether the belt sticks.
 
@@ -198,11 +199,17 @@ def hysteresis(
     sensitivity
         Whether to compute the change of the band with each parameter. Default: where that takes
         milliseconds, that is for a `Drag` with ``retained`` or ``stiction``.
+    most_steps
+        Work that each motion may take, as for `simulate`, where edges are found by simulation; all together
+        may take as much, with a smooth closure six times that.
 
     Raises
     ------
     ParameterError
-        If a value is out of range, with its name.
+        If a value is out of range, with its name; also ``mixed_exponent`` if it is not less than
+        ``ehl_exponent``, as then nothing divides the behaviour.
+    UnfinishedError
+        If the work does not suffice, or a motion cannot be continued.
 
     Examples
     --------
@@ -213,15 +220,16 @@ def hysteresis(
     >>> round(band.sensitivity["stick_speed"], 3)  # one per cent on v_s moves V* by a quarter of a per cent
     -0.233
     """
-    band = _core.band(train._arguments, drag.law_at(temperature), float(tolerance))
+    steps = whole("most_steps", most_steps)
+    band = _core.band(train._arguments, drag.law_at(temperature), float(tolerance), steps)
     plain = drag.at(temperature) if isinstance(drag, Drag) else None
     closure = str(getattr(drag, "closure", "retained"))
     if sensitivity is None:
         sensitivity = plain is not None and band.half_laps
-    changes = _sensitivities(train, plain, tolerance) if sensitivity else ({}, {})
+    changes = _sensitivities(train, plain, tolerance, steps) if sensitivity else ({}, {})
     interval, lower_interval, share = None, None, None
     if samples is not None:
-        edges = _sampled(train, plain, samples, tolerance)
+        edges = _sampled(train, plain, samples, tolerance, steps)
         interval, lower_interval = _middle(edges.upper), _middle(edges.lower)
         share = float(np.mean(edges.upper > edges.transition))
     return HysteresisBand(
@@ -261,12 +269,13 @@ def hysteresis_sweep(
     threads: int = 1,
     tolerance: float = TOLERANCE,
     progress: Callable[[int, int], object] | None = None,
+    most_steps: float = MOST_STEPS,
 ) -> xr.Dataset:
     """Return the band of each combination of parameters, as `hysteresis` does for one.
 
-    Axes, ``zip``, ``threads`` and ``progress`` are those of `sweep`. ``temperature`` (K) is needed if the
-    drag varies with it, and takes the place of the transition force and of all speeds. Without ``lower`` the
-    lower edge is left out (not a number), which takes a tenth of the time.
+    Axes, ``zip``, ``threads`` and ``progress`` are those of `sweep`, ``most_steps`` that of `hysteresis`.
+    ``temperature`` (K) is needed if the drag varies with it, and takes the place of the transition force and
+    of all speeds. Without ``lower`` the lower edge is left out (not a number): a tenth of the time.
 
     Returns
     -------
@@ -304,11 +313,12 @@ def hysteresis_sweep(
     }
     if temperature is not None:
         given["temperature"] = numbers_of("temperature", temperature)
+    refuse_too_many(given.values(), zip=zip)
     axes, columns = together(given) if zip else crossed(given)
     shape = next(iter(columns.values())).shape
     if temperature is not None:
         columns = {**columns, **_at_temperatures(drag, columns["temperature"])}
-    bands = _bands(columns, drag, tolerance, threads, progress, lower=lower)
+    bands = _bands(columns, drag, tolerance, most_steps, threads, progress, lower=lower)
     coordinates = {
         name: (axes, columns[name]) if zip and values.ndim else values
         for name, values in given.items()
@@ -397,20 +407,20 @@ def _bands(
     columns: Mapping[str, FloatArray],
     drag: Drag,
     tolerance: float,
+    most_steps: float,
     threads: int = 1,
     progress: Callable[[int, int], object] | None = None,
     *,
     lower: bool = True,
 ) -> _core.Bands:
-    if threads < 1:
-        raise ParameterError(f"threads is {threads}: at least 1 is needed")
+    workers, steps = whole("threads", threads), whole("most_steps", most_steps)
     arrays = [np.ascontiguousarray(columns[name].ravel()) for name in OF_THE_BELT]
     closure = (drag.closure, drag.bristle_stiffness, drag.bristle_damping)
-    return _core.bands(arrays, closure, lower, float(tolerance), int(threads), progress)
+    return _core.bands(arrays, closure, lower, float(tolerance), workers, progress, steps)
 
 
 def _sensitivities(
-    train: Drivetrain, drag: Drag | None, tolerance: float
+    train: Drivetrain, drag: Drag | None, tolerance: float, most_steps: float
 ) -> tuple[dict[str, float], dict[str, float]]:
     """Relative change of the edges per relative change of each parameter, by central differences."""
     if drag is None:
@@ -419,7 +429,7 @@ def _sensitivities(
     base = np.array([float(parameters[name]) for name in OF_THE_BELT])
     factors = np.vstack([1 + _STEP * np.eye(len(OF_THE_BELT)), 1 - _STEP * np.eye(len(OF_THE_BELT))])
     columns = dict(zip(OF_THE_BELT, (base * factors).T, strict=True))
-    edges = _bands(columns, drag, tolerance)
+    edges = _bands(columns, drag, tolerance, most_steps)
     if edges.failures:
         raise edges.failures[0].error
 
@@ -431,7 +441,11 @@ def _sensitivities(
 
 
 def _sampled(
-    train: Drivetrain, drag: Drag | None, samples: Mapping[str, ArrayLike], tolerance: float
+    train: Drivetrain,
+    drag: Drag | None,
+    samples: Mapping[str, ArrayLike],
+    tolerance: float,
+    most_steps: float,
 ) -> _core.Bands:
     if drag is None:
         raise ParameterError("samples need a Drag: a table has no parameters to draw")
@@ -441,7 +455,7 @@ def _sampled(
     parameters = {**vars(train), **vars(drag)}
     given = {name: numbers_of(name, samples.get(name, parameters[name])) for name in OF_THE_BELT}
     _, columns = together(given)
-    bands = _bands(columns, drag, tolerance)
+    bands = _bands(columns, drag, tolerance, most_steps)
     for failure in bands.failures:
         raise failure.error.within(f"samples: draw {failure.index}")
     return bands

@@ -11,6 +11,7 @@ use super::piece::Piece;
 use super::system::{Drivetrain, Integrator, Start, System};
 use crate::drag::{Closure, Drag, Mode};
 use crate::error::{Error, above};
+use crate::work::Work;
 
 /// What the motion settles to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -103,13 +104,13 @@ pub fn stick_slip(
     start: Start,
     tolerance: f64,
 ) -> Result<StickSlipCycle, Error> {
-    settle(train, drag, drive_speed, start, Span::UntilClosed, tolerance)
+    settle(train, drag, drive_speed, start, Span::UntilClosed, tolerance, &Work::default())
 }
 
 /// What the motion settles to, or its last whole lap, at constant `drive_speed` from `start`.
 ///
 /// # Errors
-/// As for [`stick_slip`].
+/// As for [`stick_slip`], or if `work` ends before.
 pub fn settle(
     train: &Drivetrain,
     drag: &Drag,
@@ -117,13 +118,14 @@ pub fn settle(
     start: Start,
     span: Span,
     tolerance: f64,
+    work: &Work,
 ) -> Result<StickSlipCycle, Error> {
     let until = match span {
         Span::UntilClosed => f64::INFINITY,
         Span::Lasting(duration) => above("duration", duration, 0.0)?,
     };
     let system = System::at_speed(*train, drag, drive_speed)?;
-    let mut laps = Laps::starting(&system, drive_speed, start, until, tolerance)?;
+    let mut laps = Laps::starting(&system, drive_speed, start, until, tolerance, work)?;
     loop {
         if let Some(cycle) = laps.go_on()? {
             return Ok(cycle);
@@ -162,12 +164,13 @@ impl<'a> Laps<'a> {
         start: Start,
         until: f64,
         tolerance: f64,
+        work: &'a Work<'a>,
     ) -> Result<Self, Error> {
         let smooth = system.drag.closure().is_smooth();
         let (near, most) =
             if smooth { (CLOSED_SMOOTH * tolerance, MAX_SMOOTH_LAPS) } else { (CLOSED, MAX_LAPS) };
         Ok(Self {
-            motion: Motion::new(system, start, tolerance, Integrator::Adaptive)?,
+            motion: Motion::new(system, start, tolerance, Integrator::Adaptive, work)?,
             train: &system.train,
             drag: &system.drag,
             drive_speed,

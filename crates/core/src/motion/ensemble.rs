@@ -6,7 +6,8 @@ use super::lanes::{Lanes, arrival, run_lanes};
 use super::piece::Piece;
 use super::system::{Drivetrain, Integrator, Start, System, checked_tolerance};
 use crate::drag::{Closure, Drag, Mode};
-use crate::error::{Error, above, finite};
+use crate::error::{Error, above, finite, unless_stopped};
+use crate::work::Work;
 
 /// One belt of an ensemble: a drivetrain and drag at constant drive speed, and where the motion starts.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,11 +27,17 @@ pub type Outcome = Result<StickSlipCycle, Error>;
 
 /// What each of `belts` settles to, in their order.
 ///
-/// The outcome of a belt does not depend on the others.
+/// The outcome of a belt does not depend on the others; what `work` allows is for each of them.
 ///
 /// # Errors
-/// If tolerance, time or a drive speed is out of range; each belt's outcome may be an error of its own.
-pub fn ensemble(belts: &[Belt], span: Span, tolerance: f64) -> Result<Vec<Outcome>, Error> {
+/// If tolerance, time or a drive speed is out of range, or `work` is stopped; each belt's outcome may be an error of
+/// its own.
+pub fn ensemble(
+    belts: &[Belt],
+    span: Span,
+    tolerance: f64,
+    work: &Work,
+) -> Result<Vec<Outcome>, Error> {
     checked_tolerance(tolerance)?;
     if let Span::Lasting(duration) = span {
         above("duration", duration, 0.0)?;
@@ -43,24 +50,26 @@ pub fn ensemble(belts: &[Belt], span: Span, tolerance: f64) -> Result<Vec<Outcom
     let admit = |lanes: &mut Lanes, l: usize| {
         waiting.find_map(|(index, belt)| {
             let mut member = Member::new(index, belt, span)?;
-            member.start(belt.start, lanes, l, tolerance).then_some(member)
+            member.start(belt.start, lanes, l, tolerance, work).then_some(member)
         })
     };
-    run_lanes(tolerance, admit, |member, lanes, l| {
-        let verdict = member.follow(lanes, l, span, tolerance);
-        if matches!(verdict, Verdict::Arrived) {
-            results[member.index] = Some(Ok(member.cycle()));
+    run_lanes(tolerance, work, admit, |member, lanes, l| {
+        let verdict = member.follow(lanes, l, span, tolerance, work);
+        match verdict {
+            Verdict::Arrived => results[member.index] = Some(Ok(member.cycle())),
+            Verdict::TooLong => results[member.index] = Some(Err(member.too_long(lanes, l, work))),
+            Verdict::Rides | Verdict::Leaves => {}
         }
         matches!(verdict, Verdict::Rides)
-    });
+    })?;
     let results = results.into_iter().zip(belts);
-    Ok(results
-        .map(|(result, belt)| result.unwrap_or_else(|| alone(belt, span, tolerance)))
-        .collect())
+    unless_stopped(results.map(|(result, belt)| {
+        result.unwrap_or_else(|| alone(belt, span, tolerance, &work.apart(work.allowed())))
+    }))
 }
 
-fn alone(belt: &Belt, span: Span, tolerance: f64) -> Outcome {
-    settle(&belt.train, &belt.drag, belt.drive_speed, belt.start, span, tolerance)
+fn alone(belt: &Belt, span: Span, tolerance: f64, work: &Work) -> Outcome {
+    settle(&belt.train, &belt.drag, belt.drive_speed, belt.start, span, tolerance, work)
 }
 
 /// Turns of the speed without sticking after which a belt is followed alone, where its orbit is looked at as a
@@ -128,6 +137,8 @@ struct Member {
     laps: usize,
     turns: u32,
     steps: u32,
+    /// Steps in all.
+    all_steps: u64,
     /// The belt slides with the drive for good.
     steady: bool,
 }
@@ -137,6 +148,8 @@ enum Verdict {
     Rides,
     Arrived,
     Leaves,
+    /// The belt has taken all the steps that it may.
+    TooLong,
 }
 
 impl Member {
@@ -180,19 +193,34 @@ impl Member {
             laps: 0,
             turns: 0,
             steps: 0,
+            all_steps: 0,
             steady: false,
         }))
     }
 
     /// Put the belt on its lane at the moment it first slides; false if it does not.
-    fn start(&mut self, start: Start, lanes: &mut Lanes, l: usize, tolerance: f64) -> bool {
+    fn start(
+        &mut self,
+        start: Start,
+        lanes: &mut Lanes,
+        l: usize,
+        tolerance: f64,
+        work: &Work,
+    ) -> bool {
         (lanes.time[l], lanes.impulse[l], lanes.sense[l]) = (0.0, 0.0, 1.0);
-        self.off_lane(start, lanes, l, Span::UntilClosed, tolerance)
+        self.off_lane(start, lanes, l, Span::UntilClosed, tolerance, work)
             .is_some_and(|v| matches!(v, Verdict::Rides))
     }
 
     /// What the step that lane `l` has just made means for the belt.
-    fn follow(&mut self, lanes: &mut Lanes, l: usize, span: Span, tolerance: f64) -> Verdict {
+    fn follow(
+        &mut self,
+        lanes: &mut Lanes,
+        l: usize,
+        span: Span,
+        tolerance: f64,
+        work: &Work,
+    ) -> Verdict {
         if lanes.time[l] >= self.until {
             return if self.whole.is_some() { Verdict::Arrived } else { Verdict::Leaves };
         }
@@ -207,7 +235,7 @@ impl Member {
         if met == arrival::TURNING {
             self.lap.add_speed(lanes.speed[l]);
             self.turns += 1;
-            self.steps = 0;
+            self.begin_steps();
             self.steady = matches!(span, Span::UntilClosed) && self.dies_out(lanes, l);
             let most = if self.drive > 1.0 { MAX_TURNS.1 } else { MAX_TURNS.0 };
             return match self.steady {
@@ -216,10 +244,10 @@ impl Member {
                 false => Verdict::Rides,
             };
         }
-        self.steps = 0;
+        self.begin_steps();
         let level = lanes.speed[l];
         if level <= self.stick_speed {
-            return self.stick(lanes, l, span, tolerance);
+            return self.stick(lanes, l, span, tolerance, work);
         }
         let rising = met == arrival::UPPER;
         self.at_level(lanes, l, level, rising);
@@ -261,14 +289,25 @@ impl Member {
     }
 
     /// The belt has slowed to the stick speed: it is held until the spring has stretched, in closed form.
-    fn stick(&mut self, lanes: &mut Lanes, l: usize, span: Span, tolerance: f64) -> Verdict {
+    fn stick(
+        &mut self,
+        lanes: &mut Lanes,
+        l: usize,
+        span: Span,
+        tolerance: f64,
+        work: &Work,
+    ) -> Verdict {
+        if self.all_steps > work.allowed() {
+            return Verdict::TooLong;
+        }
         let pull = lanes.pull[l];
         if pull.abs() > self.release {
             let start = Start {
                 belt_speed: self.system.drag.stick_speed(),
                 stretch: pull * self.scale.pull / self.system.train.stiffness(),
             };
-            return self.off_lane(start, lanes, l, span, tolerance).unwrap_or(Verdict::Leaves);
+            let verdict = self.off_lane(start, lanes, l, span, tolerance, work);
+            return verdict.unwrap_or(Verdict::Leaves);
         }
         let wait = (self.release - pull) / (self.drive - self.stick_speed);
         self.lap.stuck += wait;
@@ -314,11 +353,14 @@ impl Member {
         l: usize,
         span: Span,
         tolerance: f64,
+        work: &Work,
     ) -> Option<Verdict> {
         let system = self.system.clone();
         let Scale { time: time_scale, speed: speed_scale, pull: pull_scale } = self.scale;
         let origin = lanes.time[l];
-        let mut motion = Motion::new(&system, start, tolerance, Integrator::Adaptive).ok()?;
+        let work = work.apart(work.allowed());
+        let mut motion =
+            Motion::new(&system, start, tolerance, Integrator::Adaptive, &work).ok()?;
         for _ in 0..MAX_PIECES {
             if matches!(motion.phase().mode, Mode::Ehl | Mode::Mixed)
                 && motion.phase().direction > 0.0
@@ -328,6 +370,7 @@ impl Member {
                 return Some(Verdict::Rides);
             }
             let (piece, event) = motion.advance(f64::INFINITY).ok()?;
+            self.all_steps += 1;
             if piece.duration.is_infinite() {
                 return None;
             }
@@ -344,6 +387,16 @@ impl Member {
             }
         }
         None
+    }
+
+    /// After an event, steps without one are counted anew.
+    fn begin_steps(&mut self) {
+        self.all_steps += u64::from(self.steps);
+        self.steps = 0;
+    }
+
+    fn too_long(&self, lanes: &Lanes, l: usize, work: &Work) -> Error {
+        Error::TooLong { steps: work.allowed(), time: lanes.time[l] * self.scale.time }
     }
 
     /// Extremes and stuck time of a piece off the lanes.

@@ -10,18 +10,19 @@ use super::surroundings::Surroundings;
 use super::system::{Integrator, Start, System, checked_tolerance};
 use crate::drag::Mode;
 use crate::error::Error;
-
-/// Steps after which a motion is given up as too long, some seconds of work.
-const MAX_STEPS: usize = 5_000_000;
-/// The same for Runge-Kutta steps, which cost more.
-const MAX_RUNGE_KUTTA_STEPS: usize = 500_000;
+use crate::work::Work;
 
 /// Events without any time passing before the motion is given up as endless switching.
 const MAX_EVENTS_AT_ONCE: u32 = 32;
 
 /// Pull and speed with which a belt that starts below the stick speed first slides faster, if it does.
-pub(crate) fn first_slide(system: &System, start: Start, tolerance: f64) -> Option<(f64, f64)> {
-    let mut motion = Motion::new(system, start, tolerance, Integrator::Adaptive).ok()?;
+pub(crate) fn first_slide(
+    system: &System,
+    start: Start,
+    tolerance: f64,
+    work: &Work,
+) -> Option<(f64, f64)> {
+    let mut motion = Motion::new(system, start, tolerance, Integrator::Adaptive, work).ok()?;
     for _ in 0..1000 {
         let phase = motion.phase();
         if matches!(phase.mode, Mode::Ehl | Mode::Mixed) && phase.direction > 0.0 {
@@ -42,9 +43,9 @@ pub(super) struct Motion<'a> {
     /// Length that the next Runge-Kutta step should have.
     pub next_step: f64,
     events_at_once: u32,
-    /// Pieces made, and those of them by Runge-Kutta.
+    /// Pieces made.
     pub steps: usize,
-    pub runge_kutta_steps: usize,
+    pub work: &'a Work<'a>,
     /// Kinetic energy lost by stopping dead.
     pub stopped: f64,
 }
@@ -55,6 +56,7 @@ impl<'a> Motion<'a> {
         start: Start,
         tolerance: f64,
         integrator: Integrator,
+        work: &'a Work<'a>,
     ) -> Result<Self, Error> {
         let mut motion = Self {
             phase: phase_at(start, system.pull(start)?),
@@ -65,7 +67,7 @@ impl<'a> Motion<'a> {
             next_step: f64::INFINITY,
             events_at_once: 0,
             steps: 0,
-            runge_kutta_steps: 0,
+            work,
             stopped: 0.0,
         };
         motion.bend_bristles();
@@ -96,9 +98,7 @@ impl<'a> Motion<'a> {
     /// The next piece, no longer than `longest`, and the event that ends it, if one does.
     pub(super) fn advance(&mut self, longest: f64) -> Result<(Piece<'a>, Option<Event>), Error> {
         self.steps += 1;
-        if self.steps > MAX_STEPS || self.runge_kutta_steps > MAX_RUNGE_KUTTA_STEPS {
-            return Err(Error::TooLong { steps: self.steps, time: self.now.time });
-        }
+        self.work.take(1).map_err(|error| error.at_time(self.now.time))?;
         self.now.take_temperature();
         if self.phase.creeping
             && self.rate()[0] >= self.now.system.train.stiffness() * self.phase.speed

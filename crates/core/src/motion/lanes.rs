@@ -10,6 +10,8 @@
 //! by Newton's method on the polynomial of the step, on which the speed is monotone.
 
 use super::polynomial::fused;
+use crate::error::Error;
+use crate::work::Work;
 
 /// Belts that step together.
 pub(crate) const LANES: usize = 16;
@@ -43,8 +45,9 @@ pub(crate) mod arrival {
     pub const LOST: f64 = 3.0;
 }
 
-/// The state of all lanes, in scaled units.
+/// The state of all lanes, in scaled units; on lines of the cache, so that no row is read from two.
 #[derive(Debug, Clone)]
+#[repr(align(64))]
 pub(crate) struct Lanes {
     pub time: Row,
     pub pull: Row,
@@ -87,12 +90,15 @@ impl pulp::WithSimd for LaneStep<'_> {
 
 /// Fill the lanes by `admit`, step them, and hand each step to `follow` until it says that its member is done.
 ///
-/// `admit` may pass over members; none means that no more wait.
+/// `admit` may pass over members; none means that no more wait. The lanes stop when `work` is stopped; how many
+/// steps a member may take is for `follow` to say.
 pub(crate) fn run_lanes<R>(
     tolerance: f64,
+    work: &Work,
     mut admit: impl FnMut(&mut Lanes, usize) -> Option<R>,
     mut follow: impl FnMut(&mut R, &mut Lanes, usize) -> bool,
-) {
+) -> Result<(), Error> {
+    let work = work.apart(u64::MAX);
     let arch = pulp::Arch::new();
     let mut lanes = Lanes::idle();
     let mut members: [Option<R>; LANES] = std::array::from_fn(|_| None);
@@ -103,8 +109,9 @@ pub(crate) fn run_lanes<R>(
             }
         }
         if members.iter().all(Option::is_none) {
-            return;
+            return Ok(());
         }
+        work.take(1)?;
         arch.dispatch(LaneStep { lanes: &mut lanes, tolerance });
         for (l, seat) in members.iter_mut().enumerate() {
             if seat.as_mut().is_some_and(|member| !follow(member, &mut lanes, l)) {
@@ -295,6 +302,7 @@ impl Lanes {
 }
 
 /// Taylor coefficients of every lane.
+#[repr(align(64))]
 struct LaneSeries {
     pull: Rows,
     speed: Rows,

@@ -16,6 +16,12 @@ const LONGEST_STEP: f64 = 3.0;
 /// Decay over the time in question, in e-folds, from which the rising branch counts as stiff.
 const STIFF: f64 = 30.0;
 
+/// What an implicit and an explicit Runge-Kutta step cost, tried and looked at for guards, in Taylor steps.
+const RUNGE_KUTTA: (u64, u64) = (40, 10);
+
+/// Time over that until a held belt is released from which the rest is left to the pieces after.
+const FAR: f64 = 1e6;
+
 /// Lengths tried for one Runge-Kutta step before the motion is given up.
 const MAX_TRIES: usize = 200;
 
@@ -43,7 +49,7 @@ impl<'a> Motion<'a> {
         }
         let drag = &self.now.system.drag;
         let onward = (self.rate()[0] - self.now.system.train.stiffness() * speed).abs();
-        let steady = self.rate()[1..] == [0.0; 3]
+        let steady = self.is_driven_evenly()
             && onward <= ROUNDING * self.now.system.train.stiffness() * speed;
         steady
             && [drag.upper_knot(branch), drag.lower_knot(branch)].into_iter().flatten().any(
@@ -59,8 +65,10 @@ impl<'a> Motion<'a> {
     fn held_piece(&self, longest: f64) -> Piece<'a> {
         let series = held_series(&self.slip_start());
         let duration = match &self.now.thermal {
-            // the guard is found inside the piece
-            None if longest.is_infinite() => 1.01 * self.release_time(),
+            // the guard is found inside the piece, of which it must not be too small a part
+            None if self.is_driven_evenly() && longest > FAR * self.release_time() => {
+                1.01 * self.release_time()
+            }
             None => longest,
             Some(thermal) => {
                 // no longer than the series of the holding force is good for
@@ -86,6 +94,11 @@ impl<'a> Motion<'a> {
     fn along(&self, series: Series, duration: f64) -> Piece<'a> {
         let path = Path::Series(series);
         Piece { time: self.now.time, duration, start: self.phase, flow: self.flow(), path }
+    }
+
+    /// Whether the pull of a held belt grows, or falls, at the same rate for good.
+    fn is_driven_evenly(&self) -> bool {
+        self.rate()[1..] == [0.0; 3]
     }
 
     /// How long the drive, at constant speed, takes to overcome what holds the belt.
@@ -184,11 +197,10 @@ impl<'a> Motion<'a> {
     }
 
     fn steps_piece(&mut self, longest: f64) -> Result<Piece<'a>, Error> {
-        self.runge_kutta_steps += 1;
         let (system, flow) = (self.now.system, self.flow());
-        let formula = match self.integrator {
-            Integrator::Adaptive => Formula::Radau,
-            Integrator::DormandPrince => Formula::DormandPrince,
+        let (formula, cost) = match self.integrator {
+            Integrator::Adaptive => (Formula::Radau, RUNGE_KUTTA.0),
+            Integrator::DormandPrince => (Formula::DormandPrince, RUNGE_KUTTA.1),
         };
         let (scales, tolerance) = (self.scales(), self.tolerance);
         let state = self.phase.state();
@@ -204,8 +216,9 @@ impl<'a> Motion<'a> {
         loop {
             tries += 1;
             if tries > MAX_TRIES {
-                return Err(Error::TooLong { steps: self.steps, time: self.now.time });
+                return Err(Error::Stalled { time: self.now.time });
             }
+            self.work.take(cost).map_err(|error| error.at_time(self.now.time))?;
             if let Some((_, errors)) = formula.step(&flow, &state, duration, &scales, tolerance) {
                 let error =
                     (0..3).map(|i| errors[i].abs() / (tolerance * scales[i])).fold(0.0, f64::max);

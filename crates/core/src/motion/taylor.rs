@@ -248,6 +248,11 @@ impl Series {
         Self { pull: constant(pull), speed: constant(speed), drag: constant(pull) }
     }
 
+    /// Whether nothing moves.
+    pub(super) fn is_still(&self) -> bool {
+        [&self.pull, &self.speed].iter().all(|series| series[1..].iter().all(|c| *c == 0.0))
+    }
+
     /// Longest step for which the last two terms stay below `tolerance` times the scales.
     #[inline(always)]
     #[allow(clippy::inline_always)]

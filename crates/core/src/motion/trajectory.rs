@@ -8,7 +8,8 @@ use super::schedule::Cubic;
 use super::system::{Drive, Integrator, Start, System};
 use super::taylor::Series;
 use crate::drag::Mode;
-use crate::error::{Error, above};
+use crate::error::{Error, above, at_most};
+use crate::work::Work;
 
 /// Motion at equally spaced times from 0 to the duration.
 #[derive(Debug, Clone)]
@@ -54,13 +55,16 @@ impl Energy {
 /// Longest panel of the quadrature of the energies, in units of `sqrt(m/k)`.
 const LONGEST_PANEL: f64 = 0.5;
 
+/// Samples of one motion: their arrays fit in a gigabyte.
+const MOST_SAMPLES: usize = 20_000_000;
+
 /// Motion of `system` from `start` over `duration`, at `samples` equally spaced times.
 ///
 /// Events are located to rounding, and the samples are read from the steps as they are:
 /// neither depends on how densely the output is asked for.
 ///
 /// # Errors
-/// If a value is not finite or out of range, or the motion switches mode without end.
+/// If a value is not finite or out of range, the motion switches mode without end, or `work` ends before it.
 pub fn simulate(
     system: &System,
     start: Start,
@@ -68,15 +72,20 @@ pub fn simulate(
     samples: usize,
     tolerance: f64,
     integrator: Integrator,
+    work: &Work,
 ) -> Result<Trajectory, Error> {
     above("duration", duration, 0.0)?;
-    let mut motion = Motion::new(system, start, tolerance, integrator)?;
+    #[allow(clippy::cast_precision_loss)] // counts for the message
+    at_most("samples", samples as f64, MOST_SAMPLES as f64)?;
+    let mut motion = Motion::new(system, start, tolerance, integrator, work)?;
     let arch = pulp::Arch::new();
     let time = sample_times(duration, samples);
     let (mut speed, mut pull) = (vec![0.0; samples], vec![0.0; samples]);
     let mut mode = Vec::with_capacity(samples);
     let (mut events, mut elapsed) = (Vec::new(), Vec::new());
     let mut energy = Energy::default();
+    // what was asked for is read, however much it is
+    let reading = work.apart(u64::MAX);
     let mut end_state = (start.belt_speed, system.pull(start)?);
     let initial = stored(system, end_state, 0.0);
     while motion.time() < duration {
@@ -88,7 +97,12 @@ pub fn simulate(
         let range = begin..begin + count;
         elapsed.clear();
         elapsed.extend(time[range.clone()].iter().map(|t| t - piece.time));
-        sample(arch, &piece, &elapsed, &mut speed[range.clone()], &mut pull[range]);
+        let (speeds, pulls) = (&mut speed[range.clone()], &mut pull[range]);
+        let blocks = speeds.chunks_mut(AT_ONCE).zip(pulls.chunks_mut(AT_ONCE));
+        for (times, (speeds, pulls)) in elapsed.chunks(AT_ONCE).zip(blocks) {
+            reading.take(1)?;
+            sample(arch, &piece, times, speeds, pulls);
+        }
         mode.resize(begin + count, piece.start.mode);
         energy.add(&piece, system, arch);
         end_state = piece.at(piece.duration);
@@ -116,6 +130,8 @@ impl Energy {
     fn add(&mut self, piece: &Piece, system: &System, arch: pulp::Arch) {
         let panels = match piece.path {
             _ if piece.start.mode == Mode::Stuck => 1.0,
+            // nothing changes on the way
+            Path::Series(ref series) if series.is_still() => 1.0,
             // each state inside a Runge-Kutta step costs a step, and a step is smooth however long it is
             Path::Steps { .. } => 2.0,
             Path::Series(_) => {
@@ -212,6 +228,9 @@ impl pulp::WithSimd for Sampling<'_> {
         }
     }
 }
+
+/// Samples between two looks at whether to stop.
+const AT_ONCE: usize = 64;
 
 /// Samples that are evaluated at once.
 const BLOCK: usize = 8;

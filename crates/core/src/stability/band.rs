@@ -3,11 +3,12 @@
 use super::cycles;
 use super::fold::{Fold, SlipLap, folds};
 use crate::drag::{Closure, Drag};
-use crate::error::Error;
+use crate::error::{Error, unless_stopped};
 use crate::motion::{
     Belt, CycleKind, Drivetrain, Span, Start, StickSlipCycle, System, checked_tolerance, ensemble,
     first_slide, settle,
 };
+use crate::work::Work;
 
 /// Edges of the behaviour over drive speed, for one belt.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,54 +56,103 @@ const PASSING: f64 = 1e4;
 const ABOVE: f64 = 1e-4;
 /// Greatest drive speed looked at, in transition speeds.
 const FASTEST: f64 = 1e4;
+/// Work of all motions of a belt together, over what one of them may take.
+const MOTIONS: u64 = 1;
+/// The same for smooth closures.
+const MOTIONS_SMOOTH: u64 = 6;
 
 /// The band of each belt, without its lower edge (not a number) unless `lower` asks for it: it costs ten times
-/// the fold.
+/// the fold. What `work` allows is for each motion.
 ///
 /// # Errors
-/// If `tolerance` is out of range; each belt's may be an error of its own, if its motion cannot be followed.
+/// If `tolerance` is out of range, or `work` is stopped; each belt's may be an error of its own, if its motion cannot
+/// be followed, or its drag does not fall to the transition more steeply than it goes on from there.
 pub fn bands(
     belts: &[(Drivetrain, Drag)],
     lower: bool,
     tolerance: f64,
+    work: &Work,
 ) -> Result<Vec<Result<Band, Error>>, Error> {
     checked_tolerance(tolerance)?;
     let laps: Vec<Option<SlipLap>> =
         belts.iter().map(|(train, drag)| slip_lap(train, drag)).collect();
-    let uppers = half_lap_folds(belts, &laps, tolerance);
-    let deeper = deeper_stick_slip(belts, &uppers, tolerance);
-    let lowers = if lower { lower_edges(&laps, tolerance) } else { vec![None; belts.len()] };
-    Ok((0..belts.len())
-        .map(|i| {
-            let (train, drag) = &belts[i];
-            let transition = drag.transition_speed();
-            let (lower, lower_accuracy) = match lowers[i] {
-                _ if !lower => (f64::NAN, f64::NAN),
-                Some(edge) => (edge * transition, MEETING * tolerance),
-                None => (lower_by_simulation(train, drag, tolerance)?, HALVED_LOWER),
-            };
-            let half = uppers[i].filter(|_| !deeper[i]);
-            let (upper, upper_accuracy) = if let Some(fold) = half {
-                (fold.drive_speed * transition, MEETING * tolerance)
-            } else {
-                let from = uppers[i].map_or(1.0, |fold| fold.drive_speed * (1.0 + ABOVE));
-                let near = if drag.closure().is_smooth() { HALVED_SMOOTH } else { HALVED };
-                let upper = upper_by_simulation(train, drag, from * transition, near, tolerance)?;
-                (upper, near.max(PASSING * tolerance))
-            };
-            Ok(Band {
-                lower,
-                transition,
-                upper,
-                speed_max: half.map_or(f64::NAN, |fold| fold.speed_max * transition),
-                lower_accuracy,
-                upper_accuracy,
-                method: if half.is_some() { Method::HalfLaps } else { Method::Simulation },
-                deeper: deeper[i],
-                laps: half.map_or(0, |fold| fold.laps),
-            })
+    let uppers = half_lap_folds(belts, &laps, tolerance, work)?;
+    let deeper = deeper_stick_slip(belts, &uppers, tolerance, work)?;
+    let lowers = if lower { lower_edges(&laps, tolerance, work)? } else { vec![None; belts.len()] };
+    unless_stopped((0..belts.len()).map(|i| {
+        let (train, drag) = &belts[i];
+        checked_branches(drag)?;
+        let motions = Motions::new(train, drag, tolerance, work);
+        let transition = drag.transition_speed();
+        let (lower, lower_accuracy) = match lowers[i] {
+            _ if !lower => (f64::NAN, f64::NAN),
+            Some(edge) => (edge * transition, MEETING * tolerance),
+            None => (lower_by_simulation(&motions)?, HALVED_LOWER),
+        };
+        let half = uppers[i].filter(|_| !deeper[i]);
+        let (upper, upper_accuracy) = if let Some(fold) = half {
+            (fold.drive_speed * transition, MEETING * tolerance)
+        } else {
+            let from = uppers[i].map_or(1.0, |fold| fold.drive_speed * (1.0 + ABOVE));
+            let near = if drag.closure().is_smooth() { HALVED_SMOOTH } else { HALVED };
+            let upper = upper_by_simulation(&motions, from * transition, near)?;
+            (upper, near.max(PASSING * tolerance))
+        };
+        Ok(Band {
+            lower,
+            transition,
+            upper,
+            speed_max: half.map_or(f64::NAN, |fold| fold.speed_max * transition),
+            lower_accuracy,
+            upper_accuracy,
+            method: if half.is_some() { Method::HalfLaps } else { Method::Simulation },
+            deeper: deeper[i],
+            laps: half.map_or(0, |fold| fold.laps),
         })
-        .collect())
+    }))
+}
+
+/// Refuse a law of two branches that do not bend upwards at the transition: there is none to divide the behaviour.
+fn checked_branches(drag: &Drag) -> Result<(), Error> {
+    match drag.two_branches() {
+        Some((mixed, ehl)) if mixed >= ehl => {
+            // as the user gave them, without the rounding of the one that was added
+            let given = |exponent: f64| {
+                let rounded = ((exponent - 1.0) * 1e12).round() / 1e12;
+                if rounded.is_finite() { rounded } else { exponent }
+            };
+            let (value, limit) = (given(mixed), given(ehl));
+            Err(Error::NotBelow { quantity: "mixed_exponent", value, limit })
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The motions of one belt, whose work together is bounded.
+struct Motions<'a> {
+    train: &'a Drivetrain,
+    drag: &'a Drag,
+    tolerance: f64,
+    /// Steps of one motion.
+    each: u64,
+    together: Work<'a>,
+}
+
+impl<'a> Motions<'a> {
+    fn new(train: &'a Drivetrain, drag: &'a Drag, tolerance: f64, work: &Work<'a>) -> Self {
+        let many = if drag.closure().is_smooth() { MOTIONS_SMOOTH } else { MOTIONS };
+        let each = work.allowed();
+        Self { train, drag, tolerance, each, together: work.apart(each.saturating_mul(many)) }
+    }
+
+    /// Whether the belt goes on to stick.
+    fn stick(&self, drive_speed: f64, start: Start) -> Result<bool, Error> {
+        let work = self.together.apart(self.each.min(self.together.left()));
+        let (train, drag, tolerance) = (self.train, self.drag, self.tolerance);
+        let cycle = settle(train, drag, drive_speed, start, Span::UntilClosed, tolerance, &work);
+        self.together.take(work.done())?;
+        Ok(lasts(&cycle?, drag))
+    }
 }
 
 /// The belt in scaled units, if its drag has two power branches whose force follows the speed at once.
@@ -124,7 +174,8 @@ fn half_lap_folds(
     belts: &[(Drivetrain, Drag)],
     laps: &[Option<SlipLap>],
     tolerance: f64,
-) -> Vec<Option<Fold>> {
+    work: &Work,
+) -> Result<Vec<Option<Fold>>, Error> {
     let sharp = |drag: &Drag| matches!(drag.closure(), Closure::Retained | Closure::Stiction);
     let (places, known): (Vec<usize>, Vec<SlipLap>) = laps
         .iter()
@@ -138,13 +189,13 @@ fn half_lap_folds(
             let SlipLap { damping, slowest, mixed, .. } = known[index];
             return Some((damping * slowest.powf(mixed), slowest));
         }
-        leaving_stick_speed(train, drag, drive_speed, tolerance)
+        leaving_stick_speed(train, drag, drive_speed, tolerance, work)
     };
     let mut found = vec![None; belts.len()];
-    for (place, fold) in places.iter().zip(folds(&known, tolerance, start)) {
+    for (place, fold) in places.iter().zip(folds(&known, tolerance, work, start)?) {
         found[*place] = fold;
     }
-    found
+    Ok(found)
 }
 
 /// Scaled pull and speed at which a belt that stood still passes the stick speed, for a scaled drive speed.
@@ -153,11 +204,12 @@ fn leaving_stick_speed(
     drag: &Drag,
     drive_speed: f64,
     tolerance: f64,
+    work: &Work,
 ) -> Option<(f64, f64)> {
     let speed = drag.transition_speed();
     let system = System::at_speed(*train, drag, drive_speed * speed).ok()?;
     let start = Start { belt_speed: 0.0, stretch: drag.breakaway_force() / train.stiffness() };
-    let (pull, belt_speed) = first_slide(&system, start, tolerance)?;
+    let (pull, belt_speed) = first_slide(&system, start, tolerance, &work.apart(work.allowed()))?;
     let impedance = (train.stiffness() * train.mass()).sqrt();
     Some((pull / (speed * impedance), belt_speed / speed))
 }
@@ -167,7 +219,8 @@ fn deeper_stick_slip(
     belts: &[(Drivetrain, Drag)],
     uppers: &[Option<Fold>],
     tolerance: f64,
-) -> Vec<bool> {
+    work: &Work,
+) -> Result<Vec<bool>, Error> {
     let mut deeper = vec![false; belts.len()];
     let (places, above): (Vec<usize>, Vec<Belt>) = belts
         .iter()
@@ -179,12 +232,16 @@ fn deeper_stick_slip(
             Some((i, Belt { train: *train, drag: drag.clone(), drive_speed, start: Start::REST }))
         })
         .unzip();
-    if let Ok(outcomes) = ensemble(&above, Span::UntilClosed, tolerance) {
-        for (place, outcome) in places.into_iter().zip(outcomes) {
-            deeper[place] = outcome.is_ok_and(|cycle| lasts(&cycle, &belts[place].1));
+    match ensemble(&above, Span::UntilClosed, tolerance, work) {
+        Ok(outcomes) => {
+            for (place, outcome) in places.into_iter().zip(outcomes) {
+                deeper[place] = outcome.is_ok_and(|cycle| lasts(&cycle, &belts[place].1));
+            }
         }
+        Err(Error::Stopped) => return Err(Error::Stopped),
+        Err(_) => {}
     }
-    deeper
+    Ok(deeper)
 }
 
 /// Whether a motion goes on to slow down to the stick speed, be it held there or swinging back through zero.
@@ -198,7 +255,11 @@ const FIRST_LOOKS: [f64; 6] = [0.3, 0.45, 0.6, 0.75, 0.88, 0.96];
 const PARABOLAS: usize = 5;
 
 /// Least drive speed, over the transition speed, of any cycle without sticking: where two of them meet.
-fn lower_edges(laps: &[Option<SlipLap>], tolerance: f64) -> Vec<Option<f64>> {
+fn lower_edges(
+    laps: &[Option<SlipLap>],
+    tolerance: f64,
+    work: &Work,
+) -> Result<Vec<Option<f64>>, Error> {
     let (places, known): (Vec<usize>, Vec<SlipLap>) =
         laps.iter().enumerate().filter_map(|(i, lap)| Some((i, (*lap)?))).unzip();
     // (slowest speed, drive speed) of the cycles looked at, by slowest speed
@@ -209,28 +270,29 @@ fn lower_edges(laps: &[Option<SlipLap>], tolerance: f64) -> Vec<Option<f64>> {
             .enumerate()
             .filter_map(|(i, slowest)| Some((i, SlipLap { slowest: (*slowest)?, ..known[i] })))
             .unzip();
-        for ((i, lap), fold) in which.iter().zip(&with).zip(cycles(&with, tolerance)) {
+        for ((i, lap), fold) in which.iter().zip(&with).zip(cycles(&with, tolerance, work)?) {
             if let Some(fold) = fold {
                 let place = seen[*i].partition_point(|(slowest, _)| *slowest < lap.slowest);
                 seen[*i].insert(place, (lap.slowest, fold.drive_speed));
             }
         }
+        Ok(())
     };
     for share in FIRST_LOOKS {
         let at: Vec<Option<f64>> =
             known.iter().map(|lap| Some(lap.slowest + share * (1.0 - lap.slowest))).collect();
-        look(&mut seen, &at);
+        look(&mut seen, &at)?;
     }
     for _ in 0..PARABOLAS {
         let at: Vec<Option<f64>> = seen.iter().map(|points| below_three(points)).collect();
-        look(&mut seen, &at);
+        look(&mut seen, &at)?;
     }
     let mut edges = vec![None; laps.len()];
     for (place, points) in places.into_iter().zip(seen) {
         // at the transition speed itself cycles of no size begin
         edges[place] = Some(points.iter().fold(1.0, |least: f64, (_, drive)| least.min(*drive)));
     }
-    edges
+    Ok(edges)
 }
 
 /// Bottom of the parabola through the least point and its neighbours, if it lies between them.
@@ -248,17 +310,9 @@ fn below_three(points: &[(f64, f64)]) -> Option<f64> {
 
 /// Least drive speed above `from` at which a belt from rest ends without sticking, if it sticks at `from`;
 /// otherwise the greatest below at which it sticks.
-fn upper_by_simulation(
-    train: &Drivetrain,
-    drag: &Drag,
-    from: f64,
-    accuracy: f64,
-    tolerance: f64,
-) -> Result<f64, Error> {
-    let sticks = |drive_speed: f64| -> Result<bool, Error> {
-        let cycle = settle(train, drag, drive_speed, Start::REST, Span::UntilClosed, tolerance)?;
-        Ok(lasts(&cycle, drag))
-    };
+fn upper_by_simulation(motions: &Motions, from: f64, accuracy: f64) -> Result<f64, Error> {
+    let drag = motions.drag;
+    let sticks = |drive_speed: f64| motions.stick(drive_speed, Start::REST);
     let (mut low, mut high) = (from, from);
     if sticks(from)? {
         while sticks(high)? {
@@ -279,12 +333,11 @@ fn upper_by_simulation(
 }
 
 /// Drive speed below the transition under which a belt nudged from steady sliding comes to stick.
-fn lower_by_simulation(train: &Drivetrain, drag: &Drag, tolerance: f64) -> Result<f64, Error> {
+fn lower_by_simulation(motions: &Motions) -> Result<f64, Error> {
+    let (train, drag) = (motions.train, motions.drag);
     let transition = drag.transition_speed();
-    let sticks = |drive_speed: f64| -> Result<bool, Error> {
-        let start = Start::steady(train, drag, drive_speed)?.nudged();
-        let cycle = settle(train, drag, drive_speed, start, Span::UntilClosed, tolerance)?;
-        Ok(lasts(&cycle, drag))
+    let sticks = |drive_speed: f64| {
+        motions.stick(drive_speed, Start::steady(train, drag, drive_speed)?.nudged())
     };
     let mut low = 0.9 * transition;
     while !sticks(low)? {

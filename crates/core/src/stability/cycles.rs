@@ -5,6 +5,7 @@ use super::fold::{self, Fold, SlipLap};
 use crate::drag::Drag;
 use crate::error::{Error, above, at_least, below};
 use crate::motion::{Drivetrain, checked_tolerance};
+use crate::work::Work;
 
 /// Relative distance of the laps on either side of one, to see which way the drive speed goes.
 const NEAR: f64 = 1e-4;
@@ -25,33 +26,31 @@ pub struct Swing {
 /// The swing of each of the `slowest` speeds, from the stick speed to below the transition speed.
 ///
 /// # Errors
-/// If a speed or the tolerance is out of that range, or there is no spring or mass. None if the drag does not fall
+/// If a speed or the tolerance is out of that range, there is no spring or mass, or `work` is stopped. None if the drag does not fall
 /// below the transition and rise above it, or has bristles, which remember.
 pub fn swings(
     train: &Drivetrain,
     drag: &Drag,
     slowest: &[f64],
     tolerance: f64,
+    work: &Work,
 ) -> Result<Option<Vec<Swing>>, Error> {
     checked_tolerance(tolerance)?;
     above("stiffness", train.stiffness(), 0.0)?;
     let Some(lap) = slip_lap(train, drag) else { return Ok(None) };
     let transition = drag.transition_speed();
-    for speed in slowest {
-        at_least("slowest", *speed, drag.stick_speed())?;
-        below("slowest", *speed, transition)?;
-    }
+    let many = work.apart(u64::MAX);
     // a cycle is stable where its drive speed rises with its slowest speed: where a slower drive swings wider
-    let laps: Vec<SlipLap> = slowest
-        .iter()
-        .flat_map(|speed| {
-            let own = speed / transition;
-            let most = 0.5 * (1.0 + own);
-            [own, own * (1.0 - NEAR), own * (1.0 + NEAR)]
-                .map(|s| SlipLap { slowest: s.min(most), ..lap })
-        })
-        .collect();
-    let found = cycles(&laps, tolerance);
+    let mut laps = Vec::with_capacity(3 * slowest.len());
+    for speed in slowest {
+        many.take(1)?;
+        at_least("slowest", *speed, drag.stick_speed())?;
+        let own = below("slowest", *speed, transition)? / transition;
+        let most = 0.5 * (1.0 + own);
+        let beside = [own, own * (1.0 - NEAR), own * (1.0 + NEAR)];
+        laps.extend(beside.map(|s| SlipLap { slowest: s.min(most), ..lap }));
+    }
+    let found = cycles(&laps, tolerance, work)?;
     let (triples, _) = found.as_chunks::<3>();
     Ok(Some(
         slowest.iter().zip(triples).map(|(s, three)| swing(&lap, *s, transition, three)).collect(),
@@ -72,9 +71,11 @@ fn swing(lap: &SlipLap, slowest: f64, transition: f64, found: &[Option<Fold>; 3]
 }
 
 /// Folds of laps that begin at their own slowest point: the unstable cycles, and `V*` where that is `v_s`.
-#[must_use]
-pub fn cycles(laps: &[SlipLap], tolerance: f64) -> Vec<Option<Fold>> {
-    fold::folds(laps, tolerance, |index, _| {
+///
+/// # Errors
+/// If `work` is stopped.
+pub fn cycles(laps: &[SlipLap], tolerance: f64, work: &Work) -> Result<Vec<Option<Fold>>, Error> {
+    fold::folds(laps, tolerance, work, |index, _| {
         let SlipLap { damping, slowest, mixed, .. } = laps[index];
         Some((damping * slowest.powf(mixed), slowest))
     })

@@ -10,7 +10,9 @@
 //! back in time from the slowest point, where the motion forgets what forward it would blow up. The drive
 //! speed at which both arrive with the same pull is found by the secant method, each on its own lane.
 
+use crate::error::Error;
 use crate::motion::lanes::{Lanes, arrival, run_lanes};
+use crate::work::Work;
 
 /// What remains of a belt with two power branches once units are chosen to suit it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -60,11 +62,15 @@ const FOUND: f64 = 1e-12;
 ///
 /// `start` gives pull and speed at which the forward lap of a given index begins at a drive speed, if not
 /// from its slowest point.
+///
+/// # Errors
+/// If `work` is stopped.
 pub(super) fn folds(
     laps: &[SlipLap],
     tolerance: f64,
+    work: &Work,
     start: impl Fn(usize, f64) -> Option<(f64, f64)>,
-) -> Vec<Option<Fold>> {
+) -> Result<Vec<Option<Fold>>, Error> {
     let mut found = vec![None; laps.len()];
     let mut waiting = laps.iter().enumerate();
     let admit = |lanes: &mut Lanes, l: usize| {
@@ -73,15 +79,15 @@ pub(super) fn folds(
             seeker.forward(lanes, l, &start).then_some(seeker)
         })
     };
-    run_lanes(tolerance, admit, |seeker, lanes, l| match seeker.follow(lanes, l, &start) {
+    run_lanes(tolerance, work, admit, |seeker, lanes, l| match seeker.follow(lanes, l, &start) {
         Next::Goes => true,
         Next::Found(fold) => {
             found[seeker.index] = Some(fold);
             false
         }
         Next::Fails => false,
-    });
-    found
+    })?;
+    Ok(found)
 }
 
 /// One search on its lane.
@@ -330,7 +336,11 @@ impl Search {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::stability::cycles;
+
+    /// Folds of laps that nobody stops.
+    fn cycles(laps: &[SlipLap], tolerance: f64) -> Vec<Option<Fold>> {
+        crate::stability::cycles(laps, tolerance, &Work::default()).unwrap()
+    }
 
     const BASELINE: SlipLap =
         SlipLap { damping: 1.581_138_830_084_19, slowest: 0.01, mixed: -0.2, ehl: 0.3 };

@@ -16,6 +16,7 @@ import numpy as np
 from hersey import _core
 from hersey.arrays import FloatArray
 from hersey.motion.drag import AnyDrag
+from hersey.motion.parameters import MOST_STEPS
 from hersey.motion.schedule import Schedule, ScheduleArguments
 from hersey.motion.simulation import Drivetrain
 
@@ -226,6 +227,7 @@ class MachineSample:
                 samples,
                 tolerance,
                 "adaptive",
+                MOST_STEPS,
             )
             if force:
                 turned = greatest_stretch(run.time, run.belt_speed, run.stretch, drive)
@@ -249,7 +251,7 @@ class MachineSample:
         """What the motion settles to from a state, temperature held."""
         zero = self.drag.temperature_zero
         law = self._law if temperature is None else self._law.at(temperature - zero)
-        return _core.stick_slip(self.train._arguments, law, target, state, None, tolerance).kind
+        return _core.stick_slip(self.train._arguments, law, target, state, None, tolerance, MOST_STEPS).kind
 
     def _for_good(
         self,

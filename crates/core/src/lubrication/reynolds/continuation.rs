@@ -7,11 +7,12 @@
 use std::f64::consts::PI;
 
 use super::elasticity::{Kernel, layer_factor};
-use super::equations::{Equations, Solution, Unknowns, load};
+use super::equations::{Equations, Solution, Unknowns, load, newton_work};
 use super::fluid::Fluid;
 use super::grid::{density, equidistributed, interpolated};
 use super::{Foundation, LineContact};
 use crate::error::Error;
+use crate::work::Work;
 
 /// Cells of the coarse grid.
 const COARSE: usize = 112;
@@ -29,6 +30,8 @@ const THICKENING_STEPS: (f64, f64) = (1.0, 4.0);
 const LEAST: f64 = 1e-3;
 /// Grids on the way to the fine one, in each attempt.
 const BETWEEN: [u32; 3] = [1, 3, 8];
+/// Newton steps on the fine grid, and on all between, before a film is given up.
+const FINE_STEPS: u64 = 60;
 /// Newton steps below which the next step in speed may be longer.
 const EASY: usize = 7;
 /// The inlet lies where the gap is that many times the film; a rigid film loses about 2 over it.
@@ -54,9 +57,10 @@ pub struct Path {
 /// Solve a contact on a coarse grid and on one of so many cells.
 ///
 /// # Errors
-/// If the way down ends before the speed asked for.
-pub fn follow(contact: &LineContact, cells: usize) -> Result<[Path; 2], Error> {
-    let scaling = Scaling::new(contact);
+/// If the way down, or `work`, ends before the speed asked for.
+pub fn follow(contact: &LineContact, cells: usize, work: &Work) -> Result<[Path; 2], Error> {
+    let way = work.apart(work.allowed());
+    let scaling = Scaling::new(contact, &way);
     let factor = scaling.start();
     let mut here = scaling.first(factor)?;
     let fall = factor.ln();
@@ -72,10 +76,11 @@ pub fn follow(contact: &LineContact, cells: usize) -> Result<[Path; 2], Error> {
     }
     // once more on the coarse grid, so that its nodes follow the last pressure, where that can be done
     let last = Station { factor: 1.0, thickening: 1.0 };
-    if let Some(again) = scaling.onwards(&here, last, COARSE) {
+    if let Some(again) = scaling.onwards(&here, last, COARSE)? {
         here = again;
     }
-    let fine = scaling.refine(here.clone(), last, cells)?;
+    let fine_work = work.apart(work.allowed().saturating_add(FINE_STEPS * newton_work(cells + 1)));
+    let fine = Scaling { work: &fine_work, ..scaling }.refine(here.clone(), last, cells)?;
     Ok([here, fine])
 }
 
@@ -92,11 +97,13 @@ struct Scaling<'a> {
     kernel: Kernel,
     /// Half width of the dry contact, about.
     dry: f64,
+    work: &'a Work<'a>,
 }
 
 impl<'a> Scaling<'a> {
-    fn new(contact: &'a LineContact) -> Self {
-        Self { contact, kernel: Kernel::new(contact.foundation), dry: dry_half_width(contact) }
+    fn new(contact: &'a LineContact, work: &'a Work<'a>) -> Self {
+        let (kernel, dry) = (Kernel::new(contact.foundation), dry_half_width(contact));
+        Self { contact, kernel, dry, work }
     }
 
     /// Film under a rigid roll at so many times the speed.
@@ -127,7 +134,7 @@ impl<'a> Scaling<'a> {
         let (mut share, mut step) = (0.0, first);
         while share < 1.0 {
             let next = if share + 1.01 * step > 1.0 { 1.0 } else { share + step };
-            match self.onwards(&here, station(next), COARSE) {
+            match self.onwards(&here, station(next), COARSE)? {
                 Some(there) => {
                     if there.steps - here.steps < EASY {
                         step = (1.5 * step).min(longest);
@@ -171,14 +178,14 @@ impl<'a> Scaling<'a> {
         let equations = self.equations(station, inlet, shares);
         let nodes = equations.nodes(outlet);
         let guess = Unknowns { pressure: rigid_pressure(&nodes, film), outlet, offset: film };
-        let guess = settled(&equations, guess, film);
-        let solution = equations.solve(guess).ok_or_else(|| self.lost(station))?;
+        let solution = self.solved(&equations, guess, film, station)?;
+        let solution = solution.ok_or_else(|| self.lost(station))?;
         let steps = solution.steps;
         Ok(Path { equations, solution, length: self.length(factor), steps, stations: 1 })
     }
 
     /// The solution at another multiple of the speed or on another grid, guessed from one nearby.
-    fn onwards(&self, from: &Path, station: Station, cells: usize) -> Option<Path> {
+    fn onwards(&self, from: &Path, station: Station, cells: usize) -> Result<Option<Path>, Error> {
         let factor = station.factor;
         let film = &from.solution.film;
         let lowest = film.thickness.iter().fold(f64::INFINITY, |a, h| a.min(*h));
@@ -202,11 +209,25 @@ impl<'a> Scaling<'a> {
         }
         pressure[0] = 0.0;
         let guess = Unknowns { pressure, outlet, offset: 0.0 };
-        let guess = settled(&equations, guess, least);
-        let solution = equations.solve(guess)?;
+        let Some(solution) = self.solved(&equations, guess, least, station)? else {
+            return Ok(None);
+        };
         let steps = from.steps + solution.steps;
         let stations = from.stations + 1;
-        Some(Path { equations, solution, length: self.length(factor), steps, stations })
+        Ok(Some(Path { equations, solution, length: self.length(factor), steps, stations }))
+    }
+
+    /// The solution of a station from a guess, its offset such that its least film is `least`.
+    fn solved(
+        &self,
+        equations: &Equations,
+        guess: Unknowns,
+        least: f64,
+        station: Station,
+    ) -> Result<Option<Solution>, Error> {
+        settled(equations, guess, least, self.work)
+            .and_then(|guess| equations.solve(guess, self.work))
+            .map_err(|error| self.given_up(error, station))
     }
 
     /// The solution on a grid of so many cells, over grids between where it is not reached at once.
@@ -219,7 +240,7 @@ impl<'a> Scaling<'a> {
             });
             let mut reached = true;
             for grid in grids {
-                let Some(next) = self.onwards(&here, last, grid) else {
+                let Some(next) = self.onwards(&here, last, grid)? else {
                     reached = false;
                     break;
                 };
@@ -233,13 +254,24 @@ impl<'a> Scaling<'a> {
     }
 
     fn lost(&self, station: Station) -> Error {
-        let Station { factor, thickening } = station;
-        if thickening * self.contact.fluid.pressure_viscosity > 0.0 {
-            let value = thickening * self.contact.fluid.pressure_viscosity;
-            return Error::NotConverged { quantity: "pressure_viscosity", value };
+        let (quantity, value) = self.reached(station);
+        Error::NotConverged { quantity, value }
+    }
+
+    /// The end of the work as one at this station.
+    fn given_up(&self, error: Error, station: Station) -> Error {
+        let Error::WorkSpent { steps } = error else { return error };
+        let (quantity, value) = self.reached(station);
+        Error::GivenUp { quantity, value, steps }
+    }
+
+    /// What is led to its value at a station.
+    fn reached(&self, Station { factor, thickening }: Station) -> (&'static str, f64) {
+        let pressure_viscosity = thickening * self.contact.fluid.pressure_viscosity;
+        if pressure_viscosity > 0.0 {
+            return ("pressure_viscosity", pressure_viscosity);
         }
-        let value = factor * self.contact.entrainment_speed;
-        Error::NotConverged { quantity: "entrainment_speed", value }
+        ("entrainment_speed", factor * self.contact.entrainment_speed)
     }
 }
 
@@ -290,11 +322,16 @@ fn refit(x: &mut Vec<f64>, p: &mut Vec<f64>, weights: &mut Vec<f64>, inlet: f64)
 }
 
 /// The guess with the offset that makes its least film `least`.
-fn settled(equations: &Equations, mut guess: Unknowns, least: f64) -> Unknowns {
-    let film = equations.film(&guess);
+fn settled(
+    equations: &Equations,
+    mut guess: Unknowns,
+    least: f64,
+    work: &Work,
+) -> Result<Unknowns, Error> {
+    let film = equations.film(&guess, work)?;
     let lowest = film.thickness.iter().fold(f64::INFINITY, |a, h| a.min(*h));
     guess.offset += least - lowest;
-    guess
+    Ok(guess)
 }
 
 /// Pressure under a rigid roll, for a load of 1: the integral of `(H - H_outlet)/H^3` upstream from the outlet.
@@ -389,7 +426,8 @@ mod tests {
     #[test]
     fn the_start_is_nearly_rigid() {
         let contact = contact(Foundation::HalfSpace);
-        let scaling = Scaling::new(&contact);
+        let work = Work::default();
+        let scaling = Scaling::new(&contact, &work);
         let film = MARTIN * 0.1 * 0.1 * 0.015 / 1000.0;
         assert!((scaling.martin(1.0) / film - 1.0).abs() < 1e-14);
         assert!((scaling.martin(3.0) / film - 3.0).abs() < 1e-13);

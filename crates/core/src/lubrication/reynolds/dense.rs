@@ -1,5 +1,11 @@
 //! Dense linear equations: LU decomposition with partial pivoting, eight columns at a time.
 
+use crate::error::Error;
+use crate::work::Work;
+
+/// Entries of a matrix from which eight columns are eliminated in the time of one step of work.
+const ENTRIES: usize = 300;
+
 /// Columns that are eliminated together, so that a row is read once for all of them.
 const PANEL: usize = 8;
 
@@ -46,15 +52,21 @@ pub struct Factors {
 
 impl Factors {
     /// Factors of `matrix`, or nothing if it is singular or not finite.
-    #[must_use]
-    pub fn new(mut matrix: Matrix) -> Option<Self> {
+    ///
+    /// # Errors
+    /// If `work` ends before.
+    pub fn new(mut matrix: Matrix, work: &Work) -> Result<Option<Self>, Error> {
         let n = matrix.order;
         let arch = pulp::Arch::new();
         let mut exchanges = Vec::with_capacity(n);
         for start in (0..n).step_by(PANEL) {
             let end = (start + PANEL).min(n);
+            work.take(panel_work(n - start))?;
             for k in start..end {
-                exchanges.push(eliminate_in_panel(&mut matrix, k, end)?);
+                let Some(exchanged) = eliminate_in_panel(&mut matrix, k, end) else {
+                    return Ok(None);
+                };
+                exchanges.push(exchanged);
             }
             for k in start..end {
                 for i in k + 1..end {
@@ -65,7 +77,7 @@ impl Factors {
             }
             arch.dispatch(|| update(&mut matrix, start, end));
         }
-        Some(Self { matrix, exchanges })
+        Ok(Some(Self { matrix, exchanges }))
     }
 
     /// Put the solution of the equations in place of their right-hand side.
@@ -82,6 +94,17 @@ impl Factors {
             side[i] = (side[i] - dot(&row[i + 1..], &side[i + 1..])) / row[i];
         }
     }
+}
+
+/// Work of eliminating a panel from a matrix of that order.
+fn panel_work(order: usize) -> u64 {
+    (1 + order * order / ENTRIES) as u64
+}
+
+/// Work of the factors of a matrix of that order, about.
+#[must_use]
+pub fn factors_work(order: usize) -> u64 {
+    (order / PANEL) as u64 * panel_work(order) / 3
 }
 
 /// Sum of products.
@@ -155,6 +178,20 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_factorisation_stops_within() {
+        let order = 801;
+        let mut matrix = Matrix::zeros(order);
+        (0..order).for_each(|i| matrix.row_mut(i)[i] = 1.0);
+        let asked = std::cell::Cell::new(0);
+        let stop = || asked.replace(asked.get() + 1) >= 20;
+        let stopped = Factors::new(matrix.clone(), &Work::new(u64::MAX, &stop));
+        assert_eq!(stopped.map(|_| ()), Err(Error::Stopped));
+        let spent = Factors::new(matrix.clone(), &Work::unwatched(factors_work(order) / 2));
+        assert!(matches!(spent, Err(Error::WorkSpent { .. })));
+        assert!(Factors::new(matrix, &Work::unwatched(2 * factors_work(order))).is_ok());
+    }
+
+    #[test]
     fn solves_what_it_factors() {
         for order in [1, 7, 8, 9, 40, 67] {
             let mut matrix = Matrix::zeros(order);
@@ -166,11 +203,12 @@ mod tests {
             let known: Vec<f64> =
                 (0..order).map(|i| 1.0 + [0.0, 1.0, 2.0, 3.0, 4.0][i % 5]).collect();
             let mut side: Vec<f64> = (0..order).map(|i| dot(matrix.row(i), &known)).collect();
-            Factors::new(matrix).expect("random matrices are regular").solve(&mut side);
+            let factors = Factors::new(matrix, &Work::default()).expect("nobody stops it");
+            factors.expect("random matrices are regular").solve(&mut side);
             for (x, y) in side.iter().zip(&known) {
                 assert!((x - y).abs() < 1e-10, "{order}: {x} for {y}");
             }
         }
-        assert!(Factors::new(Matrix::zeros(3)).is_none());
+        assert!(Factors::new(Matrix::zeros(3), &Work::default()).is_ok_and(|f| f.is_none()));
     }
 }

@@ -13,6 +13,11 @@
 //! difference of F, where F'' = K.
 
 use super::dense::{Matrix, dot};
+use crate::error::Error;
+use crate::work::Work;
+
+/// Nodes whose influence on another takes as long as one step of work.
+const INFLUENCES: usize = 25;
 
 /// Distance between tabulated points of the layer, in thicknesses.
 const SPACING: f64 = 0.05;
@@ -128,6 +133,8 @@ impl Kernel {
     }
 
     /// Fifth-degree Hermite interpolation of a column of the table: value and two derivatives.
+    #[inline(always)]
+    #[allow(clippy::inline_always)] // most of a film's work is here
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // below POINTS, not negative
     fn correction(&self, x: f64, column: usize) -> [f64; 3] {
         let place = x / SPACING;
@@ -182,11 +189,14 @@ impl Kernel {
     }
 
     /// Deflection integrals for `nodes`.
-    #[must_use]
-    pub fn influence(&self, nodes: &[f64]) -> Influence {
+    ///
+    /// # Errors
+    /// If `work` ends before.
+    pub fn influence(&self, nodes: &[f64], work: &Work) -> Result<Influence, Error> {
         let n = nodes.len();
         let (mut twice, mut stretch) = (Matrix::zeros(n), Matrix::zeros(n));
         for i in 0..n {
+            work.take(row_work(i))?;
             for j in 0..i {
                 let [value, slope] = self.twice_integrated(nodes[i] - nodes[j]);
                 twice.row_mut(i)[j] = value;
@@ -197,6 +207,7 @@ impl Kernel {
         }
         let mut hats = Matrix::zeros(n);
         for i in 0..n {
+            work.take(row_work(n))?;
             let (f, row) = (twice.row(i), hats.row_mut(i));
             for j in 1..n - 1 {
                 let (left, right) = (nodes[j] - nodes[j - 1], nodes[j + 1] - nodes[j]);
@@ -209,7 +220,7 @@ impl Kernel {
                 };
             }
         }
-        Influence { hats, stretch }
+        Ok(Influence { hats, stretch })
     }
 }
 
@@ -228,6 +239,17 @@ impl Influence {
             .collect();
         (0..=n).map(|i| dot(self.stretch.row(i), &kinks) - deflection[i]).collect()
     }
+}
+
+/// Work of the influence of so many nodes on one.
+fn row_work(nodes: usize) -> u64 {
+    (1 + nodes / INFLUENCES) as u64
+}
+
+/// Work of the influence of so many nodes on each other, about.
+#[must_use]
+pub fn influence_work(nodes: usize) -> u64 {
+    2 * nodes as u64 * row_work(nodes)
 }
 
 /// F of the layer less that of the half space, and four derivatives, at the points of the table.
@@ -310,7 +332,7 @@ mod tests {
         let layer = Kernel::new(Foundation::Layer { thickness: 1.0, poisson: 0.45 });
         let nodes = [-2.0, -1.2, -0.7, 0.0, 0.3, 1.1];
         for kernel in [half_space, layer] {
-            let hats = kernel.influence(&nodes).hats;
+            let hats = kernel.influence(&nodes, &Work::default()).unwrap().hats;
             for (i, at) in nodes.iter().enumerate() {
                 for j in 1..nodes.len() - 1 {
                     let known = hat(&kernel, *at, [nodes[j - 1], nodes[j], nodes[j + 1]]);

@@ -10,9 +10,11 @@
 //!
 //! which holds the Swift-Stieber condition dP/dX = 0 at the outlet, and the pressure carries the load.
 
-use super::dense::{Factors, Matrix, dot};
-use super::elasticity::{Influence, Kernel};
+use super::dense::{Factors, Matrix, dot, factors_work};
+use super::elasticity::{Influence, Kernel, influence_work};
 use super::fluid::Fluid;
+use crate::error::Error;
+use crate::work::Work;
 
 /// Newton steps of one solution.
 const STEPS: usize = 30;
@@ -111,10 +113,12 @@ impl Equations {
     }
 
     /// Nodes and film of a point.
-    #[must_use]
-    pub fn film(&self, point: &Unknowns) -> Film {
+    ///
+    /// # Errors
+    /// If `work` ends before.
+    pub fn film(&self, point: &Unknowns, work: &Work) -> Result<Film, Error> {
         let x = self.nodes(point.outlet);
-        let influence = self.kernel.influence(&x);
+        let influence = self.kernel.influence(&x, work)?;
         let thickness = x
             .iter()
             .enumerate()
@@ -123,7 +127,7 @@ impl Equations {
                 point.offset + 0.5 * x * x + self.compliance * deflection
             })
             .collect();
-        Film { x, thickness, influence }
+        Ok(Film { x, thickness, influence })
     }
 
     /// What is left of each equation: flow on each cell, then the load.
@@ -222,33 +226,38 @@ impl Equations {
     }
 
     /// The solution from a first guess, or nothing if Newton's method stalls.
-    #[must_use]
-    pub fn solve(&self, guess: Unknowns) -> Option<Solution> {
+    ///
+    /// # Errors
+    /// If `work` ends before.
+    pub fn solve(&self, guess: Unknowns, work: &Work) -> Result<Option<Solution>, Error> {
         let mut point = guess;
-        let mut film = self.film(&point);
+        let mut film = self.film(&point, work)?;
         if !film.thickness.iter().all(|h| *h > 0.0) {
-            return None;
+            return Ok(None);
         }
         let mut residual = self.residual(&point, &film);
         let mut before = f64::INFINITY;
         for steps in 1..=STEPS {
             let error = film.error(&residual);
-            let factors = Factors::new(self.jacobian(&point, &film))?;
+            let Some(factors) = Factors::new(self.jacobian(&point, &film), work)? else {
+                return Ok(None);
+            };
             let mut step: Vec<f64> = residual.iter().map(|r| -r).collect();
             factors.solve(&mut step);
-            let next = self.descend(&point, &film, &residual, &step);
+            let next = self.descend(&point, &film, &residual, &step, work)?;
             let after = next.as_ref().map_or(error, |(_, film, left)| film.error(left));
             if after < TOLERANCE || (error < FLOOR && after > 0.1 * error.min(before)) {
                 if let Some(next) = next {
                     (point, film, _) = next;
                 }
                 let residual = after;
-                return Some(Solution { unknowns: point, film, factors, steps, residual });
+                return Ok(Some(Solution { unknowns: point, film, factors, steps, residual }));
             }
             before = error;
-            (point, film, residual) = next?;
+            let Some(next) = next else { return Ok(None) };
+            (point, film, residual) = next;
         }
-        None
+        Ok(None)
     }
 
     /// The point that the longest admissible share of `step` leads to.
@@ -258,13 +267,14 @@ impl Equations {
         film: &Film,
         residual: &[f64],
         step: &[f64],
-    ) -> Option<(Unknowns, Film, Vec<f64>)> {
+        work: &Work,
+    ) -> Result<Option<(Unknowns, Film, Vec<f64>)>, Error> {
         let before = norm(residual);
         let mut share = 1.0;
         while share >= SHORTEST {
             let moved = point.moved(step, share);
             if moved.outlet > -0.5 * self.inlet && moved.outlet < self.inlet {
-                let next = self.film(&moved);
+                let next = self.film(&moved, work)?;
                 let open = next
                     .thickness
                     .iter()
@@ -275,14 +285,20 @@ impl Equations {
                     let after = norm(&left);
                     let small = next.error(&left) < TOLERANCE;
                     if after <= before * (1.0 - 0.1 * share) || small {
-                        return Some((moved, next, left));
+                        return Ok(Some((moved, next, left)));
                     }
                 }
             }
             share *= 0.5;
         }
-        None
+        Ok(None)
     }
+}
+
+/// Work of one Newton step on so many nodes, about.
+#[must_use]
+pub fn newton_work(nodes: usize) -> u64 {
+    factors_work(nodes) + 2 * influence_work(nodes)
 }
 
 /// Flow through a cell, and its derivatives to film and pressure at three nodes from `first` on.
@@ -368,7 +384,7 @@ mod tests {
             [Foundation::HalfSpace, Foundation::Layer { thickness: 1.5, poisson: 0.45 }]
         {
             let (equations, point) = case(foundation);
-            let film = equations.film(&point);
+            let film = equations.film(&point, &Work::default()).unwrap();
             let jacobian = equations.jacobian(&point, &film);
             let n = film.x.len() - 1;
             for column in 0..=n {
@@ -377,7 +393,8 @@ mod tests {
                 let by = 1e-6;
                 let residual = |share: f64| {
                     let moved = point.moved(&step, share);
-                    equations.residual(&moved, &equations.film(&moved))
+                    let film = equations.film(&moved, &Work::default()).unwrap();
+                    equations.residual(&moved, &film)
                 };
                 for (row, (up, down)) in residual(by).iter().zip(residual(-by)).enumerate() {
                     let slope = (up - down) / (2.0 * by);

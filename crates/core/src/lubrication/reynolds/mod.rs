@@ -27,6 +27,7 @@ pub use fluid::{Fluid, Thickening};
 pub use outcome::{Exponents, LineSolution, Summary};
 
 use crate::error::{Error, above, at_least, at_most, finite};
+use crate::work::Work;
 
 /// Fewest nodes that give a film.
 pub const LEAST_NODES: f64 = 50.0;
@@ -75,14 +76,15 @@ impl LineContact {
     /// Pressure, film and friction on a grid of that many nodes.
     ///
     /// # Errors
-    /// If a number is out of range, or the equations cannot be solved.
-    pub fn solve(self, nodes: usize) -> Result<LineSolution, Error> {
+    /// If a number is out of range, the equations cannot be solved, or `work` ends before: what it allows is for the
+    /// way on the coarse grid, from which that on the fine one follows.
+    pub fn solve(self, nodes: usize, work: &Work) -> Result<LineSolution, Error> {
         let contact = self.checked()?;
         #[allow(clippy::cast_precision_loss)] // a count for the message
         let count = nodes as f64;
         at_least("nodes", count, LEAST_NODES)?;
         at_most("nodes", count, MOST_NODES)?;
-        let [coarse, fine] = continuation::follow(&contact, nodes - 1)?;
-        Ok(outcome::outcome(&contact, &coarse, &fine))
+        let [coarse, fine] = continuation::follow(&contact, nodes - 1, work)?;
+        outcome::outcome(&contact, &coarse, &fine, &work.apart(u64::MAX))
     }
 }

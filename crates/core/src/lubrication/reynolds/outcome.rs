@@ -3,6 +3,8 @@
 use super::LineContact;
 use super::continuation::Path;
 use super::equations::{Equations, Film, Unknowns, load};
+use crate::error::Error;
+use crate::work::Work;
 
 /// Step in the logarithm of speed or load, along the tangent, of the exponents; times the film over a^2/R.
 const STEP: f64 = 1e-3;
@@ -83,16 +85,23 @@ impl Summary {
 }
 
 /// The solution in the units of the contact, and its error by that on a coarser grid.
-#[must_use]
-pub fn outcome(contact: &LineContact, coarse: &Path, path: &Path) -> LineSolution {
+///
+/// # Errors
+/// If `work` ends before.
+pub fn outcome(
+    contact: &LineContact,
+    coarse: &Path,
+    path: &Path,
+    work: &Work,
+) -> Result<LineSolution, Error> {
     let a = path.length;
     let thickness = a * a / contact.radius;
     let Path { equations, solution, .. } = path;
     let (point, film) = (&solution.unknowns, &solution.film);
     let pressure: Vec<f64> = point.pressure.iter().map(|p| p * equations.pressure).collect();
     let least = film.thickness.iter().fold(1.0_f64, |a, h| a.min(*h));
-    let exponents = |speed: f64, load: f64| exponents(contact, path, speed, load);
-    LineSolution {
+    let exponents = |speed: f64, load: f64| exponents(contact, path, speed, load, work);
+    Ok(LineSolution {
         x: film.x.iter().map(|x| x * a).collect(),
         greatest_pressure: pressure.iter().fold(0.0, |top, p| top.max(*p)),
         pressure,
@@ -106,9 +115,9 @@ pub fn outcome(contact: &LineContact, coarse: &Path, path: &Path) -> LineSolutio
         flow_residual: solution.residual,
         iterations: path.steps,
         stations: path.stations,
-        by_speed: exponents(STEP * least, 0.0),
-        by_load: exponents(0.0, STEP * least),
-    }
+        by_speed: exponents(STEP * least, 0.0)?,
+        by_load: exponents(0.0, STEP * least)?,
+    })
 }
 
 /// Error of the least film, second order in the distance of the nodes, from two grids.
@@ -124,9 +133,15 @@ fn grid_error(contact: &LineContact, coarse: &Path, fine: &Path) -> f64 {
 }
 
 /// Exponents by a step along the tangent of the solution, which the factored Jacobian gives.
-fn exponents(contact: &LineContact, path: &Path, speed: f64, load: f64) -> Exponents {
+fn exponents(
+    contact: &LineContact,
+    path: &Path,
+    speed: f64,
+    load: f64,
+    work: &Work,
+) -> Result<Exponents, Error> {
     let solution = &path.solution;
-    let ends = [-1.0_f64, 1.0].map(|sign| {
+    let end = |sign: f64| -> Result<Summary, Error> {
         let contact = LineContact {
             entrainment_speed: contact.entrainment_speed * (sign * speed).exp(),
             sliding_speed: contact.sliding_speed * (sign * speed).exp(),
@@ -139,22 +154,23 @@ fn exponents(contact: &LineContact, path: &Path, speed: f64, load: f64) -> Expon
             pressure: path.equations.pressure * (sign * load).exp(),
             ..path.equations.clone()
         };
-        let film = equations.film(&solution.unknowns);
+        let film = equations.film(&solution.unknowns, work)?;
         let mut step: Vec<f64> =
             equations.residual(&solution.unknowns, &film).iter().map(|r| -r).collect();
         solution.factors.solve(&mut step);
         let point = solution.unknowns.moved(&step, 1.0);
-        let film = equations.film(&point);
-        summary(&contact, &equations, path.length, &point, &film)
-    });
+        let film = equations.film(&point, work)?;
+        Ok(summary(&contact, &equations, path.length, &point, &film))
+    };
+    let ends = [end(-1.0)?, end(1.0)?];
     let slope =
         |of: fn(&Summary) -> f64| (of(&ends[1]) / of(&ends[0])).ln() / (2.0 * (speed + load));
-    Exponents {
+    Ok(Exponents {
         central: slope(|s| s.central),
         minimum: slope(|s| s.minimum),
         traction_1: slope(Summary::traction_1),
         traction_2: slope(Summary::traction_2),
-    }
+    })
 }
 
 /// Films and forces of a point.

@@ -1,0 +1,85 @@
+"""Ctrl-C in the midst of each call that can last: the call ends with KeyboardInterrupt, and soon.
+
+Each call would last minutes or hours. It runs in a process of its own, which is interrupted once it has
+worked; what is measured is its processor time afterwards, which a busy machine does not lengthen.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+HEAD = """
+import sys
+from math import inf
+import numpy as np, xarray
+from hersey import Drag, Drivetrain, simulate, stick_slip, _core
+from hersey.lubrication import paper
+from hersey.lubrication.reynolds import solve_line_contact
+from hersey.motion.sweep import sweep
+from hersey.stability.disturbance import disturbance, safe_step
+from hersey.stability.hysteresis import cycles_without_sticking, hysteresis, hysteresis_sweep
+PAPER = {"ehl_exponent": -0.7, "mixed_exponent": -1.2, "stick_speed": 0.01}
+TRAIN, DRAG = Drivetrain(1000, 1), Drag(50, 1, **PAPER)
+BRISTLES = Drag(50, 1, **PAPER, closure="lugre", bristle_stiffness=1e5, bristle_damping=100.0)
+NIP = {"effective_modulus": 2.63e6, "thickness": 3.5e-3, "poisson": 0.49}
+print("ready", flush=True)
+try:
+    CALL
+except KeyboardInterrupt:
+    print("interrupted", flush=True)
+"""
+#: Each with what would make it last for long.
+CALLS = {
+    "simulate": "simulate(TRAIN, DRAG, drive_speed=1.0, duration=1e9, most_steps=inf)",
+    "simulate with bristles": "simulate(TRAIN, BRISTLES, drive_speed=1.0, duration=1e9, most_steps=inf)",
+    "samples": "simulate(TRAIN, BRISTLES, drive_speed=0.0, duration=1.0, samples=20_000_000)",
+    "stick_slip": "[stick_slip(TRAIN, BRISTLES, drive_speed=1.0) for _ in range(9999)]",
+    "sweep": "sweep(TRAIN, DRAG, drive_speed=[0.5, 1.0], duration=1e300, most_steps=inf)",
+    "sweep with bristles": "sweep(TRAIN, BRISTLES, drive_speed=np.linspace(0.5, 2, 5000), threads=2)",
+    "hysteresis": "hysteresis(TRAIN, BRISTLES, most_steps=inf)",
+    "samples of a band": "hysteresis(TRAIN, DRAG, samples={'mass': np.linspace(1, 2, 3_000_000)})",
+    "hysteresis_sweep": "hysteresis_sweep(TRAIN, BRISTLES, stiffness=np.linspace(500, 2000, 100))",
+    "cycles": "cycles_without_sticking(TRAIN, DRAG, slowest=np.linspace(0.02, 0.9, 9_000_000))",
+    "safe_step": "[safe_step(TRAIN, DRAG, from_speed=2.5, to_speed=1.2) for _ in range(9999)]",
+    "disturbance": "[disturbance(TRAIN, DRAG, drive_speed=1.2) for _ in range(9999)]",
+    "line_contact": "[solve_line_contact(0.015, 1136, 0.1, 0.1, **NIP, nodes=1601) for _ in range(999)]",
+    "fine line_contact": "solve_line_contact(0.015, 1136, 0.1, 0.1, **NIP, nodes=4001)",
+    "films": "_core.layer(np.broadcast_arrays(np.linspace(900.0, 1300.0, 10**7), 0.015, 0.0035, 2e6, 0.48))",
+}
+#: Processor time before the interrupt, and the most that may follow it, s; what is promised is 0.5 s of time.
+WORKED, MOST = 0.4, 2.0
+PROCESSES = Path("/proc")
+
+
+def processor_time(process: int) -> float:
+    """Processor time of a process and its threads, s."""
+    fields = (PROCESSES / str(process) / "stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+@pytest.mark.skipif(not (PROCESSES / "self" / "stat").exists(), reason="processor time is read from /proc")
+@pytest.mark.parametrize("call", CALLS.values(), ids=CALLS)
+def test_an_interrupt_ends_the_call(call: str) -> None:
+    command = [sys.executable, "-c", HEAD.replace("CALL", call)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as child:
+        assert child.stdout is not None
+        try:
+            assert child.stdout.readline() == "ready\n"
+            begun = processor_time(child.pid)
+            while (worked := processor_time(child.pid) - begun) < WORKED and child.poll() is None:
+                time.sleep(0.02)
+            child.send_signal(signal.SIGINT)
+            # two threads may work after it; a call that goes on is stopped here by its processor time
+            while child.poll() is None and processor_time(child.pid) - begun - worked < 2 * MOST:
+                time.sleep(0.02)
+            assert child.poll() is not None, "the call goes on"
+            assert child.stdout.read() == "interrupted\n"
+        finally:
+            child.kill()
