@@ -80,11 +80,11 @@ def delimited_columns(path: Path) -> tuple[Column, ...]:
 
     Raises
     ------
-    UnreadableLogError
-        If the file holds no table.
+    MissingFileError, UnreadableLogError
+        If it cannot be opened, or holds no table.
     """
-    layout = delimited_layout(path)
-    return tuple(column for column in layout.columns if column.index not in layout.texts)
+    with open_delimited(path) as file:
+        return tuple(column for column in file.layout.columns if column.index not in file.layout.texts)
 
 
 class DelimitedFile:
@@ -135,30 +135,6 @@ def open_delimited(path: Path) -> Iterator[DelimitedFile]:
     """
     with appended(path) as opened:
         yield DelimitedFile(opened)
-
-
-def delimited_layout(path: Path) -> Layout:
-    """Return the layout of a text file.
-
-    Raises
-    ------
-    MissingFileError, UnreadableLogError
-        If it cannot be opened, or holds no table.
-    """
-    with open_delimited(path) as file:
-        return file.layout
-
-
-def delimited_numbers(path: Path, chosen: Sequence[Column], *, complete: bool) -> list[FloatArray]:
-    """Return columns as written (time stamps in s), shape (rows,), NaN where a number is missing.
-
-    Raises
-    ------
-    UnreadableLogError
-        If a cell is no number, naming line and column; if ``complete``, also if one is missing.
-    """
-    with open_delimited(path) as file:
-        return file.numbers(chosen, complete=complete)
 
 
 def _channels(
