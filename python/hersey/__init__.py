@@ -32,11 +32,11 @@ backwards: a log knows no fit, a fit knows no motion. Names are loaded when they
 
 from __future__ import annotations
 
-import importlib
+import importlib.metadata
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from hersey._core import VERSION as __version__
+    __version__: str
     from hersey.damping.branches import Transition
     from hersey.damping.candidates import ModelComparison, compare_models, hersey_collapse, viscosity_laws
     from hersey.damping.compare import LogComparison, compare
@@ -186,10 +186,8 @@ __all__ = [
 
 def __getattr__(name: str) -> Any:
     """Load a public name when it is first used."""
-    if name == "__version__":
-        from hersey._core import VERSION
-
-        return VERSION
+    if name == "__version__":  # the core knows it, too, and loads NumPy
+        return importlib.metadata.version("hersey")
     if name not in _HOME_OF:
         raise AttributeError(f"module 'hersey' has no attribute '{name}'")
     value = getattr(importlib.import_module(f"hersey.{_HOME_OF[name]}"), name)
