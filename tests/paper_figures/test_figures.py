@@ -6,6 +6,7 @@ import json
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -404,14 +405,14 @@ def test_a_failure_leaves_nothing_behind(
     tmp_path: Path, figures: tuple[PaperFigure, ...], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "figure-09.svg").write_text("old")
-    write_bytes = Path.write_bytes
+    whole = Path.open
 
-    def full(path: Path, content: bytes) -> int:
-        if path.name == "figure-11.png":
+    def full(path: Path, mode: str) -> Any:
+        if path.name.startswith(".figure-11.png."):
             raise OSError(28, "No space left on device")
-        return write_bytes(path, content)
+        return whole(path, mode)
 
-    monkeypatch.setattr(Path, "write_bytes", full)
+    monkeypatch.setattr(Path, "open", full)
     with pytest.raises(OutputError, match="No space left"):
         write(figures, tmp_path, overwrite=True)
     assert [p.name for p in tmp_path.iterdir()] == ["figure-09.svg"]

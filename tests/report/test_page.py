@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import os
 import re
 from pathlib import Path
+from typing import BinaryIO
 
 import pytest
 
@@ -49,8 +49,8 @@ def test_files_are_written_whole_or_not_at_all(tmp_path: Path) -> None:
 class _Disk:
     """A file on a disk that fills up half way."""
 
-    def __init__(self, descriptor: int) -> None:
-        self._file = open(descriptor, "wb")  # noqa: SIM115 (it is closed on exit, and has no path)
+    def __init__(self, file: BinaryIO) -> None:
+        self._file = file
 
     def __enter__(self) -> _Disk:
         return self
@@ -68,14 +68,8 @@ def test_a_disk_that_fills_up_leaves_the_old_text(tmp_path: Path, monkeypatch: p
     path = tmp_path / "page.html"
     path.write_text("the old page")
 
-    def full(self: Path, content: bytes) -> int:
-        with self.open("wb") as file:
-            file.write(content[: len(content) // 2])
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr(os, "fdopen", lambda descriptor, _mode: _Disk(descriptor))
-    monkeypatch.setattr(Path, "write_bytes", full)
-    monkeypatch.setattr(Path, "write_text", lambda self, text, **_: full(self, text.encode()))
+    whole = Path.open
+    monkeypatch.setattr(Path, "open", lambda part, mode: _Disk(whole(part, mode)))
     with pytest.raises(OutputError, match=r"page\.html cannot be written: No space left on device"):
         write_atomically(path, "a new page", overwrite=True)
     monkeypatch.undo()

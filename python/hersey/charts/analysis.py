@@ -31,7 +31,7 @@ from hersey.charts.style import (
     zoom,
 )
 from hersey.document.parts import Analysis, Point, Series
-from hersey.files.writing import write_atomically
+from hersey.files.writing import write_all
 from hersey.units import celsius, rpm
 
 #: Cells of a surface overlap a little: seams would shine through otherwise.
@@ -236,8 +236,7 @@ def write_figures(document: Analysis, folder: Path) -> list[Path]:
         for suffix in FIGURES
     }
     folder.mkdir(parents=True, exist_ok=True)
-    for path, content in pictures.items():
-        write_atomically(path, content, overwrite=True)
+    write_all(pictures, overwrite=True)
     return list(pictures)
 
 

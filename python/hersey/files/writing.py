@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import os
 import secrets
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import BinaryIO
 
@@ -31,6 +31,13 @@ def write_atomically(path: Path, content: str | bytes, *, overwrite: bool) -> No
         file.write(content.encode("utf-8") if isinstance(content, str) else content)
 
 
+def write_all(contents: Mapping[Path, bytes], *, overwrite: bool) -> None:
+    """Write files of which none takes its place before all are there; as `write_atomically` for each."""
+    with ExitStack() as stack:
+        for path, content in contents.items():
+            stack.enter_context(written(path, overwrite=overwrite)).write(content)
+
+
 @contextmanager
 def written(path: Path, *, overwrite: bool) -> Iterator[BinaryIO]:
     """Yield a new file that takes the place of ``path`` at the end, or goes if anything fails meanwhile.
@@ -52,6 +59,8 @@ def written(path: Path, *, overwrite: bool) -> Iterator[BinaryIO]:
         with part.open("xb") as file:
             yield file
         part.replace(path)
+    except OutputError:  # of another file that is written meanwhile
+        raise
     except OSError as error:
         raise OutputError(f"{path} cannot be written: {error.strerror}") from None
     finally:

@@ -9,7 +9,7 @@ from pathlib import Path
 from hersey.charts import FIGURES
 from hersey.charts.render import picture
 from hersey.errors import OutputError
-from hersey.files.writing import write_atomically
+from hersey.files.writing import write_all
 from hersey.paper_figures.figure import ABOUT, Figure
 from hersey.result import json_value
 
@@ -23,7 +23,7 @@ and ranges that the paper names. *About* means within {ABOUT:g} of an exponent, 
 def write(figures: Sequence[Figure], folder: Path, *, overwrite: bool = False) -> list[Path]:
     """Write each figure as SVG, PNG and PDF, with ``figures.md`` and ``figures.json``; return the paths.
 
-    Everything is drawn before anything is written, and each file is written whole.
+    Everything is drawn before anything is written, and all is written before anything takes its place.
 
     Raises
     ------
@@ -43,8 +43,7 @@ def write(figures: Sequence[Figure], folder: Path, *, overwrite: bool = False) -
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise OutputError(f"{folder} cannot be written: {error.strerror}") from None
-    for path in paths:
-        write_atomically(path, contents[path.name], overwrite=overwrite)
+    write_all({folder / name: content for name, content in contents.items()}, overwrite=overwrite)
     return paths
 
 

@@ -15,6 +15,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.conftest import ROOT
+
 HEAD = """
 import sys
 from math import inf
@@ -28,6 +30,17 @@ from hersey.stability.hysteresis import cycles_without_sticking, hysteresis, hys
 PAPER = {"ehl_exponent": -0.7, "mixed_exponent": -1.2, "stick_speed": 0.01}
 TRAIN, DRAG = Drivetrain(1000, 1), Drag(50, 1, **PAPER)
 BRISTLES = Drag(50, 1, **PAPER, closure="lugre", bristle_stiffness=1e5, bristle_damping=100.0)
+import hersey
+from hersey import Limits, plan_profile
+from hersey.document.assembly import analyse
+from hersey.identification.trace_file import read_trace
+BENCH = "examples/bench.csv"
+TRACE = read_trace("examples/stick-slip.csv")
+RECORD = hersey.cycles(TRACE.time, TRACE.value, drive_speed=0.02)
+MACHINE, PLANNED = hersey.read_machine("examples/machine.toml"), Limits(speed=4, acceleration=10)
+LOG = hersey.read(BENCH)
+POINTS = LOG.steady(tare="standing")
+SURFACE = hersey.fit(POINTS)
 NIP = {"effective_modulus": 2.63e6, "thickness": 3.5e-3, "poisson": 0.49}
 print("ready", flush=True)
 try:
@@ -51,6 +64,15 @@ CALLS = {
     "disturbance": "[disturbance(TRAIN, DRAG, drive_speed=1.2) for _ in range(9999)]",
     "line_contact": "[solve_line_contact(0.015, 1136, 0.1, 0.1, **NIP, nodes=1601) for _ in range(999)]",
     "fine line_contact": "solve_line_contact(0.015, 1136, 0.1, 0.1, **NIP, nodes=4001)",
+    "read": "[hersey.read(BENCH) for _ in range(9999)]",
+    "models": "[hersey.compare_models(POINTS) for _ in range(9999)]",
+    "identify": "[hersey.identify(RECORD) for _ in range(99)]",
+    "analyse": "[analyse(LOG, POINTS) for _ in range(999)]",
+    "map": (
+        "[hersey.operating_map(SURFACE, MACHINE.train, roll_radius=MACHINE.roll_radius, "
+        "limits=MACHINE.limits, stick_speed=MACHINE.stick_speed) for _ in range(999)]"
+    ),
+    "plan": "[plan_profile(TRAIN, DRAG, target_speed=1.2, limits=PLANNED) for _ in range(999)]",
     "films": "_core.layer(np.broadcast_arrays(np.linspace(900.0, 1300.0, 10**7), 0.015, 0.0035, 2e6, 0.48))",
 }
 #: Processor time before the interrupt, and the most that may follow it, s; what is promised is 0.5 s of time.
@@ -68,7 +90,9 @@ def processor_time(process: int) -> float:
 @pytest.mark.parametrize("call", CALLS.values(), ids=CALLS)
 def test_an_interrupt_ends_the_call(call: str) -> None:
     command = [sys.executable, "-c", HEAD.replace("CALL", call)]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as child:
+    with subprocess.Popen(
+        command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+    ) as child:
         assert child.stdout is not None
         try:
             assert child.stdout.readline() == "ready\n"
