@@ -48,8 +48,44 @@ MOST_TIME, MOST_MEMORY = 5.0, 2.3e9
 _INSPECTED = 0.2
 _NUMBERS = (0, 1, 2, 255, 2**16 - 1, 2**31 - 1, 2**31, 2**32 - 1, 2**62, 2**63 - 1, 2**64 - 1)
 _WORDS = (
-    *('"', '""', "'", ";", ",", "\t", "|", "\n", "\r", "\r\n", "\0", "#", "[", "]", "{", "}", "(", ")", "=", "\\"),
-    *("nan", "inf", "-inf", "1e999", "1e-999", "9" * 400, "-", "--1", "1,5", "1.234,5", "0x10", "1_0", "٣", "２"),
+    *(
+        '"',
+        '""',
+        "'",
+        ";",
+        ",",
+        "\t",
+        "|",
+        "\n",
+        "\r",
+        "\r\n",
+        "\0",
+        "#",
+        "[",
+        "]",
+        "{",
+        "}",
+        "(",
+        ")",
+        "=",
+        "\\",
+    ),
+    *(
+        "nan",
+        "inf",
+        "-inf",
+        "1e999",
+        "1e-999",
+        "9" * 400,
+        "-",
+        "--1",
+        "1,5",
+        "1.234,5",
+        "0x10",
+        "1_0",
+        "٣",
+        "２",
+    ),
     *("\ufeff", "\ud800", "\u2028", "\x1b[2J", "e\u0301", "N*m", "[rpm]", " " * 3000, "a.a.a", "12:00:00"),
     *("2024-03-01", "31.02.2024", "-0", "1e5", "true", "null", "[[", "\N{RIGHT-TO-LEFT OVERRIDE}"),
 )
@@ -70,7 +106,9 @@ def flip(data: bytes, draw: random.Random) -> bytes:
 def overwrite(data: bytes, draw: random.Random) -> bytes:
     out, place = bytearray(data), draw.randrange(len(data))
     rest = out[place : place + draw.choice((1, 4, 64))]
-    out[place : place + len(rest)] = draw.choice((bytes(len(rest)), b"\xff" * len(rest), draw.randbytes(len(rest))))
+    out[place : place + len(rest)] = draw.choice(
+        (bytes(len(rest)), b"\xff" * len(rest), draw.randbytes(len(rest)))
+    )
     return bytes(out)
 
 
@@ -129,7 +167,9 @@ def cell(data: bytes, draw: random.Random) -> bytes:
 
 
 def separators(data: bytes, draw: random.Random) -> bytes:
-    return data.replace(draw.choice((b",", b";", b"\t", b".", b"\n", b'"', b" ")), draw.choice((b",", b";", b"\t", b"|")))
+    return data.replace(
+        draw.choice((b",", b";", b"\t", b".", b"\n", b'"', b" ")), draw.choice((b",", b";", b"\t", b"|"))
+    )
 
 
 def encoding(data: bytes, draw: random.Random) -> bytes:
@@ -304,7 +344,9 @@ def main() -> int:
             seconds=60 * given.minutes, told=say,
         )  # fmt: skip
     ends = ", ".join(f"{count} {end}" for end, count in reader.ends.most_common())
-    say(f"{count} inputs in {time.monotonic() - started:.0f} s, {processor_time() - cost:.0f} s of processor time")
+    say(
+        f"{count} inputs in {time.monotonic() - started:.0f} s, {processor_time() - cost:.0f} s of processor time"
+    )
     say(f"ends: {ends}")
     say(f"the slowest took {reader.slowest[0]:.1f} s: {reader.slowest[1]}")
     say(f"failed: {len(failed)}" + (f", kept in {os.path.relpath(keep)}" if failed else ""))

@@ -139,7 +139,10 @@ def _description(channel: Channel, offset: int) -> bytes:
 
 
 def mdf3(
-    channels: Sequence[tuple[str, str, np.ndarray, bytes | None]], *, long_name: bytes = b"", comment: bytes = b""
+    channels: Sequence[tuple[str, str, np.ndarray, bytes | None]],
+    *,
+    long_name: bytes = b"",
+    comment: bytes = b"",
 ) -> bytes:
     """Return an MDF 3 file: name, unit, values and formula (or None) of each channel, the clock first."""
     content = bytearray(struct.pack("<8s8s8sHHHH32x", b"MDF     ", b"3.30    ", b"stranger", 0, 0, 330, 0))
