@@ -19,7 +19,7 @@ def tdms(
     count: int | None = None,
     next_segment: int | None = None,
 ) -> bytes:
-    """Return a TDMS file of one segment; ``count`` is the number of values that it claims for each channel."""
+    """Return a TDMS file of one segment; ``count``: the values that it claims for each channel."""
 
     def words(text: str) -> bytes:
         return struct.pack("<I", len(text.encode())) + text.encode()

@@ -1,4 +1,4 @@
-"""No formula, name, unit or comment of a file runs as code, and none that is not understood is read as raw numbers."""
+"""No formula, name, unit or comment of a file runs as code, and none that is not understood is read raw."""
 
 from __future__ import annotations
 
@@ -66,9 +66,9 @@ FORMULAS = [
     "lambdify(X,\"P\")(X)",
     "evaluate(\"P\")",
     "np.save('M',X)",
-    "ｏｐｅｎ('M','w')",
-    "ｅval(\"P\")",
-    "Х+1",  # a Cyrillic letter
+    "\N{FULLWIDTH LATIN SMALL LETTER O}pen('M','w')",
+    "\N{FULLWIDTH LATIN SMALL LETTER E}val(\"P\")",
+    "\N{CYRILLIC CAPITAL LETTER HA}+1",
     "X²",
     "٣*X",
     "1_000*X",
@@ -151,7 +151,7 @@ class Trap:
 
     def assert_untouched(self) -> None:
         assert not list(self.here.rglob("MARK*"))
-        assert not Path("/tmp/MARK-of-a-stranger").exists()  # noqa: S108 # where a payload would put it
+        assert not Path("/tmp/MARK-of-a-stranger").exists()
         with pytest.raises(BlockingIOError):
             self.socket.accept()
 
@@ -278,11 +278,13 @@ def test_words_of_a_file_are_words(place: str, text: str, trap: Trap) -> None:
         conversion.comment, conversion.unit = text, text
     path.write_bytes(mf4(channels(conversion, **changed), comment=text if place == "header" else ""))
     for call in (list_channels, hersey.read, hersey.inspect):
+        told = ""
         try:
             call(path)
         except HerseyError as error:
-            assert "\n" not in str(error)
-            assert len(str(error)) < 3000
+            told = str(error)
+        assert "\n" not in told
+        assert len(told) < 3000
     trap.assert_untouched()
     assert "root:" not in str(hersey.inspect(path))
 

@@ -1,8 +1,7 @@
 """What a process of our own may use while it reads a file of a stranger: bounds, and no other file.
 
-Limits are those of POSIX; the wall around files and the network is Landlock's (Linux 5.13 and later), and a
-filter of system calls (seccomp) that lets no socket be made. Where a system lacks one of them the others still
-stand.
+Limits are those of POSIX; the wall around files is Landlock's (Linux 5.13 and later), and a filter of system
+calls (seccomp) lets no socket be made. Where a system lacks one of them the others still stand.
 """
 
 from __future__ import annotations

@@ -32,6 +32,11 @@ _VARIABLES = ("X", "X1", "P1", "P2", "P3", "P4", "P5", "P6", "INF", "NaN")
 _refusals: list[str] = []
 
 
+def prepare() -> None:
+    """Import the library: what that takes is none of the file's doing."""
+    _asammdf()
+
+
 @contextmanager
 def open_mdf(file: BinaryIO, _name: str) -> Iterator[Recording]:
     """Open an MDF file; a channel of text or arrays is listed, and refused when it is asked for."""

@@ -29,9 +29,11 @@ from hersey.processes.forks import refuse_after_fork
 #: What a file may take while it is read, bytes.
 _memory = ContextVar("memory", default=2e9)
 #: Processor time for a file, s, and per byte of it: far more than a sound one needs.
-_TIME, _TIME_PER_BYTE = 5.0, 2e-6
+_TIME, _TIME_PER_BYTE = 3.0, 2e-6
 #: The libraries alone need some of it.
 _LEAST = 1e8
+#: Characters of what a file says of itself, and of a name or unit in it.
+_LONGEST, _LONGEST_NAME = 1000, 300
 _SCRIPT = Path(__file__).with_name("answering.py")
 
 #: Formats by suffix, each the module here that reads it; what is not listed is read as delimited text.
@@ -189,7 +191,7 @@ class _Reader:
         recording = Recording(
             about["format"],
             (),
-            tuple(map(_plain, about["others"])),
+            tuple(_plain(other, _LONGEST_NAME) for other in about["others"]),
             tuple(map(_plain, about["comments"])),
             list(map(_plain, about["notes"])),
             about["cut_off"],
@@ -203,13 +205,13 @@ class _Reader:
         rows = int(about["rows"])
         numbers = partial(self._numbers, recording, index, rows)
         return Signal(
-            _plain(about["name"]),
-            _plain(about["unit"]),
+            _plain(about["name"], _LONGEST_NAME),
+            _plain(about["unit"], _LONGEST_NAME),
             rows,
             partial(numbers, "load"),
             partial(numbers, "clock") if about["clock"] else None,
             about["tick"],
-            _plain(about["group"]),
+            _plain(about["group"], _LONGEST_NAME),
         )
 
     def _numbers(self, recording: Recording, index: int, rows: int, what: str) -> FloatArray:
@@ -260,6 +262,7 @@ class _Reader:
         )
 
 
-def _plain(text: str) -> str:
-    """Text of a file as UTF-8 can hold it."""
-    return text.encode("utf-8", errors="replace").decode()
+def _plain(text: str, most: int = _LONGEST) -> str:
+    """Text of a file as UTF-8 can hold it, cut where no name or message is as long."""
+    shown = text if len(text) <= most else f"{text[:most]}..."
+    return shown.encode("utf-8", errors="replace").decode()
