@@ -85,7 +85,7 @@ def format_of(path: Path) -> str | None:
             start = file.read(64)
     except HerseyError:
         raise
-    except FileNotFoundError:
+    except (FileNotFoundError, ValueError):  # a name with a zero in it is no name
         raise MissingFileError(f"{path}: there is no such file") from None
     except OSError as error:
         raise MissingFileError(f"{path} cannot be read: {error.strerror}") from None
