@@ -28,6 +28,8 @@ from hersey.processes.forks import refuse_after_fork
 
 #: What a file may take while it is read, bytes.
 _memory = ContextVar("memory", default=2e9)
+#: Bytes for each number that is read: it is held here, and so is what is computed from it.
+_BYTES_PER_NUMBER = 16
 #: Processor time for a file, s, and per byte of it: far more than a sound one needs.
 _TIME, _TIME_PER_BYTE = 3.0, 2e-6
 #: The libraries alone need some of it.
@@ -183,7 +185,7 @@ class _Reader:
                 "name": self.file.path.name,
                 "path": str(self.file.path.resolve()),
                 "memory": int(self.limit),
-                "time": _TIME + _TIME_PER_BYTE * source.bytes,
+                "time": (_TIME + _TIME_PER_BYTE * source.bytes) * max(1.0, self.limit / 2e9),
             },
             self.file.file.fileno(),
         )
@@ -215,15 +217,15 @@ class _Reader:
         )
 
     def _numbers(self, recording: Recording, index: int, rows: int, what: str) -> FloatArray:
-        self.left -= 8 * rows
+        self.left -= _BYTES_PER_NUMBER * rows
         if self.left < 0:
             raise self._too_large()
         about, content = self._asked({"do": what, "index": index})
         recording.notes[:] = map(_plain, about["notes"])
         recording.cut_off = about["cut_off"]
-        return np.frombuffer(content, dtype=float).copy()
+        return np.frombuffer(content, dtype=float)
 
-    def _asked(self, request: dict[str, Any], file: int | None = None) -> tuple[dict[str, Any], bytes]:
+    def _asked(self, request: dict[str, Any], file: int | None = None) -> tuple[dict[str, Any], bytearray]:
         try:
             return self.child.ask(request, file=file)
         except FailedError as error:
@@ -248,7 +250,8 @@ class _Reader:
         name = self.file.path.name
         if code == -getattr(signal, "SIGXCPU", 0):
             return UnreadableLogError(
-                f"{name} takes more processor time than a sound file of its size: it is damaged, or made to"
+                f"{name} takes more processor time than a sound file of its size: it is damaged, or made to; a "
+                "higher --max-memory gives it more time, too"
             )
         return UnreadableLogError(
             f"{name} is damaged, or takes more than {self.limit / 1e9:g} GB of memory (--max-memory): the "
