@@ -42,6 +42,7 @@ def answer(request, payload):
 """
 PARENT = """
 import sys
+import polars  # lets the kernel go on with a read that a signal interrupted
 from pathlib import Path
 from hersey.processes.child import Child
 child = Child(Path(sys.argv[1]))

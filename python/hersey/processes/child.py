@@ -5,6 +5,7 @@ from __future__ import annotations
 import atexit
 import json
 import os
+import select
 import socket
 import struct
 import subprocess
@@ -14,12 +15,14 @@ import weakref
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 _LENGTHS = struct.Struct("<QQ")
 _SERVER = Path(__file__).with_name("server.py")
 #: Longest head of a reply, bytes: the rest of a reply is its block of bytes.
 _LONGEST_HEAD = 1 << 28
+#: What a pipe takes at once, if it takes anything, bytes.
+_AT_ONCE = 4096
 
 
 class LostError(Exception):
@@ -159,12 +162,14 @@ class Child:
         assert process.stdin is not None
         rest = memoryview(content)
         while rest:
-            rest = rest[process.stdin.write(rest) :]
+            _wait_for(process.stdin, writing=True)
+            rest = rest[process.stdin.write(rest[:_AT_ONCE]) :]
 
     def _read(self, process: subprocess.Popen[bytes], length: int) -> bytearray:
         assert process.stdout is not None
         content = bytearray()
         while len(content) < length:
+            _wait_for(process.stdout)
             part = process.stdout.read(min(length - len(content), 1 << 20))
             if not part:
                 raise EOFError
@@ -178,6 +183,17 @@ class Child:
         if process is not None:
             process.returncode = 0  # none of ours to wait for
         _close(process, lifeline, files)
+
+
+def _wait_for(pipe: IO[bytes], *, writing: bool = False) -> None:
+    """Wait until a pipe can be read or written, or Ctrl-C.
+
+    Reading alone would not do: where polars is loaded the kernel resumes a read after a signal.
+    """
+    if os.name == "posix":
+        waiting = select.poll()
+        waiting.register(pipe, select.POLLOUT if writing else select.POLLIN)
+        waiting.poll()
 
 
 def _close(process: subprocess.Popen[bytes] | None, lifeline: int, files: socket.socket | None) -> None:

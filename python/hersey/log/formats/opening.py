@@ -153,7 +153,8 @@ def opened(path: Path, kind: str) -> Iterator[Recording]:
             raise
         finally:
             reader.close()
-        file.growth(digest)
+        file.refuse_change()
+        file.refuse_other_bytes(digest)
 
 
 class _Reader:
@@ -250,8 +251,8 @@ class _Reader:
         name = self.file.path.name
         if code == -getattr(signal, "SIGXCPU", 0):
             return UnreadableLogError(
-                f"{name} takes more processor time than a sound file of its size: it is damaged, or made to; a "
-                "higher --max-memory gives it more time, too"
+                f"{name} takes more processor time than a sound file of its size: it is damaged, or made to; "
+                "a higher --max-memory gives it more time, too"
             )
         return UnreadableLogError(
             f"{name} is damaged, or takes more than {self.limit / 1e9:g} GB of memory (--max-memory): the "
