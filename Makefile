@@ -5,7 +5,7 @@ SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
 SOURCES := $(shell find crates -name '*.rs' -o -name Cargo.toml) Cargo.toml pyproject.toml
 
-.PHONY: help build demo test quick lint format typecheck test-rust test-python browser lowest fuzz benchmark \
+.PHONY: help build demo test quick lint format typecheck test-rust test-python browser lowest fuzz fuzz-read benchmark \
   mutants mutants-python mutants-rust clean
 .DEFAULT_GOAL := help
 
@@ -72,6 +72,13 @@ lowest: build ## the tests at the lowest versions of everything we depend on (mi
 
 fuzz: ## 100,000 random parameter sets through the motion core (minutes; FUZZ_SEED=1)
 	cargo test --release --quiet --package hersey-core --test fuzz -- --ignored --nocapture
+
+# SEED, COUNT and MINUTES say which inputs, how many, and for how long at most; what fails is kept in build/fuzz.
+SEED ?= 1
+COUNT ?= 20000
+MINUTES ?= 60
+fuzz-read: build ## 20,000 damaged files through every reader (minutes; SEED=1 COUNT=20000 MINUTES=60)
+	$(BIN)/python -m tests.strangers.fuzz_read --seed $(SEED) --count $(COUNT) --minutes $(MINUTES)
 
 mutants: mutants-python mutants-rust ## faults planted one by one: how many do the tests see? (hours)
 

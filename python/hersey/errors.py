@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from typing import Self
 
+#: Characters that end a line somewhere, and how a message shows one that stood in a file.
+_LINE_ENDS = {ord(end): ascii(end)[1:-1] for end in "\n\r\v\f\x1c\x1d\x1e\x85\u2028\u2029"}
+
 
 class HerseyError(Exception):
     """A mistake that the user can mend; the message says what is wrong and the way out."""
 
     def __str__(self) -> str:
-        """Return the message on one line."""
-        return " ".join(str(part) for part in self.args)
+        """Return the message on one line, whatever names and cells of a file it quotes."""
+        return " ".join(str(part) for part in self.args).translate(_LINE_ENDS)
 
     def within(self, place: str) -> Self:
         """Return the same error, its message led by where it happened."""

@@ -407,10 +407,10 @@ def test_a_failure_leaves_nothing_behind(
     (tmp_path / "figure-09.svg").write_text("old")
     whole = Path.open
 
-    def full(path: Path, mode: str) -> Any:
+    def full(path: Path, *how: Any, **more: Any) -> Any:
         if path.name.startswith(".figure-11.png."):
             raise OSError(28, "No space left on device")
-        return whole(path, mode)
+        return whole(path, *how, **more)
 
     monkeypatch.setattr(Path, "open", full)
     with pytest.raises(OutputError, match="No space left"):

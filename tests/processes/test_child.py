@@ -44,6 +44,7 @@ def answer(request, payload):
 PARENT = """
 import signal
 import sys
+import polars  # lets the kernel go on with a read that a signal interrupted
 from pathlib import Path
 from hersey.processes.child import Child
 signal.siginterrupt(signal.SIGINT, False)

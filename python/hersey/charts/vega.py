@@ -45,7 +45,7 @@ def bundled(snippet: str) -> str:
 
 def _asked(what: str, content: bytes) -> bytes:
     try:
-        return _process.ask({"what": what, "version": VEGA_LITE}, content)[1]
+        return bytes(_process.ask({"what": what, "version": VEGA_LITE}, content)[1])
     except LostError as error:
         raise OutputError(f"the figures cannot be drawn: {_why(error)}") from None
     except FailedError as error:

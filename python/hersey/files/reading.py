@@ -63,6 +63,19 @@ class OpenFile:
         if not self._has_grown():
             self.refuse_change()
 
+    def refuse_other_bytes(self, sha256: str) -> None:
+        """Raise if its first ``size`` bytes no longer have this hash.
+
+        Times do not tell it all: what is written through a map of memory may move none.
+
+        Raises
+        ------
+        UnreadableLogError
+            It names the file and the way out.
+        """
+        if self.sha256() != sha256:
+            raise self._changed("it was written anew")
+
     def growth(self, sha256: str) -> list[str]:
         """Return notes on a file that a logger still appends to; ``sha256`` is that of the bytes read.
 
@@ -73,8 +86,8 @@ class OpenFile:
         """
         self.refuse_loss()
         grown, now = self._has_grown(), os.fstat(self.file.fileno()).st_size
-        if (grown or self._is_young()) and self.sha256() != sha256:
-            raise self._changed("it was written anew")
+        if grown or self._is_young():
+            self.refuse_other_bytes(sha256)
         if not grown:
             return []
         read = f"its first {self.size} bytes were used"

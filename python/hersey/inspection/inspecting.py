@@ -264,6 +264,7 @@ def _tries(given: bool, helps: bool) -> tuple[bool, ...]:
     return (False, True) if helps and not given else (given,)
 
 
+@np.errstate(all="ignore")  # numbers of a damaged file may be beyond all bounds: they are shown
 def _file_report(log: RawLog, choices: dict[str, ChannelChoice]) -> FileReport:
     columns, without = roles_of(log, choices)
     role_of = {column.index: role for role, column in columns.items()}

@@ -233,7 +233,7 @@ def nothing_to_read(recording: Recording) -> ChannelError:
     file = recording.source.name
     if recording.nothing:
         return ChannelError(f"{file}: {recording.nothing}")
-    others = ", ".join(recording.others[:40]) or "nothing"
+    others = ", ".join(recording.others[:40])[:1000] or "nothing"
     return ChannelError(f"{file} holds no channel of numbers, only {others}")
 
 

@@ -75,7 +75,7 @@ class Child:
 
     def ask(
         self, request: dict[str, Any], payload: bytes = b"", file: int | None = None
-    ) -> tuple[dict[str, Any], bytes]:
+    ) -> tuple[dict[str, Any], bytearray]:
         """Return the reply to a request, and its block of bytes.
 
         ``file`` is the descriptor of an open file: the script gets one of its own as ``request["file"]``,
@@ -170,7 +170,7 @@ class Child:
             _wait_for(process.stdin)
             rest = rest[process.stdin.write(rest) or 0 :]
 
-    def _read(self, process: subprocess.Popen[bytes], length: int) -> bytes:
+    def _read(self, process: subprocess.Popen[bytes], length: int) -> bytearray:
         assert process.stdout is not None
         content = bytearray()
         while len(content) < length:
@@ -179,7 +179,7 @@ class Child:
             if not part:
                 raise EOFError
             content += part
-        return bytes(content)
+        return content
 
     def _leave_to_parent(self) -> None:
         """Let go, in a forked process, of the child that is the parent's."""

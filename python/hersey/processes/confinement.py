@@ -1,12 +1,13 @@
 """What a process of our own may use while it reads a file of a stranger: bounds, and no other file.
 
-Limits are those of POSIX; the wall around files and the network is Landlock's (Linux 5.13 and later). Where a
-system lacks one of them the others still stand.
+Limits are those of POSIX; the wall around files is Landlock's (Linux 5.13 and later), and a filter of system
+calls (seccomp) lets no socket be made. Where a system lacks one of them the others still stand.
 """
 
 from __future__ import annotations
 
 import ctypes
+import errno
 import math
 import os
 import struct
@@ -18,6 +19,10 @@ _CREATE, _ADD, _RESTRICT, _NO_NEW_PRIVILEGES = 444, 445, 446, 38
 _READ_FILE, _READ_FOLDER = 1 << 2, 1 << 3
 #: How many rights to files a version of Landlock knows; network from the 4th, signals from the 6th.
 _RIGHTS = {1: 13, 2: 14, 3: 15, 4: 15}
+#: By processor: its number in a filter, and its calls socket, socketpair, connect and io_uring_setup, which
+#: could make one as well.
+_SOCKETS = {"x86_64": (0xC000003E, (41, 53, 42, 425)), "aarch64": (0xC00000B7, (198, 199, 203, 425))}
+_SECCOMP, _FILTER, _ALLOW, _REFUSE = 22, 2, 0x7FFF0000, 0x00050000 | errno.EPERM
 _LIBRARIES = ("/lib", "/lib64", "/usr/lib", "/usr/lib64", "/usr/local/lib", "/usr/share/zoneinfo")
 _DEVICES = ("/dev/null", "/dev/urandom", "/proc/self", "/proc/meminfo", "/sys/devices/system/cpu")
 
@@ -71,9 +76,11 @@ def only_read_libraries() -> bool:
         import resource
 
         resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
-    if sys.platform != "linux" or os.uname().machine not in ("x86_64", "aarch64"):
+    if sys.platform != "linux" or os.uname().machine not in _SOCKETS:
         return False
     libc = ctypes.CDLL(None, use_errno=True)
+    libc.prctl(_NO_NEW_PRIVILEGES, 1, 0, 0, 0)
+    _refuse_sockets(libc)
     version = libc.syscall(_CREATE, None, ctypes.c_size_t(0), 1)
     if version < 1:
         return False
@@ -83,10 +90,28 @@ def only_read_libraries() -> bool:
     rules = libc.syscall(_CREATE, ruled, ctypes.c_size_t(len(ruled)), 0)
     for place in _places():
         _allow_reading(libc, rules, place)
-    libc.prctl(_NO_NEW_PRIVILEGES, 1, 0, 0, 0)
     confined = libc.syscall(_RESTRICT, rules, 0) == 0
     os.close(rules)
     return bool(confined)
+
+
+def _refuse_sockets(libc: ctypes.CDLL) -> None:
+    """Let no socket be made: Landlock knows neither datagrams nor sockets in the file system."""
+    processor, calls = _SOCKETS[os.uname().machine]
+    load, equal, at_least, end = 0x20, 0x15, 0x35, 0x06  # words of a filter
+    last = len(calls) + 1  # steps from the first comparison of calls to the refusal
+    steps = [
+        (load, 0, 0, 4),
+        (equal, 0, last + 2, processor),
+        (load, 0, 0, 0),
+        (at_least, last, 0, 0x40000000),  # calls of another width
+        *((equal, last - 1 - i, 0, call) for i, call in enumerate(calls)),
+        (end, 0, 0, _ALLOW),
+        (end, 0, 0, _REFUSE),
+    ]
+    words = ctypes.create_string_buffer(b"".join(struct.pack("=HBBI", *step) for step in steps))
+    program = struct.pack("@HP", len(steps), ctypes.addressof(words))
+    libc.prctl(_SECCOMP, _FILTER, program, 0, 0)
 
 
 def _places() -> set[str]:

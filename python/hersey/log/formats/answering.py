@@ -37,6 +37,7 @@ class _Open:
     def open(self, request: dict[str, Any]) -> dict[str, Any]:
         """Open a file and say what it holds."""
         reader = importlib.import_module(f"hersey.log.formats.{request['format']}")
+        getattr(reader, "prepare", lambda: None)()
         limit_memory(request["memory"])
         limit_time(request["time"])
         self.file = open(request.get("file") or request["path"], "rb")  # noqa: PTH123, SIM115 # by number; see `close`

@@ -24,11 +24,17 @@ from hersey.log.recording import Recording, Signal, floats, library, listening, 
 
 _MASTERS = (2, 3)  # channel types: master, virtual master
 _TIME = (0, 1)  # kinds of master: none given (MDF 3), time
+_OF_OLD_CLOCKS = (0, 65535)  # conversions of a clock of MDF 3 that asammdf applies: linear, none
 _BUS = ("CAN_", "LIN_", "FLX_", "ETH_", "MOST_", "K_LINE_")
 #: Variables of a formula in asammdf: the raw value, and parameters and constants of its own formulas.
 _VARIABLES = ("X", "X1", "P1", "P2", "P3", "P4", "P5", "P6", "INF", "NaN")
 #: What was wrong with the formulas met: asammdf goes on with raw values where one fails.
 _refusals: list[str] = []
+
+
+def prepare() -> None:
+    """Import the library: what that takes is none of the file's doing."""
+    _asammdf()
 
 
 @contextmanager
@@ -76,6 +82,8 @@ def _asammdf() -> Any:
 def _evaluated(formula: str) -> FloatArray:
     """What numexpr would return: the value of a formula of the variables of the function that asks."""
     local = sys._getframe(1).f_locals
+    # asammdf has written each x large, and MDF 3's X as X1, also in the name of the function
+    formula = formula.replace("eX1p", "exp").replace("eXp", "exp")
     try:
         return evaluate(formula, {name: local[name] for name in _VARIABLES if name in local})
     except Exception as error:
@@ -138,6 +146,10 @@ def _values(mdf: Any, group: int, index: int) -> tuple[FloatArray, FloatArray]:
     channels = mdf.groups[group].channels
     if master is None or getattr(channels[master], "sync_type", 1) not in _TIME:
         raise UnreadableLogError("was recorded against no clock")
+    conversion = channels[master].conversion
+    if mdf.version < "4" and conversion is not None and conversion.conversion_type not in _OF_OLD_CLOCKS:
+        told = f": it has the formula {conversion.formula[:80]!r}" if conversion.formula else ""
+        raise UnreadableLogError(f"has a clock whose conversion cannot be applied{told}")
     signal = mdf.get(group=group, index=index)
     values = signal.samples
     if values.ndim != 1 or values.dtype.kind not in "iufb":

@@ -28,10 +28,14 @@ from hersey.processes.forks import refuse_after_fork
 
 #: What a file may take while it is read, bytes.
 _memory = ContextVar("memory", default=2e9)
+#: Bytes for each number that is read: it is held here, and so is what is computed from it.
+_BYTES_PER_NUMBER = 16
 #: Processor time for a file, s, and per byte of it: far more than a sound one needs.
-_TIME, _TIME_PER_BYTE = 5.0, 2e-6
+_TIME, _TIME_PER_BYTE = 3.0, 2e-6
 #: The libraries alone need some of it.
 _LEAST = 1e8
+#: Characters of what a file says of itself, and of a name or unit in it.
+_LONGEST, _LONGEST_NAME = 1000, 300
 _SCRIPT = Path(__file__).with_name("answering.py")
 
 #: Formats by suffix, each the module here that reads it; what is not listed is read as delimited text.
@@ -83,7 +87,7 @@ def format_of(path: Path) -> str | None:
             start = file.read(64)
     except HerseyError:
         raise
-    except FileNotFoundError:
+    except (FileNotFoundError, ValueError):  # a name with a zero in it is no name
         raise MissingFileError(f"{path}: there is no such file") from None
     except OSError as error:
         raise MissingFileError(f"{path} cannot be read: {error.strerror}") from None
@@ -149,7 +153,8 @@ def opened(path: Path, kind: str) -> Iterator[Recording]:
             raise
         finally:
             reader.close()
-        file.growth(digest)
+        file.refuse_change()
+        file.refuse_other_bytes(digest)
 
 
 class _Reader:
@@ -181,7 +186,7 @@ class _Reader:
                 "name": self.file.path.name,
                 "path": str(self.file.path.resolve()),
                 "memory": int(self.limit),
-                "time": _TIME + _TIME_PER_BYTE * source.bytes,
+                "time": (_TIME + _TIME_PER_BYTE * source.bytes) * max(1.0, self.limit / 2e9),
             },
             self.file.file.fileno(),
         )
@@ -189,7 +194,7 @@ class _Reader:
         recording = Recording(
             about["format"],
             (),
-            tuple(map(_plain, about["others"])),
+            tuple(_plain(other, _LONGEST_NAME) for other in about["others"]),
             tuple(map(_plain, about["comments"])),
             list(map(_plain, about["notes"])),
             about["cut_off"],
@@ -203,25 +208,25 @@ class _Reader:
         rows = int(about["rows"])
         numbers = partial(self._numbers, recording, index, rows)
         return Signal(
-            _plain(about["name"]),
-            _plain(about["unit"]),
+            _plain(about["name"], _LONGEST_NAME),
+            _plain(about["unit"], _LONGEST_NAME),
             rows,
             partial(numbers, "load"),
             partial(numbers, "clock") if about["clock"] else None,
             about["tick"],
-            _plain(about["group"]),
+            _plain(about["group"], _LONGEST_NAME),
         )
 
     def _numbers(self, recording: Recording, index: int, rows: int, what: str) -> FloatArray:
-        self.left -= 8 * rows
+        self.left -= _BYTES_PER_NUMBER * rows
         if self.left < 0:
             raise self._too_large()
         about, content = self._asked({"do": what, "index": index})
         recording.notes[:] = map(_plain, about["notes"])
         recording.cut_off = about["cut_off"]
-        return np.frombuffer(content, dtype=float).copy()
+        return np.frombuffer(content, dtype=float)
 
-    def _asked(self, request: dict[str, Any], file: int | None = None) -> tuple[dict[str, Any], bytes]:
+    def _asked(self, request: dict[str, Any], file: int | None = None) -> tuple[dict[str, Any], bytearray]:
         try:
             return self.child.ask(request, file=file)
         except FailedError as error:
@@ -246,7 +251,8 @@ class _Reader:
         name = self.file.path.name
         if code == -getattr(signal, "SIGXCPU", 0):
             return UnreadableLogError(
-                f"{name} takes more processor time than a sound file of its size: it is damaged, or made to"
+                f"{name} takes more processor time than a sound file of its size: it is damaged, or made to; "
+                "a higher --max-memory gives it more time, too"
             )
         return UnreadableLogError(
             f"{name} is damaged, or takes more than {self.limit / 1e9:g} GB of memory (--max-memory): the "
@@ -260,6 +266,7 @@ class _Reader:
         )
 
 
-def _plain(text: str) -> str:
-    """Text of a file as UTF-8 can hold it."""
-    return text.encode("utf-8", errors="replace").decode()
+def _plain(text: str, most: int = _LONGEST) -> str:
+    """Text of a file as UTF-8 can hold it, cut where no name or message is as long."""
+    shown = text if len(text) <= most else f"{text[:most]}..."
+    return shown.encode("utf-8", errors="replace").decode()

@@ -47,7 +47,9 @@ def open_tdms(opened: BinaryIO, _name: str) -> Iterator[Recording]:
         )
         if starts and known and first is None:
             recording.notes.append("some channels say when they started and some do not: all start at 0 s")
-        if file.file_status.incomplete_final_segment or any("segment" in words for words in heard):
+        if file.file_status.incomplete_final_segment or any(
+            "segment" in words or "chunk" in words for words in heard
+        ):
             recording.cut_off = True
             recording.notes.append("the last segment of the file is incomplete: what is there was read")
         recording.notes.extend(f"nptdms warns: {words[:160]}" for words in dict.fromkeys(heard))
