@@ -153,7 +153,6 @@ def opened(path: Path, kind: str) -> Iterator[Recording]:
             raise
         finally:
             reader.close()
-        file.refuse_change()
         file.refuse_other_bytes(digest)
 
 
