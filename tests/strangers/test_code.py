@@ -303,6 +303,14 @@ def values_of(path: Path) -> np.ndarray:
     return torque
 
 
+def test_what_a_sign_was_read_as_is_noted(tmp_path: Path) -> None:
+    (tmp_path / "log.mf4").write_bytes(mf4(channels(formula("X^2"))))
+    notes = hersey.read(tmp_path / "log.mf4").files[0].notes
+    assert [note for note in notes if "'^'" in note] == [
+        "'Torque': '^' in its formula 'X^2' was read as a power"
+    ]
+
+
 SOUND: dict[str, Callable[[float], float]] = {
     "X/3": lambda x: x / 3,
     "1/X": lambda x: 1 / x,

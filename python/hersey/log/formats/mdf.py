@@ -30,6 +30,8 @@ _BUS = ("CAN_", "LIN_", "FLX_", "ETH_", "MOST_", "K_LINE_")
 _VARIABLES = ("X", "X1", "P1", "P2", "P3", "P4", "P5", "P6", "INF", "NaN")
 #: What was wrong with the formulas met: asammdf goes on with raw values where one fails.
 _refusals: list[str] = []
+#: Formulas met that hold a sign which some take for another operation.
+_powers: list[str] = []
 
 
 def prepare() -> None:
@@ -84,6 +86,8 @@ def _evaluated(formula: str) -> FloatArray:
     local = sys._getframe(1).f_locals
     # asammdf has written each x large, and MDF 3's X as X1, also in the name of the function
     formula = formula.replace("eX1p", "exp").replace("eXp", "exp")
+    if "^" in formula:
+        _powers.append(formula)
     try:
         return evaluate(formula, {name: local[name] for name in _VARIABLES if name in local})
     except Exception as error:
@@ -115,10 +119,15 @@ def _signal(
     def get() -> tuple[FloatArray, FloatArray]:
         heard.clear()
         _refusals.clear()
+        _powers.clear()
         try:
             values, times = _values(mdf, group, index)
         except UnreadableLogError as error:
             raise UnreadableLogError(f"channel '{full_name}' {error}") from None
+        if _powers:
+            recording.notes.append(
+                f"'{full_name}': '^' in its formula {_powers[0][:80]!r} was read as a power"
+            )
         if problem := next(iter([*_refusals, *(f"cannot be read: {words[:160]}" for words in heard)]), ""):
             raise UnreadableLogError(f"channel '{full_name}' {problem}")
         count = times.size
