@@ -124,10 +124,9 @@ def _signal(
             values, times = _values(mdf, group, index)
         except UnreadableLogError as error:
             raise UnreadableLogError(f"channel '{full_name}' {error}") from None
-        if _powers:
-            recording.notes.append(
-                f"'{full_name}': '^' in its formula {_powers[0][:80]!r} was read as a power"
-            )
+        for formula in _powers:
+            note = f"'{full_name}': '^' in its formula {formula[:80]!r} was read as a power"
+            recording.notes += [note] if note not in recording.notes else []
         if problem := next(iter([*_refusals, *(f"cannot be read: {words[:160]}" for words in heard)]), ""):
             raise UnreadableLogError(f"channel '{full_name}' {problem}")
         count = times.size
