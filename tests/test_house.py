@@ -23,6 +23,7 @@ PACKAGE = ROOT / "python" / "hersey"
 #: Rooms in the order in which data passes through them: each may import only those before it.
 ROOMS = (
     "_core",
+    "spelling",
     "errors",
     "units",
     "arrays",
@@ -112,7 +113,8 @@ def test_no_circle() -> None:
 
 
 def test_the_root_holds_only_what_every_room_needs() -> None:
-    assert {path.stem for path in PACKAGE.glob("*.py")} == {"__init__", "arrays", "errors", "result", "units"}
+    needed = {"arrays", "errors", "result", "spelling", "units"}
+    assert {path.stem for path in PACKAGE.glob("*.py")} == {"__init__", *needed}
 
 
 def test_each_room_says_what_it_holds() -> None:

@@ -3,6 +3,7 @@
 Rooms, in the order in which data passes through them; each says in its own header what it holds.
 
 ==============  ==============================================================================
+spelling        text of a stranger as it may be shown
 errors          the closed table of what can go wrong
 units           the one door for units
 arrays          numbers or arrays as arguments

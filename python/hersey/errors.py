@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Self
 
-#: Characters that end a line somewhere, and how a message shows one that stood in a file.
-_LINE_ENDS = {ord(end): ascii(end)[1:-1] for end in "\n\r\v\f\x1c\x1d\x1e\x85\u2028\u2029"}
+from hersey.spelling import printable
 
 
 class HerseyError(Exception):
@@ -13,7 +12,7 @@ class HerseyError(Exception):
 
     def __str__(self) -> str:
         """Return the message on one line, whatever names and cells of a file it quotes."""
-        return " ".join(str(part) for part in self.args).translate(_LINE_ENDS)
+        return printable(" ".join(str(part) for part in self.args))
 
     def within(self, place: str) -> Self:
         """Return the same error, its message led by where it happened."""

@@ -10,7 +10,8 @@ from pathlib import Path
 import pytest
 
 from hersey.cli.application import VERBS
-from hersey.cli.terminal import printable, say, warnings_said
+from hersey.cli.terminal import say, warnings_said
+from hersey.spelling import printable
 from tests.cli.command import run
 from tests.cli.test_bad_input import staircase
 from tests.conftest import ROOT

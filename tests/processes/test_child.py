@@ -128,9 +128,47 @@ def test_one_that_was_killed_while_idle_is_replaced(child: Child) -> None:
     assert pid_of(child) != pid
 
 
-def test_a_script_that_is_not_there_is_a_loss(tmp_path: Path) -> None:
-    with pytest.raises(LostError):
-        Child(tmp_path / "none.py").ask({})
+def test_a_script_that_is_not_there_is_told(tmp_path: Path) -> None:
+    child = Child(tmp_path / "none.py")
+    with pytest.raises(FailedError, match="FileNotFoundError") as caught:
+        child.ask({})
+    assert caught.value.kind == "NotStarted"
+    child.stop()
+
+
+def test_an_answer_that_is_late_or_too_long_is_a_loss(tmp_path: Path) -> None:
+    (tmp_path / "slow.py").write_text(
+        "import time\n"
+        "def answer(request, payload):\n"
+        "    time.sleep(request['wait'])\n"
+        "    return {}, b'12345678'\n"
+    )
+    child = Child(tmp_path / "slow.py")
+    assert child.ask({"wait": 0}, most=8)[1] == b"12345678"
+    with pytest.raises(LostError, match="makes no sense"):
+        child.ask({"wait": 0}, most=7)
+    with pytest.raises(LostError, match="does not answer"):
+        child.ask({"wait": 1000}, within=0.3)
+    assert not child.running
+
+
+def test_it_imports_what_its_parent_does_and_sees_only_the_environment_it_is_given(tmp_path: Path) -> None:
+    (tmp_path / "found").mkdir()
+    (tmp_path / "found" / "beside.py").write_text("HERE = 7\n")
+    (tmp_path / "says.py").write_text(
+        "import beside, os\n"
+        "def answer(request, payload):\n"
+        "    return {'here': beside.HERE, **os.environ}, b''\n"
+    )
+    sys.path.insert(0, str(tmp_path / "found"))
+    try:
+        child = Child(tmp_path / "says.py", {"ONLY": "this"})
+        said, _ = child.ask({})
+    finally:
+        sys.path.remove(str(tmp_path / "found"))
+        child.stop()
+    assert (said.pop("here"), said.pop("ONLY")) == (7, "this")
+    assert set(said) <= {"PYTHONPATH", "LC_CTYPE"}
 
 
 def test_stopping_ends_it(child: Child) -> None:

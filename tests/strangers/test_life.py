@@ -9,6 +9,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +18,8 @@ import pytest
 import hersey
 from hersey.errors import HerseyError
 from hersey.log.formats import opening
+from hersey.log.formats.opening import _Reader
+from hersey.processes.child import Child
 from tests.conftest import ROOT
 from tests.strangers.mdf_blocks import Channel, mf4
 from tests.strangers.other_blocks import tdms
@@ -257,3 +260,53 @@ def test_fifty_files_leave_nothing_behind(tmp_path: Path, fresh_readers: list[ob
     assert open_files() == files
     assert [fields[0] for pid in children() if (fields := state(pid)) and fields[0] == "Z"] == []
     assert len(fresh_readers) == 1
+
+
+def test_a_process_that_does_not_start_is_no_damage_of_the_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "log.parquet").write_bytes(SEEDS["run.parquet"]())
+    monkeypatch.setattr(_Reader, "_waiting", [])
+    with monkeypatch.context() as broken:
+        broken.setattr(sys, "executable", str(tmp_path / "no-python"))
+        with pytest.raises(
+            hersey.HerseyError, match="the process that reads such files does not run"
+        ) as told:
+            hersey.read(tmp_path / "log.parquet")
+    assert "damaged" not in str(told.value)
+    assert hersey.read(tmp_path / "log.parquet").rows > 0
+
+
+def test_a_process_that_ran_out_of_memory_reads_no_other_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    waiting: list[Child] = []
+    monkeypatch.setattr(_Reader, "_waiting", waiting)
+    many = np.zeros(25_000_000)
+    with h5py.File(tmp_path / "many.h5", "w") as file:
+        for name in ("time_s", "torque_Nm", "speed_rpm", "temp_degC"):
+            file.create_dataset(name, data=np.stack([many, many]), compression="gzip", chunks=(1, 1_000_000))
+    (tmp_path / "log.parquet").write_bytes(SEEDS["run.parquet"]())
+    with hersey.memory_limit("300 MB"), pytest.raises(hersey.HerseyError, match="--max-memory"):
+        hersey.read(tmp_path / "many.h5", channels={"torque": "torque#1"})
+    assert [child.running for child in waiting] == [False]
+    assert hersey.read(tmp_path / "log.parquet").rows > 0
+
+
+def test_the_limit_of_memory_holds_for_threads(tmp_path: Path) -> None:
+    path = tmp_path / "many.h5"
+    with h5py.File(path, "w") as file:
+        for name in ("time_s", "torque_Nm", "speed_rpm", "temp_degC"):
+            file.create_dataset(name, shape=(15_000_000,), dtype="f8", chunks=(1_000_000,), fillvalue=1.0)
+    with hersey.memory_limit("300 MB"), ThreadPoolExecutor(1) as threads:
+        told = threads.submit(hersey.read, path).exception()
+    assert "takes more than 0.3 GB" in str(told)
+
+
+def test_signals_beyond_all_bounds_are_refused(tmp_path: Path) -> None:
+    path = tmp_path / "wide.h5"
+    with h5py.File(path, "w") as file:
+        for number in range(400):
+            file.create_dataset(f"m{number}", shape=(1000, 256), dtype="f4", chunks=(1000, 256))
+    with pytest.raises(hersey.HerseyError, match=r"wide\.h5: holds 102400 channels: 100000 at the most"):
+        hersey.read(path)

@@ -15,6 +15,7 @@ import pytest
 import hersey
 from hersey.errors import HerseyError, MissingFileError
 from hersey.log import list_channels
+from hersey.spelling import printable
 from tests.strangers.other_blocks import tdms
 from tests.strangers.seeds import COLUMNS, ROWS, SEEDS, SPEED, TORQUE
 from tests.strangers.watching import linux
@@ -31,7 +32,7 @@ def assert_read(path: Path | str, scale: float = 1.0) -> None:
     np.testing.assert_allclose(log.runs[0].torque, scale * TORQUE, atol=1e-6)
     content = Path(path).read_bytes()
     assert (log.files[0].sha256, log.files[0].bytes) == (hashlib.sha256(content).hexdigest(), len(content))
-    assert log.files[0].name == Path(path).name
+    assert log.files[0].name == printable(Path(path).name)
 
 
 def write(path: Path, change: Callable[[Any], None], *, matlab: bool) -> Path:

@@ -46,13 +46,15 @@ def interruptible() -> Iterator[None]:
 def end() -> NoReturn:
     """End at once: nothing half-written stays, and processes of ours end with this one."""
     _ending.acquire()  # never given back: the first to come here ends the process
-    from hersey.files.writing import remove_unfinished
+    try:
+        from hersey.files.writing import remove_unfinished
 
-    remove_unfinished()
-    shown_cursor = "\x1b[?25h" if sys.stderr.isatty() else ""  # a bar hides it
-    sys.stderr.write(f"{shown_cursor}hersey: interrupted\n")
-    sys.stderr.flush()
-    os._exit(INTERRUPTED)
+        remove_unfinished()
+        shown_cursor = "\x1b[?25h" if sys.stderr.isatty() else ""  # a bar hides it
+        sys.stderr.write(f"{shown_cursor}hersey: interrupted\n")
+        sys.stderr.flush()
+    finally:  # also where nobody reads what is said
+        os._exit(INTERRUPTED)
 
 
 def _watch(signals: socket.socket) -> None:

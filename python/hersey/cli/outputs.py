@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 import typer
 
 from hersey.charts import PICTURES
-from hersey.cli.terminal import printable
 from hersey.errors import OutputError
+from hersey.spelling import printable
 
 if TYPE_CHECKING:
     from pydantic import BaseModel

@@ -31,7 +31,7 @@ def read_text(path: Path, *, most: int = MOST_BYTES) -> str:
             text = file.read(most + 1)
     except MissingFileError:
         raise
-    except FileNotFoundError:
+    except (FileNotFoundError, ValueError):  # a name with a zero in it is no name
         raise MissingFileError(f"{path}: there is no such file") from None
     except OSError as error:
         raise MissingFileError(f"{path} cannot be read: {error.strerror}") from None

@@ -32,10 +32,18 @@ def write_atomically(path: Path, content: str | bytes, *, overwrite: bool) -> No
 
 
 def write_all(contents: Mapping[Path, bytes], *, overwrite: bool) -> None:
-    """Write files of which none takes its place before all are there; as `write_atomically` for each."""
+    """Write files of which none takes its place before all are written; as `write_atomically` for each.
+
+    A process that is killed between the last steps may leave some new and some old, each whole.
+    """
     with ExitStack() as stack:
+        parts = {path: stack.enter_context(_part_of(path, overwrite)) for path in contents}
         for path, content in contents.items():
-            stack.enter_context(written(path, overwrite=overwrite)).write(content)
+            with _named(path):
+                parts[path].write_bytes(content)
+        for path, part in parts.items():
+            with _named(path):
+                part.replace(path)
 
 
 @contextmanager
@@ -49,6 +57,15 @@ def written(path: Path, *, overwrite: bool) -> Iterator[BinaryIO]:
     OutputError
         If the file exists and ``overwrite`` is false, or it cannot be written.
     """
+    with _part_of(path, overwrite) as part, _named(path):
+        with part.open("xb") as file:
+            yield file
+        part.replace(path)
+
+
+@contextmanager
+def _part_of(path: Path, overwrite: bool) -> Iterator[Path]:
+    """Yield the name of what will replace a file; at the end nothing of that name is there."""
     if path.is_dir():
         raise OutputError(f"{path} is a directory: name a file in it")
     if path.exists() and not overwrite:
@@ -56,17 +73,22 @@ def written(path: Path, *, overwrite: bool) -> Iterator[BinaryIO]:
     part = _part(path)
     _unfinished.add(part)  # before it is there, so that no moment is without it
     try:
-        with part.open("xb") as file:
-            yield file
-        part.replace(path)
-    except OutputError:  # of another file that is written meanwhile
-        raise
-    except OSError as error:
-        raise OutputError(f"{path} cannot be written: {error.strerror}") from None
+        yield part
     finally:
         with suppress(OSError):
             part.unlink(missing_ok=True)
         _unfinished.discard(part)
+
+
+@contextmanager
+def _named(path: Path) -> Iterator[None]:
+    """Name the file in what goes wrong."""
+    try:
+        yield
+    except OutputError:
+        raise
+    except OSError as error:
+        raise OutputError(f"{path} cannot be written: {error.strerror}") from None
 
 
 def remove_unfinished() -> None:

@@ -16,6 +16,7 @@ from hersey.log.text.delimited import open_delimited
 from hersey.log.text.layout import Column, Layout, refuse_ragged, split
 from hersey.log.text.numbers import MISSING, NumberStyle
 from hersey.log.text.stamps import Stamps, counted_since
+from hersey.spelling import printable
 
 _NULLS = sorted({s for word in MISSING for s in (word, word.upper(), word.capitalize())} | {"NaN"})
 
@@ -77,7 +78,7 @@ def raw_channels(path: str | Path) -> RawLog:
             )
         kind, comments, cut_off = recording.format, recording.comments, recording.cut_off
         notes += [note for note in recording.notes if note not in notes]
-    return RawLog(path.name, kind, tuple(channels), comments, tuple(notes), cut_off)
+    return RawLog(printable(path.name), kind, tuple(channels), comments, tuple(notes), cut_off)
 
 
 def roles_of(log: RawLog, choices: dict[str, ChannelChoice]) -> tuple[dict[str, Column], dict[str, str]]:
@@ -112,7 +113,7 @@ def _of_text(path: Path) -> RawLog:
         if column.index not in layout.texts and f"{column.index}" in frame.columns
     ]
     notes = (*layout.notes, *end.notes, *growth)
-    return RawLog(path.name, "text", tuple(channels), layout.comments, notes, end.cut_off)
+    return RawLog(printable(path.name), "text", tuple(channels), layout.comments, notes, end.cut_off)
 
 
 def _frame(text: bytes, layout: Layout) -> pl.DataFrame:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from hersey.errors import ChannelError, UnitError, WrongKindError
 from hersey.log.text.layout import Column
+from hersey.spelling import printable
 from hersey.units import KINDS, Conversion, conversion
 
 #: Roles of a log's columns, in the order in which they are asked for.
@@ -68,6 +69,7 @@ def no_channel(role: str, columns: tuple[Column, ...], file: str) -> ChannelErro
 
 def called(name: str, columns: tuple[Column, ...]) -> list[Column]:
     """Return the columns that a person may mean by a name; ``name#2`` is the second one of a name."""
+    name = printable(name)  # as columns are known
     exact = [c for c in columns if name in _spellings(c)]
     same = exact or [c for c in columns if name.lower() in {s.lower() for s in _spellings(c)}]
     repeated = re.fullmatch(r"(.+)#([1-9][0-9]?)", name)

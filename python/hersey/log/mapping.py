@@ -26,6 +26,7 @@ from hersey.log.reading import list_channels, read
 from hersey.log.text.delimited import Progress
 from hersey.log.text.layout import Column
 from hersey.log.torque_log import LogFile
+from hersey.spelling import printable
 from hersey.units import conversion, registry
 
 #: A mapping for every log in its directory; one for a single log is called after it, ``bench.hersey.toml``.
@@ -319,7 +320,7 @@ def propose_mapping(
     """
     path = Path(path)
     columns = tuple(Column(index, name, unit) for index, (name, unit) in enumerate(list_channels(path)))
-    lines = [f"# Channels of {_in_comment(path.name)}, proposed by hersey inspect: look at it and mend it."]
+    lines = [f"# Channels of {printable(path.name)}, proposed by hersey inspect: look at it and mend it."]
     for role in ("torque", "speed", "temperature", "time"):
         choice = ChannelChoice((channels or {}).get(role, ""), (units or {}).get(role, ""))
         lines += [*_proposed(role, columns, choice, path.name), ""]
@@ -355,14 +356,10 @@ def _proposed(role: str, columns: tuple[Column, ...], choice: ChannelChoice, fil
     except HerseyError as error:
         channel, said = None, str(error).removeprefix(f"{file}: ")
     if channel is None:
-        return [f"# [{role}]", f"# {_in_comment(said)}", '# channel = ""', '# unit = ""']
+        return [f"# [{role}]", f"# {printable(said)}", '# channel = ""', '# unit = ""']
     column, unit = channel
     stated = [f"channel = {_quoted(column.path)}", f"unit = {_quoted(unit.unit)}"]
     return [f"[{role}]", *stated, *_EXAMPLES[role]]
-
-
-def _in_comment(text: str) -> str:
-    return "".join(c if c.isprintable() else _code(c) for c in text)
 
 
 def _quoted(text: str) -> str:

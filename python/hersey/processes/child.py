@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import atexit
 import json
+import math
 import os
 import select
 import socket
@@ -11,14 +12,15 @@ import struct
 import subprocess
 import sys
 import threading
+import time
 import weakref
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO, Any
 
 _LENGTHS = struct.Struct("<QQ")
-_SERVER = Path(__file__).with_name("server.py")
+_SERVER, _PACKAGE = Path(__file__).with_name("server.py"), str(Path(__file__).absolute().parents[2])
 #: Longest head of a reply, bytes: the rest of a reply is its block of bytes.
 _LONGEST_HEAD = 1 << 28
 #: Where pipes can be waited for, and the time after which to look up, ms.
@@ -58,14 +60,16 @@ class Child:
     ----------
     script
         The script's path; it may import no more than it needs.
+    environment
+        Its environment; that of this process if left out. What this process imports, it can import too.
     """
 
-    def __init__(self, script: Path) -> None:
+    def __init__(self, script: Path, environment: Mapping[str, str] | None = None) -> None:
         """Remember the script: nothing is started yet."""
-        self._script = script
+        self._script, self._environment = script, environment
         self._lock = threading.Lock()
         self._process: subprocess.Popen[bytes] | None = None
-        self._lifeline = -1
+        self._lifeline, self._late = -1, math.inf
         self._files: socket.socket | None = None
         _children.add(self)
 
@@ -74,21 +78,35 @@ class Child:
         self.stop()
 
     def ask(
-        self, request: dict[str, Any], payload: bytes = b"", file: int | None = None
+        self,
+        request: dict[str, Any],
+        payload: bytes = b"",
+        *,
+        file: int | None = None,
+        most: float = math.inf,
+        within: float = math.inf,
     ) -> tuple[dict[str, Any], bytearray]:
         """Return the reply to a request, and its block of bytes.
 
-        ``file`` is the descriptor of an open file: the script gets one of its own as ``request["file"]``,
-        where the system can pass it (not on Windows).
+        Parameters
+        ----------
+        file
+            The descriptor of an open file: the script gets one of its own as ``request["file"]``, where the
+            system can pass it (not on Windows).
+        most
+            Bytes of the reply's block.
+        within
+            Time for the answer, s, by the clock: far more than it can need, for what waits for ever.
 
         Raises
         ------
         LostError
-            If the process ends before it has answered.
+            If the process ends before it has answered, or its answer is late or too long.
         FailedError
             If the script raises an exception.
         """
         with self._lock, self._whole():
+            self._late = time.monotonic() + within
             process = self._running()
             if file is not None and self._files is not None:
                 socket.send_fds(self._files, [b"\0"], [file])
@@ -97,7 +115,7 @@ class Child:
             self._write(process, _LENGTHS.pack(len(head), len(payload)) + head)
             self._write(process, payload)
             first, second = _LENGTHS.unpack(self._read(process, _LENGTHS.size))
-            if first > _LONGEST_HEAD:
+            if first > _LONGEST_HEAD or second > most:
                 raise LostError("its reply makes no sense")
             answer, content = json.loads(self._read(process, first)), self._read(process, second)
         if "failed" in answer:
@@ -126,7 +144,7 @@ class Child:
         """Stop the process after anything but a whole reply: its next would answer another question."""
         try:
             yield
-        except (EOFError, OSError, ValueError) as error:
+        except (EOFError, OSError, ValueError, RecursionError) as error:
             code = self.stop()
             raise LostError(str(error) or "the process ended before it answered", code) from None
         except BaseException:
@@ -152,6 +170,7 @@ class Child:
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.DEVNULL,
+                env={**(os.environ if self._environment is None else self._environment), **_import_path()},
                 pass_fds=theirs,
             )
         finally:
@@ -167,19 +186,33 @@ class Child:
         assert process.stdin is not None
         rest = memoryview(content)
         while rest:
-            _wait_for(process.stdin)
+            self._wait_for(process.stdin)
             rest = rest[process.stdin.write(rest) or 0 :]
 
     def _read(self, process: subprocess.Popen[bytes], length: int) -> bytearray:
         assert process.stdout is not None
         content = bytearray()
         while len(content) < length:
-            _wait_for(process.stdout)
+            self._wait_for(process.stdout)
             part = process.stdout.read(min(length - len(content), 1 << 20))
             if not part:
                 raise EOFError
             content += part
         return content
+
+    def _wait_for(self, stream: IO[bytes]) -> None:
+        """Wait until a pipe can be read or written, and let Ctrl-C through.
+
+        A library with a handler of its own for signals may have the kernel go on with a read that one came
+        into, and Python then never hears of it; this waiting ends with a signal, and looks up now and then
+        for one that came just before.
+        """
+        if _POLL is not None:
+            poll = _POLL()
+            poll.register(stream, select.POLLOUT if stream.writable() else select.POLLIN)
+            while not poll.poll(_LOOK_UP):
+                if time.monotonic() > self._late:
+                    raise EOFError("the process does not answer")
 
     def _leave_to_parent(self) -> None:
         """Let go, in a forked process, of the child that is the parent's."""
@@ -190,18 +223,12 @@ class Child:
         _close(process, lifeline, files)
 
 
-def _wait_for(stream: IO[bytes]) -> None:
-    """Wait until a pipe can be read or written, and let Ctrl-C through.
-
-    A library with a handler of its own for signals may have the kernel go on with a read that one came into,
-    and Python then never hears of it; this waiting ends with a signal, and looks up now and then for one that
-    came just before.
-    """
-    if _POLL is not None:
-        poll = _POLL()
-        poll.register(stream, select.POLLOUT if stream.writable() else select.POLLIN)
-        while not poll.poll(_LOOK_UP):
-            pass
+def _import_path() -> dict[str, str]:
+    """What lets a process import the same modules as this one, this package above all."""
+    places = [str(Path(place).absolute()) for place in sys.path if place]
+    if _PACKAGE not in places:
+        places.append(_PACKAGE)
+    return {"PYTHONPATH": os.pathsep.join(places)}
 
 
 def _close(process: subprocess.Popen[bytes] | None, lifeline: int, files: socket.socket | None) -> None:

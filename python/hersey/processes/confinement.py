@@ -26,9 +26,14 @@ _SECCOMP, _FILTER, _ALLOW, _REFUSE = 22, 2, 0x7FFF0000, 0x00050000 | errno.EPERM
 _LIBRARIES = ("/lib", "/lib64", "/usr/lib", "/usr/lib64", "/usr/local/lib", "/usr/share/zoneinfo")
 _DEVICES = ("/dev/null", "/dev/urandom", "/proc/self", "/proc/meminfo", "/sys/devices/system/cpu")
 
+#: What `limit_memory` was told, for systems that do not keep to it by themselves.
+_allowed = math.inf
+
 
 def limit_memory(extra: int) -> None:
     """Let this process take so many bytes more than it holds; what goes beyond raises `MemoryError`."""
+    global _allowed
+    _allowed = extra
     if sys.platform == "linux":
         import resource
 
@@ -41,11 +46,11 @@ def limit_memory(extra: int) -> None:
 def memory_left() -> float:
     """Return how many bytes more this process may take, infinity without a limit."""
     if sys.platform != "linux":
-        return math.inf
+        return _allowed
     import resource
 
     limit = resource.getrlimit(resource.RLIMIT_AS)[0]
-    return math.inf if limit == resource.RLIM_INFINITY else limit - _memory_held()
+    return _allowed if limit == resource.RLIM_INFINITY else limit - _memory_held()
 
 
 def _memory_held() -> int:
@@ -88,6 +93,8 @@ def only_read_libraries() -> bool:
     words = [all_rights, 0b11, 0b11][: 1 if version < 4 else 2 if version < 6 else 3]
     ruled = struct.pack(f"={len(words)}Q", *words)
     rules = libc.syscall(_CREATE, ruled, ctypes.c_size_t(len(ruled)), 0)
+    if rules < 0:
+        return False
     for place in _places():
         _allow_reading(libc, rules, place)
     confined = libc.syscall(_RESTRICT, rules, 0) == 0

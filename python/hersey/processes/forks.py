@@ -22,7 +22,7 @@ def refuse_after_fork() -> None:
     """
     if _lost_threads:
         raise ForkedError(
-            "this process was forked from one that had read a log, and polars cannot go on in it: start "
+            "this process was forked from one in which polars had run, and polars cannot go on in it: start "
             "processes by multiprocessing.get_context('spawn'), or fork before the first log is read"
         )
 

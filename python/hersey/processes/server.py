@@ -78,6 +78,24 @@ def leave_no_core() -> None:
         resource.setrlimit(resource.RLIMIT_CORE, (0, resource.getrlimit(resource.RLIMIT_CORE)[1]))
 
 
+def answering(script: str) -> _Answer:
+    """Return the script's function; one that cannot be started answers each request with the reason."""
+    try:
+        answer: _Answer = runpy.run_path(script)["answer"]
+    except BaseException as error:
+        reason = f"{type(error).__name__}: {error}"
+
+        def failed(_request: dict[str, Any], _payload: bytes) -> tuple[dict[str, Any], bytes]:
+            raise NotStarted(reason)
+
+        return failed
+    return answer
+
+
+class NotStarted(Exception):  # noqa: N818 # its name tells the parent what happened
+    """The script itself failed."""
+
+
 def main() -> None:
     """Serve a script; what it prints goes nowhere."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the parent too, which stops its processes
@@ -86,7 +104,7 @@ def main() -> None:
     leave_no_core()
     replies = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    serve(runpy.run_path(script)["answer"], sys.stdin.buffer, replies, files)
+    serve(answering(script), sys.stdin.buffer, replies, files)
 
 
 if __name__ == "__main__":

@@ -8,20 +8,18 @@ from __future__ import annotations
 
 import importlib
 import math
-import sys
 import warnings
 from contextlib import AbstractContextManager, suppress
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
 
-_PACKAGE = str(Path(__file__).parents[3])
-if _PACKAGE not in sys.path:
-    sys.path.append(_PACKAGE)
-
-from hersey.processes.confinement import limit_memory, limit_time, only_read_libraries  # noqa: E402
+from hersey.errors import UnreadableLogError
+from hersey.processes.confinement import limit_memory, limit_time, only_read_libraries
 
 if TYPE_CHECKING:
     from hersey.log.recording import Recording
+
+#: Channels of a file at the most.
+_MOST_SIGNALS = 100_000
 
 only_read_libraries()  # before anything else runs, threads above all
 
@@ -44,6 +42,8 @@ class _Open:
         self.file.seek(0)  # the place in a file that was passed is shared
         self.context = getattr(reader, f"open_{request['format']}")(self.file, request["name"])
         self.recording = recording = self.context.__enter__()
+        if len(recording.signals) > _MOST_SIGNALS:
+            raise UnreadableLogError(f"holds {len(recording.signals)} channels: {_MOST_SIGNALS} at the most")
         return self.state() | {
             "format": recording.format,
             "others": recording.others,

@@ -32,12 +32,10 @@ def open_hdf5(opened: BinaryIO, _name: str) -> Iterator[Recording]:
     with h5py.File(opened, "r") as file:
         signals: list[Signal] = []
         others: list[str] = []
-        seen: list[Any] = []
 
         def visit(name: str, item: Any) -> None:
-            if not isinstance(item, h5py.Dataset) or name.startswith(_HIDDEN) or item.id in seen:
+            if not isinstance(item, h5py.Dataset) or name.startswith(_HIDDEN):
                 return
-            seen.append(item.id)
             _check_kind(h5py, name, item)
             _check_place(name, item)
             vectors = list(_data_set(name, item))

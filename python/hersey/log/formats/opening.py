@@ -7,11 +7,11 @@ and time; what comes out of it are names and numbers.
 
 from __future__ import annotations
 
+import os
 import re
 import signal
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from contextvars import ContextVar
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -25,18 +25,29 @@ from hersey.files.reading import OpenFile, unchanged
 from hersey.log.recording import Recording, Signal, Source
 from hersey.processes.child import Child, FailedError, LostError
 from hersey.processes.forks import refuse_after_fork
+from hersey.spelling import printable
 
 #: What a file may take while it is read, bytes.
-_memory = ContextVar("memory", default=2e9)
+_memory = 2e9
 #: Bytes for each number that is read: it is held here, and so is what is computed from it.
 _BYTES_PER_NUMBER = 16
 #: Processor time for a file, s, and per byte of it: far more than a sound one needs.
 _TIME, _TIME_PER_BYTE = 3.0, 2e-6
 #: The libraries alone need some of it.
-_LEAST = 1e8
+_LEAST = 3e8
 #: Characters of what a file says of itself, and of a name or unit in it.
 _LONGEST, _LONGEST_NAME = 1000, 300
+_KEPT = ("PATH", "LD_LIBRARY_PATH", "DYLD_LIBRARY_PATH", "SYSTEMROOT", "PYTHONHOME", "LANG", "LC_ALL", "TZ")
+#: By the clock, as many times the processor time: for a process that waits for ever.
+_PATIENCE = 60
 _SCRIPT = Path(__file__).with_name("answering.py")
+#: All that the process is told of its surroundings. Each thread takes memory, and there may be many cores.
+_ENVIRONMENT = {
+    **{name: value for name in _KEPT if (value := os.environ.get(name))},
+    "POLARS_MAX_THREADS": "4",
+    "OPENBLAS_NUM_THREADS": "1",
+    "OMP_NUM_THREADS": "1",
+}
 
 #: Formats by suffix, each the module here that reads it; what is not listed is read as delimited text.
 READERS = {
@@ -107,7 +118,8 @@ def format_of(path: Path) -> str | None:
 def memory_limit(limit: str) -> Iterator[None]:
     """Let each file that is read inside take so much memory, such as ``"8 GB"``, instead of 2 GB.
 
-    A small file can hold a great many numbers. Text takes no more than its size, and has no limit.
+    A small file can hold a great many numbers. Text takes no more than its size, and has no limit. The limit
+    holds for all threads.
 
     Raises
     ------
@@ -123,12 +135,13 @@ def memory_limit(limit: str) -> Iterator[None]:
     match = re.fullmatch(r"\s*([0-9]{1,6}(?:\.[0-9]{1,6})?)\s*([MGT])B\s*", limit)
     size = float(match[1]) * {"M": 1e6, "G": 1e9, "T": 1e12}[match[2]] if match else 0.0
     if size < _LEAST:
-        raise ParameterError(f"the limit of memory is {limit!r}: write a size of 100 MB or more, as '8 GB'")
-    token = _memory.set(size)
+        raise ParameterError(f"the limit of memory is {limit!r}: write a size of 300 MB or more, as '8 GB'")
+    global _memory
+    before, _memory = _memory, size
     try:
         yield
     finally:
-        _memory.reset(token)
+        _memory = before
 
 
 @contextmanager
@@ -144,11 +157,11 @@ def opened(path: Path, kind: str) -> Iterator[Recording]:
     """
     with unchanged(path) as file:
         digest = file.sha256()
-        reader = _Reader(file, kind, _memory.get())
+        reader = _Reader(file, kind, _memory)
         try:
-            yield reader.recording(Source(path.name, digest, file.size))
+            yield reader.recording(Source(printable(path.name), digest, file.size))
         except HerseyError as error:
-            if path.name not in str(error):
+            if printable(path.name) not in str(error):
                 raise error.within(path.name) from None
             raise
         finally:
@@ -164,10 +177,11 @@ class _Reader:
 
     def __init__(self, file: OpenFile, kind: str, limit: float) -> None:
         self.file, self.kind, self.limit, self.left = file, kind, limit, limit
+        self.time = (_TIME + _TIME_PER_BYTE * file.size) * max(1.0, limit / 2e9)
         try:  # not `if`: another thread may take the last one
             self.child = self._waiting.pop()
         except IndexError:
-            self.child = Child(_SCRIPT)
+            self.child = Child(_SCRIPT, _ENVIRONMENT)
 
     def close(self) -> None:
         """Close the file there, and let the process wait for the next."""
@@ -185,9 +199,9 @@ class _Reader:
                 "name": self.file.path.name,
                 "path": str(self.file.path.resolve()),
                 "memory": int(self.limit),
-                "time": (_TIME + _TIME_PER_BYTE * source.bytes) * max(1.0, self.limit / 2e9),
+                "time": self.time,
             },
-            self.file.file.fileno(),
+            file=self.file.file.fileno(),
         )
         signals = about.pop("signals")
         recording = Recording(
@@ -220,18 +234,24 @@ class _Reader:
         self.left -= _BYTES_PER_NUMBER * rows
         if self.left < 0:
             raise self._too_large()
-        about, content = self._asked({"do": what, "index": index})
+        about, content = self._asked({"do": what, "index": index}, most=8 * rows)
+        if len(content) % 8:
+            raise UnreadableLogError(f"{self.file.path.name} cannot be read: its numbers came in part")
         recording.notes[:] = map(_plain, about["notes"])
         recording.cut_off = about["cut_off"]
         return np.frombuffer(content, dtype=float)
 
-    def _asked(self, request: dict[str, Any], file: int | None = None) -> tuple[dict[str, Any], bytearray]:
+    def _asked(
+        self, request: dict[str, Any], *, file: int | None = None, most: int = 0
+    ) -> tuple[dict[str, Any], bytearray]:
         try:
-            return self.child.ask(request, file=file)
+            return self.child.ask(request, file=file, most=most, within=_PATIENCE * self.time)
         except FailedError as error:
+            if error.kind in ("MemoryError", "PanicException", "NotStarted") or "allocat" in str(error):
+                self.child.stop()  # what it holds now may be of no use for the next file
             raise self._failure(error.kind, str(error)) from None
         except LostError as error:
-            raise self._loss(error.code) from None
+            raise self._loss(error) from None
 
     def _failure(self, kind: str, message: str) -> HerseyError:
         """The error that a reader raised: one of ours, or one of a library on damaged bytes."""
@@ -240,15 +260,19 @@ class _Reader:
             return known(_plain(message))
         if kind == "MemoryError" or "allocat" in message:
             return self._too_large()
+        if kind == "NotStarted":
+            return self._not_started(message)
         told = _plain(message).partition("\n")[0][:160] or kind
         return UnreadableLogError(
             f"{self.file.path.name} cannot be read as {self.kind.upper()}: the file is damaged, cut off or "
             f"of another kind ({told})"
         )
 
-    def _loss(self, code: int | None) -> UnreadableLogError:
+    def _loss(self, error: LostError) -> UnreadableLogError:
         name = self.file.path.name
-        if code == -getattr(signal, "SIGXCPU", 0):
+        if error.code is None:
+            return self._not_started(str(error))
+        if error.code == -getattr(signal, "SIGXCPU", 0):
             return UnreadableLogError(
                 f"{name} takes more processor time than a sound file of its size: it is damaged, or made to; "
                 "a higher --max-memory gives it more time, too"
@@ -256,6 +280,12 @@ class _Reader:
         return UnreadableLogError(
             f"{name} is damaged, or takes more than {self.limit / 1e9:g} GB of memory (--max-memory): the "
             "library that reads it broke down"
+        )
+
+    def _not_started(self, reason: str) -> UnreadableLogError:
+        return UnreadableLogError(
+            f"{self.file.path.name} cannot be read: the process that reads such files does not run "
+            f"({_plain(reason)[:160]})"
         )
 
     def _too_large(self) -> UnreadableLogError:
@@ -266,6 +296,5 @@ class _Reader:
 
 
 def _plain(text: str, most: int = _LONGEST) -> str:
-    """Text of a file as UTF-8 can hold it, cut where no name or message is as long."""
-    shown = text if len(text) <= most else f"{text[:most]}..."
-    return shown.encode("utf-8", errors="replace").decode()
+    """Text of a file as it may be shown, cut where no name or message is as long."""
+    return printable(text if len(text) <= most else f"{text[:most]}...")

@@ -26,6 +26,7 @@ from hersey.log.text.layout import SNIFFED, Column, Layout, find_layout, split
 from hersey.log.text.numbers import MISSING, is_missing
 from hersey.log.text.stamps import Stamps
 from hersey.log.torque_log import LARGEST, Channel, LogFile, Run
+from hersey.spelling import printable
 from hersey.units import Conversion
 
 BLOCK = 1 << 22
@@ -52,7 +53,7 @@ def read_delimited(
     MissingFileError, UnreadableLogError, ChannelError, UnitError
         Each names the file, and the line and column where that applies.
     """
-    name = path.name
+    name = printable(path.name)
     with open_delimited(path) as file:
         layout, end, size = file.layout, file.end, file.opened.size
         table = _Table(name, layout, _channels(layout, choices, isothermal, name), drop_missing)

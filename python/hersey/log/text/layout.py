@@ -12,6 +12,7 @@ import numpy as np
 from hersey.errors import UnitError, UnreadableLogError, WrongKindError
 from hersey.log.text.numbers import NumberStyle, is_missing, looks_numeric, style_of
 from hersey.log.text.stamps import StampStyle, counted_since, is_stamp, stamp_style
+from hersey.spelling import printable
 from hersey.units import KINDS, conversion
 
 #: Bytes looked at; preambles of data loggers are far shorter.
@@ -36,6 +37,11 @@ class Column:
     name: str
     unit: str
     group: str = ""
+
+    def __post_init__(self) -> None:
+        """Spell out what a name may hold and no name needs; it is known by that spelling from here on."""
+        for name in ("name", "unit", "group"):
+            object.__setattr__(self, name, printable(getattr(self, name)))
 
     @property
     def path(self) -> str:
