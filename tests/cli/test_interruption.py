@@ -34,7 +34,7 @@ TYPED: dict[str, tuple[list[str], float]] = {
     "compare": ([*BENCH, BENCH[0], "--json"], 2.5),
     "design": (BENCH, 2.0),
     "cycles": ([str(EXAMPLES / "stick-slip.csv"), "--drive-speed", "20 mm/s", "--identify"], 3.0),
-    "simulate": (["--csv", "s.csv", "--figure", "s.png"], 1.0),
+    "simulate": (["--csv", "s.csv", "--duration", "3000"], 1.0),
     "sweep": ([str(EXAMPLES / "scenario.toml"), "--out", "s.parquet"], 0.8),
     "hysteresis": (["--closure", "lugre", "--bristle-stiffness", "1e5", "--bristle-damping", "100"], 2.0),
     "figures": (["--out", "figures"], 9.0),
@@ -42,8 +42,8 @@ TYPED: dict[str, tuple[list[str], float]] = {
 }
 #: Says when the program can be interrupted: what Python does before is not ours.
 READY = "import sys; from hersey.cli import interruption, main; print('ready', flush=True); main()"
-#: Processor time that ending may take, s: of a clock, half a second is asked on a machine that is not busy.
-LONGEST = 0.5
+#: Processor time that ending may take, s: half a second by the clock, in which two cores may work.
+LONGEST = 1.0
 
 
 def test_every_verb_is_tried() -> None:
@@ -71,7 +71,7 @@ def test_ctrl_c_ends_a_command(verb: str, moment: int, tmp_path: Path) -> None:
     used = processor_time(process.pid) - before
     process.wait()
     ended = (0, -signal.SIGINT, -signal.SIGTERM)  # it may have come to its end
-    assert process.returncode in (130, *ended)
+    assert process.returncode in (130, *ended), stderr.decode()
     if process.returncode == 130:
         assert stderr.decode().splitlines()[-1] == "hersey: interrupted"
         assert "Traceback" not in stderr.decode()
