@@ -428,7 +428,7 @@ def test_what_is_no_fit_is_refused(tmp_path: Path) -> None:
         read_fit(path)
     with pytest.raises(MissingFileError, match="no such file"):
         read_fit(tmp_path / "none.json")
-    with pytest.raises(MissingFileError, match="no ordinary file"):
+    with pytest.raises(MissingFileError, match="is a directory: name a file in it"):
         read_fit(tmp_path)
 
 

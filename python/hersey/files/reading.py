@@ -121,6 +121,33 @@ class OpenFile:
 
 
 @contextmanager
+def open_file(path: Path) -> Iterator[BinaryIO]:
+    """Open a file that a command was given, with errors that a person can act on.
+
+    Raises
+    ------
+    MissingFileError
+        If there is no such file, it is no ordinary one, or it cannot be read.
+    """
+    try:
+        if path.exists() and not path.is_file():
+            what = "a directory: name a file in it" if path.is_dir() else "no ordinary file"
+            raise MissingFileError(f"{path} is {what}")
+        try:
+            file = path.open("rb")
+        except ValueError:  # a name with a zero in it is no name
+            raise FileNotFoundError from None
+        with file:
+            yield file
+    except HerseyError:
+        raise
+    except FileNotFoundError:
+        raise MissingFileError(f"{path}: there is no such file") from None
+    except OSError as error:
+        raise MissingFileError(f"{path} cannot be read: {error.strerror}") from None
+
+
+@contextmanager
 def open_once(path: str | Path) -> Iterator[OpenFile]:
     """Open a file; what became of it meanwhile is for the caller to ask.
 
@@ -130,15 +157,8 @@ def open_once(path: str | Path) -> Iterator[OpenFile]:
         If it is not there, or cannot be read.
     """
     path = Path(path)
-    try:
-        with path.open("rb") as file:
-            yield OpenFile(path, file)
-    except HerseyError:
-        raise
-    except FileNotFoundError:
-        raise MissingFileError(f"{path}: there is no such file") from None
-    except OSError as error:
-        raise MissingFileError(f"{path} cannot be read: {error.strerror}") from None
+    with open_file(path) as file:
+        yield OpenFile(path, file)
 
 
 @contextmanager

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from hersey.errors import MissingFileError, ParameterError
+from hersey.errors import ParameterError
+from hersey.files.reading import open_file
 
 #: Bytes of a text file at the most: what is read from it takes many times as much memory.
 MOST_BYTES = 64_000_000
@@ -24,17 +25,8 @@ def read_text(path: Path, *, most: int = MOST_BYTES) -> str:
     UnicodeDecodeError
         If it is not UTF-8: what that means is for the caller to say.
     """
-    try:
-        if path.exists() and not path.is_file():
-            raise MissingFileError(f"{path} is no ordinary file")
-        with path.open("rb") as file:
-            text = file.read(most + 1)
-    except MissingFileError:
-        raise
-    except (FileNotFoundError, ValueError):  # a name with a zero in it is no name
-        raise MissingFileError(f"{path}: there is no such file") from None
-    except OSError as error:
-        raise MissingFileError(f"{path} cannot be read: {error.strerror}") from None
+    with open_file(path) as file:
+        text = file.read(most + 1)
     if len(text) > most:
         raise ParameterError(f"{path.name} has over {most} bytes: no such file is as long")
     return text.decode("utf-8-sig").replace("\r\n", "\n")

@@ -63,16 +63,19 @@ def raw_channels(path: str | Path) -> RawLog:
     with opened(path, kind) as recording:
         channels = []
         notes = list(recording.notes)
+        clocks: dict[str, FloatArray] = {}  # each loaded once: a group of channels has one
         for index, signal in enumerate(recording.signals):
             column = Column(index, signal.name, signal.unit, signal.group)
             try:
                 values = np.asarray(signal.load(), dtype=float)
-                clock = None if signal.clock is None else signal.clock()
+                if signal.clock is not None and signal.tick not in clocks:
+                    clocks[signal.tick] = signal.clock()
             except HerseyError as error:
                 notes.append(f"'{column.path}' cannot be read: {error}")
                 continue
             unit = "" if signal.unit else counted_since(signal.name, values)[0]
             column = Column(index, signal.name, signal.unit or unit, signal.group)
+            clock = clocks.get(signal.tick) if signal.clock is not None else None
             channels.append(
                 RawChannel(column, values, clock=clock, tick=signal.tick or f"{signal.rows} rows")
             )

@@ -20,8 +20,8 @@ import numpy as np
 
 from hersey import errors
 from hersey.arrays import FloatArray
-from hersey.errors import HerseyError, MissingFileError, ParameterError, UnreadableLogError
-from hersey.files.reading import OpenFile, unchanged
+from hersey.errors import HerseyError, ParameterError, UnreadableLogError
+from hersey.files.reading import OpenFile, open_file, unchanged
 from hersey.log.recording import Recording, Signal, Source
 from hersey.processes.child import Child, FailedError, LostError
 from hersey.processes.forks import refuse_after_fork
@@ -90,18 +90,8 @@ def format_of(path: Path) -> str | None:
     ForkedError
         If it is text, and this process was forked from one that has read some.
     """
-    try:
-        if path.exists() and not path.is_file():
-            what = "a directory: name the log files in it" if path.is_dir() else "no ordinary file"
-            raise MissingFileError(f"{path} is {what}")
-        with path.open("rb") as file:
-            start = file.read(64)
-    except HerseyError:
-        raise
-    except (FileNotFoundError, ValueError):  # a name with a zero in it is no name
-        raise MissingFileError(f"{path}: there is no such file") from None
-    except OSError as error:
-        raise MissingFileError(f"{path} cannot be read: {error.strerror}") from None
+    with open_file(path) as file:
+        start = file.read(64)
     for magic, what in _UNREADABLE.items():
         if start.startswith(magic):
             raise UnreadableLogError(f"{path.name} is {what}")
