@@ -373,14 +373,14 @@ def test_what_is_no_number_is_missing(text: str, tmp_path: Path) -> None:
 
 EVALUATING = """
 import runpy
-space = runpy.run_path({answering!r})
+space = runpy.run_path({answering!r}, run_name="__main__")
 from hersey.log.formats import mdf
 mdf.evaluate = lambda formula, values: eval(formula, dict(values))
 answer = space["answer"]
 """
 TRYING = """
 import ctypes, glob, mmap, os, runpy, signal, socket, subprocess, sys
-runpy.run_path({answering!r})
+runpy.run_path({answering!r}, run_name="__main__")
 
 def answer(request, payload):
     return {{"value": repr(eval(request["code"]))}}, b""

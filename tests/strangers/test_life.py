@@ -33,7 +33,7 @@ pytestmark = linux
 #: A reader that never ends loading numbers.
 SPINNING = """
 import runpy
-space = runpy.run_path({answering!r})
+space = runpy.run_path({answering!r}, run_name="__main__")
 
 def answer(request, payload):
     while request["do"] == "load":
@@ -310,3 +310,9 @@ def test_signals_beyond_all_bounds_are_refused(tmp_path: Path) -> None:
             file.create_dataset(f"m{number}", shape=(1000, 256), dtype="f4", chunks=(1000, 256))
     with pytest.raises(hersey.HerseyError, match=r"wide\.h5: holds 102400 channels: 100000 at the most"):
         hersey.read(path)
+
+
+def test_who_only_imports_the_reader_is_not_confined(tmp_path: Path) -> None:
+    importing = "import hersey.log.formats.answering, sys; open(sys.argv[1], 'w').write('free')"
+    subprocess.run([sys.executable, "-c", importing, tmp_path / "out"], cwd=ROOT, check=True)
+    assert (tmp_path / "out").read_text() == "free"

@@ -1,12 +1,13 @@
 //! What must hold for every drivetrain and drag law.
 
+mod common;
+
 use hersey_core::drag::{Closure, Drag, Mode};
-use hersey_core::motion::{
-    CycleKind, Drivetrain, Integrator, Start, System, Trajectory, stick_slip,
-};
-use hersey_core::{Error, Work, motion};
+use hersey_core::motion::{CycleKind, Drivetrain, Start, stick_slip};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
+
+use common::simulate;
 
 /// (stiffness, mass, transition force, transition speed, EHL exponent, mixed exponent, `v_s/v_t`, `drive/v_t`)
 type Case = (f64, f64, f64, f64, f64, f64, f64, f64);
@@ -36,28 +37,6 @@ fn config() -> ProptestConfig {
 fn built((k, m, force, v_t, ehl, mixed, stick, _): Case) -> (Drivetrain, Drag) {
     let drag = Drag::new(force, v_t, ehl, mixed, stick * v_t, Closure::Retained).unwrap();
     (Drivetrain::new(k, m).unwrap(), drag)
-}
-
-/// Motion at constant drive speed.
-fn simulate(
-    train: &Drivetrain,
-    drag: &Drag,
-    drive_speed: f64,
-    start: Start,
-    duration: f64,
-    samples: usize,
-    tolerance: f64,
-) -> Result<Trajectory, Error> {
-    let system = System::at_speed(*train, drag, drive_speed)?;
-    motion::simulate(
-        &system,
-        start,
-        duration,
-        samples,
-        tolerance,
-        Integrator::Adaptive,
-        &Work::default(),
-    )
 }
 
 proptest! {

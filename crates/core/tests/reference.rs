@@ -1,36 +1,15 @@
 //! The paper's baseline against the exact solution of its equations (published numbers at 1e-12).
 
+mod common;
+
 use hersey_core::drag::{Closure, Drag, Mode};
-use hersey_core::motion::{
-    CycleKind, Drivetrain, Integrator, Start, System, Trajectory, stick_slip,
-};
-use hersey_core::{Error, Work, motion};
+use hersey_core::motion::{CycleKind, Drivetrain, Start, System, stick_slip};
+
+use common::simulate;
 
 fn baseline() -> (Drivetrain, Drag) {
     let drag = Drag::new(50.0, 1.0, -0.7, -1.2, 0.01, Closure::Retained).unwrap();
     (Drivetrain::new(1000.0, 1.0).unwrap(), drag)
-}
-
-/// Motion at constant drive speed.
-fn simulate(
-    train: &Drivetrain,
-    drag: &Drag,
-    drive_speed: f64,
-    start: Start,
-    duration: f64,
-    samples: usize,
-    tolerance: f64,
-) -> Result<Trajectory, Error> {
-    let system = System::at_speed(*train, drag, drive_speed)?;
-    motion::simulate(
-        &system,
-        start,
-        duration,
-        samples,
-        tolerance,
-        Integrator::Adaptive,
-        &Work::default(),
-    )
 }
 
 fn assert_close(found: f64, expected: f64, relative: f64) {

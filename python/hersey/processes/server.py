@@ -81,7 +81,7 @@ def leave_no_core() -> None:
 def answering(script: str) -> _Answer:
     """Return the script's function; one that cannot be started answers each request with the reason."""
     try:
-        answer: _Answer = runpy.run_path(script)["answer"]
+        answer: _Answer = runpy.run_path(script, run_name="__main__")["answer"]
     except BaseException as error:
         reason = f"{type(error).__name__}: {error}"
 

@@ -21,7 +21,8 @@ if TYPE_CHECKING:
 #: Channels of a file at the most.
 _MOST_SIGNALS = 100_000
 
-only_read_libraries()  # before anything else runs, threads above all
+if __name__ == "__main__":  # whoever only imports this is not confined
+    only_read_libraries()  # before anything else runs, threads above all
 
 
 class _Open:
@@ -77,13 +78,11 @@ class _Open:
 
     def close(self) -> None:
         """Close the file; one that could not be opened may fail at that, too."""
-        context, file = self.context, self.file
-        self.__init__()  # type: ignore[misc] # as if nothing had been opened
         with suppress(Exception):
-            if context is not None:
-                context.__exit__(None, None, None)
-        if file is not None:
-            file.close()
+            if self.context is not None:
+                self.context.__exit__(None, None, None)
+        if self.file is not None:
+            self.file.close()
         limit_time(math.inf)
 
 
@@ -92,12 +91,14 @@ _open = _Open()
 
 def answer(request: dict[str, Any], _payload: bytes) -> tuple[dict[str, Any], bytes]:
     """Answer one request."""
+    global _open
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         if request["do"] == "open":
             return _open.open(request), b""
         if request["do"] == "close":
-            _open.close()
+            closing, _open = _open, _Open()
+            closing.close()
             return {}, b""
         content = _open.numbers(request["do"], request["index"])
     return _open.state(), content

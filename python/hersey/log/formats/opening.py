@@ -22,13 +22,15 @@ from hersey import errors
 from hersey.arrays import FloatArray
 from hersey.errors import HerseyError, ParameterError, UnreadableLogError
 from hersey.files.reading import OpenFile, open_file, unchanged
+from hersey.log.formats.hdf5 import MAGIC as HDF5
 from hersey.log.recording import Recording, Signal, Source
 from hersey.processes.child import Child, FailedError, LostError
 from hersey.processes.forks import refuse_after_fork
 from hersey.spelling import printable
 
-#: What a file may take while it is read, bytes.
-_memory = 2e9
+#: What a file may take while it is read, bytes, where the user does not say otherwise, and now.
+_USUAL_MEMORY = 2e9
+_memory = _USUAL_MEMORY
 #: Bytes for each number that is read: it is held here, and so is what is computed from it.
 _BYTES_PER_NUMBER = 16
 #: Processor time for a file, s, and per byte of it: far more than a sound one needs.
@@ -68,7 +70,7 @@ _STARTS = (
     (b"UnFinMF ", "mdf"),
     (b"MATLAB 5.0 MAT-file", "matlab"),
     (b"MATLAB 7.3 MAT-file", "matlab"),
-    (b"\x89HDF\r\n\x1a\n", "hdf5"),
+    (HDF5, "hdf5"),
     (b"PAR1", "parquet"),
     (b"LabVIEW Measurement", "lvm"),
 )
@@ -167,7 +169,7 @@ class _Reader:
 
     def __init__(self, file: OpenFile, kind: str, limit: float) -> None:
         self.file, self.kind, self.limit, self.left = file, kind, limit, limit
-        self.time = (_TIME + _TIME_PER_BYTE * file.size) * max(1.0, limit / 2e9)
+        self.time = (_TIME + _TIME_PER_BYTE * file.size) * max(1.0, limit / _USUAL_MEMORY)
         try:  # not `if`: another thread may take the last one
             self.child = self._waiting.pop()
         except IndexError:
@@ -237,18 +239,19 @@ class _Reader:
         try:
             return self.child.ask(request, file=file, most=most, within=_PATIENCE * self.time)
         except FailedError as error:
-            if error.kind in ("MemoryError", "PanicException", "NotStarted") or "allocat" in str(error):
-                self.child.stop()  # what it holds now may be of no use for the next file
             raise self._failure(error.kind, str(error)) from None
         except LostError as error:
             raise self._loss(error) from None
 
     def _failure(self, kind: str, message: str) -> HerseyError:
         """The error that a reader raised: one of ours, or one of a library on damaged bytes."""
+        spent = kind == "MemoryError" or "allocat" in message
+        if spent or kind in ("PanicException", "NotStarted"):
+            self.child.stop()  # what it holds now may be of no use for the next file
         known = getattr(errors, kind, None)
         if isinstance(known, type) and issubclass(known, HerseyError):
             return known(_plain(message))
-        if kind == "MemoryError" or "allocat" in message:
+        if spent:
             return self._too_large()
         if kind == "NotStarted":
             return self._not_started(message)
