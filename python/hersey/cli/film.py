@@ -60,6 +60,7 @@ def film(
     from hersey.machine.machine import read_machine
     from hersey.verdict.checks import check_film
     from hersey.verdict.evidence import measured_film, verdict
+    from hersey.verdict.regime import regime
 
     machine = read_machine(machine_file)
     if machine.contact is None or machine.lubricant is None:
@@ -83,7 +84,7 @@ def film(
             temperature=kelvin,
             grip=machine.limits.roll_friction,
         )
-        says = verdict(measured, surface, machine.contact, machine.lubricant)
+        says = verdict(measured, surface, machine.contact, machine.lubricant, regime(points, surface))
     predicted, names = _predicted(machine, measured, kelvin, belt_speed)
     notes = check_film(machine, predicted, measured)
     if figure is not None:

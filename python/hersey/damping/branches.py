@@ -98,7 +98,7 @@ def transition(data: Observations, single: LawFit, branches: Branches) -> Transi
         data.reference_speed * float(np.exp(v))
         for v in (fit.values[-1], *branches.meeting, branches.parted_at)
     )
-    reach = quantile(fit.freedom)
+    reach = quantile(fit.freedom_of("at"))
     return Transition(
         speed=Estimate(best, best * float(np.log(high / low)) / (2 * reach), low, high),
         least_torque_speed=least,

@@ -87,6 +87,11 @@ class SteadyPoints(Result):
     log: TorqueLog
     tare_error: float = 0.0
 
+    @property
+    def tare_errors(self) -> FloatArray:
+        """What one standard error of each error of the zero does to torque, N m, shape (points, errors)."""
+        return np.full((len(self), 1), self.tare_error) if self.tare_error else np.empty((len(self), 0))
+
     def __len__(self) -> int:
         """Return how many steady points there are."""
         return self.table.height

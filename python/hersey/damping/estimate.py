@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+import numpy as np
 from scipy import stats
 
 #: Confidence of every interval.
@@ -12,24 +13,40 @@ CONFIDENCE = 0.95
 
 @dataclass(frozen=True)
 class Estimate:
-    """A number with its standard error and its 95 % interval."""
+    """A number with its standard error and its 95 % interval, which is unbounded where it is not told.
+
+    ``systematic`` is the half width that errors of the sensors may add, at 95 %, beyond that interval.
+    """
 
     value: float
     error: float
     low: float
     high: float
+    freedom: float = np.inf  #: degrees of freedom of the error
+    systematic: float = 0.0
+
+    @property
+    def told(self) -> bool:
+        """Whether the interval is bounded."""
+        return bool(np.isfinite(self.low) and np.isfinite(self.high))
+
+    def with_systematic(self, half_width: float) -> Estimate:
+        """Return it with what errors of the sensors may add."""
+        return replace(self, systematic=half_width)
 
     def __str__(self) -> str:
         """Return value and interval with sensible digits."""
+        if not self.told:
+            return f"{self.value:.4g} (interval not told)"
         return f"{self.value:.4g} [{self.low:.4g}, {self.high:.4g}]"
 
 
-def quantile(freedom: int) -> float:
+def quantile(freedom: float) -> float:
     """Return how many standard errors an interval reaches to either side (Student's t)."""
     return float(stats.t.ppf(0.5 + CONFIDENCE / 2, max(freedom, 1)))
 
 
-def estimate(value: float, error: float, freedom: int) -> Estimate:
+def estimate(value: float, error: float, freedom: float) -> Estimate:
     """Return a value with the interval that its standard error and degrees of freedom give."""
     reach = quantile(freedom) * error
-    return Estimate(value, error, value - reach, value + reach)
+    return Estimate(value, error, value - reach, value + reach, freedom)

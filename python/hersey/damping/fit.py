@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -17,6 +18,7 @@ from hersey.damping.candidates.thermal import scaled_temperature
 from hersey.damping.dwells import SteadyPoints, groups_of_temperature
 from hersey.damping.estimate import Estimate, estimate
 from hersey.damping.surface import SCALES, DampingSurface, FitStatistics
+from hersey.damping.systematic import sensor_shifts
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.units import celsius
 
@@ -81,6 +83,11 @@ def _require_dwells(data: Observations) -> None:
         )
 
 
+def _law(fit: LawFit) -> Law:
+    assert isinstance(fit.law, Law)
+    return fit.law
+
+
 def _surface(
     points: SteadyPoints,
     data: Observations,
@@ -89,10 +96,12 @@ def _surface(
     refused: str,
     scale: str,
 ) -> DampingSurface:
-    law = fit.law
-    assert isinstance(law, Law)
+    law = _law(fit)
     kelvin = data.inputs.kelvin
-    coefficients = _coefficients(law, data, fit.values, fit.covariance, fit.freedom, scale)
+    shifts = sensor_shifts(fit, data, points.log.sensors)
+    coefficients = _coefficients(fit, data, fit.values, fit.covariance, scale, shifts)
+    if measured_transition is not None:
+        measured_transition = _with_sensors(measured_transition, law, shifts)
     labels = {"level": "ln B_ref", "e": "b", "at": "ln(w_t/w_ref)"}
     residuals = data.log_torque - law.predict(fit.values, data.inputs)
     return DampingSurface(
@@ -106,6 +115,7 @@ def _surface(
         variables=tuple(labels.get(name, name) for name in law.names),
         values=np.append(fit.values[0] - np.log(data.reference_speed), fit.values[1:]),
         covariance=fit.covariance,
+        freedoms=fit.freedoms,
         torque_space=_in_torque_space(law, data, fit, scale),
         statistics=_statistics(data, fit, residuals),
         speed_range=(float(data.speed.min()), float(data.speed.max())),
@@ -117,9 +127,15 @@ def _surface(
 
 
 def _coefficients(
-    law: Law, data: Observations, values: FloatArray, covariance: FloatArray, freedom: int, scale: str
+    fit: LawFit,
+    data: Observations,
+    values: FloatArray,
+    covariance: FloatArray,
+    scale: str,
+    shifts: FloatArray | None = None,
 ) -> dict[str, Estimate]:
-    """a, b and c as Eq. 4 has them, from values about the reference point."""
+    """a, b and c as Eq. 4 has them, from values about the reference point; ``shifts`` as `sensor_shifts`."""
+    law = _law(fit)
     weights = np.zeros(values.size)
     weights[0], weights[law.index("c")] = 1.0, -np.log(data.reference_speed)
     if law.thermal:
@@ -127,14 +143,43 @@ def _coefficients(
         weights[law.index("e")] = -float(np.log(reference))
     # ln B = ln torque - ln w, so that of B at w = 1 rad/s is level - (1 + c) ln w_ref
     at_one = float(weights @ values) - float(np.log(data.reference_speed))
-    log_a = estimate(at_one, float(np.sqrt(weights @ covariance @ weights)), freedom)
-    a = float(np.exp(log_a.value))
-    out = {"a": Estimate(a, a * log_a.error, float(np.exp(log_a.low)), float(np.exp(log_a.high)))}
+    size = fit.values.size
+    whole = np.append(weights, np.zeros(size - weights.size))
+    moved = np.zeros((1, size)) if shifts is None else shifts
+    log_a = estimate(at_one, float(np.sqrt(weights @ covariance @ weights)), fit.freedoms.of(whole))
+    out = {"a": _exponential(log_a.with_systematic(_together(moved @ whole)))}
     for name, parameter in (("b", "e"), ("c", "c")):
         if parameter in law.names:
             i = law.index(parameter)
-            out[name] = estimate(float(values[i]), float(np.sqrt(covariance[i, i])), freedom)
+            error = float(np.sqrt(covariance[i, i]))
+            out[name] = estimate(float(values[i]), error, fit.freedom_of(parameter)).with_systematic(
+                _together(moved[:, i])
+            )
+    if law.thermal and fit.untold("e"):
+        out |= {name: replace(out[name], low=-np.inf, high=np.inf) for name in ("a", "b")}
     return out
+
+
+def _together(shifts: FloatArray) -> float:
+    """Half width of independent errors at their limits."""
+    return float(np.sqrt(np.sum(shifts**2)))
+
+
+def _with_sensors(transition: Transition, law: Law, shifts: FloatArray) -> Transition:
+    speed, mixed = transition.speed, transition.mixed_exponent
+    moved = speed.value * _together(shifts[:, law.index("at")])
+    return replace(
+        transition,
+        speed=speed.with_systematic(moved),
+        mixed_exponent=mixed.with_systematic(_together(shifts[:, law.index("c_mixed")])),
+    )
+
+
+def _exponential(log: Estimate) -> Estimate:
+    """What its logarithm is an estimate of."""
+    value = float(np.exp(log.value))
+    ends = float(np.exp(log.low)), float(np.exp(log.high))
+    return Estimate(value, value * log.error, *ends, log.freedom, value * log.systematic)
 
 
 def _statistics(data: Observations, fit: LawFit, residuals: FloatArray) -> FitStatistics:
@@ -149,6 +194,7 @@ def _statistics(data: Observations, fit: LawFit, residuals: FloatArray) -> FitSt
         chi_square=chi_square,
         reduced_chi_square=chi_square / fit.freedom,
         scatter=fit.scatter,
+        shared=fit.shared,
         dwell_error=float(np.median(fit.errors)),
         aicc=fit.aicc,
         r_squared_damping=_r_squared(torque / data.speed, fitted / data.speed),
@@ -168,7 +214,7 @@ def _in_torque_space(law: Law, data: Observations, fit: LawFit, scale: str) -> d
     Its covariance holds whatever the variance of each dwell.
     """
     torque = np.exp(data.log_torque)
-    errors, tare = data.torque_error * torque, data.tare * torque
+    errors, shared = data.torque_error * torque, fit.disturbances * torque[:, None]
     free = law.index("at") if law.broken else fit.values.size
     held = fit.values[free:]
 
@@ -192,6 +238,6 @@ def _in_torque_space(law: Law, data: Observations, fit: LawFit, scale: str) -> d
             break
     each = np.arange(torque.size)
     covariance = clustered_covariance(best.jacobian, residual(sigma, values), each)
-    shift = np.linalg.pinv(best.jacobian) @ (tare / sigma)
-    covariance = covariance + np.outer(shift, shift)
-    return _coefficients(law, data, values, covariance, torque.size - free, scale)
+    shifts = np.linalg.pinv(best.jacobian) @ (shared / sigma[:, None])
+    covariance = covariance + shifts @ shifts.T
+    return _coefficients(fit, data, values, covariance, scale)

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy import stats
 
 from hersey import _core
 from hersey.arrays import FloatArray
@@ -24,6 +25,7 @@ from hersey.damping.branches import Transition
 from hersey.damping.candidates.branched import HELD, ONE, Law, transition_exponent
 from hersey.damping.candidates.intervals import Band, band_of
 from hersey.damping.candidates.observations import Inputs
+from hersey.damping.candidates.shared_errors import Freedom, SharedScatter
 from hersey.damping.candidates.thermal import CELSIUS, KELVIN, Thermal, scaled_temperature
 from hersey.damping.estimate import Estimate
 from hersey.errors import ExtrapolationWarning, InsufficientDataError, ParameterError
@@ -47,6 +49,7 @@ class FitStatistics:
     chi_square: float
     reduced_chi_square: float
     scatter: float  #: relative, between dwells, beyond the standard errors of their means
+    shared: tuple[SharedScatter, ...]  #: of visits to a temperature and of runs
     dwell_error: float  #: relative, median of the errors of the dwells
     aicc: float
     r_squared_damping: float
@@ -72,6 +75,7 @@ class DampingSurface(Result):
     variables: tuple[str, ...]
     values: FloatArray
     covariance: FloatArray
+    freedoms: Freedom
     torque_space: dict[str, Estimate]
     statistics: FitStatistics
     speed_range: tuple[float, float]
@@ -258,12 +262,14 @@ class DampingSurface(Result):
         # Where the bend is gradual the meeting of the branches is less certain than a corner's.
         meeting = self.transition.speed.error / self.transition.speed.value
         covariance[-1, -1] = max(covariance[-1, -1], meeting**2)
-        freedom = max(self.freedom, 1)
+        freedoms = [self.freedoms.of(row) for row in np.eye(self.values.size)]
         rng = np.random.default_rng(seed)
         kept, total = np.empty((0, 5)), 0
         while len(kept) < count:
             values = rng.multivariate_normal(np.zeros(self.values.size), covariance, size=count)
-            values = self.values + values * np.sqrt(freedom / rng.chisquare(freedom, size=(count, 1)))
+            share = rng.random(count)  # one quantile of chi-square for all values of a draw
+            wider = [np.sqrt(f / stats.chi2.ppf(share, f)) for f in freedoms]
+            values = self.values + values * np.column_stack(wider)
             if self.b is None:
                 values = np.insert(values, 1, 0.0, axis=1)
             _, b, c, mixed, at = values.T
@@ -306,7 +312,7 @@ class DampingSurface(Result):
             speeds, kelvin = np.broadcast_arrays(speeds, kelvin)
         dwell = float(np.hypot(self.statistics.scatter, self.statistics.dwell_error))
         inputs = self._inputs(speeds, kelvin)
-        return band_of(self._law, self._law_values, self.covariance, self.freedom, dwell, inputs)
+        return band_of(self._law, self._law_values, self.freedoms, dwell, inputs)
 
     @property
     def freedom(self) -> int:
@@ -346,6 +352,8 @@ class DampingSurface(Result):
                 "variables": self.variables,
                 "values": self.values,
                 "covariance": self.covariance,
+                "variance_parts": self.freedoms.parts,
+                "variance_uncertainty": self.freedoms.uncertainty,
                 **statistics,
                 "speed_range": self.speed_range,
                 "temperature_range": self.temperature_range,
@@ -405,6 +413,7 @@ def _summary(s: DampingSurface) -> str:
         "[[Fit Statistics]]",
         "    # fitting method   = robust likelihood of ln torque, errors of torque, speed and temperature",
         f"    # scatter added    = {st.scatter:.3%} between dwells, beyond the errors of their means",
+        *(f"    # scatter shared   = {_shared_text(shared)}" for shared in st.shared),
         f"    # data points      = {st.points}",
         f"    # variables        = {st.variables}",
         f"    chi-square         = {st.chi_square:.6g}  (against the errors of the dwells alone)",
@@ -437,7 +446,15 @@ def _summary(s: DampingSurface) -> str:
 
 def _variable(name: str, e: Estimate) -> str:
     share = f"({abs(e.error / e.value):.2%})" if e.value else ""
-    return f"    {name:8s} {e.value: .7g} +/- {e.error:.3g} {share:10s} [{e.low:.6g}, {e.high:.6g}]"
+    ends = f"[{e.low:.6g}, {e.high:.6g}]" if e.told else "not told"
+    sensors = f"  sensors +/- {e.systematic:.2g}" if e.systematic else ""
+    return f"    {name:8s} {e.value: .7g} +/- {e.error:.3g} {share:10s} {ends}{sensors}"
+
+
+def _shared_text(shared: SharedScatter) -> str:
+    if not shared.told:
+        return f"by the dwells of a {shared.name}: not told, the law takes up all differences between them"
+    return f"{shared.deviation:.3%} by the dwells of a {shared.name} (p = {shared.p_value:.2g} for none)"
 
 
 def _correlations(s: DampingSurface) -> list[str]:

@@ -11,6 +11,7 @@ from hersey.lubrication.film import REGIMES, Film, film_thickness
 from hersey.machine.machine import Machine
 from hersey.verdict.checks import check_film
 from hersey.verdict.evidence import MeasuredFilm, Verdict, measured_film, verdict
+from hersey.verdict.regime import regime
 
 
 def film_part(points: SteadyPoints, surface: DampingSurface, machine: Machine | None) -> FilmPart | None:
@@ -31,7 +32,7 @@ def film_part(points: SteadyPoints, surface: DampingSurface, machine: Machine | 
         film,
         [point.name for point in machine.points],
         measured,
-        verdict(measured, surface, contact, lubricant),
+        verdict(measured, surface, contact, lubricant, regime(points, surface)),
         check_film(machine, film, measured),
     )
 

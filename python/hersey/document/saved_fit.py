@@ -10,6 +10,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 from hersey.damping.branches import Transition
 from hersey.damping.candidates.branched import transition_exponent
+from hersey.damping.candidates.shared_errors import Freedom, SharedScatter
 from hersey.damping.estimate import Estimate
 from hersey.damping.surface import DampingSurface, FitStatistics
 from hersey.document.parts import FitPart, InputFile, Interval, Point, TransitionPart
@@ -86,7 +87,7 @@ def _check(path: Path, document: _FitFile) -> None:
         ("points", fit.points > size, f"more than the {size} variables"),
         (
             "transition.speed",
-            speed is None or 0 < speed.low <= speed.value <= speed.high,
+            speed is None or 0 < (speed.low or 0.0) <= speed.value <= (speed.high or np.inf),
             "within its interval",
         ),
         (
@@ -98,6 +99,11 @@ def _check(path: Path, document: _FitFile) -> None:
     for field, holds, asked in rules:
         if not holds:
             raise _broken(path, f"fit.{field}", f"it must be {asked}")
+    parts, uncertainty = fit.variance_parts, np.array(fit.variance_uncertainty)
+    if any(np.shape(part) != (size, size) for part in parts) or uncertainty.shape != (
+        (len(parts), len(parts)) if parts else (0,)
+    ):
+        raise _broken(path, "fit.variance_parts", f"not {size} rows of {size} numbers for each variance")
     if not _is_covariance(covariance):
         raise _broken(path, "fit.covariance", "it is not symmetric with no negative variance")
     for field, value, expected in _derived(fit):
@@ -134,7 +140,11 @@ def _is_covariance(matrix: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) ->
 
 
 def _estimate(part: Interval) -> Estimate:
-    return Estimate(part.value, part.error, part.low, part.high)
+    low, high, freedom = (
+        none if end is None else end
+        for end, none in ((part.low, -np.inf), (part.high, np.inf), (part.freedom, np.inf))
+    )
+    return Estimate(part.value, part.error, low, high, freedom, part.systematic)
 
 
 def _transition(part: TransitionPart) -> Transition:
@@ -162,6 +172,12 @@ def _surface(document: _FitFile) -> DampingSurface:
         variables=tuple(fit.variables),
         values=np.array(fit.values),
         covariance=np.array(fit.covariance),
+        freedoms=Freedom(
+            fit.points - len(fit.values),
+            np.array(fit.covariance),
+            tuple(np.array(part) for part in fit.variance_parts),
+            np.array(fit.variance_uncertainty),
+        ),
         torque_space={name: _estimate(part) for name, part in fit.torque_space.items()},
         statistics=FitStatistics(
             points=fit.points,
@@ -169,6 +185,7 @@ def _surface(document: _FitFile) -> DampingSurface:
             chi_square=fit.chi_square,
             reduced_chi_square=fit.reduced_chi_square,
             scatter=fit.scatter,
+            shared=tuple(SharedScatter(**vars(part)) for part in fit.shared),
             dwell_error=fit.dwell_error,
             aicc=fit.aicc,
             r_squared_damping=fit.r_squared_damping,

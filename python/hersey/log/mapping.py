@@ -18,11 +18,12 @@ from pydantic import BeforeValidator, ValidationInfo
 from pydantic.dataclasses import dataclass
 
 from hersey.errors import ChannelError, HerseyError, ParameterError, UnitError
-from hersey.files.toml import Quantity, Table, Text, naming, read_tables
+from hersey.files.toml import Quantity, Share, Table, Text, naming, read_tables
 from hersey.log import corrections
 from hersey.log.channels import ROLES, ChannelChoice, find_channel
 from hersey.log.corrections import Corrected
 from hersey.log.reading import list_channels, read
+from hersey.log.sensors import Sensors
 from hersey.log.text.delimited import Progress
 from hersey.log.text.layout import Column
 from hersey.log.torque_log import LogFile
@@ -114,6 +115,8 @@ class TorqueMapping(RoleMapping):
     gear_ratio: _GearRatio = 1.0
     efficiency: Annotated[float, Quantity(None, 0.05, 1.0, "0.9")] = 1.0
     inertia: Annotated[float, _Amount("moment of inertia", 1e-12, 1e6, "2e-4 kg*m^2")] = 0.0
+    gain_error: Share | None = None
+    zero_error: Annotated[float, Quantity("torque", 0.0, 1e6, "2 mN*m")] | None = None
 
 
 @dataclass(frozen=True)
@@ -122,6 +125,7 @@ class SpeedMapping(RoleMapping):
 
     sign: _Sign = 1
     gear_ratio: _GearRatio = 1.0
+    gain_error: Share | None = None
 
 
 @dataclass(frozen=True)
@@ -130,6 +134,7 @@ class TemperatureMapping(RoleMapping):
 
     offset: Annotated[float, _Amount("temperature difference", -100.0, 100.0, "-1.5 K")] = 0.0
     time_constant: Annotated[float, Quantity("time", 1e-3, 1e4, "4 s")] = 0.0
+    zero_error: Annotated[float, _Amount("temperature difference", 0.0, 100.0, "2 K")] | None = None
 
 
 @dataclass(frozen=True)
@@ -166,6 +171,18 @@ class LogMapping(_Roles):
         if self.torque.motor_constant is not None:
             stated["torque"] = f"{_ampere(self.torque.unit):.12g} N*m"
         return stated
+
+    @property
+    def sensors(self) -> Sensors:
+        """Errors of the sensors as stated, defaults for the others."""
+        stated = {
+            "temperature": {"temperature_zero": self.temperature.zero_error},
+            "torque": {"torque_gain": self.torque.gain_error, "torque_zero": self.torque.zero_error},
+            "speed": {"speed_gain": self.speed.gain_error},
+        }
+        given = {k: v for errors in stated.values() for k, v in errors.items() if v is not None}
+        roles = tuple(role for role, errors in stated.items() if any(v is not None for v in errors.values()))
+        return Sensors(**given, stated=roles)
 
     def correct(self, log: Any) -> Corrected:
         """Apply the corrections that are stated, in the order of `hersey.log.corrections`."""
@@ -294,7 +311,7 @@ def read_with_mapping(
             raise
         raise type(error)(f"{error} (channels and units are those of {chosen.source.name})") from None
     logged = tuple(_as_written(file, chosen) for file in log.files)
-    return Corrected(replace(done.log, files=logged), done.corrections)
+    return Corrected(replace(done.log, files=logged, sensors=chosen.sensors), done.corrections)
 
 
 def propose_mapping(
@@ -336,14 +353,18 @@ _EXAMPLES = {
         "# efficiency = 0.9              # of those gears",
         '# inertia = "2e-4 kg*m^2"       # seen at the roll, between sensor and film: matters in ramps',
         '# motor_constant = "35 mN*m/A"  # if the channel is the motor\'s current',
+        '# gain_error = "1 %"            # of the sensor, at 95 %',
+        '# zero_error = "2 mN*m"',
     ),
     "speed": (
         "# sign = -1",
         "# gear_ratio = 12.5             # turns of its shaft for each turn of the roll",
+        '# gain_error = "0.1 %"          # of the sensor, at 95 %',
     ),
     "temperature": (
         '# offset = "-1.5 K"             # film minus reading',
         '# time_constant = "4 s"         # lag of the sensor',
+        '# zero_error = "2 K"            # by how much the film may differ from the reading, at 95 %',
     ),
     "time": (),
 }

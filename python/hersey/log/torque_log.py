@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from hersey.arrays import FloatArray
+from hersey.log.sensors import Sensors
 from hersey.result import Result, json_record
 from hersey.units import celsius, rpm, takes_si
 
@@ -117,6 +118,7 @@ class TorqueLog(Result):
     runs: tuple[Run, ...]
     files: tuple[LogFile, ...]
     corrections: tuple[Correction, ...] = ()  #: what was corrected, in this order
+    sensors: Sensors = field(default_factory=Sensors)
 
     @property
     def rows(self) -> int:

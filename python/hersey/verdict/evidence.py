@@ -24,6 +24,7 @@ from hersey.lubrication.lubricant import Lubricant
 from hersey.lubrication.reynolds import exponent, solve_line_contact
 from hersey.result import Result, json_record, table_of
 from hersey.units import celsius
+from hersey.verdict.regime import Regime
 from hersey.verdict.regimes import Hypothesis, judged, listed
 
 if TYPE_CHECKING:
@@ -212,12 +213,18 @@ class Verdict(Result):
 
 
 def verdict(
-    measured: MeasuredFilm, surface: DampingSurface, contact: Contact, lubricant: Lubricant
+    measured: MeasuredFilm, surface: DampingSurface, contact: Contact, lubricant: Lubricant, seen: Regime
 ) -> Verdict:
-    """Return what the exponents say of this contact."""
+    """Return what the exponents say of this contact.
+
+    Parameters
+    ----------
+    seen
+        What the log alone says: where it names no regime, neither does this.
+    """
     film = measured.predicted
     held = REGIMES[int(np.bincount(film.regime.ravel(), minlength=4).argmax())]
-    predictions = judged(surface.c, surface.freedom, film=held)
+    predictions = judged(surface.c, film=held)
     speed = float(np.exp(np.log(measured.speed).mean()))
     kelvin = float(measured.temperature.mean())
     expected = _slope(contact, lubricant, speed, kelvin, in_speed=True) - 1.0
@@ -226,7 +233,7 @@ def verdict(
     thermal = _thermal(surface, kelvin)
     energy = None if thermal is None else -_core.GAS_CONSTANT * kelvin * thermal.value
     lubricant_energy = float(lubricant.activation_energy(kelvin))
-    text = _text(surface.c, expected, solved, predictions, held, thermal, thermal_expected)
+    text = _text(seen, surface.c, expected, solved, predictions, held, thermal, thermal_expected)
     return Verdict(
         surface.c, expected, solved, predictions, thermal, thermal_expected, energy, lubricant_energy, text
     )
@@ -280,6 +287,7 @@ def _thermal(surface: DampingSurface, kelvin: float) -> Estimate | None:
 
 
 def _text(
+    seen: Regime,
     c: Estimate,
     expected: float,
     solved: float | None,
@@ -295,12 +303,14 @@ def _text(
     ]
     if solved is not None:
         lines.append(f"Solved numerically for this roll, the film gives the power {solved:.2f}.")
-    if any(p.holds_here for p in kept):
-        lines.append("The measured exponent agrees with it.")
-    elif kept:
-        lines.append(f"The measured exponent agrees with {listed([p.name for p in kept])} instead.")
+    if seen.named is None:
+        lines.append(
+            f"The log alone names no regime; not excluded: {listed([e.name for e in seen.explanations])}."
+        )
+    elif any(p.holds_here for p in kept):
+        lines.append("The measured exponent is the one of that regime.")
     else:
-        lines.append("The measured exponent agrees with no regime.")
+        lines.append(f"This contradicts the log, which has the exponent of {seen.named}.")
     if held != "piezoviscous-elastic":
         lines.append(
             "Eq. 5 of the paper (Dowson-Higginson) does not apply to this contact, whatever the exponent."

@@ -1,4 +1,4 @@
-"""What the exponent of speed says about lubrication: named hypotheses, tested, and a verdict in words."""
+"""What speed says about lubrication: named hypotheses, everything that explains the dwells, and a verdict."""
 
 from __future__ import annotations
 
@@ -8,15 +8,20 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hersey.arrays import FloatArray
+from hersey.damping.candidates.lack_of_fit import LackOfFit
 from hersey.damping.dwells import SteadyPoints, distinct_speeds, groups_of_temperature
 from hersey.damping.estimate import Estimate, estimate
 from hersey.damping.surface import DampingSurface
 from hersey.result import Result, json_record
 from hersey.units import celsius, rpm
-from hersey.verdict.regimes import REGIMES, Hypothesis, judged, listed
+from hersey.verdict.explanations import Explained, Explanation, explained
+from hersey.verdict.regimes import FALLING, REGIMES, Hypothesis, judged, listed
 
 if TYPE_CHECKING:
     import polars as pl
+
+#: Exponent of damping below which torque falls faster than boundary lubrication is known to.
+STEEP = -1.5
 
 
 @dataclass(frozen=True)
@@ -33,15 +38,24 @@ class BranchExponent:
 
 @dataclass(frozen=True, repr=False)
 class Regime(Result):
-    """Evidence and verdict."""
+    """Evidence and verdict.
+
+    ``named`` is the one regime that the data leave, None if none may be named, with ``why_unnamed``;
+    ``explanations`` are all that they do not exclude.
+    """
 
     exponents: tuple[BranchExponent, ...]
     hypotheses: tuple[Hypothesis, ...]
+    explanations: tuple[Explanation, ...]
+    named: str | None
+    why_unnamed: str
+    lack_of_fit: LackOfFit | None  #: of one exponent; None where too few dwells can say
     verdict: str
 
     def summary(self) -> str:
         """Return the verdict, the hypotheses and the exponents as text."""
-        lines = [self.verdict, "hypothesis                  exponent           p"]
+        lines = [self.verdict, "not excluded:", *(f"  {e.name}" for e in self.explanations)]
+        lines.append("hypothesis                  exponent           p")
         for h in self.hypotheses:
             values = f"{h.high:.3g}" if h.low == h.high else f"{h.low:.3g} to {h.high:.3g}"
             lines.append(
@@ -54,8 +68,10 @@ class Regime(Result):
         return "\n".join(lines)
 
     def headline(self) -> str:
-        """Return the hypotheses that survive."""
-        return "agrees with " + (" and ".join(h.name for h in self.hypotheses if h.consistent) or "no regime")
+        """Return the regime named, or what is not excluded."""
+        if self.named:
+            return f"has the exponent of {self.named}"
+        return "no regime named; not excluded: " + listed([e.name for e in self.explanations])
 
     def to_dict(self) -> dict[str, Any]:
         """Return evidence and verdict in SI."""
@@ -77,8 +93,17 @@ def _facts_of(e: BranchExponent) -> tuple[float | None, str, int, float, float]:
 
 def regime(points: SteadyPoints, surface: DampingSurface) -> Regime:
     """Return the evidence on the lubrication regime, from steady points and the surface fitted to them."""
-    hypotheses = judged(surface.c, surface.freedom)
-    return Regime(_exponents(points, surface), hypotheses, _verdict(surface, hypotheses))
+    hypotheses = judged(surface.c)
+    by = explained(points, surface, hypotheses)
+    return Regime(
+        _exponents(points, surface),
+        hypotheses,
+        by.explanations,
+        by.named,
+        by.why_unnamed,
+        by.lack_of_fit,
+        _verdict(surface, by),
+    )
 
 
 def _exponents(points: SteadyPoints, surface: DampingSurface) -> tuple[BranchExponent, ...]:
@@ -118,36 +143,64 @@ def _slope(speed: FloatArray, torque: FloatArray, error: FloatArray, surface: Da
     centred = z - np.average(z, weights=weight)
     spread = float(np.sum(weight * centred**2))
     slope, deviation = float(np.sum(weight * centred * y)) / spread, spread**-0.5
-    return estimate(slope, deviation, surface.freedom)
+    return estimate(slope, deviation, surface.c.freedom)
 
 
-def _verdict(surface: DampingSurface, hypotheses: tuple[Hypothesis, ...]) -> str:
-    kept = [h.name for h in hypotheses if h.consistent]
-    c = _in_words(surface.c)
-    agrees = f"agrees with {listed(kept)}" if kept else _between(surface.c.value)
+def _verdict(surface: DampingSurface, by: Explained) -> str:
+    exponent = _exponent(surface, by)
     if surface.transition is None:
-        if "falling branch" in kept and surface.c.high < -1.0:
-            return (
-                f"Torque falls as speed rises over the whole range (damping exponent {c}): mixed or boundary "
-                "lubrication, where the drive can stick and slip."
-            )
-        return (
-            f"Damping varies as speed to the power {c}, which {agrees}. "
-            "No transition to a falling branch shows in these data."
-        )
+        return f"{exponent} {_no_transition(surface, by)}"
     t = surface.transition
     where = f"{rpm(t.speed.value):.3g} rpm [{rpm(t.speed.low):.3g}, {rpm(t.speed.high):.3g}]"
-    if t.gradual:
-        where = f"about {rpm(t.least_torque_speed):.2g} rpm"
     if surface.reference_temperature is not None:
         where += f" at {_degrees(surface.reference_temperature, surface.temperature_scale)}"
         where += ", higher when hotter" if t.temperature_exponent > 0 else ""
     least = ", where torque is least," if t.gradual else ""
     return (
-        f"Above {where}{least} torque rises with speed, as under a carrying film: damping varies as speed to "
-        f"the power {c}, which {agrees}. Below it torque rises as the drive slows (exponent "
+        f"Above {where}{least} torque rises with speed, as under a carrying film: "
+        f"{exponent[0].lower()}{exponent[1:]} Below it torque rises as the drive slows (exponent "
         f"{_in_words(t.mixed_exponent)}, below -1): mixed lubrication, where the drive can stick and slip."
     )
+
+
+def _exponent(surface: DampingSurface, by: Explained) -> str:
+    """What the exponent of the (rising) branch says, and what else explains it."""
+    c = _in_words(surface.c)
+    others = [e.name for e in by.explanations]
+    if by.lack_of_fit is not None and by.why_unnamed and not _films(by):
+        return f"No one exponent holds: {by.why_unnamed}. No regime is named; not excluded: {_or(others)}."
+    said = f"Damping varies as speed to the power {c}"
+    if by.named:
+        return f"{said}, which has the exponent of {by.named}."
+    if by.lack_of_fit is None:
+        kept = f"which does not exclude {_or(others)}" if others else _between(surface.c.value)
+        return f"{said}, {kept}; no regime is named, for {by.why_unnamed}."
+    if not _films(by):
+        return f"{said}, {_between(surface.c.value)}; not excluded: {_or(others)}."
+    return f"{said}, which does not exclude {_or(others)}."
+
+
+def _films(by: Explained) -> list[Explanation]:
+    """Films of one regime, alone, that are not excluded."""
+    return [e for e in by.explanations if e.key in {row.name for row in REGIMES}]
+
+
+def _no_transition(surface: DampingSurface, by: Explained) -> str:
+    if surface.c.high >= -1.0 or FALLING not in {e.key for e in by.explanations}:
+        return "No transition to a falling branch shows in these data."
+    ends = (surface.c.high,) if by.lack_of_fit is None else by.lack_of_fit.local_exponents
+    where = " over the whole range" if max(ends) < -1.0 else ""
+    steep = ""
+    if surface.c.value < STEEP:
+        steep = " So steep a fall also comes from magnetic braking, a controller or heating."
+    return (
+        f"Torque falls as speed rises{where}: mixed or boundary lubrication can do so, and stick and slip."
+        f"{steep}"
+    )
+
+
+def _or(names: list[str]) -> str:
+    return names[0] if len(names) == 1 else f"{'; '.join(names[:-1])}; or {names[-1]}"
 
 
 def _in_words(e: Estimate) -> str:
@@ -163,5 +216,5 @@ def _between(c: float) -> str:
     above = [row for row in REGIMES if row.low > c]
     below = [row for row in REGIMES if row.high < c]
     if above and below:
-        return f"agrees with no named regime: it lies between {above[-1].name} and {below[0].name}"
-    return "agrees with no named regime"
+        return f"which is the exponent of no regime: it lies between {above[-1].name} and {below[0].name}"
+    return "which is the exponent of no regime"

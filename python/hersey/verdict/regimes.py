@@ -22,6 +22,8 @@ class RegimeRow(NamedTuple):
     meaning: str
 
 
+COULOMB, FALLING = "dry Coulomb friction or a rigid film", "falling branch"
+
 #: In the order of the exponents.
 REGIMES: tuple[RegimeRow, ...] = (
     RegimeRow(
@@ -47,15 +49,13 @@ REGIMES: tuple[RegimeRow, ...] = (
         "piezoviscous line contact, Eq. 10 of the paper",
     ),
     RegimeRow(
-        "dry Coulomb friction or a rigid film",
+        COULOMB,
         -1.0,
         -1.0,
         "isoviscous-rigid",
         "torque independent of speed",
     ),
-    RegimeRow(
-        "falling branch", -np.inf, -1.0, "", "torque falls with speed: mixed lubrication, stick-slip possible"
-    ),
+    RegimeRow(FALLING, -np.inf, -1.0, "", "torque falls with speed: mixed lubrication, stick-slip possible"),
 )
 
 
@@ -81,26 +81,38 @@ class Hypothesis:
         return json_record({**vars(self), "consistent": self.consistent})
 
 
-def judged(exponent: Estimate, freedom: int, *, film: str | None = None) -> tuple[Hypothesis, ...]:
+def judged(exponent: Estimate, *, film: str | None = None) -> tuple[Hypothesis, ...]:
     """Return every regime of the table against a measured exponent of damping in speed.
+
+    A deviation counts beyond what the sensors do not know (`Estimate.systematic`), and p-values are adjusted
+    for all the regimes tested (Holm, Scand. J. Stat. 6 (1979) 65): a regime is excluded only if the measured
+    exponent would refute it among so many.
 
     Parameters
     ----------
-    freedom
-        Degrees of freedom of the exponent's standard error.
     film
         The regime that film theory gives the contact, if one is known.
     """
+    alone = [_p_value(exponent, row) for row in REGIMES]
     return tuple(
-        Hypothesis(*row, _p_value(exponent, row, freedom), None if film is None else row.film == film)
-        for row in REGIMES
+        Hypothesis(*row, p, None if film is None else row.film == film)
+        for row, p in zip(REGIMES, _holm(alone), strict=True)
     )
 
 
-def _p_value(exponent: Estimate, row: RegimeRow, freedom: int) -> float:
-    away = max(row.low - exponent.value, exponent.value - row.high, 0.0) / max(exponent.error, 1e-12)
+def _p_value(exponent: Estimate, row: RegimeRow) -> float:
+    away = max(row.low - exponent.value, exponent.value - row.high, 0.0) - exponent.systematic
     sides = 1.0 if np.isinf(row.low) else 2.0
-    return min(1.0, sides * float(stats.t.sf(away, max(freedom, 1))))
+    deviation = max(away, 0.0) / max(exponent.error, 1e-12)
+    return min(1.0, sides * float(stats.t.sf(deviation, max(exponent.freedom, 1))))
+
+
+def _holm(p_values: list[float]) -> list[float]:
+    out, least = [0.0] * len(p_values), 0.0
+    for rank, index in enumerate(np.argsort(p_values)):
+        least = max(least, min(1.0, p_values[index] * (len(p_values) - rank)))
+        out[index] = least
+    return out
 
 
 def listed(names: list[str]) -> str:

@@ -5,10 +5,13 @@ observations          dwells in logarithms, with the errors of torque, speed and
 thermal               laws of temperature: power, Arrhenius, VFT
 branched              laws of speed and temperature with one or two branches
 stribeck              the Stribeck curve
+constant_plus         a constant torque beside a film or a viscous part
 candidate             which laws there are, and which the data cannot carry
+shared_errors         errors that dwells share: of the zero, of visits and runs
 likelihood            robust likelihood and its least-squares solution
 fitting               one law fitted; left-out and resampled fits; what is not identified
 errors_in_variables   the same fit by orthogonal distance regression
+lack_of_fit           whether a law holds at all
 intervals             each parameter's interval by covariance, clusters, profile and bootstrap
 energy                activation energies of torque and viscosity, and whether they agree
 collapse              whether curves fall onto one against the Hersey number

@@ -6,7 +6,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hersey.damping.candidates.branched import FREE, HELD, NO_SPEED, ONE, Law
+from hersey.damping.candidates.branched import (
+    CONSTANT_PLUS,
+    COULOMB_VISCOUS,
+    FREE,
+    HELD,
+    NO_SPEED,
+    ONE,
+    Law,
+)
+from hersey.damping.candidates.constant_plus import ConstantPlusLaw
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.candidates.stribeck import StribeckLaw
 from hersey.damping.candidates.thermal import ARRHENIUS, CELSIUS, KELVIN, VFT, Thermal
@@ -15,10 +24,17 @@ from hersey.units import convert
 
 #: Degrees of freedom that a fit must leave.
 LEAST_FREEDOM = 3
-#: Distinct speeds that one branch and two branches need.
-SPEEDS_OF_ONE, SPEEDS_OF_TWO = 3, 5
+#: Distinct speeds that one branch, a constant beside a film, and two branches need.
+SPEEDS_OF_ONE, SPEEDS_OF_CURVE, SPEEDS_OF_TWO = 3, 4, 5
 _WORDS = {CELSIUS: "power-degC", KELVIN: "power-K", ARRHENIUS: "arrhenius", VFT: "vft", None: "isothermal"}
-_BRANCH_WORDS = {NO_SPEED: "viscosity", ONE: "one", HELD: "two-hersey", FREE: "two-free"}
+_BRANCH_WORDS = {
+    NO_SPEED: "viscosity",
+    ONE: "one",
+    HELD: "two-hersey",
+    FREE: "two-free",
+    CONSTANT_PLUS: "constant-plus-power",
+    COULOMB_VISCOUS: "coulomb-viscous",
+}
 
 
 @dataclass(frozen=True)
@@ -46,16 +62,20 @@ class Candidate:
             return f"Stribeck curve, {heat} viscosity" if self.thermal else "Stribeck curve, no temperature"
         if self.branches == NO_SPEED:
             return heat
+        if self.branches in (CONSTANT_PLUS, COULOMB_VISCOUS):
+            return f"{self.branches}, film by {heat}" if self.thermal else f"{self.branches}, {heat}"
         each = ", exponents per temperature" if self.per_temperature else ""
         return f"{heat} x power of speed, {self.branches}{each}"
 
-    def law(self, data: Observations) -> Law | StribeckLaw:
+    def law(self, data: Observations) -> Law | StribeckLaw | ConstantPlusLaw:
         """Return the law about the reference values of the data."""
         thermal = None
         if self.thermal is not None and data.reference_kelvin is not None:
             thermal = Thermal(self.thermal, data.reference_kelvin)
         if self.stribeck:
             return StribeckLaw(thermal)
+        if self.branches in (CONSTANT_PLUS, COULOMB_VISCOUS):
+            return ConstantPlusLaw(thermal, 0.0 if self.branches == COULOMB_VISCOUS else None)
         return Law(thermal, self.branches, data.temperatures.size if self.per_temperature else 1)
 
     def refused(self, data: Observations) -> str:
@@ -75,10 +95,11 @@ class Candidate:
                 if speeds < SPEEDS_OF_ONE:
                     at = convert(float(data.temperatures[group]), "K", "degC")
                     return f"needs {SPEEDS_OF_ONE} speeds at each temperature; {at:.0f} degC has {speeds}"
-        if self.branches in (HELD, FREE) or self.stribeck:
-            speeds = distinct_speeds(data.speed)
-            if speeds < SPEEDS_OF_TWO:
-                return f"needs {SPEEDS_OF_TWO} speeds, the log has {speeds}"
+        needed = SPEEDS_OF_TWO if self.branches in (HELD, FREE) or self.stribeck else 0
+        needed = SPEEDS_OF_CURVE if self.branches in (CONSTANT_PLUS, COULOMB_VISCOUS) else needed
+        speeds = distinct_speeds(data.speed) if needed else 0
+        if speeds < needed:
+            return f"needs {needed} speeds, the log has {speeds}"
         parameters = len(self.law(data).names)
         if len(data) < parameters + LEAST_FREEDOM:
             return (
@@ -95,7 +116,8 @@ def all_candidates() -> tuple[Candidate, ...]:
     free = [Candidate(heat, FREE) for heat in heats]
     each = [Candidate(heat, kind, per_temperature=True) for heat in heats[1:] for kind in (ONE, FREE)]
     curves = [Candidate(None, ONE, stribeck=True), Candidate(ARRHENIUS, ONE, stribeck=True)]
-    return (*one, *free[:1], *curves[:1], *held, *free[1:], *each, *curves[1:])
+    constant = [Candidate(heat, kind) for heat in heats for kind in (COULOMB_VISCOUS, CONSTANT_PLUS)]
+    return (*one, *constant[:2], *free[:1], *curves[:1], *constant[2:], *held, *free[1:], *each, *curves[1:])
 
 
 def viscosity_candidates() -> tuple[Candidate, ...]:

@@ -1,9 +1,10 @@
 """Every candidate fitted to the same dwells, one chosen, and the reasons in words.
 
-Among the candidates whose parameters the data determine, the simplest within `EVIDENCE` AICc of the
-likeliest is
-chosen, as for a second branch of the surface: a larger law must be beyond doubt. With some twenty laws in
-competition, the best of those that are too large beats the right one by 2 AICc in one log of ten.
+Of the candidates within `EVIDENCE` AICc of the likeliest the simplest is chosen, as for a second branch of
+the surface: a larger law must be beyond doubt. With some thirty laws in competition, the best of those that
+are too large beats the right one by 2 AICc in one log of ten. Among those so near, one whose parameters the data
+all determine goes before one with a parameter that they do not; where none is near, the law stays, and says
+which parameter is open.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from hersey.damping.candidates.intervals import (
     bootstrap_draws,
     estimates,
 )
+from hersey.damping.candidates.lack_of_fit import lack_of_fit
 from hersey.damping.candidates.likelihood import EVIDENCE
 from hersey.damping.candidates.model_comparison import CandidateFit, ModelComparison
 from hersey.damping.candidates.observations import Observations
@@ -104,11 +106,10 @@ def compare_models(
 
 
 def choose(candidates: tuple[CandidateFit, ...]) -> CandidateFit:
-    """Return the simplest candidate that the likeliest does not beat beyond doubt, of those identified."""
-    sound = [r for r in candidates if not r.not_identified] or list(candidates)
-    least = min(r.fit.aicc for r in sound)
-    near = [r for r in sound if r.fit.aicc <= least + EVIDENCE]
-    return min(near, key=lambda r: (r.fit.parameters, r.fit.aicc))
+    """Return the simplest candidate that the likeliest does not beat beyond doubt, determined ones first."""
+    least = min(r.fit.aicc for r in candidates)
+    near = [r for r in candidates if r.fit.aicc <= least + EVIDENCE]
+    return min(near, key=lambda r: (bool(r.not_identified), r.fit.parameters, r.fit.aicc))
 
 
 def ranked(
@@ -132,6 +133,7 @@ def ranked(
                 weight,
                 float(np.sqrt(np.mean(missed**2))) if usable and missed is not None else None,
                 missed if usable else None,
+                lack_of_fit(fit, data),
             )
         )
     return tuple(sorted(out, key=lambda r: r.delta_aicc))
@@ -139,8 +141,11 @@ def ranked(
 
 def _reasons(ranked: tuple[CandidateFit, ...], chosen: CandidateFit, data: Observations) -> tuple[str, ...]:
     """Return why this candidate, and what may be said for the others."""
+    numbers = chosen.fit.parameters
     said = [
-        f"Chosen: {chosen.candidate.name}, with {chosen.fit.parameters} numbers fitted to {len(data)} dwells."
+        f"Chosen: {chosen.candidate.name}, with {numbers} numbers fitted to {len(data)} dwells.",
+        *(f"Not determined, {name}: {why}." for name, why in chosen.not_identified.items()),
+        *(f"It does not hold: {miss}." for miss in chosen.lack_of_fit.misses()),
     ]
     for other in ranked:
         if other.delta_aicc >= chosen.delta_aicc or other is chosen:

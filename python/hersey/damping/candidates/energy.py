@@ -95,7 +95,7 @@ def activation_energies(
 def _linear(fit: LawFit, share: dict[str, float], offset: float = 0.0) -> Estimate:
     weights = np.array([share.get(name, 0.0) for name in fit.law.names])
     value = offset + float(weights @ fit.values)
-    return estimate(value, float(np.sqrt(weights @ fit.covariance @ weights)), fit.freedom)
+    return estimate(value, float(np.sqrt(weights @ fit.covariance @ weights)), fit.freedoms.of(weights))
 
 
 def _ratio(fit: LawFit, per_unit: float) -> Estimate:
@@ -105,9 +105,9 @@ def _ratio(fit: LawFit, per_unit: float) -> Estimate:
     slopes = _gradient(fit, e=per_unit / (1.0 + c), c=-per_unit * e / (1.0 + c) ** 2)
     error = float(np.sqrt(slopes @ fit.covariance @ slopes))
     if value > 2 * error:
-        spread = float(np.exp(quantile(fit.freedom) * error / value))
+        spread = float(np.exp(quantile(fit.freedoms.of(slopes)) * error / value))
         return Estimate(value, error, value / spread, value * spread)
-    return estimate(value, error, fit.freedom)
+    return estimate(value, error, fit.freedoms.of(slopes))
 
 
 def _disagreement(fit: LawFit) -> float:
@@ -115,7 +115,7 @@ def _disagreement(fit: LawFit) -> float:
     e, c, d = (fit.values[fit.law.index(name)] for name in ("e", "c", "d"))
     slopes = _gradient(fit, e=1.0 / (1.0 + c), c=-e / (1.0 + c) ** 2, d=1.0)
     error = float(np.sqrt(slopes @ fit.covariance @ slopes))
-    return float(2.0 * stats.t.sf(abs(d + e / (1.0 + c)) / max(error, 1e-300), fit.freedom))
+    return float(2.0 * stats.t.sf(abs(d + e / (1.0 + c)) / max(error, 1e-300), fit.freedoms.of(slopes)))
 
 
 def _gradient(fit: LawFit, **share: float) -> FloatArray:

@@ -55,7 +55,7 @@ def orthogonal_fit(fit: LawFit, data: Observations) -> OrthogonalFit:
     least = [_LEAST, *([_LEAST * float(np.mean(hot))] if hot is not None else [])]
     clipped = [np.maximum(e, floor) for e, floor in zip(errors, least, strict=True)]
     weights = 1.0 / np.vstack(clipped) ** 2
-    corrected = data.log_torque - fit.tare * data.tare
+    corrected = data.log_torque - fit.disturbances @ fit.effects
 
     def law(x: FloatArray, values: FloatArray) -> FloatArray:
         return fit.law.predict(values, _inputs(data.inputs, x))

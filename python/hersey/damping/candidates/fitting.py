@@ -3,7 +3,8 @@
 Errors of the inputs enter by the effective variance, each times the slope of the law there (Orear, Am. J.
 Phys. 50 (1982) 912): exact for a law that is straight over an error bar, and unlike orthogonal distance
 regression it leaves a likelihood in which laws can be compared. `errors_in_variables` checks it against
-ODRPACK. The tare is a disturbance of all dwells together, fitted with its standard error as prior.
+ODRPACK. What dwells share, the error of the zero and the scatter of visits and runs (`shared_errors`), are
+disturbances of many dwells together, fitted with their standard errors as prior.
 """
 
 from __future__ import annotations
@@ -15,12 +16,22 @@ import numpy as np
 
 from hersey.arrays import FloatArray, IntArray
 from hersey.damping.candidates.branched import LEAST_POWER, Law
+from hersey.damping.candidates.constant_plus import ConstantPlusLaw
 from hersey.damping.candidates.likelihood import HUBER, Minimum, aicc, bic, deviance, minimise, scatter_beyond
 from hersey.damping.candidates.observations import Observations
+from hersey.damping.candidates.shared_errors import (
+    Freedom,
+    Grouping,
+    SharedScatter,
+    disturbances,
+    freedom_of,
+    groupings,
+    shared_scatter,
+)
 from hersey.damping.candidates.stribeck import StribeckLaw
 from hersey.damping.estimate import Estimate, estimate
 
-AnyLaw = Law | StribeckLaw
+AnyLaw = Law | StribeckLaw | ConstantPlusLaw
 
 #: Rounds in which scatter and effective variance settle.
 _ROUNDS = 8
@@ -32,33 +43,36 @@ MOST_FOLDS = 40
 
 @dataclass(frozen=True)
 class LawFit:
-    """A law as fitted; ``values`` are those of the law, ``tare`` the disturbance in its standard errors."""
+    """A law as fitted; ``effects`` are the disturbances that dwells share, in their standard errors."""
 
     law: AnyLaw
     values: FloatArray
-    tare: float
+    effects: FloatArray  #: shape (disturbances,)
+    disturbances: FloatArray  #: by how much each moves ln torque, shape (points, disturbances)
     covariance: FloatArray  #: of the values, model-based
     clustered: FloatArray  #: of the values, whatever the dwells of a cluster have in common
     scatter: float  #: relative, between dwells, beyond their errors
+    shared: tuple[SharedScatter, ...]  #: of visits and runs
     errors: FloatArray  #: effective standard error of each ln torque, without the scatter
-    residuals: FloatArray  #: ln(measured/fitted)
+    residuals: FloatArray  #: ln(measured/fitted), the disturbances taken off
     cost: float
     deviance: float  #: twice the negative log-likelihood at its least
+    freedoms: Freedom
 
     @property
     def sigma(self) -> FloatArray:
-        """Standard error of each ln torque with the scatter."""
+        """Standard error of each ln torque on its own, with the scatter."""
         return np.sqrt(self.errors**2 + self.scatter**2 + 1e-20)
 
     @property
     def freedom(self) -> int:
-        """Degrees of freedom."""
+        """Degrees of freedom of the residuals; those of a value are in ``freedoms``."""
         return int(self.residuals.size - self.values.size)
 
     @property
     def parameters(self) -> int:
-        """How many numbers were fitted, the scatter among them."""
-        return int(self.values.size + 1)
+        """How many numbers were fitted, the scatters among them."""
+        return int(self.values.size + 1 + sum(s.deviation > 0 for s in self.shared))
 
     @property
     def aicc(self) -> float:
@@ -69,11 +83,32 @@ class LawFit:
         """Return the same if ``more`` numbers were chosen beside those of the law."""
         return aicc(self.deviance, self.parameters + more, self.residuals.size)
 
+    def freedom_of(self, name: str) -> float:
+        """Return the degrees of freedom of a parameter's interval."""
+        return self.freedoms.of(np.eye(self.values.size)[self.law.index(name)])
+
+    def untold(self, name: str) -> str:
+        """Return why a parameter has no interval though the dwells determine its value; empty if it has.
+
+        A law of temperature that takes up every difference between the visits leaves nothing to say how
+        far visits scatter.
+        """
+        heat = name in ("e", "q") and self.law.thermal is not None
+        if not heat or all(s.told for s in self.shared):
+            return ""
+        return (
+            "each temperature was visited once, and the law of temperature takes up every difference between "
+            "the visits: how far visits scatter is not told; visit a temperature again, or record another"
+        )
+
     def estimate(self, name: str) -> Estimate:
-        """Return a parameter of the law with its interval by covariance."""
+        """Return a parameter of the law with its interval by covariance; unbounded if it is not told."""
         index = self.law.index(name)
         error = float(np.sqrt(max(self.covariance[index, index], 0.0)))
-        return estimate(float(self.values[index]), error, self.freedom)
+        value = float(self.values[index])
+        if self.untold(name):
+            return Estimate(value, error, -np.inf, np.inf)
+        return estimate(value, error, self.freedom_of(name))
 
     @property
     def bic(self) -> float:
@@ -89,63 +124,139 @@ def fit_law(law: AnyLaw, data: Observations, starts: list[FloatArray] | None = N
     starts
         Where to search from; found from linear fits if not given.
     """
+    size = len(law.names)
+    grouped = groupings(data)
+    shared = tuple(SharedScatter(g.name, 0.0, 1.0, told=True) for g in grouped)
+    columns = disturbances(data, grouped, shared)
     weights = 1.0 / (data.torque_error**2 + _FIRST_SCATTER**2)
     tried = starts or law.starts(data.inputs, data.log_torque, weights)
     errors = np.array(data.torque_error)
     scatter = _FIRST_SCATTER
     sigma = np.sqrt(errors**2 + scatter**2)
-    roughly = partial(search, law, data, sigma, precision=1e-4, calls=8)
-    best = min((roughly(np.append(start, 0.0)) for start in tried), key=lambda m: m.cost)
+    roughly = partial(search, law, data, columns, sigma, precision=1e-4, calls=8)
+    nothing = np.zeros(columns.shape[1])
+    best = min((roughly(np.append(start, nothing)) for start in tried), key=lambda m: m.cost)
     for _ in range(_ROUNDS):
-        by_speed, by_heat = law.slopes(best.values[:-1], data.inputs)
+        values = best.values[:size]
+        by_speed, by_heat = law.slopes(values, data.inputs)
         errors = np.sqrt(
             data.torque_error**2
             + (by_speed * data.speed_error) ** 2
             + (by_heat * data.temperature_error) ** 2
         )
-        residuals = _residuals(law, data, best.values)
-        freedom = len(data) - len(law.names)
-        before, scatter = scatter, scatter_beyond(residuals, errors, freedom)
+        residuals = _residuals(law, data, columns, best.values)
+        before, shared_before, scatter_before = columns, shared, scatter
+        taken = _taken_up(best, size)
+        scatter = scatter_beyond(residuals, errors, max(len(data) - size - taken, 1.0))
         sigma = np.sqrt(errors**2 + scatter**2 + 1e-20)
-        best = search(law, data, sigma, best.values)
-        if abs(scatter - before) <= 1e-5 * max(scatter, float(np.max(errors)), 1e-9):
+        if grouped:
+            whole = residuals + columns @ best.values[size:]
+            slopes = law.jacobian(values, data.inputs)
+            shared = shared_scatter(grouped, shared, data, slopes, whole, _widened(residuals, sigma))
+            columns = disturbances(data, grouped, shared)
+        effects = best.values[size:] if columns.shape == before.shape else np.zeros(columns.shape[1])
+        best = search(law, data, columns, sigma, np.append(values, effects))
+        if _settled(scatter, scatter_before, shared, shared_before, float(np.max(errors))):
             break
-    residuals = _residuals(law, data, best.values)
-    bread = np.asarray(np.linalg.pinv(best.jacobian.T @ best.jacobian, rcond=1e-14), dtype=np.float64)
+    return _law_fit(law, data, grouped, shared, columns, errors, scatter, best)
+
+
+def _law_fit(
+    law: AnyLaw,
+    data: Observations,
+    grouped: tuple[Grouping, ...],
+    shared: tuple[SharedScatter, ...],
+    columns: FloatArray,
+    errors: FloatArray,
+    scatter: float,
+    best: Minimum,
+) -> LawFit:
     size = len(law.names)
+    sigma = np.sqrt(errors**2 + scatter**2 + 1e-20)
+    residuals = _residuals(law, data, columns, best.values)
+    bread = np.asarray(np.linalg.pinv(best.jacobian.T @ best.jacobian, rcond=1e-14), dtype=np.float64)
+    slopes = np.column_stack([law.jacobian(best.values[:size], data.inputs), columns])
+    effects = best.values[size:]
+    tared = columns[:, : data.tare.shape[1]] @ effects[: data.tare.shape[1]]
     return LawFit(
         law=law,
         values=best.values[:size],
-        tare=float(best.values[-1]),
+        effects=effects,
+        disturbances=columns,
         covariance=np.asarray(bread[:size, :size]),
         clustered=_clustered(best.jacobian, residuals / sigma, bread, data.cluster)[:size, :size],
         scatter=scatter,
+        shared=shared,
         errors=errors,
         residuals=residuals,
         cost=best.cost,
-        deviance=deviance(residuals, errors)[0] + float(best.values[-1]) ** 2,
+        deviance=_deviance(grouped, shared, residuals, columns @ effects - tared, errors)
+        + float(np.sum(effects[: data.tare.shape[1]] ** 2)),
+        freedoms=freedom_of(grouped, shared, slopes, _widened(residuals, sigma), bread, size),
     )
+
+
+def _deviance(
+    grouped: tuple[Grouping, ...],
+    shared: tuple[SharedScatter, ...],
+    residuals: FloatArray,
+    common: FloatArray,
+    errors: FloatArray,
+) -> float:
+    """Twice the negative log-likelihood, what visits and runs share integrated out (Laplace)."""
+    members = [s.deviation * g.member for g, s in zip(grouped, shared, strict=True) if s.deviation > 0]
+    if not members:
+        return deviance(residuals, errors)[0]
+    return deviance(residuals + common, errors, np.column_stack(members))[0]
+
+
+def _taken_up(minimum: Minimum, size: int) -> float:
+    """How many degrees of freedom the effects of the disturbances take up."""
+    bread = np.linalg.pinv(minimum.jacobian.T @ minimum.jacobian, rcond=1e-14)
+    return float(bread.shape[0] - size - np.trace(bread[size:, size:]))
+
+
+def _widened(residuals: FloatArray, sigma: FloatArray) -> FloatArray:
+    """Standard errors of the dwells, of those that lie outside as much wider as their weight is less."""
+    return np.asarray(sigma * np.sqrt(np.maximum(np.abs(residuals) / (HUBER * sigma), 1.0)))
+
+
+def _settled(
+    scatter: float,
+    before: float,
+    shared: tuple[SharedScatter, ...],
+    shared_before: tuple[SharedScatter, ...],
+    largest: float,
+) -> bool:
+    least = 1e-5 * max(scatter, largest, 1e-9)
+    moved = [abs(a.deviation - b.deviation) for a, b in zip(shared, shared_before, strict=True)]
+    return abs(scatter - before) <= least and all(m <= 10.0 * least for m in moved)
 
 
 def search(
     law: AnyLaw,
     data: Observations,
+    columns: FloatArray,
     sigma: FloatArray,
     start: FloatArray,
     *,
     held: tuple[int, float] | None = None,
-    tare: float = 0.0,
+    expected: FloatArray | None = None,
     precision: float = 1e-9,
     calls: int = 20,
 ) -> Minimum:
-    """Return the least cost at fixed standard errors, over the values and the tare.
+    """Return the least cost at fixed standard errors, over the values and the effects of disturbances.
 
     Parameters
     ----------
+    columns
+        By how much each disturbance moves ln torque, shape (points, disturbances).
+    start
+        Values and effects.
     held
         Index and value of one parameter that is not varied.
-    tare
-        Expectation of the tare's disturbance, in its standard errors.
+    expected
+        Expectation of the effects, in their standard errors; zeros if not given.
     precision, calls
         As `minimise` has them.
     """
@@ -153,8 +264,10 @@ def search(
     base = np.array(start)
     if held is not None:
         free[held[0]], base[held[0]] = False, held[1]
-    known = not np.any(data.tare)
-    free[-1] = not known  # without a tare there is no disturbance to fit
+    modes = columns.shape[1]
+    size = start.size - modes
+    prior = np.eye(modes, start.size, size)
+    centre = np.zeros(modes) if expected is None else expected
 
     def whole(some: FloatArray) -> FloatArray:
         full = base.copy()
@@ -163,18 +276,16 @@ def search(
 
     def residual(some: FloatArray) -> FloatArray:
         full = whole(some)
-        return np.append(_residuals(law, data, full) / sigma, full[-1] - tare)
+        return np.append(_residuals(law, data, columns, full) / sigma, full[size:] - centre)
 
     def jacobian(some: FloatArray) -> FloatArray:
         full = whole(some)
-        slopes = np.column_stack([law.jacobian(full[:-1], data.inputs), data.tare])
-        rows = np.vstack([-slopes / sigma[:, None], np.append(np.zeros(full.size - 1), 1.0)])
-        return np.asarray(rows[:, free])
+        slopes = np.column_stack([law.jacobian(full[:size], data.inputs), columns])
+        return np.asarray(np.vstack([-slopes / sigma[:, None], prior])[:, free])
 
     minimum = minimise(residual, jacobian, base[free], precision=precision, calls=calls)
     rows = np.zeros((minimum.jacobian.shape[0], start.size))
     rows[:, free] = minimum.jacobian
-    rows[-1, -1] = 1.0
     return Minimum(whole(minimum.values), minimum.cost, rows)
 
 
@@ -183,7 +294,7 @@ def left_out(fit: LawFit, data: Observations) -> FloatArray:
 
     A law with an exponent per temperature cannot predict a temperature that was left out.
     """
-    start = np.append(fit.values, fit.tare)
+    start = np.append(fit.values, fit.effects)
     parts = data.cluster % MOST_FOLDS
     out = np.full(len(data), np.nan)
     for part in np.unique(parts):
@@ -191,8 +302,9 @@ def left_out(fit: LawFit, data: Observations) -> FloatArray:
         groups = getattr(fit.law, "groups", 1)
         if groups > 1 and np.unique(data.inputs.group[kept]).size < groups:
             return out
-        minimum = search(fit.law, data.take(kept), fit.sigma[kept], start, precision=1e-6)
-        out[missing] = _residuals(fit.law, data.take(missing), minimum.values)
+        columns = fit.disturbances[kept]
+        minimum = search(fit.law, data.take(kept), columns, fit.sigma[kept], start, precision=1e-6)
+        out[missing] = _residuals(fit.law, data.take(missing), fit.disturbances[missing], minimum.values)
     return out
 
 
@@ -200,7 +312,7 @@ def resampled(fit: LawFit, data: Observations, count: int, seed: int) -> FloatAr
     """Return values fitted to data drawn cluster by cluster with replacement, shape (count, parameters)."""
     random = np.random.default_rng(seed)
     clusters = [np.flatnonzero(data.cluster == label) for label in np.unique(data.cluster)]
-    starts = [np.append(fit.values, fit.tare)]
+    starts = [np.append(fit.values, fit.effects)]
     if fit.law.broken:  # the cost has several minima in a corner
         at = fit.law.index("at")
         error = min(float(np.sqrt(fit.covariance[at, at])), 0.5)
@@ -219,11 +331,16 @@ def resampled(fit: LawFit, data: Observations, count: int, seed: int) -> FloatAr
                 groups == 1 or np.unique(data.inputs.group[sample]).size == groups
             ):
                 break
-        disturbance = float(random.standard_normal())
         refit = partial(
-            search, fit.law, data.take(sample), fit.sigma[sample], tare=disturbance, precision=1e-6
+            search,
+            fit.law,
+            data.take(sample),
+            fit.disturbances[sample],
+            fit.sigma[sample],
+            expected=random.standard_normal(fit.effects.size),
+            precision=1e-6,
         )
-        draws[row] = min((refit(s) for s in starts), key=lambda m: m.cost).values[:-1]
+        draws[row] = min((refit(s) for s in starts), key=lambda m: m.cost).values[: fit.values.size]
     return draws
 
 
@@ -245,6 +362,8 @@ def not_identified(fit: LawFit, data: Observations) -> dict[str, str]:
             if norms[part] < 2.0 or fit.covariance[part, part] > 1.0:
                 out[name] = f"the part it scales hardly shows: record dwells at {what} speeds"
         return out
+    if isinstance(law, ConstantPlusLaw):
+        return out | _parts_shown(fit, norms)
     if law.broken:
         out |= _branches_shown(fit, data)
     if "q" in law.names:
@@ -259,6 +378,15 @@ def not_identified(fit: LawFit, data: Observations) -> dict[str, str]:
                 "number lies at other temperatures is not determined: record faster speeds"
             )
     return out
+
+
+def _parts_shown(fit: LawFit, norms: FloatArray) -> dict[str, str]:
+    """Which part, the constant or the film, hardly shows: a factor e of it is within the errors."""
+    part = fit.law.index("rest")
+    if norms[part] >= 2.0 and fit.covariance[part, part] <= 1.0:
+        return {}
+    why = "the constant torque hardly shows beside the film, or the film beside it: record a wider range"
+    return {name: why for name in ("rest", "r") if name in fit.law.names}
 
 
 def _branches_shown(fit: LawFit, data: Observations) -> dict[str, str]:
@@ -281,13 +409,15 @@ def _branches_shown(fit: LawFit, data: Observations) -> dict[str, str]:
     return {}
 
 
-def _residuals(law: AnyLaw, data: Observations, values: FloatArray) -> FloatArray:
-    return np.asarray(data.log_torque - law.predict(values[:-1], data.inputs) - values[-1] * data.tare)
+def _residuals(law: AnyLaw, data: Observations, columns: FloatArray, values: FloatArray) -> FloatArray:
+    size = values.size - columns.shape[1]
+    return np.asarray(data.log_torque - law.predict(values[:size], data.inputs) - columns @ values[size:])
 
 
 def _clustered(jacobian: FloatArray, u: FloatArray, bread: FloatArray, cluster: IntArray) -> FloatArray:
-    """Covariance of the values and the tare, whose prior is the last row."""
-    return _cr3(jacobian[:-1], u, bread, cluster, np.outer(jacobian[-1], jacobian[-1]))
+    """Covariance of the values and the effects, whose priors are the last rows."""
+    prior = jacobian[u.size :]
+    return _cr3(jacobian[: u.size], u, bread, cluster, prior.T @ prior)
 
 
 def clustered_covariance(jacobian: FloatArray, u: FloatArray, cluster: IntArray) -> FloatArray:

@@ -22,8 +22,11 @@ from scipy import stats
 
 from hersey.arrays import FloatArray
 from hersey.damping.candidates.branched import FREE, Law
+from hersey.damping.candidates.constant_plus import ConstantPlusLaw
 from hersey.damping.candidates.fitting import AnyLaw, LawFit, not_identified, resampled, search
 from hersey.damping.candidates.observations import Inputs, Observations
+from hersey.damping.candidates.shared_errors import Freedom
+from hersey.damping.candidates.stribeck import StribeckLaw
 from hersey.damping.candidates.thermal import ARRHENIUS, VFT
 from hersey.damping.estimate import CONFIDENCE, quantile
 from hersey.units import convert
@@ -88,28 +91,28 @@ def quantities(law_fit: LawFit, data: Observations) -> tuple[Quantity, ...]:
         if parameter in names:
             all_quantities.append(Quantity(name, unit, names[parameter], of))
 
-    torque = "Coulomb torque" if not isinstance(law, Law) else "damping at reference"
-    add(
-        "level",
-        torque,
-        "N m s/rad" if isinstance(law, Law) else "N m",
-        (lambda v: _exp(v) / w) if isinstance(law, Law) else _exp,
-    )
+    if isinstance(law, StribeckLaw):
+        add("level", "Coulomb torque", "N m", _exp)
+    elif isinstance(law, ConstantPlusLaw):
+        add("level", "torque of the film at reference", "N m", _exp)
+        add("rest", "constant torque over that of the film at reference", "", _exp)
+    else:
+        add("level", "damping at reference", "N m s/rad", lambda v: _exp(v) / w)
     if law.thermal and kelvin is not None:
         if law.thermal.kind in (ARRHENIUS, VFT):
             per_unit = law.thermal.energy(kelvin) / 1e3
-            of_what = "torque" if isinstance(law, Law) else "viscosity"
+            of_what = {Law: "torque", ConstantPlusLaw: "torque of the film"}.get(type(law), "viscosity")
             add("e", f"activation energy of {of_what}", "kJ/mol", lambda v: per_unit * v)
         else:
-            add("e", "b", "", float)
+            add("e", "b of the film" if isinstance(law, ConstantPlusLaw) else "b", "", float)
         add("q", "T0", "K", lambda v: kelvin - 1.0 / v)
-    add("c", "c", "", float)
+    add("c", "c of the film" if isinstance(law, ConstantPlusLaw) else "c", "", float)
     for i, hot in enumerate(data.temperatures):
         add(f"c{i + 1}", f"c at {convert(float(hot), 'K', 'degC'):.0f} degC", "", float)
     add("c_mixed", "c below the transition", "", float)
     add("stick", "ln(Stribeck peak / Coulomb)", "", float)
     add("viscous", "ln(viscous torque at the Stribeck speed / Coulomb)", "", float)
-    speed = "transition speed" if isinstance(law, Law) else "Stribeck speed"
+    speed = "Stribeck speed" if isinstance(law, StribeckLaw) else "transition speed"
     add("at", speed, "rad/s", lambda v: w * _exp(v))
     if law.thermal and kelvin is not None and isinstance(law, Law) and law.branches == FREE:
         if law.thermal.kind in (ARRHENIUS, VFT):
@@ -132,7 +135,7 @@ def estimates(
     profile
         Whether to follow the profile likelihood.
     """
-    lost = not_identified(fit, data)
+    lost = not_identified(fit, data) | {n: why for n in fit.law.names if (why := fit.untold(n))}
     out = []
     for q in quantities(fit, data):
         name, value = fit.law.names[q.parameter], float(fit.values[q.parameter])
@@ -153,7 +156,7 @@ def estimates(
 
 def profile_interval(fit: LawFit, data: Observations, parameter: int) -> Ends:
     """Return where the profile of the cost crosses t^2 on either side; infinite where it never does."""
-    target = quantile(fit.freedom) ** 2
+    target = quantile(fit.freedom_of(fit.law.names[parameter])) ** 2
     error = float(np.sqrt(max(fit.covariance[parameter, parameter], 0.0)))
     if not error > 0:  # exact data
         return float(fit.values[parameter]), float(fit.values[parameter])
@@ -169,17 +172,15 @@ def bootstrap_draws(fit: LawFit, data: Observations, count: int = 400, seed: int
 def band(fit: LawFit, inputs: Inputs) -> Band:
     """Return the torque of a fit at inputs, the median of what one would measure, with its limits."""
     dwell = float(np.hypot(fit.scatter, np.median(fit.errors)))
-    return band_of(fit.law, fit.values, fit.covariance, fit.freedom, dwell, inputs)
+    return band_of(fit.law, fit.values, fit.freedoms, dwell, inputs)
 
 
-def band_of(
-    law: AnyLaw, values: FloatArray, covariance: FloatArray, freedom: int, dwell: float, inputs: Inputs
-) -> Band:
+def band_of(law: AnyLaw, values: FloatArray, freedom: Freedom, dwell: float, inputs: Inputs) -> Band:
     """Return the torque of a law at inputs with its limits; ``dwell`` is the relative error of one dwell."""
     slopes = law.jacobian(values, inputs)
     centre = law.predict(values, inputs)
-    variance = np.einsum("ij,jk,ik->i", slopes, covariance, slopes)
-    reach = quantile(freedom)
+    variance = np.einsum("ij,jk,ik->i", slopes, freedom.covariance, slopes)
+    reach = np.array([quantile(freedom.of(row)) for row in slopes])
     of_law, of_dwell = reach * np.sqrt(variance), reach * np.sqrt(variance + dwell**2)
     return Band(
         np.exp(centre),
@@ -191,7 +192,8 @@ def band_of(
 def _intervals(
     fit: LawFit, data: Observations, parameter: int, draws: FloatArray | None, profile: bool
 ) -> dict[str, Ends]:
-    value, reach = float(fit.values[parameter]), quantile(fit.freedom)
+    freedom = fit.freedom_of(fit.law.names[parameter])
+    value, reach = float(fit.values[parameter]), quantile(freedom)
     out = {}
     clusters = np.unique(data.cluster).size
     by = (
@@ -199,7 +201,7 @@ def _intervals(
         (
             "clustered",
             fit.clustered,
-            quantile(clusters - fit.values.size),
+            quantile(min(clusters - fit.values.size, freedom)),
         ),
     )
     for method, covariance, width in by:
@@ -210,7 +212,9 @@ def _intervals(
     if draws is not None:
         low, high = np.quantile(draws[:, parameter], [0.5 - CONFIDENCE / 2, 0.5 + CONFIDENCE / 2])
         widened = np.sqrt(clusters / max(clusters - fit.values.size, 1))
-        widened *= quantile(clusters - fit.values.size) / float(stats.norm.ppf(0.5 + CONFIDENCE / 2))
+        widened *= quantile(min(clusters - fit.values.size, freedom)) / float(
+            stats.norm.ppf(0.5 + CONFIDENCE / 2)
+        )
         out["bootstrap"] = value - widened * (value - float(low)), value + widened * (float(high) - value)
     return out
 
@@ -218,13 +222,19 @@ def _intervals(
 def _crossing(fit: LawFit, data: Observations, parameter: int, error: float, target: float) -> float:
     """Follow the profile outward in steps; the last crossing within reach, interpolated."""
     value = float(fit.values[parameter])
-    start = np.append(fit.values, fit.tare)
+    start = np.append(fit.values, fit.effects)
     kinked = fit.law.broken and fit.law.names[parameter] == "at"
     warm, inside, outside = start, 0.0, None
     before, rise_before = 0.0, 0.0
-    for step in np.arange(_STEP, _FARTHEST * quantile(fit.freedom) / 2.0, _STEP):
+    for step in np.arange(_STEP, _FARTHEST * np.sqrt(target) / 2.0, _STEP):
         minimum = search(
-            fit.law, data, fit.sigma, warm, held=(parameter, value + step * error), precision=1e-7
+            fit.law,
+            data,
+            fit.disturbances,
+            fit.sigma,
+            warm,
+            held=(parameter, value + step * error),
+            precision=1e-7,
         )
         rise = minimum.cost - fit.cost
         if rise < target:

@@ -160,13 +160,28 @@ def scatter_beyond(residuals: FloatArray, errors: FloatArray, freedom: float, li
     return float(optimize.brentq(excess, low, top)) if excess(top) < 0 else top
 
 
-def deviance(residuals: FloatArray, errors: FloatArray, limit: float = HUBER) -> tuple[float, float]:
-    """Return twice the negative log-likelihood at the scatter that makes it least, and that scatter."""
+def deviance(
+    residuals: FloatArray, errors: FloatArray, shared: FloatArray | None = None, limit: float = HUBER
+) -> tuple[float, float]:
+    """Return twice the negative log-likelihood at the scatter that makes it least, and that scatter.
+
+    Parameters
+    ----------
+    residuals, errors
+        Of ln torque, shape (points,).
+    shared
+        By how much one standard error of each error that points share moves them, shape (points, errors): its
+        effect, with the standard normal distribution as prior, is integrated out (Laplace).
+    """
     constant = 2.0 * residuals.size * log_normalisation(limit)
 
     def cost(scatter: float) -> float:
         variance = errors**2 + scatter**2 + EXACT**2
-        return float(np.sum(loss(residuals / np.sqrt(variance), limit) + np.log(variance)))
+        if shared is None:
+            return float(np.sum(loss(residuals / np.sqrt(variance), limit) + np.log(variance)))
+        effects, inflation = _integrated(residuals, variance, shared)
+        u = (residuals - shared @ effects) / np.sqrt(variance)
+        return float(np.sum(loss(u, limit) + np.log(variance)) + effects @ effects + inflation)
 
     top = 3.0 * float(np.sqrt(np.mean(residuals**2))) + EXACT
     minimum = optimize.minimize_scalar(
@@ -174,6 +189,14 @@ def deviance(residuals: FloatArray, errors: FloatArray, limit: float = HUBER) ->
     )
     best = min((float(minimum.fun), float(minimum.x)), (cost(0.0), 0.0))
     return best[0] + constant, best[1]
+
+
+def _integrated(residuals: FloatArray, variance: FloatArray, shared: FloatArray) -> tuple[FloatArray, float]:
+    """Likeliest effects of what points share, and the logarithm by which they inflate the determinant."""
+    weighted = shared / variance[:, None]
+    normal = np.eye(shared.shape[1]) + shared.T @ weighted
+    effects = np.asarray(np.linalg.solve(normal, weighted.T @ residuals), dtype=np.float64)
+    return effects, float(np.linalg.slogdet(normal)[1])
 
 
 def aicc(deviance_: float, parameters: int, points: int) -> float:

@@ -15,6 +15,7 @@ from hersey.damping.candidates.energy import CALORIE, ActivationEnergies, scaled
 from hersey.damping.candidates.errors_in_variables import OrthogonalFit
 from hersey.damping.candidates.fitting import LawFit
 from hersey.damping.candidates.intervals import METHODS, Band, Ends, ParameterEstimate, band
+from hersey.damping.candidates.lack_of_fit import LackOfFit
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.estimate import Estimate
 from hersey.errors import ParameterError
@@ -42,6 +43,7 @@ class CandidateFit:
     weight: float  #: Akaike weight
     cross_validation: float | None  #: relative error of dwells left out, root mean square
     left_out: FloatArray | None  #: ln(measured/predicted) of each dwell from the others
+    lack_of_fit: LackOfFit  #: whether its residuals still depend on speed or temperature
 
 
 @dataclass(frozen=True, repr=False)
@@ -112,6 +114,7 @@ class ModelComparison(Result):
                 "weight (1)": r.weight,
                 "left out (1)": r.cross_validation,
                 "scatter (1)": r.fit.scatter,
+                "holds": r.lack_of_fit.holds,
             }
             for r in self.candidates
         ]
@@ -171,6 +174,7 @@ def _row(r: CandidateFit, *, chosen: bool) -> str:
     missed = "-" if r.cross_validation is None else f"{r.cross_validation:.2%}"
     mark = "*" if chosen else " "
     lost = "  not determined" if r.not_identified else ""
+    lost += "" if r.lack_of_fit.holds else "  does not hold"
     return (
         f"  {mark} {r.candidate.name:<66} {r.fit.parameters:>7} {r.delta_aicc:>8.1f} {r.delta_bic:>8.1f} "
         f"{missed:>9} {r.fit.scatter:>8.2%}{lost}"
@@ -213,6 +217,8 @@ def _candidate_document(r: CandidateFit) -> dict[str, object]:
         "akaike_weight": r.weight,
         "cross_validation": r.cross_validation,
         "scatter": r.fit.scatter,
+        "shared_scatter": r.fit.shared,
+        "lack_of_fit": r.lack_of_fit,
     }
 
 

@@ -38,7 +38,9 @@ class Observations:
     torque_error: FloatArray  #: relative
     speed_error: FloatArray  #: relative
     temperature_error: FloatArray  #: K
-    tare: FloatArray  #: what one standard error of the tare does to ``log_torque``; zeros if there is none
+    tare: FloatArray  #: of ``log_torque`` by one standard error of each error of the zero: (points, errors)
+    visit: IntArray  #: which stay at a temperature a dwell belongs to, shape (points,)
+    run: IntArray
     cluster: IntArray  #: points that share it are left out and resampled together
     clustered_by: str  #: ``run`` or ``level``
     reference_speed: float  #: rad/s
@@ -67,7 +69,9 @@ class Observations:
             torque_error=points.column("torque_error") / torque,
             speed_error=points.column("speed_error") / speed,
             temperature_error=zero if kelvin is None else points.column("temperature_error"),
-            tare=points.tare_error / torque,
+            tare=points.tare_errors / torque[:, None],
+            visit=_visits(run, points.column("start"), group),
+            run=run,
             cluster=run if by_run else _levels(run, group, speed),
             clustered_by="run" if by_run else "level",
             reference_speed=reference,
@@ -94,6 +98,8 @@ class Observations:
             speed_error=self.speed_error[index],
             temperature_error=self.temperature_error[index],
             tare=self.tare[index],
+            visit=self.visit[index],
+            run=self.run[index],
             cluster=self.cluster[index],
         )
 
@@ -117,6 +123,20 @@ def _groups(kelvin: FloatArray | None, count: int) -> tuple[IntArray, FloatArray
         group[members] = index
         means.append(float(np.mean(kelvin[members])))
     return group, np.array(means)
+
+
+def _visits(run: IntArray, start: FloatArray, group: IntArray) -> IntArray:
+    """Stays at a temperature: a new one begins where the temperature changes, or the run.
+
+    Where every run is one dwell, as with a file for each, runs do not end a stay.
+    """
+    order = np.lexsort((np.nan_to_num(start), run))
+    changes = np.diff(group[order]) != 0
+    if np.unique(run).size <= run.size // 2:
+        changes |= np.diff(run[order]) != 0
+    visit = np.empty(run.size, dtype=np.intp)
+    visit[order] = np.cumsum(np.append(0, changes))
+    return visit
 
 
 def _levels(run: IntArray, group: IntArray, speed: FloatArray) -> IntArray:

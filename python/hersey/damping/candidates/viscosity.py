@@ -59,7 +59,9 @@ def viscosity_laws(kelvin: ArrayLike, viscosity: ArrayLike, *, relative_error: f
         torque_error=np.full(hot.size, relative_error),
         speed_error=zero,
         temperature_error=zero,
-        tare=zero,
+        tare=np.empty((hot.size, 0)),
+        visit=np.arange(hot.size),
+        run=np.zeros(hot.size, dtype=np.intp),
         cluster=group.astype(np.intp),
         clustered_by="level",
         reference_speed=1.0,
@@ -81,4 +83,4 @@ def viscosity_laws(kelvin: ArrayLike, viscosity: ArrayLike, *, relative_error: f
     assert data.reference_kelvin is not None
     per_unit = fit.law.thermal.energy(data.reference_kelvin)
     energy, error = per_unit * float(fit.values[1]), per_unit * float(np.sqrt(fit.covariance[1, 1]))
-    return ViscosityLaws(by_aicc, refused, choose(by_aicc), estimate(energy, error, fit.freedom))
+    return ViscosityLaws(by_aicc, refused, choose(by_aicc), estimate(energy, error, fit.freedom_of("e")))

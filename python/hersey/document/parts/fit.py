@@ -46,6 +46,15 @@ class TransitionAt(Part):
     speed: float
 
 
+class SharedScatterPart(Part):
+    """Relative scatter that the dwells of a visit to a temperature, or of a run, share."""
+
+    name: str
+    deviation: float
+    p_value: float = Field(description="of none, by an F test")
+    told: bool = Field(description="whether the dwells say anything of it")
+
+
 class FitPart(Part):
     """B = a T^b w^c: B in N m s/rad, w in rad/s, T in the scale named."""
 
@@ -60,10 +69,17 @@ class FitPart(Part):
     variables: list[str]
     values: list[float]
     covariance: list[list[float]]
+    variance_parts: list[list[list[float]]] = Field(
+        default=[], description="how the covariance rises with each variance that was estimated"
+    )
+    variance_uncertainty: list[list[float]] = Field(
+        default=[], description="covariance of these variances: of dwells, then as in shared"
+    )
     points: int
     chi_square: float
     reduced_chi_square: float
-    scatter: float
+    scatter: float = Field(description="relative, between dwells, beyond their errors")
+    shared: list[SharedScatterPart] = Field(default=[])
     dwell_error: float = Field(description="relative, median of the errors of the dwells")
     aicc: float
     r_squared_damping: float
@@ -102,10 +118,32 @@ class BranchPart(Part):
     exponent: Interval
 
 
+class ExplanationPart(Part):
+    """What the data do not exclude."""
+
+    key: str
+    name: str
+    constant_share: float | None = Field(description="of torque at the middle speed; null if there is none")
+    p_value: float | None
+
+
+class LackOfFitPart(Part):
+    """p-values of a law that holds; null where too few speeds or temperatures can say."""
+
+    curvature: float | None
+    exponent_with_temperature: float | None
+    temperature: float | None
+    local_exponents: tuple[float, float] = Field(description="of damping, at the slow and the fast end")
+
+
 class RegimePart(Part):
-    """Evidence and verdict."""
+    """Evidence and verdict; ``named`` is null where no regime may be named."""
 
     verdict: str
+    named: str | None
+    why_unnamed: str
+    explanations: list[ExplanationPart]
+    lack_of_fit: LackOfFitPart | None
     hypotheses: list[HypothesisPart]
     exponents: list[BranchPart]
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pydantic import Field
 
+from hersey.document.parts.fit import LackOfFitPart, SharedScatterPart
 from hersey.document.parts.part import Holed, Numbers, OpenInterval, Part
 
 
@@ -21,6 +22,8 @@ class CandidatePart(Part):
     akaike_weight: float | None
     cross_validation: float | None = Field(description="relative error of dwells left out")
     scatter: float | None = Field(description="relative")
+    shared_scatter: list[SharedScatterPart]
+    lack_of_fit: LackOfFitPart
 
 
 class RefusedPart(Part):

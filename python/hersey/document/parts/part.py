@@ -20,12 +20,18 @@ class Part(BaseModel):
 
 
 class Interval(Part):
-    """A number with standard error and 95 % interval."""
+    """A number with standard error and 95 % interval, null where it is not told.
+
+    ``freedom`` is the error's degrees of freedom, null if without bound; ``systematic`` the half width that
+    errors of the sensors may add.
+    """
 
     value: float
     error: float
-    low: float
-    high: float
+    low: float | None
+    high: float | None
+    freedom: float | None = None
+    systematic: float = 0.0
 
 
 class OpenInterval(Part):
@@ -35,3 +41,5 @@ class OpenInterval(Part):
     error: float | None
     low: float | None
     high: float | None
+    freedom: float | None = None
+    systematic: float | None = 0.0

@@ -1,0 +1,132 @@
+"""A constant torque beside the film: what the rest of the drive takes, and a power law or a viscous part.
+
+    torque = F (exp(e s(T)) (w/w_ref)^(1 + c) + exp(rest + r s(T)))
+
+With c held at 0 it is Coulomb friction and a viscous part, T_0 + k w. The constant part does not vary with
+temperature unless ``rest_thermal`` lets it, by the same shape s(T).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy import optimize
+
+from hersey.arrays import FloatArray
+from hersey.damping.candidates.observations import Inputs
+from hersey.damping.candidates.thermal import Thermal
+
+#: Exponents of the film from which a search begins, if it is free.
+_EXPONENTS = (0.0, -0.3, -0.6)
+#: The law of temperature of the film alone over that of the whole, from which a search begins.
+_STEEPER = (1.0, 1.5, 2.5)
+#: Bound of the logarithm of the constant part over the film at the reference.
+_LOG_BOUND = 40.0
+
+
+@dataclass(frozen=True)
+class ConstantPlusLaw:
+    """A candidate about reference values.
+
+    ``exponent`` holds the film's exponent of damping in speed; None leaves it free.
+    """
+
+    thermal: Thermal | None
+    exponent: float | None = None
+    rest_thermal: bool = False
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """Names of the parameters, in order."""
+        return (
+            "level",
+            *(self.thermal.names if self.thermal else ()),
+            *(("c",) if self.exponent is None else ()),
+            "rest",
+            *(("r",) if self.rest_thermal and self.thermal else ()),
+        )
+
+    @property
+    def broken(self) -> bool:
+        """There is no corner."""
+        return False
+
+    def index(self, name: str) -> int:
+        """Return where a parameter stands."""
+        return self.names.index(name)
+
+    def predict(self, values: FloatArray, inputs: Inputs) -> FloatArray:
+        """Return ln torque."""
+        film, rest = self._logarithms(values, inputs)
+        return np.asarray(values[0] + np.logaddexp(film, rest))
+
+    def jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
+        """Return its derivatives with respect to the parameters, shape (points, parameters)."""
+        share = self.film_share(values, inputs)
+        s, _, by_q = self._shape(values, inputs)
+        e, r = self._value(values, "e"), self._value(values, "r")
+        columns = {
+            "level": np.ones_like(share),
+            "e": share * s,
+            "q": (share * e + (1.0 - share) * r) * by_q,
+            "c": share * inputs.log_speed,
+            "rest": 1.0 - share,
+            "r": (1.0 - share) * s,
+        }
+        return np.column_stack([columns[name] for name in self.names])
+
+    def slopes(self, values: FloatArray, inputs: Inputs) -> tuple[FloatArray, FloatArray]:
+        """Return its derivatives with respect to ln w and to T (1/K)."""
+        share = self.film_share(values, inputs)
+        _, by_heat, _ = self._shape(values, inputs)
+        e, r = self._value(values, "e"), self._value(values, "r")
+        return share * (1.0 + self._exponent(values)), (share * e + (1.0 - share) * r) * by_heat
+
+    def film_share(self, values: FloatArray, inputs: Inputs) -> FloatArray:
+        """Return the share of the film in the torque."""
+        film, rest = self._logarithms(values, inputs)
+        return np.exp(film - np.logaddexp(film, rest))
+
+    def starts(self, inputs: Inputs, log_torque: FloatArray, weights: FloatArray) -> list[FloatArray]:
+        """Return where to search from: non-negative parts at fixed exponents, the likeliest first."""
+        z, root = inputs.log_speed, np.sqrt(weights)
+        s, q = np.zeros_like(z), []
+        if self.thermal and inputs.kelvin is not None:
+            q = self.thermal.start()[1:]
+            s = self.thermal.shape(inputs.kelvin, *q)[0]
+        plain = np.column_stack([np.ones_like(z), s, z])
+        one, *_ = np.linalg.lstsq(plain * root[:, None], log_torque * root, rcond=None)
+        ranked = []
+        for c in _EXPONENTS if self.exponent is None else (self.exponent,):
+            for steeper in _STEEPER if self.thermal else (1.0,):
+                e = steeper * float(one[1])
+                shapes = np.column_stack([np.exp(e * s + (1.0 + c) * z), np.ones_like(z)])
+                relative = shapes * (root / np.exp(log_torque))[:, None]
+                parts, missed = optimize.nnls(relative, root)
+                parts = np.maximum(parts, 1e-3 * float(np.max(parts)))
+                named = {"level": float(np.log(parts[0])), "e": e, "q": q[0] if q else 0.0, "c": c, "r": 0.0}
+                named["rest"] = float(np.log(parts[1] / parts[0]))
+                ranked.append((float(missed), np.array([named[name] for name in self.names])))
+        ranked.sort(key=lambda f: f[0])
+        return [values for _, values in ranked[:3]]
+
+    def _exponent(self, values: FloatArray) -> float:
+        return self._value(values, "c") if self.exponent is None else self.exponent
+
+    def _value(self, values: FloatArray, name: str) -> float:
+        return float(values[self.index(name)]) if name in self.names else 0.0
+
+    def _shape(self, values: FloatArray, inputs: Inputs) -> tuple[FloatArray, FloatArray, FloatArray]:
+        if self.thermal is None or inputs.kelvin is None:
+            nothing = np.zeros_like(inputs.log_speed)
+            return nothing, nothing, nothing
+        return self.thermal.shape(inputs.kelvin, self._value(values, "q"))
+
+    def _logarithms(self, values: FloatArray, inputs: Inputs) -> tuple[FloatArray, FloatArray]:
+        """Logarithms of the film and of the rest over F."""
+        s = self._shape(values, inputs)[0]
+        film = self._value(values, "e") * s + (1.0 + self._exponent(values)) * inputs.log_speed
+        rest = np.clip(self._value(values, "rest"), -_LOG_BOUND, _LOG_BOUND) + self._value(values, "r") * s
+        return film, np.asarray(rest + np.zeros_like(film))

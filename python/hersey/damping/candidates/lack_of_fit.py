@@ -1,0 +1,120 @@
+"""Whether a law holds at all: what its residuals still say of speed and temperature.
+
+Terms that the law has not are added to it in the logarithm, z^2 and z^3 in the speed, z s(T) for an exponent
+that varies with temperature and s(T)^2 for the law of temperature, each group tested by F against what is
+left when they are there. The errors are those of the fit, shared ones among them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import stats
+
+from hersey.arrays import FloatArray
+from hersey.damping.candidates.fitting import LawFit
+from hersey.damping.candidates.observations import Observations
+from hersey.damping.dwells import distinct_speeds
+
+#: Speeds and temperatures that a curvature needs.
+SPEEDS_OF_CURVATURE, TEMPERATURES_OF_CURVATURE = 4, 3
+#: p-value below which a law does not hold.
+DOES_NOT_HOLD = 0.01
+
+
+@dataclass(frozen=True)
+class LackOfFit:
+    """p-values of a law that holds, None where too few speeds or temperatures can say.
+
+    ``local_exponents`` are those of damping at the slow and the fast end, with the added terms.
+    """
+
+    curvature: float | None
+    exponent_with_temperature: float | None
+    temperature: float | None
+    local_exponents: tuple[float, float]
+
+    @property
+    def in_speed(self) -> bool:
+        """Whether the law of speed fails."""
+        return any(
+            p is not None and p < DOES_NOT_HOLD for p in (self.curvature, self.exponent_with_temperature)
+        )
+
+    @property
+    def in_temperature(self) -> bool:
+        """Whether the law of temperature fails."""
+        return self.temperature is not None and self.temperature < DOES_NOT_HOLD
+
+    @property
+    def holds(self) -> bool:
+        """Whether the law holds as far as these data tell."""
+        return not (self.in_speed or self.in_temperature)
+
+    def misses(self) -> list[str]:
+        """Return what the law misses, in words."""
+        slow, fast = self.local_exponents
+        out = []
+        if self.curvature is not None and self.curvature < DOES_NOT_HOLD:
+            out.append(
+                f"the local exponent of damping drifts from {slow:.2f} at the slow end to {fast:.2f} at the "
+                f"fast one (p = {self.curvature:.1g})"
+            )
+        if self.exponent_with_temperature is not None and self.exponent_with_temperature < DOES_NOT_HOLD:
+            out.append(
+                f"the exponent of speed varies with temperature (p = {self.exponent_with_temperature:.1g})"
+            )
+        if self.in_temperature:
+            out.append(f"the law of temperature misses a bend (p = {self.temperature:.1g})")
+        return out
+
+    @property
+    def drift(self) -> float:
+        """By how much the local exponent rises from the slow end to the fast one."""
+        return self.local_exponents[1] - self.local_exponents[0]
+
+
+def lack_of_fit(fit: LawFit, data: Observations) -> LackOfFit:
+    """Return whether the residuals of a fit still depend on speed or temperature."""
+    z = data.inputs.log_speed - float(np.mean(data.inputs.log_speed))
+    speeds = distinct_speeds(data.speed)
+    bent = [z**2, z**3] if speeds > SPEEDS_OF_CURVATURE else [z**2]
+    curvature, added = _tested(fit, data, bent) if speeds >= SPEEDS_OF_CURVATURE else (None, np.zeros(1))
+    by_speed = fit.law.slopes(fit.values, data.inputs)[0]
+    local = by_speed - 1.0 + sum((k + 2) * b * z ** (k + 1) for k, b in enumerate(added))
+    slow, fast = int(np.argmin(z)), int(np.argmax(z))
+    ends = float(local[slow]), float(local[fast])
+    kelvin = data.inputs.kelvin
+    if fit.law.thermal is None or kelvin is None:
+        return LackOfFit(curvature, None, None, ends)
+    warm = kelvin / float(np.mean(kelvin)) - 1.0
+    varying = _tested(fit, data, [z * warm])[0] if speeds >= 3 else None
+    hot = None
+    if data.temperatures.size >= TEMPERATURES_OF_CURVATURE:
+        hot = _tested(fit, data, [warm**2])[0]
+    return LackOfFit(curvature, varying, hot, ends)
+
+
+def _tested(fit: LawFit, data: Observations, terms: list[FloatArray]) -> tuple[float | None, FloatArray]:
+    """p-value of no such terms, and their coefficients.
+
+    There is no p-value if the law has such terms already, or no freedom is left.
+    """
+    modes = fit.effects.size
+    weigh = (1.0 / fit.sigma)[:, None]
+    known = np.column_stack([fit.law.jacobian(fit.values, data.inputs), fit.disturbances])
+    rows = np.vstack([known * weigh, np.eye(modes, known.shape[1], known.shape[1] - modes)])
+    added = np.vstack([np.column_stack(terms) * weigh, np.zeros((modes, len(terms)))])
+    rest = np.append((fit.residuals + fit.disturbances @ fit.effects) * weigh[:, 0], np.zeros(modes))
+    left = added - rows @ np.linalg.lstsq(rows, added, rcond=None)[0]
+    rest = rest - rows @ np.linalg.lstsq(rows, rest, rcond=None)[0]
+    gone = np.linalg.norm(left, axis=0) < 1e-6 * np.linalg.norm(added, axis=0)
+    freedom = fit.freedom - len(terms)
+    if np.any(gone) or freedom < 1:
+        return None, np.zeros(len(terms))
+    coefficients, *_ = np.linalg.lstsq(left, rest, rcond=None)
+    after = float(np.sum((rest - left @ coefficients) ** 2))
+    gain = float(rest @ rest) - after
+    ratio = gain / len(terms) / max(after / freedom, 1e-300)
+    return float(stats.f.sf(ratio, len(terms), freedom)), coefficients

@@ -1,0 +1,229 @@
+"""Errors that dwells share: of the zero of torque, and the scatter of whole visits and runs.
+
+What moves all dwells of one stay at a temperature together (the temperature itself read a little off, the
+lubricant spread anew) tilts the law of temperature, and no number of dwells in that stay averages it away.
+Each such error is a disturbance: a column by which it moves every ln torque, times an effect whose prior is
+the standard normal distribution. The standard deviations that scale these columns are estimated by
+restricted maximum likelihood (Patterson and Thompson, Biometrika 58 (1971) 545), and the degrees of freedom
+of what is fitted know how few visits there are (Satterthwaite, Biometrics Bull. 2 (1946) 110; for linear
+mixed models Giesbrecht and Burns, Biometrics 41 (1985) 477).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy import optimize, stats
+
+from hersey.arrays import FloatArray, IntArray
+from hersey.damping.candidates.observations import Observations
+
+#: Eigenvalues below this share of the largest carry no information.
+_NO_INFORMATION = 1e-9
+#: Variances searched, over that of an average group of dwells, and how many are tried first.
+_SEARCHED, _TRIED = (1e-3, 1e6), 46
+
+
+@dataclass(frozen=True)
+class Grouping:
+    """Which dwells share an error: ``member`` is 1 where a dwell (row) belongs to a group (column)."""
+
+    name: str  #: ``visit`` or ``run``
+    member: FloatArray
+
+
+def groupings(data: Observations) -> tuple[Grouping, ...]:
+    """Return the groups of dwells that may share an error: visits, and runs of several visits."""
+    visits = _indicator(data.visit)
+    if np.count_nonzero(visits.sum(axis=0) > 1) < 2:
+        return ()
+    out = [Grouping("visit", visits)]
+    runs = _indicator(data.run)
+    per_run = np.unique(np.column_stack([data.run, data.visit]), axis=0).shape[0] / runs.shape[1]
+    if runs.shape[1] > 2 and per_run >= 2:
+        out.append(Grouping("run", runs))
+    return tuple(out)
+
+
+def _indicator(label: IntArray) -> FloatArray:
+    return np.asarray(label[:, None] == np.unique(label)[None, :], dtype=np.float64)
+
+
+@dataclass(frozen=True)
+class SharedScatter:
+    """Relative standard deviation of an error that the dwells of a group share.
+
+    ``p_value`` is that of none at all, by an F test of the groups' residuals. ``told`` is False where the law
+    takes up every difference between the groups, so that the dwells say nothing of their scatter.
+    """
+
+    name: str
+    deviation: float
+    p_value: float
+    told: bool
+
+
+def disturbances(
+    data: Observations, grouped: tuple[Grouping, ...], scatter: tuple[SharedScatter, ...]
+) -> FloatArray:
+    """Return by how much one standard error of each shared error moves ln torque, shape (points, errors).
+
+    They are those of the zero, then of every group whose scatter is not nil.
+    """
+    columns = [data.tare]
+    for grouping, shared in zip(grouped, scatter, strict=True):
+        if shared.deviation > 0:
+            columns.append(shared.deviation * grouping.member)
+    return np.column_stack(columns)
+
+
+def shared_scatter(
+    grouped: tuple[Grouping, ...],
+    before: tuple[SharedScatter, ...],
+    data: Observations,
+    slopes: FloatArray,
+    residuals: FloatArray,
+    sigma: FloatArray,
+) -> tuple[SharedScatter, ...]:
+    """Return the scatter of each grouping, the others as they were.
+
+    Parameters
+    ----------
+    slopes
+        Derivatives of ln torque by the parameters of the law, shape (points, parameters).
+    residuals
+        ln(measured/fitted), no disturbance taken off, shape (points,).
+    sigma
+        Standard error of each dwell on its own, those of outlying dwells widened, shape (points,).
+    """
+    out = list(before)
+    for number, grouping in enumerate(grouped):
+        others = tuple(g for i, g in enumerate(grouped) if i != number)
+        rest = tuple(s for i, s in enumerate(out) if i != number)
+        held = disturbances(data, others, rest)
+        out[number] = _restricted(grouping, slopes, held, residuals, sigma)
+    return tuple(out)
+
+
+def _restricted(
+    grouping: Grouping, slopes: FloatArray, held: FloatArray, residuals: FloatArray, sigma: FloatArray
+) -> SharedScatter:
+    """Restricted likelihood of one variance, all that the law and the other errors explain projected out."""
+    modes = held.shape[1]
+    weigh = 1.0 / sigma
+    known = np.vstack(
+        [
+            np.column_stack([slopes, held]) * weigh[:, None],
+            np.eye(modes, slopes.shape[1] + modes, slopes.shape[1]),
+        ]
+    )
+    padded = np.vstack([grouping.member * weigh[:, None], np.zeros((modes, grouping.member.shape[1]))])
+    basis = _column_space(known)
+    groups = padded - basis @ (basis.T @ padded)
+    rest = np.append(residuals * weigh, np.zeros(modes))
+    rest = rest - basis @ (basis.T @ rest)
+    spread, axes = np.linalg.eigh(groups.T @ groups)
+    seen = spread > _NO_INFORMATION * float(np.max(np.sum(padded**2, axis=0)))
+    spread, along = spread[seen], (axes.T @ (groups.T @ rest))[seen]
+    if not spread.size:
+        return SharedScatter(grouping.name, 0.0, 1.0, told=False)
+    between = float(np.sum(along**2 / spread))
+    freedom = residuals.size - basis.shape[1] + modes - spread.size
+    within = max(float(rest @ rest) - between, 1e-300)
+    p_value = stats.f.sf(between / spread.size / (within / max(freedom, 1)), spread.size, max(freedom, 1))
+    variance = _likeliest(spread, along)
+    return SharedScatter(grouping.name, variance**0.5, float(p_value), told=True)
+
+
+def _column_space(matrix: FloatArray) -> FloatArray:
+    left, singular, _ = np.linalg.svd(
+        matrix / np.maximum(np.linalg.norm(matrix, axis=0), 1e-300), full_matrices=False
+    )
+    return np.asarray(left[:, singular > 1e-10 * singular[0]])
+
+
+def _likeliest(spread: FloatArray, along: FloatArray) -> float:
+    """Variance at which the restricted deviance of independent normal coordinates is least; 0 if nowhere."""
+
+    def deviance(variance: float) -> float:
+        inflated = 1.0 + variance * spread
+        return float(np.sum(np.log(inflated) - variance * along**2 / inflated))
+
+    grid = np.geomspace(*_SEARCHED, _TRIED) / float(np.mean(spread))
+    values = [deviance(v) for v in grid]
+    best = int(np.argmin(values))
+    low, high = grid[max(best - 1, 0)], grid[min(best + 1, grid.size - 1)]
+    refined = optimize.minimize_scalar(
+        lambda log: deviance(float(np.exp(log))), bounds=(np.log(low), np.log(high)), method="bounded"
+    )
+    return float(np.exp(refined.x)) if refined.fun < min(deviance(0.0), 0.0) else 0.0
+
+
+@dataclass(frozen=True)
+class Freedom:
+    """Degrees of freedom of what is fitted: those of the residuals where no error is shared.
+
+    ``parts`` holds how the covariance of the values rises with each variance that was estimated (that of the
+    dwells on their own, of visits, of runs), shape (parameters, parameters) each; ``uncertainty`` is the
+    covariance of these variances.
+    """
+
+    residual: int
+    covariance: FloatArray
+    parts: tuple[FloatArray, ...] = ()
+    uncertainty: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
+
+    def of(self, weights: FloatArray) -> float:
+        """Return those of a linear combination of the values, weights of shape (parameters,)."""
+        variance = float(weights @ self.covariance @ weights)
+        if not self.parts or variance <= 0:
+            return float(max(self.residual, 1))
+        by = np.array([float(weights @ part @ weights) for part in self.parts])
+        uncertain = float(by @ self.uncertainty @ by)
+        freedom = 2.0 * variance**2 / uncertain if uncertain > 0 else np.inf
+        return float(np.clip(freedom, 1.0, max(self.residual, 1)))
+
+
+def freedom_of(
+    grouped: tuple[Grouping, ...],
+    scatter: tuple[SharedScatter, ...],
+    columns: FloatArray,
+    sigma: FloatArray,
+    bread: FloatArray,
+    parameters: int,
+) -> Freedom:
+    """Return the degrees of freedom that the expected restricted information of the variances gives.
+
+    Parameters
+    ----------
+    columns
+        Derivatives of ln torque by the parameters and the effects, shape (points, parameters + effects).
+    sigma
+        Standard error of each dwell on its own, those of outlying dwells widened, shape (points,).
+    bread
+        Covariance of parameters and effects, shape (parameters + effects, parameters + effects).
+    parameters
+        How many of them are parameters.
+    """
+    residual, covariance = int(sigma.size - parameters), np.asarray(bread[:parameters, :parameters])
+    members = [g.member for g, s in zip(grouped, scatter, strict=True) if s.deviation > 0]
+    if not members:
+        return Freedom(residual, covariance)
+    weight = 1.0 / sigma**2
+    left, singular, _ = np.linalg.svd(bread)
+    root = (weight[:, None] * columns) @ (left * np.sqrt(singular))  # P = diag(weight) - root root^T
+    overlap = root.T @ root
+    squares = float(np.sum(weight**2) - 2.0 * np.sum(weight * np.sum(root**2, axis=1)) + np.sum(overlap**2))
+    projected = [weight[:, None] * m - root @ (root.T @ m) for m in members]
+    size = len(members) + 1
+    information = np.empty((size, size))
+    information[0, 0] = squares
+    for i, (m, p) in enumerate(zip(members, projected, strict=True), start=1):
+        information[0, i] = information[i, 0] = float(np.sum(p**2))
+        for j, q in enumerate(projected, start=1):
+            information[i, j] = float(np.sum((m.T @ q) ** 2))
+    gain = (bread @ columns.T * weight)[:parameters]
+    uncertainty = np.asarray(np.linalg.pinv(0.5 * information), dtype=np.float64)
+    parts = [gain @ gain.T, *((gain @ m) @ (gain @ m).T for m in members)]
+    return Freedom(residual, covariance, tuple(parts), uncertainty)

@@ -1,0 +1,40 @@
+"""What errors of the sensors do to a fit: by how much each value moves if a sensor errs by its limit."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from hersey.arrays import FloatArray
+from hersey.damping.candidates.fitting import LawFit, search
+from hersey.damping.candidates.observations import Inputs, Observations
+from hersey.log.sensors import SHARE_OF_LARGEST, Sensors
+
+
+def sensor_shifts(fit: LawFit, data: Observations, sensors: Sensors) -> FloatArray:
+    """Return the changes of the values of a fit, shape (errors, parameters).
+
+    One row for each error at its limit: gain and zero of torque, gain of speed, and the temperature of the
+    film off its reading, everywhere alike, and the more the faster the drive runs.
+    """
+    torque = np.exp(data.log_torque)
+    zero = sensors.torque_zero
+    if zero is None:
+        zero = SHARE_OF_LARGEST * float(torque.max())
+    z, kelvin = data.inputs.log_speed, data.inputs.kelvin
+    erring = [
+        replace(data, log_torque=data.log_torque + sensors.torque_gain),
+        replace(data, log_torque=data.log_torque + zero / torque),
+        _with_inputs(data, z + sensors.speed_gain, kelvin),
+    ]
+    if kelvin is not None and fit.law.thermal is not None and sensors.temperature_zero:
+        faster = (z - z.min()) / max(float(np.ptp(z)), 1e-12)
+        erring += [_with_inputs(data, z, kelvin + sensors.temperature_zero * by) for by in (1.0, faster)]
+    start = np.append(fit.values, fit.effects)
+    moved = [search(fit.law, each, fit.disturbances, fit.sigma, start) for each in erring]
+    return np.array([minimum.values[: fit.values.size] - fit.values for minimum in moved])
+
+
+def _with_inputs(data: Observations, log_speed: FloatArray, kelvin: FloatArray | None) -> Observations:
+    return replace(data, inputs=Inputs(log_speed, kelvin, data.inputs.group))

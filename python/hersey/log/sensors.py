@@ -1,0 +1,41 @@
+"""What the sensors do not know: errors that no repetition averages away, at 95 %."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from hersey.units import convert
+
+
+@dataclass(frozen=True)
+class Sensors:
+    """Errors of the sensors, half widths at 95 %.
+
+    ``temperature_zero`` also bounds by how much the film is warmer or colder than the reading, whether at all
+    speeds or more the faster it shears. ``torque_zero`` None stands for `SHARE_OF_LARGEST` of the largest
+    torque measured. What is not in ``stated`` is a default.
+    """
+
+    temperature_zero: float = 2.0  #: K
+    torque_gain: float = 0.01
+    torque_zero: float | None = None  #: N m
+    speed_gain: float = 0.001
+    stated: tuple[str, ...] = ()
+
+    def __str__(self) -> str:
+        """Return the errors in words, the defaults named as such."""
+        zero = "0.1 % of the largest torque" if self.torque_zero is None else _newton_metre(self.torque_zero)
+        said = {
+            "temperature": f"temperature {self.temperature_zero:g} K",
+            "torque": f"torque {100 * self.torque_gain:.3g} % and {zero}",
+            "speed": f"speed {100 * self.speed_gain:.3g} %",
+        }
+        return ", ".join(text if role in self.stated else f"{text} (default)" for role, text in said.items())
+
+
+#: Zero error of torque as a share of the largest torque measured, where none is stated.
+SHARE_OF_LARGEST = 0.001
+
+
+def _newton_metre(torque: float) -> str:
+    return f"{torque:.3g} N m" if torque >= 0.1 else f"{convert(torque, 'N*m', 'mN*m'):.3g} mN m"

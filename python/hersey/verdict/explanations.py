@@ -1,0 +1,177 @@
+"""Everything that explains how torque varies with speed, and the one regime that may be named.
+
+A film of one regime, alone or beside a constant torque (the rest of the drive, or Coulomb friction), a
+Stribeck curve, and what bends a film's exponent. An explanation is listed if the data do not exclude it: its
+law holds (`lack_of_fit`) and no other is likelier by `EVIDENCE` AICc. A regime is named only if it is the
+sole film listed and one exponent holds over all the speeds.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hersey.arrays import FloatArray
+from hersey.damping.candidates.branched import ONE, Law
+from hersey.damping.candidates.constant_plus import ConstantPlusLaw
+from hersey.damping.candidates.fitting import LawFit, fit_law
+from hersey.damping.candidates.lack_of_fit import SPEEDS_OF_CURVATURE, LackOfFit, lack_of_fit
+from hersey.damping.candidates.likelihood import EVIDENCE
+from hersey.damping.candidates.observations import Observations
+from hersey.damping.candidates.stribeck import StribeckLaw
+from hersey.damping.candidates.thermal import ARRHENIUS, Thermal
+from hersey.damping.dwells import SteadyPoints, distinct_speeds
+from hersey.damping.surface import SCALES, DampingSurface
+from hersey.verdict.regimes import COULOMB, FALLING, REGIMES, Hypothesis
+
+#: Share of the torque from which a constant part counts.
+LEAST_SHARE = 0.02
+#: Half width of the interval of c within which level torque is told from falling torque.
+LEVEL = 0.05
+#: Dwells that a law of one branch must leave for its errors.
+_FREEDOM = 3
+CONSTANT = " + constant torque"
+COULOMB_VISCOUS, STRIBECK = "Coulomb + viscous", "Stribeck curve"
+THINNING, HEATING, OTHER = "shear thinning", "shear heating", "other curvature"
+_WORDS = {
+    STRIBECK: "a Stribeck curve near its least torque",
+    THINNING: "a lubricant that thins with shear",
+    HEATING: "a film warmed by its own shear",
+    OTHER: "a bend that none of the laws tried describes",
+}
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """What the data do not exclude.
+
+    ``constant_share`` is that of a constant torque at the middle speed, None where there is none;
+    ``p_value`` that of a law that holds, or of the exponent, None where no law was fitted.
+    """
+
+    key: str
+    name: str
+    constant_share: float | None = None
+    p_value: float | None = None
+
+
+@dataclass(frozen=True)
+class Explained:
+    """Explanations, the regime named (None if none may be), and whether one exponent holds."""
+
+    named: str | None
+    explanations: tuple[Explanation, ...]
+    lack_of_fit: LackOfFit | None  #: None where too few dwells can say
+    why_unnamed: str
+
+
+def explained(points: SteadyPoints, surface: DampingSurface, hypotheses: tuple[Hypothesis, ...]) -> Explained:
+    """Return what explains the dwells above the transition, or all where there is none.
+
+    Parameters
+    ----------
+    points, surface
+        Of a log, and the surface fitted to it.
+    hypotheses
+        From `regimes.judged`, for the surface's exponent.
+    """
+    data = _rising(Observations.of(points), surface)
+    thermal = None
+    if surface.b is not None and data.reference_kelvin is not None:
+        thermal = Thermal(SCALES[surface.temperature_scale], data.reference_kelvin)
+    law = Law(thermal, ONE)
+    films = [h for h in hypotheses if h.consistent]
+    if len(data) < len(law.names) + _FREEDOM or distinct_speeds(data.speed) < SPEEDS_OF_CURVATURE:
+        few = f"{SPEEDS_OF_CURVATURE} speeds and {len(law.names) + _FREEDOM} dwells are needed to see"
+        return Explained(None, _alone(films), None, f"{few} whether one exponent holds")
+    one = fit_law(law, data)
+    lack = lack_of_fit(one, data)
+    bent = lack.in_speed and abs(lack.drift) > 2.0 * surface.c.systematic
+    single = () if bent else _alone(films)
+    beside = _beside_constant(data, thermal, one, bent, {h.name for h in films})
+    listed = [*single, *beside]
+    if (bent and lack.drift <= 0) or not listed:
+        listed += _bending(lack, bent, surface)
+    named = None if bent else _sole(films, surface)
+    why = "; ".join(lack.misses()) if bent else ""
+    if named and beside:
+        named, why = None, f"{beside[0].name} explains the dwells as well"
+    return Explained(named, tuple(listed), lack, why)
+
+
+def _rising(data: Observations, surface: DampingSurface) -> Observations:
+    """The dwells above the transition."""
+    if surface.transition is None:
+        return data
+    kelvin = data.inputs.kelvin if surface.b is not None else None
+    temperatures = [None] * len(data) if kelvin is None else kelvin.tolist()
+    at = np.array([surface.transition_speed(t) for t in temperatures])
+    return data.take(np.flatnonzero(data.speed >= at))
+
+
+def _alone(films: list[Hypothesis]) -> tuple[Explanation, ...]:
+    return tuple(Explanation(h.name, h.name, None, h.p_value) for h in films)
+
+
+def _sole(films: list[Hypothesis], surface: DampingSurface) -> str | None:
+    """The one regime that the exponent leaves; level torque outranks the falling branch that begins there."""
+    names = [h.name for h in films]
+    if names == [COULOMB, FALLING]:
+        narrow = surface.c.high - surface.c.low < 2 * LEVEL
+        return COULOMB if narrow else None
+    return names[0] if len(names) == 1 else None
+
+
+def _beside_constant(
+    data: Observations, thermal: Thermal | None, one: LawFit, bent: bool, alone: set[str]
+) -> list[Explanation]:
+    """Films beside a constant torque, and a Stribeck curve, that no other law excludes."""
+    tried: list[tuple[Explanation, LawFit, LackOfFit]] = []
+    for row in REGIMES:
+        if row.name in (COULOMB, FALLING) or (row.name in alone and not bent):
+            continue
+        found = [
+            fit
+            for exponent in sorted({row.low, row.high})
+            for varying in ((False, True) if thermal else (False,))
+            if (fit := _fitted(ConstantPlusLaw(thermal, exponent, varying), data)) is not None
+        ]
+        judged = [(fit, lack_of_fit(fit, data)) for fit in found]
+        held = [(fit, lack) for fit, lack in judged if not lack.in_speed]
+        if held:
+            fit, lack = min(held, key=lambda f: f[0].aicc)
+            tried.append((_with_constant(row.name, fit, lack, data), fit, lack))
+    curve = _fitted(StribeckLaw(None if thermal is None else Thermal(ARRHENIUS, thermal.reference)), data)
+    if curve is not None and (bent or curve.aicc < one.aicc):
+        lack = lack_of_fit(curve, data)
+        if not lack.in_speed:
+            tried.append((Explanation(STRIBECK, _WORDS[STRIBECK], None, lack.curvature), curve, lack))
+    least = min([fit.aicc for _, fit, _ in tried] + ([] if bent else [one.aicc]), default=0.0)
+    near = [(e, fit) for e, fit, _ in tried if fit.aicc <= least + EVIDENCE]
+    near.sort(key=lambda e: e[1].aicc)
+    return [e for e, _ in near if e.constant_share is None or e.constant_share >= LEAST_SHARE]
+
+
+def _fitted(law: ConstantPlusLaw | StribeckLaw, data: Observations) -> LawFit | None:
+    if len(data) < len(law.names) + _FREEDOM:
+        return None
+    return fit_law(law, data)
+
+
+def _with_constant(regime: str, fit: LawFit, lack: LackOfFit, data: Observations) -> Explanation:
+    assert isinstance(fit.law, ConstantPlusLaw)
+    film: FloatArray = fit.law.film_share(fit.values, data.inputs)
+    share = float(1.0 - np.median(film))
+    if regime == "constant film":
+        words = f"Coulomb friction or another constant torque, {share:.0%} of the whole, and a viscous part"
+        return Explanation(COULOMB_VISCOUS, words, share, lack.curvature)
+    words = f"{regime} beside a constant torque (rest of the drive, Coulomb) of {share:.0%} of the whole"
+    return Explanation(regime + CONSTANT, words, share, lack.curvature)
+
+
+def _bending(lack: LackOfFit, bent: bool, surface: DampingSurface) -> list[Explanation]:
+    """What bends an exponent so: down with speed by thinning or heat, as nothing tried the other way."""
+    falls = lack.drift <= 0 if bent else surface.c.value > -1.0
+    keys = (THINNING, HEATING, OTHER) if falls else (OTHER,)
+    return [Explanation(key, _WORDS[key]) for key in keys]
