@@ -2,9 +2,9 @@
 
 Of the candidates within `EVIDENCE` AICc of the likeliest the simplest is chosen, as for a second branch of
 the surface: a larger law must be beyond doubt. With some thirty laws in competition, the best of those that
-are too large beats the right one by 2 AICc in one log of ten. Among those so near, one whose parameters the data
-all determine goes before one with a parameter that they do not; where none is near, the law stays, and says
-which parameter is open.
+are too large beats the right one by 2 AICc in one log of ten. Among those so near, one whose parameters the
+data all determine goes before one with a parameter that they do not; where none is near, the law stays, and
+says which parameter is open.
 """
 
 from __future__ import annotations

@@ -207,7 +207,7 @@ def _deviance(
     members = [s.deviation * g.member for g, s in zip(grouped, shared, strict=True) if s.deviation > 0]
     if not members:
         return deviance(residuals, errors)[0]
-    return deviance(residuals + common, errors, np.column_stack(members))[0]
+    return deviance(residuals + common, errors, shared=np.column_stack(members))[0]
 
 
 def _taken_up(minimum: Minimum, size: int) -> float:

@@ -161,7 +161,7 @@ def scatter_beyond(residuals: FloatArray, errors: FloatArray, freedom: float, li
 
 
 def deviance(
-    residuals: FloatArray, errors: FloatArray, shared: FloatArray | None = None, limit: float = HUBER
+    residuals: FloatArray, errors: FloatArray, limit: float = HUBER, *, shared: FloatArray | None = None
 ) -> tuple[float, float]:
     """Return twice the negative log-likelihood at the scatter that makes it least, and that scatter.
 

@@ -70,7 +70,7 @@ class Observations:
             speed_error=points.column("speed_error") / speed,
             temperature_error=zero if kelvin is None else points.column("temperature_error"),
             tare=points.tare_errors / torque[:, None],
-            visit=_visits(run, points.column("start"), group),
+            visit=_visits(run, group),
             run=run,
             cluster=run if by_run else _levels(run, group, speed),
             clustered_by="run" if by_run else "level",
@@ -125,18 +125,15 @@ def _groups(kelvin: FloatArray | None, count: int) -> tuple[IntArray, FloatArray
     return group, np.array(means)
 
 
-def _visits(run: IntArray, start: FloatArray, group: IntArray) -> IntArray:
-    """Stays at a temperature: a new one begins where the temperature changes, or the run.
+def _visits(run: IntArray, group: IntArray) -> IntArray:
+    """Stays at a temperature, of dwells in their order: one ends where the temperature changes, or the run.
 
     Where every run is one dwell, as with a file for each, runs do not end a stay.
     """
-    order = np.lexsort((np.nan_to_num(start), run))
-    changes = np.diff(group[order]) != 0
+    changes = np.diff(group) != 0
     if np.unique(run).size <= run.size // 2:
-        changes |= np.diff(run[order]) != 0
-    visit = np.empty(run.size, dtype=np.intp)
-    visit[order] = np.cumsum(np.append(0, changes))
-    return visit
+        changes |= np.diff(run) != 0
+    return np.cumsum(np.append(0, changes))
 
 
 def _levels(run: IntArray, group: IntArray, speed: FloatArray) -> IntArray:
