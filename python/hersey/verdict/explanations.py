@@ -20,12 +20,12 @@ from hersey.damping.candidates.lack_of_fit import SPEEDS_OF_CURVATURE, LackOfFit
 from hersey.damping.candidates.likelihood import EVIDENCE
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.candidates.stribeck import StribeckLaw
-from hersey.damping.candidates.thermal import ARRHENIUS, Thermal
+from hersey.damping.candidates.thermal import ARRHENIUS, VFT, Thermal
 from hersey.damping.dwells import SteadyPoints, distinct_speeds
 from hersey.damping.surface import SCALES, DampingSurface
 from hersey.verdict.regimes import COULOMB, FALLING, REGIMES, Hypothesis
 
-#: Share of the torque from which a constant part counts.
+#: Share of the torque from which a constant part, or the film beside it, counts.
 LEAST_SHARE = 0.02
 #: Half width of the interval of c within which level torque is told from falling torque.
 LEVEL = 0.05
@@ -87,7 +87,7 @@ def explained(points: SteadyPoints, surface: DampingSurface, hypotheses: tuple[H
         return Explained(None, _alone(films), None, f"{few} whether one exponent holds")
     one = fit_law(law, data)
     lack = lack_of_fit(one, data)
-    bent = lack.in_speed and abs(lack.drift) > 2.0 * surface.c.systematic
+    bent = lack.bent_by(2.0 * surface.c.systematic)
     single = () if bent else _alone(films)
     beside = _beside_constant(data, thermal, one, bent, {h.name for h in films})
     listed = [*single, *beside]
@@ -128,6 +128,7 @@ def _beside_constant(
 ) -> list[Explanation]:
     """Films beside a constant torque, and a Stribeck curve, that no other law excludes."""
     tried: list[tuple[Explanation, LawFit, LackOfFit]] = []
+    thermal = _thermal_of_film(data, thermal)
     for row in REGIMES:
         if row.name in (COULOMB, FALLING) or (row.name in alone and not bent):
             continue
@@ -142,7 +143,7 @@ def _beside_constant(
         if held:
             fit, lack = min(held, key=lambda f: f[0].aicc)
             tried.append((_with_constant(row.name, fit, lack, data), fit, lack))
-    curve = _fitted(StribeckLaw(None if thermal is None else Thermal(ARRHENIUS, thermal.reference)), data)
+    curve = _stribeck(data, thermal)
     if curve is not None and (bent or curve.aicc < one.aicc):
         lack = lack_of_fit(curve, data)
         if not lack.in_speed:
@@ -150,7 +151,29 @@ def _beside_constant(
     least = min([fit.aicc for _, fit, _ in tried] + ([] if bent else [one.aicc]), default=0.0)
     near = [(e, fit) for e, fit, _ in tried if fit.aicc <= least + EVIDENCE]
     near.sort(key=lambda e: e[1].aicc)
-    return [e for e, _ in near if e.constant_share is None or e.constant_share >= LEAST_SHARE]
+    return [
+        e for e, _ in near if e.constant_share is None or LEAST_SHARE <= e.constant_share <= 1.0 - LEAST_SHARE
+    ]
+
+
+def _stribeck(data: Observations, thermal: Thermal | None) -> LawFit | None:
+    """The likeliest Stribeck curve, its viscosity by any law of temperature of one parameter."""
+    laws = [StribeckLaw(None)]
+    if thermal is not None:
+        kinds = sorted({thermal.kind, ARRHENIUS} - {VFT})
+        laws = [StribeckLaw(Thermal(kind, thermal.reference)) for kind in kinds]
+    fits = [fit for law in laws if (fit := _fitted(law, data)) is not None]
+    return min(fits, key=lambda fit: fit.aicc, default=None)
+
+
+def _thermal_of_film(data: Observations, thermal: Thermal | None) -> Thermal | None:
+    """The likeliest law of temperature of a film beside a constant torque, which has none."""
+    if thermal is None:
+        return None
+    kinds = (thermal.kind, ARRHENIUS, *((VFT,) if data.temperatures.size > 2 else ()))
+    tried = [(kind, _fitted(ConstantPlusLaw(Thermal(kind, thermal.reference)), data)) for kind in kinds]
+    fitted = [(fit.aicc, kind) for kind, fit in tried if fit is not None]
+    return Thermal(min(fitted)[1], thermal.reference) if fitted else thermal
 
 
 def _fitted(law: ConstantPlusLaw | StribeckLaw, data: Observations) -> LawFit | None:

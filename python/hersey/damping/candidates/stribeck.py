@@ -60,7 +60,7 @@ class StribeckLaw:
     def starts(self, inputs: Inputs, log_torque: FloatArray, weights: FloatArray) -> list[FloatArray]:
         """Return where to search from: Stribeck speeds across those measured, linear fits of the parts."""
         ranked = []
-        for e in (0.0, 5.0, 15.0) if self.thermal else (0.0,):
+        for e in self._first_slopes():
             z = inputs.log_speed + e * self._shape(inputs)[0]
             for at in np.linspace(z.min(), z.max(), 7):
                 h = np.exp(z - at)
@@ -76,6 +76,14 @@ class StribeckLaw:
                 )
         ranked.sort(key=lambda f: f[0])
         return [values for _, values in ranked[:3]]
+
+    def _first_slopes(self) -> tuple[float, ...]:
+        """Slopes of viscosity in temperature that a search begins with: Arrhenius laws with e up to 15."""
+        if self.thermal is None:
+            return (0.0,)
+        at = self.thermal.reference
+        _, slope, _ = self.thermal.shape(np.array([at]))
+        return tuple(-e / at / float(slope[0]) for e in (0.0, 5.0, 15.0))
 
     def _shape(self, inputs: Inputs) -> tuple[FloatArray, FloatArray]:
         if self.thermal is None or inputs.kelvin is None:

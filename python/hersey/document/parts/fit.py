@@ -134,6 +134,7 @@ class LackOfFitPart(Part):
     exponent_with_temperature: float | None
     temperature: float | None
     local_exponents: tuple[float, float] = Field(description="of damping, at the slow and the fast end")
+    by_temperature: tuple[float, float] = Field(description="at the coldest and the hottest temperature")
 
 
 class RegimePart(Part):
