@@ -7,6 +7,7 @@ branches    two branches of the law: whether, and where they meet
 surface     the damping surface, and what can be asked of it
 fit         fitting it: the paper's candidate among all
 candidates  every law fitted to the same dwells, one chosen
+rising      the rising branch by itself: whether one exponent holds
 systematic  what errors of the sensors do to a fit
 compare     two logs against each other
 design      which dwells to record next

@@ -13,24 +13,22 @@ from dataclasses import dataclass
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.damping.candidates.branched import ONE, Law
 from hersey.damping.candidates.constant_plus import ConstantPlusLaw
 from hersey.damping.candidates.fitting import LawFit, fit_law
-from hersey.damping.candidates.lack_of_fit import SPEEDS_OF_CURVATURE, LackOfFit, lack_of_fit
+from hersey.damping.candidates.lack_of_fit import LackOfFit, lack_of_fit
 from hersey.damping.candidates.likelihood import EVIDENCE
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.candidates.stribeck import StribeckLaw
 from hersey.damping.candidates.thermal import ARRHENIUS, VFT, Thermal
-from hersey.damping.dwells import SteadyPoints, distinct_speeds
-from hersey.damping.surface import SCALES, DampingSurface
+from hersey.damping.dwells import SteadyPoints
+from hersey.damping.rising import LEAST_FREEDOM, Rising, rising
+from hersey.damping.surface import DampingSurface
 from hersey.verdict.regimes import COULOMB, FALLING, REGIMES, Hypothesis
 
 #: Share of the torque from which a constant part, or the film beside it, counts.
 LEAST_SHARE = 0.02
 #: Half width of the interval of c within which level torque is told from falling torque.
 LEVEL = 0.05
-#: Dwells that a law of one branch must leave for its errors.
-_FREEDOM = 3
 CONSTANT = " + constant torque"
 COULOMB_VISCOUS, STRIBECK = "Coulomb + viscous", "Stribeck curve"
 THINNING, HEATING, OTHER = "shear thinning", "shear heating", "other curvature"
@@ -76,20 +74,13 @@ def explained(points: SteadyPoints, surface: DampingSurface, hypotheses: tuple[H
     hypotheses
         From `regimes.judged`, for the surface's exponent.
     """
-    data = _rising(Observations.of(points), surface)
-    thermal = None
-    if surface.b is not None and data.reference_kelvin is not None:
-        thermal = Thermal(SCALES[surface.temperature_scale], data.reference_kelvin)
-    law = Law(thermal, ONE)
+    branch = rising(points, surface)
     films = [h for h in hypotheses if h.consistent]
-    if len(data) < len(law.names) + _FREEDOM or distinct_speeds(data.speed) < SPEEDS_OF_CURVATURE:
-        few = f"{SPEEDS_OF_CURVATURE} speeds and {len(law.names) + _FREEDOM} dwells are needed to see"
-        return Explained(None, _alone(films), None, f"{few} whether one exponent holds")
-    one = fit_law(law, data)
-    lack = lack_of_fit(one, data)
-    bent = lack.bent_by(2.0 * surface.c.systematic)
+    if branch.fit is None or branch.lack_of_fit is None:
+        return Explained(None, _alone(films), None, branch.why_not)
+    lack, bent = branch.lack_of_fit, branch.bent
     single = () if bent else _alone(films)
-    beside = _beside_constant(data, thermal, one, bent, {h.name for h in films})
+    beside = _beside_constant(branch, {h.name for h in films})
     listed = [*single, *beside]
     if (bent and lack.drift <= 0) or not listed:
         listed += _bending(lack, bent, surface)
@@ -98,16 +89,6 @@ def explained(points: SteadyPoints, surface: DampingSurface, hypotheses: tuple[H
     if named and beside:
         named, why = None, f"{beside[0].name} explains the dwells as well"
     return Explained(named, tuple(listed), lack, why)
-
-
-def _rising(data: Observations, surface: DampingSurface) -> Observations:
-    """The dwells above the transition."""
-    if surface.transition is None:
-        return data
-    kelvin = data.inputs.kelvin if surface.b is not None else None
-    temperatures = [None] * len(data) if kelvin is None else kelvin.tolist()
-    at = np.array([surface.transition_speed(t) for t in temperatures])
-    return data.take(np.flatnonzero(data.speed >= at))
 
 
 def _alone(films: list[Hypothesis]) -> tuple[Explanation, ...]:
@@ -123,12 +104,13 @@ def _sole(films: list[Hypothesis], surface: DampingSurface) -> str | None:
     return names[0] if len(names) == 1 else None
 
 
-def _beside_constant(
-    data: Observations, thermal: Thermal | None, one: LawFit, bent: bool, alone: set[str]
-) -> list[Explanation]:
+def _beside_constant(branch: Rising, alone: set[str]) -> list[Explanation]:
     """Films beside a constant torque, and a Stribeck curve, that no other law excludes."""
-    tried: list[tuple[Explanation, LawFit, LackOfFit]] = []
-    thermal = _thermal_of_film(data, thermal)
+    assert branch.fit is not None
+    data, bent = branch.data, branch.bent
+    thermal = _thermal_of_film(data, branch.thermal)
+    least = [] if bent else [branch.fit.aicc]
+    tried: list[tuple[Explanation, LawFit]] = []
     for row in REGIMES:
         if row.name in (COULOMB, FALLING) or (row.name in alone and not bent):
             continue
@@ -142,15 +124,14 @@ def _beside_constant(
         held = [(fit, lack) for fit, lack in judged if not lack.in_speed]
         if held:
             fit, lack = min(held, key=lambda f: f[0].aicc)
-            tried.append((_with_constant(row.name, fit, lack, data), fit, lack))
+            tried.append((_with_constant(row.name, fit, lack, data), fit))
     curve = _stribeck(data, thermal)
-    if curve is not None and (bent or curve.aicc < one.aicc):
+    if curve is not None and curve.aicc < min([*least, np.inf]):
         lack = lack_of_fit(curve, data)
         if not lack.in_speed:
-            tried.append((Explanation(STRIBECK, _WORDS[STRIBECK], None, lack.curvature), curve, lack))
-    least = min([fit.aicc for _, fit, _ in tried] + ([] if bent else [one.aicc]), default=0.0)
-    near = [(e, fit) for e, fit, _ in tried if fit.aicc <= least + EVIDENCE]
-    near.sort(key=lambda e: e[1].aicc)
+            tried.append((Explanation(STRIBECK, _WORDS[STRIBECK], None, lack.curvature), curve))
+    worst = min([*least, *(fit.aicc for _, fit in tried)], default=0.0) + EVIDENCE
+    near = sorted(((e, fit) for e, fit in tried if fit.aicc <= worst), key=lambda tie: tie[1].aicc)
     return [
         e for e, _ in near if e.constant_share is None or LEAST_SHARE <= e.constant_share <= 1.0 - LEAST_SHARE
     ]
@@ -177,7 +158,7 @@ def _thermal_of_film(data: Observations, thermal: Thermal | None) -> Thermal | N
 
 
 def _fitted(law: ConstantPlusLaw | StribeckLaw, data: Observations) -> LawFit | None:
-    if len(data) < len(law.names) + _FREEDOM:
+    if len(data) < len(law.names) + LEAST_FREEDOM:
         return None
     return fit_law(law, data)
 
