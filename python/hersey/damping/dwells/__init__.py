@@ -1,0 +1,30 @@
+"""Dwells: stretches of constant speed, reduced to one steady point each, with honest standard errors.
+
+==========  =======================================================================
+groups      points that share a temperature or a speed
+points      `SteadyPoints`: one row per dwell, and what is not used
+segments    stretches of a run in which the speed holds
+noise       the standard error of a mean where neighbours are correlated
+steadiness  whether a stretch is a steady dwell, and why not
+settling    where a dwell has settled
+reduction   `steady_points`: from a log to its dwells
+==========  =======================================================================
+
+The settling at the start of a dwell is cut by the marginal standard error rule (White, Simulation 69
+(1997) 323): drop as many samples as makes the standard error of the rest least.
+"""
+
+from hersey.damping.dwells.groups import SAME_SPEED, distinct_speeds, groups_of_temperature
+from hersey.damping.dwells.noise import mean_and_error
+from hersey.damping.dwells.points import Rejection, SteadyPoints
+from hersey.damping.dwells.reduction import steady_points
+
+__all__ = [
+    "SAME_SPEED",
+    "Rejection",
+    "SteadyPoints",
+    "distinct_speeds",
+    "groups_of_temperature",
+    "mean_and_error",
+    "steady_points",
+]
