@@ -67,7 +67,7 @@ class Observations:
             torque_error=points.column("torque_error") / torque,
             speed_error=points.column("speed_error") / speed,
             temperature_error=zero if kelvin is None else points.column("temperature_error"),
-            tare=points.tare_error / torque,
+            tare=np.sqrt(np.sum(points.tare_errors**2, axis=1)) / torque,
             cluster=run if by_run else _levels(run, group, speed),
             clustered_by="run" if by_run else "level",
             reference_speed=reference,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -23,6 +23,12 @@ class Rejection:
     end: float
     rows: int
     reason: str
+    speed: float = float("nan")  #: mean, rad/s
+
+    @property
+    def drifts(self) -> bool:
+        """Whether it is left out for a drift of its torque."""
+        return self.reason.startswith("torque drifts")
 
 
 @dataclass(frozen=True, repr=False)
@@ -35,12 +41,17 @@ class SteadyPoints(Result):
         Columns ``run`` (index), ``start``, ``end`` (s), ``speed``, ``speed_error`` (rad/s), ``torque``,
         ``torque_error`` (N m), ``temperature``, ``temperature_error`` (K, null if not recorded), ``rows``,
         ``effective_rows`` (independent samples), ``settling_rows`` (cut at the ends), ``approach``
-        (``from below``, ``from above`` or ``start``). Errors are standard errors of the mean. Speed and
-        torque carry the sign of the rotation.
+        (``from below``, ``from above`` or ``start``), ``tare`` (N m). Errors are standard errors of the mean.
+        Speed and torque carry the sign of the rotation.
     rejected
         Every other stretch, with the reason. Rows of the table and of this list add up to the log's.
-    tare, tare_error
-        Torque subtracted from every sample, and its standard error, N m.
+    tare
+        Torque subtracted, N m: the mean over the dwells.
+    tare_errors
+        What one standard error of each independent disturbance of the tare does to the torque of each dwell,
+        N m, shape (points, disturbances); one column for a zero that is constant, none without a tare.
+    notes
+        What there is to say of the tare, in sentences.
     standing_torque
         Mean torque while the drive stood, N m, or None if it never did.
     log
@@ -52,7 +63,18 @@ class SteadyPoints(Result):
     tare: float
     standing_torque: float | None
     log: TorqueLog
-    tare_error: float = 0.0
+    tare_errors: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
+    notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Give what has no tare no disturbances of it."""
+        if not self.tare_errors.size:
+            object.__setattr__(self, "tare_errors", np.empty((self.table.height, 0)))
+
+    @property
+    def tare_error(self) -> float:
+        """Standard error of the tare, N m: root mean square over the dwells."""
+        return float(np.sqrt(np.mean(np.sum(self.tare_errors**2, axis=1))))
 
     def __len__(self) -> int:
         """Return how many steady points there are."""
@@ -69,7 +91,7 @@ class SteadyPoints(Result):
         if self.standing_torque is not None:
             lines[-1] += f", standing torque {self.standing_torque:.4g} N m"
         lines += [f"  not used: {rows} rows, {why}" for why, rows in self._unused().items()]
-        return "\n".join(lines)
+        return "\n".join([*lines, *self.notes])
 
     def headline(self) -> str:
         """Return how many dwells, and the ranges of speed and torque."""
@@ -94,12 +116,21 @@ class SteadyPoints(Result):
                 "rejected": self.rejected,
                 "tare": self.tare,
                 "tare_error": self.tare_error,
+                "tare_errors": self.tare_errors,
+                "notes": self.notes,
                 "standing_torque": self.standing_torque,
             }
         )
 
     def to_frame(self) -> pl.DataFrame:
         """Return one row per dwell."""
-        units = {"start": "s", "end": "s", "speed": "rad/s", "torque": "N m", "temperature": "K"}
+        units = {
+            "start": "s",
+            "end": "s",
+            "speed": "rad/s",
+            "torque": "N m",
+            "temperature": "K",
+            "tare": "N m",
+        }
         units |= {f"{name}_error": units[name] for name in ("speed", "torque", "temperature")}
         return self.table.rename({name: f"{name.replace('_', ' ')} ({unit})" for name, unit in units.items()})

@@ -5,17 +5,17 @@ from __future__ import annotations
 import numpy as np
 import polars as pl
 
+from hersey.arrays import FloatArray
 from hersey.damping.dwells.groups import MIN_SAMPLES
+from hersey.damping.dwells.judging import Asked, Dwell, Stretch, judged
 from hersey.damping.dwells.noise import mean_and_error
 from hersey.damping.dwells.points import Rejection, SteadyPoints
 from hersey.damping.dwells.segments import Segment, segments_of
-from hersey.damping.dwells.settling import settled
-from hersey.damping.dwells.steadiness import drift_over, unsteady
+from hersey.damping.dwells.shared_noise import Powers, SharedNoise, shared_noise
+from hersey.damping.dwells.steadiness import drift_over, straightened
+from hersey.damping.dwells.zero import Zero, standing_stretches, starts_of
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.log.torque_log import Run, TorqueLog
-
-#: Where a dwell that drifts is tried again, as shares of it cut from its start.
-LATER_STARTS = (0.3, 0.5, 0.65, 0.8, 0.9)
 
 
 def steady_points(
@@ -28,7 +28,8 @@ def steady_points(
     min_dwell
         Shortest dwell, s, after its settling is cut.
     tare
-        ``none``, or ``standing`` to subtract the mean torque of the stretches where the drive stands.
+        ``none``, or ``standing`` to subtract what torque reads where the drive stands, at the time of each
+        dwell.
     rotation
         ``both``, or only ``forward`` (positive speed) or ``reverse`` dwells.
 
@@ -47,108 +48,166 @@ def steady_points(
         raise InsufficientDataError(
             f"{log.files[0].name} has {log.rows} rows; one dwell alone needs {MIN_SAMPLES}"
         )
-    segments = [segments_of(run) for run in log.runs]
-    standing = _standing_torque(log, segments)
-    if tare == "standing" and standing is None:
-        raise InsufficientDataError("the drive never stands still for 2 s: there is no torque to tare with")
-    offset, offset_error = standing if tare == "standing" and standing is not None else (0.0, 0.0)
-    rows: list[dict[str, object]] = []
-    rejected: list[Rejection] = []
-    for index, (run, run_segments) in enumerate(zip(log.runs, segments, strict=True)):
-        previous: float | None = None
-        for segment in run_segments:
-            result = _reduce(run, index, segment, previous, offset, min_dwell, rotation)
-            if isinstance(result, Rejection):
-                rejected.append(result)
-            else:
-                rows.append(result)
-            if segment.steady:
-                previous = abs(segment.speed)
-    if not rows:
-        raise InsufficientDataError(_nothing_steady(log, rejected, min_dwell))
-    table = pl.DataFrame(rows, schema_overrides={"temperature": pl.Float64, "temperature_error": pl.Float64})
-    standing_torque = None if standing is None else standing[0]
-    return SteadyPoints(table, tuple(rejected), offset, standing_torque, log, offset_error)
+    return _Reduction(log, tare == "standing", Asked(min_dwell, rotation)).points()
 
 
-def _standing_torque(log: TorqueLog, segments: list[list[Segment]]) -> tuple[float, float] | None:
-    """Mean torque while the drive stands, and its standard error, N m."""
-    parts = []
-    for run, run_segments in zip(log.runs, segments, strict=True):
-        for s in run_segments:
-            if s.standing and s.steady:
-                trim = (s.end - s.start) // 10
-                parts.append(run.torque[s.start + trim : s.end - trim])
-    if not parts:
-        return None
-    mean, error, _ = mean_and_error(np.concatenate(parts))
-    return mean, error
+class _Reduction:
+    """A log cut into stretches, and what they share: the zero of the torque, and its noise.
 
+    What is steady is judged twice: first each dwell by its own noise, then by what all of them show.
+    """
 
-def _reduce(
-    run: Run,
-    index: int,
-    segment: Segment,
-    previous: float | None,
-    tare: float,
-    min_dwell: float,
-    rotation: str,
-) -> dict[str, object] | Rejection:
-    def reject(reason: str) -> Rejection:
-        start, end = float(run.time[segment.start]), float(run.time[segment.end - 1])
-        return Rejection(index, start, end, segment.end - segment.start, reason)
+    def __init__(self, log: TorqueLog, subtracted: bool, asked: Asked) -> None:
+        self.log, self.subtracted, self.asked = log, subtracted, asked
+        self.starts = starts_of(log.runs)
+        self.segments = [segments_of(run) for run in log.runs]
+        self.stretches = [s for i in range(len(log.runs)) for s in _in_order(i, self.segments[i])]
+        self.zero = self._zero(None)
+        if subtracted and self.zero is None:
+            raise InsufficientDataError(
+                "the drive never stands still for 2 s: there is no torque to tare with"
+            )
 
-    if not segment.steady:
-        few = segment.end - segment.start < MIN_SAMPLES
-        return reject(
-            f"speed changing, or held for fewer than {MIN_SAMPLES} rows" if few else "speed changing"
+    def points(self) -> SteadyPoints:
+        """Judge, find the noise, judge again what drifts, and reduce."""
+        tares = self._tares(self._middles([(s.run, s.segment.start, s.segment.end) for s in self.stretches]))
+        outcomes = [
+            judged(self.log.runs[stretch.run], stretch, self.asked, float(tare), None)
+            for stretch, tare in zip(self.stretches, tares, strict=True)
+        ]
+        noise = self._noise([o for o in outcomes if isinstance(o, Dwell)])
+        if noise is not None:
+            outcomes = [
+                judged(self.log.runs[stretch.run], stretch, self.asked, float(tare), noise)
+                if outcome.drifts
+                else outcome
+                for stretch, outcome, tare in zip(self.stretches, outcomes, tares, strict=True)
+            ]
+            self.zero = self._zero(noise)
+        dwells = [o for o in outcomes if isinstance(o, Dwell)]
+        rejected = tuple(o for o in outcomes if isinstance(o, Rejection))
+        if not dwells:
+            raise InsufficientDataError(_nothing_steady(self.log, rejected, self.asked.min_dwell))
+        return self._reduced(dwells, rejected, noise)
+
+    def _reduced(
+        self, dwells: list[Dwell], rejected: tuple[Rejection, ...], noise: SharedNoise | None
+    ) -> SteadyPoints:
+        times = self._middles([(d.run, d.start, d.end) for d in dwells])
+        tares = self._tares(times)
+        rows = [
+            _row(self.log.runs[dwell.run], dwell, float(tare), noise)
+            for dwell, tare in zip(dwells, tares, strict=True)
+        ]
+        kinds = {"temperature": pl.Float64, "temperature_error": pl.Float64}
+        table = pl.DataFrame(rows, schema_overrides=kinds)
+        disturbances = np.empty((len(dwells), 0))
+        if self.subtracted and self.zero is not None:
+            errors = table["torque_error"].to_numpy()
+            disturbances, left = self.zero.disturbances(times, errors)
+            table = table.with_columns(torque_error=np.hypot(errors, left))
+        notes = () if self.zero is None else self.zero.notes(subtracted=self.subtracted, times=times)
+        return SteadyPoints(
+            table=table,
+            rejected=rejected,
+            tare=float(np.mean(tares)),
+            standing_torque=None if self.zero is None else self.zero.mean,
+            log=self.log,
+            tare_errors=disturbances,
+            notes=notes,
         )
-    if segment.standing:
-        return reject("drive standing")
-    if rotation != "both" and (segment.speed > 0) != (rotation == "forward"):
-        return reject(f"rotation not {rotation}, as asked")
-    start, end = settled(run, segment)
-    reason = unsteady(run, start, end, min_dwell, tare)
-    for share in LATER_STARTS:  # a warm-up at the same speed may come before what is steady
-        later = start + round(share * (end - start))
-        if (
-            reason
-            and reason.startswith(("temperature drifts", "torque drifts"))
-            and unsteady(run, later, end, min_dwell, tare) is None
-        ):
-            start, reason = later, None
-    if reason:
-        return reject(reason)
-    speed, torque = run.speed[start:end], run.torque[start:end] - tare
-    temperature = None if run.temperature is None else run.temperature[start:end]
-    torque_mean, torque_error, independent = mean_and_error(torque)
-    # a drift small enough to be kept is still one: its own deviation about the mean is added
-    torque_error = float(np.hypot(torque_error, drift_over(run.time[start:end], torque)[0] / np.sqrt(12.0)))
-    speed_mean, speed_error, _ = mean_and_error(speed)
-    if torque_mean * speed_mean <= 0:
-        return reject("torque and speed have opposite signs: turn one with --torque-unit '-1 N*m'")
-    hot = mean_and_error(temperature) if temperature is not None else (None, None)
+
+    def _zero(self, noise: SharedNoise | None) -> Zero | None:
+        stretches = standing_stretches(self.log.runs, self.segments, noise)
+        last = self.log.runs[-1]
+        duration = float(self.starts[-1]) + float(last.time[-1] - last.time[0])
+        return Zero(tuple(stretches), duration) if stretches else None
+
+    def _tares(self, times: FloatArray) -> FloatArray:
+        """What is subtracted at times of the log, N m."""
+        if not self.subtracted or self.zero is None:
+            return np.zeros(times.size)
+        return self.zero.at(times)
+
+    def _middles(self, parts: list[tuple[int, int, int]]) -> FloatArray:
+        """Middle of each part (run, first row, row after the last), s into the log."""
+        middles = []
+        for index, start, end in parts:
+            time = self.log.runs[index].time
+            middles.append(self.starts[index] + (time[start] + time[end - 1]) / 2.0 - time[0])
+        return np.array(middles)
+
+    def _noise(self, dwells: list[Dwell]) -> SharedNoise | None:
+        """The noise of the dwells, without the drifts that are more than it."""
+        series = [self.log.runs[d.run].torque[d.start : d.end] for d in dwells]
+        times = [self.log.runs[d.run].time[d.start : d.end] for d in dwells]
+        powers = [Powers.of(v, _interval(t)) for v, t in zip(series, times, strict=True)]
+        noise = shared_noise(powers)
+        if noise is None:
+            return None
+        for i, (time, values) in enumerate(zip(times, series, strict=True)):
+            if drift_over(time, values, noise)[0]:
+                powers[i] = Powers.of(straightened(time, values), _interval(time))
+        return shared_noise(powers)
+
+
+def _in_order(index: int, segments: list[Segment]) -> list[Stretch]:
+    """Stretches of a run, each with the speed held before it."""
+    previous, stretches = None, []
+    for segment in segments:
+        stretches.append(Stretch(index, segment, previous))
+        if segment.steady:
+            previous = abs(segment.speed)
+    return stretches
+
+
+def _interval(time: FloatArray) -> float:
+    """Mean sampling interval, s."""
+    return float(time[-1] - time[0]) / (time.size - 1)
+
+
+def _row(run: Run, dwell: Dwell, tare: float, noise: SharedNoise | None) -> dict[str, object]:
+    """One row of the table of steady points."""
+    rows = slice(dwell.start, dwell.end)
+    torque_mean, torque_error, independent = _torque(run.time[rows], run.torque[rows] - tare, noise)
+    speed_mean, speed_error, _ = mean_and_error(run.speed[rows])
+    hot = mean_and_error(run.temperature[rows]) if run.temperature is not None else (None, None)
     approach = "start"
-    if previous is not None:
-        approach = "from below" if previous < abs(speed_mean) else "from above"
+    if dwell.previous is not None:
+        approach = "from below" if dwell.previous < abs(speed_mean) else "from above"
     return {
-        "run": index,
-        "start": float(run.time[start]),
-        "end": float(run.time[end - 1]),
+        "run": dwell.run,
+        "start": float(run.time[dwell.start]),
+        "end": float(run.time[dwell.end - 1]),
         "speed": speed_mean,
         "speed_error": speed_error,
         "torque": torque_mean,
         "torque_error": torque_error,
         "temperature": hot[0],
         "temperature_error": hot[1],
-        "rows": end - start,
+        "rows": dwell.end - dwell.start,
         "effective_rows": independent,
-        "settling_rows": (segment.end - segment.start) - (end - start),
+        "settling_rows": dwell.segment.end - dwell.segment.start - (dwell.end - dwell.start),
         "approach": approach,
+        "tare": tare,
     }
 
 
-def _nothing_steady(log: TorqueLog, rejected: list[Rejection], min_dwell: float) -> str:
+def _torque(time: FloatArray, torque: FloatArray, noise: SharedNoise | None) -> tuple[float, float, float]:
+    """Mean, standard error and independent samples.
+
+    A drift small enough to be kept is still one: its own deviation about the mean is added.
+    """
+    mean, error, independent = mean_and_error(torque)
+    rise = drift_over(time, torque, noise)[0]
+    if noise is not None and error > 0.0:
+        steady = straightened(time, torque) if rise else torque
+        error = noise.mean_error(Powers.of(steady, _interval(time)))
+        independent = float(np.clip(np.var(steady) / error**2, 1.0, torque.size))
+    return mean, float(np.hypot(error, rise / np.sqrt(12.0))), independent
+
+
+def _nothing_steady(log: TorqueLog, rejected: tuple[Rejection, ...], min_dwell: float) -> str:
     reasons: dict[str, int] = {}
     for r in rejected:
         kind = r.reason if "opposite signs" in r.reason else r.reason.split(":")[0].split(" by ")[0]

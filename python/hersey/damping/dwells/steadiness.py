@@ -7,6 +7,7 @@ import numpy as np
 from hersey.arrays import FloatArray
 from hersey.damping.dwells.groups import MIN_SAMPLES
 from hersey.damping.dwells.noise import mean_and_error, thinned
+from hersey.damping.dwells.shared_noise import Powers, SharedNoise
 from hersey.log.torque_log import Run
 
 #: Largest drifts within a dwell: of temperature in K; of speed and torque as a share; of torque also in
@@ -20,7 +21,9 @@ STICK_SLIP_SWING, STICK_SLIP_SKEWNESS = 0.05, -3.0
 SIGNIFICANT = 3.0
 
 
-def unsteady(run: Run, start: int, end: int, min_dwell: float, tare: float) -> str | None:
+def unsteady(
+    run: Run, start: int, end: int, min_dwell: float, tare: float, noise: SharedNoise | None = None
+) -> str | None:
     """Why rows [start, end) are not a steady dwell, or None."""
     time, speed, torque = run.time[start:end], run.speed[start:end], run.torque[start:end] - tare
     if end - start < MIN_SAMPLES or time[-1] - time[0] < min_dwell:
@@ -47,8 +50,8 @@ def unsteady(run: Run, start: int, end: int, min_dwell: float, tare: float) -> s
     drift, _ = drift_over(time, temperature) if temperature is not None else (0.0, 0.0)
     if abs(drift) > MAX_TEMPERATURE_DRIFT:
         return f"temperature drifts by {drift:+.1f} K over the dwell"
-    drift, noise = drift_over(time, torque)
-    if abs(drift) > max(MAX_TORQUE_DRIFT * abs(float(np.mean(torque))), MAX_DRIFT_TO_NOISE * noise):
+    drift, deviation = drift_over(time, torque, noise)
+    if abs(drift) > max(MAX_TORQUE_DRIFT * abs(float(np.mean(torque))), MAX_DRIFT_TO_NOISE * deviation):
         return f"torque drifts by {drift / float(np.mean(torque)):+.1%} over the dwell"
     return None
 
@@ -66,15 +69,29 @@ def _skewness_of_changes(torque: FloatArray) -> float:
     return least
 
 
-def drift_over(time: FloatArray, values: FloatArray) -> tuple[float, float]:
-    """Change along a straight line over the dwell, 0 if within chance, and the deviation about the line."""
+def drift_over(time: FloatArray, values: FloatArray, noise: SharedNoise | None = None) -> tuple[float, float]:
+    """Change along a straight line over the dwell, 0 if within chance, and the deviation about the line.
+
+    Chance is what the values themselves show, or the noise given.
+    """
+    interval = float(time[-1] - time[0]) / max(time.size - 1, 1)
+    powers = None if noise is None else Powers.of(values, interval)
     time, values = thinned(time), thinned(values)
-    t = time - time.mean()
-    spread = float(np.sum(t * t))
-    if spread == 0.0:
-        return 0.0, 0.0
-    slope = float(np.sum(t * values)) / spread
-    residual = values - values.mean() - slope * t
+    slope = _slope(time, values)
+    residual = values - values.mean() - slope * (time - time.mean())
     error = mean_and_error(residual)[1] * np.sqrt(12.0)  # of a line's rise, uniform times
+    if noise is not None and powers is not None and error > 0.0:
+        error = noise.rise_error(powers)
     rise = slope * float(time[-1] - time[0])
     return (rise if abs(rise) > SIGNIFICANT * error else 0.0), float(np.std(residual))
+
+
+def straightened(time: FloatArray, values: FloatArray) -> FloatArray:
+    """Return values without the straight line through them, mean kept."""
+    return np.asarray(values - _slope(time, values) * (time - time.mean()))
+
+
+def _slope(time: FloatArray, values: FloatArray) -> float:
+    t = time - time.mean()
+    spread = float(np.sum(t * t))
+    return float(np.sum(t * values)) / spread if spread else 0.0
