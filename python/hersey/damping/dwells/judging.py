@@ -37,14 +37,13 @@ class Stretch:
 
 @dataclass(frozen=True)
 class Dwell:
-    """Rows [start, end) of a stretch that are steady; ``drifts`` if the rest was cut for a drift."""
+    """Rows [start, end) of a stretch that are steady."""
 
     run: int
     segment: Segment
     previous: float | None
     start: int
     end: int
-    drifts: bool
 
 
 def judged(
@@ -68,9 +67,8 @@ def judged(
     reason = _no_dwell(segment, asked)
     if reason:
         return reject(reason)
-    start, end = settled(run, segment)
+    start, end = settled(run, segment, noise)
     reason = unsteady(run, start, end, asked.min_dwell, tare, noise)
-    drifts = reason is not None and _DRIFT in reason
     for share in LATER_STARTS:  # a warm-up at the same speed may come before what is steady
         later = start + round(share * (end - start))
         if (
@@ -83,10 +81,7 @@ def judged(
         return reject(reason)
     if np.mean(run.speed[start:end]) * (np.mean(run.torque[start:end]) - tare) <= 0:
         return reject("torque and speed have opposite signs: turn one with --torque-unit '-1 N*m'")
-    return Dwell(stretch.run, segment, stretch.previous, start, end, drifts)
-
-
-_DRIFT = "torque drifts"
+    return Dwell(stretch.run, segment, stretch.previous, start, end)
 
 
 def _no_dwell(segment: Segment, asked: Asked) -> str | None:

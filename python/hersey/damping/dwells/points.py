@@ -25,11 +25,6 @@ class Rejection:
     reason: str
     speed: float = float("nan")  #: mean, rad/s
 
-    @property
-    def drifts(self) -> bool:
-        """Whether it is left out for a drift of its torque."""
-        return self.reason.startswith("torque drifts")
-
 
 @dataclass(frozen=True, repr=False)
 class SteadyPoints(Result):

@@ -17,6 +17,9 @@ from hersey.damping.dwells.zero import Zero, standing_stretches, starts_of
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.log.torque_log import Run, TorqueLog
 
+#: Rounds of judging: by the dwell's own noise, by the noise of those kept, and by that of those then kept.
+ROUNDS = 3
+
 
 def steady_points(
     log: TorqueLog, *, min_dwell: float = 2.0, tare: str = "none", rotation: str = "both"
@@ -54,7 +57,7 @@ def steady_points(
 class _Reduction:
     """A log cut into stretches, and what they share: the zero of the torque, and its noise.
 
-    What is steady is judged twice: first each dwell by its own noise, then by what all of them show.
+    What is steady is judged first by each dwell's own noise, then by what all of them show.
     """
 
     def __init__(self, log: TorqueLog, subtracted: bool, asked: Asked) -> None:
@@ -69,26 +72,26 @@ class _Reduction:
             )
 
     def points(self) -> SteadyPoints:
-        """Judge, find the noise, judge again what drifts, and reduce."""
-        tares = self._tares(self._middles([(s.run, s.segment.start, s.segment.end) for s in self.stretches]))
-        outcomes = [
-            judged(self.log.runs[stretch.run], stretch, self.asked, float(tare), None)
-            for stretch, tare in zip(self.stretches, tares, strict=True)
-        ]
-        noise = self._noise([o for o in outcomes if isinstance(o, Dwell)])
-        if noise is not None:
-            outcomes = [
-                judged(self.log.runs[stretch.run], stretch, self.asked, float(tare), noise)
-                if outcome.drifts
-                else outcome
-                for stretch, outcome, tare in zip(self.stretches, outcomes, tares, strict=True)
-            ]
+        """Judge the stretches by the noise of those that are dwells, until both agree, and reduce."""
+        noise: SharedNoise | None = None
+        for _ in range(ROUNDS):
+            outcomes = self._judged(noise)
+            noise = self._noise([o for o in outcomes if isinstance(o, Dwell)])
+            if noise is None:
+                break
             self.zero = self._zero(noise)
         dwells = [o for o in outcomes if isinstance(o, Dwell)]
         rejected = tuple(o for o in outcomes if isinstance(o, Rejection))
         if not dwells:
             raise InsufficientDataError(_nothing_steady(self.log, rejected, self.asked.min_dwell))
         return self._reduced(dwells, rejected, noise)
+
+    def _judged(self, noise: SharedNoise | None) -> list[Dwell | Rejection]:
+        tares = self._tares(self._middles([(s.run, s.segment.start, s.segment.end) for s in self.stretches]))
+        return [
+            judged(self.log.runs[stretch.run], stretch, self.asked, float(tare), noise)
+            for stretch, tare in zip(self.stretches, tares, strict=True)
+        ]
 
     def _reduced(
         self, dwells: list[Dwell], rejected: tuple[Rejection, ...], noise: SharedNoise | None

@@ -98,10 +98,11 @@ class SharedNoise:
         """Return the power of cosines of a dwell whose noise has the level 1."""
         return np.asarray(_basis(order, duration, self.times) @ self.shares)
 
-    def mean_error(self, powers: Powers) -> float:
-        """Return the standard error of the mean of a dwell, N m."""
-        at_rest = float(self.expected(np.zeros(1), powers.duration)[0])
-        return float(np.sqrt(self._slow_level(powers, 0) * at_rest / powers.duration))
+    def mean_error(self, powers: Powers, duration: float | None = None) -> float:
+        """Return the standard error of the mean of a dwell, N m, or of so many seconds beside it."""
+        lasting = duration or powers.duration
+        at_rest = float(self.expected(np.zeros(1), lasting)[0])
+        return float(np.sqrt(self._slow_level(powers, 0) * at_rest / lasting))
 
     def rise_error(self, powers: Powers) -> float:
         """Return the standard error of the rise of a line over a dwell, N m.
