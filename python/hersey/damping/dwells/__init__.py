@@ -4,6 +4,7 @@
 groups        points that share a temperature or a speed
 points        `SteadyPoints`: one row per dwell, and what is not used
 segments      stretches of a run in which the speed holds
+ripple        dwells whose speed ripples with the shaft, put together again
 noise         the standard error of a mean where neighbours are correlated
 shared_noise  the noise of all dwells together: slow noise is seen
 steadiness    whether a stretch is a steady dwell, and why not

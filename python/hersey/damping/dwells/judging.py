@@ -67,12 +67,16 @@ def judged(
     reason = _no_dwell(segment, asked)
     if reason:
         return reject(reason)
-    start, end = settled(run, segment, noise)
-    reason = unsteady(run, start, end, asked.min_dwell, tare, noise)
+    if segment.ripple:
+        start, end = segment.start, segment.end
+    else:
+        start, end = settled(run, segment, noise)
+    reason = unsteady(run, start, end, asked.min_dwell, tare, noise, segment.ripple)
     for share in LATER_STARTS:  # a warm-up at the same speed may come before what is steady
         later = start + round(share * (end - start))
         if (
             reason
+            and not segment.ripple
             and reason.startswith(("temperature drifts", "torque drifts"))
             and unsteady(run, later, end, asked.min_dwell, tare, noise) is None
         ):

@@ -10,6 +10,7 @@ from hersey.damping.dwells.groups import MIN_SAMPLES
 from hersey.damping.dwells.judging import Asked, Dwell, Stretch, judged
 from hersey.damping.dwells.noise import mean_and_error
 from hersey.damping.dwells.points import Rejection, SteadyPoints
+from hersey.damping.dwells.ripple import joined_over_turns, turned, without_ripple
 from hersey.damping.dwells.segments import Segment, segments_of
 from hersey.damping.dwells.shared_noise import Powers, SharedNoise, shared_noise
 from hersey.damping.dwells.steadiness import drift_over, straightened
@@ -19,6 +20,8 @@ from hersey.log.torque_log import Run, TorqueLog
 
 #: Rounds of judging: by the dwell's own noise, by the noise of those kept, and by that of those then kept.
 ROUNDS = 3
+#: Speed that swings by more than this share (standard deviation) is not judged as noise of the encoder alone.
+NOTABLE_SWING = 0.2
 
 
 def steady_points(
@@ -63,7 +66,7 @@ class _Reduction:
     def __init__(self, log: TorqueLog, subtracted: bool, asked: Asked) -> None:
         self.log, self.subtracted, self.asked = log, subtracted, asked
         self.starts = starts_of(log.runs)
-        self.segments = [segments_of(run) for run in log.runs]
+        self.segments = [joined_over_turns(run, segments_of(run)) for run in log.runs]
         self.stretches = [s for i in range(len(log.runs)) for s in _in_order(i, self.segments[i])]
         self.zero = self._zero(None)
         if subtracted and self.zero is None:
@@ -142,7 +145,7 @@ class _Reduction:
 
     def _noise(self, dwells: list[Dwell]) -> SharedNoise | None:
         """The noise of the dwells, without the drifts that are more than it."""
-        series = [self.log.runs[d.run].torque[d.start : d.end] for d in dwells]
+        series = [_calm_torque(self.log.runs[d.run], d) for d in dwells]
         times = [self.log.runs[d.run].time[d.start : d.end] for d in dwells]
         powers = [Powers.of(v, _interval(t)) for v, t in zip(series, times, strict=True)]
         noise = shared_noise(powers)
@@ -172,8 +175,9 @@ def _interval(time: FloatArray) -> float:
 def _row(run: Run, dwell: Dwell, tare: float, noise: SharedNoise | None) -> dict[str, object]:
     """One row of the table of steady points."""
     rows = slice(dwell.start, dwell.end)
-    torque_mean, torque_error, independent = _torque(run.time[rows], run.torque[rows] - tare, noise)
     speed_mean, speed_error, _ = mean_and_error(run.speed[rows])
+    torque_mean, torque_error, independent = _torque(run.time[rows], _calm_torque(run, dwell) - tare, noise)
+    torque_error = float(np.hypot(torque_error, _curvature(run.speed[rows]) * torque_mean))
     hot = mean_and_error(run.temperature[rows]) if run.temperature is not None else (None, None)
     approach = "start"
     if dwell.previous is not None:
@@ -194,6 +198,24 @@ def _row(run: Run, dwell: Dwell, tare: float, noise: SharedNoise | None) -> dict
         "approach": approach,
         "tare": tare,
     }
+
+
+def _calm_torque(run: Run, dwell: Dwell) -> FloatArray:
+    """Torque of a dwell, N m, without what repeats with the revolution if the speed ripples so."""
+    rows = slice(dwell.start, dwell.end)
+    if not dwell.segment.ripple:
+        return run.torque[rows]
+    return without_ripple(turned(run.time[rows], run.speed[rows]), run.torque[rows])
+
+
+def _curvature(speed: FloatArray) -> float:
+    """Error of taking the mean torque for that of the mean speed, relative.
+
+    w^p over a swing of relative deviation s is p (p - 1)/2 s^2 more than at the mean: under s^2/2 for any p
+    between -0.6 and 1.6. Small swings may be noise of the encoder: the mean is right.
+    """
+    swing = float(np.std(speed)) / abs(float(np.mean(speed)))
+    return 0.5 * swing**2 if swing > NOTABLE_SWING else 0.0
 
 
 def _torque(time: FloatArray, torque: FloatArray, noise: SharedNoise | None) -> tuple[float, float, float]:

@@ -21,13 +21,17 @@ MAX_EXCURSION = 1.0
 
 @dataclass(frozen=True)
 class Segment:
-    """Rows [start, end) of a run; ``steady`` if the speed holds, ``speed`` its mean."""
+    """Rows [start, end) of a run; ``steady`` if the speed holds, ``speed`` its mean.
+
+    A dwell whose speed ripples with the shaft (``ripple``) is whole revolutions.
+    """
 
     start: int
     end: int
     speed: float
     steady: bool
     standing: bool
+    ripple: bool = False
 
 
 def segments_of(run: Run) -> list[Segment]:

@@ -7,14 +7,17 @@ import numpy as np
 from hersey.arrays import FloatArray
 from hersey.damping.dwells.groups import MIN_SAMPLES
 from hersey.damping.dwells.noise import mean_and_error, thinned
+from hersey.damping.dwells.ripple import turned, without_ripple
 from hersey.damping.dwells.shared_noise import Powers, SharedNoise
 from hersey.log.torque_log import Run
+from hersey.units import rpm
 
 #: Largest drifts within a dwell: of temperature in K; of speed and torque as a share; of torque also in
 #: standard deviations of what fluctuates about the drift (a turning shaft makes slow waves of its own).
 MAX_TEMPERATURE_DRIFT, MAX_SPEED_DRIFT, MAX_TORQUE_DRIFT, MAX_DRIFT_TO_NOISE = 2.0, 0.01, 0.03, 2.0
-#: Largest standard deviation within a dwell as a share of the mean, of torque and of speed.
-MAX_TORQUE_SWING, MAX_SPEED_SWING = 0.35, 0.2
+#: Largest standard deviation within a dwell as a share of the mean, of torque and of speed. A speed that
+#: swings more has no torque of its own: the law is not straight over what it swings through.
+MAX_TORQUE_SWING, MAX_SPEED_SWING = 0.35, 0.5
 #: Stick-slip: torque swings by more than this, and its changes are this skewed (slow rises, sudden drops).
 STICK_SLIP_SWING, STICK_SLIP_SKEWNESS = 0.05, -3.0
 #: Drift counts as real beyond this many standard errors.
@@ -22,7 +25,13 @@ SIGNIFICANT = 3.0
 
 
 def unsteady(
-    run: Run, start: int, end: int, min_dwell: float, tare: float, noise: SharedNoise | None = None
+    run: Run,
+    start: int,
+    end: int,
+    min_dwell: float,
+    tare: float,
+    noise: SharedNoise | None = None,
+    ripple: bool = False,
 ) -> str | None:
     """Why rows [start, end) are not a steady dwell, or None."""
     time, speed, torque = run.time[start:end], run.speed[start:end], run.torque[start:end] - tare
@@ -36,7 +45,11 @@ def unsteady(
         return "torque is zero: is the sensor connected?"
     temperature = None if run.temperature is None else run.temperature[start:end]
     if np.std(speed) > MAX_SPEED_SWING * abs(np.mean(speed)):
-        return f"speed not held: it varies by {np.std(speed) / abs(np.mean(speed)):.0%} (standard deviation)"
+        slow, fast = sorted(abs(rpm(float(end))) for end in np.quantile(speed, (0.01, 0.99)))
+        return (
+            f"speed not held: it varies by {np.std(speed) / abs(np.mean(speed)):.0%} (standard deviation), "
+            f"{slow:.3g} to {fast:.3g} rpm"
+        )
     swing = float(np.std(torque)) / abs(float(np.mean(torque)))
     if swing > STICK_SLIP_SWING and _skewness_of_changes(torque) < STICK_SLIP_SKEWNESS:
         return (
@@ -44,6 +57,9 @@ def unsteady(
         )
     if swing > MAX_TORQUE_SWING:
         return f"torque swings by {swing:.0%} (standard deviation): no steady sliding"
+    if ripple:
+        angle = turned(time, speed)
+        speed, torque = without_ripple(angle, speed), without_ripple(angle, torque)
     drift, _ = drift_over(time, speed)
     if abs(drift) > MAX_SPEED_DRIFT * abs(float(np.mean(speed))):
         return f"speed drifts by {drift / float(np.mean(speed)):+.1%} over the dwell"
