@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -24,6 +25,11 @@ class Rejection:
     rows: int
     reason: str
     speed: float = float("nan")  #: mean, rad/s
+
+    @property
+    def is_dwell(self) -> bool:
+        """Whether a speed was held that is asked for: neither standing nor between two speeds."""
+        return np.isfinite(self.speed) and not self.reason.startswith(_NO_DWELL)
 
 
 @dataclass(frozen=True, repr=False)
@@ -86,7 +92,7 @@ class SteadyPoints(Result):
         if self.standing_torque is not None:
             lines[-1] += f", standing torque {self.standing_torque:.4g} N m"
         lines += [f"  not used: {rows} rows, {why}" for why, rows in self._unused().items()]
-        return "\n".join([*lines, *self.notes])
+        return "\n".join([*lines, *self.notes, *([dropped] if (dropped := self.dropped()) else [])])
 
     def headline(self) -> str:
         """Return how many dwells, and the ranges of speed and torque."""
@@ -95,6 +101,15 @@ class SteadyPoints(Result):
             f"{len(self)} dwells, {rpm(float(speed.min())):.4g} to {rpm(float(speed.max())):.4g} rpm, "
             f"{torque.min():.4g} to {torque.max():.4g} N m"
         )
+
+    def dropped(self) -> str:
+        """Return in a sentence which dwells are not used, at which speeds, and why; empty if none are."""
+        lost = [r for r in self.rejected if r.is_dwell]
+        if not lost:
+            return ""
+        speeds = np.abs([r.speed for r in lost])
+        where = _placed(speeds, np.abs(self.column("speed")))
+        return f"{len(lost)} of {len(lost) + len(self)} dwells, {where}, were dropped: {_reasons(lost)}."
 
     def _unused(self) -> dict[str, int]:
         """Rows of every other stretch by its reason."""
@@ -129,3 +144,34 @@ class SteadyPoints(Result):
         }
         units |= {f"{name}_error": units[name] for name in ("speed", "torque", "temperature")}
         return self.table.rename({name: f"{name.replace('_', ' ')} ({unit})" for name, unit in units.items()})
+
+
+#: Reasons of stretches that nobody meant as a dwell.
+_NO_DWELL = ("drive standing", "speed changing", "rotation not")
+
+
+def _placed(lost: FloatArray, used: FloatArray) -> str:
+    """Where the speeds of dwells not used lie beside those used."""
+    every = "all " if lost.size > 1 else ""
+    slowest, fastest = rpm(float(used.min())), rpm(float(used.max()))
+    if lost.max() < used.min():
+        return f"{every}below {slowest:.3g} rpm"
+    if lost.min() > used.max():
+        return f"{every}above {fastest:.3g} rpm"
+    low, high = f"{rpm(float(lost.min())):.3g}", f"{rpm(float(lost.max())):.3g}"
+    return f"at {low} rpm" if low == high else f"at {low} to {high} rpm"
+
+
+def _reasons(lost: list[Rejection]) -> str:
+    """Each kind of reason once, with its least and greatest share and how often it occurs."""
+    kinds: dict[str, list[float]] = {}
+    for r in lost:
+        share = re.search(r"(\d+(?:\.\d+)?)%", r.reason)
+        kind = r.reason.split(":")[0].split(" by ")[0]
+        kinds.setdefault(kind, []).append(float(share[1]) if share else float("nan"))
+    said = []
+    for kind, shares in kinds.items():
+        low, high = f"{min(shares):.3g}", f"{max(shares):.3g}"
+        numbers = "" if low == "nan" else f" by {low} %" if low == high else f" by {low} to {high} %"
+        said.append(f"{kind}{numbers}" + (f" ({len(shares)})" if len(kinds) > 1 else ""))
+    return ", ".join(said)
