@@ -134,11 +134,11 @@ def test_torque_may_swing_by_a_third(deviation: float, kept: bool) -> None:
     assert refused(found, "torque swings by 36% (standard deviation): no steady sliding") != kept
 
 
-@pytest.mark.parametrize(("deviation", "kept"), [(0.19, True), (0.21, False)])
-def test_speed_may_swing_by_a_fifth(deviation: float, kept: bool) -> None:
+@pytest.mark.parametrize(("deviation", "kept"), [(0.49, True), (0.51, False)])
+def test_speed_may_swing_by_half(deviation: float, kept: bool) -> None:
     found = point(speed=30 * RPM * (1.0 + alternating(deviation)))
     assert whole(found) == kept
-    assert refused(found, "speed not held: it varies by 21%") != kept
+    assert refused(found, "speed not held: it varies by 51% (standard deviation), 14.7 to 45.3 rpm") != kept
 
 
 def saw(period: int, deviation: float) -> np.ndarray:

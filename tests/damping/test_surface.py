@@ -45,7 +45,7 @@ def points_of(
             "temperature_error": None if celsius is None else temperature_error * whole,
         }
     )
-    return SteadyPoints(table, (), 0.0, None, log, tare_error)
+    return SteadyPoints(table, (), 0.0, None, log, np.full((table.height, 1), tare_error))
 
 
 def grid(speeds: np.ndarray, temperatures: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -234,6 +234,8 @@ def _warnings(
                 f"{file.name}: rows are missing at {run.gaps()} places ({max(share, 0):.1%} of the time)."
             )
     out += _tare_warning(points)
+    out += points.notes
+    out += [dropped] if (dropped := points.dropped()) else []
     swinging = [r for r in points.rejected if "stick-slip" in r.reason]
     if swinging:
         out.append(

@@ -34,7 +34,7 @@ def points(*, run: list[int] = RUN, temperature: bool = True, speed: list[float]
     )
     return SimpleNamespace(  # type: ignore[return-value]
         table=table,
-        tare_error=0.002,
+        tare_errors=np.full((9, 1), 0.002),
         log=SimpleNamespace(has_temperature=temperature),
         column=lambda name: table[name].to_numpy(),
     )

@@ -48,6 +48,7 @@ class DwellPart(Part):
     effective_rows: float = Field(description="independent samples")
     settling_rows: int = Field(description="cut at the ends")
     approach: Literal["from below", "from above", "start"]
+    tare: float = Field(description="N m, subtracted")
 
 
 class Point(DwellPart):
@@ -88,6 +89,8 @@ class PointsPart(Part):
     rejected: list[RejectedStretch]
     tare: float
     tare_error: float
+    tare_errors: list[list[float]] = Field(description="N m, shape (points, disturbances)")
+    notes: list[str]
     standing_torque: float | None
 
 

@@ -1,0 +1,38 @@
+"""Noise within a dwell: the standard error of a mean where neighbours are correlated."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from hersey.arrays import FloatArray
+
+#: Samples to which a dwell is averaged before its drift and autocorrelation are computed.
+THINNED = 10_000
+
+
+def thinned(values: FloatArray) -> FloatArray:
+    """Means over blocks, so many that a dwell has at most about `THINNED` of them."""
+    size = max(1, values.size // THINNED)
+    return np.asarray(values[: values.size // size * size].reshape(-1, size).mean(axis=1))
+
+
+def mean_and_error(values: FloatArray) -> tuple[float, float, float]:
+    """Return mean, standard error of the mean and number of independent samples of a stationary series.
+
+    The integrated autocorrelation time is summed up to the first lag of five times itself (Sokal).
+    """
+    series = thinned(values)
+    count = series.size
+    centred = series - series.mean()
+    variance = float(np.sum(centred * centred)) / max(count - 1, 1)
+    if variance <= 1e-30 * float(np.mean(values)) ** 2:
+        return float(np.mean(values)), 0.0, float(count)
+    length = 1 << (2 * count - 1).bit_length()
+    spectrum = np.fft.rfft(centred, length)
+    correlation = np.fft.irfft(np.abs(spectrum) ** 2, length)[:count]
+    times = 2.0 * np.cumsum(correlation / correlation[0]) - 1.0
+    window = int(np.argmax(np.arange(count) >= 5.0 * np.maximum(times, 1.0)))
+    # a finite series underestimates: Wolff, Comput. Phys. Commun. 156 (2004) 143, and its variance too
+    time = min(max(1.0, float(times[window])) * (1.0 + (2.0 * window + 1.0) / count), count / 2)
+    error = float(np.sqrt(variance * time / (count - time)))
+    return float(np.mean(values)), error, count / time

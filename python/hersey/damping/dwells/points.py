@@ -1,0 +1,177 @@
+"""What dwells are reduced to: one steady point each, and what is not used."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import polars as pl
+
+from hersey.arrays import FloatArray
+from hersey.log.torque_log import TorqueLog
+from hersey.result import Result, json_record
+from hersey.units import rpm
+
+
+@dataclass(frozen=True)
+class Rejection:
+    """A stretch of the log that is not used, and why; times in s, first row from 0 within the run."""
+
+    run: int
+    start: float
+    end: float
+    rows: int
+    reason: str
+    speed: float = float("nan")  #: mean, rad/s
+
+    @property
+    def is_dwell(self) -> bool:
+        """Whether a speed was held that is asked for: neither standing nor between two speeds."""
+        return np.isfinite(self.speed) and not self.reason.startswith(_NO_DWELL)
+
+
+@dataclass(frozen=True, repr=False)
+class SteadyPoints(Result):
+    """One row per dwell.
+
+    Attributes
+    ----------
+    table
+        Columns ``run`` (index), ``start``, ``end`` (s), ``speed``, ``speed_error`` (rad/s), ``torque``,
+        ``torque_error`` (N m), ``temperature``, ``temperature_error`` (K, null if not recorded), ``rows``,
+        ``effective_rows`` (independent samples), ``settling_rows`` (cut at the ends), ``approach``
+        (``from below``, ``from above`` or ``start``), ``tare`` (N m). Errors are standard errors of the mean.
+        Speed and torque carry the sign of the rotation.
+    rejected
+        Every other stretch, with the reason. Rows of the table and of this list add up to the log's.
+    tare
+        Torque subtracted, N m: the mean over the dwells.
+    tare_errors
+        What one standard error of each independent disturbance of the tare does to the torque of each dwell,
+        N m, shape (points, disturbances); one column for a zero that is constant, none without a tare.
+    notes
+        What there is to say of the tare, in sentences.
+    standing_torque
+        Mean torque while the drive stood, N m, or None if it never did.
+    log
+        What was reduced.
+    """
+
+    table: pl.DataFrame
+    rejected: tuple[Rejection, ...]
+    tare: float
+    standing_torque: float | None
+    log: TorqueLog
+    tare_errors: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
+    notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Give what has no tare no disturbances of it."""
+        if not self.tare_errors.size:
+            object.__setattr__(self, "tare_errors", np.empty((self.table.height, 0)))
+
+    @property
+    def tare_error(self) -> float:
+        """Standard error of the tare, N m: root mean square over the dwells."""
+        return float(np.sqrt(np.mean(np.sum(self.tare_errors**2, axis=1))))
+
+    def __len__(self) -> int:
+        """Return how many steady points there are."""
+        return self.table.height
+
+    def column(self, name: str) -> FloatArray:
+        """Return a column as an array of shape (points,)."""
+        return self.table[name].to_numpy()
+
+    def summary(self) -> str:
+        """Return how many dwells, their ranges, the tare, and what is not used, as text."""
+        rows = f"{self.table['rows'].sum()} of {self.log.rows} rows used"
+        lines = [f"{self.headline()}; {rows}", f"tare {self.tare:.4g} N m"]
+        if self.standing_torque is not None:
+            lines[-1] += f", standing torque {self.standing_torque:.4g} N m"
+        lines += [f"  not used: {rows} rows, {why}" for why, rows in self._unused().items()]
+        return "\n".join([*lines, *self.notes, *([dropped] if (dropped := self.dropped()) else [])])
+
+    def headline(self) -> str:
+        """Return how many dwells, and the ranges of speed and torque."""
+        speed, torque = np.abs(self.column("speed")), np.abs(self.column("torque"))
+        return (
+            f"{len(self)} dwells, {rpm(float(speed.min())):.4g} to {rpm(float(speed.max())):.4g} rpm, "
+            f"{torque.min():.4g} to {torque.max():.4g} N m"
+        )
+
+    def dropped(self) -> str:
+        """Return in a sentence which dwells are not used, at which speeds, and why; empty if none are."""
+        lost = [r for r in self.rejected if r.is_dwell]
+        if not lost:
+            return ""
+        speeds = np.abs([r.speed for r in lost])
+        where = _placed(speeds, np.abs(self.column("speed")))
+        return f"{len(lost)} of {len(lost) + len(self)} dwells, {where}, were dropped: {_reasons(lost)}."
+
+    def _unused(self) -> dict[str, int]:
+        """Rows of every other stretch by its reason."""
+        rows: dict[str, int] = {}
+        for stretch in self.rejected:
+            rows[stretch.reason] = rows.get(stretch.reason, 0) + stretch.rows
+        return rows
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the dwells, what is not used, and the tare, in SI."""
+        return json_record(
+            {
+                "points": self.table.to_dicts(),
+                "rejected": self.rejected,
+                "tare": self.tare,
+                "tare_error": self.tare_error,
+                "tare_errors": self.tare_errors,
+                "notes": self.notes,
+                "standing_torque": self.standing_torque,
+            }
+        )
+
+    def to_frame(self) -> pl.DataFrame:
+        """Return one row per dwell."""
+        units = {
+            "start": "s",
+            "end": "s",
+            "speed": "rad/s",
+            "torque": "N m",
+            "temperature": "K",
+            "tare": "N m",
+        }
+        units |= {f"{name}_error": units[name] for name in ("speed", "torque", "temperature")}
+        return self.table.rename({name: f"{name.replace('_', ' ')} ({unit})" for name, unit in units.items()})
+
+
+#: Reasons of stretches that nobody meant as a dwell.
+_NO_DWELL = ("drive standing", "speed changing", "rotation not")
+
+
+def _placed(lost: FloatArray, used: FloatArray) -> str:
+    """Where the speeds of dwells not used lie beside those used."""
+    every = "all " if lost.size > 1 else ""
+    slowest, fastest = rpm(float(used.min())), rpm(float(used.max()))
+    if lost.max() < used.min():
+        return f"{every}below {slowest:.3g} rpm"
+    if lost.min() > used.max():
+        return f"{every}above {fastest:.3g} rpm"
+    low, high = f"{rpm(float(lost.min())):.3g}", f"{rpm(float(lost.max())):.3g}"
+    return f"at {low} rpm" if low == high else f"at {low} to {high} rpm"
+
+
+def _reasons(lost: list[Rejection]) -> str:
+    """Each kind of reason once, with its least and greatest share and how often it occurs."""
+    kinds: dict[str, list[float]] = {}
+    for r in lost:
+        share = re.search(r"(\d+(?:\.\d+)?)%", r.reason)
+        kind = r.reason.split(":")[0].split(" by ")[0]
+        kinds.setdefault(kind, []).append(float(share[1]) if share else float("nan"))
+    said = []
+    for kind, shares in kinds.items():
+        low, high = f"{min(shares):.3g}", f"{max(shares):.3g}"
+        numbers = "" if low == "nan" else f" by {low} %" if low == high else f" by {low} to {high} %"
+        said.append(f"{kind}{numbers}" + (f" ({len(shares)})" if len(kinds) > 1 else ""))
+    return ", ".join(said)

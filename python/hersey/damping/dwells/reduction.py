@@ -1,0 +1,242 @@
+"""From a log to its dwells, and from each to a steady point."""
+
+from __future__ import annotations
+
+import numpy as np
+import polars as pl
+
+from hersey.arrays import FloatArray
+from hersey.damping.dwells.groups import MIN_SAMPLES
+from hersey.damping.dwells.judging import Asked, Dwell, Stretch, judged
+from hersey.damping.dwells.noise import mean_and_error
+from hersey.damping.dwells.points import Rejection, SteadyPoints
+from hersey.damping.dwells.ripple import joined_over_turns, turned, without_ripple
+from hersey.damping.dwells.segments import Segment, segments_of
+from hersey.damping.dwells.shared_noise import Powers, SharedNoise, shared_noise
+from hersey.damping.dwells.steadiness import drift_over, straightened
+from hersey.damping.dwells.zero import Zero, standing_stretches, starts_of
+from hersey.errors import InsufficientDataError, ParameterError
+from hersey.log.torque_log import Run, TorqueLog
+
+#: Rounds of judging: by the dwell's own noise, by the noise of those kept, and by that of those then kept.
+ROUNDS = 3
+#: Speed that swings by more than this share (standard deviation) is not judged as noise of the encoder alone.
+NOTABLE_SWING = 0.2
+
+
+def steady_points(
+    log: TorqueLog, *, min_dwell: float = 2.0, tare: str = "none", rotation: str = "both"
+) -> SteadyPoints:
+    """Find the dwells of a log and reduce each to a steady point.
+
+    Parameters
+    ----------
+    min_dwell
+        Shortest dwell, s, after its settling is cut.
+    tare
+        ``none``, or ``standing`` to subtract what torque reads where the drive stands, at the time of each
+        dwell.
+    rotation
+        ``both``, or only ``forward`` (positive speed) or ``reverse`` dwells.
+
+    Raises
+    ------
+    InsufficientDataError
+        If no dwell is found, or there is no standing stretch to tare with.
+    """
+    if tare not in ("none", "standing"):
+        raise ParameterError(f"tare '{tare}' is not known: none or standing")
+    if rotation not in ("both", "forward", "reverse"):
+        raise ParameterError(f"rotation '{rotation}' is not known: both, forward or reverse")
+    if not 0 < min_dwell < float("inf"):
+        raise ParameterError(f"min_dwell is {min_dwell:g} s: it must be greater than 0")
+    if log.rows < MIN_SAMPLES:
+        raise InsufficientDataError(
+            f"{log.files[0].name} has {log.rows} rows; one dwell alone needs {MIN_SAMPLES}"
+        )
+    return _Reduction(log, tare == "standing", Asked(min_dwell, rotation)).points()
+
+
+class _Reduction:
+    """A log cut into stretches, and what they share: the zero of the torque, and its noise.
+
+    What is steady is judged first by each dwell's own noise, then by what all of them show.
+    """
+
+    def __init__(self, log: TorqueLog, subtracted: bool, asked: Asked) -> None:
+        self.log, self.subtracted, self.asked = log, subtracted, asked
+        self.starts = starts_of(log.runs)
+        self.segments = [joined_over_turns(run, segments_of(run)) for run in log.runs]
+        self.stretches = [s for i in range(len(log.runs)) for s in _in_order(i, self.segments[i])]
+        self.zero = self._zero(None)
+        if subtracted and self.zero is None:
+            raise InsufficientDataError(
+                "the drive never stands still for 2 s: there is no torque to tare with"
+            )
+
+    def points(self) -> SteadyPoints:
+        """Judge the stretches by the noise of those that are dwells, until both agree, and reduce."""
+        noise: SharedNoise | None = None
+        for _ in range(ROUNDS):
+            outcomes = self._judged(noise)
+            noise = self._noise([o for o in outcomes if isinstance(o, Dwell)])
+            if noise is None:
+                break
+            self.zero = self._zero(noise)
+        dwells = [o for o in outcomes if isinstance(o, Dwell)]
+        rejected = tuple(o for o in outcomes if isinstance(o, Rejection))
+        if not dwells:
+            raise InsufficientDataError(_nothing_steady(self.log, rejected, self.asked.min_dwell))
+        return self._reduced(dwells, rejected, noise)
+
+    def _judged(self, noise: SharedNoise | None) -> list[Dwell | Rejection]:
+        tares = self._tares(self._middles([(s.run, s.segment.start, s.segment.end) for s in self.stretches]))
+        return [
+            judged(self.log.runs[stretch.run], stretch, self.asked, float(tare), noise)
+            for stretch, tare in zip(self.stretches, tares, strict=True)
+        ]
+
+    def _reduced(
+        self, dwells: list[Dwell], rejected: tuple[Rejection, ...], noise: SharedNoise | None
+    ) -> SteadyPoints:
+        times = self._middles([(d.run, d.start, d.end) for d in dwells])
+        tares = self._tares(times)
+        rows = [
+            _row(self.log.runs[dwell.run], dwell, float(tare), noise)
+            for dwell, tare in zip(dwells, tares, strict=True)
+        ]
+        kinds = {"temperature": pl.Float64, "temperature_error": pl.Float64}
+        table = pl.DataFrame(rows, schema_overrides=kinds)
+        disturbances = np.empty((len(dwells), 0))
+        if self.subtracted and self.zero is not None:
+            errors = table["torque_error"].to_numpy()
+            disturbances, left = self.zero.disturbances(times, errors)
+            table = table.with_columns(torque_error=np.hypot(errors, left))
+        notes = () if self.zero is None else self.zero.notes(subtracted=self.subtracted, times=times)
+        return SteadyPoints(
+            table=table,
+            rejected=rejected,
+            tare=float(np.mean(tares)),
+            standing_torque=None if self.zero is None else self.zero.mean,
+            log=self.log,
+            tare_errors=disturbances,
+            notes=notes,
+        )
+
+    def _zero(self, noise: SharedNoise | None) -> Zero | None:
+        stretches = standing_stretches(self.log.runs, self.segments, noise)
+        last = self.log.runs[-1]
+        duration = float(self.starts[-1]) + float(last.time[-1] - last.time[0])
+        return Zero(tuple(stretches), duration) if stretches else None
+
+    def _tares(self, times: FloatArray) -> FloatArray:
+        """What is subtracted at times of the log, N m."""
+        if not self.subtracted or self.zero is None:
+            return np.zeros(times.size)
+        return self.zero.at(times)
+
+    def _middles(self, parts: list[tuple[int, int, int]]) -> FloatArray:
+        """Middle of each part (run, first row, row after the last), s into the log."""
+        middles = []
+        for index, start, end in parts:
+            time = self.log.runs[index].time
+            middles.append(self.starts[index] + (time[start] + time[end - 1]) / 2.0 - time[0])
+        return np.array(middles)
+
+    def _noise(self, dwells: list[Dwell]) -> SharedNoise | None:
+        """The noise of the dwells, without the drifts that are more than it."""
+        series = [_calm_torque(self.log.runs[d.run], d) for d in dwells]
+        times = [self.log.runs[d.run].time[d.start : d.end] for d in dwells]
+        powers = [Powers.of(v, _interval(t)) for v, t in zip(series, times, strict=True)]
+        noise = shared_noise(powers)
+        if noise is None:
+            return None
+        for i, (time, values) in enumerate(zip(times, series, strict=True)):
+            if drift_over(time, values, noise)[0]:
+                powers[i] = Powers.of(straightened(time, values), _interval(time))
+        return shared_noise(powers)
+
+
+def _in_order(index: int, segments: list[Segment]) -> list[Stretch]:
+    """Stretches of a run, each with the speed held before it."""
+    previous, stretches = None, []
+    for segment in segments:
+        stretches.append(Stretch(index, segment, previous))
+        if segment.steady:
+            previous = abs(segment.speed)
+    return stretches
+
+
+def _interval(time: FloatArray) -> float:
+    """Mean sampling interval, s."""
+    return float(time[-1] - time[0]) / (time.size - 1)
+
+
+def _row(run: Run, dwell: Dwell, tare: float, noise: SharedNoise | None) -> dict[str, object]:
+    """One row of the table of steady points."""
+    rows = slice(dwell.start, dwell.end)
+    speed_mean, speed_error, _ = mean_and_error(run.speed[rows])
+    torque_mean, torque_error, independent = _torque(run.time[rows], _calm_torque(run, dwell) - tare, noise)
+    torque_error = float(np.hypot(torque_error, _curvature(run.speed[rows]) * torque_mean))
+    hot = mean_and_error(run.temperature[rows]) if run.temperature is not None else (None, None)
+    approach = "start"
+    if dwell.previous is not None:
+        approach = "from below" if dwell.previous < abs(speed_mean) else "from above"
+    return {
+        "run": dwell.run,
+        "start": float(run.time[dwell.start]),
+        "end": float(run.time[dwell.end - 1]),
+        "speed": speed_mean,
+        "speed_error": speed_error,
+        "torque": torque_mean,
+        "torque_error": torque_error,
+        "temperature": hot[0],
+        "temperature_error": hot[1],
+        "rows": dwell.end - dwell.start,
+        "effective_rows": independent,
+        "settling_rows": dwell.segment.end - dwell.segment.start - (dwell.end - dwell.start),
+        "approach": approach,
+        "tare": tare,
+    }
+
+
+def _calm_torque(run: Run, dwell: Dwell) -> FloatArray:
+    """Torque of a dwell, N m, without what repeats with the revolution if the speed ripples so."""
+    rows = slice(dwell.start, dwell.end)
+    if not dwell.segment.ripple:
+        return run.torque[rows]
+    return without_ripple(turned(run.time[rows], run.speed[rows]), run.torque[rows])
+
+
+def _curvature(speed: FloatArray) -> float:
+    """Error of taking the mean torque for that of the mean speed, relative.
+
+    w^p over a swing of relative deviation s is p (p - 1)/2 s^2 more than at the mean: under s^2/2 for any p
+    between -0.6 and 1.6. Small swings may be noise of the encoder: the mean is right.
+    """
+    swing = float(np.std(speed)) / abs(float(np.mean(speed)))
+    return 0.5 * swing**2 if swing > NOTABLE_SWING else 0.0
+
+
+def _torque(time: FloatArray, torque: FloatArray, noise: SharedNoise | None) -> tuple[float, float, float]:
+    """Mean, standard error and independent samples.
+
+    A drift small enough to be kept is still one: its own deviation about the mean is added.
+    """
+    mean, error, independent = mean_and_error(torque)
+    rise = drift_over(time, torque, noise)[0]
+    if noise is not None and error > 0.0:
+        steady = straightened(time, torque) if rise else torque
+        error = noise.mean_error(Powers.of(steady, _interval(time)))
+        independent = float(np.clip(np.var(steady) / error**2, 1.0, torque.size))
+    return mean, float(np.hypot(error, rise / np.sqrt(12.0))), independent
+
+
+def _nothing_steady(log: TorqueLog, rejected: tuple[Rejection, ...], min_dwell: float) -> str:
+    reasons: dict[str, int] = {}
+    for r in rejected:
+        kind = r.reason if "opposite signs" in r.reason else r.reason.split(":")[0].split(" by ")[0]
+        reasons[kind] = reasons.get(kind, 0) + 1
+    listed = ", ".join(f"{count} x {reason}" for reason, count in reasons.items())
+    name = log.files[0].name + (f" and {len(log.files) - 1} more" if len(log.files) > 1 else "")
+    return f"{name}: no steady stretch ({listed}); a dwell holds one speed for at least {min_dwell:g} s"

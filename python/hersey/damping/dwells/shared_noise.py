@@ -1,0 +1,213 @@
+"""The noise of all dwells of a log together: one shape, so that noise as slow as a dwell is seen.
+
+A dwell a few correlation times long says almost nothing of its slow noise: its mean follows it. Many dwells
+together do. Each is taken apart into cosines (about its mean, half a period and more), whose powers over all
+dwells give one spectrum: a mixture of noise without memory and of noise that forgets exponentially, with
+times from a sample to a quarter of a dwell (Whittle's likelihood, Ark. Mat. 2 (1953) 423). Its value at no
+frequency is the variance of the mean. Each dwell has a level of its own; that of its slow part is drawn
+towards the common one as far as the dwells agree (Smyth, Stat. Appl. Genet. Mol. Biol. 3 (2004) 3).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import fft, optimize, special
+
+from hersey.arrays import FloatArray
+from hersey.damping.dwells.noise import thinned
+
+#: Fewest dwells that have a shape in common.
+FEWEST = 5
+#: Dwells, spread over the log, from which the shape is taken at most.
+MOST = 400
+#: Cosines taken singly; the rest in bands, each this factor wider and counted as so many at most.
+SINGLE, BAND, BAND_COUNT = 16, 1.3, 16.0
+#: Slowest cosines, whose power is that of the slow part of a dwell.
+SLOW = 6
+#: Powers beyond so many times their expectation are ripple, not noise; the first few are never left out.
+RIPPLE, NEVER_RIPPLE = 16.0, 3
+#: Longest time of the mixture, as a share of a dwell: of slower noise a dwell shows only the steepest part.
+LONGEST_TIME = 0.22
+#: Steps of the search for the mixture, and from one time of the mixture to the next.
+STEPS, TIME_STEP = 200, 2.0
+
+
+@dataclass(frozen=True)
+class Powers:
+    """A dwell in cosines: power of each band per frequency, and how many cosines it counts as.
+
+    ``power`` is (N m)^2 s, ``order`` the mean order of a band (1: half a period in the dwell), both of shape
+    (bands,); ``duration`` and ``interval`` are s.
+    """
+
+    order: FloatArray
+    power: FloatArray
+    count: FloatArray
+    duration: float
+    interval: float
+
+    @classmethod
+    def of(cls, values: FloatArray, interval: float) -> Powers:
+        """Return the powers of a series about its mean, sampled every ``interval`` s."""
+        series = thinned(values)
+        step = interval * (values.size // series.size)
+        power = step * np.asarray(fft.dct(series - series.mean(), norm="ortho"))[1:] ** 2
+        edges = _edges(power.size)
+        width = np.diff(np.append(edges, power.size))
+        order = edges + 1.0 + (width - 1.0) / 2.0
+        banded = np.add.reduceat(power, edges) / width
+        return cls(order, banded, np.minimum(width, BAND_COUNT), step * series.size, interval)
+
+
+def _edges(size: int) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
+    """First cosine of each band."""
+    edges = list(range(min(SINGLE, size)))
+    edge = float(SINGLE)
+    while edge < size:
+        edges.append(int(edge))
+        edge = max(edge + 1.0, edge * BAND)
+    return np.array(edges, dtype=np.intp)
+
+
+def cosine_power(order: FloatArray, share: FloatArray) -> FloatArray:
+    """Return the power of a cosine of a dwell in noise of unit variance, over its correlation time.
+
+    ``share`` is that time as a share of the dwell; order 0 is the mean itself. 2 where the share is small.
+    """
+    a = np.pi * order
+    rate = 1.0 / share - 1j * a
+    faded = (1.0 - np.exp(-rate)) / rate
+    level = ((1.0 - faded) / rate).real
+    with np.errstate(divide="ignore", invalid="ignore"):
+        edge = np.where(order > 0, faded.imag / a, 0.0)
+    return np.asarray(2.0 * (level - edge) / share)
+
+
+@dataclass(frozen=True)
+class SharedNoise:
+    """The spectrum that dwells share: shares of noise without memory (first) and of each time, s."""
+
+    times: FloatArray
+    shares: FloatArray
+    prior: float  #: cosines that the common level of the slow part counts as; infinite where dwells agree
+    level: float  #: of the slow part beside the whole, common to all dwells
+
+    def expected(self, order: FloatArray, duration: float) -> FloatArray:
+        """Return the power of cosines of a dwell whose noise has the level 1."""
+        return np.asarray(_basis(order, duration, self.times) @ self.shares)
+
+    def mean_error(self, powers: Powers, duration: float | None = None) -> float:
+        """Return the standard error of the mean of a dwell, N m, or of so many seconds beside it."""
+        lasting = duration or powers.duration
+        at_rest = float(self.expected(np.zeros(1), lasting)[0])
+        return float(np.sqrt(self._slow_level(powers, 0) * at_rest / lasting))
+
+    def rise_error(self, powers: Powers) -> float:
+        """Return the standard error of the rise of a line over a dwell, N m.
+
+        A line is cosines of odd order, falling as its square; the dwell's own first one may be that of a
+        drift, and says nothing here.
+        """
+        odd = np.arange(1.0, 12.0, 2.0)
+        sum_of_line = float(np.sum(self.expected(odd, powers.duration) / odd**4))
+        variance = 1152.0 / np.pi**4 * self._slow_level(powers, 1) * sum_of_line / powers.duration
+        return float(np.sqrt(variance))
+
+    def _slow_level(self, powers: Powers, first: int) -> float:
+        """Level of the slow part of a dwell, its own and the common one each as far as it is known."""
+        expected = self.expected(powers.order, powers.duration)
+        whole = _level(powers, expected, np.ones(powers.order.size, dtype=bool))
+        common = whole * self.level
+        if not np.isfinite(self.prior):
+            return common
+        own = float(np.mean((powers.power / expected)[first:SLOW]))
+        count = SLOW - first
+        return (self.prior * common + count * own) / (self.prior + count)
+
+
+def _basis(order: FloatArray, duration: float, times: FloatArray) -> FloatArray:
+    """Powers of noise without memory, and of each time, shape (orders, 1 + times)."""
+    slow = times[None, :] / 2.0 * cosine_power(order[:, None], times[None, :] / duration)
+    return np.column_stack([np.ones(order.size), slow / times[-1]])
+
+
+def _level(powers: Powers, expected: FloatArray, noise: np.ndarray[tuple[int], np.dtype[np.bool_]]) -> float:
+    weight = powers.count * noise
+    return float(np.sum(weight * powers.power / expected) / np.sum(weight))
+
+
+def shared_noise(dwells: list[Powers]) -> SharedNoise | None:
+    """Return the noise that dwells share, or None if they are too few or without noise."""
+    noisy = [p for p in dwells if float(np.sum(p.power)) > 0.0]
+    if len(noisy) < FEWEST:
+        return None
+    chosen = [noisy[i] for i in np.linspace(0, len(noisy) - 1, min(MOST, len(noisy))).astype(int)]
+    shortest = min(p.interval for p in chosen)
+    longest = LONGEST_TIME * float(np.median([p.duration for p in chosen]))
+    steps = max(0, int(np.log(max(longest / shortest, 1.0)) / np.log(TIME_STEP)))
+    times = longest / TIME_STEP ** np.arange(steps + 1.0)
+    pooled = _Pooled(chosen, times)
+    return pooled.fitted()
+
+
+class _Pooled:
+    """Bands of all dwells, one after another."""
+
+    def __init__(self, dwells: list[Powers], times: FloatArray) -> None:
+        self.times = times
+        self.basis = np.concatenate([_basis(p.order, p.duration, times) for p in dwells])
+        self.power = np.concatenate([p.power for p in dwells])
+        self.count = np.concatenate([p.count for p in dwells])
+        self.order = np.concatenate([p.order for p in dwells])
+        self.dwell = np.repeat(np.arange(len(dwells)), [p.order.size for p in dwells])
+        self.dwells = len(dwells)
+
+    def fitted(self) -> SharedNoise:
+        """The mixture, ripple left out as soon as it is seen."""
+        shares = np.ones(self.basis.shape[1])
+        weight = self.count.copy()
+        for _ in range(3):
+            shares = self._mixture(shares, weight)
+            ratio = self._ratio(shares, weight)
+            limit = 1.0 + (RIPPLE - 1.0) / np.sqrt(self.count)
+            weight = np.where((ratio > limit) & (self.order > NEVER_RIPPLE), 0.0, self.count)
+        shares = self._mixture(shares, weight)
+        prior, level = _agreement(self._slow(shares, weight), SLOW)
+        return SharedNoise(self.times, shares, prior, level)
+
+    def _levels(self, expected: FloatArray, weight: FloatArray) -> FloatArray:
+        """Level of each dwell, at its bands."""
+        total = np.bincount(self.dwell, weight * self.power / expected, self.dwells)
+        return np.asarray((total / np.bincount(self.dwell, weight, self.dwells))[self.dwell])
+
+    def _ratio(self, shares: FloatArray, weight: FloatArray) -> FloatArray:
+        expected = self.basis @ shares
+        return np.asarray(self.power / (self._levels(expected, weight) * expected))
+
+    def _slow(self, shares: FloatArray, weight: FloatArray) -> FloatArray:
+        """Level of the slow part of each dwell beside its whole."""
+        slow = self.order <= SLOW
+        ratio = self._ratio(shares, weight)
+        return np.asarray(np.bincount(self.dwell[slow], ratio[slow], self.dwells) / SLOW)
+
+    def _mixture(self, shares: FloatArray, weight: FloatArray) -> FloatArray:
+        """Shares of the largest likelihood: steps that keep them positive and never lower it."""
+        for _ in range(STEPS):
+            expected = self.basis @ shares
+            ratio = self.power / (self._levels(expected, weight) * expected)
+            gain = self.basis.T @ (weight * ratio / expected) / (self.basis.T @ (weight / expected))
+            shares = shares * np.sqrt(gain)
+            shares = shares / shares.sum()
+        return shares
+
+
+def _agreement(levels: FloatArray, count: int) -> tuple[float, float]:
+    """Cosines that a common level counts as beside ``count`` of a dwell's own, and that level (Smyth)."""
+    logs = np.log(np.maximum(levels, 1e-12)) - special.digamma(count / 2.0) + np.log(count / 2.0)
+    beyond = float(np.var(logs, ddof=1)) - float(special.polygamma(1, count / 2.0))
+    if beyond <= 1e-3:
+        return float("inf"), float(np.mean(levels))
+    half = float(optimize.brentq(lambda x: float(special.polygamma(1, x)) - beyond, 1e-3, 1e6))
+    return 2.0 * half, float(np.exp(np.mean(logs) + special.digamma(half) - np.log(half)))

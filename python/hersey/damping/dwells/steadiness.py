@@ -1,0 +1,113 @@
+"""Whether a stretch is a steady dwell."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from hersey.arrays import FloatArray
+from hersey.damping.dwells.groups import MIN_SAMPLES
+from hersey.damping.dwells.noise import mean_and_error, thinned
+from hersey.damping.dwells.ripple import turned, without_ripple
+from hersey.damping.dwells.shared_noise import Powers, SharedNoise
+from hersey.log.torque_log import Run
+from hersey.units import rpm
+
+#: Largest drifts within a dwell: of temperature in K; of speed and torque as a share; of torque also in
+#: standard deviations of what fluctuates about the drift (a turning shaft makes slow waves of its own).
+MAX_TEMPERATURE_DRIFT, MAX_SPEED_DRIFT, MAX_TORQUE_DRIFT, MAX_DRIFT_TO_NOISE = 2.0, 0.01, 0.03, 2.0
+#: Largest standard deviation within a dwell as a share of the mean, of torque and of speed. A speed that
+#: swings more has no torque of its own: the law is not straight over what it swings through.
+MAX_TORQUE_SWING, MAX_SPEED_SWING = 0.35, 0.5
+#: Stick-slip: torque swings by more than this, and its changes are this skewed (slow rises, sudden drops).
+STICK_SLIP_SWING, STICK_SLIP_SKEWNESS = 0.05, -3.0
+#: Drift counts as real beyond this many standard errors.
+SIGNIFICANT = 3.0
+
+
+def unsteady(
+    run: Run,
+    start: int,
+    end: int,
+    min_dwell: float,
+    tare: float,
+    noise: SharedNoise | None = None,
+    ripple: bool = False,
+) -> str | None:
+    """Why rows [start, end) are not a steady dwell, or None."""
+    time, speed, torque = run.time[start:end], run.speed[start:end], run.torque[start:end] - tare
+    if end - start < MIN_SAMPLES or time[-1] - time[0] < min_dwell:
+        lasted = float(time[-1] - time[0]) if end > start else 0.0
+        return (
+            f"dwell too short: {lasted:.1f} s or {end - start} rows are settled, "
+            f"{min_dwell:g} s and {MIN_SAMPLES} rows are needed"
+        )
+    if np.mean(torque) == 0.0:
+        return "torque is zero: is the sensor connected?"
+    temperature = None if run.temperature is None else run.temperature[start:end]
+    if np.std(speed) > MAX_SPEED_SWING * abs(np.mean(speed)):
+        slow, fast = sorted(abs(rpm(float(end))) for end in np.quantile(speed, (0.01, 0.99)))
+        return (
+            f"speed not held: it varies by {np.std(speed) / abs(np.mean(speed)):.0%} (standard deviation), "
+            f"{slow:.3g} to {fast:.3g} rpm"
+        )
+    swing = float(np.std(torque)) / abs(float(np.mean(torque)))
+    if swing > STICK_SLIP_SWING and _skewness_of_changes(torque) < STICK_SLIP_SKEWNESS:
+        return (
+            f"stick-slip: torque swings by {swing:.0%} (standard deviation), rising slowly and dropping fast"
+        )
+    if swing > MAX_TORQUE_SWING:
+        return f"torque swings by {swing:.0%} (standard deviation): no steady sliding"
+    if ripple:
+        angle = turned(time, speed)
+        speed, torque = without_ripple(angle, speed), without_ripple(angle, torque)
+    drift, _ = drift_over(time, speed)
+    if abs(drift) > MAX_SPEED_DRIFT * abs(float(np.mean(speed))):
+        return f"speed drifts by {drift / float(np.mean(speed)):+.1%} over the dwell"
+    drift, _ = drift_over(time, temperature) if temperature is not None else (0.0, 0.0)
+    if abs(drift) > MAX_TEMPERATURE_DRIFT:
+        return f"temperature drifts by {drift:+.1f} K over the dwell"
+    drift, deviation = drift_over(time, torque, noise)
+    if abs(drift) > max(MAX_TORQUE_DRIFT * abs(float(np.mean(torque))), MAX_DRIFT_TO_NOISE * deviation):
+        return f"torque drifts by {drift / float(np.mean(torque)):+.1%} over the dwell"
+    return None
+
+
+def _skewness_of_changes(torque: FloatArray) -> float:
+    """Least skewness of the changes of torque (taken positive) from block to block, over block lengths."""
+    load = torque * np.sign(torque.mean())
+    least = 0.0
+    for blocks in (100, 400, 1600):
+        size = max(1, load.size // blocks)
+        changes = np.diff(load[: load.size // size * size].reshape(-1, size).mean(axis=1))
+        deviation = float(np.std(changes))
+        if deviation > 0:
+            least = min(least, float(np.mean((changes - changes.mean()) ** 3)) / deviation**3)
+    return least
+
+
+def drift_over(time: FloatArray, values: FloatArray, noise: SharedNoise | None = None) -> tuple[float, float]:
+    """Change along a straight line over the dwell, 0 if within chance, and the deviation about the line.
+
+    Chance is what the values themselves show, or the noise given.
+    """
+    interval = float(time[-1] - time[0]) / max(time.size - 1, 1)
+    powers = None if noise is None else Powers.of(values, interval)
+    time, values = thinned(time), thinned(values)
+    slope = _slope(time, values)
+    residual = values - values.mean() - slope * (time - time.mean())
+    error = mean_and_error(residual)[1] * np.sqrt(12.0)  # of a line's rise, uniform times
+    if noise is not None and powers is not None and error > 0.0:
+        error = noise.rise_error(powers)
+    rise = slope * float(time[-1] - time[0])
+    return (rise if abs(rise) > SIGNIFICANT * error else 0.0), float(np.std(residual))
+
+
+def straightened(time: FloatArray, values: FloatArray) -> FloatArray:
+    """Return values without the straight line through them, mean kept."""
+    return np.asarray(values - _slope(time, values) * (time - time.mean()))
+
+
+def _slope(time: FloatArray, values: FloatArray) -> float:
+    t = time - time.mean()
+    spread = float(np.sum(t * t))
+    return float(np.sum(t * values)) / spread if spread else 0.0

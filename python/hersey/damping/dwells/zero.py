@@ -1,0 +1,203 @@
+"""The zero of the torque over the log, from every stretch in which the drive stands.
+
+Each standing stretch measures the zero at its time. Between and beyond them it is a constant, a line and a
+random walk together. Neither the size of the line nor that of the walk is chosen: every pair of sizes, none
+among them, is weighed by its restricted likelihood, and the zeros that they give are averaged with their
+covariances and with what they differ by. Few stretches thus leave much open, by themselves.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import linalg, stats
+
+from hersey.arrays import FloatArray
+from hersey.damping.dwells.noise import mean_and_error
+from hersey.damping.dwells.segments import Segment
+from hersey.damping.dwells.shared_noise import Powers, SharedNoise
+from hersey.log.torque_log import Run
+
+#: Sizes of line and walk over the log that are weighed, as shares of what the stretches differ by.
+SIZES = (0.0, 0.1, 0.2, 0.4, 0.8, 1.6, 3.2)
+#: Disturbances of the zero with less than this share of the variance of the largest are left to the dwells,
+#: and those that leave no dwell more than this share of its own error; there are so many at the most.
+SMALL, NEGLIGIBLE, MOST_DISTURBANCES = 1e-6, 0.3, 12
+#: Times at which disturbances are computed at the most; between them they are straight.
+MOST_TIMES = 300
+#: A difference of stretches is no chance below this p-value.
+CHANCE = 0.01
+
+
+@dataclass(frozen=True)
+class Standing:
+    """A stretch in which the drive stands: middle, s into the log, and its mean torque and error, N m."""
+
+    run: int
+    time: float
+    torque: float
+    error: float
+
+
+def starts_of(runs: tuple[Run, ...]) -> FloatArray:
+    """Return when each run starts, s into the log: runs follow one another without a pause."""
+    durations = [float(run.time[-1] - run.time[0]) for run in runs]
+    return np.concatenate([[0.0], np.cumsum(durations)[:-1]])
+
+
+def standing_stretches(
+    runs: tuple[Run, ...], segments: list[list[Segment]], noise: SharedNoise | None = None
+) -> list[Standing]:
+    """Return the stretches in which the drive stands, without their first and last tenth."""
+    starts = starts_of(runs)
+    stretches = []
+    for index, (run, run_segments) in enumerate(zip(runs, segments, strict=True)):
+        for s in run_segments:
+            if s.standing and s.steady:
+                trim = (s.end - s.start) // 10
+                first, last = s.start + trim, s.end - trim
+                mean, error, _ = mean_and_error(run.torque[first:last])
+                if noise is not None:  # noise of a standing drive may be less, hardly slower
+                    error = noise.mean_error(Powers.of(run.torque[first:last], run.sampling_interval))
+                middle = float(run.time[first] + run.time[last - 1]) / 2.0 - float(run.time[0])
+                stretches.append(Standing(index, float(starts[index]) + middle, mean, error))
+    return stretches
+
+
+@dataclass(frozen=True)
+class Zero:
+    """What the stretches say of the zero, N m, at any time of the log, s."""
+
+    stretches: tuple[Standing, ...]
+    duration: float  #: of the log, s
+
+    @property
+    def mean(self) -> float:
+        """Mean of the stretches, each by how well it is known."""
+        return float(np.average(self._torque, weights=1.0 / self._errors**2))
+
+    @property
+    def p_value(self) -> float:
+        """Probability that stretches of one constant zero differ as much; 1 for a single one."""
+        if len(self.stretches) < 2:
+            return 1.0
+        square = float(np.sum(((self._torque - self.mean) / self._errors) ** 2))
+        return float(stats.chi2.sf(square, len(self.stretches) - 1))
+
+    def at(self, times: FloatArray) -> FloatArray:
+        """Return the zero at these times, shape (times,)."""
+        return self._predicted(np.asarray(times, dtype=np.float64))[0]
+
+    def disturbances(self, times: FloatArray, errors: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return what one standard error of each disturbance does at these times, and the error left over.
+
+        Shapes (times, disturbances), the largest first, and (times,); ``errors`` are those of the dwells
+        themselves, beside which small disturbances are not told apart.
+        """
+        known = np.unique(times)
+        if known.size > MOST_TIMES:
+            known = np.unique(np.quantile(known, np.linspace(0.0, 1.0, MOST_TIMES)))
+        covariance = self._predicted(known)[1]
+        values, vectors = linalg.eigh(covariance)
+        large = np.flatnonzero(values > SMALL * values[-1])[::-1][:MOST_DISTURBANCES]
+        modes = vectors[:, large] * np.sqrt(values[large])
+        modes = modes * np.where(modes.sum(axis=0) < 0.0, -1.0, 1.0)
+        variances = np.diag(covariance)[:, None] - np.cumsum(modes**2, axis=1)
+        left = np.column_stack([np.interp(times, known, v) for v in np.sqrt(np.maximum(variances, 0.0)).T])
+        enough = np.all(left <= NEGLIGIBLE * errors[:, None], axis=0)
+        count = int(np.argmax(enough)) + 1 if enough.any() else left.shape[1]
+        at_times = [np.interp(times, known, mode) for mode in modes[:, :count].T]
+        return np.column_stack(at_times), np.asarray(left[:, count - 1])
+
+    @property
+    def _torque(self) -> FloatArray:
+        return np.array([s.torque for s in self.stretches])
+
+    @property
+    def _errors(self) -> FloatArray:
+        """Errors of the stretches; a sensor without noise still has some resolution."""
+        least = 1e-5 * max(1e-9, float(np.max(np.abs(self._torque))))
+        return np.maximum([s.error for s in self.stretches], least)
+
+    def _predicted(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """The zero at these times and its covariance, averaged over sizes of line and walk."""
+        count = len(self.stretches)
+        if count == 1:
+            return np.full(times.size, self._torque[0]), np.full((times.size,) * 2, self._errors[0] ** 2)
+        size = max(float(np.ptp(self._torque)), float(np.min(self._errors)))
+        pairs = [(size * line, size * walk) for line in SIZES for walk in SIZES]
+        # each alone: no line, or one of any size; no walk, or one of any size
+        nothing = 0.5
+        prior = np.where(np.array(SIZES) == 0.0, nothing, (1.0 - nothing) / (len(SIZES) - 1))
+        fitted = [self._kriged(times, line, walk) for line, walk in pairs]
+        weight = (
+            np.array([likelihood for _, _, likelihood in fitted]) + np.log(np.outer(prior, prior)).ravel()
+        )
+        weight = np.exp(weight - weight.max())
+        weight /= weight.sum()
+        mean = np.sum([w * values for w, (values, _, _) in zip(weight, fitted, strict=True)], axis=0)
+        covariance = np.zeros((times.size, times.size))
+        for w, (values, spread, _) in zip(weight, fitted, strict=True):
+            if w > 1e-6:
+                covariance += w * (spread + np.outer(values - mean, values - mean))
+        return np.asarray(mean), covariance
+
+    def _kriged(self, times: FloatArray, line: float, walk: float) -> tuple[FloatArray, FloatArray, float]:
+        """The zero, its covariance and the restricted log-likelihood, for sizes (N m) over the log."""
+        own = np.array([s.time for s in self.stretches])
+        inside = self._kernel(own, own, line, walk) + np.diag(self._errors**2)
+        across = self._kernel(times, own, line, walk)
+        root = linalg.cho_factor(inside, lower=True)
+        ones = np.ones(own.size)
+        solved_ones = linalg.cho_solve(root, ones)
+        of_level = float(ones @ solved_ones)
+        level = float(self._torque @ solved_ones) / of_level
+        solved = linalg.cho_solve(root, self._torque - level)
+        likelihood = -0.5 * float((self._torque - level) @ solved) - float(np.sum(np.log(np.diag(root[0]))))
+        likelihood -= 0.5 * float(np.log(of_level))
+        left = 1.0 - across @ solved_ones
+        spread = self._kernel(times, times, line, walk) - across @ linalg.cho_solve(root, across.T)
+        return level + across @ solved, spread + np.outer(left, left) / of_level, likelihood
+
+    def _kernel(self, first: FloatArray, second: FloatArray, line: float, walk: float) -> FloatArray:
+        """Covariance of line and walk between times."""
+        a, b = first[:, None] / self.duration, second[None, :] / self.duration
+        return np.asarray(line**2 * (a - 0.5) * (b - 0.5) + walk**2 * np.minimum(a, b))
+
+    def notes(self, *, subtracted: bool, times: FloatArray) -> tuple[str, ...]:
+        """Return what there is to say of it, in sentences, for dwells at these times."""
+        count, p = len(self.stretches), self.p_value
+        if count == 1:
+            return (_ONE,) if subtracted else ()
+        drifts = p < CHANCE
+        if not subtracted:
+            rise = float(np.ptp(self._torque))
+            return (
+                (
+                    f"While the drive stands, torque differs by {rise:.3g} N m from stretch to stretch "
+                    f"(p = {p:.1g}): the zero drifts. It is not subtracted; if the drive stands free, "
+                    "say --tare standing.",
+                )
+                if drifts
+                else ()
+            )
+        out = []
+        if drifts:
+            rise = float(np.ptp(self.at(times)))
+            out.append(
+                f"The tare drifts by {rise:.3g} N m over the dwells (p = {p:.1g}, {count} standing "
+                "stretches): each dwell has the tare of its time, and the error of it."
+            )
+        if count == 2:
+            out.append(
+                "Two standing stretches: only by how much the zero differs between them is seen, not what it "
+                "did between and beyond them."
+            )
+        return tuple(out)
+
+
+_ONE = (
+    "One standing stretch: a drift of the zero cannot be seen; it would shift torque more the later a dwell, "
+    "and tilt its exponents. Let the drive stand again at the end, better every few dwells."
+)
