@@ -27,6 +27,7 @@ def fit(
 
     from hersey.damping.fit import fit as fitted
     from hersey.document.assembly import fit_document
+    from hersey.verdict.cautions import cautions
     from hersey.verdict.regime import regime
 
     with working("fitting the surface"):
@@ -37,3 +38,5 @@ def fit(
         return
     say(surface.summary())
     say(regime(points, surface).verdict)
+    for caution in cautions(points, surface):
+        say(f"- {caution}")

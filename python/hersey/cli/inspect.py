@@ -68,6 +68,8 @@ def inspect(
             isothermal=reading.isothermal,
             drop_missing=reading.drop_missing,
             min_dwell=parse("time", reading.min_dwell),
+            tare=reading.tare,
+            rotation=reading.rotation,
         )
     if kept is not None:
         with memory_limit(reading.max_memory):

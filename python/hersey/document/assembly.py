@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import warnings
-from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
@@ -39,14 +38,11 @@ from hersey.machine.machine import Machine
 from hersey.motion.drag import Drag
 from hersey.motion.simulation import Drivetrain, simulate, stick_slip
 from hersey.units import celsius, rpm
+from hersey.verdict.cautions import cautions
 from hersey.verdict.regime import regime
 
 #: Samples kept of each channel for display; extremes survive the thinning.
 DISPLAYED_SAMPLES = 2000
-#: A difference between directions counts as one beyond this share and this many standard errors.
-NOTABLE_DIFFERENCE, SIGNIFICANT = 0.02, 3.0
-#: A tare beyond this share of the least torque is asked about.
-LARGE_TARE = 0.1
 #: Drive speed of the simulation of the user's machine, as a share of its transition speed.
 SIMULATED_SPEED = 0.8
 
@@ -71,7 +67,7 @@ def analyse(
         hersey_version=_core.VERSION,
         title=_title(log),
         command=command,
-        warnings=_warnings(log, points, surface, machine),
+        warnings=_warnings(points, surface, machine),
         files=[_file(log, i) for i in range(len(log.files))],
         quality=_quality(log, points),
         points=_points(points, surface),
@@ -86,6 +82,7 @@ def analyse(
 def fit_document(log: TorqueLog, points: SteadyPoints, surface: DampingSurface) -> FitDocument:
     """Return what a fit needs to be read back: the fit, its dwells and files, and the regime."""
     return FitDocument(
+        warnings=cautions(points, surface),
         files=[_file(log, i) for i in range(len(log.files))],
         points=_points(points, surface),
         fit=_fit_part(points, surface),
@@ -216,112 +213,11 @@ def _fit_part(points: SteadyPoints, s: DampingSurface) -> FitPart:
     return FitPart.model_validate(s.to_dict() | chart_parts)
 
 
-def _warnings(
-    log: TorqueLog, points: SteadyPoints, surface: DampingSurface, machine: Machine | None
-) -> list[str]:
-    out = [f"Corrected: {correction}." for correction in log.corrections]
-    for file, run in zip(log.files, log.runs, strict=True):
-        if any("synthetic" in comment.lower() for comment in file.comments):
-            out.append(f"{file.name} is synthetic, by its own words: no measurement.")
-        if file.cut_off:
-            out.append(f"{file.name}: the file ends before its time.")
-        out += [f"{file.name}: {note}." for note in file.notes]
-        if file.missing_rows:
-            out.append(f"{file.name}: {file.missing_rows} rows without a number were left out, as asked.")
-        if run.gaps():
-            share = 1.0 - run.time.size * run.sampling_interval / max(float(run.time[-1] - run.time[0]), 1e-9)
-            out.append(
-                f"{file.name}: rows are missing at {run.gaps()} places ({max(share, 0):.1%} of the time)."
-            )
-    out += _tare_warning(points)
-    out += points.notes
-    out += [dropped] if (dropped := points.dropped()) else []
-    swinging = [r for r in points.rejected if "stick-slip" in r.reason]
-    if swinging:
-        out.append(
-            f"Stick-slip was recorded: {len(swinging)} "
-            f"{'stretch' if len(swinging) == 1 else 'stretches'} of held speed, left out of the fit."
-        )
-    out += _direction_warnings(points, surface)
-    out += _fit_warnings(surface)
+def _warnings(points: SteadyPoints, surface: DampingSurface, machine: Machine | None) -> list[str]:
+    out = cautions(points, surface)
     if surface.transition is None or machine is None:
         missing = "the data show no transition" if surface.transition is None else "no machine.toml was given"
         out.append(f"The simulation shows the paper's baseline, not this machine: {missing}.")
-    return out
-
-
-def _tare_warning(points: SteadyPoints) -> list[str]:
-    standing = points.standing_torque
-    if standing is None:
-        return []
-    least = float(np.min(np.abs(points.column("torque"))))
-    if points.tare:
-        if abs(points.tare) < LARGE_TARE * least:
-            return []
-        return [
-            f"The tare, {points.tare * 1e3:.3g} mN m, is {abs(points.tare) / least:.0%} of the least dwell: "
-            "is it the sensor's offset, and did the drive stand free?"
-        ]
-    if abs(standing) < 0.001 * least:
-        return []
-    return [
-        f"While the drive stood, torque read {standing * 1e3:.3g} mN m, {abs(standing) / least:.1%} of the "
-        "least dwell. It is not subtracted; if it is the sensor's offset, say --tare standing."
-    ]
-
-
-def _direction_warnings(points: SteadyPoints, surface: DampingSurface) -> list[str]:
-    out = []
-    forward = points.column("speed") > 0
-    approach = np.asarray(points.table["approach"].to_list())
-    pairs: Sequence[tuple[FloatArray, FloatArray, str, str]] = (
-        (surface.residuals[forward], surface.residuals[~forward], "forward", "reverse rotation"),
-        (
-            surface.residuals[approach == "from below"],
-            surface.residuals[approach == "from above"],
-            "dwells approached from below",
-            "from above",
-        ),
-    )
-    for first, second, name, other in pairs:
-        if first.size > 2 and second.size > 2:
-            difference = float(first.mean() - second.mean())
-            error = float(np.hypot(first.std() / first.size**0.5, second.std() / second.size**0.5))
-            if abs(difference) > max(NOTABLE_DIFFERENCE, SIGNIFICANT * error):
-                advice = "; fit one alone with --rotation" if name == "forward" else ""
-                out.append(
-                    f"Torque differs by {np.expm1(difference):+.1%} between {name} and {other}: "
-                    f"one surface does not describe both{advice}."
-                )
-    return out
-
-
-def _fit_warnings(surface: DampingSurface) -> list[str]:
-    out = []
-    for name, estimate in surface.torque_space.items():
-        coefficient = {"a": surface.a, "b": surface.b, "c": surface.c}[name]
-        if (
-            coefficient
-            and name != "a"
-            and abs(coefficient.value - estimate.value)
-            > max(0.005, 2.0 * np.hypot(coefficient.error, estimate.error))
-        ):
-            out.append(
-                f"Exponent {name} is {coefficient.value:.3f} fitted in logarithms but {estimate.value:.3f} "
-                "fitted in torque: the power law does not hold over the whole range."
-            )
-    if surface.temperature_range:
-        low, high = (celsius(t) for t in surface.temperature_range)
-        if high - low < 30.0:
-            out.append(
-                f"Temperature spans only {low:.0f} to {high:.0f} degC: a and b are strongly correlated, and "
-                "the law must not be used far outside."
-            )
-    if surface.statistics.scatter > 0.05:
-        out.append(
-            f"Dwells scatter by {surface.statistics.scatter:.0%} about the surface, more than their noise "
-            "explains."
-        )
     return out
 
 

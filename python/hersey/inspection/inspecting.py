@@ -185,6 +185,8 @@ def inspect(
     isothermal: bool = False,
     drop_missing: bool = False,
     min_dwell: float = 2.0,
+    tare: str = "none",
+    rotation: str = "both",
 ) -> Inspection:
     """Look at logs before a fit: also at such that cannot be fitted, or have no torque.
 
@@ -194,8 +196,8 @@ def inspect(
         As for `hersey.read`.
     mapping
         As for `hersey.log.mapping.read_with_mapping`.
-    min_dwell
-        Shortest dwell, s.
+    min_dwell, tare, rotation
+        As for `TorqueLog.steady`.
 
     Raises
     ------
@@ -231,7 +233,7 @@ def inspect(
     if read is None:
         return Inspection(reports, problem, (), {}, (), None)
     dropped = {file.name: file.missing_rows for file in read.log.files if file.missing_rows}
-    support = support_of(read.log, min_dwell=min_dwell)
+    support = support_of(read.log, min_dwell=min_dwell, tare=tare, rotation=rotation)
     return Inspection(reports, "", needed, dropped, read.corrections, support)
 
 

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hersey.arrays import FloatArray
 from hersey.damping.dwells import SteadyPoints, distinct_speeds, groups_of_temperature
+from hersey.damping.estimate import Estimate
+from hersey.damping.fit import fit
+from hersey.damping.rising import rising
+from hersey.damping.surface import DampingSurface
 from hersey.errors import InsufficientDataError
 from hersey.log.torque_log import TorqueLog
 from hersey.units import convert, rpm
@@ -22,10 +26,6 @@ NARROW_SPEEDS, NARROW_TEMPERATURES = 2.0, 30.0
 BRANCH_SPEEDS = 6
 #: Speed and temperature vary together beyond this correlation: their exponents cannot be told apart.
 TOGETHER = 0.95
-#: Speeds at each end of a torque curve from which its slope there is taken.
-_END = 3
-#: Speeds are one if their logarithms differ by less.
-_SAME = 0.03
 
 
 @dataclass(frozen=True)
@@ -55,10 +55,15 @@ class Support:
     cannot: tuple[str, ...]
 
 
-def support_of(log: TorqueLog, *, min_dwell: float = 2.0) -> Support:
-    """Return what a log supports; a log without a dwell supports nothing, and says why."""
+def support_of(
+    log: TorqueLog, *, min_dwell: float = 2.0, tare: str = "none", rotation: str = "both"
+) -> Support:
+    """Return what a log supports; a log without a dwell supports nothing, and says why.
+
+    ``min_dwell`` (s), ``tare`` and ``rotation`` are those of the fit to come.
+    """
     try:
-        points = log.steady(min_dwell=min_dwell)
+        points = log.steady(min_dwell=min_dwell, tare=tare, rotation=rotation)
     except InsufficientDataError as error:
         return Support(0, 0, None, (), {}, (), (str(error),))
     speed = np.abs(points.column("speed"))
@@ -127,30 +132,38 @@ def _branches(points: SteadyPoints, groups: list[NDArray[np.intp]], speed: Float
     if most < BRANCH_SPEEDS:
         few = f"at most {most} speed{'s' if most > 1 else ''} at one temperature"
         return [], [f"a transition: {few}; two branches need {BRANCH_SPEEDS} or more"]
-    torque = np.abs(points.column("torque"))
-    rich = [group for group, count in zip(groups, counts, strict=True) if count >= BRANCH_SPEEDS]
-    slopes = [_end_slopes(speed[group], torque[group]) for group in rich]
-    low, high = rpm(float(speed.min())), rpm(float(speed.max()))
-    falling = [group for group, (slow, fast) in zip(rich, slopes, strict=True) if slow < 0 < fast]
-    if falling:
-        kelvin = points.column("temperature") if points.log.has_temperature else None
-        where = (
-            "" if kelvin is None else " at " + _levels([float(np.mean(kelvin[group])) for group in falling])
-        )
-        return [f"a transition: torque falls at the slow end and rises at the fast end{where}"], []
-    if all(slow > 0 for slow, _ in slopes):
-        return [], [f"a transition: torque rises from {low:.3g} rpm on; one could lie at slower speeds"]
-    return [], [f"a transition: torque does not rise towards {high:.3g} rpm; one could lie at faster speeds"]
+    try:
+        surface = fit(_comparable(points, len(groups)))
+    except InsufficientDataError as error:
+        return [], [f"a transition: {error}"]
+    if surface.transition is None:
+        return _one_exponent(points, surface, [f"a transition: {surface.rejected_transition}"])
+    at = surface.transition.speed
+    said = f"a transition: torque falls, then rises, beyond doubt; {_in_rpm(at)}"
+    can, cannot = _one_exponent(points, surface, [])
+    return [said, *can], cannot
 
 
-def _end_slopes(speed: FloatArray, torque: FloatArray) -> tuple[float, float]:
-    """Slope of ln torque against ln speed over the slowest and the fastest speeds."""
-    w, level = np.log(speed), np.log(torque)
-    values = np.sort(w)
-    values = values[np.concatenate([[True], np.diff(values) > _SAME])]
-    ends = (w <= values[_END - 1] + _SAME, w >= values[-_END] - _SAME)
-    slow, fast = (float(np.polyfit(w[end], level[end], 1)[0]) for end in ends)
-    return slow, fast
+def _comparable(points: SteadyPoints, temperatures: int) -> SteadyPoints:
+    """The points as they can be fitted: at one temperature without it."""
+    if temperatures > 1 or not points.log.has_temperature:
+        return points
+    bare = tuple(replace(run, temperature=None) for run in points.log.runs)
+    return replace(points, log=replace(points.log, runs=bare))
+
+
+def _one_exponent(points: SteadyPoints, surface: DampingSurface, cannot: list[str]) -> Said:
+    """Whether one exponent of speed holds, above the transition if there is one."""
+    branch = rising(_comparable(points, 0 if surface.b is None else 2), surface)
+    if branch.lack_of_fit is None:
+        return [], [*cannot, branch.why_not]
+    if branch.bent:
+        return [], [*cannot, f"one exponent of speed: {'; '.join(branch.lack_of_fit.misses())}"]
+    return ["one exponent of speed: it holds as far as the dwells tell"], cannot
+
+
+def _in_rpm(speed: Estimate) -> str:
+    return f"{rpm(speed.value):.3g} rpm [{rpm(speed.low):.3g}, {rpm(speed.high):.3g}]"
 
 
 def _levels(kelvin: Sequence[float]) -> str:

@@ -152,6 +152,7 @@ class RegimePart(Part):
 class FitDocument(Part):
     """What ``hersey fit --json`` prints: all that a fit needs to be read back."""
 
+    warnings: list[str]
     files: list[InputFile]
     points: list[Point]
     fit: FitPart

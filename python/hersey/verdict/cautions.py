@@ -1,0 +1,145 @@
+"""What must be known before a fit is trusted: said alike by every command that fits."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from hersey.arrays import FloatArray
+from hersey.damping.dwells import SteadyPoints
+from hersey.damping.surface import DampingSurface
+from hersey.units import celsius
+
+#: A difference between directions counts as one beyond this share and this many standard errors.
+NOTABLE_DIFFERENCE, SIGNIFICANT = 0.02, 3.0
+#: A tare beyond this share of the least torque is asked about.
+LARGE_TARE = 0.1
+#: p-value of chance below which a scatter of whole visits is spoken of.
+SURE = 0.01
+
+
+def cautions(points: SteadyPoints, surface: DampingSurface) -> list[str]:
+    """Return what must be known before a fit is trusted, in sentences: the same for every command."""
+    log = points.log
+    out = [f"Corrected: {correction}." for correction in log.corrections]
+    for file, run in zip(log.files, log.runs, strict=True):
+        if any("synthetic" in comment.lower() for comment in file.comments):
+            out.append(f"{file.name} is synthetic, by its own words: no measurement.")
+        if file.cut_off:
+            out.append(f"{file.name}: the file ends before its time.")
+        out += [f"{file.name}: {note}." for note in file.notes]
+        if file.missing_rows:
+            out.append(f"{file.name}: {file.missing_rows} rows without a number were left out, as asked.")
+        if run.gaps():
+            share = 1.0 - run.time.size * run.sampling_interval / max(float(run.time[-1] - run.time[0]), 1e-9)
+            out.append(
+                f"{file.name}: rows are missing at {run.gaps()} places ({max(share, 0):.1%} of the time)."
+            )
+    out += _tare_warning(points)
+    out += points.notes
+    out += [dropped] if (dropped := points.dropped()) else []
+    swinging = [r for r in points.rejected if "stick-slip" in r.reason]
+    if swinging:
+        out.append(
+            f"Stick-slip was recorded: {len(swinging)} "
+            f"{'stretch' if len(swinging) == 1 else 'stretches'} of held speed, left out of the fit."
+        )
+    out += _direction_warnings(points, surface)
+    out += _fit_warnings(surface)
+    return out
+
+
+def _tare_warning(points: SteadyPoints) -> list[str]:
+    standing = points.standing_torque
+    if standing is None:
+        return []
+    least = float(np.min(np.abs(points.column("torque"))))
+    if points.tare:
+        if abs(points.tare) < LARGE_TARE * least:
+            return []
+        return [
+            f"The tare, {points.tare * 1e3:.3g} mN m, is {abs(points.tare) / least:.0%} of the least dwell: "
+            "is it the sensor's offset, and did the drive stand free?"
+        ]
+    if abs(standing) < 0.001 * least:
+        return []
+    return [
+        f"While the drive stood, torque read {standing * 1e3:.3g} mN m, {abs(standing) / least:.1%} of the "
+        "least dwell. It is not subtracted; if it is the sensor's offset, say --tare standing."
+    ]
+
+
+def _direction_warnings(points: SteadyPoints, surface: DampingSurface) -> list[str]:
+    out = []
+    forward = points.column("speed") > 0
+    approach = np.asarray(points.table["approach"].to_list())
+    pairs: Sequence[tuple[FloatArray, FloatArray, str, str]] = (
+        (surface.residuals[forward], surface.residuals[~forward], "forward", "reverse rotation"),
+        (
+            surface.residuals[approach == "from below"],
+            surface.residuals[approach == "from above"],
+            "dwells approached from below",
+            "from above",
+        ),
+    )
+    for first, second, name, other in pairs:
+        if first.size > 2 and second.size > 2:
+            difference = float(first.mean() - second.mean())
+            error = float(np.hypot(first.std() / first.size**0.5, second.std() / second.size**0.5))
+            if abs(difference) > max(NOTABLE_DIFFERENCE, SIGNIFICANT * error):
+                advice = "; fit one alone with --rotation" if name == "forward" else ""
+                out.append(
+                    f"Torque differs by {np.expm1(difference):+.1%} between {name} and {other}: "
+                    f"one surface does not describe both{advice}."
+                )
+    return out
+
+
+def _fit_warnings(surface: DampingSurface) -> list[str]:
+    out = []
+    for name, estimate in surface.torque_space.items():
+        coefficient = {"a": surface.a, "b": surface.b, "c": surface.c}[name]
+        if (
+            coefficient
+            and name != "a"
+            and abs(coefficient.value - estimate.value)
+            > max(0.005, 2.0 * np.hypot(coefficient.error, estimate.error))
+        ):
+            out.append(
+                f"Exponent {name} is {coefficient.value:.3f} fitted in logarithms but {estimate.value:.3f} "
+                "fitted in torque: the power law does not hold over the whole range."
+            )
+    if surface.temperature_range:
+        low, high = (celsius(t) for t in surface.temperature_range)
+        if high - low < 30.0:
+            out.append(
+                f"Temperature spans only {low:.0f} to {high:.0f} degC: a and b are strongly correlated, and "
+                "the law must not be used far outside."
+            )
+    out += _shared_warnings(surface)
+    if surface.statistics.scatter > 0.05:
+        out.append(
+            f"Dwells stand {surface.statistics.scatter:.0%} off the surface, more than their noise explains: "
+            "scatter between dwells, or a law that does not hold."
+        )
+    return out
+
+
+def _shared_warnings(surface: DampingSurface) -> list[str]:
+    """What the dwells of a visit to a temperature, or of a run, have in common."""
+    out = []
+    for shared in surface.statistics.shared:
+        if not shared.told and surface.b is not None and not surface.b.told:
+            out.append(
+                f"Exponent b is {surface.b.value:.3g}, its interval not told: each temperature was visited "
+                "once, so that an error of a whole visit would pass for temperature. Visit one of them again, "
+                "or a third."
+            )
+        if shared.deviation > 0 and shared.p_value < SURE:
+            chance = f"p = {shared.p_value:.1g} for chance"
+            out.append(
+                f"All dwells of one {shared.name} stand off the law together, by {shared.deviation:.1%} "
+                f"({chance}): the intervals count {shared.name}s, not dwells."
+            )
+    return out
