@@ -133,7 +133,7 @@ def _shared_warnings(surface: DampingSurface) -> list[str]:
         if not shared.told and surface.b is not None and not surface.b.told:
             out.append(
                 f"Exponent b is {surface.b.value:.3g}, its interval not told: each temperature was visited "
-                "once, so that an error of a whole visit would pass for temperature. Visit one of them again, "
+                "once, so that an error of a whole visit would pass for temperature. Visit one again, "
                 "or a third."
             )
         if shared.deviation > 0 and shared.p_value < SURE:
