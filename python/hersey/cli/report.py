@@ -70,7 +70,8 @@ def report(
     if as_json:
         print_document(document)
         return
-    say(document.regime.verdict)
+    for paragraph in document.verdict:
+        say(paragraph)
     for warning in document.warnings:
         say(f"- {warning}")
     say(document.fit.summary)

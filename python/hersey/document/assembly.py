@@ -63,17 +63,20 @@ def analyse(
         If the points cannot determine the surface.
     """
     surface = fit(points, temperature_scale=temperature_scale)
+    seen = regime(points, surface)
+    film = film_part(points, surface, machine)
     return Analysis(
         hersey_version=_core.VERSION,
         title=_title(log),
         command=command,
+        verdict=[*([film.verdict] if film is not None and film.verdict else []), seen.verdict],
         warnings=_warnings(points, surface, machine),
         files=[_file(log, i) for i in range(len(log.files))],
         quality=_quality(log, points),
         points=_points(points, surface),
         fit=_fit_part(points, surface),
-        regime=RegimePart.model_validate(regime(points, surface).to_dict()),
-        film=film_part(points, surface, machine),
+        regime=RegimePart.model_validate(seen.to_dict()),
+        film=film,
         simulation=_simulation(surface, machine),
         timeline=_timeline(log),
     )

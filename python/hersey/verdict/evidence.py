@@ -297,7 +297,10 @@ def _text(
     thermal_expected: float,
 ) -> str:
     kept = [p for p in predictions if p.consistent]
-    lines = [
+    contradicted = seen.named is not None and not any(p.holds_here for p in kept)
+    lines = [f"Log and film theory contradict each other: the log has the exponent of {seen.named}."]
+    lines = lines if contradicted else []
+    lines += [
         f"The regime chart puts this contact in the {held} regime, where damping goes as speed to the power "
         f"{expected:.2f}; measured {c}."
     ]
@@ -307,10 +310,8 @@ def _text(
         lines.append(
             f"The log alone names no regime; not excluded: {listed([e.name for e in seen.explanations])}."
         )
-    elif any(p.holds_here for p in kept):
+    elif not contradicted:
         lines.append("The measured exponent is the one of that regime.")
-    else:
-        lines.append(f"This contradicts the log, which has the exponent of {seen.named}.")
     if held != "piezoviscous-elastic":
         lines.append(
             "Eq. 5 of the paper (Dowson-Higginson) does not apply to this contact, whatever the exponent."

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from typing import Literal
 
+from pydantic import Field
+
 from hersey.document.parts.cycles import CyclesPart
 from hersey.document.parts.figures import FiguresPart
 from hersey.document.parts.film import FilmPart
@@ -26,6 +28,7 @@ class Analysis(Part):
     hersey_version: str
     title: str
     command: str
+    verdict: list[str] = Field(description="in paragraphs; a contradiction first")
     warnings: list[str]
     files: list[InputFile]
     quality: Quality

@@ -16,7 +16,13 @@ function digits(value, count = 4) {
   return String(Number(value.toPrecision(count)));
 }
 function interval(e, scale = 1, count = 4) {
+  if (e.low === null || e.high === null) return `${digits(e.value * scale, count)} (interval not told)`;
   return `${digits(e.value * scale, count)} [${digits(e.low * scale, count)}, ${digits(e.high * scale, count)}]`;
+}
+function ends(e, scale = 1) {
+  const sensors = e.systematic ? `; sensors ±${digits(e.systematic * scale, 2)}` : "";
+  if (e.low === null || e.high === null) return `interval not told${sensors}`;
+  return `95 %: ${digits(e.low * scale, 3)} to ${digits(e.high * scale, 3)}${sensors}`;
 }
 function seconds(value) {
   return value >= 600 ? `${(value / 60).toFixed(1)} min` : `${digits(value)} s`;
@@ -61,7 +67,9 @@ async function chart(parent, name) {
 function head() {
   add(report, "p", `hersey ${data.hersey_version} · lubrication report`, "soft");
   add(report, "h1", data.title);
-  add(report, "p", data.regime.verdict, "verdict").id = "verdict";
+  const verdict = add(report, "div", "", "verdict");
+  verdict.id = "verdict";
+  data.verdict.forEach((text) => add(verdict, "p", text));
   if (data.warnings.length) {
     const list = add(report, "ul", "", "warnings");
     list.id = "warnings";
@@ -74,18 +82,18 @@ function head() {
     add(box, "span", label);
   };
   const { coefficients: c, transition } = data.fit;
-  card(digits(c.c.value, 3), `exponent of speed c, 95 %: ${digits(c.c.low, 3)} to ${digits(c.c.high, 3)}`);
+  card(digits(c.c.value, 3), `exponent of speed c, ${ends(c.c)}`);
   if (c.b) {
     const scale = data.fit.temperature_scale;
-    card(digits(c.b.value, 3), `exponent of temperature b (in ${scale}), 95 %: ${digits(c.b.low, 3)} to ${digits(c.b.high, 3)}`);
+    card(digits(c.b.value, 3), `exponent of temperature b (in ${scale}), ${ends(c.b)}`);
   }
   if (transition) {
     const t = data.fit.reference_temperature;
     const at = t === null ? "" : ` at ${degrees(t)}`;
     const s = transition.speed;
-    card(`${digits(s.value * TO_RPM, 3)} rpm`, `transition${at}, 95 %: ${digits(s.low * TO_RPM, 3)} to ${digits(s.high * TO_RPM, 3)}`);
+    card(`${digits(s.value * TO_RPM, 3)} rpm`, `transition${at}, ${ends(s, TO_RPM)}`);
     const m = transition.mixed_exponent;
-    card(digits(m.value, 3), `exponent below it, 95 %: ${digits(m.low, 3)} to ${digits(m.high, 3)}`);
+    card(digits(m.value, 3), `exponent below it, ${ends(m)}`);
   } else {
     card("none", "transition to a falling branch");
   }
@@ -140,19 +148,21 @@ function hypotheses() {
   const element = table(report, ["hypothesis", "exponent", "p-value", "", "meaning"], data.regime.hypotheses.map((h) => {
     const [low, high] = [digits(h.low, 3), digits(h.high, 3)];
     const range = h.low === null ? `below ${high}` : low === high ? high : `${low} to ${high}`;
-    return [h.name, range, h.p_value < 1e-4 ? "< 0.0001" : h.p_value.toFixed(4), h.consistent ? "agrees" : "rejected", h.meaning];
+    return [h.name, range, h.p_value < 1e-4 ? "< 0.0001" : h.p_value.toFixed(4), h.consistent ? "not excluded" : "excluded", h.meaning];
   }), [2]);
   data.regime.hypotheses.forEach((h, i) => { if (h.consistent) element.tBodies[0].rows[i].className = "kept"; });
   const tested = data.fit.transition ? "of the rising branch" : "over all speeds";
   add(report, "p", `Tested is the exponent c ${tested}, ${interval(data.fit.coefficients.c, 1, 3)}. `, "soft");
-  add(report, "p", "An exponent is evidence, not proof: heating of the film with speed, starvation or shear thinning can "
-    + "move it too. Agreement means that the 95 % interval of c does not exclude the value.", "soft");
+  add(report, "p", "p-values count all regimes tested, and allow for what the sensors do not know. An exponent is evidence, "
+    + "not proof. All that these dwells do not exclude:", "soft");
+  const list = add(report, "ul", "", "soft");
+  list.id = "explanations";
+  data.regime.explanations.forEach((e) => add(list, "li", e.name));
 }
 
 async function film() {
   if (!data.film) return;
   add(report, "h2", "What film theory says of this nip");
-  add(report, "p", data.film.verdict).id = "film";
   await chart(report, "film");
   const notes = add(report, "ul");
   data.film.notes.forEach((text) => add(notes, "li", text));
