@@ -4,8 +4,8 @@ Every log is written by the generator in ``benchmarks/strangers``, which shares 
 stand, and read as a user's would be. The parts and what counts as true stand in its modules. The same seed
 gives the same logs, whatever the number of processes and whichever settings are chosen.
 
-Usage: python -m benchmarks.coverage [--part coverage|verdicts|transitions] [--settings 'plain,visit5*']
-[--logs 200] [--processes 2] [--seed 1]
+Usage: python -m benchmarks.coverage [--part generator|coverage|verdicts|transitions]
+[--settings 'plain,visit5*'] [--logs 200] [--processes 2] [--seed 1]
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from concurrent.futures import Future, ProcessPoolExecutor
 from fnmatch import fnmatch
 from typing import Any, NamedTuple
 
-from benchmarks.strangers import intervals, transitions, verdicts
+from benchmarks.strangers import intervals, own, transitions, verdicts
 
 #: Threads that libraries may start in each process: the processes are the parallel part.
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "POLARS_MAX_THREADS", "RAYON_NUM_THREADS")
@@ -47,6 +47,13 @@ def _logs_of_transitions(name: str, asked: int | None) -> int:
 
 
 PARTS = {
+    "generator": Part(
+        "The generator by itself",
+        own.NAMES,
+        own.one_log,
+        own.table,
+        lambda name, asked: asked or own.LOGS,
+    ),
     "coverage": Part(
         "Coverage of 95 % intervals",
         intervals.NAMES,

@@ -22,15 +22,15 @@ def least_errors(
     law: PowerLaw, log: Log, plan: Plan, errors: Errors, celsius: float, *, tare: bool
 ) -> dict[str, float]:
     """Return the standard error of ln a, b, c and, where the law has it, ln w_t at a temperature (degC)."""
-    slopes = _slopes(law, log, celsius)
+    design = slopes(law, log, celsius)
     covariance = true_covariance(law, log, plan, errors, tare=tare)
-    information = slopes.T @ np.linalg.solve(covariance, slopes)
+    information = design.T @ np.linalg.solve(covariance, design)
     deviations = np.sqrt(np.diag(np.linalg.inv(information)))
     return dict(zip(("a", "b", "c", "w_t", "mixed"), deviations.tolist(), strict=False))
 
 
-def _slopes(law: PowerLaw, log: Log, celsius: float) -> Array:
-    """Derivatives of ln torque of each dwell, shape (dwells, parameters)."""
+def slopes(law: PowerLaw, log: Log, celsius: float) -> Array:
+    """Return the derivatives of ln torque of each dwell, shape (dwells, parameters)."""
     speed, film = log.dwell_speed, log.dwell_celsius
     moves = [{"a": law.a * np.exp(_STEP)}, {"b": law.b + _STEP}, {"c": law.c + _STEP}]
     if isinstance(law, TwoBranches):
@@ -69,7 +69,21 @@ def _of_means(log: Log, plan: Plan, errors: Errors) -> Array:
 
 def _of_zero(log: Log, errors: Errors) -> Array:
     """Covariance (N m)^2 of the zero at the dwells, given the standing stretches."""
-    standing, samples = np.array(log.standing).T
+    prior, m = _prior_of_zero(log, errors), log.middle.size
+    return np.asarray(prior[:m, :m] - zero_given_rest(log, errors) @ prior[m:, :m])
+
+
+def zero_given_rest(log: Log, errors: Errors) -> Array:
+    """Return the weights of the standing means in the zero at each dwell, shape (dwells, standstills)."""
+    prior, m = _prior_of_zero(log, errors), log.middle.size
+    samples = np.array(log.standing)[:, 1]
+    seen = prior[m:, m:] + np.diag((REST_NOISE * log.level) ** 2 / samples)
+    return np.asarray(np.linalg.solve(seen, prior[m:, :m]).T)
+
+
+def _prior_of_zero(log: Log, errors: Errors) -> Array:
+    """Covariance (N m)^2 of the zero at the dwells and then at the standstills; its mean is unknown."""
+    standing = np.array(log.standing)[:, 0]
     times = np.concatenate([log.middle, standing])
     end = float(log.time[-1])
     prior = np.full((times.size, times.size), (100.0 * log.level) ** 2)
@@ -78,6 +92,4 @@ def _of_zero(log: Log, errors: Errors) -> Array:
         prior += size * (
             np.minimum.outer(times, times) / end if errors.walk else np.outer(times, times) / end**2
         )
-    m = log.middle.size
-    seen = prior[m:, m:] + np.diag((REST_NOISE * log.level) ** 2 / samples)
-    return np.asarray(prior[:m, :m] - prior[:m, m:] @ np.linalg.solve(seen, prior[m:, :m]))
+    return np.asarray(prior)

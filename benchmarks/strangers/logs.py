@@ -69,6 +69,7 @@ class Log:
     temperature: Array  #: degC, as read
     dwell_speed: Array  #: rad/s
     dwell_celsius: Array  #: of the film
+    dwell_read: Array  #: degC, as its sensor has it
     heated: Array  #: share of the greatest power, 0 to 1
     dwell_torque: Array  #: by the law
     visit: Array
@@ -119,6 +120,7 @@ def record(law: TorqueLaw, plan: Plan, errors: Errors, rng: np.random.Generator)
         temperature=_temperature_trace(stretches, plan) + TEMPERATURE_NOISE * rng.standard_normal(time.size),
         dwell_speed=speed,
         dwell_celsius=film,
+        dwell_read=read,
         heated=heated,
         dwell_torque=torque,
         visit=stretches.visit[moving],
