@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 RPM = 2.0 * np.pi / 60.0
-#: Width in ln w over which the two branches of a corner merge: far less than the step between speeds.
-CORNER = 0.02
+#: Width in ln w over which two branches merge: it adds 0.07 % of torque at most, less than noise does.
+CORNER = 0.002
 #: Temperature at which the constants of a law are given, degC.
 MIDDLE = 130.0
 
