@@ -4,7 +4,8 @@ The truth is B = a T^b w^c, or that with a falling branch below a transition. An
 where it is finite; only those told can hold the truth or not. A systematic half width, where there is one,
 is added in quadrature in the setting that needs it (the hidden heating): there the bound holds more often
 than 95 %, and only too little is a fault. Widths are half widths over 1.96 least errors (`known`), of a and
-w_t in logarithms; a log whose transition is missed has no interval for it.
+w_t in logarithms; a log whose transition is missed has no interval for it. Where the noise within dwells is
+all there is, the mean torque of each dwell is judged too, by 1.96 of its stated errors.
 """
 
 from __future__ import annotations
@@ -15,9 +16,9 @@ import numpy as np
 
 import hersey
 from benchmarks.strangers.judged import generator, judged
-from benchmarks.strangers.known import least_errors
+from benchmarks.strangers.known import least_errors, variance_of_means
 from benchmarks.strangers.laws import MIDDLE, PowerLaw, TwoBranches
-from benchmarks.strangers.logs import Errors, Plan, record
+from benchmarks.strangers.logs import Errors, Log, Plan, record
 
 SPEEDS = tuple(float(s) for s in np.geomspace(8.0, 160.0, 10).round(2))
 FIVE, TWO = (80.0, 105.0, 130.0, 155.0, 180.0), (80.0, 180.0)
@@ -37,6 +38,12 @@ class Setting:
     plan: Plan = _LONG
     tare: bool = False
     bias: float = 0.0  #: K, declared of the temperature sensor
+
+    @property
+    def noise_alone(self) -> bool:
+        """Whether nothing but the noise of the samples is wrong."""
+        e = self.errors
+        return not (e.scatter or e.visit or e.drift or e.heating)
 
 
 _TARED = Plan(SPEEDS, FIVE, standing=REST)
@@ -65,7 +72,7 @@ class Interval:
     """Of one parameter on one log: whether it is told, holds the truth, and its width over the least."""
 
     told: bool
-    holds: bool = False
+    holds: float = 0.0  #: 1 or 0, or the share of the dwells
     ratio: float = np.nan
 
 
@@ -85,11 +92,25 @@ def one_log(seed: int, name: str, index: int) -> Row | str:
     least = least_errors(law, log, setting.plan, setting.errors, celsius, tare=setting.tare)
     estimates, truths = _estimates(found.surface), _truths(law, celsius)
     wide = bool(setting.errors.heating)
-    return {
+    intervals = {
         p: _interval(estimates.get(p), truths[p], least[p], logarithm=p in ("a", "w_t"), systematic=wide)
         for p in PARAMETERS
         if p in truths
     }
+    if found.points is not None and setting.noise_alone:
+        intervals["dwell"] = _of_dwells(found.points, log, setting)
+    return intervals
+
+
+def _of_dwells(points: hersey.SteadyPoints, log: Log, setting: Setting) -> Interval:
+    """The share of the dwells whose torque is the law's within its error, and how wide that is."""
+    at = 0.5 * (points.column("start") + points.column("end"))
+    nearest = np.abs(at[:, None] - log.middle[None, :]).argmin(axis=1)
+    off = np.log(points.column("torque") / log.dwell_torque[nearest])
+    error = points.column("torque_error") / points.column("torque")
+    least = np.sqrt(variance_of_means(log, setting.plan, setting.errors))[nearest]
+    held = float(np.mean(np.abs(off) <= REACH * error))
+    return Interval(True, held, float(np.median(error / least)))
 
 
 def _truths(law: PowerLaw, celsius: float) -> dict[str, float]:
@@ -112,12 +133,12 @@ def _interval(
     value, low, high, shift = found.value, found.low, found.high, getattr(found, "systematic", 0.0)
     if logarithm:
         if low <= 0.0:
-            return Interval(told=True, holds=truth <= high)
+            return Interval(told=True, holds=float(truth <= high))
         shift = shift / value
         value, low, high, truth = (float(np.log(x)) for x in (value, low, high, truth))
     if systematic:
         low, high = value - np.hypot(value - low, shift), value + np.hypot(high - value, shift)
-    return Interval(True, bool(low <= truth <= high), float((high - low) / (2.0 * REACH * least)))
+    return Interval(True, float(low <= truth <= high), float((high - low) / (2.0 * REACH * least)))
 
 
 def table(results: dict[str, list[Row | str]]) -> list[str]:

@@ -23,6 +23,7 @@ class Judged:
     """What hersey says of a log; ``refusal`` is its message where it says nothing else."""
 
     surface: hersey.DampingSurface | None = None
+    points: hersey.SteadyPoints | None = None
     named: frozenset[str] = frozenset()  #: one regime; several where they are said to agree
     explanations: frozenset[str] = frozenset()
     refusal: str = ""
@@ -44,7 +45,7 @@ def judged(log: Log, *, tare: bool = False, bias: float = 0.0) -> Judged:
             regime = hersey.regime(points, surface)
         except hersey.HerseyError as error:
             return Judged(refusal=str(error).removeprefix(str(path)))
-    return Judged(surface, _named(regime), _explanations(regime))
+    return Judged(surface, points, _named(regime), _explanations(regime))
 
 
 def _read(path: Path, bias: float) -> hersey.TorqueLog:

@@ -43,7 +43,7 @@ def slopes(law: PowerLaw, log: Log, celsius: float) -> Array:
 
 def true_covariance(law: PowerLaw, log: Log, plan: Plan, errors: Errors, *, tare: bool) -> Array:
     """Return the covariance of ln torque of the dwells, shape (dwells, dwells)."""
-    own = _of_means(log, plan, errors) + errors.scatter**2
+    own = variance_of_means(log, plan, errors) + errors.scatter**2
     together = errors.visit**2 * (log.visit[:, None] == log.visit[None, :])
     covariance = np.diag(own) + together
     if tare:
@@ -55,8 +55,8 @@ def true_covariance(law: PowerLaw, log: Log, plan: Plan, errors: Errors, *, tare
     return np.asarray(covariance)
 
 
-def _of_means(log: Log, plan: Plan, errors: Errors) -> Array:
-    """Variance of ln of the mean torque of each dwell, once settled, from the noise of the samples."""
+def variance_of_means(log: Log, plan: Plan, errors: Errors) -> Array:
+    """Return the variance of ln of the mean torque of each settled dwell, from the noise of its samples."""
     n = np.maximum(log.samples - 3.0 * SETTLING * plan.rate, 2.0)
     rest = REST_NOISE * log.level / log.dwell_torque
     others = SPEED_NOISE**2 + (TEMPERATURE_NOISE / log.dwell_celsius) ** 2

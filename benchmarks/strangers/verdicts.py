@@ -172,7 +172,8 @@ def table(results: dict[str, list[Verdict | str]]) -> list[str]:
     head = ["| truth | logs | a regime named | wrong | the truth's alone | truth among the explanations |"]
     lines = [*head, "|---|---|---|---|---|---|", *(_line(g, rows) for g, rows in groups.items())]
     lines += [_line("**true power laws**", powers), _line("**all**", everything), ""]
-    return lines + [line for name, rows in results.items() for line in _faults(name, rows)]
+    lines += [line for name, rows in results.items() for line in _wrong(name, rows)]
+    return lines + _not_listed(results)
 
 
 def _line(label: str, rows: list[Verdict | str]) -> str:
@@ -187,16 +188,20 @@ def _line(label: str, rows: list[Verdict | str]) -> str:
 _COUNTED = ("wrong", "right", "listed")
 
 
-def _faults(name: str, rows: list[Verdict | str]) -> list[str]:
+def _wrong(name: str, rows: list[Verdict | str]) -> list[str]:
+    """What was wrongly named, and why logs were refused."""
     kept = [row for row in rows if isinstance(row, Verdict)]
-    wrong = Counter(n for row in kept if row.wrong for n in row.named)
-    missed = sum(not row.listed for row in kept)
     lines = []
-    if wrong:
+    if wrong := Counter(n for row in kept if row.wrong for n in row.named):
         what = ", ".join(f"{n} x {regime}" for regime, n in wrong.most_common())
         lines.append(f"- {name}: wrong {sum(r.wrong for r in kept)} of {len(rows)} ({what})")
-    if missed:
-        lines.append(f"- {name}: truth not listed in {missed} of {len(rows)}")
     if refused := [row for row in rows if isinstance(row, str)]:
         lines.append(f"- {name}: {len(refused)} refused: {refused[0][:80]}")
     return lines
+
+
+def _not_listed(results: dict[str, list[Verdict | str]]) -> list[str]:
+    """In which cells the truth is not among the explanations, and how often, in one line."""
+    missed = {n: sum(not (isinstance(r, Verdict) and r.listed) for r in rows) for n, rows in results.items()}
+    cells = ", ".join(f"{n} {m} of {len(results[n])}" for n, m in missed.items() if m)
+    return [f"- truth not among the explanations: {cells}"] if cells else []
