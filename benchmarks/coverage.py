@@ -1,175 +1,168 @@
-"""Coverage of the intervals and choice of the law, over virtual logs whose truth is known.
+"""What hersey says of logs that strangers record: intervals, verdicts, transitions.
 
-Every log is written by the virtual test stand, read and reduced to dwells as a user's would be. Coverage:
-the share of logs whose 95 % interval of a parameter holds the truth, by method, in the regular setting
-(four temperatures, ten speeds up and down). Choice: the share of logs of each candidate on which it is
-chosen, or tied with the one chosen (AICc within 2).
+Every log is written by the generator in ``benchmarks/strangers``, which shares no code with the virtual test
+stand, and read as a user's would be. The parts and what counts as true stand in its modules. The same seed
+gives the same logs, whatever the number of processes and whichever settings are chosen.
 
-Usage: python -m benchmarks.coverage [--logs 500] [--first 0] [--choice 100] [--processes 2]
+Usage: python -m benchmarks.coverage [--part generator|coverage|verdicts|transitions]
+[--settings 'plain,visit5*'] [--logs 200] [--processes 2] [--seed 1]
 """
 
 from __future__ import annotations
 
 import argparse
-import tempfile
+import multiprocessing
+import os
+import signal
+import sys
 import time
-from collections import defaultdict
-from concurrent.futures import ProcessPoolExecutor
-from functools import partial
-from pathlib import Path
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future, ProcessPoolExecutor
+from fnmatch import fnmatch
+from typing import Any, NamedTuple
 
-import numpy as np
+from benchmarks.strangers import intervals, own, transitions, verdicts
 
-import hersey
-from hersey import testbench
-from hersey.damping.candidates import Observations, compare_models
-from hersey.damping.candidates.branched import FREE, HELD, ONE
-from hersey.damping.candidates.candidate import Candidate
-from hersey.damping.candidates.comparison import TIED
-from hersey.damping.candidates.fitting import fit_law
-from hersey.damping.candidates.intervals import METHODS, bootstrap_draws, estimates
-from hersey.damping.candidates.thermal import ARRHENIUS, CELSIUS, GAS_CONSTANT, KELVIN, VFT
+#: Threads that libraries may start in each process: the processes are the parallel part.
+_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "POLARS_MAX_THREADS", "RAYON_NUM_THREADS")
+#: Results between two lines of progress.
+_TOLD_EVERY = 20
 
-#: Apparent activation energy of torque of the truths, J/mol: that of `Truth` at 150 degC.
-ENERGY = 0.9 * GAS_CONSTANT * 423.15**2 / 150.0
-STAND = testbench.Stand(stick_slip=False)
-BELOW_ALL_SPEEDS = 1e-6
 
-TRUTHS: dict[Candidate, testbench.Truth] = {
-    Candidate(CELSIUS, ONE): testbench.ThermalTruth(
-        law="degC", activation_energy=ENERGY, transition_speed_rpm=BELOW_ALL_SPEEDS
+class Part(NamedTuple):
+    """A part: its settings, how one log of one is judged, how all are told, and how many logs by default."""
+
+    title: str
+    names: tuple[str, ...]
+    one_log: Callable[[int, str, int], Any]
+    table: Callable[[dict[str, list[Any]]], list[str]]
+    logs: Callable[[str, int | None], int]
+
+
+def _logs_of_transitions(name: str, asked: int | None) -> int:
+    """As many as asked of each kind without a transition, and as a share of those with one."""
+    asked = transitions.LOGS if asked is None else asked
+    with_one = max(1, round(asked * transitions.LOGS_WITH / transitions.LOGS))
+    return with_one if name.startswith("with") else asked
+
+
+PARTS = {
+    "generator": Part(
+        "The generator by itself",
+        own.NAMES,
+        own.one_log,
+        own.table,
+        lambda name, asked: asked or own.LOGS,
     ),
-    Candidate(KELVIN, ONE): testbench.ThermalTruth(
-        law="K", activation_energy=ENERGY, transition_speed_rpm=BELOW_ALL_SPEEDS
+    "coverage": Part(
+        "Coverage of 95 % intervals",
+        intervals.NAMES,
+        intervals.one_log,
+        intervals.table,
+        lambda name, asked: asked or 200,
     ),
-    Candidate(ARRHENIUS, ONE): testbench.ThermalTruth(
-        law="Arrhenius", activation_energy=ENERGY, transition_speed_rpm=BELOW_ALL_SPEEDS
+    "verdicts": Part(
+        "Regimes named",
+        verdicts.NAMES,
+        verdicts.one_log,
+        verdicts.table,
+        lambda name, asked: asked or verdicts.LOGS,
     ),
-    Candidate(VFT, ONE): testbench.ThermalTruth(
-        law="VFT",
-        activation_energy=ENERGY,
-        vogel_temperature=200.0,
-        transition_speed_rpm=BELOW_ALL_SPEEDS,
-    ),
-    Candidate(CELSIUS, HELD): testbench.Truth(),
-    Candidate(KELVIN, HELD): testbench.ThermalTruth(law="K", activation_energy=ENERGY),
-    Candidate(ARRHENIUS, HELD): testbench.ThermalTruth(law="Arrhenius", activation_energy=ENERGY),
-    Candidate(VFT, HELD): testbench.ThermalTruth(
-        law="VFT", activation_energy=ENERGY, vogel_temperature=200.0
-    ),
-    Candidate(CELSIUS, FREE): testbench.ThermalTruth(
-        law="degC", activation_energy=ENERGY, transition_share=0.5
-    ),
-    Candidate(ARRHENIUS, FREE): testbench.ThermalTruth(
-        law="Arrhenius", activation_energy=ENERGY, transition_share=0.5
-    ),
-    Candidate(VFT, FREE): testbench.ThermalTruth(
-        law="VFT", activation_energy=ENERGY, vogel_temperature=200.0, transition_share=0.5
-    ),
-    Candidate(ARRHENIUS, ONE, per_temperature=True): testbench.ThermalTruth(
-        law="Arrhenius",
-        activation_energy=ENERGY,
-        transition_speed_rpm=BELOW_ALL_SPEEDS,
-        exponent_drift=1e-3,
-    ),
-    Candidate(ARRHENIUS, ONE, stribeck=True): testbench.StribeckTruth(
-        law="Arrhenius", activation_energy=ENERGY, transition_speed_rpm=25.0
+    "transitions": Part(
+        "Transitions",
+        transitions.NAMES,
+        transitions.one_log,
+        transitions.table,
+        _logs_of_transitions,
     ),
 }
 
 
-def observed(seed: int, truth: testbench.Truth, stand: testbench.Stand = STAND) -> Observations:
-    """Return the dwells of one virtual log, read from its file."""
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "log.csv"
-        testbench.run(seed=seed, truth=truth, stand=stand).write(path)
-        return Observations.of(hersey.read(path).steady(tare="standing"))
+def _run(part: str, seed: int, name: str, index: int) -> Any:
+    return PARTS[part].one_log(seed, name, index)
 
 
-def truths_of(data: Observations, truth: testbench.Truth) -> dict[str, float]:
-    """Return the true values of the parameters of a power law in degC with two branches."""
-    assert data.reference_kelvin is not None
-    celsius = np.array(data.reference_kelvin - 273.15)
-    level = truth.a * float(celsius) ** truth.b * data.reference_speed**truth.c
-    return {
-        "damping at reference": level,
-        "b": truth.b,
-        "c": truth.c,
-        "c below the transition": truth.mixed_exponent,
-        "transition speed": float(truth.transition_speed(celsius)),
-    }
+def _ignore_interruption() -> None:
+    """The first process alone answers Ctrl-C."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
-def covered(seed: int) -> dict[tuple[str, str], bool]:
-    """Return for each parameter and method whether its interval holds the truth, on one log."""
-    truth = testbench.Truth()
-    data = observed(seed, truth)
-    fit = fit_law(Candidate(CELSIUS, HELD).law(data), data)
-    found = estimates(fit, data, draws=bootstrap_draws(fit, data, 200, seed))
-    known = truths_of(data, truth)
-    held = {}
-    for parameter in found:
-        for method in METHODS:
-            low, high = parameter.intervals.get(method, (np.inf, -np.inf))
-            held[parameter.name, method] = low <= known[parameter.name] <= high
-    return held
+def _chosen(part: Part, patterns: str) -> tuple[str, ...]:
+    wanted = patterns.split(",")
+    return tuple(n for n in part.names if any(fnmatch(n, p) for p in wanted))
 
 
-def chosen(number: int, seed: int) -> tuple[str, str, bool]:
-    """Return the true candidate, the candidate chosen, and whether they are one or tied."""
-    candidate, truth = list(TRUTHS.items())[number]
-    found = compare_models(observed(10_000 + seed, truth), bootstrap=0, cross_validate=False)
-    right = found.candidate(candidate.key)
-    gap = right.fit.aicc - found.chosen.fit.aicc
-    return candidate.key, found.chosen.candidate.key, right is found.chosen or abs(gap) < TIED
+class _Progress:
+    """How many logs of all are judged, on the terminal's second channel."""
+
+    def __init__(self, total: int) -> None:
+        self.total, self.done, self.began = total, 0, time.perf_counter()
+
+    def one_more(self, name: str) -> None:
+        """Count one; tell now and then."""
+        self.done += 1
+        if self.done % _TOLD_EVERY == 0 or self.done == self.total:
+            spent = time.perf_counter() - self.began
+            left = spent / self.done * (self.total - self.done)
+            print(
+                f"{self.done} of {self.total} logs, {left:.0f} s left ({name})", file=sys.stderr, flush=True
+            )
 
 
-def _report_coverage(results: list[dict[tuple[str, str], bool]]) -> None:
-    print(f"\nCoverage of 95 % intervals, {len(results)} logs:\n")
-    print("| parameter | " + " | ".join(METHODS) + " |")
-    print("|---" * (len(METHODS) + 1) + "|")
-    for name in dict.fromkeys(name for name, _ in results[0]):
-        shares = [float(np.mean([r[name, method] for r in results])) for method in METHODS]
-        print(f"| {name} | " + " | ".join(f"{share:.1%}" for share in shares) + " |")
-    print(f"\nOf a true 95 % the standard error is {np.sqrt(0.95 * 0.05 / len(results)):.1%}.")
+def _results(
+    pool: ProcessPoolExecutor, tasks: list[tuple[str, str, int]], seed: int
+) -> Iterator[tuple[str, str, Any]]:
+    """Yield part, setting and result in the order of the tasks."""
+    futures: list[Future[Any]] = [pool.submit(_run, part, seed, name, i) for part, name, i in tasks]
+    for (part, name, _), future in zip(tasks, futures, strict=True):
+        yield part, name, future.result()
 
 
-def _report_choice(results: list[tuple[str, str, bool]]) -> None:
-    found: dict[str, list[tuple[str, bool]]] = defaultdict(list)
-    for candidate, picked, right in results:
-        found[candidate].append((picked, right))
-    print("\n| truth | logs | chosen | chosen or tied | most often instead |")
-    print("|---|---|---|---|---|")
-    for candidate, each in found.items():
-        exactly = np.mean([picked == candidate for picked, _ in each])
-        others = [picked for picked, right in each if not right]
-        worst = max(set(others), key=others.count) if others else "-"
-        either = np.mean([right for _, right in each])
-        print(f"| {candidate} | {len(each)} | {exactly:.0%} | {either:.0%} | {worst} |")
-    print(f"\nall: chosen or tied {np.mean([right for _, _, right in results]):.1%}")
-
-
-def main() -> None:
-    """Run both parts and print their tables."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--logs", type=int, default=500)
-    parser.add_argument("--first", type=int, default=0)
-    parser.add_argument("--choice", type=int, default=100, help="logs of each candidate")
+def main() -> int:
+    """Judge all logs asked for and print the tables; after Ctrl-C those of the logs that are done."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--part", choices=PARTS, action="append", help="one part; may be repeated")
+    parser.add_argument("--settings", default="*", help="names or patterns, with commas")
+    parser.add_argument("--logs", type=int, help="of each setting")
     parser.add_argument("--processes", type=int, default=2)
+    parser.add_argument("--seed", type=int, default=1)
     given = parser.parse_args()
-    began = time.perf_counter()
-    with ProcessPoolExecutor(given.processes) as pool:
-        if given.logs:
-            seeds = range(given.first, given.first + given.logs)
-            _report_coverage(list(pool.map(covered, seeds, chunksize=4)))
-        if given.choice:
-            results = []
-            for number in range(len(TRUTHS)):
-                seeds = range(given.first, given.first + given.choice)
-                results += list(pool.map(partial(chosen, number), seeds, chunksize=4))
-            _report_choice(results)
-    print(f"\nseeds from {given.first}; {time.perf_counter() - began:.0f} s")
+    tasks = [
+        (label, name, i)
+        for label in given.part or PARTS
+        for name in _chosen(PARTS[label], given.settings)
+        for i in range(PARTS[label].logs(name, given.logs))
+    ]
+    if not tasks:
+        parser.error(f"no setting is called {given.settings}")
+    for variable in _THREADS:
+        os.environ.setdefault(variable, "1")
+    results, whole = _judge(tasks, given.seed, given.processes)
+    for label, rows in results.items():
+        print(f"\n## {PARTS[label].title}\n\nseed {given.seed}\n", *PARTS[label].table(rows), sep="\n")
+    return 0 if whole else 130
+
+
+def _judge(
+    tasks: list[tuple[str, str, int]], seed: int, processes: int
+) -> tuple[dict[str, dict[str, list[Any]]], bool]:
+    """Return results by part and setting, and whether they are all."""
+    results: dict[str, dict[str, list[Any]]] = {}
+    progress, fresh = _Progress(len(tasks)), multiprocessing.get_context("spawn")
+    pool = ProcessPoolExecutor(processes, mp_context=fresh, initializer=_ignore_interruption)
+    try:
+        for part, name, result in _results(pool, tasks, seed):
+            results.setdefault(part, {}).setdefault(name, []).append(result)
+            progress.one_more(name)
+    except KeyboardInterrupt:
+        print("interrupted: what follows holds the logs judged so far", file=sys.stderr)
+        pool.shutdown(wait=True, cancel_futures=True)
+        return results, False
+    pool.shutdown()
+    return results, True
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

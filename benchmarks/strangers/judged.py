@@ -1,0 +1,76 @@
+"""One log through hersey, by its public names."""
+
+from __future__ import annotations
+
+import tempfile
+import warnings
+import zlib
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+import hersey
+from benchmarks.strangers.logs import Log
+
+#: Beside a log whose temperature sensor is declared to be wrong by up to so much.
+SENSORS = '[sensors]\ntemperature = {{bias = "{bias:g} K"}}\n'
+
+
+@dataclass(frozen=True)
+class Judged:
+    """What hersey says of a log; ``refusal`` is its message where it says nothing else."""
+
+    surface: hersey.DampingSurface | None = None
+    points: hersey.SteadyPoints | None = None
+    named: frozenset[str] = frozenset()  #: one regime; several where they are said to agree
+    explanations: frozenset[str] = frozenset()
+    refusal: str = ""
+
+
+def generator(seed: int, name: str, index: int) -> np.random.Generator:
+    """Return the random numbers of one log of one setting."""
+    return np.random.default_rng([seed, zlib.crc32(name.encode()), index])
+
+
+def judged(log: Log, *, tare: bool = False, bias: float = 0.0) -> Judged:
+    """Return what hersey says of a log written to a file; ``bias`` (K) is declared of the temperature."""
+    with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        path = log.write(Path(folder) / "log.csv")
+        try:
+            points = _read(path, bias).steady(tare="standing" if tare else "none")
+            surface = hersey.fit(points)
+            regime = hersey.regime(points, surface)
+        except hersey.HerseyError as error:
+            return Judged(refusal=str(error).removeprefix(str(path)))
+    return Judged(surface, points, _named(regime), _explanations(regime))
+
+
+def _read(path: Path, bias: float) -> hersey.TorqueLog:
+    """Read a log, with what is declared of its sensors where this version can be told so."""
+    if not bias:
+        return hersey.read(path)
+    path.with_name("hersey.toml").write_text(SENSORS.format(bias=bias), encoding="utf-8")
+    try:
+        return hersey.read_with_mapping(path).log
+    except hersey.HerseyError:
+        return hersey.read(path)
+
+
+def _named(regime: hersey.Regime) -> frozenset[str]:
+    """The regime named; before there was one, those it was said to agree with."""
+    if hasattr(regime, "named"):
+        return frozenset({regime.named} if regime.named else ())
+    return frozenset(_consistent(regime))
+
+
+def _explanations(regime: hersey.Regime) -> frozenset[str]:
+    if hasattr(regime, "explanations"):
+        return frozenset(e.key for e in regime.explanations)
+    return frozenset(_consistent(regime))
+
+
+def _consistent(regime: hersey.Regime) -> Iterable[str]:
+    return (h.name for h in regime.hypotheses if h.consistent)
