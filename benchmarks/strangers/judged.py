@@ -15,7 +15,7 @@ import hersey
 from benchmarks.strangers.logs import Log
 
 #: Beside a log whose temperature sensor is declared to be wrong by up to so much.
-SENSORS = '[sensors]\ntemperature = {{bias = "{bias:g} K"}}\n'
+SENSORS = '[temperature]\nzero_error = "{bias:g} K"\n'
 
 
 @dataclass(frozen=True)
@@ -53,10 +53,7 @@ def _read(path: Path, bias: float) -> hersey.TorqueLog:
     if not bias:
         return hersey.read(path)
     path.with_name("hersey.toml").write_text(SENSORS.format(bias=bias), encoding="utf-8")
-    try:
-        return hersey.read_with_mapping(path).log
-    except hersey.HerseyError:
-        return hersey.read(path)
+    return hersey.read_with_mapping(path).log
 
 
 def _named(regime: hersey.Regime) -> frozenset[str]:

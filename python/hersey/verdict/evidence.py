@@ -296,10 +296,13 @@ def _text(
     thermal: Estimate | None,
     thermal_expected: float,
 ) -> str:
-    kept = [p for p in predictions if p.consistent]
-    contradicted = seen.named is not None and not any(p.holds_here for p in kept)
-    lines = [f"Log and film theory contradict each other: the log has the exponent of {seen.named}."]
-    lines = lines if contradicted else []
+    ours = [p.name for p in predictions if p.holds_here]
+    live = any(e.key.startswith(name) for e in seen.explanations for name in ours)
+    contradicted = seen.lack_of_fit is not None and not live
+    lines = []
+    if contradicted:
+        excluded = f"{listed(ours)}, alone or beside a constant torque" if ours else "every film of theory"
+        lines.append(f"Log and film theory contradict each other: the log excludes {excluded}.")
     lines += [
         f"The regime chart puts this contact in the {held} regime, where damping goes as speed to the power "
         f"{expected:.2f}; measured {c}."
@@ -307,9 +310,7 @@ def _text(
     if solved is not None:
         lines.append(f"Solved numerically for this roll, the film gives the power {solved:.2f}.")
     if seen.named is None:
-        lines.append(
-            f"The log alone names no regime; not excluded: {listed([e.name for e in seen.explanations])}."
-        )
+        lines.append("The log alone names no regime.")
     elif not contradicted:
         lines.append("The measured exponent is the one of that regime.")
     if held != "piezoviscous-elastic":

@@ -19,8 +19,9 @@ from scipy import optimize, stats
 from hersey.arrays import FloatArray, IntArray
 from hersey.damping.candidates.observations import Observations
 
-#: Eigenvalues below this share of the largest carry no information.
-_NO_INFORMATION = 1e-9
+#: Share of a contrast between groups that the law must leave: small changes of temperature within a visit
+#: do not tell its scatter from the law of temperature.
+_LEFT = 0.01
 #: Variances searched, over that of an average group of dwells, and how many are tried first.
 _SEARCHED, _TRIED = (1e-3, 1e6), 46
 
@@ -124,7 +125,7 @@ def _restricted(
     rest = np.append(residuals * weigh, np.zeros(modes))
     rest = rest - basis @ (basis.T @ rest)
     spread, axes = np.linalg.eigh(groups.T @ groups)
-    seen = spread > _NO_INFORMATION * float(np.max(np.sum(padded**2, axis=0)))
+    seen = spread > _LEFT * float(np.max(np.sum(padded**2, axis=0)))
     spread, along = spread[seen], (axes.T @ (groups.T @ rest))[seen]
     if not spread.size:
         return SharedScatter(grouping.name, 0.0, 1.0, told=False)
