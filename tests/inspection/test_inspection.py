@@ -192,7 +192,8 @@ def test_the_example_log(root: Path) -> None:
     assert [round(k - 273.15) for k in found.support.temperatures] == [90, 120, 150, 180]
     can = "; ".join(found.support.can)
     assert "exponent c of speed: 10 speeds, 5 to 140 rpm" in can
-    assert "torque falls at the slow end and rises at the fast end at 150, 180 degC" in can
+    assert "a transition: torque falls, then rises, beyond doubt; 8.3" in can
+    assert "one exponent of speed: it holds as far as the dwells tell" in can
     assert found.support.rejected["stick-slip"] > 500
     assert [f for f in found.findings if "missing" not in f] == []
     assert "cannot tell" not in found.summary()
@@ -293,7 +294,7 @@ def test_screw_drives_together_can_tell_what_each_alone_cannot() -> None:
     assert found.needed == ("--isothermal",)
     assert found.support is not None
     assert found.support.speeds == 15
-    assert any("torque falls at the slow end and rises" in said for said in found.support.can)
+    assert any("torque falls, then rises, beyond doubt" in said for said in found.support.can)
     assert not [f for f in found.findings if "coarse" not in f]
     alone = inspect(paths[5], units={"torque": "9.84 mN*m / 100"}).support
     assert alone is not None

@@ -165,12 +165,13 @@ def compare(
     )
     difference = y_b - y_a
     covariance = g_a @ of_a.fit.covariance @ g_a.T + g_b @ of_b.fit.covariance @ g_b.T
-    freedom = min(of_a.fit.freedom, of_b.fit.freedom)
+    freedom = _least_freedom(of_a, of_b, g_a, g_b)
     rank = of_a.fit.values.size
     reach = np.sqrt(rank * stats.f.ppf(CONFIDENCE, rank, freedom)) * np.sqrt(np.diag(covariance))
     shape = (max(temperatures.size, 1), speeds.size)
-    mean = _mean(difference, covariance, freedom)
-    changes = _changes(of_a, of_b, first.data, second.data, freedom)
+    all_of = np.full((1, difference.size), 1.0 / difference.size)
+    mean = _mean(difference, covariance, _least_freedom(of_a, of_b, all_of @ g_a, all_of @ g_b))
+    changes = _changes(of_a, of_b, first.data, second.data)
     ratio, low, high = (
         np.exp(v).reshape(shape) for v in (difference, difference - reach, difference + reach)
     )
@@ -229,6 +230,12 @@ def _common_candidate(a: ModelComparison, b: ModelComparison) -> tuple[Candidate
     return one, other
 
 
+def _least_freedom(a: CandidateFit, b: CandidateFit, g_a: FloatArray, g_b: FloatArray) -> float:
+    """Degrees of freedom of the less known log, least over linear combinations of the values (rows)."""
+    each = [fit.freedoms.of(row) for fit, rows in ((a.fit, g_a), (b.fit, g_b)) for row in rows]
+    return min(each)
+
+
 def _flat(speeds: FloatArray, temperatures: FloatArray) -> tuple[FloatArray, FloatArray | None]:
     if not temperatures.size:
         return speeds, None
@@ -248,7 +255,7 @@ def _law_at(
     )
 
 
-def _mean(difference: FloatArray, covariance: FloatArray, freedom: int) -> Estimate:
+def _mean(difference: FloatArray, covariance: FloatArray, freedom: float) -> Estimate:
     share = np.full(difference.size, 1.0 / difference.size)
     centre, error = float(share @ difference), float(np.sqrt(share @ covariance @ share))
     reach = float(stats.t.ppf(0.5 + CONFIDENCE / 2, freedom)) * error
@@ -256,9 +263,7 @@ def _mean(difference: FloatArray, covariance: FloatArray, freedom: int) -> Estim
     return Estimate(ratio, ratio * error, float(np.exp(centre - reach)), float(np.exp(centre + reach)))
 
 
-def _changes(
-    a: CandidateFit, b: CandidateFit, of_a: Observations, of_b: Observations, freedom: int
-) -> tuple[Change, ...]:
+def _changes(a: CandidateFit, b: CandidateFit, of_a: Observations, of_b: Observations) -> tuple[Change, ...]:
     """Differences of what does not depend on the reference; speeds at the reference of A."""
     out = []
     in_a = {q.name: q for q in quantities(a.fit, of_a)}
@@ -279,6 +284,7 @@ def _changes(
         )
         if is_ratio:
             values = values[0], values[1] * _moved(b, of_b, of_a.reference_kelvin)
+        freedom = min(fit.freedom_of(fit.law.names[k.parameter]) for fit, k in ((a.fit, p), (b.fit, q)))
         size = float(np.log(values[1] / values[0])) if is_ratio else values[1] - values[0]
         p_value = float(2 * stats.t.sf(abs(size) / max(error, 1e-300), freedom))
         reach = float(stats.t.ppf(0.5 + CONFIDENCE / 2, freedom)) * error

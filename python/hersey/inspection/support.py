@@ -137,11 +137,23 @@ def _branches(points: SteadyPoints, groups: list[NDArray[np.intp]], speed: Float
     except InsufficientDataError as error:
         return [], [f"a transition: {error}"]
     if surface.transition is None:
-        return _one_exponent(points, surface, [f"a transition: {surface.rejected_transition}"])
+        return _one_exponent(points, surface, [f"a transition: {_without(surface)}"])
     at = surface.transition.speed
     said = f"a transition: torque falls, then rises, beyond doubt; {_in_rpm(at)}"
+    if surface.reference_temperature is not None:
+        said += f" at {_levels([surface.reference_temperature])}"
     can, cannot = _one_exponent(points, surface, [])
     return [said, *can], cannot
+
+
+def _without(surface: DampingSurface) -> str:
+    """Why there is no transition, and where one could lie."""
+    low, high = (rpm(end) for end in surface.speed_range)
+    if surface.c.low > -1.0:
+        return f"torque rises from {low:.3g} rpm on; one could lie at slower speeds"
+    if surface.c.high < -1.0:
+        return f"torque does not rise towards {high:.3g} rpm; one could lie at faster speeds"
+    return surface.rejected_transition
 
 
 def _comparable(points: SteadyPoints, temperatures: int) -> SteadyPoints:
