@@ -30,8 +30,8 @@ SLOW = 6
 RIPPLE, NEVER_RIPPLE = 16.0, 3
 #: Longest time of the mixture, as a share of a dwell: of slower noise a dwell shows only the steepest part.
 LONGEST_TIME = 0.22
-#: Steps of the search for the mixture, and from one time of the mixture to the next.
-STEPS, TIME_STEP = 200, 2.0
+#: Steps of the search for the mixture, and those after ripple was left out; from one time to the next.
+STEPS, MORE_STEPS, TIME_STEP = 200, 60, 2.0
 
 
 @dataclass(frozen=True)
@@ -168,12 +168,12 @@ class _Pooled:
         """The mixture, ripple left out as soon as it is seen."""
         shares = np.ones(self.basis.shape[1])
         weight = self.count.copy()
-        for _ in range(3):
-            shares = self._mixture(shares, weight)
+        for steps in (STEPS, MORE_STEPS):
+            shares = self._mixture(shares, weight, steps)
             ratio = self._ratio(shares, weight)
             limit = 1.0 + (RIPPLE - 1.0) / np.sqrt(self.count)
             weight = np.where((ratio > limit) & (self.order > NEVER_RIPPLE), 0.0, self.count)
-        shares = self._mixture(shares, weight)
+        shares = self._mixture(shares, weight, MORE_STEPS)
         prior, level = _agreement(self._slow(shares, weight), SLOW)
         return SharedNoise(self.times, shares, prior, level)
 
@@ -192,13 +192,13 @@ class _Pooled:
         ratio = self._ratio(shares, weight)
         return np.asarray(np.bincount(self.dwell[slow], ratio[slow], self.dwells) / SLOW)
 
-    def _mixture(self, shares: FloatArray, weight: FloatArray) -> FloatArray:
-        """Shares of the largest likelihood: steps that keep them positive and never lower it."""
-        for _ in range(STEPS):
+    def _mixture(self, shares: FloatArray, weight: FloatArray, steps: int) -> FloatArray:
+        """Shares of the largest likelihood: steps that keep them positive."""
+        for _ in range(steps):
             expected = self.basis @ shares
             ratio = self.power / (self._levels(expected, weight) * expected)
             gain = self.basis.T @ (weight * ratio / expected) / (self.basis.T @ (weight / expected))
-            shares = shares * np.sqrt(gain)
+            shares = shares * gain
             shares = shares / shares.sum()
         return shares
 
