@@ -68,6 +68,7 @@ def inspect(
             isothermal=reading.isothermal,
             drop_missing=reading.drop_missing,
             min_dwell=parse("time", reading.min_dwell),
+            means=reading.are_means(logs),
         )
     if kept is not None:
         with memory_limit(reading.max_memory):

@@ -35,6 +35,7 @@ from hersey.document.parts import (
 from hersey.document.thinning import kept
 from hersey.errors import ExtrapolationWarning, ParameterError
 from hersey.log import TorqueLog
+from hersey.log.means import MeansTable
 from hersey.machine.machine import Machine
 from hersey.motion.drag import Drag
 from hersey.motion.simulation import Drivetrain, simulate, stick_slip
@@ -52,7 +53,7 @@ SIMULATED_SPEED = 0.8
 
 
 def analyse(
-    log: TorqueLog,
+    log: TorqueLog | MeansTable,
     points: SteadyPoints,
     *,
     command: str = "",
@@ -83,7 +84,7 @@ def analyse(
     )
 
 
-def fit_document(log: TorqueLog, points: SteadyPoints, surface: DampingSurface) -> FitDocument:
+def fit_document(log: TorqueLog | MeansTable, points: SteadyPoints, surface: DampingSurface) -> FitDocument:
     """Return what a fit needs to be read back: the fit, its dwells and files, and the regime."""
     return FitDocument(
         files=[_file(log, i) for i in range(len(log.files))],
@@ -93,28 +94,29 @@ def fit_document(log: TorqueLog, points: SteadyPoints, surface: DampingSurface) 
     )
 
 
-def _title(log: TorqueLog) -> str:
+def _title(log: TorqueLog | MeansTable) -> str:
     first = log.files[0].name
     return first if len(log.files) == 1 else f"{first} and {len(log.files) - 1} more"
 
 
-def _file(log: TorqueLog, index: int) -> InputFile:
-    file, run = log.files[index], log.runs[index]
+def _file(log: TorqueLog | MeansTable, index: int) -> InputFile:
+    file = log.files[index]
+    run = log.runs[index] if log.runs else None
     return InputFile(
         name=file.name,
         sha256=file.sha256,
         bytes=file.bytes,
         rows=file.rows,
         missing_rows=file.missing_rows,
-        duration=float(run.time[-1] - run.time[0]),
-        sampling_interval=run.sampling_interval,
-        gaps=run.gaps(),
+        duration=0.0 if run is None else float(run.time[-1] - run.time[0]),
+        sampling_interval=0.0 if run is None else run.sampling_interval,
+        gaps=0 if run is None else run.gaps(),
         channels=[ChannelUse(role=c.role, name=c.name, unit=c.unit) for c in file.channels],
         comments=list(file.comments),
     )
 
 
-def _quality(log: TorqueLog, points: SteadyPoints) -> Quality:
+def _quality(log: TorqueLog | MeansTable, points: SteadyPoints) -> Quality:
     return Quality(
         rows=log.rows,
         rows_used=int(points.table["rows"].sum()),
@@ -217,18 +219,18 @@ def _fit_part(points: SteadyPoints, s: DampingSurface) -> FitPart:
 
 
 def _warnings(
-    log: TorqueLog, points: SteadyPoints, surface: DampingSurface, machine: Machine | None
+    log: TorqueLog | MeansTable, points: SteadyPoints, surface: DampingSurface, machine: Machine | None
 ) -> list[str]:
     out = [f"Corrected: {correction}." for correction in log.corrections]
-    for file, run in zip(log.files, log.runs, strict=True):
+    for file, run in zip(log.files, log.runs or (None,) * len(log.files), strict=True):
         if any("synthetic" in comment.lower() for comment in file.comments):
             out.append(f"{file.name} is synthetic, by its own words: no measurement.")
         if file.cut_off:
             out.append(f"{file.name}: the file ends before its time.")
         out += [f"{file.name}: {note}." for note in file.notes]
-        if file.missing_rows:
+        if run is not None and file.missing_rows:
             out.append(f"{file.name}: {file.missing_rows} rows without a number were left out, as asked.")
-        if run.gaps():
+        if run is not None and run.gaps():
             share = 1.0 - run.time.size * run.sampling_interval / max(float(run.time[-1] - run.time[0]), 1e-9)
             out.append(
                 f"{file.name}: rows are missing at {run.gaps()} places ({max(share, 0):.1%} of the time)."
@@ -385,12 +387,12 @@ def _simulated(
     )
 
 
-def _timeline(log: TorqueLog) -> Timeline:
+def _timeline(log: TorqueLog | MeansTable) -> Timeline:
     starts, begin = [], 0.0
     for run in log.runs:
         starts.append(begin - float(run.time[0]))
         begin += float(run.time[-1] - run.time[0]) + run.sampling_interval
-    each = max(DISPLAYED_SAMPLES // len(log.runs), 60)
+    each = max(DISPLAYED_SAMPLES // max(len(log.runs), 1), 60)
 
     def series(name: str) -> Series:
         times: list[float] = []
@@ -405,7 +407,7 @@ def _timeline(log: TorqueLog) -> Timeline:
     return Timeline(
         speed=series("speed"),
         torque=series("torque"),
-        temperature=series("temperature") if log.has_temperature else None,
+        temperature=series("temperature") if log.has_temperature and log.runs else None,
         starts=starts,
     )
 

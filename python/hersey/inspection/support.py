@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from hersey.arrays import FloatArray
 from hersey.damping.dwells import SteadyPoints, distinct_speeds, groups_of_temperature
 from hersey.errors import InsufficientDataError
+from hersey.log.means import MeansTable
 from hersey.log.torque_log import TorqueLog
 from hersey.units import convert, rpm
 
@@ -61,6 +62,21 @@ def support_of(log: TorqueLog, *, min_dwell: float = 2.0) -> Support:
         points = log.steady(min_dwell=min_dwell)
     except InsufficientDataError as error:
         return Support(0, 0, None, (), {}, (), (str(error),))
+    return support_of_points(points)
+
+
+def support_of_means(table: MeansTable) -> Support:
+    """Return what a table of means supports."""
+    try:
+        points = SteadyPoints.from_table(table)
+    except InsufficientDataError as error:
+        return Support(0, 0, None, (), {}, (), (str(error),))
+    return support_of_points(points)
+
+
+def support_of_points(points: SteadyPoints) -> Support:
+    """Return what dwells support."""
+    log = points.log
     speed = np.abs(points.column("speed"))
     kelvin = points.column("temperature") if log.has_temperature else None
     groups = [] if kelvin is None else list(groups_of_temperature(kelvin))
@@ -71,11 +87,11 @@ def support_of(log: TorqueLog, *, min_dwell: float = 2.0) -> Support:
         _speed(speed),
         _temperature(levels, points),
         _branches(points, groups or [np.arange(speed.size)], speed),
-        _approach(points),
-        _tare(points),
+        *(() if isinstance(log, MeansTable) else (_approach(points), _tare(points))),
     ):
         can += says[0]
         cannot += says[1]
+    cannot += [note for note in points.notes if isinstance(log, MeansTable)]
     rejected: Counter[str] = Counter()
     for stretch in points.rejected:
         rejected[stretch.reason.split(":")[0].split(" by ")[0]] += stretch.rows

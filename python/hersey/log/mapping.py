@@ -167,6 +167,18 @@ class LogMapping(_Roles):
             stated["torque"] = f"{_ampere(self.torque.unit):.12g} N*m"
         return stated
 
+    @property
+    def corrects(self) -> bool:
+        """Whether it states a correction, beside channels and units."""
+        plain = LogMapping(
+            time=RoleMapping(self.time.channel, self.time.unit),
+            torque=TorqueMapping(self.torque.channel, self.torque.unit),
+            speed=SpeedMapping(self.speed.channel, self.speed.unit),
+            temperature=TemperatureMapping(self.temperature.channel, self.temperature.unit),
+            source=self.source,
+        )
+        return self != plain
+
     def correct(self, log: Any) -> Corrected:
         """Apply the corrections that are stated, in the order of `hersey.log.corrections`."""
         done = self._at_the_sensor(log)
