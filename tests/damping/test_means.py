@@ -149,7 +149,10 @@ def test_what_is_taken_for_a_table_of_means(tmp_path: Path) -> None:
 
 
 def test_several_tables_are_runs(tmp_path: Path) -> None:
-    one, two = written(tmp_path, table(), "one.csv"), written(tmp_path, table() + "180,5,90,2,12\n", "two.csv")
+    one, two = (
+        written(tmp_path, table(), "one.csv"),
+        written(tmp_path, table() + "180,5,90,2,12\n", "two.csv"),
+    )
     means = read_means([one, two])
     assert len(means.files) == 2
     assert {row.run for row in means.means} == {0, 1}
@@ -163,7 +166,7 @@ def test_the_commands_take_a_table_of_means(tmp_path: Path, flags: list[str]) ->
     fit = run("fit", "means.csv", "--json", *flags, cwd=tmp_path)
     assert fit.returncode == 0, fit.stderr
     document = json.loads(fit.stdout)
-    assert document["fit"]["c"]["value"] == pytest.approx(-0.8, abs=0.002)
+    assert document["fit"]["coefficients"]["c"]["value"] == pytest.approx(-0.8, abs=0.002)
     report = run("report", "means.csv", *flags, cwd=tmp_path)
     assert report.returncode == 0, report.stderr
     assert "a table of means, one row per dwell. Without a trace, stick-slip" in report.stdout
@@ -180,7 +183,7 @@ def test_a_table_of_means_has_no_tare_and_no_corrections(tmp_path: Path) -> None
     refused = run("fit", "means.csv", "--tare", "standing", cwd=tmp_path)
     assert refused.returncode == 2
     assert "no stretch in which the drive stands" in refused.stderr
-    (tmp_path / "hersey.toml").write_text('[torque]\ngear_ratio = 2.0\n')
+    (tmp_path / "hersey.toml").write_text("[torque]\ngear_ratio = 2.0\n")
     refused = run("fit", "means.csv", cwd=tmp_path)
     assert refused.returncode == 2
     assert "states corrections" in refused.stderr
