@@ -50,6 +50,13 @@ def test_a_sweep_is_no_ripple() -> None:
         log_of(speed, np.ones(speed.size)).steady()
 
 
+def test_small_steps_of_a_slow_staircase_are_no_ripple() -> None:
+    """Some revolutions of three dwells in a row agree to 2 %, yet they rise."""
+    held = 10.0 * 1.06 ** np.arange(12)
+    points = log_of(dwells(*held, seconds=7.0), np.ones(12 * 350)).steady()
+    assert points.column("speed") / RPM == pytest.approx(held, rel=1e-6)
+
+
 def test_a_level_that_changes_from_turn_to_turn_is_no_ripple() -> None:
     """Swings as large, slower than the shaft: means of turns differ."""
     count = 6000
