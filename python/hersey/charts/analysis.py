@@ -211,13 +211,17 @@ def simulation_force(document: Analysis) -> Chart:
     return alt.layer(_trace(rows, f"Spring force ({s.force_unit})")).properties(width=WIDTH, height=160)
 
 
-def timeline_speed(document: Analysis) -> Chart:
-    """Speed over the log, dwells shaded."""
+def timeline_speed(document: Analysis) -> Chart | None:
+    """Speed over the log, dwells shaded; None for a table of means."""
+    if not document.timeline.starts:
+        return None
     return _timeline(document, document.timeline.speed, "Speed (rpm)", rpm, "The log: dwells used are shaded")
 
 
-def timeline_torque(document: Analysis) -> Chart:
-    """Torque over the log, dwells shaded."""
+def timeline_torque(document: Analysis) -> Chart | None:
+    """Torque over the log, dwells shaded; None for a table of means."""
+    if not document.timeline.starts:
+        return None
     scale, unit = _torque_unit(document)
     return _timeline(document, document.timeline.torque, f"Torque ({unit})", lambda v: v * scale, None)
 

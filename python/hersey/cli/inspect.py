@@ -70,6 +70,7 @@ def inspect(
             min_dwell=parse("time", reading.min_dwell),
             tare=reading.tare,
             rotation=reading.rotation,
+            means=reading.are_means(logs),
         )
     if kept is not None:
         with memory_limit(reading.max_memory):

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from hersey.damping.dwells import SteadyPoints
     from hersey.damping.surface import DampingSurface
     from hersey.log import TorqueLog
+    from hersey.log.means import MeansTable
     from hersey.motion.drag import Drag
     from hersey.motion.simulation import Drivetrain
 
@@ -66,6 +67,9 @@ class Reading:
     drop_missing: Annotated[
         bool, typer.Option("--drop-missing", help="Leave out rows in which a number is missing.")
     ] = False
+    means: Annotated[
+        bool, typer.Option("--means", help="The file is a table of means: one row per dwell, no clock.")
+    ] = False
     max_memory: MaxMemory = "2 GB"
     min_dwell: Annotated[str, typer.Option(help="Shortest dwell, with its unit.")] = "2 s"
     tare: Annotated[str, typer.Option(help="none, or standing: subtract the torque read while standing.")] = (
@@ -81,8 +85,11 @@ class Reading:
             named += [paths] if isinstance(paths, Path) else paths or []
         return named
 
-    def log(self, paths: list[Path]) -> TorqueLog:
-        """Read the files as one log, with a progress bar."""
+    def log(self, paths: list[Path]) -> TorqueLog | MeansTable:
+        """Read the files as one log, or as tables of means, with a progress bar."""
+        table = self.means_table(paths)
+        if table is not None:
+            return table
         from hersey.log import memory_limit
         from hersey.log.mapping import read_with_mapping
 
@@ -101,9 +108,57 @@ class Reading:
             )
         return replace(done.log, corrections=done.corrections)
 
-    def points(self, log: TorqueLog) -> SteadyPoints:
-        """Reduce the log to dwells."""
+    def means_table(self, paths: list[Path]) -> MeansTable | None:
+        """Read the files as tables of means if they are called so or are plainly such."""
+        from hersey.log.mapping import mapping_of
+        from hersey.log.means import read_means, refuse_corrections
+
+        if not self.are_means(paths):
+            return None
+        mapping = mapping_of(paths, self.mapping or None)
+        refuse_corrections(mapping.corrects, str(mapping.source and mapping.source.name))
+        channels, units = self._stated()
+        table = read_means(
+            paths,
+            channels={r: name for r, name in (mapping.channels | channels).items() if r != "time"},
+            units={r: unit for r, unit in (mapping.units | units).items() if r != "time"},
+            isothermal=self.isothermal,
+        )
+        return replace(table, sensors=mapping.sensors)
+
+    def are_means(self, paths: list[Path]) -> bool:
+        """Return whether the files are called tables of means, or are plainly such."""
+        from hersey.log.mapping import mapping_of
+        from hersey.log.means import is_means_table
+
+        if self.means or self.time:
+            return self.means
+        channels, units = self._stated()
+        mapping = mapping_of(paths, self.mapping or None)
+        return all(
+            is_means_table(Path(path), mapping.channels | channels, mapping.units | units) for path in paths
+        )
+
+    def _stated(self) -> tuple[dict[str, str], dict[str, str]]:
+        """Columns and units by role, as given."""
+        roles = ("time", "torque", "speed", "temperature")
+        names = {role: getattr(self, role) for role in roles if getattr(self, role)}
+        return names, {role: getattr(self, f"{role}_unit") for role in roles if getattr(self, f"{role}_unit")}
+
+    def points(self, log: TorqueLog | MeansTable) -> SteadyPoints:
+        """Reduce the log to dwells, or take those that a table of means states."""
+        from hersey.damping.dwells import SteadyPoints
+        from hersey.errors import ParameterError
+        from hersey.log.means import MeansTable
         from hersey.units import parse
+
+        if isinstance(log, MeansTable):
+            if self.tare != "none":
+                raise ParameterError(
+                    "a table of means has no stretch in which the drive stands: leave out --tare, and "
+                    "subtract the zero in the table if it has one"
+                )
+            return SteadyPoints.from_table(log, rotation=self.rotation)
 
         return log.steady(min_dwell=parse("time", self.min_dwell), tare=self.tare, rotation=self.rotation)
 

@@ -34,6 +34,7 @@ from hersey.document.parts import (
 from hersey.document.thinning import kept
 from hersey.errors import ExtrapolationWarning, ParameterError
 from hersey.log import TorqueLog
+from hersey.log.means import MeansTable
 from hersey.machine.machine import Machine
 from hersey.motion.drag import Drag
 from hersey.motion.simulation import Drivetrain, simulate, stick_slip
@@ -48,7 +49,7 @@ SIMULATED_SPEED = 0.8
 
 
 def analyse(
-    log: TorqueLog,
+    log: TorqueLog | MeansTable,
     points: SteadyPoints,
     *,
     command: str = "",
@@ -82,7 +83,7 @@ def analyse(
     )
 
 
-def fit_document(log: TorqueLog, points: SteadyPoints, surface: DampingSurface) -> FitDocument:
+def fit_document(log: TorqueLog | MeansTable, points: SteadyPoints, surface: DampingSurface) -> FitDocument:
     """Return what a fit needs to be read back: the fit, its dwells and files, and the regime."""
     return FitDocument(
         warnings=cautions(points, surface),
@@ -93,28 +94,29 @@ def fit_document(log: TorqueLog, points: SteadyPoints, surface: DampingSurface) 
     )
 
 
-def _title(log: TorqueLog) -> str:
+def _title(log: TorqueLog | MeansTable) -> str:
     first = log.files[0].name
     return first if len(log.files) == 1 else f"{first} and {len(log.files) - 1} more"
 
 
-def _file(log: TorqueLog, index: int) -> InputFile:
-    file, run = log.files[index], log.runs[index]
+def _file(log: TorqueLog | MeansTable, index: int) -> InputFile:
+    file = log.files[index]
+    run = log.runs[index] if log.runs else None
     return InputFile(
         name=file.name,
         sha256=file.sha256,
         bytes=file.bytes,
         rows=file.rows,
         missing_rows=file.missing_rows,
-        duration=float(run.time[-1] - run.time[0]),
-        sampling_interval=run.sampling_interval,
-        gaps=run.gaps(),
+        duration=0.0 if run is None else float(run.time[-1] - run.time[0]),
+        sampling_interval=0.0 if run is None else run.sampling_interval,
+        gaps=0 if run is None else run.gaps(),
         channels=[ChannelUse(role=c.role, name=c.name, unit=c.unit) for c in file.channels],
         comments=list(file.comments),
     )
 
 
-def _quality(log: TorqueLog, points: SteadyPoints) -> Quality:
+def _quality(log: TorqueLog | MeansTable, points: SteadyPoints) -> Quality:
     return Quality(
         rows=log.rows,
         rows_used=int(points.table["rows"].sum()),
@@ -284,12 +286,12 @@ def _simulated(
     )
 
 
-def _timeline(log: TorqueLog) -> Timeline:
+def _timeline(log: TorqueLog | MeansTable) -> Timeline:
     starts, begin = [], 0.0
     for run in log.runs:
         starts.append(begin - float(run.time[0]))
         begin += float(run.time[-1] - run.time[0]) + run.sampling_interval
-    each = max(DISPLAYED_SAMPLES // len(log.runs), 60)
+    each = max(DISPLAYED_SAMPLES // max(len(log.runs), 1), 60)
 
     def series(name: str) -> Series:
         times: list[float] = []
@@ -304,7 +306,7 @@ def _timeline(log: TorqueLog) -> Timeline:
     return Timeline(
         speed=series("speed"),
         torque=series("torque"),
-        temperature=series("temperature") if log.has_temperature else None,
+        temperature=series("temperature") if log.has_temperature and log.runs else None,
         starts=starts,
     )
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,10 +16,11 @@ from hersey.errors import HerseyError
 from hersey.inspection.clock import Clock, clock_of
 from hersey.inspection.faults import DITHER, Fault, Traits, traits
 from hersey.inspection.raw import RawChannel, RawLog, raw_channels, roles_of
-from hersey.inspection.support import Support, support_of
+from hersey.inspection.support import Support, support_of, support_of_means
 from hersey.log.channels import ROLES, ChannelChoice
 from hersey.log.corrections import Corrected
 from hersey.log.mapping import LogMapping, mapping_of, read_with_mapping
+from hersey.log.means import read_means
 from hersey.log.torque_log import Correction
 from hersey.result import Result, json_record
 from hersey.units import conversion, takes_si
@@ -33,6 +34,8 @@ COARSE = 0.05
 _RUNS_ON = 0.9
 _TIME_UNIT = re.compile(r"[munµμ]?s|sec(onds?)?|min(utes?)?|h(ours?)?|d(ays?)?")
 _SPEED_NAME = re.compile(r"spe?e?d|velocity|rpm|drehzahl", re.IGNORECASE)
+#: How a table of means is called.
+MEANS = "a table of means"
 #: More files than this are shown without the tables of their channels.
 _TABLES = 3
 
@@ -187,6 +190,7 @@ def inspect(
     min_dwell: float = 2.0,
     tare: str = "none",
     rotation: str = "both",
+    means: bool = False,
 ) -> Inspection:
     """Look at logs before a fit: also at such that cannot be fitted, or have no torque.
 
@@ -198,6 +202,8 @@ def inspect(
         As for `hersey.log.mapping.read_with_mapping`.
     min_dwell, tare, rotation
         As for `TorqueLog.steady`.
+    means
+        Whether the files are tables of means: one row per dwell, no clock.
 
     Raises
     ------
@@ -219,6 +225,8 @@ def inspect(
         for role in ROLES
     }
     reports = tuple(_file_report(raw_channels(file), choices) for file in files)
+    if means:
+        return _of_means(files, reports, choices, isothermal)
     hopeless = any(set(report.without) - {"temperature"} for report in reports)
     holes = any(c.role and c.traits.missing for report in reports for c in report.channels)
     cold = any("temperature" in report.without for report in reports)
@@ -235,6 +243,35 @@ def inspect(
     dropped = {file.name: file.missing_rows for file in read.log.files if file.missing_rows}
     support = support_of(read.log, min_dwell=min_dwell, tare=tare, rotation=rotation)
     return Inspection(reports, "", needed, dropped, read.corrections, support)
+
+
+def _of_means(
+    files: Sequence[str | Path],
+    reports: tuple[FileReport, ...],
+    choices: dict[str, ChannelChoice],
+    isothermal: bool,
+) -> Inspection:
+    """What a table of means holds: it needs no clock."""
+    reports = tuple(
+        replace(
+            report,
+            format=f"{report.format}, {MEANS}",
+            without={},
+        )
+        for report in reports
+    )
+    stated = {role: choice for role, choice in choices.items() if role != "time"}
+    try:
+        table = read_means(
+            files,
+            channels={role: choice.name for role, choice in stated.items() if choice.name},
+            units={role: choice.unit for role, choice in stated.items() if choice.unit},
+            isothermal=isothermal,
+        )
+    except HerseyError as error:
+        return Inspection(reports, str(error), (), {}, (), None)
+    dropped = {file.name: file.missing_rows for file in table.files if file.missing_rows}
+    return Inspection(reports, "", (), dropped, (), support_of_means(table))
 
 
 def _read(
@@ -386,7 +423,7 @@ def _file_lines(file: FileReport, *, table: bool) -> list[str]:
             f"{clock.duration:.5g} s in all"
         )
         lines += [f"  ! {finding}" for finding in clock.findings()]
-    if not file.clocks:
+    if not file.clocks and MEANS not in file.format:
         lines.append("  ! no channel is a clock: rates and gaps cannot be told; name it with --time")
     lines += _table(file) if table else []
     findings = [(c, finding) for c in file.channels for finding in c.findings]

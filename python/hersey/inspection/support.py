@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,7 @@ from hersey.damping.fit import fit
 from hersey.damping.rising import rising
 from hersey.damping.surface import DampingSurface
 from hersey.errors import InsufficientDataError
+from hersey.log.means import MeansTable
 from hersey.log.torque_log import TorqueLog
 from hersey.units import convert, rpm
 
@@ -66,6 +68,21 @@ def support_of(
         points = log.steady(min_dwell=min_dwell, tare=tare, rotation=rotation)
     except InsufficientDataError as error:
         return Support(0, 0, None, (), {}, (), (str(error),))
+    return support_of_points(points)
+
+
+def support_of_means(table: MeansTable) -> Support:
+    """Return what a table of means supports."""
+    try:
+        points = SteadyPoints.from_table(table)
+    except InsufficientDataError as error:
+        return Support(0, 0, None, (), {}, (), (str(error),))
+    return support_of_points(points)
+
+
+def support_of_points(points: SteadyPoints) -> Support:
+    """Return what dwells support."""
+    log = points.log
     speed = np.abs(points.column("speed"))
     kelvin = points.column("temperature") if log.has_temperature else None
     groups = [] if kelvin is None else list(groups_of_temperature(kelvin))
@@ -76,11 +93,11 @@ def support_of(
         _speed(speed),
         _temperature(levels, points),
         _branches(points, groups or [np.arange(speed.size)], speed),
-        _approach(points),
-        _tare(points),
+        *(() if isinstance(log, MeansTable) else (_approach(points), _tare(points))),
     ):
         can += says[0]
         cannot += says[1]
+    cannot += [note for note in points.notes if isinstance(log, MeansTable)]
     rejected: Counter[str] = Counter()
     for stretch in points.rejected:
         rejected[stretch.reason.split(":")[0].split(" by ")[0]] += stretch.rows
@@ -160,8 +177,15 @@ def _comparable(points: SteadyPoints, temperatures: int) -> SteadyPoints:
     """The points as they can be fitted: at one temperature without it."""
     if temperatures > 1 or not points.log.has_temperature:
         return points
-    bare = tuple(replace(run, temperature=None) for run in points.log.runs)
-    return replace(points, log=replace(points.log, runs=bare))
+    log = points.log
+    if isinstance(log, MeansTable):
+        return replace(points, log=replace(log, means=_bare(log.means)))
+    return replace(points, log=replace(log, runs=_bare(log.runs)))
+
+
+def _bare(recorded: tuple[Any, ...]) -> tuple[Any, ...]:
+    """Runs or rows without their temperature."""
+    return tuple(replace(each, temperature=None) for each in recorded)
 
 
 def _one_exponent(points: SteadyPoints, surface: DampingSurface, cannot: list[str]) -> Said:

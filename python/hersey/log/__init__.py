@@ -11,6 +11,7 @@ columns      columns as they stand, for readers with roles of their own
 assembly     from a recording to a run on the clock of the torque
 reading      `read`: from files to a log
 corrections  what lies between sensor and film, taken off with a record
+means        a table of means: a row per dwell, no clock
 mapping      which channel plays which role, kept beside the data
 ===========  =======================================================================
 

@@ -184,6 +184,24 @@ class LogMapping(_Roles):
         roles = tuple(role for role, errors in stated.items() if any(v is not None for v in errors.values()))
         return Sensors(**given, stated=roles)
 
+    @property
+    def corrects(self) -> bool:
+        """Whether it states a correction, beside channels and units."""
+        plain = LogMapping(
+            time=RoleMapping(self.time.channel, self.time.unit),
+            torque=replace(
+                TorqueMapping(self.torque.channel, self.torque.unit),
+                gain_error=self.torque.gain_error,
+                zero_error=self.torque.zero_error,
+            ),
+            speed=SpeedMapping(self.speed.channel, self.speed.unit, gain_error=self.speed.gain_error),
+            temperature=TemperatureMapping(
+                self.temperature.channel, self.temperature.unit, zero_error=self.temperature.zero_error
+            ),
+            source=self.source,
+        )
+        return self != plain
+
     def correct(self, log: Any) -> Corrected:
         """Apply the corrections that are stated, in the order of `hersey.log.corrections`."""
         done = self._at_the_sensor(log)

@@ -23,15 +23,15 @@ def cautions(points: SteadyPoints, surface: DampingSurface) -> list[str]:
     """Return what must be known before a fit is trusted, in sentences: the same for every command."""
     log = points.log
     out = [f"Corrected: {correction}." for correction in log.corrections]
-    for file, run in zip(log.files, log.runs, strict=True):
+    for file, run in zip(log.files, log.runs or (None,) * len(log.files), strict=True):
         if any("synthetic" in comment.lower() for comment in file.comments):
             out.append(f"{file.name} is synthetic, by its own words: no measurement.")
         if file.cut_off:
             out.append(f"{file.name}: the file ends before its time.")
         out += [f"{file.name}: {note}." for note in file.notes]
-        if file.missing_rows:
+        if run is not None and file.missing_rows:
             out.append(f"{file.name}: {file.missing_rows} rows without a number were left out, as asked.")
-        if run.gaps():
+        if run is not None and run.gaps():
             share = 1.0 - run.time.size * run.sampling_interval / max(float(run.time[-1] - run.time[0]), 1e-9)
             out.append(
                 f"{file.name}: rows are missing at {run.gaps()} places ({max(share, 0):.1%} of the time)."

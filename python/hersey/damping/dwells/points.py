@@ -10,6 +10,8 @@ import numpy as np
 import polars as pl
 
 from hersey.arrays import FloatArray
+from hersey.errors import InsufficientDataError
+from hersey.log.means import MeanRow, MeansTable, read_means
 from hersey.log.torque_log import TorqueLog
 from hersey.result import Result, json_record
 from hersey.units import rpm
@@ -56,14 +58,14 @@ class SteadyPoints(Result):
     standing_torque
         Mean torque while the drive stood, N m, or None if it never did.
     log
-        What was reduced.
+        What was reduced, or the table that states them.
     """
 
     table: pl.DataFrame
     rejected: tuple[Rejection, ...]
     tare: float
     standing_torque: float | None
-    log: TorqueLog
+    log: TorqueLog | MeansTable
     tare_errors: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
     notes: tuple[str, ...] = ()
 
@@ -76,6 +78,51 @@ class SteadyPoints(Result):
     def tare_error(self) -> float:
         """Standard error of the tare, N m: root mean square over the dwells."""
         return float(np.sqrt(np.mean(np.sum(self.tare_errors**2, axis=1))))
+
+    @classmethod
+    def from_table(
+        cls,
+        table: Any,
+        *,
+        channels: dict[str, str] | None = None,
+        units: dict[str, str] | None = None,
+        isothermal: bool = False,
+        rotation: str = "both",
+    ) -> SteadyPoints:
+        """Return the steady points that a table of means states: one row per dwell, no clock.
+
+        Parameters
+        ----------
+        table
+            A file, columns by name or a polars or pandas frame, with speed and torque; temperature, load, the
+            standard error of the torque (or its deviation and a count), run and approach may stand beside
+            them. Units stand in the names of the columns. Also several, or a `MeansTable`.
+        channels, units
+            Column and unit by role (``torque``, ``speed``, ``temperature``), where the names do not say.
+        isothermal
+            Leave temperature out.
+        rotation
+            ``both``, or only ``forward`` (positive speed) or ``reverse`` rows.
+
+        Raises
+        ------
+        HerseyError
+            If the table lacks speed or torque, or no row of it can be used.
+
+        Examples
+        --------
+        >>> points = SteadyPoints.from_table({"speed [rpm]": [10, 20, 40], "torque [mN*m]": [5.0, 5.6, 6.3]})
+        >>> len(points)
+        3
+        """
+        if not isinstance(table, MeansTable):
+            table = read_means(table, channels=channels, units=units, isothermal=isothermal)
+        dwells, rejected = _stated(table, rotation)
+        if not dwells:
+            raise InsufficientDataError(f"{table.files[0].name}: no row can be used: {rejected[0].reason}")
+        kinds = {"temperature": pl.Float64, "temperature_error": pl.Float64}
+        frame = pl.DataFrame(dwells, schema_overrides=kinds)
+        return cls(frame, tuple(rejected), 0.0, None, table, notes=_notes_of_means(table))
 
     def __len__(self) -> int:
         """Return how many steady points there are."""
@@ -146,6 +193,71 @@ class SteadyPoints(Result):
         return self.table.rename({name: f"{name.replace('_', ' ')} ({unit})" for name, unit in units.items()})
 
 
+def _stated(table: MeansTable, rotation: str) -> tuple[list[dict[str, object]], list[Rejection]]:
+    """Rows of the table of steady points, and those that state no dwell asked for."""
+    dwells: list[dict[str, object]] = []
+    rejected = []
+    for row in table.means:
+        reason = _no_mean(row, rotation)
+        if reason:
+            rejected.append(Rejection(0, 0.0, 0.0, 1, reason, row.speed))
+            continue
+        hot = row.temperature is not None and table.has_temperature
+        dwells.append(
+            {
+                "run": row.run,
+                "start": 0.0,
+                "end": 0.0,
+                "speed": row.speed,
+                "speed_error": 0.0,
+                "torque": row.torque,
+                "torque_error": row.torque_error,
+                "temperature": row.temperature if hot else None,
+                "temperature_error": 0.0 if hot else None,
+                "rows": 1,
+                "effective_rows": row.count,
+                "settling_rows": 0,
+                "approach": row.approach,
+                "tare": 0.0,
+            }
+        )
+    return dwells, rejected
+
+
+def _no_mean(row: MeanRow, rotation: str) -> str:
+    """Why a row of a table of means is not used, or nothing."""
+    if row.speed == 0.0:
+        return "drive standing"
+    if rotation != "both" and (row.speed > 0) != (rotation == "forward"):
+        return f"rotation not {rotation}, as asked"
+    if row.torque == 0.0:
+        return "torque is zero: is the sensor connected?"
+    if row.torque * row.speed < 0.0:
+        return "torque and speed have opposite signs: turn one with --torque-unit '-1 N*m'"
+    return ""
+
+
+def _notes_of_means(table: MeansTable) -> tuple[str, ...]:
+    """What a table of means cannot tell, and what it leaves out, in sentences."""
+    name = table.files[0].name + (f" and {len(table.files) - 1} more" if len(table.files) > 1 else "")
+    errors = (
+        "as stated" if table.stated_errors else "none are stated: the scatter about the law stands for them"
+    )
+    notes = [
+        f"{name}: a table of means, one row per dwell. Without a trace, stick-slip, drift within a dwell, "
+        f"settling, the zero of the torque and the clock cannot be judged. Errors of torque: {errors}."
+    ]
+    loads = [row.load for row in table.means if row.load is not None]
+    if loads and max(loads) > (1.0 + SAME_LOAD) * min(loads):
+        notes.append(
+            f"The load differs from {min(loads):.3g} to {max(loads):.3g} N: one law of torque is fitted to "
+            "all rows; fit each load alone."
+        )
+    return tuple(notes)
+
+
+#: Loads closer than this share count as the same.
+SAME_LOAD = 0.03
 #: Reasons of stretches that nobody meant as a dwell.
 _NO_DWELL = ("drive standing", "speed changing", "rotation not")
 

@@ -18,7 +18,7 @@ from hersey.damping.dwells.zero import Zero, standing_stretches, starts_of
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.log.torque_log import Run, TorqueLog
 
-#: Rounds of judging: by the dwell's own noise, by the noise of those kept, and by that of those then kept.
+#: Rounds in which dwells are judged again by the noise of those kept, at the most.
 ROUNDS = 3
 #: Speed that swings by more than this share (standard deviation) is not judged as noise of the encoder alone.
 NOTABLE_SWING = 0.2
@@ -77,12 +77,15 @@ class _Reduction:
     def points(self) -> SteadyPoints:
         """Judge the stretches by the noise of those that are dwells, until both agree, and reduce."""
         noise: SharedNoise | None = None
+        outcomes = self._judged(None)
         for _ in range(ROUNDS):
-            outcomes = self._judged(noise)
             noise = self._noise([o for o in outcomes if isinstance(o, Dwell)])
             if noise is None:
                 break
-            self.zero = self._zero(noise)
+            before, outcomes = outcomes, self._judged(noise)
+            if outcomes == before:
+                break
+        self.zero = self._zero(noise)
         dwells = [o for o in outcomes if isinstance(o, Dwell)]
         rejected = tuple(o for o in outcomes if isinstance(o, Rejection))
         if not dwells:
@@ -151,10 +154,10 @@ class _Reduction:
         noise = shared_noise(powers)
         if noise is None:
             return None
-        for i, (time, values) in enumerate(zip(times, series, strict=True)):
-            if drift_over(time, values, noise)[0]:
-                powers[i] = Powers.of(straightened(time, values), _interval(time))
-        return shared_noise(powers)
+        drifting = [i for i, time in enumerate(times) if drift_over(time, series[i], noise)[0]]
+        for i in drifting:
+            powers[i] = Powers.of(straightened(times[i], series[i]), _interval(times[i]))
+        return shared_noise(powers) if drifting else noise
 
 
 def _in_order(index: int, segments: list[Segment]) -> list[Stretch]:

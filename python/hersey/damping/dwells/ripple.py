@@ -80,9 +80,8 @@ def _held(means: FloatArray) -> list[tuple[int, int]]:
         last = first + 1
         while last < means.size and abs(means[last] / np.mean(means[first:last]) - 1.0) <= SAME_TURN:
             last += 1
-        turns = np.arange(last - first)
         if last - first >= TURNS:
-            rise = float(np.polyfit(turns, means[first:last], 1)[0]) * (last - first)
+            rise = float(np.polyfit(np.arange(last - first), means[first:last], 1)[0]) * (last - first)
             if abs(rise) <= DRIFT * abs(float(np.mean(means[first:last]))):
                 held.append((first, last))
         first = last if last - first >= TURNS else first + 1

@@ -6,6 +6,7 @@ dwells give one spectrum: a mixture of noise without memory and of noise that fo
 times from a sample to a quarter of a dwell (Whittle's likelihood, Ark. Mat. 2 (1953) 423). Its value at no
 frequency is the variance of the mean. Each dwell has a level of its own; that of its slow part is drawn
 towards the common one as far as the dwells agree (Smyth, Stat. Appl. Genet. Mol. Biol. 3 (2004) 3).
+Where they do not agree at all there is no common shape, and each dwell is left to itself.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import fft, optimize, special
 
-from hersey.arrays import FloatArray
+from hersey.arrays import BoolArray, FloatArray
 from hersey.damping.dwells.noise import thinned
 
 #: Fewest dwells that have a shape in common.
@@ -28,10 +29,12 @@ SINGLE, BAND, BAND_COUNT = 16, 1.3, 16.0
 SLOW = 6
 #: Powers beyond so many times their expectation are ripple, not noise; the first few are never left out.
 RIPPLE, NEVER_RIPPLE = 16.0, 3
+#: Dwells do not share a shape if their slow parts scatter by so many standard errors more than chance.
+DISAGREE = 3.0
 #: Longest time of the mixture, as a share of a dwell: of slower noise a dwell shows only the steepest part.
 LONGEST_TIME = 0.22
-#: Steps of the search for the mixture, and from one time of the mixture to the next.
-STEPS, TIME_STEP = 200, 2.0
+#: Steps of the search for the mixture, and those after ripple was left out; from one time to the next.
+STEPS, MORE_STEPS, TIME_STEP = 200, 60, 2.0
 
 
 @dataclass(frozen=True)
@@ -118,7 +121,7 @@ class SharedNoise:
     def _slow_level(self, powers: Powers, first: int) -> float:
         """Level of the slow part of a dwell, its own and the common one each as far as it is known."""
         expected = self.expected(powers.order, powers.duration)
-        whole = _level(powers, expected, np.ones(powers.order.size, dtype=bool))
+        whole = _level(powers, expected)
         common = whole * self.level
         if not np.isfinite(self.prior):
             return common
@@ -133,13 +136,22 @@ def _basis(order: FloatArray, duration: float, times: FloatArray) -> FloatArray:
     return np.column_stack([np.ones(order.size), slow / times[-1]])
 
 
-def _level(powers: Powers, expected: FloatArray, noise: np.ndarray[tuple[int], np.dtype[np.bool_]]) -> float:
-    weight = powers.count * noise
-    return float(np.sum(weight * powers.power / expected) / np.sum(weight))
+def _level(powers: Powers, expected: FloatArray) -> float:
+    """Level of a dwell beside what is expected of noise of the level 1, its ripple left out."""
+    ratio, weight = powers.power / expected, powers.count
+    for _ in range(3):
+        level = float(np.sum(weight * ratio) / np.sum(weight))
+        weight = np.where(_is_ripple(ratio / level, powers.order, powers.count), 0.0, powers.count)
+    return float(np.sum(weight * ratio) / np.sum(weight))
+
+
+def _is_ripple(ratio: FloatArray, order: FloatArray, count: FloatArray) -> BoolArray:
+    """Whether powers are so far beyond their expectation that they are ripple."""
+    return np.asarray((ratio > 1.0 + (RIPPLE - 1.0) / np.sqrt(count)) & (order > NEVER_RIPPLE))
 
 
 def shared_noise(dwells: list[Powers]) -> SharedNoise | None:
-    """Return the noise that dwells share, or None if they are too few or without noise."""
+    """Return the noise that dwells share, or None if they are too few, without noise, or share none."""
     noisy = [p for p in dwells if float(np.sum(p.power)) > 0.0]
     if len(noisy) < FEWEST:
         return None
@@ -164,17 +176,19 @@ class _Pooled:
         self.dwell = np.repeat(np.arange(len(dwells)), [p.order.size for p in dwells])
         self.dwells = len(dwells)
 
-    def fitted(self) -> SharedNoise:
-        """The mixture, ripple left out as soon as it is seen."""
+    def fitted(self) -> SharedNoise | None:
+        """The mixture, ripple left out as soon as it is seen; None if dwells differ in more than level."""
         shares = np.ones(self.basis.shape[1])
         weight = self.count.copy()
-        for _ in range(3):
-            shares = self._mixture(shares, weight)
+        for steps in (STEPS, MORE_STEPS):
+            shares = self._mixture(shares, weight, steps)
             ratio = self._ratio(shares, weight)
-            limit = 1.0 + (RIPPLE - 1.0) / np.sqrt(self.count)
-            weight = np.where((ratio > limit) & (self.order > NEVER_RIPPLE), 0.0, self.count)
-        shares = self._mixture(shares, weight)
-        prior, level = _agreement(self._slow(shares, weight), SLOW)
+            weight = np.where(_is_ripple(ratio, self.order, self.count), 0.0, self.count)
+        shares = self._mixture(shares, weight, MORE_STEPS)
+        slow = self._slow(shares, weight)
+        if _disagree(slow, SLOW):
+            return None
+        prior, level = _agreement(slow, SLOW)
         return SharedNoise(self.times, shares, prior, level)
 
     def _levels(self, expected: FloatArray, weight: FloatArray) -> FloatArray:
@@ -192,15 +206,26 @@ class _Pooled:
         ratio = self._ratio(shares, weight)
         return np.asarray(np.bincount(self.dwell[slow], ratio[slow], self.dwells) / SLOW)
 
-    def _mixture(self, shares: FloatArray, weight: FloatArray) -> FloatArray:
-        """Shares of the largest likelihood: steps that keep them positive and never lower it."""
-        for _ in range(STEPS):
+    def _mixture(self, shares: FloatArray, weight: FloatArray, steps: int) -> FloatArray:
+        """Shares of the largest likelihood: steps that keep them positive."""
+        for _ in range(steps):
             expected = self.basis @ shares
             ratio = self.power / (self._levels(expected, weight) * expected)
             gain = self.basis.T @ (weight * ratio / expected) / (self.basis.T @ (weight / expected))
-            shares = shares * np.sqrt(gain)
+            shares = shares * gain
             shares = shares / shares.sum()
         return shares
+
+
+def _disagree(levels: FloatArray, count: int) -> bool:
+    """Whether levels of ``count`` cosines scatter by more than chance: there is no shape in common then.
+
+    So it is where what fluctuates belongs to the angle of the shaft and not to time.
+    """
+    chance = float(special.polygamma(1, count / 2.0))
+    kurtosis = float(special.polygamma(3, count / 2.0)) / chance**2
+    error = chance * ((2.0 + kurtosis) / (levels.size - 1)) ** 0.5
+    return bool(np.var(np.log(np.maximum(levels, 1e-12)), ddof=1) > chance + DISAGREE * error)
 
 
 def _agreement(levels: FloatArray, count: int) -> tuple[float, float]:

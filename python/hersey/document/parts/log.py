@@ -68,6 +68,7 @@ class RejectedStretch(Part):
     end: float
     rows: int
     reason: str
+    speed: float | None = Field(default=None, description="rad/s, mean")
 
 
 class Quality(Part):

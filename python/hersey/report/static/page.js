@@ -129,7 +129,7 @@ function quality() {
 function files() {
   add(report, "h2", "Input");
   table(report, ["file", "rows", "duration", "every", "gaps", "channels"], data.files.map((f) => [
-    f.name, String(f.rows), seconds(f.duration), `${digits(f.sampling_interval * 1e3, 3)} ms`, String(f.gaps),
+    f.name, String(f.rows), f.duration ? seconds(f.duration) : "–", f.sampling_interval ? `${digits(f.sampling_interval * 1e3, 3)} ms` : "–", String(f.gaps),
     f.channels.map((c) => `${c.role}: ${c.name || "(no name)"} [${c.unit}]`).join(", ")]), [1, 2, 3, 4]);
   for (const f of data.files) f.comments.forEach((text) => add(report, "p", `${f.name}: “${text}”`, "soft"));
 }
