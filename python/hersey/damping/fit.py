@@ -101,7 +101,7 @@ def _surface(
     shifts = sensor_shifts(fit, data, points.log.sensors)
     coefficients = _coefficients(fit, data, fit.values, fit.covariance, scale, shifts)
     if measured_transition is not None:
-        measured_transition = _with_sensors(measured_transition, law, shifts)
+        measured_transition = _with_sensors(measured_transition, fit, shifts)
     labels = {"level": "ln B_ref", "e": "b", "at": "ln(w_t/w_ref)"}
     residuals = data.log_torque - law.predict(fit.values, data.inputs)
     return DampingSurface(
@@ -165,8 +165,10 @@ def _together(shifts: FloatArray) -> float:
     return float(np.sqrt(np.sum(shifts**2)))
 
 
-def _with_sensors(transition: Transition, law: Law, shifts: FloatArray) -> Transition:
-    speed, mixed = transition.speed, transition.mixed_exponent
+def _with_sensors(transition: Transition, fit: LawFit, shifts: FloatArray) -> Transition:
+    law, speed, mixed = _law(fit), transition.speed, transition.mixed_exponent
+    if fit.untold("at"):
+        speed = replace(speed, low=-np.inf, high=np.inf)
     moved = speed.value * _together(shifts[:, law.index("at")])
     return replace(
         transition,

@@ -87,7 +87,10 @@ def _check(path: Path, document: _FitFile) -> None:
         ("points", fit.points > size, f"more than the {size} variables"),
         (
             "transition.speed",
-            speed is None or 0 < (speed.low or 0.0) <= speed.value <= (speed.high or np.inf),
+            speed is None
+            or speed.low is None
+            or speed.high is None
+            or 0 < speed.low <= speed.value <= speed.high,
             "within its interval",
         ),
         (

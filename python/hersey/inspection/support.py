@@ -199,7 +199,8 @@ def _one_exponent(points: SteadyPoints, surface: DampingSurface, cannot: list[st
 
 
 def _in_rpm(speed: Estimate) -> str:
-    return f"{rpm(speed.value):.3g} rpm [{rpm(speed.low):.3g}, {rpm(speed.high):.3g}]"
+    ends = f"[{rpm(speed.low):.3g}, {rpm(speed.high):.3g}]" if speed.told else "(interval not told)"
+    return f"{rpm(speed.value):.3g} rpm {ends}"
 
 
 def _levels(kelvin: Sequence[float]) -> str:

@@ -151,7 +151,8 @@ def _verdict(surface: DampingSurface, by: Explained) -> str:
     if surface.transition is None:
         return f"{exponent} {_no_transition(surface, by)}"
     t = surface.transition
-    where = f"{rpm(t.speed.value):.3g} rpm [{rpm(t.speed.low):.3g}, {rpm(t.speed.high):.3g}]"
+    where = f"{rpm(t.speed.value):.3g} rpm"
+    where += f" [{rpm(t.speed.low):.3g}, {rpm(t.speed.high):.3g}]" if t.speed.told else " (interval not told)"
     if surface.reference_temperature is not None:
         where += f" at {_degrees(surface.reference_temperature, surface.temperature_scale)}"
         where += ", higher when hotter" if t.temperature_exponent > 0 else ""

@@ -91,10 +91,12 @@ class LawFit:
         """Return why a parameter has no interval though the dwells determine its value; empty if it has.
 
         A law of temperature that takes up every difference between the visits leaves nothing to say how
-        far visits scatter.
+        far visits scatter. That leaves open what hangs on temperature: its law, and a transition that moves
+        with it; levels and exponents of speed are those of these visits.
         """
-        heat = name in ("e", "q") and self.law.thermal is not None
-        if not heat or all(s.told for s in self.shared):
+        heat = name in ("e", "q", "at", "d") and self.law.thermal is not None
+        moved = self.freedoms.moved_by_untold
+        if not heat or not moved.size or moved[self.law.index(name)] < 1.0:
             return ""
         return (
             "each temperature was visited once, and the law of temperature takes up every difference between "

@@ -174,6 +174,8 @@ class Freedom:
     covariance: FloatArray
     parts: tuple[FloatArray, ...] = ()
     uncertainty: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
+    moved_by_untold: FloatArray = field(default_factory=lambda: np.empty(0))
+    """Of each value, its variance by a scatter of groups that is not told, over that by the same of dwells."""
 
     def of(self, weights: FloatArray) -> float:
         """Return those of a linear combination of the values, weights of shape (parameters,)."""
@@ -209,9 +211,14 @@ def freedom_of(
     """
     residual, covariance = int(sigma.size - parameters), np.asarray(bread[:parameters, :parameters])
     members = [g.member for g, s in zip(grouped, scatter, strict=True) if s.deviation > 0]
-    if not members:
-        return Freedom(residual, covariance)
     weight = 1.0 / sigma**2
+    gain = (bread @ columns.T * weight)[:parameters]
+    moved = np.zeros(parameters)
+    for grouping, shared in zip(grouped, scatter, strict=True):
+        if not shared.told:
+            moved += np.sum((gain @ grouping.member) ** 2, axis=1) / np.sum(gain**2, axis=1)
+    if not members:
+        return Freedom(residual, covariance, moved_by_untold=moved)
     left, singular, _ = np.linalg.svd(bread)
     root = (weight[:, None] * columns) @ (left * np.sqrt(singular))  # P = diag(weight) - root root^T
     overlap = root.T @ root
@@ -224,7 +231,6 @@ def freedom_of(
         information[0, i] = information[i, 0] = float(np.sum(p**2))
         for j, q in enumerate(projected, start=1):
             information[i, j] = float(np.sum((m.T @ q) ** 2))
-    gain = (bread @ columns.T * weight)[:parameters]
     uncertainty = np.asarray(np.linalg.pinv(0.5 * information), dtype=np.float64)
     parts = [gain @ gain.T, *((gain @ m) @ (gain @ m).T for m in members)]
-    return Freedom(residual, covariance, tuple(parts), uncertainty)
+    return Freedom(residual, covariance, tuple(parts), uncertainty, moved)
