@@ -424,7 +424,7 @@ MATLAB = {
     "testhdf5_7.4_GLNX86.mat": [("testdouble", "")],
     "teststruct_7.4_GLNX86.mat": [("teststruct/doublefield", "")],
     "big_endian.mat": [("floats#1", ""), ("floats#2", "")],
-    "testcell_7.4_GLNX86.mat": [],
+    "testcell_7.4_GLNX86.mat": [("testcell#3", ""), ("testcell#4", "")],
 }
 
 
@@ -438,9 +438,7 @@ def test_matlab_by_others(name: str) -> None:
         np.testing.assert_allclose(values[0], np.arange(9) * np.pi / 4, atol=1e-12)
     if name == "big_endian.mat":
         np.testing.assert_allclose(np.column_stack(values), [[2, 3], [3, 4]])
-    with pytest.raises(
-        ChannelError, match=r"no torque column among|no channel of numbers, only 'testcell' .cells."
-    ):
+    with pytest.raises(ChannelError, match="no torque column among"):
         hersey.read(path)
 
 

@@ -17,6 +17,8 @@ from hersey.units import KINDS, conversion
 
 #: Bytes looked at; preambles of data loggers are far shorter.
 SNIFFED = 1 << 17
+#: What may stand between cells.
+SEPARATORS = ";\t|,"
 _COMMENTS = ("#", "~", "//")
 _NOT_CP1252 = (b"\x81", b"\x8d", b"\x8f", b"\x90", b"\x9d")
 #: Columns of a table, and characters of a name at the most: no log has as many.
@@ -79,7 +81,7 @@ class Layout:
         return tuple(c for c in self.columns if not (c.name.startswith("#") and c.index in self.texts))
 
 
-def find_layout(start: bytes, name: str) -> Layout:
+def find_layout(start: bytes, name: str, *, separators: str = SEPARATORS) -> Layout:
     """Return the layout of a text file from its first `SNIFFED` bytes.
 
     Raises
@@ -104,7 +106,7 @@ def find_layout(start: bytes, name: str) -> Layout:
     ]
     if not numbered:
         raise UnreadableLogError(f"{name} is empty: a header and rows of numbers are needed")
-    table = max((_table(numbered, separator) for separator in ";\t|,"), key=lambda t: t.score)
+    table = max((_table(numbered, separator) for separator in separators), key=lambda t: t.score)
     refuse_columns(name, table.width)
     if table.score == 0:
         raise UnreadableLogError(
