@@ -73,6 +73,7 @@ KINDS: dict[str, tuple[str, str]] = {
     "torsional stiffness": ("N*m/rad", "N*m/rad"),
     "moment of inertia": ("kg*m^2", "kg*m^2"),
     "load per length": ("N/m", "N/m"),
+    "friction coefficient": ("1", "1"),
 }
 
 #: Exponents of m, kg, s, K and rad. The angle counts here, so that 1/s is no speed of a drive.

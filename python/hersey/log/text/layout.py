@@ -19,6 +19,8 @@ from hersey.units import KINDS, conversion
 SNIFFED = 1 << 17
 #: What may stand between cells.
 SEPARATORS = ";\t|,"
+#: The separator that stands for any run of blanks and tabs.
+BLANKS = " "
 _COMMENTS = ("#", "~", "//")
 _NOT_CP1252 = (b"\x81", b"\x8d", b"\x8f", b"\x90", b"\x9d")
 #: Columns of a table, and characters of a name at the most: no log has as many.
@@ -74,6 +76,11 @@ class Layout:
     texts: frozenset[int] = frozenset()
     notes: tuple[str, ...] = ()
     headless: str = ""
+
+    @property
+    def between(self) -> str:
+        """What stands between the cells of a block of lines once it is read: blanks have become tabs."""
+        return "\t" if self.separator == BLANKS else self.separator
 
     @property
     def named(self) -> tuple[Column, ...]:
