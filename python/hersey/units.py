@@ -271,6 +271,8 @@ def _split_factor(text: str, unit: str, example: str) -> tuple[float, str]:
         raise UnitError(f"{what}: write one such as {example}")
     factor = float(match[1] or 1.0) / (float(match[3] or 1.0) or math.nan)
     plain = f"1{match[2]}" if match[2].startswith("/") else match[2]
+    if plain == "1":
+        return factor, plain
     for spelling, standard in _SPELLINGS:
         if re.fullmatch(spelling, plain):
             return factor, re.sub(f"^(?:{spelling})$", standard, plain)

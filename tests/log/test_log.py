@@ -156,7 +156,7 @@ MISREAD = {
         "'28.140' is not a number",
     ),
     "a row behind a comment mark": (
-        HEADER + BODY + "#VALUE!,0.5,60,150\n" + "9,0.5,60,150\n",
+        HEADER + BODY + "#8,0.5,60,150\n" + "9,0.5,60,150\n",
         "like a comment",
     ),
     "values beyond belief": (

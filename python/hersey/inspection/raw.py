@@ -13,7 +13,7 @@ from hersey.errors import HerseyError
 from hersey.log.channels import ROLES, ChannelChoice, find_channel
 from hersey.log.formats import format_of, opened
 from hersey.log.text.delimited import open_delimited
-from hersey.log.text.layout import Column, Layout, refuse_ragged, split
+from hersey.log.text.layout import BLANKS, Column, Layout, refuse_ragged, split, tabbed
 from hersey.log.text.numbers import MISSING, NumberStyle
 from hersey.log.text.stamps import Stamps, counted_since
 from hersey.spelling import printable
@@ -109,6 +109,7 @@ def _of_text(path: Path) -> RawLog:
     refuse_ragged(path.name, text.count(b"\n"), len(layout.columns), len(text))
     if layout.encoding != "utf-8-sig":
         text = text.decode(layout.encoding, errors="replace").encode()
+    text = tabbed(text) if layout.separator == BLANKS else text
     frame = _frame(text, layout)
     channels = [
         _text_channel(layout, column, frame[f"{column.index}"])
@@ -132,7 +133,7 @@ def _frame(text: bytes, layout: Layout) -> pl.DataFrame:
             text,
             has_header=False,
             skip_lines=layout.first_line - 1,
-            separator=layout.separator,
+            separator=layout.between,
             comment_prefix=layout.comment,
             infer_schema=False,
             schema_overrides=types,
@@ -162,7 +163,7 @@ def _line_by_line(text: bytes, layout: Layout) -> pl.DataFrame:
     for line in text.split(b"\n")[layout.first_line - 1 :]:
         if not line.strip() or line.startswith(comment):
             continue
-        cells = split(line.decode("utf-8", errors="replace").rstrip("\r"), layout.separator)
+        cells = split(line.decode("utf-8", errors="replace").rstrip("\r"), layout.between)
         for index, column in enumerate(columns):
             column.append(cells[index] if index < len(cells) else "")
     return pl.DataFrame({f"{index}": column for index, column in enumerate(columns)})

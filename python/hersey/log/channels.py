@@ -148,6 +148,8 @@ def role_conversion(role: str, unit: str) -> tuple[str, Conversion]:
     """
     text = "1" if unit in ("-", "\u2013") else unit
     for kind in ROLE_KINDS[role]:
+        if kind == "friction coefficient" and text != "1":  # % of a torque is none
+            continue
         try:
             return kind, conversion(kind, text)
         except WrongKindError:
@@ -249,11 +251,7 @@ def _in_friction(role: str, columns: tuple[Column, ...], measured: list[Column])
     return (
         forces
         or [c for c in measured if _is_unit_of("force", c.unit)]
-        or [
-            c
-            for c in coefficients
-            if not c.unit or _is_unit_of("friction coefficient", c.unit) or c.unit == "-"
-        ]
+        or [c for c in coefficients if not c.unit or c.unit in ("1", "-", "\u2013")]
     )
 
 

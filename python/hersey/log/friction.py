@@ -1,7 +1,7 @@
 """A friction force, or a coefficient, against sliding speed, as the torque and the speed of a rotation.
 
 The torque is the force times the radius at which it acts, the force the coefficient times the normal load,
-the speed of rotation that of sliding over the radius. Radius and load stand in columns, or the user says them.
+the speed of rotation that of sliding over the radius. Radius and load are channels, or the user says them.
 """
 
 from __future__ import annotations

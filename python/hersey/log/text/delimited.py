@@ -33,7 +33,7 @@ from hersey.log.channels import (
 from hersey.log.friction import beside, in_rotation, notes_on, spare
 from hersey.log.rows import LeftOut, runs_with_records
 from hersey.log.text.footer import end_of_table
-from hersey.log.text.layout import SNIFFED, Column, Layout, find_layout, split
+from hersey.log.text.layout import BLANKS, SNIFFED, Column, Layout, find_layout, split, tabbed
 from hersey.log.text.numbers import MISSING, is_missing, looks_numeric
 from hersey.log.text.stamps import Stamps
 from hersey.log.torque_log import LARGEST, Channel, LogFile, Run
@@ -260,6 +260,7 @@ class _Table:
         """Lines of the table, and bytes read so far; what follows the table is hashed with it."""
         opened.file.seek(0)
         for text, line, done in _blocks(opened.file, end, self.layout, self.name, self.digest.update):
+            text = tabbed(text) if self.layout.separator == BLANKS else text
             yield self._cleaned(text, line), done
         left = opened.size - end
         while left and (chunk := opened.file.read(min(left, BLOCK))):
@@ -301,8 +302,11 @@ class _Table:
         kept, numbers = [], []
         for number, row in enumerate(text.split(b"\n"), start=line):
             if row.lstrip().startswith(comment):
-                cells = split(row.decode("utf-8", errors="replace"), self.layout.separator)
-                if len(cells) == len(self.layout.columns):
+                cells = split(row.decode("utf-8", errors="replace"), self.layout.between)
+                if len(cells) == len(self.layout.columns) and is_missing(cells[0]):  # an error of Excel: #N/A
+                    kept.append(row)
+                    numbers.append(number)
+                elif len(cells) == len(self.layout.columns):
                     raise UnreadableLogError(
                         f"{self.name}, line {number} starts with '{self.layout.comment}' like a comment but "
                         "has as many cells as a row: mend or remove it"
@@ -335,7 +339,8 @@ class _Table:
                 arrays[role] = np.asarray(numbers * si.scale + si.offset, dtype=float)
         arrays = in_rotation(arrays, self.channels, self.stated)
         if self.stated.every is not None:
-            arrays["time"] = (self.rows + np.arange(arrays["torque"].size)) * self.stated.every
+            numbers = self.rows + np.arange(arrays["torque"].size, dtype=float)
+            arrays["time"] = numbers * self.stated.every
         return arrays
 
     def _fault(self, block: _Block, values: list[FloatArray], row: int) -> str:
