@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import functools
 import inspect
+import re
+import sys
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
@@ -12,6 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
 import typer
 
 from hersey.cli.progress import bar, working
+from hersey.cli.terminal import say
 
 if TYPE_CHECKING:
     from hersey.damping.dwells import SteadyPoints
@@ -53,6 +56,17 @@ class Reading:
     temperature_unit: Annotated[str, typer.Option(help="Unit of temperature, as 'degC'.")] = ""
     time: Annotated[str, typer.Option(help="Name of the time column.")] = ""
     time_unit: Annotated[str, typer.Option(help="Unit of time, as 's' or 'ms'.")] = ""
+    every: Annotated[str, typer.Option(help="Time between rows where the file has no clock, as '2 ms'.")] = ""
+    radius: Annotated[
+        str,
+        typer.Option(
+            help="Radius of a friction force and a sliding speed: '25 mm', or the name of its column."
+        ),
+    ] = ""
+    radius_unit: Annotated[str, typer.Option(help="Unit of a column of the radius, as 'mm'.")] = ""
+    load: Annotated[str, typer.Option(help="Normal load: '50 N', or the name of its column.")] = ""
+    load_unit: Annotated[str, typer.Option(help="Unit of a column of the load, as 'N'.")] = ""
+    run: Annotated[str, typer.Option(help="Name of the column that numbers the runs in a file.")] = ""
     mapping: Annotated[
         str,
         typer.Option(
@@ -86,20 +100,29 @@ class Reading:
         from hersey.log import memory_limit
         from hersey.log.mapping import read_with_mapping
 
-        roles = ("time", "torque", "speed", "temperature")
         with bar("reading") as progress, memory_limit(self.max_memory):
-            done = read_with_mapping(
-                paths,
-                mapping=self.mapping or None,
-                channels={role: getattr(self, role) for role in roles if getattr(self, role)},
-                units={
-                    role: getattr(self, f"{role}_unit") for role in roles if getattr(self, f"{role}_unit")
-                },
-                isothermal=self.isothermal,
-                drop_missing=self.drop_missing,
-                progress=progress,
-            )
+            done = read_with_mapping(paths, **self.given(), progress=progress)
+        for file in done.log.files:
+            if file.missing_rows:
+                say(*(f"{file.name}: {note}" for note in file.notes if "left out" in note), file=sys.stderr)
         return replace(done.log, corrections=done.corrections)
+
+    def given(self) -> dict[str, Any]:
+        """Return what is said of the channels and their units, as `hersey.read_with_mapping` takes it."""
+        roles = ("time", "torque", "speed", "temperature", "load", "radius", "run")
+        stated = {"every": self.every} | {
+            r: text for r in ("load", "radius") if _is_amount(text := getattr(self, r))
+        }
+        channels = {role: name for role in roles if (name := getattr(self, role)) and role not in stated}
+        units = {role: unit for role in roles if (unit := getattr(self, f"{role}_unit", ""))}
+        return {
+            "mapping": self.mapping or None,
+            "channels": channels,
+            "units": units,
+            "isothermal": self.isothermal,
+            "drop_missing": self.drop_missing,
+            **{name: text for name, text in stated.items() if text},
+        }
 
     def points(self, log: TorqueLog) -> SteadyPoints:
         """Reduce the log to dwells."""
@@ -124,6 +147,11 @@ class Reading:
         log = self.log(paths or [])
         with working("fitting the surface"):
             return fit(self.points(log), temperature_scale=self.temperature_scale)
+
+
+def _is_amount(text: str) -> bool:
+    """Whether a text begins like an amount, and not like the name of a column."""
+    return re.match(r"\s*[-+]?\.?[0-9]", text) is not None
 
 
 @dataclass(frozen=True)

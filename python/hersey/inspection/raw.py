@@ -10,8 +10,9 @@ import polars as pl
 
 from hersey.arrays import FloatArray
 from hersey.errors import HerseyError
-from hersey.log.channels import ROLES, ChannelChoice, find_channel
+from hersey.log.channels import ROLES, ChannelChoice, Stated, find_channel, is_dead
 from hersey.log.formats import format_of, opened
+from hersey.log.friction import Chosen, beside
 from hersey.log.text.delimited import open_delimited
 from hersey.log.text.layout import BLANKS, Column, Layout, refuse_ragged, split, tabbed
 from hersey.log.text.numbers import MISSING, NumberStyle
@@ -84,22 +85,35 @@ def raw_channels(path: str | Path) -> RawLog:
     return RawLog(printable(path.name), kind, tuple(channels), comments, tuple(notes), cut_off)
 
 
-def roles_of(log: RawLog, choices: dict[str, ChannelChoice]) -> tuple[dict[str, Column], dict[str, str]]:
+def roles_of(
+    log: RawLog, choices: dict[str, ChannelChoice], stated: Stated
+) -> tuple[dict[str, Column], dict[str, str]]:
     """Return the column that plays each role, and for each role without one the reason in words."""
     columns = tuple(channel.column for channel in log.channels)
-    roles: dict[str, Column] = {}
+    values = {channel.column: channel.values for channel in log.channels}
+    chosen: Chosen = {}
     without: dict[str, str] = {}
+
+    def dead(column: Column) -> bool:
+        return is_dead(values[column])
+
     for role in ROLES:
+        if role == "time" and stated.every is not None:
+            continue
         try:
-            channel = find_channel(role, columns, choices[role], log.name)
+            channel = find_channel(role, columns, choices[role], log.name, dead)
         except HerseyError as error:
             without[role] = str(error).removeprefix(f"{log.name}: ")
             continue
         if channel is None:
             without[role] = f"there is no {role} channel"
         else:
-            roles[role] = channel[0]
-    return roles, without
+            chosen[role] = channel
+    try:
+        chosen |= beside(columns, choices, stated, chosen, log.name, dead)
+    except HerseyError as error:
+        without.setdefault("torque", str(error).removeprefix(f"{log.name}: "))
+    return {role: column for role, (column, _) in chosen.items()}, without
 
 
 def _of_text(path: Path) -> RawLog:

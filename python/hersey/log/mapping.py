@@ -14,20 +14,32 @@ from dataclasses import field, replace
 from pathlib import Path
 from typing import Annotated, Any
 
+import numpy as np
 from pydantic import BeforeValidator, ValidationInfo
 from pydantic.dataclasses import dataclass
 
 from hersey.errors import ChannelError, HerseyError, ParameterError, UnitError
 from hersey.files.toml import Quantity, Table, Text, naming, read_tables
 from hersey.log import corrections
-from hersey.log.channels import ROLES, ChannelChoice, find_channel
+from hersey.log.channels import (
+    OTHER_ROLES,
+    ROLE_KINDS,
+    ROLES,
+    ChannelChoice,
+    Stated,
+    called,
+    find_channel,
+    is_dead,
+    role_conversion,
+)
+from hersey.log.columns import open_columns
 from hersey.log.corrections import Corrected
 from hersey.log.reading import list_channels, read
 from hersey.log.text.delimited import Progress
 from hersey.log.text.layout import Column
 from hersey.log.torque_log import LogFile
 from hersey.spelling import printable
-from hersey.units import conversion, registry
+from hersey.units import registry, takes_si
 
 #: A mapping for every log in its directory; one for a single log is called after it, ``bench.hersey.toml``.
 FILE_NAME = "hersey.toml"
@@ -40,6 +52,7 @@ _AMOUNT = re.compile(
 #: Characters of an amount at the most: the pattern takes longer than linear.
 _LONGEST_AMOUNT = 160
 
+_ALL_ROLES = (*ROLES, *OTHER_ROLES)
 #: SI units of what no log holds.
 _UNITS = {"motor constant": "N*m/A", "moment of inertia": "kg*m^2", "temperature difference": "K"}
 
@@ -104,6 +117,27 @@ class RoleMapping(Table):
 
 
 @dataclass(frozen=True)
+class TimeMapping(RoleMapping):
+    """What it says of the time; ``every`` is that between rows, s, where no channel is a clock."""
+
+    every: Annotated[float, Quantity("time", 1e-9, 1e6, "2 ms")] | None = None
+
+
+@dataclass(frozen=True)
+class LoadMapping(RoleMapping):
+    """What it says of the normal load: a channel, or a ``value``, N."""
+
+    value: Annotated[float, Quantity("force", 1e-9, 1e9, "50 N")] | None = None
+
+
+@dataclass(frozen=True)
+class RadiusMapping(RoleMapping):
+    """What it says of the radius at which a friction force acts: a channel, or a ``value``, m."""
+
+    value: Annotated[float, Quantity("length", 1e-6, 1e3, "25 mm")] | None = None
+
+
+@dataclass(frozen=True)
 class TorqueMapping(RoleMapping):
     """What it says of the torque, in SI; ``no_load`` is a torque or a log."""
 
@@ -134,10 +168,13 @@ class TemperatureMapping(RoleMapping):
 
 @dataclass(frozen=True)
 class _Roles(Table):
-    time: RoleMapping = field(default_factory=RoleMapping)
+    time: TimeMapping = field(default_factory=TimeMapping)
     torque: TorqueMapping = field(default_factory=TorqueMapping)
     speed: SpeedMapping = field(default_factory=SpeedMapping)
     temperature: TemperatureMapping = field(default_factory=TemperatureMapping)
+    load: LoadMapping = field(default_factory=LoadMapping)
+    radius: RadiusMapping = field(default_factory=RadiusMapping)
+    run: RoleMapping = field(default_factory=RoleMapping)
 
 
 @dataclass(frozen=True)
@@ -146,8 +183,8 @@ class LogMapping(_Roles):
 
     Attributes
     ----------
-    time, torque, speed, temperature
-        One `RoleMapping` each.
+    time, torque, speed, temperature, load, radius, run
+        One `RoleMapping` each; ``run`` is the number of a run.
     source
         File that it was read from, or none.
     """
@@ -157,15 +194,20 @@ class LogMapping(_Roles):
     @property
     def channels(self) -> dict[str, str]:
         """Column name by role, where one is stated, as `hersey.read` takes it."""
-        return {role: channel for role in ROLES if (channel := getattr(self, role).channel)}
+        return {role: channel for role in _ALL_ROLES if (channel := getattr(self, role).channel)}
 
     @property
     def units(self) -> dict[str, str]:
         """Unit by role, where one is stated, as `hersey.read` takes it; amperes stand in the place of N m."""
-        stated = {role: unit for role in ROLES if (unit := getattr(self, role).unit)}
+        stated = {role: unit for role in _ALL_ROLES if (unit := getattr(self, role).unit)}
         if self.torque.motor_constant is not None:
             stated["torque"] = f"{_ampere(self.torque.unit):.12g} N*m"
         return stated
+
+    @property
+    def stated(self) -> Stated:
+        """What it says that a file need not hold."""
+        return Stated(self.time.every, self.radius.value, self.load.value)
 
     def correct(self, log: Any) -> Corrected:
         """Apply the corrections that are stated, in the order of `hersey.log.corrections`."""
@@ -178,6 +220,7 @@ class LogMapping(_Roles):
                 channels=_without_temperature(self.channels),
                 units=_without_temperature(self.units),
                 isothermal=True,
+                **vars(self.stated),
             )
             done = corrections.no_load(done, torque=free._at_the_sensor(other))
         elif torque.no_load:
@@ -218,7 +261,7 @@ def read_mapping(path: str | Path) -> LogMapping:
     """
     path = Path(path)
     mapping = LogMapping(**vars(read_tables(path, _Roles)), source=path)
-    for role in ROLES:
+    for role in ROLE_KINDS:
         with naming(f"{path.name}: {role}.unit"):
             _check_unit(role, getattr(mapping, role).unit, mapping.torque.motor_constant)
     return mapping
@@ -229,7 +272,7 @@ def _check_unit(role: str, unit: str, motor_constant: float | None) -> None:
         _ampere(unit)
     elif unit:
         try:
-            conversion(role, unit)
+            role_conversion(role, unit)
         except UnitError as error:
             hint = "; a motor's current needs motor_constant" if role == "torque" else ""
             raise UnitError(f"{error}{hint}") from None
@@ -243,6 +286,7 @@ def find_mapping(path: str | Path) -> Path | None:
     return next((candidate for candidate in beside if os.path.isfile(candidate)), None)  # noqa: PTH113
 
 
+@takes_si(every="time", radius="length", load="force")
 def read_with_mapping(
     paths: str | Path | Sequence[str | Path],
     *,
@@ -251,6 +295,9 @@ def read_with_mapping(
     units: Mapping[str, str] | None = None,
     isothermal: bool = False,
     drop_missing: bool = False,
+    every: float | None = None,
+    radius: float | None = None,
+    load: float | None = None,
     progress: Progress | None = None,
 ) -> Corrected:
     """Read a log, or several, as `hersey.read` does, each with its mapping, and correct it.
@@ -262,8 +309,8 @@ def read_with_mapping(
     channels, units
         By role; they outrank the mapping's. A role whose channel or unit is given so is not corrected for
         a motor constant.
-    isothermal, drop_missing, progress
-        As for `hersey.read`.
+    isothermal, drop_missing, every, radius, load, progress
+        As for `hersey.read`; they outrank the mapping's.
 
     Raises
     ------
@@ -279,6 +326,8 @@ def read_with_mapping(
     needed = _without_temperature if isothermal else dict
     chosen = mapping if isinstance(mapping, LogMapping) else mapping_of(files, mapping)
     chosen = _outranked(chosen, channels or {}, units or {})
+    stated = Stated(every, radius, load)
+    chosen = without_what_is_said(chosen, channels or {}, stated)
     try:
         log = read(
             files,
@@ -286,6 +335,8 @@ def read_with_mapping(
             units={**needed(chosen.units), **(units or {})},
             isothermal=isothermal,
             drop_missing=drop_missing,
+            **{name: value for name, value in vars(chosen.stated).items() if value is not None}
+            | {name: value for name, value in vars(stated).items() if value is not None},
             progress=progress,
         )
         done = chosen.correct(log)
@@ -323,11 +374,11 @@ def propose_mapping(
     lines = [f"# Channels of {printable(path.name)}, proposed by hersey inspect: look at it and mend it."]
     for role in ("torque", "speed", "temperature", "time"):
         choice = ChannelChoice((channels or {}).get(role, ""), (units or {}).get(role, ""))
-        lines += [*_proposed(role, columns, choice, path.name), ""]
+        lines += [*_proposed(role, columns, choice, path), ""]
     return "\n".join(lines)
 
 
-_EXAMPLES = {
+_EXAMPLES: dict[str, tuple[str, ...]] = {
     "torque": (
         "# sign = -1                     # turns it",
         '# tare = "4 mN*m"               # what the sensor shows without load',
@@ -347,19 +398,41 @@ _EXAMPLES = {
     ),
     "time": (),
 }
+#: What a friction force needs beside it.
+_RADIUS = (
+    "",
+    "# [radius]                      # at which the friction force acts",
+    '# value = "25 mm"               # or channel = "Radius" and unit = "mm"',
+    "",
+    "# [load]                        # normal load: a friction coefficient needs it",
+    '# value = "50 N"                # or channel = "Load" and unit = "N"',
+)
 
 
-def _proposed(role: str, columns: tuple[Column, ...], choice: ChannelChoice, file: str) -> list[str]:
+def _proposed(role: str, columns: tuple[Column, ...], choice: ChannelChoice, path: Path) -> list[str]:
     try:
-        channel = find_channel(role, columns, choice, file)
+        channel = find_channel(role, columns, choice, path.name, lambda column: _says_nothing(path, column))
         said = "no channel of the log is called so or has such a unit"
     except HerseyError as error:
-        channel, said = None, str(error).removeprefix(f"{file}: ")
+        channel, said = None, str(error).removeprefix(f"{path.name}: ")
+    if channel is not None and not choice.name and _says_nothing(path, channel[0], zero=True):
+        channel, said = None, f"'{channel[0]}' is zero throughout, or empty: it is dead"
     if channel is None:
         return [f"# [{role}]", f"# {printable(said)}", '# channel = ""', '# unit = ""']
     column, unit = channel
     stated = [f"channel = {_quoted(column.path)}", f"unit = {_quoted(unit.unit)}"]
-    return [f"[{role}]", *stated, *_EXAMPLES[role]]
+    needed = _RADIUS if role_conversion(role, unit.unit)[0] in ("force", "friction coefficient") else ()
+    return [f"[{role}]", *stated, *_EXAMPLES[role], *needed]
+
+
+def _says_nothing(path: Path, column: Column, *, zero: bool = False) -> bool:
+    """Whether a channel of a log holds one value throughout, or none; ``zero``: only whether that is zero."""
+    try:
+        with open_columns(path) as opened:
+            (values,) = opened.numbers(called(column.name, opened.columns)[0])
+    except (HerseyError, IndexError):
+        return False
+    return is_dead(values) and not (zero and np.any(values[np.isfinite(values)]))
 
 
 def _quoted(text: str) -> str:
@@ -399,6 +472,22 @@ def _outranked(mapping: LogMapping, channels: Mapping[str, str], units: Mapping[
     if "torque" not in channels and "torque" not in units:
         return mapping
     return replace(mapping, torque=replace(mapping.torque, motor_constant=None))
+
+
+def without_what_is_said(mapping: LogMapping, channels: Mapping[str, str], stated: Stated) -> LogMapping:
+    """Return a mapping without what a channel or a value given by hand takes the place of."""
+    kept = mapping
+    if stated.every is not None:
+        kept = replace(kept, time=TimeMapping())
+    elif "time" in channels:
+        kept = replace(kept, time=replace(kept.time, every=None))
+    for role, given in (("load", stated.load), ("radius", stated.radius)):
+        of_role = getattr(kept, role)
+        if given is not None:
+            kept = replace(kept, **{role: type(of_role)()})
+        elif role in channels:
+            kept = replace(kept, **{role: replace(of_role, value=None)})
+    return kept
 
 
 def _as_written(file: LogFile, mapping: LogMapping) -> LogFile:
