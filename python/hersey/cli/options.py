@@ -78,7 +78,10 @@ class Reading:
         bool, typer.Option("--isothermal", help="Leave temperature out: fit B = a w^c.")
     ] = False
     drop_missing: Annotated[
-        bool, typer.Option("--drop-missing", help="Leave out rows in which a number is missing.")
+        bool,
+        typer.Option(
+            "--drop-missing", help="Leave out rows in which a number is missing, also where they are many."
+        ),
     ] = False
     max_memory: MaxMemory = "2 GB"
     min_dwell: Annotated[str, typer.Option(help="Shortest dwell, with its unit.")] = "2 s"

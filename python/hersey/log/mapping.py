@@ -39,7 +39,7 @@ from hersey.log.text.delimited import Progress
 from hersey.log.text.layout import Column
 from hersey.log.torque_log import LogFile
 from hersey.spelling import printable
-from hersey.units import registry, takes_si
+from hersey.units import Conversion, registry, takes_si
 
 #: A mapping for every log in its directory; one for a single log is called after it, ``bench.hersey.toml``.
 FILE_NAME = "hersey.toml"
@@ -410,11 +410,12 @@ _RADIUS = (
 
 
 def _proposed(role: str, columns: tuple[Column, ...], choice: ChannelChoice, path: Path) -> list[str]:
+    channel: tuple[Column, Conversion] | None = None
     try:
         channel = find_channel(role, columns, choice, path.name, lambda column: _says_nothing(path, column))
         said = "no channel of the log is called so or has such a unit"
     except HerseyError as error:
-        channel, said = None, str(error).removeprefix(f"{path.name}: ")
+        said = str(error).removeprefix(f"{path.name}: ")
     if channel is not None and not choice.name and _says_nothing(path, channel[0], zero=True):
         channel, said = None, f"'{channel[0]}' is zero throughout, or empty: it is dead"
     if channel is None:

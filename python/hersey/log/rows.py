@@ -50,7 +50,7 @@ class LeftOut:
         if not self.rows or (allowed and not most) or self.rows <= max(1.0, FEW * rows):
             return
         how_many = f" (the first of {self.rows} such rows of {rows})" if self.rows > 1 else ""
-        way_out = "too few rows are left" if allowed else _WAY_OUT
+        way_out = "too few rows are left: name another column, or mend the file" if most else _WAY_OUT
         raise UnreadableLogError(f"{file}, {self.words[0]}{how_many}; {way_out}")
 
     def notes(self) -> list[str]:
