@@ -417,7 +417,8 @@ def _proposed(role: str, columns: tuple[Column, ...], choice: ChannelChoice, pat
     except HerseyError as error:
         said = str(error).removeprefix(f"{path.name}: ")
     if channel is not None and not choice.name and _says_nothing(path, channel[0], zero=True):
-        channel, said = None, f"'{channel[0]}' is zero throughout, or empty: it is dead"
+        said = f"'{channel[0]}' is zero throughout, or empty: it is dead"
+        channel = None
     if channel is None:
         return [f"# [{role}]", f"# {printable(said)}", '# channel = ""', '# unit = ""']
     column, unit = channel
