@@ -52,6 +52,15 @@ def test_the_exponent_is_that_of_the_force(wear: Path) -> None:
     assert "5 dwells" in shown.stdout
 
 
+def test_a_load_for_each_run(wear: Path) -> None:
+    content = (wear / "wear.csv").read_text()
+    (wear / "again.csv").write_text("# again\n" + content)
+    options = ["--isothermal", "--every", "10 ms", "--radius", "30 mm", "--load", "10 N, 20 N"]
+    assert run("fit", "wear.csv", "again.csv", *options, cwd=wear).returncode == 0
+    refused = run("fit", "wear.csv", *options, cwd=wear)
+    assert "load has 2 values for 1 runs" in refused.stderr
+
+
 def test_an_amount_without_a_unit_is_no_name(wear: Path) -> None:
     refused = run("fit", "wear.csv", "--isothermal", "--every", "10 ms", "--radius", "30", cwd=wear)
     assert refused.returncode == 2

@@ -119,6 +119,27 @@ def test_a_radius_of_zero_costs_its_row(tmp_path: Path) -> None:
         assert (log.rows, log.files[0].missing_rows) == (ROWS - 1, 1)
 
 
+def test_a_load_and_a_radius_for_each_run(tmp_path: Path) -> None:
+    time = np.concatenate([TIME[:80], TIME[:120]])
+    force = write(tmp_path / "force.csv", text(**(FRICTION | {"Time [s]": time})))
+    log = hersey.read(force, isothermal=True, radius=["25 mm", "50 mm"], load=(10.0, 20.0))
+    for run, rows, radius, load in zip(
+        log.runs, (slice(80), slice(80, 200)), (25, 50), (10.0, 20.0), strict=True
+    ):
+        np.testing.assert_allclose(run.torque, FORCE[rows] * radius * 1e-3, rtol=1e-12)
+        np.testing.assert_allclose(run.speed, SLIDING[rows] / radius, rtol=1e-12)
+        assert run.load is not None
+        np.testing.assert_allclose(run.load, load)
+    cof = write(tmp_path / "cof.csv", text(**{"Time [s]": time, "COF": 0.1, "v [m/s]": 0.02}))
+    log = hersey.read(cof, isothermal=True, radius=0.025, load=[10.0, 20.0])
+    np.testing.assert_allclose([run.torque[0] for run in log.runs], [0.025, 0.05], rtol=1e-12)
+    assert "the load is one of 2 for each run" in log.files[0].notes
+    with pytest.raises(ParameterError, match="load has 3 values for 2 runs: give one for each"):
+        hersey.read(cof, isothermal=True, radius=0.025, load=[10.0, 20.0, 30.0])
+    with pytest.raises(ParameterError, match="load is -5"):
+        hersey.read(cof, isothermal=True, radius=0.025, load=[10.0, -5.0])
+
+
 # Bad cells ------------------------------------------------------------------------------------------------
 
 TORQUE = {"Time [s]": TIME, "Torque [N*m]": FORCE, "Speed [rpm]": SLIDING}

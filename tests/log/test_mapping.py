@@ -210,6 +210,10 @@ def test_radius_load_and_interval_in_a_mapping(tmp_path: Path) -> None:
         (run,) = read_with_mapping(path, isothermal=True, **given).log.runs  # type: ignore[arg-type]
         assert run.load is not None
         np.testing.assert_allclose(run.load, 70.0)
+    (tmp_path / FILE_NAME).write_text(text.replace('value = "50 N"', 'values = ["55 N"]'))
+    (run,) = read_with_mapping(path, isothermal=True).log.runs
+    assert run.load is not None
+    np.testing.assert_allclose(run.load, 55.0)
     (run,) = read_with_mapping(path, isothermal=True, channels={"load": "Fn"}).log.runs
     assert run.load is not None
     np.testing.assert_allclose(run.load, 60.0)

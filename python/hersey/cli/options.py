@@ -64,7 +64,12 @@ class Reading:
         ),
     ] = ""
     radius_unit: Annotated[str, typer.Option(help="Unit of a column of the radius, as 'mm'.")] = ""
-    load: Annotated[str, typer.Option(help="Normal load: '50 N', or the name of its column.")] = ""
+    load: Annotated[
+        str,
+        typer.Option(
+            help="Normal load: '50 N', one for each run as '10 N, 20 N', or the name of its column."
+        ),
+    ] = ""
     load_unit: Annotated[str, typer.Option(help="Unit of a column of the load, as 'N'.")] = ""
     run: Annotated[str, typer.Option(help="Name of the column that numbers the runs in a file.")] = ""
     mapping: Annotated[
@@ -113,8 +118,8 @@ class Reading:
     def given(self) -> dict[str, Any]:
         """Return what is said of the channels and their units, as `hersey.read_with_mapping` takes it."""
         roles = ("time", "torque", "speed", "temperature", "load", "radius", "run")
-        stated = {"every": self.every} | {
-            r: text for r in ("load", "radius") if _is_amount(text := getattr(self, r))
+        stated: dict[str, Any] = {"every": self.every} | {
+            role: amounts for role in ("load", "radius") if (amounts := _amounts(getattr(self, role)))
         }
         channels = {role: name for role in roles if (name := getattr(self, role)) and role not in stated}
         units = {role: unit for role in roles if (unit := getattr(self, f"{role}_unit", ""))}
@@ -124,7 +129,7 @@ class Reading:
             "units": units,
             "isothermal": self.isothermal,
             "drop_missing": self.drop_missing,
-            **{name: text for name, text in stated.items() if text},
+            **{name: amount for name, amount in stated.items() if amount},
         }
 
     def points(self, log: TorqueLog) -> SteadyPoints:
@@ -152,9 +157,12 @@ class Reading:
             return fit(self.points(log), temperature_scale=self.temperature_scale)
 
 
-def _is_amount(text: str) -> bool:
-    """Whether a text begins like an amount, and not like the name of a column."""
-    return re.match(r"\s*[-+]?\.?[0-9]", text) is not None
+def _amounts(text: str) -> str | list[str] | None:
+    """A text that begins like an amount, several between commas, or None for the name of a column."""
+    parts = text.split(",")
+    if not all(re.match(r"\s*[-+]?\.?[0-9]", part) for part in parts):
+        return None
+    return parts if len(parts) > 1 else text
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ from hersey.inspection.raw import RawChannel, RawLog, raw_channels, roles_of
 from hersey.inspection.support import Support, support_of
 from hersey.log.channels import OTHER_ROLES, ROLES, ChannelChoice, Stated
 from hersey.log.corrections import Corrected
-from hersey.log.mapping import LogMapping, mapping_of, read_with_mapping, without_what_is_said
+from hersey.log.mapping import LogMapping, as_stated, mapping_of, read_with_mapping, without_what_is_said
 from hersey.log.torque_log import Correction, LogFile
 from hersey.result import Result, json_record
 from hersey.units import conversion, takes_si
@@ -185,8 +185,8 @@ def inspect(
     isothermal: bool = False,
     drop_missing: bool = False,
     every: float | None = None,
-    radius: float | None = None,
-    load: float | None = None,
+    radius: float | Sequence[float] | None = None,
+    load: float | Sequence[float] | None = None,
     min_dwell: float = 2.0,
 ) -> Inspection:
     """Look at logs before a fit: also at such that cannot be fitted, or have no torque.
@@ -212,7 +212,7 @@ def inspect(
     """
     files = [paths] if isinstance(paths, str | Path) else list(paths)
     chosen = mapping if isinstance(mapping, LogMapping) else mapping_of(files, mapping)
-    stated = Stated(every, radius, load)
+    stated = Stated(every, as_stated(radius), as_stated(load))
     said = without_what_is_said(chosen, channels or {}, stated)
     choices = {
         role: ChannelChoice(

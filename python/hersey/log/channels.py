@@ -67,12 +67,12 @@ class Stated:
     """What the user says of a log and a file need not hold, SI; None where it is not said.
 
     ``every`` is the time between rows, ``radius`` that at which a friction force acts and a sliding speed is
-    measured, ``load`` the normal force.
+    measured, ``load`` the normal force; a tuple of them holds one for each run.
     """
 
     every: float | None = None
-    radius: float | None = None
-    load: float | None = None
+    radius: float | tuple[float, ...] | None = None
+    load: float | tuple[float, ...] | None = None
 
 
 def find_channel(

@@ -7,13 +7,15 @@ the speed of rotation that of sliding over the radius. Radius and load are chann
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.errors import HerseyError, UnitError
+from hersey.errors import HerseyError, ParameterError, UnitError
 from hersey.log.channels import ChannelChoice, Stated, find_channel, role_conversion
 from hersey.log.text.layout import Column
+from hersey.log.torque_log import LogFile, Run
 from hersey.units import Conversion
 
 Chosen = dict[str, tuple[Column, Conversion]]
@@ -70,7 +72,7 @@ def in_rotation(arrays: dict[str, FloatArray], chosen: Chosen, stated: Stated) -
     known = {role: arrays[role] for role in ("load", "radius") if role in arrays}
     for role in ("load", "radius"):
         if (value := getattr(stated, role)) is not None:
-            known[role] = np.full(rows, value)
+            known[role] = np.full(rows, 1.0 if isinstance(value, tuple) else value)  # see `of_each_run`
     if "load" in known:
         arrays["load"] = known["load"]
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
@@ -87,7 +89,7 @@ def in_rotation(arrays: dict[str, FloatArray], chosen: Chosen, stated: Stated) -
 def notes_on(chosen: Chosen, stated: Stated) -> list[str]:
     """Return what was computed to have a torque and a speed of rotation, in words."""
     places = {
-        role: f"'{chosen[role][0].path}'" if role in chosen else f"{value:g} {unit}"
+        role: f"'{chosen[role][0].path}'" if role in chosen else _said(value, unit)
         for role, unit in (("radius", "m"), ("load", "N"))
         if role in chosen or (value := getattr(stated, role)) is not None
     }
@@ -101,6 +103,38 @@ def notes_on(chosen: Chosen, stated: Stated) -> list[str]:
     if "load" in places:
         told.append(f"the load is {places['load']}")
     return told
+
+
+def of_each_run(runs: list[tuple[Run, LogFile]], stated: Stated) -> list[tuple[Run, LogFile]]:
+    """Return runs, read with a load or a radius of 1, with those that are stated for each of them.
+
+    Raises
+    ------
+    ParameterError
+        If there are not as many of them as runs.
+    """
+    for role in ("load", "radius"):
+        values = getattr(stated, role)
+        if not isinstance(values, tuple):
+            continue
+        if len(values) != len(runs):
+            raise ParameterError(f"{role} has {len(values)} values for {len(runs)} runs: give one for each")
+        runs = [(_scaled(run, log, role, value), log) for (run, log), value in zip(runs, values, strict=True)]
+    return runs
+
+
+def _scaled(run: Run, log: LogFile, role: str, value: float) -> Run:
+    units = {channel.role: channel.unit for channel in log.channels}
+    kinds = {of: role_conversion(of, units[of])[0] for of in ("torque", "speed")}
+    if role == "load":
+        torque = run.torque * value if kinds["torque"] == "friction coefficient" else run.torque
+        return replace(run, torque=torque, load=np.full(run.torque.shape, value))
+    torque = run.torque * value if kinds["torque"] != "torque" else run.torque
+    return replace(run, torque=torque, speed=run.speed / value if kinds["speed"] != "speed" else run.speed)
+
+
+def _said(value: float | tuple[float, ...], unit: str) -> str:
+    return f"one of {len(value)} for each run" if isinstance(value, tuple) else f"{value:g} {unit}"
 
 
 def _needing(role: str, chosen: Chosen) -> str:

@@ -125,16 +125,18 @@ class TimeMapping(RoleMapping):
 
 @dataclass(frozen=True)
 class LoadMapping(RoleMapping):
-    """What it says of the normal load: a channel, or a ``value``, N."""
+    """What it says of the normal load, N: a channel, a ``value``, or ``values``, one for each run."""
 
     value: Annotated[float, Quantity("force", 1e-9, 1e9, "50 N")] | None = None
+    values: tuple[Annotated[float, Quantity("force", 1e-9, 1e9, "50 N")], ...] = ()
 
 
 @dataclass(frozen=True)
 class RadiusMapping(RoleMapping):
-    """What it says of the radius at which a friction force acts: a channel, or a ``value``, m."""
+    """What it says of the radius of a friction force, m: as `LoadMapping`."""
 
     value: Annotated[float, Quantity("length", 1e-6, 1e3, "25 mm")] | None = None
+    values: tuple[Annotated[float, Quantity("length", 1e-6, 1e3, "25 mm")], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -207,7 +209,10 @@ class LogMapping(_Roles):
     @property
     def stated(self) -> Stated:
         """What it says that a file need not hold."""
-        return Stated(self.time.every, self.radius.value, self.load.value)
+        radius, load = (
+            of.value if of.value is not None else of.values or None for of in (self.radius, self.load)
+        )
+        return Stated(self.time.every, radius, load)
 
     def correct(self, log: Any) -> Corrected:
         """Apply the corrections that are stated, in the order of `hersey.log.corrections`."""
@@ -296,8 +301,8 @@ def read_with_mapping(
     isothermal: bool = False,
     drop_missing: bool = False,
     every: float | None = None,
-    radius: float | None = None,
-    load: float | None = None,
+    radius: float | Sequence[float] | None = None,
+    load: float | Sequence[float] | None = None,
     progress: Progress | None = None,
 ) -> Corrected:
     """Read a log, or several, as `hersey.read` does, each with its mapping, and correct it.
@@ -326,7 +331,7 @@ def read_with_mapping(
     needed = _without_temperature if isothermal else dict
     chosen = mapping if isinstance(mapping, LogMapping) else mapping_of(files, mapping)
     chosen = _outranked(chosen, channels or {}, units or {})
-    stated = Stated(every, radius, load)
+    stated = Stated(every, as_stated(radius), as_stated(load))
     chosen = without_what_is_said(chosen, channels or {}, stated)
     try:
         log = read(
@@ -476,6 +481,13 @@ def _outranked(mapping: LogMapping, channels: Mapping[str, str], units: Mapping[
     return replace(mapping, torque=replace(mapping.torque, motor_constant=None))
 
 
+def as_stated(value: float | Sequence[float] | None) -> float | tuple[float, ...] | None:
+    """Return a value, or one for each run, as it stands in `Stated`."""
+    return (
+        value if value is None or isinstance(value, int | float) else tuple(map(float, np.atleast_1d(value)))
+    )
+
+
 def without_what_is_said(mapping: LogMapping, channels: Mapping[str, str], stated: Stated) -> LogMapping:
     """Return a mapping without what a channel or a value given by hand takes the place of."""
     kept = mapping
@@ -488,7 +500,7 @@ def without_what_is_said(mapping: LogMapping, channels: Mapping[str, str], state
         if given is not None:
             kept = replace(kept, **{role: type(of_role)()})
         elif role in channels:
-            kept = replace(kept, **{role: replace(of_role, value=None)})
+            kept = replace(kept, **{role: replace(of_role, value=None, values=())})
     return kept
 
 

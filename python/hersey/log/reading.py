@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from hersey.errors import ParameterError
 from hersey.log.assembly import Assembly, columns, nothing_to_read
 from hersey.log.channels import OTHER_ROLES, ROLES, ChannelChoice, Stated
 from hersey.log.formats import format_of, opened
 from hersey.log.formats.frame import frame_recording, is_frame
+from hersey.log.friction import of_each_run
 from hersey.log.text.delimited import Progress, delimited_columns, read_delimited
 from hersey.log.torque_log import LARGEST, LogFile, Run, TorqueLog
 from hersey.units import takes_si
@@ -26,8 +29,8 @@ def read(
     isothermal: bool = False,
     drop_missing: bool = False,
     every: float | None = None,
-    radius: float | None = None,
-    load: float | None = None,
+    radius: float | Sequence[float] | None = None,
+    load: float | Sequence[float] | None = None,
     progress: Progress | None = None,
 ) -> TorqueLog:
     """Read one log, or several of one machine, each a run of its own.
@@ -52,9 +55,10 @@ def read(
     every
         Time between rows, s, where the file has no clock.
     radius
-        Radius at which a friction force acts and a sliding speed is measured, m, where no column holds it.
+        Radius at which a friction force acts and a sliding speed is measured, m, where no column holds it;
+        one for all runs, or one for each.
     load
-        Normal load, N, where no column holds it.
+        Normal load, N, where no column holds it; one for all runs, or one for each.
     progress
         Called with bytes done and bytes in all.
 
@@ -79,8 +83,7 @@ def read(
             raise ParameterError(f"'{role}' is no role of a channel: they are {', '.join(known)}")
     choices = {r: ChannelChoice((channels or {}).get(r, ""), (units or {}).get(r, "")) for r in known}
     stated = _stated(every=every, radius=radius, load=load)
-    runs: list[Run] = []
-    logs: list[LogFile] = []
+    done: list[tuple[Run, LogFile]] = []
     for number, file in enumerate(files, start=1):
         if is_frame(file):
             recording = frame_recording(file, "frame" if len(files) == 1 else f"frame {number}")
@@ -99,19 +102,23 @@ def read(
                 stated=stated,
                 progress=progress,
             )
-        if any(read_here[0][1].sha256 == other.sha256 for other in logs):
+        if any(read_here[0][1].sha256 == other.sha256 for _, other in done):
             name = read_here[0][1].name
             raise ParameterError(f"{name} holds the same bytes as a file before it: name each file once")
-        runs += [run for run, _ in read_here]
-        logs += [log for _, log in read_here]
-    return TorqueLog(tuple(runs), tuple(logs))
+        done += read_here
+    done = of_each_run(done, stated)
+    return TorqueLog(tuple(run for run, _ in done), tuple(log for _, log in done))
 
 
-def _stated(**given: float | None) -> Stated:
+def _stated(*, every: Any, radius: Any, load: Any) -> Stated:
     """What the user says of the log, if it can be."""
+    given = {"every": every, "radius": radius, "load": load}
     for name, value in given.items():
-        if value is not None and not 0 < value < LARGEST:
-            raise ParameterError(f"{name} is {value:g} in SI: it must be greater than 0")
+        for one in np.atleast_1d(value) if value is not None else ():
+            if not 0 < one < LARGEST:
+                raise ParameterError(f"{name} is {one:g} in SI: it must be greater than 0")
+        if np.ndim(value):
+            given[name] = tuple(map(float, value))
     return Stated(**given)
 
 
