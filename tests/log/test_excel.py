@@ -62,6 +62,17 @@ def test_the_sheet_with_torque_and_speed_is_taken_or_asked_for(tmp_path: Path) -
     assert_same(hersey.read(path, channels={"torque": "Second/Torque"}))
 
 
+@pytest.mark.parametrize("bad", ["OVERFLOW", "#N/A", None, 1e99])
+def test_one_bad_cell_costs_its_row(bad: object, tmp_path: Path) -> None:
+    table = rows()
+    table[40][1] = bad
+    log = hersey.read(workbook(tmp_path / "a.xlsx", Run=[["Rig 3"], [], HEAD, *table]))
+    assert (log.rows, log.files[0].missing_rows) == (ROWS - 1, 1)
+    assert any("left out: channel 'Torque', row 44: " in note for note in log.files[0].notes)
+    if bad == "OVERFLOW":
+        assert "row 44, column 'Torque': 'OVERFLOW' is no number" in log.files[0].notes
+
+
 def test_dates_of_a_sheet_are_times(tmp_path: Path) -> None:
     dated = [[(45352.0 + row[0] / 86400,), *row[1:]] for row in rows()]
     path = workbook(tmp_path / "d.xlsx", Run=[["Date", *HEAD[1:]], *dated])
@@ -134,6 +145,9 @@ def test_pickles_in_arrays_of_numpy_are_never_loaded(tmp_path: Path) -> None:
         archive.writestr("torque.npy", memory.getvalue() + pickle.dumps(Trap()))
     with pytest.raises(ChannelError, match=r"'torque' .objects, which only Python's pickle could load."):
         hersey.read(tmp_path / "a.npz")
+    np.save(tmp_path / "b.npy", np.array([(1.0, Trap())], dtype=[("x", "f8"), ("y", "O")]), allow_pickle=True)
+    with pytest.raises(ChannelError, match=r"'array' .objects, which only Python's pickle could load."):
+        hersey.read(tmp_path / "b.npy")
     assert not (tmp_path / "sprung").exists()
 
 

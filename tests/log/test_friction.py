@@ -12,6 +12,7 @@ import pytest
 import hersey
 from hersey.errors import ChannelError, HerseyError, ParameterError, UnitError, UnreadableLogError
 from hersey.log import list_channels
+from hersey.log.text import delimited
 from tests.conftest import shared
 
 ROWS = 200
@@ -110,13 +111,23 @@ def test_a_load_that_lacks_numbers_costs_no_row(tmp_path: Path) -> None:
     assert named.runs[0].load is not None
 
 
-def test_a_radius_of_zero_costs_its_row(tmp_path: Path) -> None:
+@pytest.mark.parametrize("wrong", [0.0, -25.0])
+@pytest.mark.parametrize("turning", [False, True])
+def test_a_radius_of_zero_or_less_costs_its_row(wrong: float, turning: bool, tmp_path: Path) -> None:
     radius = RADIUS.copy()
-    radius[3] = 0.0
+    radius[3] = wrong
     columns = FRICTION | {"Radius [mm]": radius}
+    if turning:
+        columns = {n: v for n, v in columns.items() if "Sliding" not in n} | {"Speed [rpm]": SLIDING}
     for source in (write(tmp_path / "a.csv", text(**columns)), pl.DataFrame(columns)):
         log = hersey.read(source, isothermal=True)
         assert (log.rows, log.files[0].missing_rows) == (ROWS - 1, 1)
+
+
+def test_a_torque_in_percent_is_no_coefficient(tmp_path: Path) -> None:
+    path = write(tmp_path / "a.csv", text(**{"Time [s]": TIME, "Torque [%]": FORCE, "Speed [rpm]": SLIDING}))
+    with pytest.raises(UnitError, match="needs the torque that 100 % stands for"):
+        hersey.read(path, isothermal=True, radius=0.02, load=10.0)
 
 
 def test_a_load_and_a_radius_for_each_run(tmp_path: Path) -> None:
@@ -165,9 +176,10 @@ def test_one_bad_cell_costs_its_row(column: str, bad: str, tmp_path: Path) -> No
 
 def test_a_bad_cell_beside_a_time_of_day_passes_no_midnight(tmp_path: Path) -> None:
     lines = ["Time,Torque [N*m],Speed [rpm]"]
-    lines += [f"10:{i // 60:02}:{i % 60:02}," + ("oops" if i == 50 else "1") + ",60" for i in range(100)]
+    for i in range(100):  # over 16 hours
+        lines.append(f"{i // 6:02}:{i % 6}0:00,{'oops' if i == 50 else 1},60")
     log = hersey.read(write(tmp_path / "a.csv", "\n".join(lines) + "\n"), isothermal=True)
-    np.testing.assert_allclose(log.runs[0].time, np.delete(np.arange(100.0), 50))
+    np.testing.assert_allclose(log.runs[0].time, 600.0 * np.delete(np.arange(100.0), 50))
 
 
 def test_many_bad_cells_are_refused_with_the_first(tmp_path: Path) -> None:
@@ -243,7 +255,7 @@ def test_a_time_that_lies_apart_costs_its_row(odd: float, row: int, tmp_path: Pa
     assert f"line {row + 2}: time runs" in log.files[0].notes[0]
 
 
-def test_rows_without_a_clock_and_their_interval(tmp_path: Path) -> None:
+def test_rows_without_a_clock_and_their_interval(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     columns = {name: values for name, values in TORQUE.items() if name != "Time [s]"}
     path = write(tmp_path / "a.csv", text(**columns))
     with pytest.raises(ChannelError, match=r"no time column among .* --every '2 ms'"):
@@ -255,8 +267,10 @@ def test_rows_without_a_clock_and_their_interval(tmp_path: Path) -> None:
         with pytest.raises(ParameterError, match="give no --time beside it"):
             hersey.read(source, isothermal=True, every="2 ms", channels={"time": "Speed"})
     bad = write(tmp_path / "b.csv", path.read_text().replace("5.03,", "ERR,", 1))
-    time = hersey.read(bad, isothermal=True, every=1.0).runs[0].time
-    np.testing.assert_allclose(time, np.delete(np.arange(float(ROWS)), 3))  # a gap, not a shift
+    for block in (delimited.BLOCK, 100):
+        monkeypatch.setattr(delimited, "BLOCK", block)
+        time = hersey.read(bad, isothermal=True, every=1.0).runs[0].time
+        np.testing.assert_allclose(time, np.delete(np.arange(float(ROWS)), 3))  # a gap, not a shift
 
 
 HALVES = {
@@ -320,6 +334,13 @@ def test_blanks_without_a_header_are_named_by_number(tmp_path: Path) -> None:
     np.testing.assert_allclose(log.runs[0].torque, FORCE)
 
 
+def test_a_blank_as_thousands_mark_between_tabs_separates_nothing(tmp_path: Path) -> None:
+    rows = [f"{i / 10}\t{1.5 + i / 100:.2f}\t{60 + i} 000" for i in range(40)]
+    path = write(tmp_path / "a.txt", "\n".join(["t [s]\tTorque [N*m]\tSpeed [1e-3 rpm]", *rows, ""]))
+    (run,) = hersey.read(path, isothermal=True).runs
+    np.testing.assert_allclose(run.speed * 30 / np.pi, 60.0 + np.arange(40))
+
+
 @pytest.mark.parametrize("ends", [",", ",,", ", ,"])
 def test_trailing_separators_cost_nothing(ends: str, tmp_path: Path) -> None:
     for head in ("", ends):
@@ -351,7 +372,7 @@ def test_a_unit_tells_more_than_a_name(tmp_path: Path) -> None:
         "Time [s]": TIME,
         "Moment of inertia [kg*m^2]": 0.1,
         "Reaction [N*m]": FORCE,
-        "n": 3,
+        "n": np.arange(ROWS),
         "Speed [rpm]": SLIDING,
     }
     (file,) = hersey.read(write(tmp_path / "a.csv", text(**columns)), isothermal=True).files

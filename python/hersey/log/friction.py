@@ -73,6 +73,8 @@ def in_rotation(arrays: dict[str, FloatArray], chosen: Chosen, stated: Stated) -
     for role in ("load", "radius"):
         if (value := getattr(stated, role)) is not None:
             known[role] = np.full(rows, 1.0 if isinstance(value, tuple) else value)  # see `of_each_run`
+    if "radius" in known:
+        known["radius"] = np.where(known["radius"] > 0, known["radius"], np.nan)
     if "load" in known:
         arrays["load"] = known["load"]
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
@@ -81,7 +83,7 @@ def in_rotation(arrays: dict[str, FloatArray], chosen: Chosen, stated: Stated) -
         if kinds["torque"] != "torque":
             arrays["torque"] = arrays["torque"] * known["radius"]
         if kinds["speed"] != "speed":
-            arrays["speed"] = np.where(known["radius"] > 0, arrays["speed"] / known["radius"], np.nan)
+            arrays["speed"] = arrays["speed"] / known["radius"]
     arrays.pop("radius", None)
     return arrays
 
