@@ -73,6 +73,17 @@ def test_one_bad_cell_costs_its_row(bad: object, tmp_path: Path) -> None:
         assert "row 44, column 'Torque': 'OVERFLOW' is no number" in log.files[0].notes
 
 
+def test_rows_count_from_the_first_of_the_sheet_and_a_summary_is_none(tmp_path: Path) -> None:
+    table = rows()
+    table[40][1] = "OVERFLOW"
+    log = hersey.read(
+        workbook(tmp_path / "a.xlsx", Run=[[], [], HEAD, *table, [], *[["Mean", 1.5, 60.0]] * 5])
+    )
+    assert (log.rows, log.files[0].missing_rows) == (ROWS - 1, 1)
+    assert "5 row(s) below the table were left out" in log.files[0].notes[0]
+    assert "row 44, column 'Torque': 'OVERFLOW' is no number" in log.files[0].notes
+
+
 def test_dates_of_a_sheet_are_times(tmp_path: Path) -> None:
     dated = [[(45352.0 + row[0] / 86400,), *row[1:]] for row in rows()]
     path = workbook(tmp_path / "d.xlsx", Run=[["Date", *HEAD[1:]], *dated])

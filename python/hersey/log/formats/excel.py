@@ -14,11 +14,14 @@ import polars as pl
 from hersey.arrays import FloatArray
 from hersey.errors import HerseyError
 from hersey.log.recording import Recording, Signal, library
+from hersey.log.text.footer import summary_lines
 from hersey.log.text.layout import SNIFFED, Column, Layout, find_layout
 from hersey.log.text.stamps import Stamps
 
 #: What stands between the cells of a row where the table is looked for: no cell holds one then.
 _TAB = "\t"
+#: Rows at the end of a sheet among which a summary is looked for.
+_LAST = 21
 
 
 @contextmanager
@@ -30,7 +33,10 @@ def open_excel(file: BinaryIO, _name: str) -> Iterator[Recording]:
         sheet_id=0,
         engine="calamine",
         has_header=False,
-        read_options={"dtypes": "string"},  # as text: a word in a column of numbers costs its row alone
+        read_options={
+            "dtypes": "string",
+            "skip_rows": 0,
+        },  # as text: a word in a column of numbers costs its row alone
         drop_empty_rows=False,
         drop_empty_cols=False,
         raise_if_empty=False,
@@ -67,17 +73,28 @@ def _layout(cells: pl.DataFrame, place: str) -> Layout:
     """Where the table of a sheet starts, found as in a text file."""
     lines, size = [], 0
     for row in cells.iter_rows():
-        lines.append(_TAB.join(" ".join((cell or "").replace('"', "'").split()) for cell in row))
+        lines.append(_line(row))
         size += len(lines[-1])
         if size > SNIFFED // 2:  # a sign may take more than a byte
             break
     return find_layout("\n".join(lines).encode()[: SNIFFED - 1], place, separators=_TAB)
 
 
+def _line(row: tuple[str | None, ...]) -> str:
+    return _TAB.join(" ".join((cell or "").replace('"', "'").split()) for cell in row)
+
+
 def _signals(recording: Recording, group: str, cells: pl.DataFrame, layout: Layout) -> Iterator[Signal]:
     table = cells.slice(layout.first_line - 1)
     filled = np.flatnonzero(~table.select(pl.all_horizontal(pl.all().is_null())).to_series().to_numpy())
     rows = int(filled[-1]) + 1 if filled.size else 0
+    last = [_line(row) for row in table.slice(max(0, rows - _LAST), min(rows, _LAST)).iter_rows()]
+    if summary := summary_lines(last, layout):
+        place = f"sheet '{group}', " if group else ""
+        recording.notes.append(
+            f"{place}{summary} row(s) below the table were left out: '{last[-summary][:60]}'"
+        )
+        rows = int(filled[filled < rows - summary][-1]) + 1
     for column in layout.named:
         if column.index in layout.texts:
             continue
