@@ -105,7 +105,7 @@ def runs_of(
         else:
             raise UnreadableLogError(
                 f"{file}, {place(row)}: time runs backwards by {time[last] - time[row]:.6g} s; "
-                "split the file there, or sort its rows"
+                "split the file there, sort its rows, or name the column that numbers its runs with --run"
             )
         if len(starts) > _MOST_RUNS:
             raise UnreadableLogError(f"{file}: its clock starts anew over {_MOST_RUNS} times: it is no clock")
