@@ -348,7 +348,9 @@ def _runs_on(values: FloatArray) -> bool:
 
 
 def _findings(channel: RawChannel, channel_traits: Traits, role: str) -> tuple[str, ...]:
-    said = [_in_words(fault, channel_traits, channel.column.unit, role) for fault in channel_traits.faults]
+    steady = "constant" if role in OTHER_ROLES else ""  # a load, or a radius, may stay what it is
+    faults = [fault for fault in channel_traits.faults if fault.kind != steady]
+    said = [_in_words(fault, channel_traits, channel.column.unit, role) for fault in faults]
     if channel.odd:
         said.append(f"{channel.odd} cells hold no number")
     if channel_traits.missing > channel.odd:
