@@ -73,6 +73,7 @@ KINDS: dict[str, tuple[str, str]] = {
     "torsional stiffness": ("N*m/rad", "N*m/rad"),
     "moment of inertia": ("kg*m^2", "kg*m^2"),
     "load per length": ("N/m", "N/m"),
+    "friction coefficient": ("1", "1"),
 }
 
 #: Exponents of m, kg, s, K and rad. The angle counts here, so that 1/s is no speed of a drive.
@@ -270,6 +271,8 @@ def _split_factor(text: str, unit: str, example: str) -> tuple[float, str]:
         raise UnitError(f"{what}: write one such as {example}")
     factor = float(match[1] or 1.0) / (float(match[3] or 1.0) or math.nan)
     plain = f"1{match[2]}" if match[2].startswith("/") else match[2]
+    if plain == "1":
+        return factor, plain
     for spelling, standard in _SPELLINGS:
         if re.fullmatch(spelling, plain):
             return factor, re.sub(f"^(?:{spelling})$", standard, plain)

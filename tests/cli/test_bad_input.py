@@ -41,19 +41,23 @@ FILES: dict[str, tuple[bytes, list[str]]] = {
     "empty file": (b"", ["is empty"]),
     "blank file": (b"\n \n", ["is empty"]),
     "header only": (HEADER.encode(), ["no rows"]),
-    "text in a number column": (altered(57, 1, "high"), ["line 57", "'Torque'", "'high'"]),
-    "text in the first row": (altered(2, 1, "high"), ["line 2", "'Torque'", "'high'"]),
+    "a column of words": (
+        text([",".join([*row.split(",")[:2], "fast", row.split(",")[3]]) for row in staircase()]),
+        ["line 2", "'Speed'", "'fast'", "the first of 480 such rows of 480", "name another column"],
+    ),
     "missing unit": (text(staircase(), HEADER.replace(" [N*m]", "")), ["'Torque' has no unit"]),
     "unknown unit": (text(staircase(), HEADER.replace("N*m", "Nmz")), ["unknown unit 'Nmz'"]),
     "unit of the wrong dimension": (text(staircase(), HEADER.replace("N*m", "V")), ["'V'", "not a unit"]),
     "ambiguous speed unit": (text(staircase(), HEADER.replace("rpm", "Hz")), ["revolutions or radians"]),
     "no torque column": (text(staircase(), HEADER.replace("Torque [N*m]", "Force [N]")), ["--torque"]),
-    "time running backwards": (altered(80, 0, "0.5"), ["line 80", "backwards"]),
-    "an endless cell": (altered(99, 2, "1" * 200_000), ["line 99", "'Speed'"]),
-    "NaN row": (altered(99, 2, "NaN"), ["line 99", "'Speed'", "--drop-missing"]),
-    "empty cell": (altered(99, 2, ""), ["line 99", "'Speed'", "--drop-missing"]),
-    "infinite": (altered(99, 2, "inf"), ["line 99", "'Speed'"]),
-    "row too short": (text([*staircase(), "48.0,1.0"]), ["line 482"]),
+    "time running backwards": (
+        text([*staircase()[:80], *staircase()[40:]]),
+        ["line 82", "backwards"],
+    ),
+    "many NaN rows": (
+        text([",".join([*r.split(",")[:2], "NaN,150"]) if i > 440 else r for i, r in enumerate(staircase())]),
+        ["line 443", "'Speed'", "the first of 39 such rows of 480", "--drop-missing"],
+    ),
     "row too long": (text([*staircase(), "48.0,1,2,3,4,5"]), ["line 482"]),
     "constant speed only": (text(staircase(speeds=(30,))), ["speed", "three speeds"]),
     "one temperature only": (text(staircase(temperatures=(150,))), ["one temperature", "--isothermal"]),
@@ -93,6 +97,31 @@ def test_bad_file(case: str, tmp_path: Path) -> None:
     assert_one_clear_line(result, says)
     assert [p.name for p in tmp_path.iterdir()] == ["log.csv"]
     assert (tmp_path / "log.csv").read_bytes() == content
+
+
+ONE_ROW: dict[str, tuple[bytes, list[str]]] = {
+    "text in a number column": (altered(57, 1, "high"), ["line 57", "'Torque'", "'high'"]),
+    "text in the first row": (altered(2, 1, "high"), ["line 2", "'Torque'", "'high'"]),
+    "a time that lies apart": (altered(80, 0, "0.5"), ["line 80", "backwards"]),
+    "an endless cell": (altered(99, 2, "1" * 200_000), ["line 99", "'Speed'"]),
+    "NaN row": (altered(99, 2, "NaN"), ["line 99", "'Speed'"]),
+    "empty cell": (altered(99, 2, ""), ["line 99", "'Speed'"]),
+    "infinite": (altered(99, 2, "inf"), ["line 99", "'Speed'"]),
+    "row too short": (text([*staircase(), "48.0,1.0"]), ["line 482"]),
+}
+
+
+@pytest.mark.parametrize("case", ONE_ROW)
+def test_a_bad_cell_costs_its_row_and_is_told(case: str, tmp_path: Path) -> None:
+    content, says = ONE_ROW[case]
+    (tmp_path / "log.csv").write_bytes(content)
+    result = run("report", "log.csv", cwd=tmp_path)
+    assert result.returncode == 0, result
+    (line,) = (line for line in result.stderr.splitlines() if "left out" in line)
+    assert line.startswith("log.csv: 1 row(s) were left out: ")
+    for words in says:
+        assert words in line
+        assert words in (tmp_path / "report.html").read_text()
 
 
 @pytest.fixture

@@ -221,24 +221,41 @@ def test_what_a_poor_log_cannot_tell(tmp_path: Path) -> None:
 
 def test_missing_numbers_and_temperature_say_which_flag_helps(tmp_path: Path) -> None:
     table = testbench.run(seed=2).table.head(4000)
-    holes = table.with_columns(pl.when(pl.int_range(pl.len()) % 500 != 17).then(pl.col(TORQUE)))
+    holes = table.with_columns(pl.when(pl.int_range(pl.len()) % 25 != 17).then(pl.col(TORQUE)))
     path = tmp_path / "holes.csv"
     holes.drop(TEMPERATURE).write_csv(path)
     found = inspect(path)
     assert found.needed == ("--isothermal", "--drop-missing")
-    assert found.dropped == {"holes.csv": 8}
-    assert f"{path.name}: Drive torque: 8 rows lack a number" in found.findings
+    assert found.dropped == {"holes.csv": 160}
+    assert f"{path.name}: Drive torque: 160 rows lack a number" in found.findings
     assert "readable as a log of torque with --isothermal --drop-missing" in found.summary()
 
 
 def test_a_log_whose_time_steps_back_is_shown_all_the_same(tmp_path: Path) -> None:
     table = testbench.run(seed=2).table.head(3000)
     path = tmp_path / "twice.csv"
-    pl.concat([table, table]).write_csv(path)
+    pl.concat([table, table.tail(2000)]).write_csv(path)
     found = inspect(path)
     assert "time runs backwards" in found.problem
     assert found.support is None
     assert any("time steps back once, first at row 3001" in finding for finding in found.findings)
+
+
+def test_a_clock_that_starts_anew_is_shown_with_its_runs(tmp_path: Path) -> None:
+    table = testbench.run(seed=2).table.head(3000)
+    pl.concat([table, table]).write_csv(tmp_path / "twice.csv")
+    found = inspect(tmp_path / "twice.csv")
+    assert found.support is not None
+    assert "run 2 of 2 in twice.csv begins at line 3002" in found.summary()
+
+
+def test_a_row_left_out_is_shown_with_line_and_column(tmp_path: Path) -> None:
+    lines = testbench.run(seed=2).table.head(3000).write_csv().splitlines()
+    lines[100] = lines[100].replace(lines[100].split(",")[1], "OVERFLOW")
+    (tmp_path / "log.csv").write_text("\n".join([*lines, ""]))
+    found = inspect(tmp_path / "log.csv")
+    assert found.dropped == {"log.csv": 1}
+    assert "left out: line 101, column 'Drive torque': 'OVERFLOW' is not a number" in found.summary()
 
 
 def test_couette_cell_without_torque() -> None:
@@ -279,7 +296,7 @@ def test_other_formats_are_shown_channel_by_channel() -> None:
 def test_wear_tests_and_a_dynamometer() -> None:
     for path in sorted(shared("data/friction/te67_pin_on_disc").glob("*.tsv")):
         found = inspect(path)
-        assert "there is no torque channel" in found.summary()
+        assert "choose with --torque 'Friction Force#1' or 'Friction Force#2'" in found.summary()
         assert found.files[0].clocks[0].interval == 1.0
         flagged = {c.name for c in found.files[0].channels for f in c.traits.faults if f.kind == "stuck"}
         assert flagged == set()

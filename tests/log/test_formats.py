@@ -224,10 +224,19 @@ def test_a_missing_value_in_a_frame_is_refused_or_counted() -> None:
     gap = frame().with_columns(
         pl.when(pl.col("Time [s]") == 0.5).then(None).otherwise("Torque [N*m]").alias("Torque [N*m]")
     )
-    with pytest.raises(UnreadableLogError, match="'Torque', sample 51: no number"):
-        hersey.read(gap)
-    log = hersey.read(gap, drop_missing=True)
+    log = hersey.read(gap)
     assert (log.rows, log.files[0].missing_rows) == (ROWS - 1, 1)
+    (note,) = log.files[0].notes
+    assert "1 row(s) were left out: channel 'Torque', sample 51: no number" in note
+    many = frame().with_columns(pl.when(pl.col("Time [s]") < 0.5).then("Torque [N*m]").alias("Torque [N*m]"))
+    with pytest.raises(
+        UnreadableLogError, match=r"'Torque', sample 51: no .* 150 such rows of 200.; too few"
+    ):
+        hersey.read(many, drop_missing=True)
+    some = frame().with_columns(pl.when(pl.col("Time [s]") < 1.5).then("Torque [N*m]").alias("Torque [N*m]"))
+    with pytest.raises(UnreadableLogError, match=r"'Torque', sample 151: no number .*--drop-missing"):
+        hersey.read(some)
+    assert hersey.read(some, drop_missing=True).rows == 150
 
 
 @pytest.mark.parametrize("name", ["a.tdms", "a.mf4"])
@@ -424,7 +433,7 @@ MATLAB = {
     "testhdf5_7.4_GLNX86.mat": [("testdouble", "")],
     "teststruct_7.4_GLNX86.mat": [("teststruct/doublefield", "")],
     "big_endian.mat": [("floats#1", ""), ("floats#2", "")],
-    "testcell_7.4_GLNX86.mat": [],
+    "testcell_7.4_GLNX86.mat": [("testcell#3", ""), ("testcell#4", "")],
 }
 
 
@@ -438,9 +447,7 @@ def test_matlab_by_others(name: str) -> None:
         np.testing.assert_allclose(values[0], np.arange(9) * np.pi / 4, atol=1e-12)
     if name == "big_endian.mat":
         np.testing.assert_allclose(np.column_stack(values), [[2, 3], [3, 4]])
-    with pytest.raises(
-        ChannelError, match=r"no torque column among|no channel of numbers, only 'testcell' .cells."
-    ):
+    with pytest.raises(ChannelError, match="no torque column among"):
         hersey.read(path)
 
 
@@ -512,11 +519,11 @@ def test_lvm_by_labview() -> None:
 
 def test_pin_on_disc_by_others() -> None:
     path = shared("data/friction/te67_pin_on_disc/PPS_60N_2.tsv")
-    with pytest.raises(ChannelError, match="no torque column among"):
+    with pytest.raises(ChannelError, match="'Friction Force#1' or 'Friction Force#2'"):
         hersey.read(path)
     with pytest.raises(ChannelError, match="'Friction Force#1' or 'Friction Force#2'"):
         hersey.read(path, channels={"torque": "Friction Force"}, units={"torque": "0.022 N*m"})
-    with pytest.raises(ChannelError, match=r"time could be 'Time \[s\]' or 'Step Time' or 'Test Time'"):
+    with pytest.raises(ChannelError, match=r"time could be 'Time \[s\]' or 'Test Time'"):
         hersey.read(path, channels={"torque": "Friction Force#1"}, units={"torque": "0.022 N*m"})
     logs = [
         hersey.read(

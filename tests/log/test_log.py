@@ -156,10 +156,13 @@ MISREAD = {
         "'28.140' is not a number",
     ),
     "a row behind a comment mark": (
-        HEADER + BODY + "#VALUE!,0.5,60,150\n" + "9,0.5,60,150\n",
+        HEADER + BODY + "#8,0.5,60,150\n" + "9,0.5,60,150\n",
         "like a comment",
     ),
-    "a coarse value beyond belief": (HEADER + BODY + "9,1e200,60,150\n", "line 32, column 'Torque'"),
+    "values beyond belief": (
+        HEADER + BODY + 2 * "9,1e200,60,150\n",
+        "line 32, column 'Torque'.* is no torque",
+    ),
     "two readings of the same column": (HEADER + BODY, "cannot be both"),
 }
 

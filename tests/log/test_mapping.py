@@ -193,6 +193,63 @@ def test_a_log_without_the_channels_of_its_mapping_names_the_mapping(tmp_path: P
         read_mapping(tmp_path / "none.toml")
 
 
+FRICTION = "row,Friction force [N],v [mm/s],Fn [N]"
+
+
+def test_radius_load_and_interval_in_a_mapping(tmp_path: Path) -> None:
+    path = write(tmp_path / "wear.csv", FRICTION, 5.0, 20.0, 60.0)
+    text = '[time]\nevery = "2 ms"\n[radius]\nvalue = "25 mm"\n[load]\nvalue = "50 N"\n'
+    (tmp_path / FILE_NAME).write_text(text)
+    (run,) = read_with_mapping(path, isothermal=True).log.runs
+    np.testing.assert_allclose(run.torque, 0.125)
+    np.testing.assert_allclose(run.speed, 0.8)
+    np.testing.assert_allclose(run.time, 2e-3 * np.arange(TIME.size))
+    assert run.load is not None
+    np.testing.assert_allclose(run.load, 50.0)
+    for given in ({"load": 70.0}, {"load": "70 N"}):  # what is given by hand outranks it
+        (run,) = read_with_mapping(path, isothermal=True, **given).log.runs  # type: ignore[arg-type]
+        assert run.load is not None
+        np.testing.assert_allclose(run.load, 70.0)
+    (tmp_path / FILE_NAME).write_text(text.replace('value = "50 N"', 'values = ["55 N"]'))
+    (run,) = read_with_mapping(path, isothermal=True).log.runs
+    assert run.load is not None
+    np.testing.assert_allclose(run.load, 55.0)
+    (run,) = read_with_mapping(path, isothermal=True, channels={"load": "Fn"}).log.runs
+    assert run.load is not None
+    np.testing.assert_allclose(run.load, 60.0)
+    (run,) = read_with_mapping(path, isothermal=True, channels={"time": "row"}, units={"time": "s"}).log.runs
+    np.testing.assert_allclose(run.time, TIME)
+
+
+def test_channels_of_radius_and_run_in_a_mapping(tmp_path: Path) -> None:
+    header = "t [s],Friction force [N],v [mm/s],R,Lauf"
+    path = write(tmp_path / "wear.csv", header, 5.0, 20.0, 25.0, np.floor(TIME / 10.0))
+    text = '[radius]\nchannel = "R"\nunit = "mm"\n[run]\nchannel = "Lauf"\n'
+    (tmp_path / FILE_NAME).write_text(text)
+    log = read_with_mapping(path, isothermal=True).log
+    assert [run.time.size for run in log.runs] == [200, 200]
+    np.testing.assert_allclose(log.runs[1].torque, 0.125)
+
+
+def test_a_proposal_for_a_friction_force_asks_for_the_radius(tmp_path: Path) -> None:
+    path = write(tmp_path / "wear.csv", "t [s],Friction force [N],v [mm/s]", 5.0 + TIME, 20.0 + TIME)
+    text = propose_mapping(path)
+    assert '# value = "25 mm"' in text
+    (tmp_path / FILE_NAME).write_text(
+        text.replace("# [radius]", "[radius]").replace('# value = "25 mm"', 'value = "25 mm"')
+    )
+    (run,) = read_with_mapping(path, isothermal=True).log.runs
+    np.testing.assert_allclose(run.torque, (5.0 + TIME) * 0.025)
+
+
+def test_a_dead_channel_is_not_proposed(tmp_path: Path) -> None:
+    header = "t [s],Torque 1 [N*m],Torque 2 [N*m],Speed [rpm],Temp [degC]"
+    text = propose_mapping(write(tmp_path / "a.csv", header, 1.5, 1.0 + TIME, 60.0 + TIME, 0.0))
+    assert 'channel = "Torque 2"' in text
+    assert "'Temp [degC]' is zero throughout, or empty: it is dead" in text
+    assert 'channel = "Temp"' not in text
+
+
 def test_a_screw_drive_by_its_mapping(tmp_path: Path) -> None:
     folder = shared("data/friction/tro2021_screw_drives/driveNo1/steady_state")
     text = '[torque]\nchannel = "Torque actual value averaged"\nunit = "9.84 mN*m / 100"\nsign = -1\n'

@@ -37,8 +37,9 @@ def test_digits_of_other_scripts_are_no_numbers(digits: str, tmp_path: Path) -> 
     assert not is_stamp(f"12:00:0{digits}")
     log = tmp_path / "log.csv"
     log.write_text(HEADER + ROWS + f"40,{digits},30,150\n41,1,1,150\n", encoding="utf-8")
-    with pytest.raises(UnreadableLogError, match=r"line 42, column 'Torque'.* is not a number"):
-        hersey.read(log)
+    (note,) = hersey.read(log).files[0].notes
+    assert "line 42, column 'Torque'" in note
+    assert "is not a number" in note
     assert raw_channels(log).channels[1].odd == 1
 
 
@@ -53,8 +54,9 @@ def test_half_a_character_at_the_end_of_utf_16(around: str, half: int, encoding:
     if around in ("{}", "1{}"):
         assert hersey.read(log).rows == 40
         return
-    with pytest.raises(UnreadableLogError, match="line 42"):
-        hersey.read(log)
+    read = hersey.read(log)
+    assert read.rows == 40
+    assert any("line 42" in note for note in read.files[0].notes)
 
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-16-le", "utf-16-be"])

@@ -1,13 +1,16 @@
-"""TDMS, MATLAB v4 and v5, LVM: written byte by byte from their pages, with lengths that may lie.
+"""TDMS, MATLAB v4 and v5, LVM, Excel: written byte by byte from their pages, with lengths that may lie.
 
 Sources: NI, TDMS File Format Internal Structure; MathWorks, MAT-File Format; NI, LabVIEW Measurement File.
 """
 
 from __future__ import annotations
 
+import io
 import struct
+import zipfile
 import zlib
 from collections.abc import Sequence
+from xml.sax.saxutils import escape
 
 import numpy as np
 
@@ -93,3 +96,66 @@ def lvm(channels: Sequence[tuple[str, str, np.ndarray]], *, step: float = 0.01) 
         cells = [f"{row * step:.6f}", *(f"{values[row]:.9f}" for _, _, values in channels)]
         lines.append("\t".join(cells) + "\t")
     return ("\r\n".join(lines) + "\r\n").encode()
+
+
+_OFFICE = "http://schemas.openxmlformats.org"
+_XLSX = {
+    "[Content_Types].xml": f'<Types xmlns="{_OFFICE}/package/2006/content-types">'
+    '<Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/>'
+    '<Default Extension="xml" ContentType="application/xml"/>'
+    '<Override PartName="/xl/workbook.xml" ContentType='
+    '"application/vnd.openxmlformats-officedocument.spreadsheetml.sheet.main+xml"/></Types>',
+    "_rels/.rels": f'<Relationships xmlns="{_OFFICE}/package/2006/relationships"><Relationship Id="r0" '
+    f'Type="{_OFFICE}/officeDocument/2006/relationships/officeDocument" Target="xl/workbook.xml"/>'
+    "</Relationships>",
+    "xl/styles.xml": f'<styleSheet xmlns="{_OFFICE}/spreadsheetml/2006/main"><cellXfs count="2">'
+    '<xf numFmtId="0"/><xf numFmtId="22" applyNumberFormat="1"/></cellXfs></styleSheet>',
+}
+
+
+def xlsx(sheets: dict[str, Sequence[Sequence[object]]]) -> bytes:
+    """Return a workbook: a number, a word, an error such as ``#N/A``, or nothing (None) in each cell.
+
+    A tuple of one number is a date in days of Excel. Source: ECMA-376, part 1, 18.3.
+    """
+    parts, links, listed = dict(_XLSX), [], []
+    for number, (title, rows) in enumerate(sheets.items(), start=1):
+        path = f"worksheets/sheet{number}.xml"
+        parts[f"xl/{path}"] = _sheet(rows)
+        kind = f"{_OFFICE}/officeDocument/2006/relationships/worksheet"
+        links.append(f'<Relationship Id="s{number}" Type="{kind}" Target="{path}"/>')
+        listed.append(f'<sheet name="{escape(title)}" sheetId="{number}" r:id="s{number}"/>')
+    styles = f"{_OFFICE}/officeDocument/2006/relationships/styles"
+    links.append(f'<Relationship Id="st" Type="{styles}" Target="styles.xml"/>')
+    space = f'xmlns="{_OFFICE}/package/2006/relationships"'
+    parts["xl/_rels/workbook.xml.rels"] = f"<Relationships {space}>{''.join(links)}</Relationships>"
+    main = f'xmlns="{_OFFICE}/spreadsheetml/2006/main"'
+    related = f'xmlns:r="{_OFFICE}/officeDocument/2006/relationships"'
+    parts["xl/workbook.xml"] = f"<workbook {main} {related}><sheets>{''.join(listed)}</sheets></workbook>"
+    memory = io.BytesIO()
+    with zipfile.ZipFile(memory, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, text in parts.items():
+            archive.writestr(zipfile.ZipInfo(name), text, zipfile.ZIP_DEFLATED)
+    return memory.getvalue()
+
+
+def _sheet(rows: Sequence[Sequence[object]]) -> str:
+    lines = []
+    for number, row in enumerate(rows, start=1):
+        cells = "".join(_cell(f"{chr(65 + i)}{number}", value) for i, value in enumerate(row))
+        lines.append(f'<row r="{number}">{cells}</row>')
+    data = f"<sheetData>{''.join(lines)}</sheetData>"
+    return f'<worksheet xmlns="{_OFFICE}/spreadsheetml/2006/main">{data}</worksheet>'
+
+
+def _cell(place: str, value: object) -> str:
+    match value:
+        case None:
+            return ""
+        case str() if value.startswith("#"):
+            return f'<c r="{place}" t="e"><v>{value}</v></c>'
+        case str():
+            return f'<c r="{place}" t="inlineStr"><is><t>{escape(value)}</t></is></c>'
+        case (days,):
+            return f'<c r="{place}" s="1"><v>{days!r}</v></c>'
+    return f'<c r="{place}"><v>{float(value)!r}</v></c>'  # type: ignore[arg-type]

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from tests.strangers.mdf_blocks import Channel, formula, mdf3, mf4
-from tests.strangers.other_blocks import lvm, mat4, mat5, matrix, tdms
+from tests.strangers.other_blocks import lvm, mat4, mat5, matrix, tdms, xlsx
 
 ROWS = 60
 TIME = np.arange(ROWS) * 0.01
@@ -152,6 +152,18 @@ def parquet(compression: str = "uncompressed") -> bytes:
     return memory.getvalue()
 
 
+def workbook() -> bytes:
+    head = ["Time [s]", "Torque [N*m]", "Speed [rpm]", "Temp [degC]"]
+    rows = [list(row) for row in zip(*(values.tolist() for values in COLUMNS.values()), strict=True)]
+    return xlsx({"Notes": [["Operator", "me"]], "Run": [["Rig 3"], head, *rows]})
+
+
+def npz(*, packed: bool = False) -> bytes:
+    memory = io.BytesIO()
+    (np.savez_compressed if packed else np.savez)(memory, allow_pickle=False, **COLUMNS)
+    return memory.getvalue()
+
+
 def profile() -> bytes:
     return b"Time [s],Temperature [degC]\n" + b"".join(b"%d,%d\n" % (i, 150 + i) for i in range(20))
 
@@ -186,6 +198,10 @@ SEEDS: dict[str, Callable[[], bytes]] = {
     "packed.h5": lambda: hdf5(packed=True),
     "run.parquet": parquet,
     "packed.parquet": lambda: parquet("zstd"),
+    "run.xlsx": workbook,
+    "run.npz": npz,
+    "packed.npz": lambda: npz(packed=True),
+    "blanks.txt": lambda: csv("   ").replace("Time [s]", "Time[s]").encode(),
     "machine.toml": lambda: MACHINE.encode(),
     "log.mapping.toml": lambda: MAPPING.encode(),
     "scenario.toml": lambda: SCENARIO.encode(),

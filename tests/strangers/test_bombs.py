@@ -6,6 +6,7 @@ import contextlib
 import io
 import resource
 import struct
+import zipfile
 import zlib
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -18,7 +19,7 @@ from hersey.errors import HerseyError
 from hersey.log import list_channels
 from hersey.log.formats import opening
 from tests.strangers.mdf_blocks import Channel, mf4
-from tests.strangers.other_blocks import MAT5_HEAD, lvm, matrix, tdms
+from tests.strangers.other_blocks import MAT5_HEAD, lvm, matrix, tdms, xlsx
 from tests.strangers.seeds import ROWS, SPEED, TABLE, TEMPERATURE, TIME, TORQUE
 from tests.strangers.watching import children, linux, peak_memory, processor_time
 
@@ -183,6 +184,57 @@ def lvm_long_cell() -> bytes:
     return lvm(TABLE).replace(b"1.001", b"9" * 3_000_000, 1)
 
 
+def _workbook(sheet: str, strings: str = "") -> bytes:
+    """A workbook of one sheet with this text in it, and a table of strings that its cells may name."""
+    space = 'xmlns="http://schemas.openxmlformats.org/spreadsheetml/2006/main"'
+    memory, sound = io.BytesIO(), io.BytesIO(xlsx({"Run": [["Time [s]", "Torque [N*m]"], [0.0, 1.0]]}))
+    with zipfile.ZipFile(sound) as old, zipfile.ZipFile(memory, "w", zipfile.ZIP_DEFLATED) as new:
+        for name in old.namelist():
+            if not name.endswith("sheet1.xml"):
+                new.writestr(name, old.read(name))
+        new.writestr("xl/worksheets/sheet1.xml", f"<worksheet {space}>{sheet}</worksheet>")
+        new.writestr("xl/sharedStrings.xml", f"<sst {space}>{strings}</sst>")
+    return memory.getvalue()
+
+
+def xlsx_corners() -> bytes:
+    cells = '<c r="{0}{1}"><v>1</v></c>'
+    rows = "".join(f'<row r="{n}">{cells.format(c, n)}</row>' for c, n in (("A", 1), ("XFD", 1_048_576)))
+    return _workbook(f"<sheetData>{rows}</sheetData>")
+
+
+def xlsx_strings() -> bytes:
+    row = '<row r="{0}"><c r="A{0}" t="s"><v>0</v></c></row>'
+    rows = "".join(row.format(number) for number in range(1, 20_001))
+    return _workbook(f"<sheetData>{rows}</sheetData>", f"<si><t>{'a' * 1_000_000}</t></si>")
+
+
+def xlsx_blanks() -> bytes:
+    return _workbook(f"<sheetData>{' ' * 1_500_000_000}</sheetData>")
+
+
+def npz(rows: int, stored: int) -> bytes:
+    """An array that says it has so many rows, and a stream of so many zeros behind that."""
+    memory = io.BytesIO()
+    with (
+        zipfile.ZipFile(memory, "w", zipfile.ZIP_DEFLATED) as archive,
+        archive.open("torque.npy", "w", force_zip64=True) as member,
+    ):
+        head = {"descr": "<f8", "fortran_order": False, "shape": (rows,)}
+        np.lib.format.write_array_header_1_0(member, head)
+        for _ in range(stored >> 24):
+            member.write(bytes(1 << 24))
+    return memory.getvalue()
+
+
+def npz_zeros() -> bytes:
+    return npz(300_000_000, 2_400_000_000)
+
+
+def npz_claims() -> bytes:
+    return npz(2**50, 1 << 24)
+
+
 #: Each with the ending of the file, what makes it, and whether memory is the reason for which it is refused.
 BOMBS: dict[str, tuple[str, Callable[[], bytes], bool]] = {
     "a compressed element of 3 GB": (".mat", mat_honest, True),
@@ -203,6 +255,11 @@ BOMBS: dict[str, tuple[str, Callable[[], bytes], bool]] = {
     "the most cycles": (".mf4", mf4_most_cycles, False),
     "a segment that says 2^62 values": (".tdms", tdms_claims, False),
     "a segment that never ends": (".tdms", tdms_segment, False),
+    "a sheet with far corners": (".xlsx", xlsx_corners, False),
+    "a long word in many cells": (".xlsx", xlsx_strings, False),
+    "a sheet of blanks": (".xlsx", xlsx_blanks, False),
+    "2.4 GB of zeros": (".npz", npz_zeros, True),
+    "an array that says it is long": (".npz", npz_claims, False),
     "100,000 columns of LabVIEW": (".lvm", lvm_wide, False),
     "100,000 columns of text": (".csv", csv_wide, False),
     "a cell of 3 million digits": (".lvm", lvm_long_cell, False),

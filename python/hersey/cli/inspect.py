@@ -56,17 +56,11 @@ def inspect(
     from hersey.log.mapping import propose_mapping
     from hersey.units import parse
 
-    roles = ("time", "torque", "speed", "temperature")
-    channels = {role: name for role in roles if (name := getattr(reading, role))}
-    units = {role: unit for role in roles if (unit := getattr(reading, f"{role}_unit"))}
+    given = reading.given()
     with working("looking at the channels"), memory_limit(reading.max_memory):
         inspection = inspected(
             logs,
-            mapping=reading.mapping or None,
-            channels=channels,
-            units=units,
-            isothermal=reading.isothermal,
-            drop_missing=reading.drop_missing,
+            **given,
             min_dwell=parse("time", reading.min_dwell),
             tare=reading.tare,
             rotation=reading.rotation,
@@ -74,7 +68,7 @@ def inspect(
         )
     if kept is not None:
         with memory_limit(reading.max_memory):
-            proposal = propose_mapping(logs[0], channels=channels, units=units)
+            proposal = propose_mapping(logs[0], channels=given["channels"], units=given["units"])
         write_atomically(kept, proposal, overwrite=True)
     if figure is not None:
         from hersey.charts import chart_of

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import functools
 import inspect
+import re
+import sys
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
@@ -12,6 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
 import typer
 
 from hersey.cli.progress import bar, working
+from hersey.cli.terminal import say
 
 if TYPE_CHECKING:
     from hersey.damping.dwells import SteadyPoints
@@ -54,6 +57,22 @@ class Reading:
     temperature_unit: Annotated[str, typer.Option(help="Unit of temperature, as 'degC'.")] = ""
     time: Annotated[str, typer.Option(help="Name of the time column.")] = ""
     time_unit: Annotated[str, typer.Option(help="Unit of time, as 's' or 'ms'.")] = ""
+    every: Annotated[str, typer.Option(help="Time between rows where the file has no clock, as '2 ms'.")] = ""
+    radius: Annotated[
+        str,
+        typer.Option(
+            help="Radius of a friction force and a sliding speed: '25 mm', or the name of its column."
+        ),
+    ] = ""
+    radius_unit: Annotated[str, typer.Option(help="Unit of a column of the radius, as 'mm'.")] = ""
+    load: Annotated[
+        str,
+        typer.Option(
+            help="Normal load: '50 N', one for each run as '10 N, 20 N', or the name of its column."
+        ),
+    ] = ""
+    load_unit: Annotated[str, typer.Option(help="Unit of a column of the load, as 'N'.")] = ""
+    run: Annotated[str, typer.Option(help="Name of the column that numbers the runs in a file.")] = ""
     mapping: Annotated[
         str,
         typer.Option(
@@ -65,7 +84,10 @@ class Reading:
         bool, typer.Option("--isothermal", help="Leave temperature out: fit B = a w^c.")
     ] = False
     drop_missing: Annotated[
-        bool, typer.Option("--drop-missing", help="Leave out rows in which a number is missing.")
+        bool,
+        typer.Option(
+            "--drop-missing", help="Leave out rows in which a number is missing, also where they are many."
+        ),
     ] = False
     means: Annotated[
         bool, typer.Option("--means", help="The file is a table of means: one row per dwell, no clock.")
@@ -93,19 +115,11 @@ class Reading:
         from hersey.log import memory_limit
         from hersey.log.mapping import read_with_mapping
 
-        roles = ("time", "torque", "speed", "temperature")
         with bar("reading") as progress, memory_limit(self.max_memory):
-            done = read_with_mapping(
-                paths,
-                mapping=self.mapping or None,
-                channels={role: getattr(self, role) for role in roles if getattr(self, role)},
-                units={
-                    role: getattr(self, f"{role}_unit") for role in roles if getattr(self, f"{role}_unit")
-                },
-                isothermal=self.isothermal,
-                drop_missing=self.drop_missing,
-                progress=progress,
-            )
+            done = read_with_mapping(paths, **self.given(), progress=progress)
+        for file in done.log.files:
+            if file.missing_rows:
+                say(*(f"{file.name}: {note}" for note in file.notes if "left out" in note), file=sys.stderr)
         return replace(done.log, corrections=done.corrections)
 
     def means_table(self, paths: list[Path]) -> MeansTable | None:
@@ -117,7 +131,8 @@ class Reading:
             return None
         mapping = mapping_of(paths, self.mapping or None)
         refuse_corrections(mapping.corrects, str(mapping.source and mapping.source.name))
-        channels, units = self._stated()
+        given = self.given()
+        channels, units = given["channels"], given["units"]
         table = read_means(
             paths,
             channels={r: name for r, name in (mapping.channels | channels).items() if r != "time"},
@@ -131,19 +146,31 @@ class Reading:
         from hersey.log.mapping import mapping_of
         from hersey.log.means import is_means_table
 
-        if self.means or self.time:
+        if self.means or self.time or self.every or self.run:
             return self.means
-        channels, units = self._stated()
+        given = self.given()
+        channels, units = given["channels"], given["units"]
         mapping = mapping_of(paths, self.mapping or None)
         return all(
             is_means_table(Path(path), mapping.channels | channels, mapping.units | units) for path in paths
         )
 
-    def _stated(self) -> tuple[dict[str, str], dict[str, str]]:
-        """Columns and units by role, as given."""
-        roles = ("time", "torque", "speed", "temperature")
-        names = {role: getattr(self, role) for role in roles if getattr(self, role)}
-        return names, {role: getattr(self, f"{role}_unit") for role in roles if getattr(self, f"{role}_unit")}
+    def given(self) -> dict[str, Any]:
+        """Return what is said of the channels and their units, as `hersey.read_with_mapping` takes it."""
+        roles = ("time", "torque", "speed", "temperature", "load", "radius", "run")
+        stated: dict[str, Any] = {"every": self.every} | {
+            role: amounts for role in ("load", "radius") if (amounts := _amounts(getattr(self, role)))
+        }
+        channels = {role: name for role in roles if (name := getattr(self, role)) and role not in stated}
+        units = {role: unit for role in roles if (unit := getattr(self, f"{role}_unit", ""))}
+        return {
+            "mapping": self.mapping or None,
+            "channels": channels,
+            "units": units,
+            "isothermal": self.isothermal,
+            "drop_missing": self.drop_missing,
+            **{name: amount for name, amount in stated.items() if amount},
+        }
 
     def points(self, log: TorqueLog | MeansTable) -> SteadyPoints:
         """Reduce the log to dwells, or take those that a table of means states."""
@@ -179,6 +206,14 @@ class Reading:
         log = self.log(paths or [])
         with working("fitting the surface"):
             return fit(self.points(log), temperature_scale=self.temperature_scale)
+
+
+def _amounts(text: str) -> str | list[str] | None:
+    """A text that begins like an amount, several between commas, or None for the name of a column."""
+    parts = text.split(",")
+    if not all(re.match(r"\s*[-+]?\.?[0-9]", part) for part in parts):
+        return None
+    return parts if len(parts) > 1 else text
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,11 +17,11 @@ from hersey.inspection.clock import Clock, clock_of
 from hersey.inspection.faults import DITHER, Fault, Traits, traits
 from hersey.inspection.raw import RawChannel, RawLog, raw_channels, roles_of
 from hersey.inspection.support import Support, support_of, support_of_means
-from hersey.log.channels import ROLES, ChannelChoice
+from hersey.log.channels import OTHER_ROLES, ROLES, ChannelChoice, Stated
 from hersey.log.corrections import Corrected
-from hersey.log.mapping import LogMapping, mapping_of, read_with_mapping
+from hersey.log.mapping import LogMapping, as_stated, mapping_of, read_with_mapping, without_what_is_said
 from hersey.log.means import read_means
-from hersey.log.torque_log import Correction
+from hersey.log.torque_log import Correction, LogFile
 from hersey.result import Result, json_record
 from hersey.units import conversion, takes_si
 
@@ -178,7 +178,7 @@ class Inspection(Result):
         return said
 
 
-@takes_si(min_dwell="time")
+@takes_si(min_dwell="time", every="time", radius="length", load="force")
 def inspect(
     paths: str | Path | Sequence[str | Path],
     *,
@@ -187,6 +187,9 @@ def inspect(
     units: Mapping[str, str] | None = None,
     isothermal: bool = False,
     drop_missing: bool = False,
+    every: float | None = None,
+    radius: float | Sequence[float] | None = None,
+    load: float | Sequence[float] | None = None,
     min_dwell: float = 2.0,
     tare: str = "none",
     rotation: str = "both",
@@ -196,7 +199,7 @@ def inspect(
 
     Parameters
     ----------
-    paths, channels, units, isothermal, drop_missing
+    paths, channels, units, isothermal, drop_missing, every, radius, load
         As for `hersey.read`.
     mapping
         As for `hersey.log.mapping.read_with_mapping`.
@@ -217,14 +220,17 @@ def inspect(
     """
     files = [paths] if isinstance(paths, str | Path) else list(paths)
     chosen = mapping if isinstance(mapping, LogMapping) else mapping_of(files, mapping)
+    stated = Stated(every, as_stated(radius), as_stated(load))
+    said = without_what_is_said(chosen, channels or {}, stated)
     choices = {
         role: ChannelChoice(
-            (channels or {}).get(role) or chosen.channels.get(role, ""),
-            (units or {}).get(role) or chosen.units.get(role, ""),
+            (channels or {}).get(role) or said.channels.get(role, ""),
+            (units or {}).get(role) or said.units.get(role, ""),
         )
-        for role in ROLES
+        for role in (*ROLES, *OTHER_ROLES)
     }
-    reports = tuple(_file_report(raw_channels(file), choices) for file in files)
+    known = Stated(*(getattr(stated, f.name) or getattr(said.stated, f.name) for f in fields(Stated)))
+    reports = tuple(_file_report(raw_channels(file), choices, known) for file in files)
     if means:
         return _of_means(files, reports, choices, isothermal)
     hopeless = any(set(report.without) - {"temperature"} for report in reports)
@@ -237,9 +243,11 @@ def inspect(
         units,
         isothermal=_tries(isothermal, cold and not hopeless),
         drop_missing=_tries(drop_missing, holes and not hopeless),
+        stated=stated,
     )
     if read is None:
         return Inspection(reports, problem, (), {}, (), None)
+    reports = tuple(_with_notes(report, read.log.files) for report in reports)
     dropped = {file.name: file.missing_rows for file in read.log.files if file.missing_rows}
     support = support_of(read.log, min_dwell=min_dwell, tare=tare, rotation=rotation)
     return Inspection(reports, "", needed, dropped, read.corrections, support)
@@ -274,6 +282,12 @@ def _of_means(
     return Inspection(reports, "", (), dropped, (), support_of_means(table))
 
 
+def _with_notes(report: FileReport, files: Sequence[LogFile]) -> FileReport:
+    """The report of a file with what was done to read it as a log: rows left out, above all."""
+    told = [note for file in files if file.name.partition(", run ")[0] == report.name for note in file.notes]
+    return replace(report, notes=(*report.notes, *(note for note in told if note not in report.notes)))
+
+
 def _read(
     files: Sequence[str | Path],
     mapping: LogMapping,
@@ -282,13 +296,20 @@ def _read(
     *,
     isothermal: Sequence[bool],
     drop_missing: Sequence[bool],
+    stated: Stated,
 ) -> tuple[Corrected | None, tuple[str, ...], str]:
     """The log, the flags that it needed beside those given (first in each list), or why it cannot be read."""
     problem = ""
     for cold, drop in itertools.product(isothermal, drop_missing):
         try:
             log = read_with_mapping(
-                files, mapping=mapping, channels=channels, units=units, isothermal=cold, drop_missing=drop
+                files,
+                mapping=mapping,
+                channels=channels,
+                units=units,
+                isothermal=cold,
+                drop_missing=drop,
+                **vars(stated),
             )
         except HerseyError as error:
             problem = problem or str(error)
@@ -304,10 +325,10 @@ def _tries(given: bool, helps: bool) -> tuple[bool, ...]:
 
 
 @np.errstate(all="ignore")  # numbers of a damaged file may be beyond all bounds: they are shown
-def _file_report(log: RawLog, choices: dict[str, ChannelChoice]) -> FileReport:
-    columns, without = roles_of(log, choices)
+def _file_report(log: RawLog, choices: dict[str, ChannelChoice], stated: Stated) -> FileReport:
+    columns, without = roles_of(log, choices, stated)
     role_of = {column.index: role for role, column in columns.items()}
-    clocks, clock_names = _clocks(log, role_of, choices)
+    clocks, clock_names = _clocks(log, role_of, choices, stated)
     channels = []
     for channel in log.channels:
         role = role_of.get(channel.column.index, "")
@@ -322,7 +343,7 @@ def _file_report(log: RawLog, choices: dict[str, ChannelChoice]) -> FileReport:
 
 
 def _clocks(
-    log: RawLog, role_of: dict[int, str], choices: dict[str, ChannelChoice]
+    log: RawLog, role_of: dict[int, str], choices: dict[str, ChannelChoice], stated: Stated
 ) -> tuple[tuple[Clock, ...], dict[str, str]]:
     """Each clock of the file once, and its name by tick."""
     clocks: dict[str, Clock] = {}
@@ -331,6 +352,10 @@ def _clocks(
         by_tick.setdefault(channel.tick, []).append(channel)
     for beside in by_tick.values():
         channel = beside[0]
+        if stated.every is not None:
+            seconds = np.arange(channel.values.size, dtype=float) * stated.every
+            clocks[channel.tick] = clock_of("number of the row", seconds)
+            continue
         if channel.clock is not None:
             clocks[channel.tick] = clock_of(f"of {channel.column.path}", channel.clock)
             continue
@@ -362,7 +387,9 @@ def _runs_on(values: FloatArray) -> bool:
 
 
 def _findings(channel: RawChannel, channel_traits: Traits, role: str) -> tuple[str, ...]:
-    said = [_in_words(fault, channel_traits, channel.column.unit, role) for fault in channel_traits.faults]
+    steady = "constant" if role in OTHER_ROLES else ""  # a load, or a radius, may stay what it is
+    faults = [fault for fault in channel_traits.faults if fault.kind != steady]
+    said = [_in_words(fault, channel_traits, channel.column.unit, role) for fault in faults]
     if channel.odd:
         said.append(f"{channel.odd} cells hold no number")
     if channel_traits.missing > channel.odd:

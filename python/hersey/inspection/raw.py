@@ -10,10 +10,11 @@ import polars as pl
 
 from hersey.arrays import FloatArray
 from hersey.errors import HerseyError
-from hersey.log.channels import ROLES, ChannelChoice, find_channel
+from hersey.log.channels import ROLES, ChannelChoice, Stated, find_channel, is_dead
 from hersey.log.formats import format_of, opened
+from hersey.log.friction import Chosen, beside
 from hersey.log.text.delimited import open_delimited
-from hersey.log.text.layout import Column, Layout, refuse_ragged, split
+from hersey.log.text.layout import BLANKS, Column, Layout, refuse_ragged, split, tabbed
 from hersey.log.text.numbers import MISSING, NumberStyle
 from hersey.log.text.stamps import Stamps, counted_since
 from hersey.spelling import printable
@@ -84,22 +85,35 @@ def raw_channels(path: str | Path) -> RawLog:
     return RawLog(printable(path.name), kind, tuple(channels), comments, tuple(notes), cut_off)
 
 
-def roles_of(log: RawLog, choices: dict[str, ChannelChoice]) -> tuple[dict[str, Column], dict[str, str]]:
+def roles_of(
+    log: RawLog, choices: dict[str, ChannelChoice], stated: Stated
+) -> tuple[dict[str, Column], dict[str, str]]:
     """Return the column that plays each role, and for each role without one the reason in words."""
     columns = tuple(channel.column for channel in log.channels)
-    roles: dict[str, Column] = {}
+    values = {channel.column: channel.values for channel in log.channels}
+    chosen: Chosen = {}
     without: dict[str, str] = {}
+
+    def dead(column: Column) -> bool:
+        return is_dead(values[column])
+
     for role in ROLES:
+        if role == "time" and stated.every is not None:
+            continue
         try:
-            channel = find_channel(role, columns, choices[role], log.name)
+            channel = find_channel(role, columns, choices[role], log.name, dead)
         except HerseyError as error:
             without[role] = str(error).removeprefix(f"{log.name}: ")
             continue
         if channel is None:
             without[role] = f"there is no {role} channel"
         else:
-            roles[role] = channel[0]
-    return roles, without
+            chosen[role] = channel
+    try:
+        chosen |= beside(columns, choices, stated, chosen, log.name, dead)
+    except HerseyError as error:
+        without.setdefault("torque", str(error).removeprefix(f"{log.name}: "))
+    return {role: column for role, (column, _) in chosen.items()}, without
 
 
 def _of_text(path: Path) -> RawLog:
@@ -109,6 +123,7 @@ def _of_text(path: Path) -> RawLog:
     refuse_ragged(path.name, text.count(b"\n"), len(layout.columns), len(text))
     if layout.encoding != "utf-8-sig":
         text = text.decode(layout.encoding, errors="replace").encode()
+    text = tabbed(text) if layout.separator == BLANKS else text
     frame = _frame(text, layout)
     channels = [
         _text_channel(layout, column, frame[f"{column.index}"])
@@ -132,7 +147,7 @@ def _frame(text: bytes, layout: Layout) -> pl.DataFrame:
             text,
             has_header=False,
             skip_lines=layout.first_line - 1,
-            separator=layout.separator,
+            separator=layout.between,
             comment_prefix=layout.comment,
             infer_schema=False,
             schema_overrides=types,
@@ -162,7 +177,7 @@ def _line_by_line(text: bytes, layout: Layout) -> pl.DataFrame:
     for line in text.split(b"\n")[layout.first_line - 1 :]:
         if not line.strip() or line.startswith(comment):
             continue
-        cells = split(line.decode("utf-8", errors="replace").rstrip("\r"), layout.separator)
+        cells = split(line.decode("utf-8", errors="replace").rstrip("\r"), layout.between)
         for index, column in enumerate(columns):
             column.append(cells[index] if index < len(cells) else "")
     return pl.DataFrame({f"{index}": column for index, column in enumerate(columns)})

@@ -7,6 +7,8 @@ text         CSV and its relatives
 recording    what a file of any other format holds: channels with clocks of their own
 formats      one reader per format, and which one opens a file
 channels     which column plays which role
+friction     friction forces and coefficients as torques, sliding speeds as those of a rotation
+rows         which rows can be used, and where one run ends and the next begins
 columns      columns as they stand, for readers with roles of their own
 assembly     from a recording to a run on the clock of the torque
 reading      `read`: from files to a log

@@ -3,13 +3,25 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from hersey.arrays import FloatArray
-from hersey.errors import ChannelError, UnreadableLogError
-from hersey.log.channels import ROLES, ChannelChoice, find_channel, no_channel
+from hersey.arrays import FloatArray, IntArray
+from hersey.errors import ChannelError, HerseyError, UnreadableLogError
+from hersey.log.channels import (
+    OTHER_ROLES,
+    ROLES,
+    ChannelChoice,
+    Stated,
+    find_channel,
+    is_dead,
+    no_channel,
+    refuse_two_clocks,
+)
+from hersey.log.friction import beside, in_rotation, notes_on, spare
 from hersey.log.recording import Recording, Signal
+from hersey.log.rows import LeftOut, runs_with_records
 from hersey.log.text.layout import Column
 from hersey.log.text.stamps import counted_since, is_clock_name
 from hersey.log.torque_log import LARGEST, Channel, LogFile, Run
@@ -18,7 +30,7 @@ from hersey.units import Conversion
 
 @dataclass
 class _Part:
-    """A channel in its role: numbers as written, NaN where one is missing, and the time of each in s."""
+    """A channel in its role: numbers in SI, NaN where one is missing, the time of each in s, and its row."""
 
     role: str
     column: Column
@@ -26,6 +38,7 @@ class _Part:
     values: FloatArray
     time: FloatArray
     tick: str
+    rows: IntArray
 
 
 class Assembly:
@@ -39,125 +52,187 @@ class Assembly:
         If the numbers of a channel cannot be read.
     """
 
-    def __init__(self, recording: Recording, choices: dict[str, ChannelChoice], *, isothermal: bool) -> None:
-        self.recording, self.source = recording, recording.source
+    def __init__(
+        self,
+        recording: Recording,
+        choices: dict[str, ChannelChoice],
+        *,
+        isothermal: bool,
+        stated: Stated = Stated(),  # noqa: B008 # frozen
+    ) -> None:
+        self.recording, self.source, self.stated = recording, recording.source, stated
+        refuse_two_clocks(choices, stated)
         if isothermal and choices["temperature"] != ChannelChoice():
             raise ChannelError("--isothermal leaves temperature out: give no --temperature beside it")
         if not recording.signals:
             raise nothing_to_read(recording)
         self.columns = columns(recording)
         self._clocks: dict[str, tuple[FloatArray, str, Channel]] = {}
-        self.parts = {"torque": self._part("torque", choices, None)}
-        torque = self.parts["torque"].column
+        self._dead: dict[int, str] = {}
+        self.chosen = {"torque": self._channel("torque", choices, None)}
+        torque = self.chosen["torque"][0]
         for role in ("speed",) if isothermal else ("speed", "temperature"):
-            self.parts[role] = self._part(role, choices, torque)
+            self.chosen[role] = self._channel(role, choices, torque)
+        near = tuple(c for c in self.columns if c.group == torque.group)
+        self.chosen |= beside(near, choices, stated, self.chosen, self.source.name, self._says_nothing)
+        self.spare = spare(self.chosen, choices)
+        self.parts = {role: self._part(role, choices) for role in self.chosen}
 
-    def run(self, *, drop_missing: bool) -> tuple[Run, LogFile]:
-        """Return the run on the clock of the torque, and what was done to get there.
+    def runs(self, *, drop_missing: bool) -> list[tuple[Run, LogFile]]:
+        """Return the runs on the clock of the torque, and what was done to get there.
 
         Raises
         ------
         UnreadableLogError
-            If numbers are missing, a clock runs backwards, or the channels do not overlap.
+            If too many numbers are missing, a clock runs backwards, or the channels do not overlap.
         """
-        file, notes = self.source.name, list(self.recording.notes)
-        missing = self._refuse_or_drop_missing(drop_missing)
-        torque = self.parts["torque"]
+        left_out, torque = LeftOut(), self.parts["torque"]
+        notes = list(self.recording.notes)
+        self._leave_out_missing(left_out, drop_missing)
         kept = np.ones(torque.time.size, dtype=bool)
         for part in self.parts.values():
             if part.tick != torque.tick:
+                self._check_time(torque)
+                self._check_time(part)
                 kept &= (torque.time >= part.time[0]) & (torque.time <= part.time[-1])
-        if kept.sum() < 2:
+        if not kept.all() and kept.sum() < 2:
             raise UnreadableLogError(
-                f"{file}: {self._spans()}: they share fewer than two samples of the torque"
+                f"{self.source.name}: {self._spans()}: they share fewer than two samples of the torque"
             )
-        time = torque.time[kept]
-        if time[-1] == time[0]:
-            raise UnreadableLogError(f"{file}: all rows carry the same time")
-        arrays = {}
+        arrays = {"time": torque.time[kept]}
         for role, part in self.parts.items():
-            values = part.values * part.unit.scale + part.unit.offset
             if part.tick == torque.tick:
-                arrays[role] = values[kept]
+                arrays[role] = part.values[kept]
             else:
-                arrays[role] = np.interp(time, part.time, values)
+                arrays[role] = np.interp(arrays["time"], part.time, part.values)
                 notes.append(_aligned(part, torque))
         if not kept.all():
             notes.append(
                 f"{int((~kept).sum())} of {kept.size} samples of the torque lie outside the time of another "
                 f"channel and were left out ({self._spans()})"
             )
-        run = Run(file, time, arrays["torque"], arrays["speed"], arrays.get("temperature"))
-        clock = self._clocks[self.parts["torque"].tick][2]
-        used = {"time": clock} | {
+        arrays = in_rotation(arrays, self.chosen, self.stated)
+        rows = torque.rows[kept]
+        needed = [values for role, values in arrays.items() if role not in self.spare]
+        usable = np.logical_and.reduce([np.isfinite(values) for values in needed])
+        if not usable.all():
+            bad = rows[~usable]
+            left_out.add(bad.size, (f"{self._place(torque, int(row))}: no radius above zero" for row in bad))
+            arrays = {role: values[usable] for role, values in arrays.items()}
+            rows = rows[usable]
+        notes += [*notes_on(self.chosen, self.stated), *self._dead.values()]
+        log = self._record(tuple(note for note in notes if note))
+        return runs_with_records(
+            log,
+            arrays,
+            lambda row: self._place(torque, int(rows[row])),
+            left_out,
+            drop_missing=drop_missing,
+        )
+
+    def _record(self, notes: tuple[str, ...]) -> LogFile:
+        used = {"time": self._clocks[self.parts["torque"].tick][2]} | {
             p.role: Channel(p.role, p.column.path, p.unit.unit) for p in self.parts.values()
         }
-        log = LogFile(
-            file,
+        return LogFile(
+            self.source.name,
             self.source.sha256,
             self.source.bytes,
-            time.size,
-            missing,
-            tuple(used[role] for role in ROLES if role in used),
+            0,
+            0,
+            tuple(used[role] for role in (*ROLES, *OTHER_ROLES) if role in used),
             self.recording.comments,
             self.recording.cut_off,
-            tuple(notes),
+            notes,
         )
-        return run, log
 
-    def _part(self, role: str, choices: dict[str, ChannelChoice], torque: Column | None) -> _Part:
-        file = self.source.name
-        channel = None
-        if torque is not None and not choices[role].name:  # the part of the file that holds the torque first
-            beside = tuple(c for c in self.columns if c.group == torque.group and c != torque)
-            channel = find_channel(role, beside, choices[role], file)
+    def _place(self, part: _Part, row: int) -> str:
+        """A sample in words, counted from 0, by its row where the file has rows."""
+        line = self.recording.signals[part.column.index].line
+        return f"row {line + row}" if line else f"sample {row + 1}"
+
+    def _channel(
+        self, role: str, choices: dict[str, ChannelChoice], torque: Column | None
+    ) -> tuple[Column, Conversion]:
+        """The channel of a role; the part of the file that holds the torque is looked at first."""
+        file, channel, dead = self.source.name, None, self._says_nothing
+        if torque is not None and not choices[role].name:
+            near = tuple(c for c in self.columns if c.group == torque.group and c != torque)
+            channel = find_channel(role, near, choices[role], file, dead)
         if channel is None:
-            channel = find_channel(role, self.columns, choices[role], file)
+            among = self._beside_a_speed(role, choices)
+            channel = find_channel(role, among, choices[role], file, dead)
         if channel is None:
             error = no_channel(role, self.columns, file)
             if role == "temperature":
                 error.args = (*error.args, "or say --isothermal to leave temperature out")
             raise error
-        column, unit = channel
-        for other in getattr(self, "parts", {}).values():
-            if other.column == column:
-                raise ChannelError(f"{file}: column '{column}' cannot be both {other.role} and {role}")
+        for other, (column, _) in getattr(self, "chosen", {}).items():
+            if channel[0] == column:
+                raise ChannelError(f"{file}: column '{column}' cannot be both {other} and {role}")
+        return channel
+
+    def _part(self, role: str, choices: dict[str, ChannelChoice]) -> _Part:
+        """A channel with its numbers and its clock."""
+        column, unit = self.chosen[role]
         signal = self.recording.signals[column.index]
         time, tick, _ = self._clock(signal, column, choices["time"])
         values = signal.load()
         if values.size != time.size:
             raise UnreadableLogError(
-                f"{file}: channel '{column.path}' has {values.size} values and its clock {time.size}: "
-                "the file is damaged or cut off"
+                f"{self.source.name}: channel '{column.path}' has {values.size} values and its clock "
+                f"{time.size}: the file is damaged or cut off"
             )
         with np.errstate(over="ignore", invalid="ignore"):
-            largest = np.abs(values * unit.scale + unit.offset) > LARGEST
-        if np.any(largest & np.isfinite(values)):
-            row = int(np.argmax(largest & np.isfinite(values)))
-            raise UnreadableLogError(
-                f"{file}, channel '{column.path}', sample {row + 1}: {values[row]:g} {unit.unit} is no {role}"
-            )
-        return _Part(role, column, unit, np.where(np.isfinite(values), values, np.nan), time, tick)
+            values = values * unit.scale + unit.offset
+        return _Part(role, column, unit, values, time, tick, np.arange(values.size))
+
+    def _says_nothing(self, column: Column) -> bool:
+        """Whether a channel holds one value throughout, or none; it is noted then."""
+        if column.index not in self._dead:
+            dead = is_dead(self.recording.signals[column.index].load())
+            note = f"'{column}' says nothing, one value throughout: it was passed over"
+            self._dead[column.index] = note if dead else ""
+        return bool(self._dead[column.index])
+
+    def _beside_a_speed(self, role: str, choices: dict[str, ChannelChoice]) -> tuple[Column, ...]:
+        """Channels among which to look for a role: for a torque those of the only part with a speed."""
+        groups = dict.fromkeys(column.group for column in self.columns)
+        if role != "torque" or choices[role].name or len(groups) < 2:
+            return self.columns
+        parts = [tuple(c for c in self.columns if c.group == group) for group in groups]
+        both = [
+            p for p in parts if all(_has(r, p, choices[r], self.source.name) for r in ("torque", "speed"))
+        ]
+        return both[0] if len(both) == 1 else self.columns
 
     def _clock(
         self, signal: Signal, column: Column, choice: ChannelChoice
     ) -> tuple[FloatArray, str, Channel]:
         """Time of each sample in s, the name of the clock, and the channel it came from."""
+        if (every := self.stated.every) is not None:
+            tick = f"every {signal.rows}"
+            if tick not in self._clocks:
+                channel = Channel("time", "number of the row", f"{every:g} s")
+                self._clocks[tick] = (np.arange(signal.rows, dtype=float) * every, tick, channel)
+            return self._clocks[tick]
         if signal.clock is not None and not choice.name:
             if signal.tick not in self._clocks:
                 self._clocks[signal.tick] = (signal.clock(), signal.tick, Channel("time", "clock", "s"))
             return self._clocks[signal.tick]
         file = self.source.name
-        beside = tuple(
+        near = tuple(
             self._with_epoch(c)
             for c in self.columns
             if c != column and self._may_time(c, signal, column, bool(choice.name))
         )
-        clock = find_channel("time", beside, choice, file) if beside or choice.name else None
+        dead = self._says_nothing
+        clock = find_channel("time", near, choice, file, dead) if near or choice.name else None
         if clock is None:
             raise ChannelError(
                 f"{file}: no time channel with {signal.rows} samples stands beside '{column}' among "
-                f"{', '.join(repr(str(c)) for c in self.columns[:40])}: name it with --time"
+                f"{', '.join(repr(str(c)) for c in self.columns[:40])}: name it with --time, or say the time "
+                "between rows with --every '2 ms'"
             )
         chosen, unit = clock
         tick = f"column {chosen.index}"
@@ -182,30 +257,43 @@ class Assembly:
                 self.recording.notes.append(note)
         return Column(column.index, column.name, unit, column.group)
 
-    def _refuse_or_drop_missing(self, drop_missing: bool) -> int:
+    def _leave_out_missing(self, left_out: LeftOut, drop_missing: bool) -> None:
         """Leave out samples without a number or a time, the same ones of every channel on one clock."""
-        dropped = 0
+        torque = self.parts["torque"]
         for tick in dict.fromkeys(part.tick for part in self.parts.values()):
             parts = [part for part in self.parts.values() if part.tick == tick]
-            gone = ~np.logical_and.reduce([np.isfinite(p.values) & np.isfinite(p.time) for p in parts])
-            if gone.any() and not drop_missing:
-                row = int(np.argmax(gone))
-                part = next((p for p in parts if not np.isfinite(p.values[row])), None)
-                name = part.column.path if part else self._clocks[tick][2].name
-                raise UnreadableLogError(
-                    f"{self.source.name}, channel '{name}', sample {row + 1}: no number stands where one "
-                    "is needed; mend the file, or say --drop-missing to leave such rows out and count them"
-                )
-            dropped += int(gone.sum())
+            needed = [p for p in parts if p.role not in self.spare]
+            gone = ~np.logical_and.reduce([_believed(p.time) & _believed(p.values) for p in needed or parts])
+            here = left_out if tick == torque.tick else LeftOut()
+            here.add(int(gone.sum()), (self._fault(parts, int(row)) for row in np.flatnonzero(gone)))
+            here.refuse_many(self.source.name, gone.size, allowed=drop_missing)
+            if here is not left_out:
+                left_out.add(here.rows, here.words)
             for part in parts:
+                part.rows = np.flatnonzero(~gone)
                 part.values, part.time = part.values[~gone], part.time[~gone]
-            self._check_time(parts[0])
-        return dropped
+            if parts[0].time.size < 2:
+                name, count = parts[0].column.path, parts[0].time.size
+                raise UnreadableLogError(
+                    f"{self.source.name}: channel '{name}' has {count} samples with a number"
+                )
+
+    def _fault(self, parts: list[_Part], row: int) -> str:
+        """The channel of the first number of a sample that is of no use, and what is wrong with it."""
+        place = self._place(parts[0], row)
+        parts = [part for part in parts if part.role not in self.spare] or parts
+        for part in parts:
+            if np.isfinite(part.values[row]) and not _believed(part.values[row]):
+                written = (part.values[row] - part.unit.offset) / part.unit.scale
+                return (
+                    f"channel '{part.column.path}', {place}: {written:g} {part.unit.unit} is no {part.role}"
+                )
+        bad = next((part for part in parts if not np.isfinite(part.values[row])), None)
+        name = bad.column.path if bad else self._clocks[parts[0].tick][2].name
+        return f"channel '{name}', {place}: no number stands where one is needed"
 
     def _check_time(self, part: _Part) -> None:
         file, name = self.source.name, part.column.path
-        if part.time.size < 2:
-            raise UnreadableLogError(f"{file}: channel '{name}' has {part.time.size} samples with a number")
         steps = np.diff(part.time)
         if (steps < 0).any():
             row = int(np.argmax(steps < 0))
@@ -213,11 +301,22 @@ class Assembly:
                 f"{file}, channel '{name}', sample {row + 2}: time runs backwards by {-steps[row]:.6g} s; "
                 "split the file there, or sort its rows"
             )
-        if np.abs(part.time).max() > LARGEST:
-            raise UnreadableLogError(f"{file}: {np.abs(part.time).max():g} s is no time of channel '{name}'")
 
     def _spans(self) -> str:
         return ", ".join(f"{p.role} from {p.time[0]:.6g} to {p.time[-1]:.6g} s" for p in self.parts.values())
+
+
+def _believed(numbers: Any) -> Any:
+    """Whether numbers in SI are finite, and of a size that a drive has."""
+    return np.isfinite(numbers) & (np.abs(numbers) <= LARGEST)
+
+
+def _has(role: str, part: tuple[Column, ...], choice: ChannelChoice, file: str) -> bool:
+    """Whether a part of a file has a channel of a role, or several."""
+    try:
+        return find_channel(role, part, choice, file) is not None
+    except HerseyError:
+        return True
 
 
 def columns(recording: Recording) -> tuple[Column, ...]:

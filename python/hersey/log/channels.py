@@ -3,22 +3,52 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 
-from hersey.errors import ChannelError, UnitError, WrongKindError
+import numpy as np
+
+from hersey.arrays import FloatArray
+from hersey.errors import ChannelError, ParameterError, UnitError, WrongKindError
 from hersey.log.text.layout import Column
 from hersey.spelling import printable
 from hersey.units import KINDS, Conversion, conversion
 
 #: Roles of a log's columns, in the order in which they are asked for.
 ROLES = ("time", "torque", "speed", "temperature")
+#: Roles of columns that a log may have beside them: normal load, radius at which a friction force acts, and
+#: the number of a run.
+OTHER_ROLES = ("load", "radius", "run")
+#: What a column of a role may hold, kinds of units: the first where there is a choice.
+ROLE_KINDS: dict[str, tuple[str, ...]] = {
+    "time": ("time",),
+    "torque": ("torque", "force", "friction coefficient"),
+    "speed": ("speed", "belt speed"),
+    "temperature": ("temperature",),
+    "load": ("force",),
+    "radius": ("length",),
+}
 
 _NAMES = {
     "time": r"t|time.*|.*\btime|.*datetime|.*zeit|timestamp|elapsed.*|.*seconds|epoch.*|unix.*",
     "torque": r".*torque.*|tq.*|.*\btq|.*moment.*|m",
     "speed": r".*speed.*|.*velocity.*|.*rpm.*|.*omega.*|.*drehzahl.*|n|w|ω",
     "temperature": r".*temp.*|.*thermistor.*|.*heater.*|.*thermocouple.*|.*film t.*",
+    "load": r".*\bload(?! ?cell).*|.*normal ?(force|kraft).*|.*normalkraft.*|f_?n|.*axial ?force",
+    "radius": r".*radius.*",
 }
+#: Names of what stands for a torque, or a speed of rotation, where the radius is known.
+_FRICTION = {
+    "friction coefficient": r"(.*\b)?cof\b.*|[µμ]|mu|.*(friction|traction|reib).*(coef|koef|beiwert|zahl).*",
+    "force": r".*(friction|traction|reib).*|.*tangential.*(force|kraft).*|f_?[tf]",
+    "belt speed": r"v|v_?(s|rel|slid).*|.*(slid|slip|gleit|surface|peripheral).*",
+}
+#: What has the unit of a speed of rotation and is none.
+_OSCILLATION = re.compile(r"frequen[cz]|oscillat|oszillat", re.IGNORECASE)
+#: As many numbers, all the same, make a dead channel.
+_TELLING = 20
+#: A clock of a part of a run, beside which that of the whole run counts.
+_PART_OF_A_RUN = re.compile(r"step|segment|interval|cycle|lap", re.IGNORECASE)
 #: Columns named in a message at the most.
 _SHOWN = 40
 _SETPOINT = re.compile(r"\b(set|cmd|command|commanded|target|demand|reference|soll|nominal)", re.IGNORECASE)
@@ -32,10 +62,29 @@ class ChannelChoice:
     unit: str = ""
 
 
+@dataclass(frozen=True)
+class Stated:
+    """What the user says of a log and a file need not hold, SI; None where it is not said.
+
+    ``every`` is the time between rows, ``radius`` that at which a friction force acts and a sliding speed is
+    measured, ``load`` the normal force; a tuple of them holds one for each run.
+    """
+
+    every: float | None = None
+    radius: float | tuple[float, ...] | None = None
+    load: float | tuple[float, ...] | None = None
+
+
 def find_channel(
-    role: str, columns: tuple[Column, ...], choice: ChannelChoice, file: str
+    role: str,
+    columns: tuple[Column, ...],
+    choice: ChannelChoice,
+    file: str,
+    dead: Callable[[Column], bool] = lambda _: False,
 ) -> tuple[Column, Conversion] | None:
     """Return the column of a role and the conversion to SI, or None if no column comes near it.
+
+    ``dead`` tells whether a column says nothing; it is asked where several could play the role.
 
     Raises
     ------
@@ -49,9 +98,18 @@ def find_channel(
     named = [c for c in columns if re.fullmatch(_NAMES[role], c.name, re.IGNORECASE)]
     measured = [c for c in named if not _SETPOINT.search(c.name)] or named
     # a column of another kind of unit is out; one without a unit could still be it
-    candidates = [c for c in measured if _could_be(role, c)] or measured
-    if not named:
-        candidates = [c for c in columns if c.unit and _could_be(role, c, surely=True)]
+    candidates = (
+        _telling(role, [c for c in measured if _could_be(role, c)])
+        or _in_friction(role, columns, measured)
+        or [
+            c
+            for c in columns
+            if c.unit and _could_be(role, c, surely=True) and not _OSCILLATION.search(c.name)
+        ]
+        or measured
+    )
+    if len(candidates) > 1:
+        candidates = [c for c in candidates if not dead(c)] or candidates
     if not candidates:
         return None
     if len(candidates) > 1:
@@ -62,9 +120,51 @@ def find_channel(
     return _with_unit(role, candidates[0], choice, file)
 
 
+def is_dead(values: FloatArray) -> bool:
+    """Return whether a channel says nothing: no number (NaN stands for a missing one), or one throughout."""
+    known = values[np.isfinite(values)]
+    return not known.size or (known.size >= _TELLING and float(known.min()) == float(known.max()))
+
+
+def refuse_two_clocks(choices: dict[str, ChannelChoice], stated: Stated) -> None:
+    """Raise if both a column of the time and the time between rows are given.
+
+    Raises
+    ------
+    ParameterError
+        It names both.
+    """
+    if stated.every is not None and choices["time"] != ChannelChoice():
+        raise ParameterError("--every says the time between rows: give no --time beside it")
+
+
+def role_conversion(role: str, unit: str) -> tuple[str, Conversion]:
+    """Return the kind of what a column of a role holds, and its conversion to SI.
+
+    Raises
+    ------
+    UnitError
+        If the unit is unknown, or of no kind that the role can have.
+    """
+    text = "1" if unit in ("-", "\u2013") else unit
+    for kind in ROLE_KINDS[role]:
+        if kind == "friction coefficient" and text != "1":  # % of a torque is none
+            continue
+        try:
+            return kind, conversion(kind, text)
+        except WrongKindError:
+            continue
+    return ROLE_KINDS[role][0], conversion(ROLE_KINDS[role][0], unit)
+
+
 def no_channel(role: str, columns: tuple[Column, ...], file: str) -> ChannelError:
     """Return the error for a role that no column plays."""
-    return ChannelError(f"{file}: no {role} column among {_listed(columns)}: name it with --{role}")
+    way_out = f"name it with --{role}"
+    if role == "torque" and any(_is_unit_of("force", c.unit) for c in columns):
+        way_out += " (a friction force too, with the --radius at which it acts)"
+    elif role == "time":
+        way_out += ", or say the time between rows with --every '2 ms'"
+    return ChannelError(f"{file}: no {role} column among {_listed(columns)}: {way_out}")
 
 
 def called(name: str, columns: tuple[Column, ...]) -> list[Column]:
@@ -119,22 +219,63 @@ def _could_be(role: str, column: Column, surely: bool = False) -> bool:
     if role == "time" and re.search("rad|rev|turn", column.unit):  # angles have no dimension
         return False
     try:
-        return bool(column.unit and conversion(role, column.unit)) or not surely
+        return bool(column.unit and conversion(ROLE_KINDS[role][0], column.unit)) or not surely
     except WrongKindError:
         return False
     except UnitError:
         return not surely
 
 
+def _telling(role: str, candidates: list[Column]) -> list[Column]:
+    """The candidates without those that others put in the shade.
+
+    A letter without a unit beside a name with one, and the clock of a step beside that of the run.
+    """
+    if any(c.unit and _could_be(role, c, surely=True) for c in candidates):
+        candidates = [c for c in candidates if c.unit or len(c.name) > 1]
+    if role == "time":
+        candidates = [c for c in candidates if not _PART_OF_A_RUN.search(c.name)] or candidates
+    return candidates
+
+
+def _in_friction(role: str, columns: tuple[Column, ...], measured: list[Column]) -> list[Column]:
+    """Columns of a friction force, or else a coefficient, or of a sliding speed."""
+    if role == "speed":
+        sliding = [c for c in columns if re.fullmatch(_FRICTION["belt speed"], c.name, re.I)]
+        return [c for c in measured or sliding if _is_unit_of("belt speed", c.unit)]
+    if role != "torque":
+        return []
+    coefficients = [c for c in columns if re.fullmatch(_FRICTION["friction coefficient"], c.name, re.I)]
+    forces = [c for c in columns if re.fullmatch(_FRICTION["force"], c.name, re.I) and c not in coefficients]
+    forces = [c for c in forces if not c.unit or _is_unit_of("force", c.unit)]
+    return (
+        forces
+        or [c for c in measured if _is_unit_of("force", c.unit)]
+        or [c for c in coefficients if not c.unit or c.unit in ("1", "-", "\u2013")]
+    )
+
+
+def _is_unit_of(kind: str, unit: str) -> bool:
+    try:
+        return bool(unit and conversion(kind, unit))
+    except UnitError:
+        return False
+
+
 def _with_unit(role: str, column: Column, choice: ChannelChoice, file: str) -> tuple[Column, Conversion]:
     unit = choice.unit or column.unit
+    if not unit and role == "torque" and re.fullmatch(_FRICTION["friction coefficient"], column.name, re.I):
+        unit = "1"
+    if role == "run":
+        return column, Conversion(unit, 1.0, 0.0)
     if not unit:
-        example = KINDS[role][1]
+        of_a_force = role == "torque" and re.fullmatch(_FRICTION["force"], column.name, re.I)
+        example = KINDS["force" if of_a_force else ROLE_KINDS[role][0]][1]
         raise UnitError(
             f"{file}: column '{column.path}' has no unit: write '{column.name} [{example}]' in the header, "
             f"add a row of units, or say --{role}-unit '{example}'"
         )
     try:
-        return column, conversion(role, unit)
+        return column, role_conversion(role, unit)[1]
     except UnitError as error:
         raise UnitError(f"{file}: column '{column.path}': {error}") from None

@@ -10,17 +10,29 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import field, replace
+from dataclasses import field, fields, replace
 from pathlib import Path
 from typing import Annotated, Any
 
+import numpy as np
 from pydantic import BeforeValidator, ValidationInfo
 from pydantic.dataclasses import dataclass
 
 from hersey.errors import ChannelError, HerseyError, ParameterError, UnitError
 from hersey.files.toml import Quantity, Share, Table, Text, naming, read_tables
 from hersey.log import corrections
-from hersey.log.channels import ROLES, ChannelChoice, find_channel
+from hersey.log.channels import (
+    OTHER_ROLES,
+    ROLE_KINDS,
+    ROLES,
+    ChannelChoice,
+    Stated,
+    called,
+    find_channel,
+    is_dead,
+    role_conversion,
+)
+from hersey.log.columns import open_columns
 from hersey.log.corrections import Corrected
 from hersey.log.reading import list_channels, read
 from hersey.log.sensors import Sensors
@@ -28,7 +40,7 @@ from hersey.log.text.delimited import Progress
 from hersey.log.text.layout import Column
 from hersey.log.torque_log import LogFile
 from hersey.spelling import printable
-from hersey.units import conversion, registry
+from hersey.units import Conversion, registry, takes_si
 
 #: A mapping for every log in its directory; one for a single log is called after it, ``bench.hersey.toml``.
 FILE_NAME = "hersey.toml"
@@ -41,6 +53,7 @@ _AMOUNT = re.compile(
 #: Characters of an amount at the most: the pattern takes longer than linear.
 _LONGEST_AMOUNT = 160
 
+_ALL_ROLES = (*ROLES, *OTHER_ROLES)
 #: SI units of what no log holds.
 _UNITS = {"motor constant": "N*m/A", "moment of inertia": "kg*m^2", "temperature difference": "K"}
 
@@ -96,12 +109,39 @@ _Sign = Annotated[int, BeforeValidator(_sign)]
 _GearRatio = Annotated[float, Quantity(None, 1e-4, 1e4, "12.5")]
 
 
+#: Keys of a role that state no correction.
+_NO_CORRECTIONS = ("channel", "unit", "gain_error", "zero_error")
+
+
 @dataclass(frozen=True)
 class RoleMapping(Table):
     """What a mapping says of one role; ``channel`` and ``unit`` are empty where the log is to tell."""
 
     channel: Text = ""
     unit: Text = ""
+
+
+@dataclass(frozen=True)
+class TimeMapping(RoleMapping):
+    """What it says of the time; ``every`` is that between rows, s, where no channel is a clock."""
+
+    every: Annotated[float, Quantity("time", 1e-9, 1e6, "2 ms")] | None = None
+
+
+@dataclass(frozen=True)
+class LoadMapping(RoleMapping):
+    """What it says of the normal load, N: a channel, a ``value``, or ``values``, one for each run."""
+
+    value: Annotated[float, Quantity("force", 1e-9, 1e9, "50 N")] | None = None
+    values: tuple[Annotated[float, Quantity("force", 1e-9, 1e9, "50 N")], ...] = ()
+
+
+@dataclass(frozen=True)
+class RadiusMapping(RoleMapping):
+    """What it says of the radius of a friction force, m: as `LoadMapping`."""
+
+    value: Annotated[float, Quantity("length", 1e-6, 1e3, "25 mm")] | None = None
+    values: tuple[Annotated[float, Quantity("length", 1e-6, 1e3, "25 mm")], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -139,10 +179,13 @@ class TemperatureMapping(RoleMapping):
 
 @dataclass(frozen=True)
 class _Roles(Table):
-    time: RoleMapping = field(default_factory=RoleMapping)
+    time: TimeMapping = field(default_factory=TimeMapping)
     torque: TorqueMapping = field(default_factory=TorqueMapping)
     speed: SpeedMapping = field(default_factory=SpeedMapping)
     temperature: TemperatureMapping = field(default_factory=TemperatureMapping)
+    load: LoadMapping = field(default_factory=LoadMapping)
+    radius: RadiusMapping = field(default_factory=RadiusMapping)
+    run: RoleMapping = field(default_factory=RoleMapping)
 
 
 @dataclass(frozen=True)
@@ -151,8 +194,8 @@ class LogMapping(_Roles):
 
     Attributes
     ----------
-    time, torque, speed, temperature
-        One `RoleMapping` each.
+    time, torque, speed, temperature, load, radius, run
+        One `RoleMapping` each; ``run`` is the number of a run.
     source
         File that it was read from, or none.
     """
@@ -162,12 +205,12 @@ class LogMapping(_Roles):
     @property
     def channels(self) -> dict[str, str]:
         """Column name by role, where one is stated, as `hersey.read` takes it."""
-        return {role: channel for role in ROLES if (channel := getattr(self, role).channel)}
+        return {role: channel for role in _ALL_ROLES if (channel := getattr(self, role).channel)}
 
     @property
     def units(self) -> dict[str, str]:
         """Unit by role, where one is stated, as `hersey.read` takes it; amperes stand in the place of N m."""
-        stated = {role: unit for role in ROLES if (unit := getattr(self, role).unit)}
+        stated = {role: unit for role in _ALL_ROLES if (unit := getattr(self, role).unit)}
         if self.torque.motor_constant is not None:
             stated["torque"] = f"{_ampere(self.torque.unit):.12g} N*m"
         return stated
@@ -187,20 +230,20 @@ class LogMapping(_Roles):
     @property
     def corrects(self) -> bool:
         """Whether it states a correction, beside channels and units."""
-        plain = LogMapping(
-            time=RoleMapping(self.time.channel, self.time.unit),
-            torque=replace(
-                TorqueMapping(self.torque.channel, self.torque.unit),
-                gain_error=self.torque.gain_error,
-                zero_error=self.torque.zero_error,
-            ),
-            speed=SpeedMapping(self.speed.channel, self.speed.unit, gain_error=self.speed.gain_error),
-            temperature=TemperatureMapping(
-                self.temperature.channel, self.temperature.unit, zero_error=self.temperature.zero_error
-            ),
-            source=self.source,
+        return any(
+            getattr(role, f.name) != f.default
+            for role in (self.torque, self.speed, self.temperature)
+            for f in fields(role)
+            if f.name not in _NO_CORRECTIONS
         )
-        return self != plain
+
+    @property
+    def stated(self) -> Stated:
+        """What it says that a file need not hold."""
+        radius, load = (
+            of.value if of.value is not None else of.values or None for of in (self.radius, self.load)
+        )
+        return Stated(self.time.every, radius, load)
 
     def correct(self, log: Any) -> Corrected:
         """Apply the corrections that are stated, in the order of `hersey.log.corrections`."""
@@ -213,6 +256,7 @@ class LogMapping(_Roles):
                 channels=_without_temperature(self.channels),
                 units=_without_temperature(self.units),
                 isothermal=True,
+                **vars(self.stated),
             )
             done = corrections.no_load(done, torque=free._at_the_sensor(other))
         elif torque.no_load:
@@ -253,7 +297,7 @@ def read_mapping(path: str | Path) -> LogMapping:
     """
     path = Path(path)
     mapping = LogMapping(**vars(read_tables(path, _Roles)), source=path)
-    for role in ROLES:
+    for role in ROLE_KINDS:
         with naming(f"{path.name}: {role}.unit"):
             _check_unit(role, getattr(mapping, role).unit, mapping.torque.motor_constant)
     return mapping
@@ -264,7 +308,7 @@ def _check_unit(role: str, unit: str, motor_constant: float | None) -> None:
         _ampere(unit)
     elif unit:
         try:
-            conversion(role, unit)
+            role_conversion(role, unit)
         except UnitError as error:
             hint = "; a motor's current needs motor_constant" if role == "torque" else ""
             raise UnitError(f"{error}{hint}") from None
@@ -278,6 +322,7 @@ def find_mapping(path: str | Path) -> Path | None:
     return next((candidate for candidate in beside if os.path.isfile(candidate)), None)  # noqa: PTH113
 
 
+@takes_si(every="time", radius="length", load="force")
 def read_with_mapping(
     paths: str | Path | Sequence[str | Path],
     *,
@@ -286,6 +331,9 @@ def read_with_mapping(
     units: Mapping[str, str] | None = None,
     isothermal: bool = False,
     drop_missing: bool = False,
+    every: float | None = None,
+    radius: float | Sequence[float] | None = None,
+    load: float | Sequence[float] | None = None,
     progress: Progress | None = None,
 ) -> Corrected:
     """Read a log, or several, as `hersey.read` does, each with its mapping, and correct it.
@@ -297,8 +345,8 @@ def read_with_mapping(
     channels, units
         By role; they outrank the mapping's. A role whose channel or unit is given so is not corrected for
         a motor constant.
-    isothermal, drop_missing, progress
-        As for `hersey.read`.
+    isothermal, drop_missing, every, radius, load, progress
+        As for `hersey.read`; they outrank the mapping's.
 
     Raises
     ------
@@ -314,6 +362,8 @@ def read_with_mapping(
     needed = _without_temperature if isothermal else dict
     chosen = mapping if isinstance(mapping, LogMapping) else mapping_of(files, mapping)
     chosen = _outranked(chosen, channels or {}, units or {})
+    stated = Stated(every, as_stated(radius), as_stated(load))
+    chosen = without_what_is_said(chosen, channels or {}, stated)
     try:
         log = read(
             files,
@@ -321,6 +371,8 @@ def read_with_mapping(
             units={**needed(chosen.units), **(units or {})},
             isothermal=isothermal,
             drop_missing=drop_missing,
+            **{name: value for name, value in vars(chosen.stated).items() if value is not None}
+            | {name: value for name, value in vars(stated).items() if value is not None},
             progress=progress,
         )
         done = chosen.correct(log)
@@ -358,11 +410,11 @@ def propose_mapping(
     lines = [f"# Channels of {printable(path.name)}, proposed by hersey inspect: look at it and mend it."]
     for role in ("torque", "speed", "temperature", "time"):
         choice = ChannelChoice((channels or {}).get(role, ""), (units or {}).get(role, ""))
-        lines += [*_proposed(role, columns, choice, path.name), ""]
+        lines += [*_proposed(role, columns, choice, path), ""]
     return "\n".join(lines)
 
 
-_EXAMPLES = {
+_EXAMPLES: dict[str, tuple[str, ...]] = {
     "torque": (
         "# sign = -1                     # turns it",
         '# tare = "4 mN*m"               # what the sensor shows without load',
@@ -386,19 +438,43 @@ _EXAMPLES = {
     ),
     "time": (),
 }
+#: What a friction force needs beside it.
+_RADIUS = (
+    "",
+    "# [radius]                      # at which the friction force acts",
+    '# value = "25 mm"               # or channel = "Radius" and unit = "mm"',
+    "",
+    "# [load]                        # normal load: a friction coefficient needs it",
+    '# value = "50 N"                # or channel = "Load" and unit = "N"',
+)
 
 
-def _proposed(role: str, columns: tuple[Column, ...], choice: ChannelChoice, file: str) -> list[str]:
+def _proposed(role: str, columns: tuple[Column, ...], choice: ChannelChoice, path: Path) -> list[str]:
+    channel: tuple[Column, Conversion] | None = None
     try:
-        channel = find_channel(role, columns, choice, file)
+        channel = find_channel(role, columns, choice, path.name, lambda column: _says_nothing(path, column))
         said = "no channel of the log is called so or has such a unit"
     except HerseyError as error:
-        channel, said = None, str(error).removeprefix(f"{file}: ")
+        said = str(error).removeprefix(f"{path.name}: ")
+    if channel is not None and not choice.name and _says_nothing(path, channel[0], zero=True):
+        said = f"'{channel[0]}' is zero throughout, or empty: it is dead"
+        channel = None
     if channel is None:
         return [f"# [{role}]", f"# {printable(said)}", '# channel = ""', '# unit = ""']
     column, unit = channel
     stated = [f"channel = {_quoted(column.path)}", f"unit = {_quoted(unit.unit)}"]
-    return [f"[{role}]", *stated, *_EXAMPLES[role]]
+    needed = _RADIUS if role_conversion(role, unit.unit)[0] in ("force", "friction coefficient") else ()
+    return [f"[{role}]", *stated, *_EXAMPLES[role], *needed]
+
+
+def _says_nothing(path: Path, column: Column, *, zero: bool = False) -> bool:
+    """Whether a channel of a log holds one value throughout, or none; ``zero``: only whether that is zero."""
+    try:
+        with open_columns(path) as opened:
+            (values,) = opened.numbers(called(column.name, opened.columns)[0])
+    except (HerseyError, IndexError):
+        return False
+    return is_dead(values) and not (zero and np.any(values[np.isfinite(values)]))
 
 
 def _quoted(text: str) -> str:
@@ -438,6 +514,29 @@ def _outranked(mapping: LogMapping, channels: Mapping[str, str], units: Mapping[
     if "torque" not in channels and "torque" not in units:
         return mapping
     return replace(mapping, torque=replace(mapping.torque, motor_constant=None))
+
+
+def as_stated(value: float | Sequence[float] | None) -> float | tuple[float, ...] | None:
+    """Return a value, or one for each run, as it stands in `Stated`."""
+    return (
+        value if value is None or isinstance(value, int | float) else tuple(map(float, np.atleast_1d(value)))
+    )
+
+
+def without_what_is_said(mapping: LogMapping, channels: Mapping[str, str], stated: Stated) -> LogMapping:
+    """Return a mapping without what a channel or a value given by hand takes the place of."""
+    kept = mapping
+    if stated.every is not None:
+        kept = replace(kept, time=TimeMapping())
+    elif "time" in channels:
+        kept = replace(kept, time=replace(kept.time, every=None))
+    for role, given in (("load", stated.load), ("radius", stated.radius)):
+        of_role = getattr(kept, role)
+        if given is not None:
+            kept = replace(kept, **{role: type(of_role)()})
+        elif role in channels:
+            kept = replace(kept, **{role: replace(of_role, value=None, values=())})
+    return kept
 
 
 def _as_written(file: LogFile, mapping: LogMapping) -> LogFile:

@@ -3,19 +3,24 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from hersey.errors import ParameterError
 from hersey.log.assembly import Assembly, columns, nothing_to_read
-from hersey.log.channels import ROLES, ChannelChoice
+from hersey.log.channels import OTHER_ROLES, ROLES, ChannelChoice, Stated
 from hersey.log.formats import format_of, opened
 from hersey.log.formats.frame import frame_recording, is_frame
+from hersey.log.friction import of_each_run
 from hersey.log.text.delimited import Progress, delimited_columns, read_delimited
-from hersey.log.torque_log import LogFile, Run, TorqueLog
+from hersey.log.torque_log import LARGEST, LogFile, Run, TorqueLog
+from hersey.units import takes_si
 
 
+@takes_si(every="time", radius="length", load="force")
 def read(
     paths: Any,
     *,
@@ -23,6 +28,9 @@ def read(
     units: dict[str, str] | None = None,
     isothermal: bool = False,
     drop_missing: bool = False,
+    every: float | None = None,
+    radius: float | Sequence[float] | None = None,
+    load: float | Sequence[float] | None = None,
     progress: Progress | None = None,
 ) -> TorqueLog:
     """Read one log, or several of one machine, each a run of its own.
@@ -30,17 +38,27 @@ def read(
     Parameters
     ----------
     paths
-        File or files (text, LVM, TDMS, MDF, MATLAB, HDF5, Parquet), or polars or pandas frames in memory.
+        File or files (text, Excel, LVM, TDMS, MDF, MATLAB, HDF5, NumPy, Parquet), or polars or pandas frames
+        in memory.
     channels
-        Column name by role (``time``, ``torque``, ``speed``, ``temperature``), where names and units
-        in the file do not settle it; ``name#2`` is the second column of a name, ``group/name`` one of a
-        part of the file, ``#2`` the second column of a table without a header.
+        Column name by role (``time``, ``torque``, ``speed``, ``temperature``; ``load``, ``radius``, and
+        ``run``, the number of a run), where names and units in the file do not settle it; ``name#2`` is the
+        second column of a name, ``group/name`` one of a part of the file, ``#2`` the second column of a table
+        without a header. Torque may be a friction force or a coefficient, speed one of sliding.
     units
         Unit by role, where the file has none or a wrong one; may carry a factor or sign.
     isothermal
         Leave temperature out.
     drop_missing
-        Leave out rows in which a number is missing, and count them, instead of refusing them.
+        Leave out rows in which a number is missing, and count them, also where they are many; few are left
+        out, with a note, in any case.
+    every
+        Time between rows, s, where the file has no clock.
+    radius
+        Radius at which a friction force acts and a sliding speed is measured, m, where no column holds it;
+        one for all runs, or one for each.
+    load
+        Normal load, N, where no column holds it; one for all runs, or one for each.
     progress
         Called with bytes done and bytes in all.
 
@@ -59,30 +77,49 @@ def read(
     files = _listed(paths)
     if not files:
         raise ParameterError("no log file was named")
+    known = (*ROLES, *OTHER_ROLES)
     for role in [*(channels or {}), *(units or {})]:
-        if role not in ROLES:
-            raise ParameterError(f"'{role}' is no role of a channel: they are {', '.join(ROLES)}")
-    choices = {r: ChannelChoice((channels or {}).get(r, ""), (units or {}).get(r, "")) for r in ROLES}
-    runs: list[Run] = []
-    logs: list[LogFile] = []
+        if role not in known:
+            raise ParameterError(f"'{role}' is no role of a channel: they are {', '.join(known)}")
+    choices = {r: ChannelChoice((channels or {}).get(r, ""), (units or {}).get(r, "")) for r in known}
+    stated = _stated(every=every, radius=radius, load=load)
+    done: list[tuple[Run, LogFile]] = []
     for number, file in enumerate(files, start=1):
         if is_frame(file):
             recording = frame_recording(file, "frame" if len(files) == 1 else f"frame {number}")
-            assembly = Assembly(recording, choices, isothermal=isothermal)
-            run, log = assembly.run(drop_missing=drop_missing)
+            assembly = Assembly(recording, choices, isothermal=isothermal, stated=stated)
+            read_here = assembly.runs(drop_missing=drop_missing)
         elif kind := format_of(path := Path(file)):
             with opened(path, kind) as recording:
-                assembly = Assembly(recording, choices, isothermal=isothermal)
-            run, log = assembly.run(drop_missing=drop_missing)
+                assembly = Assembly(recording, choices, isothermal=isothermal, stated=stated)
+            read_here = assembly.runs(drop_missing=drop_missing)
         else:
-            run, log = read_delimited(
-                path, choices, isothermal=isothermal, drop_missing=drop_missing, progress=progress
+            read_here = read_delimited(
+                path,
+                choices,
+                isothermal=isothermal,
+                drop_missing=drop_missing,
+                stated=stated,
+                progress=progress,
             )
-        if any(log.sha256 == other.sha256 for other in logs):
-            raise ParameterError(f"{log.name} holds the same bytes as a file before it: name each file once")
-        runs.append(run)
-        logs.append(log)
-    return TorqueLog(tuple(runs), tuple(logs))
+        if any(read_here[0][1].sha256 == other.sha256 for _, other in done):
+            name = read_here[0][1].name
+            raise ParameterError(f"{name} holds the same bytes as a file before it: name each file once")
+        done += read_here
+    done = of_each_run(done, stated)
+    return TorqueLog(tuple(run for run, _ in done), tuple(log for _, log in done))
+
+
+def _stated(*, every: Any, radius: Any, load: Any) -> Stated:
+    """What the user says of the log, if it can be."""
+    given = {"every": every, "radius": radius, "load": load}
+    for name, value in given.items():
+        for one in np.atleast_1d(value) if value is not None else ():
+            if not 0 < one < LARGEST:
+                raise ParameterError(f"{name} is {one:g} in SI: it must be greater than 0")
+        if np.ndim(value):
+            given[name] = tuple(map(float, value))
+    return Stated(**given)
 
 
 def list_channels(path: Any) -> list[tuple[str, str]]:

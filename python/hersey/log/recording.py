@@ -45,7 +45,8 @@ class Signal:
 
     ``load`` returns the numbers in the unit as written, shape (rows,), NaN where a value is missing;
     ``clock`` the time of each in s on a scale common to the file, or is None where a channel of the group
-    holds the time. ``tick`` names the clock: two signals with the same tick need no alignment.
+    holds the time. ``tick`` names the clock: two signals with the same tick need no alignment. ``line`` is
+    the row of the file in which the first sample stands, 0 where a file has none.
     """
 
     name: str
@@ -55,6 +56,7 @@ class Signal:
     clock: Callable[[], FloatArray] | None = None
     tick: str = ""
     group: str = ""
+    line: int = 0
 
 
 @dataclass(frozen=True)

@@ -52,13 +52,14 @@ class LogFile:
 
 @dataclass(frozen=True)
 class Run:
-    """What one file recorded: arrays of shape (rows,) in s, N m, rad/s and K."""
+    """What was recorded in one go: arrays of shape (rows,) in s, N m, rad/s, K and N."""
 
     name: str
     time: FloatArray
     torque: FloatArray
     speed: FloatArray
     temperature: FloatArray | None
+    load: FloatArray | None = None  #: normal load, N, where it is known
 
     @cached_property
     def sampling_interval(self) -> float:
@@ -168,6 +169,7 @@ _COLUMNS = {
     "torque": "torque (N m)",
     "speed": "speed (rad/s)",
     "temperature": "temperature (K)",
+    "load": "load (N)",
 }
 
 

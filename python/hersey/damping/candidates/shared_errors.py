@@ -174,8 +174,8 @@ class Freedom:
     covariance: FloatArray
     parts: tuple[FloatArray, ...] = ()
     uncertainty: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
+    #: variance of each value by a scatter of groups that is not told, over that by as much of dwells
     moved_by_untold: FloatArray = field(default_factory=lambda: np.empty(0))
-    """Of each value, its variance by a scatter of groups that is not told, over that by the same of dwells."""
 
     def of(self, weights: FloatArray) -> float:
         """Return those of a linear combination of the values, weights of shape (parameters,)."""

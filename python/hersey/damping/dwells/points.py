@@ -44,7 +44,7 @@ class SteadyPoints(Result):
         Columns ``run`` (index), ``start``, ``end`` (s), ``speed``, ``speed_error`` (rad/s), ``torque``,
         ``torque_error`` (N m), ``temperature``, ``temperature_error`` (K, null if not recorded), ``rows``,
         ``effective_rows`` (independent samples), ``settling_rows`` (cut at the ends), ``approach``
-        (``from below``, ``from above`` or ``start``), ``tare`` (N m). Errors are standard errors of the mean.
+        (``from below``, ``from above`` or ``start``), ``load`` (N, null if not known), ``tare`` (N m). Errors are standard errors of the mean.
         Speed and torque carry the sign of the rotation.
     rejected
         Every other stretch, with the reason. Rows of the table and of this list add up to the log's.
@@ -120,7 +120,7 @@ class SteadyPoints(Result):
         dwells, rejected = _stated(table, rotation)
         if not dwells:
             raise InsufficientDataError(f"{table.files[0].name}: no row can be used: {rejected[0].reason}")
-        kinds = {"temperature": pl.Float64, "temperature_error": pl.Float64}
+        kinds = dict.fromkeys(("temperature", "temperature_error", "load"), pl.Float64)
         frame = pl.DataFrame(dwells, schema_overrides=kinds)
         return cls(frame, tuple(rejected), 0.0, None, table, notes=_notes_of_means(table))
 
@@ -187,6 +187,7 @@ class SteadyPoints(Result):
             "speed": "rad/s",
             "torque": "N m",
             "temperature": "K",
+            "load": "N",
             "tare": "N m",
         }
         units |= {f"{name}_error": units[name] for name in ("speed", "torque", "temperature")}
@@ -218,6 +219,7 @@ def _stated(table: MeansTable, rotation: str) -> tuple[list[dict[str, object]], 
                 "effective_rows": row.count,
                 "settling_rows": 0,
                 "approach": row.approach,
+                "load": row.load,
                 "tare": 0.0,
             }
         )

@@ -108,7 +108,7 @@ class _Reduction:
             _row(self.log.runs[dwell.run], dwell, float(tare), noise)
             for dwell, tare in zip(dwells, tares, strict=True)
         ]
-        kinds = {"temperature": pl.Float64, "temperature_error": pl.Float64}
+        kinds = dict.fromkeys(("temperature", "temperature_error", "load"), pl.Float64)
         table = pl.DataFrame(rows, schema_overrides=kinds)
         disturbances = np.empty((len(dwells), 0))
         if self.subtracted and self.zero is not None:
@@ -199,6 +199,7 @@ def _row(run: Run, dwell: Dwell, tare: float, noise: SharedNoise | None) -> dict
         "effective_rows": independent,
         "settling_rows": dwell.segment.end - dwell.segment.start - (dwell.end - dwell.start),
         "approach": approach,
+        "load": None if run.load is None else float(np.mean(run.load[rows])),
         "tare": tare,
     }
 

@@ -48,6 +48,7 @@ class DwellPart(Part):
     effective_rows: float = Field(description="independent samples")
     settling_rows: int = Field(description="cut at the ends")
     approach: Literal["from below", "from above", "start"]
+    load: float | None = Field(description="N, null if not known")
     tare: float = Field(description="N m, subtracted")
 
 

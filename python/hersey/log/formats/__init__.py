@@ -1,18 +1,21 @@
 """Files of every format but text: one reader each.
 
-===========  =================================================================
-opening      which format a file has, and opening it in a process of its own
-answering    what that process does: a reader opens the file, numbers are sent
-lvm          LabVIEW measurement files
-tdms         LabVIEW TDMS
-mdf          ASAM MDF, through asammdf
-formula      formulas that an MDF file carries, by a grammar of our own
-matlab       MATLAB files; their layout is walked first by `matlab_tags`
-hdf5         HDF5, and MATLAB 7.3
-matrices     numbers in rows and columns, as the two before hold them
-parquet      Parquet
-frame        polars and pandas frames in memory
-===========  =================================================================
+============  =================================================================
+opening       which format a file has, and opening it in a process of its own
+answering     what that process does: a reader opens the file, numbers are sent
+lvm           LabVIEW measurement files
+tdms          LabVIEW TDMS
+mdf           ASAM MDF, through asammdf
+formula       formulas that an MDF file carries, by a grammar of our own
+matlab        MATLAB files; their layout is walked first by `matlab_tags`
+cells         tables and lists of channels in cell arrays of MATLAB
+hdf5          HDF5, and MATLAB 7.3
+matrices      numbers in rows and columns, as the two before hold them
+excel         workbooks of Excel, through polars and calamine
+numpy_arrays  what NumPy saved
+parquet       Parquet
+frame         polars and pandas frames in memory
+============  =================================================================
 """
 
 from hersey.log.formats.opening import READERS, format_of, memory_limit, opened

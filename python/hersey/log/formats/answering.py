@@ -58,6 +58,7 @@ class _Open:
                     "clock": signal.clock is not None,
                     "tick": signal.tick,
                     "group": signal.group,
+                    "line": signal.line,
                 }
                 for signal in recording.signals
             ],

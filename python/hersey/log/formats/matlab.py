@@ -11,6 +11,7 @@ import numpy as np
 from scipy.io import loadmat
 
 from hersey.errors import UnreadableLogError
+from hersey.log.formats.cells import cell_signals
 from hersey.log.formats.hdf5 import is_hdf5, open_hdf5
 from hersey.log.formats.matlab_tags import check_tags
 from hersey.log.formats.matrices import array_signals
@@ -20,11 +21,13 @@ _DATA = ("data", "values", "value", "signal", "samples")
 _UNITS = ("unit", "units", "Unit", "Units")
 #: Structs within structs are followed to this depth.
 _DEPTH = 4
+#: Cells of an array that are looked into one by one, at the most.
+_MOST_CELLS = 256
 
 
 @contextmanager
 def open_matlab(file: BinaryIO, name: str) -> Iterator[Recording]:
-    """Open a MATLAB file: vectors, columns of matrices, and fields of structs."""
+    """Open a MATLAB file: vectors, columns of matrices, fields of structs, and cells."""
     start = file.read(1024)
     file.seek(0)
     if is_hdf5(start):
@@ -62,6 +65,11 @@ def _walk(name: str, value: Any, group: str, signals: list[Signal], others: list
         signals.extend(vectors)
         if not vectors:
             others.append(f"{place} ({'x'.join(map(str, value.shape))})")
+    elif value.dtype.kind == "O" and depth < _DEPTH and cell_signals(name, value, group, signals):
+        pass
+    elif value.dtype.kind == "O" and depth < _DEPTH and 0 < value.size <= _MOST_CELLS:
+        for number, cell in enumerate(value.reshape(-1), start=1):
+            _walk(f"{name}#{number}", cell, group, signals, others, depth + 1)
     else:
         what = {"O": "cells", "U": "text", "S": "text", "c": "complex"}.get(value.dtype.kind, "structs")
         others.append(f"{place} ({what})")

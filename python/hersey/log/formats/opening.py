@@ -62,7 +62,15 @@ READERS = {
     ".hdf": "hdf5",
     ".parquet": "parquet",
     ".lvm": "lvm",
+    ".xlsx": "excel",
+    ".xlsm": "excel",
+    ".xlsb": "excel",
+    ".xls": "excel",
+    ".npz": "numpy_arrays",
+    ".npy": "numpy_arrays",
 }
+#: Bytes of the start that are looked at.
+_LOOKED_AT = 512
 #: First bytes of a format, which outrank the suffix.
 _STARTS = (
     (b"TDSm", "tdms"),
@@ -73,11 +81,13 @@ _STARTS = (
     (HDF5, "hdf5"),
     (b"PAR1", "parquet"),
     (b"LabVIEW Measurement", "lvm"),
+    (b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", "excel"),
+    (b"\x93NUMPY", "numpy_arrays"),
 )
-_UNREADABLE = {
-    b"PK\x03\x04": "a workbook or an archive: save the sheet as CSV",
-    b"\xd0\xcf\x11\xe0": "an old workbook of Excel: save the sheet as CSV",
-}
+#: How an archive starts, and what its first member tells of it.
+_ARCHIVE = b"PK\x03\x04"
+_NAME_LENGTH, _NAME = slice(26, 28), 30
+_MEMBERS = re.compile(rb"(?P<numpy_arrays>.*\.npy)|(?P<excel>\[Content_Types\]\.xml|(_rels|docProps|xl)/.*)")
 
 
 def format_of(path: Path) -> str | None:
@@ -93,16 +103,30 @@ def format_of(path: Path) -> str | None:
         If it is text, and this process was forked from one that has read some.
     """
     with open_file(path) as file:
-        start = file.read(64)
-    for magic, what in _UNREADABLE.items():
-        if start.startswith(magic):
-            raise UnreadableLogError(f"{path.name} is {what}")
+        start = file.read(_LOOKED_AT)
     start = start.removeprefix(b"\xef\xbb\xbf")
-    kind = next(
-        (kind for magic, kind in _STARTS if start.startswith(magic)), READERS.get(path.suffix.lower())
-    )
+    kind = READERS.get(path.suffix.lower())
+    if start.startswith(_ARCHIVE):
+        kind = _of_archive(path, start, kind)
+    kind = next((kind for magic, kind in _STARTS if start.startswith(magic)), kind)
     if kind is None:
         refuse_after_fork()  # text goes through polars, here
+    return kind
+
+
+def _of_archive(path: Path, start: bytes, kind: str | None) -> str:
+    """The format of an archive by the name of its first member, or else by the suffix of the file.
+
+    Raises
+    ------
+    UnreadableLogError
+        If neither is known.
+    """
+    length = int.from_bytes(start[_NAME_LENGTH], "little")
+    member = _MEMBERS.fullmatch(start[_NAME : _NAME + length])
+    kind = (member and member.lastgroup) or kind
+    if kind not in ("excel", "numpy_arrays"):
+        raise UnreadableLogError(f"{path.name} is an archive: unpack it, and name the log in it")
     return kind
 
 
@@ -220,6 +244,7 @@ class _Reader:
             partial(numbers, "clock") if about["clock"] else None,
             about["tick"],
             _plain(about["group"], _LONGEST_NAME),
+            int(about["line"]),
         )
 
     def _numbers(self, recording: Recording, index: int, rows: int, what: str) -> FloatArray:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import codecs
 import hashlib
+from bisect import bisect_right
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -17,13 +18,23 @@ from typing import BinaryIO
 import numpy as np
 import polars as pl
 
-from hersey.arrays import FloatArray
+from hersey.arrays import BoolArray, FloatArray, IntArray
 from hersey.errors import ChannelError, UnreadableLogError
 from hersey.files.reading import OpenFile, appended
-from hersey.log.channels import ROLES, ChannelChoice, find_channel, no_channel
+from hersey.log.channels import (
+    ROLES,
+    ChannelChoice,
+    Stated,
+    find_channel,
+    is_dead,
+    no_channel,
+    refuse_two_clocks,
+)
+from hersey.log.friction import beside, in_rotation, notes_on, spare
+from hersey.log.rows import LeftOut, runs_with_records
 from hersey.log.text.footer import end_of_table
-from hersey.log.text.layout import SNIFFED, Column, Layout, find_layout, split
-from hersey.log.text.numbers import MISSING, is_missing
+from hersey.log.text.layout import BLANKS, SNIFFED, Column, Layout, find_layout, split, tabbed
+from hersey.log.text.numbers import MISSING, is_missing, looks_numeric
 from hersey.log.text.stamps import Stamps
 from hersey.log.torque_log import LARGEST, Channel, LogFile, Run
 from hersey.spelling import printable
@@ -32,7 +43,6 @@ from hersey.units import Conversion
 BLOCK = 1 << 22
 #: Bytes of a line at the most.
 LONGEST_LINE = 1 << 25
-_WAY_OUT = "mend the file, or say --drop-missing to leave such rows out (they will be counted)"
 
 Progress = Callable[[int, int], None]
 _NULLS = sorted({s for word in MISSING for s in (word, word.upper(), word.capitalize())} | {"NaN"})
@@ -44,9 +54,10 @@ def read_delimited(
     *,
     isothermal: bool,
     drop_missing: bool,
+    stated: Stated = Stated(),  # noqa: B008 # frozen
     progress: Progress | None = None,
-) -> tuple[Run, LogFile]:
-    """Read one file; ``progress`` is called with bytes done and bytes in all.
+) -> list[tuple[Run, LogFile]]:
+    """Read the runs in one file; ``progress`` is called with bytes done and bytes in all.
 
     Raises
     ------
@@ -56,24 +67,27 @@ def read_delimited(
     name = printable(path.name)
     with open_delimited(path) as file:
         layout, end, size = file.layout, file.end, file.opened.size
-        table = _Table(name, layout, _channels(layout, choices, isothermal, name), drop_missing)
+        dead = _Dead(file)
+        channels = _channels(layout, choices, isothermal, name, stated, dead)
+        table = _Table(name, layout, channels, drop_missing, stated)
+        table.spare = spare(channels, choices)
         table.read(file.opened, end.byte, progress)
         growth = file.opened.growth(table.digest.hexdigest())
-    arrays = table.arrays()
-    run = Run(name, arrays["time"], arrays["torque"], arrays["speed"], arrays.get("temperature"))
-    channels = tuple(Channel(role, column.name, si.unit) for role, (column, si) in table.channels.items())
+    used = tuple(Channel(role, column.name, si.unit) for role, (column, si) in table.channels.items())
+    if stated.every is not None:
+        used = (Channel("time", "number of the row", f"{stated.every:g} s"), *used)
     log = LogFile(
         name,
         table.digest.hexdigest(),
         size,
-        run.time.size,
-        table.missing,
-        channels,
+        0,
+        0,
+        used,
         layout.comments,
         end.cut_off,
-        (*layout.notes, *table.notes(), *end.notes, *growth),
+        (*layout.notes, *table.notes(), *notes_on(channels, stated), *dead.notes, *end.notes, *growth),
     )
-    return run, log
+    return runs_with_records(log, table.arrays(), table.place, table.left_out, drop_missing=drop_missing)
 
 
 def delimited_columns(path: Path) -> tuple[Column, ...]:
@@ -109,8 +123,12 @@ class DelimitedFile:
         text = self.opened.file.read(self.opened.size)
         return text[: self.end.byte], self.opened.growth(hashlib.sha256(text).hexdigest())
 
-    def numbers(self, chosen: Sequence[Column], *, complete: bool) -> list[FloatArray]:
+    def numbers(
+        self, chosen: Sequence[Column], *, complete: bool, odd_as_missing: bool = False
+    ) -> list[FloatArray]:
         """Return columns as written (time stamps in s), shape (rows,), NaN where a number is missing.
+
+        With ``odd_as_missing`` also where something else stands.
 
         Raises
         ------
@@ -120,6 +138,7 @@ class DelimitedFile:
         """
         as_written = {str(i): (column, Conversion(column.unit, 1.0, 0.0)) for i, column in enumerate(chosen)}
         table = _Table(self.opened.path.name, self.layout, as_written, drop_missing=not complete)
+        table.strict = not odd_as_missing
         numbers = table.numbers(self.opened, self.end.byte)
         self.opened.growth(table.digest.hexdigest())
         return numbers
@@ -138,17 +157,39 @@ def open_delimited(path: Path) -> Iterator[DelimitedFile]:
         yield DelimitedFile(opened)
 
 
+class _Dead:
+    """Which columns of an open file say nothing; those that were passed over are noted."""
+
+    def __init__(self, file: DelimitedFile) -> None:
+        self.file, self.notes, self._known = file, list[str](), dict[int, bool]()
+
+    def __call__(self, column: Column) -> bool:
+        if column.index not in self._known:
+            (values,) = self.file.numbers([column], complete=False, odd_as_missing=True)
+            self._known[column.index] = is_dead(values)
+            if self._known[column.index]:
+                self.notes.append(f"'{column}' says nothing, one value throughout: it was passed over")
+        return self._known[column.index]
+
+
 def _channels(
-    layout: Layout, choices: dict[str, ChannelChoice], isothermal: bool, name: str
+    layout: Layout,
+    choices: dict[str, ChannelChoice],
+    isothermal: bool,
+    name: str,
+    stated: Stated,
+    dead: Callable[[Column], bool],
 ) -> dict[str, tuple[Column, Conversion]]:
     if isothermal and choices["temperature"] != ChannelChoice():
         raise ChannelError("--isothermal leaves temperature out: give no --temperature beside it")
-    used = [role for role in ROLES if not (role == "temperature" and isothermal)]
+    refuse_two_clocks(choices, stated)
+    left = {"temperature"} if isothermal else set()
+    used = [role for role in ROLES if role not in (left | {"time"} if stated.every is not None else left)]
     if layout.headless and not all(choices[role].name for role in used):
         raise UnreadableLogError(layout.headless)
     chosen: dict[str, tuple[Column, Conversion]] = {}
     for role in sorted(used, key=lambda r: r != "torque"):  # without it the rest is of no use
-        channel = find_channel(role, layout.named, choices[role], name)
+        channel = find_channel(role, layout.named, choices[role], name, dead)
         if channel is None:
             error = no_channel(role, layout.named, name)
             if role == "temperature":
@@ -158,7 +199,8 @@ def _channels(
         if other:
             raise ChannelError(f"{name}: column '{channel[0]}' cannot be both {other} and {role}")
         chosen[role] = channel
-    return {role: chosen[role] for role in used}
+    others = beside(layout.named, choices, stated, chosen, name, dead)
+    return {role: chosen[role] for role in used} | others
 
 
 @dataclass
@@ -176,14 +218,23 @@ class _Table:
     """The table of one file while it is being read."""
 
     def __init__(
-        self, name: str, layout: Layout, channels: dict[str, tuple[Column, Conversion]], drop_missing: bool
+        self,
+        name: str,
+        layout: Layout,
+        channels: dict[str, tuple[Column, Conversion]],
+        drop_missing: bool,
+        stated: Stated = Stated(),  # noqa: B008 # frozen
     ) -> None:
         self.name, self.layout, self.channels, self.drop_missing = name, layout, channels, drop_missing
-        self.parts: dict[str, list[FloatArray]] = {role: [] for role in channels}
+        self.stated, self.strict = stated, False
+        self.spare: frozenset[str] = frozenset()  # roles whose columns cost no row
+        self.parts: dict[str, list[FloatArray]] = {}
         self.digest = hashlib.sha256()
-        self.missing = 0
+        self.left_out = LeftOut()
+        self.rows = 0  # so far, those that were left out among them
         self.stamps = {i: Stamps(style) for i, style in layout.stamps.items()}
-        self.last_time = -np.inf
+        self._kept_last = 0
+        self._lines: list[tuple[int, Sequence[int], IntArray | None]] = []  # first row, lines, those kept
 
     @property
     def columns(self) -> list[Column]:
@@ -209,6 +260,7 @@ class _Table:
         """Lines of the table, and bytes read so far; what follows the table is hashed with it."""
         opened.file.seek(0)
         for text, line, done in _blocks(opened.file, end, self.layout, self.name, self.digest.update):
+            text = tabbed(text) if self.layout.separator == BLANKS else text
             yield self._cleaned(text, line), done
         left = opened.size - end
         while left and (chunk := opened.file.read(min(left, BLOCK))):
@@ -219,7 +271,8 @@ class _Table:
         values = self._parsed(block)
         gone = ~np.logical_and.reduce([np.isfinite(column) for column in values])
         if gone.any() and not self.drop_missing:
-            raise self._missing(block, values, int(np.argmax(gone)), "mend the file")
+            row = int(np.argmax(gone))
+            raise UnreadableLogError(f"{self.name}, {self._fault(block, values, row)}; mend the file")
         for part, column in zip(parts, values, strict=True):
             part.append(np.where(np.isfinite(column), column, np.nan))
 
@@ -230,15 +283,14 @@ class _Table:
 
     def arrays(self) -> dict[str, FloatArray]:
         arrays = {}
-        for role in self.channels:  # one after another, so that only one is held twice
-            parts = self.parts.pop(role)
-            arrays[role] = np.concatenate(parts) if parts else np.empty(0)
-        if arrays["time"].size < 2:
-            count = arrays["time"].size
-            raise UnreadableLogError(f"{self.name} has {count} row(s) with a number in every column needed")
-        if arrays["time"][-1] == arrays["time"][0]:
-            raise UnreadableLogError(f"{self.name}: all rows carry the same time")
+        for role in tuple(self.parts):  # one after another, so that only one is held twice
+            arrays[role] = np.concatenate(self.parts.pop(role))
         return arrays
+
+    def place(self, row: int) -> str:
+        """Where a row that was kept stands in the file."""
+        first, lines, kept = self._lines[bisect_right(self._lines, row, key=lambda block: block[0]) - 1]
+        return f"line {lines[row - first if kept is None else int(kept[row - first])]}"
 
     def _cleaned(self, text: bytes, line: int) -> _Block:
         """The block without blank lines and comments."""
@@ -250,8 +302,11 @@ class _Table:
         kept, numbers = [], []
         for number, row in enumerate(text.split(b"\n"), start=line):
             if row.lstrip().startswith(comment):
-                cells = split(row.decode("utf-8", errors="replace"), self.layout.separator)
-                if len(cells) == len(self.layout.columns):
+                cells = split(row.decode("utf-8", errors="replace"), self.layout.between)
+                if len(cells) == len(self.layout.columns) and is_missing(cells[0]):  # an error of Excel: #N/A
+                    kept.append(row)
+                    numbers.append(number)
+                elif len(cells) == len(self.layout.columns):
                     raise UnreadableLogError(
                         f"{self.name}, line {number} starts with '{self.layout.comment}' like a comment but "
                         "has as many cells as a row: mend or remove it"
@@ -263,36 +318,54 @@ class _Table:
 
     def _add(self, block: _Block) -> None:
         values = self._parsed(block)
-        gone = ~np.logical_and.reduce([np.isfinite(v) for v in values])
-        if gone.any() and not self.drop_missing:
-            raise self._missing(block, values, int(np.argmax(gone)))
-        self.missing += int(gone.sum())
+        by_role = self._in_si(values)
+        needed = [numbers for role, numbers in by_role.items() if role not in self.spare]
+        gone = ~np.logical_and.reduce([_believed(numbers) for numbers in needed])
+        words = (self._fault(block, values, int(row)) for row in np.flatnonzero(gone))
+        self.left_out.add(int(gone.sum()), words)
         kept = np.flatnonzero(~gone) if gone.any() else None
-        for (role, (column, si)), numbers in zip(self.channels.items(), values, strict=True):
-            chosen = numbers if kept is None else numbers[kept]
-            with np.errstate(over="ignore"):
-                converted = chosen * si.scale + si.offset
-            if np.any(np.abs(converted) > LARGEST):
-                row = int(np.argmax(np.abs(converted) > LARGEST))
-                line = block.lines[row if kept is None else int(kept[row])]
-                raise UnreadableLogError(
-                    f"{self.name}, line {line}, column '{column.name}': "
-                    f"{chosen[row]:g} {si.unit} is no {role}"
-                )
-            self.parts[role].append(converted)
-        self._check_time(block, kept)
+        first = self._lines[-1][0] + self._kept_last if self._lines else 0
+        self._kept_last = len(block.lines) if kept is None else kept.size
+        self._lines.append((first, block.lines, kept))
+        for role, numbers in by_role.items():
+            self.parts.setdefault(role, []).append(numbers if kept is None else numbers[kept])
+        self.rows += len(block.lines)
 
-    def _check_time(self, block: _Block, kept: np.ndarray[tuple[int], np.dtype[np.intp]] | None) -> None:
-        time = self.parts["time"][-1]
-        steps = np.diff(time, prepend=self.last_time)
-        if (steps < 0).any():
-            row = int(np.argmax(steps < 0))
-            line = block.lines[row if kept is None else int(kept[row])]
-            raise UnreadableLogError(
-                f"{self.name}, line {line}: time runs backwards by {-steps[row]:.6g} s; "
-                "split the file there, or sort its rows"
-            )
-        self.last_time = float(time[-1]) if time.size else self.last_time
+    def _in_si(self, values: list[FloatArray]) -> dict[str, FloatArray]:
+        """What the columns hold, by role, as a log has it; not finite where a number is missing."""
+        arrays: dict[str, FloatArray] = {}
+        with np.errstate(over="ignore", invalid="ignore"):
+            for (role, (_, si)), numbers in zip(self.channels.items(), values, strict=True):
+                arrays[role] = np.asarray(numbers * si.scale + si.offset, dtype=float)
+        arrays = in_rotation(arrays, self.channels, self.stated)
+        if self.stated.every is not None:
+            numbers = self.rows + np.arange(arrays["torque"].size, dtype=float)
+            arrays["time"] = numbers * self.stated.every
+        return arrays
+
+    def _fault(self, block: _Block, values: list[FloatArray], row: int) -> str:
+        """Line and column of the first cell of a row that is of no use, and what is wrong with it."""
+        cells = block.cells(row, self.layout.between)
+        place = f"line {block.lines[row]}"
+        for (role, (column, si)), numbers in zip(self.channels.items(), values, strict=True):
+            if role in self.spare:
+                continue
+            cell = cells[column.index] if column.index < len(cells) else ""
+            told = f"{place}, column '{column.name}': "
+            if not np.isfinite(numbers[row]):
+                if is_missing(cell):
+                    what = f"'{cell[:40]}' stands" if cell else "nothing stands"
+                    return f"{told}{what} where a number is needed"
+                return f"{told}'{cell[:40]}' is not a {self._what(column)}"
+            with np.errstate(over="ignore"):
+                if not _believed(np.asarray(numbers[row] * si.scale + si.offset)):
+                    return f"{told}{numbers[row]:g} {si.unit} is no {role}"
+        return (
+            f"{place}: torque and speed cannot be had from what stands there: a radius that is not positive?"
+        )
+
+    def _what(self, column: Column) -> str:
+        return "time stamp" if column.index in self.stamps else "number"
 
     def _parsed(self, block: _Block) -> list[FloatArray]:
         """The wanted columns as numbers, NaN where a cell stands for a missing value."""
@@ -307,7 +380,7 @@ class _Table:
                 block.text,
                 has_header=False,
                 columns=wanted,
-                separator=self.layout.separator,
+                separator=self.layout.between,
                 decimal_comma=fast and comma,
                 schema_overrides=[pl.Float64 if fast else pl.String] * len(self.layout.columns),
                 null_values=_NULLS,
@@ -320,9 +393,15 @@ class _Table:
         by_index = dict(zip(wanted, frame.get_columns(), strict=True))
         if fast:
             return [by_index[c.index].cast(pl.Float64).fill_null(np.nan).to_numpy() for c in self.columns]
-        values = [self._values(c, by_index[c.index].fill_null("")) for c in self.columns]
-        readable = [v for v in values if v is not None]
-        return readable if len(readable) == len(values) else self._parsed_slowly(block)
+        values: dict[int, FloatArray] = {}
+        for column in sorted(
+            self.columns, key=lambda c: c.index in self.stamps
+        ):  # stamps remember what they read
+            numbers = self._values(column, by_index[column.index].fill_null(""))
+            if numbers is None:
+                return self._parsed_slowly(block)
+            values[column.index] = numbers
+        return [values[column.index] for column in self.columns]
 
     def _values(self, column: Column, cells: pl.Series) -> FloatArray | None:
         """Cells of text as numbers or as time stamps in s; None if one of them is neither."""
@@ -333,47 +412,35 @@ class _Table:
         width = len(self.layout.columns)
         table: list[list[str]] = []
         for row, text in enumerate(block.text.split(b"\n")[: len(block.lines)]):
-            cells = split(text.decode("utf-8", errors="replace").rstrip("\r"), self.layout.separator)
+            cells = split(text.decode("utf-8", errors="replace").rstrip("\r"), self.layout.between)
             if any(cells[width:]):
                 raise UnreadableLogError(
                     f"{self.name}, line {block.lines[row]}: {len(cells)} cells where the header has {width}"
                 )
             table.append(cells + [""] * (width - len(cells)))
-        out = []
-        for column in self.columns:
-            cells = [row[column.index] for row in table]
-            values = self._values(column, pl.Series(cells, dtype=pl.String))
-            if values is None:
-                raise self._no_number(block, column, cells)
-            out.append(values)
-        return out
+        return [
+            self._readable(block, column, [row[column.index] for row in table]) for column in self.columns
+        ]
 
-    def _no_number(self, block: _Block, column: Column, cells: list[str]) -> UnreadableLogError:
-        """The error that names the first cell of a column which is no number."""
+    def _readable(self, block: _Block, column: Column, cells: list[str]) -> FloatArray:
+        """The numbers of a column, NaN also where a cell is none, unless it could be one in another style."""
+        text = pl.Series(cells, dtype=pl.String)
+        stamps = self.stamps.get(column.index)
+        odd = ~(stamps or self.layout.style).readable(text)
+        for row in odd.arg_true():
+            if self.strict or (stamps is None and looks_numeric(cells[row])):
+                raise UnreadableLogError(
+                    f"{self.name}, line {block.lines[row]}, column '{column.name}': "
+                    f"'{cells[row][:40]}' is not a {self._what(column)}"
+                )
+        values = self._values(column, text.set(odd, ""))
+        assert values is not None
+        return values
 
-        def good(cell: str) -> bool:
-            if column.index not in self.stamps:
-                return is_missing(cell) or self.layout.style.is_number(cell)
-            return self._values(column, pl.Series([cell], dtype=pl.String)) is not None
 
-        row = next(i for i, cell in enumerate(cells) if not good(cell))
-        what = "time stamp" if column.index in self.stamps else "number"
-        return UnreadableLogError(
-            f"{self.name}, line {block.lines[row]}, column '{column.name}': "
-            f"'{cells[row][:40]}' is not a {what}"
-        )
-
-    def _missing(
-        self, block: _Block, values: list[FloatArray], row: int, way_out: str = _WAY_OUT
-    ) -> UnreadableLogError:
-        cells = block.cells(row, self.layout.separator)
-        column = next(c for c, v in zip(self.columns, values, strict=True) if not np.isfinite(v[row]))
-        cell = cells[column.index] if column.index < len(cells) else ""
-        what = f"'{cell[:40]}' stands" if cell else "nothing stands"
-        return UnreadableLogError(
-            f"{self.name}, line {block.lines[row]}, column '{column.name}': {what} where a number is "
-            f"needed; {way_out}"
-        )
+def _believed(numbers: FloatArray) -> BoolArray:
+    """Whether numbers in SI are finite, and of a size that a drive has."""
+    return np.isfinite(numbers) & (np.abs(numbers) <= LARGEST)
 
 
 def _blocks(

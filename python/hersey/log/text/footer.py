@@ -53,7 +53,7 @@ def end_of_table(file: BinaryIO, size: int, layout: Layout) -> TableEnd:
         lines[-1] = ""
     elif lines[-1].strip():
         notes.append(f"the last line, '{_shown(lines[-1])}', has no end: its last number may lack digits")
-    summary = _summary(lines, layout)
+    summary = summary_lines(lines, layout)
     if summary:
         left_out = summary
         words = [line for line in lines[-summary:] if line.strip()]
@@ -107,8 +107,8 @@ def _is_word(cell: str) -> bool:
     return is_missing(cell) and cell not in ("", "-")
 
 
-def _summary(lines: list[str], layout: Layout) -> int:
-    """How many lines at the end are no rows; blank ones among them count."""
+def summary_lines(lines: list[str], layout: Layout) -> int:
+    """Return how many lines at the end are no rows; blank ones among them count."""
     count = 0
     for number, line in enumerate(reversed(lines), start=1):
         if number > _LINES:

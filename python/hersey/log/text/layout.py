@@ -17,6 +17,12 @@ from hersey.units import KINDS, conversion
 
 #: Bytes looked at; preambles of data loggers are far shorter.
 SNIFFED = 1 << 17
+#: What may stand between cells.
+SEPARATORS = ";\t|,"
+#: The separator that stands for any run of blanks and tabs.
+BLANKS = " "
+#: A name in a header between blanks, with the unit behind it.
+_NAME = re.compile(r"[^\s\[(]+(?:[ \t]?(?:\[[^\[\]]*\]|\([^()]*\)))?|\S+")
 _COMMENTS = ("#", "~", "//")
 _NOT_CP1252 = (b"\x81", b"\x8d", b"\x8f", b"\x90", b"\x9d")
 #: Columns of a table, and characters of a name at the most: no log has as many.
@@ -74,12 +80,17 @@ class Layout:
     headless: str = ""
 
     @property
+    def between(self) -> str:
+        """What stands between the cells of a block of lines once it is read: blanks have become tabs."""
+        return "\t" if self.separator == BLANKS else self.separator
+
+    @property
     def named(self) -> tuple[Column, ...]:
         """The columns without those that have neither a name nor numbers."""
         return tuple(c for c in self.columns if not (c.name.startswith("#") and c.index in self.texts))
 
 
-def find_layout(start: bytes, name: str) -> Layout:
+def find_layout(start: bytes, name: str, *, separators: str = SEPARATORS) -> Layout:
     """Return the layout of a text file from its first `SNIFFED` bytes.
 
     Raises
@@ -104,7 +115,11 @@ def find_layout(start: bytes, name: str) -> Layout:
     ]
     if not numbered:
         raise UnreadableLogError(f"{name} is empty: a header and rows of numbers are needed")
-    table = max((_table(numbered, separator) for separator in ";\t|,"), key=lambda t: t.score)
+    table = max((_table(numbered, separator) for separator in separators), key=lambda t: t.score)
+    if separators == SEPARATORS:
+        blanks = _table(numbered, BLANKS)
+        if blanks.pure and blanks.score >= table.score and not (table.pure and table.rows >= blanks.rows):
+            table = blanks
     refuse_columns(name, table.width)
     if table.score == 0:
         raise UnreadableLogError(
@@ -187,10 +202,19 @@ class _Table:
     width: int
     first: int
     score: int
+    rows: int = 0
+    pure: bool = False  # all its cells may be numbers
+
+
+def tabbed(text: bytes) -> bytes:
+    """Return lines in which each run of blanks and tabs between cells has become one tab."""
+    return re.sub(rb"[ \t]+", b"\t", re.sub(rb"(?m)^[ \t]+|[ \t]+(?=\r?$)", b"", text))
 
 
 def split(line: str, separator: str) -> list[str]:
     """Return the cells of a line, without surrounding blanks."""
+    if separator == BLANKS:
+        return line.split()
     try:
         return [cell.strip() for cell in next(csv.reader([line], delimiter=separator), [])]
     except csv.Error:  # a cell beyond the limit of the csv module
@@ -235,7 +259,8 @@ def _table(numbered: list[tuple[int, str]], separator: str) -> _Table:
         return _Table(separator, 0, 0, 0)
     rows = set(lines[width])
     first = _first_of_block([number in rows for number in range(len(cells))])
-    return _Table(separator, width, first, scores[width])
+    pure = scores[width] == width * len(rows)
+    return _Table(separator, width, first, scores[width], len(rows), pure)
 
 
 def _may_be_number(cell: str) -> bool:
@@ -317,7 +342,7 @@ def _with_epochs(
 
 
 def _columns(table: _Table, numbered: list[tuple[int, str]], file: str) -> tuple[Column, ...]:
-    above = [split(line, table.separator) for _, line in numbered[: table.first]]
+    above = [_names(line, table) for _, line in numbered[: table.first]]
     line, header = numbered[table.first - 1][0], above[-1]
     units: list[str] = []
     if len(above) > 1 and len(above[-2]) == len(header) and _is_units_row(header):
@@ -333,6 +358,14 @@ def _columns(table: _Table, numbered: list[tuple[int, str]], file: str) -> tuple
             name, unit = match[1].rstrip() or f"#{index + 1}", match[2] if match[2] is not None else match[3]
         columns.append(Column(index, name, unit.strip()))
     return tuple(columns)
+
+
+def _names(line: str, table: _Table) -> list[str]:
+    """The cells of a line above the table; between blanks a name may have a unit, or a blank, of its own."""
+    if table.separator != BLANKS:
+        return split(line, table.separator)
+    splits = (line.split(), _NAME.findall(line), re.split(r"\s{2,}|\t", line.strip()))
+    return next((cells for cells in splits if len(cells) == table.width), splits[0])
 
 
 def _require_width(
@@ -351,6 +384,7 @@ def _require_width(
 def _is_units_row(row: list[str]) -> bool:
     """Units of at least half of the cells that are not blank; no number, no name with a unit of its own."""
     filled = [cell.strip("[]() ") for cell in row if cell.strip()]
+    filled = [cell for cell in filled if cell not in ("1", "-")]  # units of a coefficient
     if any(looks_numeric(cell) for cell in filled) or any(
         NAME_WITH_UNIT.fullmatch(c) for c in row if c[:1] not in "[("
     ):

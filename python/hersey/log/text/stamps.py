@@ -13,6 +13,7 @@ from hersey.arrays import FloatArray
 from hersey.log.text.numbers import is_missing
 
 _CLOCK = r"[0-9]{1,2}:[0-9]{2}:[0-9]{2}([.,][0-9]{1,9})?"
+_HALF = r" ?[AaPp]\.?[Mm]\.?"
 _DAY = 86400.0
 #: Units of a count since 1970 by its size, between 2001 and 2049.
 _EPOCHS = ((1e9, "s"), (1e12, "ms"), (1e15, "us"), (1e18, "ns"))
@@ -28,12 +29,23 @@ class StampStyle:
     pattern: str
     format: str
 
+    @property
+    def is_time_of_day(self) -> bool:
+        """Whether it lacks the day."""
+        return self.name.startswith("a time of day")
+
     def stamps(self, cells: pl.Series) -> pl.Series:
         """Return cells as time stamps in ns, null where one is missing or is none."""
         text = cells.str.strip_chars().str.replace(",", ".", literal=True)
+        if "%p" in self.format:  # 10:31:05 p.m. as 10:31:05 PM
+            text = text.str.replace(r" ?([AaPp])\.?[Mm]\.?$", " ${1}M").str.to_uppercase()
         if self.name != "a German date":
-            text = text.str.replace_all("/", "-", literal=True).str.replace("T", " ", literal=True)
-        if self.name == "a time of day":
+            text = (
+                text.str.replace(". ", " ", literal=True)
+                .str.replace_all("/", "-", literal=True)
+                .str.replace("T", " ", literal=True)
+            )
+        if self.is_time_of_day:
             text = "2000-01-01 " + text
         if self.format.endswith("%z"):
             text = text.str.replace("Z$", "+0000").str.replace(r" ?([+-][0-9]{2}):?([0-9]{2})$", "$1$2")
@@ -42,12 +54,20 @@ class StampStyle:
 
 
 _ISO = r"[0-9]{4}[-/][0-9]{1,2}[-/][0-9]{1,2}[T ]"
+_AMERICAN = r"[0-9]{1,2}/[0-9]{1,2}/[0-9]{4},? "
 _STYLES = (
     StampStyle("an ISO date", _ISO + _CLOCK, "%Y-%m-%d %H:%M:%S%.f"),
     StampStyle("an ISO date", _ISO + _CLOCK + r"( ?Z| ?[+-][0-9]{2}:?[0-9]{2})", "%Y-%m-%d %H:%M:%S%.f%z"),
     StampStyle("a German date", r"[0-9]{1,2}\.[0-9]{1,2}\.[0-9]{4} " + _CLOCK, "%d.%m.%Y %H:%M:%S%.f"),
     StampStyle("a time of day", _CLOCK, "%Y-%m-%d %H:%M:%S%.f"),
+    StampStyle("a time of day, AM and PM", _CLOCK + _HALF, "%Y-%m-%d %I:%M:%S%.f %p"),
+    StampStyle("an ISO date, AM and PM", _ISO + _CLOCK + _HALF, "%Y-%m-%d %I:%M:%S%.f %p"),
+    StampStyle("a date, month first", _AMERICAN + _CLOCK, "%m-%d-%Y %H:%M:%S%.f"),
+    StampStyle("a date, day first", _AMERICAN + _CLOCK, "%d-%m-%Y %H:%M:%S%.f"),
+    StampStyle("a date, month first, AM and PM", _AMERICAN + _CLOCK + _HALF, "%m-%d-%Y %I:%M:%S%.f %p"),
+    StampStyle("a date, day first, AM and PM", _AMERICAN + _CLOCK + _HALF, "%d-%m-%Y %I:%M:%S%.f %p"),
 )
+_DAY_FIRST = re.compile(r"(1[3-9]|2[0-9]|3[01])/")
 
 
 def is_stamp(cell: str) -> bool:
@@ -60,7 +80,9 @@ def stamp_style(cells: list[str]) -> StampStyle | None:
     for style in _STYLES:
         count = sum(re.fullmatch(style.pattern, cell) is not None for cell in cells)
         if 2 * count > len(cells):
-            return style
+            day_first = any(_DAY_FIRST.match(cell) for cell in cells)
+            if "month first" not in style.name or not day_first:
+                return style
     return None
 
 
@@ -83,7 +105,7 @@ class Stamps:
         if self.first is None and not gone.all():
             self.first = int(ticks[~gone][0])
         times = np.where(gone, np.nan, (ticks - (self.first or 0)) * 1e-9)
-        return self._past_midnight(times) if self.style.name == "a time of day" else times
+        return self._past_midnight(times) if self.style.is_time_of_day else times
 
     def readable(self, cells: pl.Series) -> pl.Series:
         """Return for each cell of text whether it is a time stamp or stands for a missing one."""
@@ -92,7 +114,7 @@ class Stamps:
     def note(self, column: str) -> str:
         """What was done, for the notes of the log."""
         first = datetime.datetime(1970, 1, 1) + datetime.timedelta(microseconds=(self.first or 0) // 1000)
-        since = first.strftime("%H:%M:%S" if self.style.name == "a time of day" else "%Y-%m-%d %H:%M:%S")
+        since = first.strftime("%H:%M:%S" if self.style.is_time_of_day else "%Y-%m-%d %H:%M:%S")
         passed = f", past midnight {self.midnights} time(s)" if self.midnights else ""
         return f"'{column}' holds {self.style.name}: read in s since {since}{passed}"
 

@@ -1,0 +1,127 @@
+"""Workbooks of Excel, old and new, through polars and calamine: every sheet that holds a table of numbers."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import partial
+from typing import BinaryIO
+
+import numpy as np
+import polars as pl
+
+from hersey.arrays import FloatArray
+from hersey.errors import HerseyError
+from hersey.log.recording import Recording, Signal, library
+from hersey.log.text.footer import summary_lines
+from hersey.log.text.layout import SNIFFED, Column, Layout, find_layout
+from hersey.log.text.stamps import Stamps
+
+#: What stands between the cells of a row where the table is looked for: no cell holds one then.
+_TAB = "\t"
+#: Rows at the end of a sheet among which a summary is looked for.
+_LAST = 21
+
+
+@contextmanager
+def open_excel(file: BinaryIO, _name: str) -> Iterator[Recording]:
+    """Open a workbook: each sheet with a table is a group, named where there are several."""
+    prepare()
+    sheets = pl.read_excel(
+        io.BytesIO(file.read()),
+        sheet_id=0,
+        engine="calamine",
+        has_header=False,
+        read_options={
+            "dtypes": "string",
+            "skip_rows": 0,
+        },  # as text: a word in a column of numbers costs its row alone
+        drop_empty_rows=False,
+        drop_empty_cols=False,
+        raise_if_empty=False,
+    )
+    recording = Recording("Excel", ())
+    tables: dict[str, tuple[pl.DataFrame, Layout]] = {}
+    others = []
+    for title, cells in sheets.items():
+        try:
+            tables[title] = (cells, _layout(cells, f"sheet '{title}'"))
+        except HerseyError as error:
+            others.append(str(error))
+    signals: list[Signal] = []
+    for title, (cells, layout) in tables.items():
+        signals += _signals(recording, title if len(tables) > 1 else "", cells, layout)
+        recording.notes += layout.notes
+        recording.comments += layout.comments
+    recording.signals, recording.others = tuple(signals), tuple(others)
+    yield recording
+
+
+def prepare() -> None:
+    """Import the library, which takes memory that is none of the file's.
+
+    Raises
+    ------
+    UnreadableLogError
+        If it is not installed.
+    """
+    library("fastexcel", "workbooks of Excel")
+
+
+def _layout(cells: pl.DataFrame, place: str) -> Layout:
+    """Where the table of a sheet starts, found as in a text file."""
+    lines, size = [], 0
+    for row in cells.iter_rows():
+        lines.append(_line(row))
+        size += len(lines[-1])
+        if size > SNIFFED // 2:  # a sign may take more than a byte
+            break
+    return find_layout("\n".join(lines).encode()[: SNIFFED - 1], place, separators=_TAB)
+
+
+def _line(row: tuple[str | None, ...]) -> str:
+    return _TAB.join(" ".join((cell or "").replace('"', "'").split()) for cell in row)
+
+
+def _signals(recording: Recording, group: str, cells: pl.DataFrame, layout: Layout) -> Iterator[Signal]:
+    table = cells.slice(layout.first_line - 1)
+    filled = np.flatnonzero(~table.select(pl.all_horizontal(pl.all().is_null())).to_series().to_numpy())
+    rows = int(filled[-1]) + 1 if filled.size else 0
+    last = [_line(row) for row in table.slice(max(0, rows - _LAST), min(rows, _LAST)).iter_rows()]
+    if summary := summary_lines(last, layout):
+        place = f"sheet '{group}', " if group else ""
+        recording.notes.append(
+            f"{place}{summary} row(s) below the table were left out: '{last[-summary][:60]}'"
+        )
+        rows = int(filled[filled < rows - summary][-1]) + 1
+    for column in layout.named:
+        if column.index in layout.texts:
+            continue
+        load = _numbers(recording, group, table.to_series(column.index).head(rows), layout, column)
+        yield Signal(column.name, column.unit, rows, load, group=group, line=layout.first_line)
+
+
+def _numbers(
+    recording: Recording, group: str, cells: pl.Series, layout: Layout, column: Column
+) -> Callable[[], FloatArray]:
+    """What loads a column: a cell that is no number is missing, and noted."""
+    place = f"sheet '{group}', " if group else ""
+    return partial(_load, recording, place, cells, layout, column)
+
+
+def _load(recording: Recording, place: str, cells: pl.Series, layout: Layout, column: Column) -> FloatArray:
+    style = layout.stamps.get(column.index)
+    written = layout.style if style is None else Stamps(style)
+    text = cells.fill_null("")
+    odd = ~written.readable(text)
+    for row in odd.arg_true()[:1]:
+        more = f", and {int(odd.sum()) - 1} more in this column" if odd.sum() > 1 else ""
+        note = f"'{text[row][:40]}' is no {'number' if style is None else 'time'}"
+        recording.notes.append(f"{place}row {layout.first_line + row}, column '{column.name}': {note}{more}")
+    text = text.set(odd, "")
+    values = written.seconds(text) if isinstance(written, Stamps) else written.values(text)
+    assert values is not None
+    if isinstance(written, Stamps):
+        recording.notes.append(written.note(column.name))
+    return values

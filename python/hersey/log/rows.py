@@ -1,0 +1,190 @@
+"""Which rows of a file can be used, and where one run ends and the next begins."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from hersey.arrays import BoolArray, FloatArray, IntArray
+from hersey.errors import UnreadableLogError
+from hersey.log.torque_log import LogFile, Run
+
+#: Rows of a run.
+Rows = slice | IntArray
+
+#: Rows that may be left out unasked, as a share of a file; one may be in any.
+FEW = 0.02
+#: Rows left out that are told one by one, at the most.
+_TOLD = 10
+#: A clock that falls back into this part of what it has passed starts anew.
+_START = 0.1
+#: Runs in a file at the most.
+_MOST_RUNS = 10_000
+_WAY_OUT = "mend the file, or say --drop-missing to leave such rows out (they will be counted)"
+
+
+@dataclass
+class LeftOut:
+    """Rows that cannot be used because a cell of them holds no number that is believed."""
+
+    rows: int = 0
+    words: list[str] = field(default_factory=list)  #: for the first of them: place, and what is wrong there
+
+    def add(self, rows: int, words: Iterable[str]) -> None:
+        """Count rows; of ``words``, one for each of them, no more are taken than are told."""
+        self.rows += rows
+        self.words += itertools.islice(words, max(0, _TOLD - len(self.words)))
+
+    def refuse_many(self, file: str, rows: int, *, allowed: bool) -> None:
+        """Raise unless few rows of a file, of ``rows`` in all, are left out, or that is ``allowed``.
+
+        Raises
+        ------
+        UnreadableLogError
+            It names the first of them; also if most rows are of no use, whatever is allowed.
+        """
+        most = 2 * self.rows > rows
+        if not self.rows or (allowed and not most) or self.rows <= max(1.0, FEW * rows):
+            return
+        how_many = f" (the first of {self.rows} such rows of {rows})" if self.rows > 1 else ""
+        way_out = "too few rows are left: name another column, or mend the file" if most else _WAY_OUT
+        raise UnreadableLogError(f"{file}, {self.words[0]}{how_many}; {way_out}")
+
+    def notes(self) -> list[str]:
+        """Return what was left out, in words."""
+        if not self.rows:
+            return []
+        more = f"; and {self.rows - len(self.words)} more" if self.rows > len(self.words) else ""
+        return [f"{self.rows} row(s) were left out: {'; '.join(self.words)}{more}"]
+
+
+def runs_of(
+    time: FloatArray, numbers: FloatArray | None, file: str, place: Callable[[int], str], left_out: LeftOut
+) -> list[Rows]:
+    """Return the rows of each run.
+
+    A run ends where its number (``numbers``, shape of ``time``) changes, or where the clock starts anew:
+    falls back into the first tenth of what it has passed. A single row whose time lies apart is left out.
+
+    Parameters
+    ----------
+    time
+        In s, shape (rows,).
+    place
+        A row in words, such as ``line 12``.
+
+    Raises
+    ------
+    UnreadableLogError
+        If time runs backwards in any other way.
+    """
+    kept = np.ones(time.size, dtype=bool)
+    starts = [0]
+    change = np.zeros(time.size, dtype=bool)
+    if numbers is not None and time.size:
+        change[1:] = np.diff(numbers) != 0
+    for row in map(int, np.flatnonzero(change | np.append(False, np.diff(time) < 0))):
+        last = _last_kept(kept, row, starts[-1])
+        if change[row]:
+            starts.append(row)
+        elif time[row] >= time[last]:  # the row before was the odd one
+            continue
+        elif row + 1 < time.size and time[row + 1] >= time[last] and not change[row + 1]:
+            kept[row] = False
+            left_out.add(
+                1, [f"{place(row)}: time runs backwards by {time[last] - time[row]:.6g} s in this row"]
+            )
+        elif last > starts[-1] and time[row] >= time[_last_kept(kept, last, starts[-1])]:
+            kept[last] = False
+            left_out.add(1, [f"{place(last)}: time runs ahead by {time[last] - time[row]:.6g} s in this row"])
+        elif time[row] <= time[starts[-1]] + _START * (time[last] - time[starts[-1]]):
+            starts.append(row)
+        else:
+            raise UnreadableLogError(
+                f"{file}, {place(row)}: time runs backwards by {time[last] - time[row]:.6g} s; "
+                "split the file there, sort its rows, or name the column that numbers its runs with --run"
+            )
+        if len(starts) > _MOST_RUNS:
+            raise UnreadableLogError(f"{file}: its clock starts anew over {_MOST_RUNS} times: it is no clock")
+    return [_rows(kept, start, end) for start, end in itertools.pairwise([*starts, kept.size])]
+
+
+def runs_with_records(
+    file: LogFile,
+    arrays: dict[str, FloatArray],
+    place: Callable[[int], str],
+    left_out: LeftOut,
+    *,
+    drop_missing: bool,
+) -> list[tuple[Run, LogFile]]:
+    """Return the runs in a file, each with its record: that of the file with rows and notes of its own.
+
+    ``arrays`` holds, in SI, time, torque and speed, and temperature, load and number of the run where known.
+
+    Raises
+    ------
+    UnreadableLogError
+        If too many rows were left out, time runs backwards, or no run has two rows.
+    """
+    time, rows = arrays["time"], arrays["time"].size + left_out.rows
+    if "load" in arrays and (lacking := int(np.count_nonzero(~np.isfinite(arrays["load"])))):
+        del arrays["load"]
+        file = replace(
+            file, notes=(*file.notes, f"the load lacks a number in {lacking} row(s): it is not used")
+        )
+    parts = runs_of(time, arrays.pop("run", None), file.name, place, left_out)
+    left_out.refuse_many(file.name, rows, allowed=drop_missing)
+    if time.size < 2:
+        raise UnreadableLogError(f"{file.name} has {time.size} row(s) with a number in every column needed")
+    runs = [{role: values[part] for role, values in arrays.items()} for part in parts]
+    long = [i for i, run in enumerate(runs) if run["time"].size > 1 and run["time"][-1] > run["time"][0]]
+    if not long:
+        raise UnreadableLogError(f"{file.name}: all rows carry the same time")
+    for i in set(range(len(runs))) - set(long):
+        count = runs[i]["time"].size
+        left_out.add(
+            count, [f"{place(_first(parts[i]))}: {count} row(s) of one time between two runs"] * count
+        )
+    records = []
+    for number, i in enumerate(long, start=1):
+        name = file.name if len(long) == 1 else f"{file.name}, run {number} of {len(long)}"
+        run = runs[i]
+        notes = (*file.notes, *left_out.notes()) if number == 1 else ()
+        if len(long) > 1:
+            notes = (
+                *notes,
+                f"run {number} of {len(long)} in {file.name} begins at {place(_first(parts[i]))}",
+            )
+        optional = {role: run.get(role) for role in ("temperature", "load")}
+        records.append(
+            (
+                Run(name, run["time"], run["torque"], run["speed"], **optional),
+                replace(
+                    file,
+                    name=name,
+                    rows=run["time"].size,
+                    missing_rows=left_out.rows if number == 1 else 0,
+                    notes=notes,
+                ),
+            )
+        )
+    return records
+
+
+def _first(rows: Rows) -> int:
+    return int(rows.start) if isinstance(rows, slice) else int(rows[0])
+
+
+def _last_kept(kept: BoolArray, row: int, start: int) -> int:
+    """The row before this one that is used, in the run that begins at ``start``."""
+    before = row - 1
+    while before > start and not kept[before]:
+        before -= 1
+    return max(before, start)
+
+
+def _rows(kept: BoolArray, start: int, end: int) -> Rows:
+    return slice(start, end) if kept[start:end].all() else start + np.flatnonzero(kept[start:end])

@@ -1,0 +1,68 @@
+"""A friction force on the command line: the way out of the message is one that works."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.cli.command import run
+
+SPEEDS = (10.0, 20.0, 40.0, 80.0, 160.0)
+
+
+@pytest.fixture
+def wear(tmp_path: Path) -> Path:
+    """Five dwells of a friction force in N against a sliding speed in mm/s, without a clock: 100 Hz."""
+    noise = np.random.default_rng(4)
+    lines = ["Friction force [N],Sliding speed [mm/s],Fn"]
+    for speed in SPEEDS:
+        lines += [f"{5 * speed**0.3 + noise.normal(0, 0.01):.4f},{speed},50" for _ in range(600)]
+    (tmp_path / "wear.csv").write_text("\n".join([*lines, ""]))
+    return tmp_path
+
+
+def test_each_message_names_the_next_option_that_is_needed(wear: Path) -> None:
+    given: list[str] = ["--isothermal"]
+    for _ in range(2):
+        refused = run("fit", "wear.csv", *given, cwd=wear)
+        assert refused.returncode == 2
+        option = re.search(r"(--(?:radius|every)) '([^']+)'", refused.stderr)
+        assert option is not None, refused.stderr
+        given += [option[1], option[2] if option[1] == "--radius" else "10 ms"]
+    fitted = run("fit", "wear.csv", *given, "--json", cwd=wear)
+    assert fitted.returncode == 0, fitted
+    assert "0.025 m" not in fitted.stderr
+
+
+def test_the_exponent_is_that_of_the_force(wear: Path) -> None:
+    options = ["--isothermal", "--every", "10 ms", "--radius", "30 mm", "--load", "Fn", "--load-unit", "N"]
+    fitted = run("fit", "wear.csv", *options, "--json", cwd=wear)
+    assert fitted.returncode == 0, fitted
+    points = json.loads(fitted.stdout)["points"]
+    speed, damping = (np.log([point[name] for point in points]) for name in ("speed", "damping"))
+    assert np.polyfit(speed, damping, 1)[0] == pytest.approx(-0.7, abs=0.01)
+    assert points[0]["torque"] == pytest.approx(5 * 10**0.3 * 0.03, rel=0.01)
+    shown = run("inspect", "wear.csv", *options, cwd=wear)
+    assert re.search(r"Fn +load ", shown.stdout)
+    assert "torque is 'Friction force' x radius (0.03 m)" in shown.stdout
+    assert "5 dwells" in shown.stdout
+    assert "dead channel" not in shown.stdout  # a load may stay what it is
+
+
+def test_a_load_for_each_run(wear: Path) -> None:
+    content = (wear / "wear.csv").read_text()
+    (wear / "again.csv").write_text("# again\n" + content)
+    options = ["--isothermal", "--every", "10 ms", "--radius", "30 mm", "--load", "10 N, 20 N"]
+    assert run("fit", "wear.csv", "again.csv", *options, cwd=wear).returncode == 0
+    refused = run("fit", "wear.csv", *options, cwd=wear)
+    assert "load has 2 values for 1 runs" in refused.stderr
+
+
+def test_an_amount_without_a_unit_is_no_name(wear: Path) -> None:
+    refused = run("fit", "wear.csv", "--isothermal", "--every", "10 ms", "--radius", "30", cwd=wear)
+    assert refused.returncode == 2
+    assert "radius: '30' needs a number and a unit of length" in refused.stderr
