@@ -11,6 +11,7 @@ from hersey.cli.options import (
     AsJson,
     Force,
     MaxMemory,
+    share,
 )
 from hersey.cli.outputs import may_draw, print_json
 from hersey.cli.progress import working
@@ -26,6 +27,9 @@ def cycles(
     drive_speed: Annotated[
         str, typer.Option(help="Speed of the drive, as '20 mm/s', or '3 rpm' with a torque.")
     ] = "",
+    drive_speed_uncertainty: Annotated[
+        str, typer.Option(help="How far the drive speed may be off: half of its 95 % interval.")
+    ] = "0.1 %",
     quantity: Annotated[str, typer.Option(help="force, torque or speed; found by name if left out.")] = "",
     time: Annotated[str, typer.Option(help="Name of the time column or variable.")] = "",
     time_unit: Annotated[str, typer.Option(help="Unit of time, as 's' or 'ms'.")] = "",
@@ -76,6 +80,7 @@ def cycles(
         given.time,
         given.value,
         drive_speed=speed,
+        drive_speed_uncertainty=share("--drive-speed-uncertainty", drive_speed_uncertainty),
         quantity="speed" if given.quantity == "speed" else "force",
         least_drop=_least_drop(least_drop, given),
     )

@@ -171,6 +171,18 @@ def temperature_of(text: str) -> float | None:
     return value
 
 
+def share(flag: str, text: str) -> float:
+    """Return the share that an option such as ``'2 %'`` names."""
+    import re
+
+    from hersey.errors import ParameterError
+
+    match = re.fullmatch(r"\s*([0-9]+(?:\.[0-9]*)?)\s*%\s*", text[:60])
+    if match is None:
+        raise ParameterError(f"{flag} is '{text}': write a share such as '2 %'")
+    return float(match[1]) / 100
+
+
 def takes(group: type, name: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
     """Give a command with a parameter of that name the options of a group, before ``--json``."""
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -22,6 +22,10 @@ if TYPE_CHECKING:
 
 #: What a trace may hold.
 QUANTITIES = ("force", "speed")
+#: Half width of the 95 % interval of a drive speed of which nothing is stated, as a share of it.
+DRIVE_SPEED_UNCERTAINTY = 1e-3
+#: A greater one would tell no drive.
+_GREATEST_UNCERTAINTY = 0.5
 #: A belt that sticks for a smaller share of the lap merely touches rest: the oscillation is inertial.
 LEAST_STUCK = 0.15
 #: An oscillation is more regular than this (deviation of the period over its mean); drift and wear are not.
@@ -71,6 +75,7 @@ class CycleRecord(Result):
     quantity: str
     samples: Samples
     drive_speed: float | None
+    drive_speed_uncertainty: float
     least_drop: float
     slip_time: FloatArray
     force_max: FloatArray
@@ -143,6 +148,7 @@ class CycleRecord(Result):
             "quantity": self.quantity,
             "slips": self.slips,
             "drive_speed": self.drive_speed,
+            "drive_speed_uncertainty": self.drive_speed_uncertainty,
             "loading_slope": self.loading_slope,
             "stiffness": self.stiffness,
             "free_period": self.free_period,
@@ -205,6 +211,7 @@ def cycles(
     value: ArrayLike,
     *,
     drive_speed: float | None = None,
+    drive_speed_uncertainty: float = DRIVE_SPEED_UNCERTAINTY,
     quantity: str = "force",
     least_drop: float | None = None,
 ) -> CycleRecord:
@@ -222,6 +229,9 @@ def cycles(
         speed.
     drive_speed
         Constant speed of the drive, m/s; gives the stiffness. A trace of speed without it takes its mean.
+    drive_speed_uncertainty
+        How far that may be off, as a share of it: half the width of its 95 % interval. `identify` carries it
+        into every interval.
     least_drop
         Count only falls and rises of at least this. Slips of real surfaces have all sizes, so a count means
         little without it; by default it is what noise could make.
@@ -245,11 +255,17 @@ def cycles(
     for name, given in (("drive_speed", drive_speed), ("least_drop", least_drop)):
         if given is not None and not (np.isfinite(given) and given > 0):
             raise ParameterError(f"{name} is {given}: it must be greater than 0")
+    if not 0 < drive_speed_uncertainty <= _GREATEST_UNCERTAINTY:
+        raise ParameterError(
+            f"drive_speed_uncertainty is {drive_speed_uncertainty}: it must be greater than 0, and at most "
+            f"{_GREATEST_UNCERTAINTY} of the drive speed"
+        )
     samples = even_samples(time, value, name=quantity)
     if quantity == "speed":
         samples = _stretch(samples, drive_speed)
     slips, least, window = found_falls(samples, least_drop)
-    return _record(samples, slips, window, least, quantity, drive_speed, least_drop)
+    record = _record(samples, slips, window, least, quantity, drive_speed, least_drop)
+    return replace(record, drive_speed_uncertainty=drive_speed_uncertainty)
 
 
 def _stretch(samples: Samples, drive_speed: float | None) -> Samples:
@@ -299,6 +315,7 @@ def _record(
         quantity,
         samples,
         drive_speed,
+        DRIVE_SPEED_UNCERTAINTY,
         least,
         samples.start + samples.interval * middle,
         high,
