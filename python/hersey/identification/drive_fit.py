@@ -135,7 +135,7 @@ class DriveFit:
         top, bottom = float(np.median(record.force_max)), float(np.median(record.force_min))
         first = {
             "stiffness": stiffness,
-            "mass": stiffness * (record.free_period / (2.0 * np.pi)) ** 2,
+            "mass": stiffness * (float(np.median(record.steep_duration)) / np.pi) ** 2,
             "transition_force": max(0.5 * (top + bottom), 0.05 * top),
             "transition_speed": transition * speed,
             "ehl_exponent": -0.7,

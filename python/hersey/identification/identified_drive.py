@@ -14,7 +14,7 @@ from hersey.errors import InsufficientDataError, ParameterError
 from hersey.identification.cycle_record import CycleRecord
 from hersey.identification.drive_fit import EXPONENTS, NORMAL_REACH, DriveFit
 from hersey.identification.independence import TOLD, in_words
-from hersey.identification.waveform import Waveform, mean_waveform
+from hersey.identification.waveform import FEWEST_LAPS, Waveform, mean_waveform
 from hersey.motion.drag import Drag
 from hersey.motion.parameters import KINDS, OF_THE_BELT
 from hersey.motion.simulation import Drivetrain
@@ -248,6 +248,8 @@ def _check(record: CycleRecord, known: Mapping[str, float], closures: tuple[str,
     if record.kind != "stick_slip":
         kind = record.kind.replace("_", " ")
         raise InsufficientDataError(f"the record shows {kind}: a drive is identified from stick-slip")
+    if record.slips < FEWEST_LAPS <= record.falls:
+        raise InsufficientDataError(f"{record.headline()}: leave least_drop out to identify a drive")
     if record.drive_speed is None:
         raise ParameterError("the drive speed is needed to identify a drive: give drive_speed to cycles()")
     for name, value in known.items():

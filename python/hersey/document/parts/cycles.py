@@ -55,6 +55,7 @@ class CyclesPart(Part):
     kind: Literal["steady_sliding", "inertial", "stick_slip"]
     quantity: str
     slips: int
+    falls: int | None = Field(default=None, description="beyond the noise, counted or not")
     drive_speed: float | None = Field(description="m/s; rad/s with a torque")
     drive_speed_uncertainty: float | None = Field(
         default=None, description="share, half of its 95 % interval"
