@@ -6,6 +6,7 @@ import inspect
 import json
 import shlex
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -22,7 +23,7 @@ OUNCE, INCH = 0.45359237 / 16 * 9.80665, 0.0254
 
 
 def of(
-    *, machine: Path | None = None, needed: tuple[str, ...] = BELT, **given: str
+    *, machine: Path | None = None, needed: tuple[str, ...] = BELT, **given: Any
 ) -> dict[str, float | None]:
     texts: dict[str, str | None] = dict.fromkeys(needed)
     return dict(amounts(texts | given, needed=needed, machine_file=machine).values)
@@ -50,7 +51,7 @@ def test_numbers_with_units_are_in_si_and_so_is_the_baseline_beside_them() -> No
 
 
 def test_the_machine_fills_what_is_not_given() -> None:
-    force = {"transition_force": "14 N", "transition_speed": "25 mm/s"}
+    force: dict[str, Any] = {"transition_force": "14 N", "transition_speed": "25 mm/s"}
     values = of(machine=MACHINE, **force)
     assert values == pytest.approx(dict(zip(BELT, (11_000.0, 11.0, 14.0, 0.025, 3e-4), strict=True)))
     assert of(machine=MACHINE, mass="1 kg", **force)["mass"] == 1.0
@@ -71,7 +72,7 @@ def test_the_machine_fills_what_is_not_given() -> None:
         ),
     ],
 )
-def test_mistakes_are_named_with_the_way_out(given: dict[str, str], machine: Path | None, says: str) -> None:
+def test_mistakes_are_named_with_the_way_out(given: dict[str, Any], machine: Path | None, says: str) -> None:
     with pytest.raises((ParameterError, UnitError), match=says):
         of(machine=machine, **given)
 
