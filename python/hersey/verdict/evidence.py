@@ -23,7 +23,7 @@ from hersey.lubrication.film import REGIMES, Film, drag_torque, film_thickness
 from hersey.lubrication.lubricant import Lubricant
 from hersey.lubrication.reynolds import exponent, solve_line_contact
 from hersey.result import Result, json_record, table_of
-from hersey.units import celsius
+from hersey.units import celsius, takes_si
 from hersey.verdict.regimes import Hypothesis, judged, listed
 
 if TYPE_CHECKING:
@@ -90,6 +90,7 @@ class MeasuredFilm(Result):
         )
 
 
+@takes_si(temperature="temperature")
 def measured_film(
     points: SteadyPoints,
     surface: DampingSurface,
