@@ -10,7 +10,7 @@ import pytest
 from scipy.signal import lfilter
 
 from hersey.errors import InsufficientDataError
-from hersey.identification import CycleRecord, cycles, identify
+from hersey.identification import CycleRecord, cycles, identified_drive, identify
 from hersey.identification.trace_file import read_trace
 from tests.conftest import shared
 from tests.identification.two_states import Truth
@@ -129,3 +129,12 @@ def test_the_slider_is_the_same_at_every_least_drop(speed: int, kind: str) -> No
         assert "no cycles" not in found.summary("1")
         assert 0.5 < found.free_period / 0.03478 < 1.3  # 2 pi sqrt(30.7 g / 1002 N/m)
     assert "falls beyond the noise, none of 50 % of the load or more" in found.summary("1")
+
+
+def test_a_fitted_free_period_is_plausible_or_taken_back(monkeypatch: pytest.MonkeyPatch) -> None:
+    told = identify(record(1.0, noise=0.01), known={"stick_speed": 0.01}, closures=("retained",))
+    assert told.derived["free_period"].low < Truth().free_period < told.derived["free_period"].high
+    monkeypatch.setattr(identified_drive, "LONGEST_OF_LAP", 0.5)
+    taken = identify(record(1.0, noise=0.01), known={"stick_speed": 0.01}, closures=("retained",))
+    assert "free_period" not in taken.derived
+    assert any("no free period is given: 0.19" in note for note in taken.notes)

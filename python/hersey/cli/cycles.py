@@ -132,7 +132,7 @@ def _least_drop(text: str, given: TraceFile) -> float | None:
     if given.quantity == "speed":
         raise ParameterError("--least-drop counts falls of a force: leave it out with a trace of speed")
     if given.unit == "1":
-        return _number("--least-drop", text)
+        return share("--least-drop", text) if text.strip().endswith("%") else _number("--least-drop", text)
     try:
         return parse(given.quantity, text)
     except UnitError as error:

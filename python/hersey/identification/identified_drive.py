@@ -14,6 +14,7 @@ from hersey.errors import InsufficientDataError, ParameterError
 from hersey.identification.cycle_record import CycleRecord
 from hersey.identification.drive_fit import EXPONENTS, NORMAL_REACH, DriveFit
 from hersey.identification.independence import TOLD, in_words
+from hersey.identification.motion_kind import LONGEST_OF_LAP
 from hersey.identification.waveform import FEWEST_LAPS, Waveform, mean_waveform
 from hersey.motion.drag import Drag
 from hersey.motion.parameters import KINDS, OF_THE_BELT
@@ -207,10 +208,10 @@ def identify(
     decided = len(near) == 1
     covariances = [fit.covariance(scale) for fit in near]
     intervals, systematic = _intervals(near, covariances, scale, wave.number)
+    notes = _implausible(record, best, intervals)
     not_told = in_words(best.names[:-1], covariances[0][:-1, :-1])
     not_told += _lost(best, covariances[0], intervals)
     misfit = best.misfit
-    notes = []
     if misfit > POOR:
         notes.append(f"the model misses the mean cycle by {misfit:.0%} of the drop: take parameters as rough")
     notes += _contradiction(record, best, intervals)
@@ -224,7 +225,7 @@ def identify(
         values=best.parameters(best.values),
         known=given,
         derived={name: each for name, each in intervals.items() if name not in OF_THE_BELT},
-        systematic=systematic,
+        systematic={name: systematic[name] for name in intervals},
         not_told=tuple(not_told),
         closures=tuple(ClosureFit(f.closure, f.chi_square, f.misfit) for f in fits),
         misfit=misfit,
@@ -329,6 +330,24 @@ def _gradient(fit: DriveFit) -> FloatArray:
     return np.stack(columns, axis=1)
 
 
+def _implausible(record: CycleRecord, best: DriveFit, told: dict[str, Estimate]) -> list[str]:
+    """Take back a free period that no such record has, and say why."""
+    free = told.get("free_period")
+    ends = [name for i, name in enumerate(best.names) if name in ("stiffness", "mass") and best.at_bound(i)]
+    if free is None:
+        return []
+    if ends:
+        why = f"the {' and the '.join(ends)} came to rest at the end of what is believed"
+    elif free.low > LONGEST_OF_LAP * best.period:
+        why = f"{free.value:.3g} s is longer than the lap of {best.period:.3g} s"
+    elif free.high < 2.0 * record.samples.interval:
+        why = f"{free.value:.3g} s is less than two samples"
+    else:
+        return []
+    del told["free_period"]
+    return [f"no free period is given: {why}"]
+
+
 def _contradiction(record: CycleRecord, best: DriveFit, told: Mapping[str, Estimate]) -> list[str]:
     """Say so where the slope of the force of a held belt over the drive speed is another stiffness.
 
@@ -342,7 +361,9 @@ def _contradiction(record: CycleRecord, best: DriveFit, told: Mapping[str, Estim
     unsure = np.hypot(
         quantile(best.wave.number - 1) * held.error / held.slope, record.drive_speed_uncertainty
     )
-    if not given and "stiffness" in told:
+    if not given and "stiffness" not in told:
+        return []
+    if not given:
         unsure += max(told["stiffness"].high / fitted, fitted / told["stiffness"].low) - 1.0
     numbers = (
         f"held, the belt loads the spring by {held.slope:.5g} per s: over the drive speed of "

@@ -19,7 +19,7 @@ _REGULAR = 0.25
 #: Falls without a rhythm are slips if the typical one is this many times the least that noise does not make.
 _CLEAR = 2.0
 #: A free period is longer than a lap by no more than this: a belt that sticks only adds to it.
-_LONGEST_OF_LAP = 1.3
+LONGEST_OF_LAP = 1.3
 #: A fall that lasts fewer samples tells no duration.
 _RESOLVED = 3.0
 
@@ -90,7 +90,7 @@ def _free_period(samples: Samples, figures: SlipFigures) -> tuple[float, list[st
     free, lasts = 2.0 * steep, samples.interval * samples.value.size
     if steep < _RESOLVED * samples.interval:
         why = f"a fall lasts {steep / samples.interval:.1f} samples, too few to time it"
-    elif free > _LONGEST_OF_LAP * lap:
+    elif free > LONGEST_OF_LAP * lap:
         why = f"twice a fall is {free:.3g} s, longer than the lap of {lap:.3g} s: the fall is no free one"
     elif free * FEWEST_SLIPS > lasts:
         why = (
