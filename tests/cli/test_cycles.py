@@ -84,6 +84,19 @@ def test_the_uncertainty_of_the_drive_speed_and_falls_that_are_not_counted(tmp_p
         assert "falls beyond the noise, none of 20 % of the load or more: the greatest is 9" in told
 
 
+def test_a_channel_of_the_drive_speed(tmp_path: Path) -> None:
+    path = tmp_path / "pull.csv"
+    rows = [f"{0.01 * i:.2f},{i % 50 / 5},{20 + (i % 2)}" for i in range(600)]
+    path.write_text("\n".join(["time [s],force [N],vd [mm/s]", *rows]))
+    document = json.loads(printed(path, "--drive-speed-channel", "vd", "--json"))
+    assert document["drive_speed"] == pytest.approx(0.0205, rel=1e-6)
+    assert document["drive_speed_uncertainty"] == pytest.approx(1e-3, rel=1e-3)
+    both = run("cycles", path, "--drive-speed-channel", "vd", "--drive-speed", "20 mm/s", cwd=tmp_path)
+    assert "give either --drive-speed or --drive-speed-channel" in both.stderr
+    none = run("cycles", path, "--drive-speed-channel", "force", cwd=tmp_path)
+    assert (none.returncode, none.stderr.count("\n")) == (2, 1)
+
+
 def test_a_mistake_ends_in_one_line(tmp_path: Path) -> None:
     result = run("cycles", CSV, "--drive-speed", "20", cwd=tmp_path)
     assert (result.returncode, result.stdout) == (2, "")

@@ -93,3 +93,18 @@ def test_the_independent_lap_is_that_of_the_literature() -> None:
     times, _ = TRUTH.lap()
     assert 1.0 / times[-1] == pytest.approx(3.940314, rel=1e-5)
     assert np.all(np.diff(times) > 0)
+
+
+def test_a_channel_of_the_drive_speed_counts_by_its_mean() -> None:
+    times, force = TRUTH.trace(0)
+    steady = cycles(times, force, drive_speed=np.full(times.size, 1.02))
+    assert (steady.drive_speed, steady.drive_speed_uncertainty) == (pytest.approx(1.02), pytest.approx(1e-3))
+    drifting = cycles(times, force, drive_speed=1.0 + 0.02 * times / times[-1])
+    assert drifting.drive_speed == pytest.approx(1.01, rel=1e-4)
+    # Means of tenths from 1.001 to 1.019: their deviation over sqrt(10), 9 degrees of freedom.
+    error = 0.002 * np.std(np.arange(10), ddof=1) / np.sqrt(10)
+    assert drifting.drive_speed_uncertainty == pytest.approx(1e-3 + 2.262 * error / 1.01, rel=1e-3)
+    stated = cycles(times, force, drive_speed=1.0 + 0.02 * times / times[-1], drive_speed_uncertainty=0.05)
+    assert stated.drive_speed_uncertainty == 0.05
+    with pytest.raises(ParameterError, match="drive_speed has the shape"):
+        cycles(times, force, drive_speed=[1.0, 2.0])

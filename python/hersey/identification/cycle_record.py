@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hersey.arrays import FloatArray
+from hersey.damping.estimate import quantile
 from hersey.errors import ParameterError
 from hersey.identification.detection import (
     FEWEST_OF_RHYTHM,
@@ -31,6 +32,8 @@ if TYPE_CHECKING:
 QUANTITIES = ("force", "speed")
 #: Half width of the 95 % interval of a drive speed of which nothing is stated, as a share of it.
 DRIVE_SPEED_UNCERTAINTY = 1e-3
+#: A channel of the drive speed is known to what the means of so many parts of it differ.
+_PARTS = 10
 #: A greater one would tell no drive.
 _GREATEST_UNCERTAINTY = 0.5
 #: Samples that a fall must last for its duration to be trusted.
@@ -234,8 +237,8 @@ def cycles(
     time: ArrayLike,
     value: ArrayLike,
     *,
-    drive_speed: float | None = None,
-    drive_speed_uncertainty: float = DRIVE_SPEED_UNCERTAINTY,
+    drive_speed: ArrayLike | None = None,
+    drive_speed_uncertainty: float | None = None,
     quantity: str = "force",
     least_drop: float | None = None,
 ) -> CycleRecord:
@@ -252,10 +255,11 @@ def cycles(
         Force of the spring, or torque, in any unit; NaN where missing. With ``quantity="speed"`` the belt
         speed.
     drive_speed
-        Constant speed of the drive, m/s; gives the stiffness. A trace of speed without it takes its mean.
+        Constant speed of the drive, m/s; gives the stiffness. A channel of it, of shape (samples,), counts by
+        its mean. A trace of speed without it takes its own mean.
     drive_speed_uncertainty
         How far that may be off, as a share of it: half the width of its 95 % interval. `identify` carries it
-        into every interval.
+        into every interval. If it is not stated, 0.001, and for a channel what its mean is not known to.
     least_drop
         Count only falls and rises of at least this. Slips of real surfaces have all sizes, so a count means
         little without it; by default it is what noise could make.
@@ -279,18 +283,39 @@ def cycles(
     """
     if quantity not in QUANTITIES:
         raise ParameterError(f"quantity '{quantity}' is not known: {', '.join(QUANTITIES)}")
-    for name, given in (("drive_speed", drive_speed), ("least_drop", least_drop)):
+    speed, uncertainty = _driven(drive_speed, drive_speed_uncertainty, np.shape(time))
+    for name, given in (("drive_speed", speed), ("least_drop", least_drop)):
         if given is not None and not (np.isfinite(given) and given > 0):
             raise ParameterError(f"{name} is {given}: it must be greater than 0")
-    if not 0 < drive_speed_uncertainty <= _GREATEST_UNCERTAINTY:
+    if not 0 < uncertainty <= _GREATEST_UNCERTAINTY:
         raise ParameterError(
-            f"drive_speed_uncertainty is {drive_speed_uncertainty}: it must be greater than 0, and at most "
+            f"drive_speed_uncertainty is {uncertainty:.4g}: it must be greater than 0, and at most "
             f"{_GREATEST_UNCERTAINTY} of the drive speed"
         )
     samples = even_samples(time, value, name=quantity)
     if quantity == "speed":
-        samples = _stretch(samples, drive_speed)
-    return _record(samples, quantity, drive_speed, drive_speed_uncertainty, least_drop)
+        samples = _stretch(samples, speed)
+    return _record(samples, quantity, speed, uncertainty, least_drop)
+
+
+def _driven(
+    given: ArrayLike | None, stated: float | None, shape: tuple[int, ...]
+) -> tuple[float | None, float]:
+    """The drive speed and its uncertainty; of a channel from the means of its parts."""
+    speed = np.asarray(given, dtype=float) if given is not None else None
+    if speed is None or speed.ndim == 0:
+        stated = DRIVE_SPEED_UNCERTAINTY if stated is None else stated
+        return None if speed is None else float(speed), stated
+    if speed.shape != shape or speed.size < _PARTS:
+        raise ParameterError(
+            f"drive_speed has the shape {speed.shape} and time {shape}: give a number or equal lengths"
+        )
+    means = np.array([np.nanmean(part) for part in np.array_split(speed, _PARTS)])
+    mean = float(np.mean(means))
+    if stated is None:
+        error = float(np.std(means, ddof=1)) / float(np.sqrt(_PARTS))
+        stated = DRIVE_SPEED_UNCERTAINTY + quantile(_PARTS - 1) * error / abs(mean)
+    return mean, stated
 
 
 def _stretch(samples: Samples, drive_speed: float | None) -> Samples:
