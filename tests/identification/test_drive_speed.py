@@ -10,6 +10,8 @@ import pytest
 
 from hersey.errors import ParameterError
 from hersey.identification import CycleRecord, IdentifiedDrive, cycles, identify
+from hersey.identification.drive_fit import DriveFit
+from hersey.identification.waveform import mean_waveform
 from tests.identification.two_states import Truth
 
 TRUTH = Truth()
@@ -108,3 +110,11 @@ def test_a_channel_of_the_drive_speed_counts_by_its_mean() -> None:
     assert stated.drive_speed_uncertainty == 0.05
     with pytest.raises(ParameterError, match="drive_speed has the shape"):
         cycles(times, force, drive_speed=[1.0, 2.0])
+
+
+def test_a_model_that_misses_the_laps_buys_no_better_fit_with_another_speed() -> None:
+    """A wrong known mass and the wrong closure: the speed stays within a standard error of the stated one."""
+    given = record(0, 1.0)
+    fit = DriveFit(mean_waveform(given), given, {"mass": 1.3}, "stiction")
+    assert fit.misfit > 0.01
+    assert abs(np.log(fit.parameters(fit.values)["drive_speed"])) < fit.stated_error
