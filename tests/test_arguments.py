@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 import hersey
 from hersey.errors import UnitError, WrongKindError
 from hersey.units import argument, registry, takes_si
+from hersey.verdict.evidence import measured_film
 from tests.conftest import ROOT
 
 TRAIN = hersey.Drivetrain(1000.0, 1.0)
@@ -236,6 +237,35 @@ def test_speeds_of_the_stability_room_take_units() -> None:
     assert bears == hersey.disturbance(TRAIN, DRAG, drive_speed=1.2)
     with pytest.raises(UnitError, match="target_speed"):
         hersey.plan_profile(TRAIN, DRAG, target_speed="60 rpm")  # type: ignore[arg-type]
+
+
+def test_draws_of_a_band_take_units() -> None:
+    texts: dict[str, Any] = {
+        "stiffness": ["0.9 N/mm", "1.1 N/mm", "1 N/mm"],
+        "mixed_exponent": [-1.2, -1.1, -1.3],
+    }
+    plain = texts | {"stiffness": [900.0, 1100.0, 1000.0]}
+    band, same = (hersey.hysteresis(TRAIN, DRAG, samples=each, sensitivity=False) for each in (texts, plain))
+    assert band.interval == same.interval
+    with pytest.raises(UnitError, match="samples of mass"):
+        hersey.hysteresis(TRAIN, DRAG, samples={"mass": ["1 s"]})
+
+
+def test_the_range_of_a_design_takes_units() -> None:
+    plain = hersey.design(models(), count=1, speeds=(1.0, 10.0), temperatures=(373.15, 393.15))
+    speeds, temperatures = ("1 rad/s", "10 rad/s"), ("100 degC", "120 degC")
+    assert hersey.design(models(), count=1, speeds=speeds, temperatures=temperatures).points == plain.points  # type: ignore[arg-type]
+    with pytest.raises(UnitError, match="speeds"):
+        hersey.design(models(), speeds=("1 mm", "2 mm"))  # type: ignore[arg-type]
+
+
+def test_the_temperature_of_a_measured_film_takes_units() -> None:
+    points = hersey.read(ROOT / "examples" / "bench.csv", isothermal=True).steady(tare="standing")
+    kelvin: list[Any] = [373.15, "100 degC"]
+    one, other = (
+        measured_film(points, hersey.fit(points), ROLL, oil(), temperature=each).thickness for each in kelvin
+    )
+    np.testing.assert_array_equal(one, other)
 
 
 def test_the_map_takes_units() -> None:

@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hersey import units
-from hersey.errors import UnitError
+from hersey.errors import UnitError, WrongKindError
 from hersey.units import KINDS, Conversion, conversion, convert, parse
 
 OUNCE_INCH = 0.45359237 / 16 * 9.80665 * 0.0254
@@ -230,3 +230,51 @@ def test_units_for_people() -> None:
     assert convert(1000.0, "J/mol", "kcal/mol") == pytest.approx(1 / 4.184)
     assert units.rpm(math.pi) == 30.0
     assert units.celsius(373.15) == 100.0
+
+
+@pytest.mark.parametrize(
+    ("kind", "unit", "meant"),
+    [
+        ("stiffness", "N/mmm", "N/mm"),
+        ("stiffness", "Nmm", "N/mm"),
+        ("torque", "nm", "Nm"),
+        ("torque", "N*m;", "N*m"),
+        ("speed", "rmp", "rpm"),
+        ("speed", "rpmm", "rpm"),
+        ("temperature", "dgeC", "degC"),
+        ("temperature", "degCC", "degC"),
+        ("mass", "Kg", "kg"),
+        ("force", "KN", "kN"),
+        ("belt speed", "mm/sek", "mm/s"),
+    ],
+)
+def test_a_slip_of_the_pen_is_answered_with_what_was_meant(kind: str, unit: str, meant: str) -> None:
+    with pytest.raises(UnitError) as told:
+        conversion(kind, unit)
+    assert str(told.value).endswith(f": did you mean {meant}?"), told.value
+    assert conversion(kind, meant).scale > 0
+
+
+def test_other_spellings_of_the_pen_are_read() -> None:
+    for kind, unit, same in (
+        ("torque", "Nmm", "N*mm"),
+        ("speed", "RPM", "rpm"),
+        ("temperature", "degc", "degC"),
+    ):
+        line, other = conversion(kind, unit), conversion(kind, same)
+        assert (line.scale, line.offset) == (other.scale, other.offset)
+
+
+@pytest.mark.parametrize(
+    ("kind", "unit"), [("torque", "rpm"), ("torque", "N"), ("speed", "mm/s"), ("mass", "s")]
+)
+def test_a_unit_of_another_kind_is_no_slip(kind: str, unit: str) -> None:
+    with pytest.raises(WrongKindError, match=f"write one such as {KINDS[kind][1]}".replace("*", "[*]")):
+        conversion(kind, unit)
+
+
+def test_every_unit_that_is_proposed_can_be_read() -> None:
+    assert set(units._USUAL) == set(KINDS)
+    for kind, usual in units._USUAL.items():
+        for unit in usual.split():
+            assert conversion(kind, unit).scale > 0

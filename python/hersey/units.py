@@ -76,6 +76,32 @@ KINDS: dict[str, tuple[str, str]] = {
     "friction coefficient": ("1", "1"),
 }
 
+#: Units of each kind as people write them: what a unit that cannot be read may have been meant for.
+_USUAL: dict[str, str] = {
+    "time": "s ms us min h",
+    "torque": "N*m mN*m N*mm N*cm kN*m Nm mNm Nmm Ncm ozf*in lbf*in lbf*ft kgf*cm gf*cm",
+    "speed": "rpm rad/s rev/s rev/min deg/s",
+    "temperature": "degC degF K",
+    "stiffness": "N/m N/mm kN/m N/um lbf/in ozf/in",
+    "mass": "kg g mg lb oz slug",
+    "length": "m mm cm um nm inch ft mil",
+    "belt speed": "m/s mm/s cm/s um/s in/s m/min mm/min ft/min",
+    "force": "N mN kN lbf ozf kgf gf",
+    "acceleration": "m/s^2 mm/s^2 in/s^2",
+    "translational damping": "N*s/m N*s/mm lbf*s/in",
+    "pressure": "Pa kPa MPa GPa bar mbar psi N/mm^2",
+    "viscosity": "Pa*s mPa*s cP P reyn",
+    "kinematic viscosity": "m^2/s mm^2/s cSt St",
+    "density": "kg/m^3 g/cm^3",
+    "pressure-viscosity coefficient": "Pa^-1 GPa^-1 1/GPa",
+    "thermal conductivity": "W/m/K mW/m/K",
+    "torsional stiffness": "N*m/rad N*m/deg mN*m/rad",
+    "moment of inertia": "kg*m^2 g*cm^2 kg*cm^2",
+    "load per length": "N/m N/mm kN/m lbf/in",
+}
+#: How alike (`difflib`) a usual unit must be to an unknown one, and to one of another kind, to be proposed.
+_ALIKE, _ALIKE_OF_ANOTHER_KIND = 0.6, 0.8
+
 #: Exponents of m, kg, s, K and rad. The angle counts here, so that 1/s is no speed of a drive.
 _Dimension = tuple[int, int, int, int, int]
 _NONE: _Dimension = (0, 0, 0, 0, 0)
@@ -188,7 +214,7 @@ def conversion(kind: str, unit: str) -> Conversion:
     if len(unit) > _LONGEST_UNIT:
         told = f"'{unit[:20]}...' of {len(unit)} characters, {_LONGEST_UNIT} at the most"
         raise UnitError(f"unknown unit {told}: write one such as {example}")
-    factor, text = _split_factor(unit.strip(), unit, example)
+    factor, text = _split_factor(unit.strip(), unit, kind)
     line, standard = _from_table(text), _from_table(si)
     if line and standard and line[2] == standard[2]:
         scale, zero = line[:2]
@@ -229,10 +255,10 @@ def _from_registry(kind: str, text: str, unit: str) -> tuple[float, float]:
     UnitError
         If the unit is unknown, of another kind, or could be read in two ways.
     """
-    si, example = KINDS[kind]
+    si = KINDS[kind][0]
     parsed = _parsed(text)
     if parsed is None:
-        raise UnitError(f"unknown unit '{unit}': write one such as {example}")
+        raise UnitError(f"unknown unit '{unit}': {_meant(kind, unit)}")
     names = " ".join(str(name) for name in parsed._units)
     if kind == "speed" and parsed.dimensionality == {"[time]": -1} and not _ANGLES.search(names):
         raise UnitError(f"unit '{unit}' of a speed could count revolutions or radians: write rev/s or rad/s")
@@ -260,15 +286,30 @@ def _parsed(text: str) -> Any:
 
 
 def _wrong_kind(kind: str, unit: str) -> WrongKindError:
-    return WrongKindError(f"unit '{unit}' is not a unit of {kind}: write one such as {KINDS[kind][1]}")
+    meant = _meant(kind, unit, _ALIKE_OF_ANOTHER_KIND)
+    return WrongKindError(f"unit '{unit}' is not a unit of {kind}: {meant}")
 
 
-def _split_factor(text: str, unit: str, example: str) -> tuple[float, str]:
+def _meant(kind: str, unit: str, alike: float = _ALIKE) -> str:
+    """The way out: the usual unit of the kind that the one written is nearest to, or an example."""
+    from difflib import get_close_matches
+
+    usual = {_folded(each): each for each in reversed(_USUAL[kind].split())}
+    match = get_close_matches(_folded(unit), usual, n=1, cutoff=alike)
+    return f"did you mean {usual[match[0]]}?" if match else f"write one such as {KINDS[kind][1]}"
+
+
+def _folded(unit: str) -> str:
+    return re.sub(r"[\s.·]", "*", unit.strip()).lower()
+
+
+def _split_factor(text: str, unit: str, kind: str) -> tuple[float, str]:
     """Factor and plain unit; what is left holds no digits but small powers, so it cannot run for ever."""
     match = _FACTORED.fullmatch(text)
     if match is None or _ALPHABET.fullmatch(re.sub(_NUMBER, "", text)) is None:
-        what = f"unknown unit '{unit[:40]}'" if text else "no unit is given"
-        raise UnitError(f"{what}: write one such as {example}")
+        if not text:
+            raise UnitError(f"no unit is given: write one such as {KINDS[kind][1]}")
+        raise UnitError(f"unknown unit '{unit[:40]}': {_meant(kind, unit)}")
     factor = float(match[1] or 1.0) / (float(match[3] or 1.0) or math.nan)
     plain = f"1{match[2]}" if match[2].startswith("/") else match[2]
     if plain == "1":
@@ -278,7 +319,7 @@ def _split_factor(text: str, unit: str, example: str) -> tuple[float, str]:
             return factor, re.sub(f"^(?:{spelling})$", standard, plain)
     plain = re.sub(r"(?<=[A-Za-z])[.·](?=[A-Za-z])", "*", plain)
     if re.search(r"\d", _POWER.sub("", re.sub(r"^1\s*/", "/", plain))):
-        raise UnitError(f"unknown unit '{unit}': write one such as {example}")
+        raise UnitError(f"unknown unit '{unit}': {_meant(kind, unit)}")
     return factor, plain
 
 

@@ -68,6 +68,35 @@ def test_summary_figure_and_known_values(tmp_path: Path) -> None:
     assert (refused.returncode, "say --force" in refused.stderr) == (2, True)
 
 
+def test_the_uncertainty_of_the_drive_speed_and_falls_that_are_not_counted(tmp_path: Path) -> None:
+    speed = ["--drive-speed", "20 mm/s", "--drive-speed-uncertainty", "2 %"]
+    known = ["--known", "stick_speed=0.2 mm/s", "--closures", "retained"]
+    text = printed(CSV, *speed, "--identify", *known)
+    assert "intervals hold for a drive speed of 0.02 m/s to within 2 %" in text
+    document = json.loads(printed(CSV, *speed, "--identify", *known, "--json"))["drive"]
+    stiffness = document["estimates"]["stiffness"]
+    assert document["systematic"]["stiffness"] == pytest.approx(0.02 * stiffness["value"], rel=0.1)
+    assert printed(CSV, "--least-drop", "1 kN").startswith("stick slip: 110 falls beyond the noise, none of")
+    path = tmp_path / "share.csv"
+    path.write_text("\n".join(["time [s],force [1]", *(f"{0.01 * i},{i % 50 / 500}" for i in range(600))]))
+    for least in ("20 %", "0.2"):
+        told = printed(path, "--least-drop", least)
+        assert "falls beyond the noise, none of 20 % of the load or more: the greatest is 9" in told
+
+
+def test_a_channel_of_the_drive_speed(tmp_path: Path) -> None:
+    path = tmp_path / "pull.csv"
+    rows = [f"{0.01 * i:.2f},{i % 50 / 5},{20 + (i % 2)}" for i in range(600)]
+    path.write_text("\n".join(["time [s],force [N],vd [mm/s]", *rows]))
+    document = json.loads(printed(path, "--drive-speed-channel", "vd", "--json"))
+    assert document["drive_speed"] == pytest.approx(0.0205, rel=1e-6)
+    assert document["drive_speed_uncertainty"] == pytest.approx(1e-3, rel=1e-3)
+    both = run("cycles", path, "--drive-speed-channel", "vd", "--drive-speed", "20 mm/s", cwd=tmp_path)
+    assert "give either --drive-speed or --drive-speed-channel" in both.stderr
+    none = run("cycles", path, "--drive-speed-channel", "force", cwd=tmp_path)
+    assert (none.returncode, none.stderr.count("\n")) == (2, 1)
+
+
 def test_a_mistake_ends_in_one_line(tmp_path: Path) -> None:
     result = run("cycles", CSV, "--drive-speed", "20", cwd=tmp_path)
     assert (result.returncode, result.stdout) == (2, "")
@@ -85,6 +114,8 @@ def test_a_mistake_ends_in_one_line(tmp_path: Path) -> None:
         (["--identify", "--known", "weight=1 kg"], "write NAME=VALUE with one of stiffness, mass"),
         (["--identify", "--known", "mass=1 s"], "--known mass: unit 's' is not a unit of mass"),
         (["--least-drop", "5 mm"], "--least-drop"),
+        (["--drive-speed-uncertainty", "2"], "--drive-speed-uncertainty is '2': write a share such as '2 %'"),
+        (["--drive-speed-uncertainty", "90 %"], "drive_speed_uncertainty is 0.9: it must be greater than 0"),
         (["--value", "pull"], "there is no column 'pull': it has time [s], force [N]"),
         (["--quantity", "heat"], "quantity 'heat' is not known"),
         (["--figure", "fit.bmp"], "name a file that ends in .html"),

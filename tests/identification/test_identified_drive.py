@@ -14,7 +14,7 @@ from hersey.errors import InsufficientDataError, ParameterError
 from hersey.identification import IdentifiedDrive, cycles, identify
 from hersey.identification.independence import in_words
 from hersey.identification.waveform import mean_waveform, model_lap
-from hersey.motion.parameters import OF_THE_BELT
+from hersey.motion.parameters import OF_THE_BELT, PARAMETERS
 
 TRUTH = {
     "stiffness": 1000.0,
@@ -68,8 +68,8 @@ def test_truth_is_within_the_intervals() -> None:
 def test_intervals_are_of_use() -> None:
     estimates = identify(record(0), closures=("retained",)).estimates
     widths = {name: (each.high - each.low) / abs(each.value) for name, each in estimates.items()}
-    assert widths["stiffness"] < 0.15
-    assert widths["mass"] < 0.15
+    assert widths["stiffness"] < 0.2  # the held belt may creep: nobody told the stick speed
+    assert widths["mass"] < 0.2
     assert widths["transition_force"] < 0.3
     assert widths["ehl_exponent"] < 0.15
 
@@ -160,5 +160,5 @@ def test_records_without_an_answer_are_refused() -> None:
 def test_the_document_is_json() -> None:
     drive: IdentifiedDrive = identify(record(5), closures=("retained",))
     document = json.loads(json.dumps(drive.to_dict()))
-    assert set(document["best_fit"]) == set(OF_THE_BELT)
+    assert set(document["best_fit"]) == set(PARAMETERS)
     assert document["estimates"]["stiffness"]["low"] < 1000 < document["estimates"]["stiffness"]["high"]

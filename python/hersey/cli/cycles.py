@@ -11,6 +11,7 @@ from hersey.cli.options import (
     AsJson,
     Force,
     MaxMemory,
+    share,
 )
 from hersey.cli.outputs import may_draw, print_json
 from hersey.cli.progress import working
@@ -18,6 +19,7 @@ from hersey.cli.terminal import say
 from hersey.errors import ParameterError, UnitError, WrongKindError
 
 if TYPE_CHECKING:
+    from hersey.arrays import FloatArray
     from hersey.identification.trace_file import TraceFile
 
 
@@ -25,6 +27,15 @@ def cycles(
     trace: Annotated[Path, typer.Argument(metavar="TRACE", help="Trace in any format that a log may have.")],
     drive_speed: Annotated[
         str, typer.Option(help="Speed of the drive, as '20 mm/s', or '3 rpm' with a torque.")
+    ] = "",
+    drive_speed_uncertainty: Annotated[
+        str,
+        typer.Option(
+            help="How far the drive speed may be off, as '2 %': half of its 95 % interval.  [default: 0.1 %]"
+        ),
+    ] = "",
+    drive_speed_channel: Annotated[
+        str, typer.Option(help="Instead of --drive-speed: the column of it, of which the mean counts.")
     ] = "",
     quantity: Annotated[str, typer.Option(help="force, torque or speed; found by name if left out.")] = "",
     time: Annotated[str, typer.Option(help="Name of the time column or variable.")] = "",
@@ -59,6 +70,8 @@ def cycles(
     """
     if figure is not None:
         may_draw(figure, force, inputs=[trace])
+    if drive_speed and drive_speed_channel:
+        raise ParameterError("give either --drive-speed or --drive-speed-channel")
     if known and not identify:
         raise ParameterError("--known needs --identify")
 
@@ -70,12 +83,18 @@ def cycles(
 
     with memory_limit(max_memory):
         given = read_trace(trace, quantity=quantity, time=time, value=value, time_unit=time_unit, unit=unit)
-    speed = _drive_speed(drive_speed, given)
+        channel = (
+            read_trace(trace, quantity="speed", value=drive_speed_channel) if drive_speed_channel else None
+        )
+    speed = _drive_speed(drive_speed, given) if channel is None else _of_channel(channel, given)
     values = _known(known or [], given)
     record = find_cycles(
         given.time,
         given.value,
         drive_speed=speed,
+        drive_speed_uncertainty=share("--drive-speed-uncertainty", drive_speed_uncertainty)
+        if drive_speed_uncertainty
+        else None,
         quantity="speed" if given.quantity == "speed" else "force",
         least_drop=_least_drop(least_drop, given),
     )
@@ -100,6 +119,20 @@ def cycles(
         say("\n" + drive.summary(given.unit))
     if figure is not None:
         say(f"figure: {figure}")
+
+
+def _of_channel(channel: TraceFile, given: TraceFile) -> FloatArray:
+    """The drive speed at the times of the trace."""
+    import numpy as np
+
+    turning = given.quantity == "torque" or given.unit == "rad/s"
+    if turning != (channel.unit == "rad/s"):
+        raise WrongKindError(
+            f"--drive-speed-channel {channel.name} with a trace of {given.quantity} in {given.unit}: it must "
+            f"be {'an angular speed' if turning else 'the speed of a belt'}"
+        )
+    seen = np.isfinite(channel.value)
+    return np.asarray(np.interp(given.time, channel.time[seen], channel.value[seen]))
 
 
 def _drive_speed(text: str, given: TraceFile) -> float | None:
@@ -127,7 +160,7 @@ def _least_drop(text: str, given: TraceFile) -> float | None:
     if given.quantity == "speed":
         raise ParameterError("--least-drop counts falls of a force: leave it out with a trace of speed")
     if given.unit == "1":
-        return _number("--least-drop", text)
+        return share("--least-drop", text) if text.strip().endswith("%") else _number("--least-drop", text)
     try:
         return parse(given.quantity, text)
     except UnitError as error:

@@ -21,18 +21,21 @@ from hersey.errors import ParameterError
 def hysteresis(
     belt: Belt,
     drive_speed: Annotated[
-        float | None, typer.Option(help="Also say how large a kick or step the belt bears that slides at it.")
+        str | None,
+        typer.Option(
+            help="Also say how large a kick or step the belt bears that slides at it, as '30 mm/s'."
+        ),
     ] = None,
     from_speed: Annotated[
-        float | None, typer.Option(help="With --to-speed: say whether a step between them makes it stick.")
+        str | None, typer.Option(help="With --to-speed: say whether a step between them makes it stick.")
     ] = None,
-    to_speed: Annotated[float | None, typer.Option(help="Speed at the end of the step.")] = None,
+    to_speed: Annotated[str | None, typer.Option(help="Speed at the end of the step.")] = None,
     as_json: AsJson = False,
 ) -> None:
     """Find the drive speeds between which the past decides whether the belt sticks.
 
-    Values are in any consistent set of units; the defaults are the paper's baseline in inches, ounces of
-    force and seconds.
+    Numbers carry units, as '11 N/mm', or are bare in any consistent set of units; the defaults are the
+    paper's baseline in inches, ounces of force and seconds. With units, results are in SI.
 
     Example: [bold]hersey hysteresis --from-speed 2.5 --to-speed 1.2[/bold]
     """
@@ -42,13 +45,14 @@ def hysteresis(
     from hersey.stability import disturbance as approach
     from hersey.stability.hysteresis import hysteresis as band_of
 
-    train, law = belt.parts()
+    train, law, numbers = belt.parts(drive_speed=drive_speed, from_speed=from_speed, to_speed=to_speed)
+    sliding, before, after = (numbers.values[name] for name in ("drive_speed", "from_speed", "to_speed"))
     with working("looking for the band"):
         band = band_of(train, law)
-        bears = None if drive_speed is None else approach.disturbance(train, law, drive_speed=drive_speed)
+        bears = None if sliding is None else approach.disturbance(train, law, drive_speed=sliding)
         step = None
-        if from_speed is not None and to_speed is not None:
-            step = approach.safe_step(train, law, from_speed=from_speed, to_speed=to_speed)
+        if before is not None and after is not None:
+            step = approach.safe_step(train, law, from_speed=before, to_speed=after)
     if as_json:
         from hersey.result import json_value
 
@@ -71,4 +75,4 @@ def hysteresis(
             else "any ramp is safe"
         )
         lines.append(f"From {step.from_speed:g} to {step.to_speed:g} at once it {does}; {ramp}.")
-    say("\n".join(lines))
+    say("\n".join([*lines, *numbers.words]))

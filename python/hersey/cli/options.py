@@ -7,7 +7,7 @@ import inspect
 import re
 import sys
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
 
@@ -17,6 +17,7 @@ from hersey.cli.progress import bar, working
 from hersey.cli.terminal import say
 
 if TYPE_CHECKING:
+    from hersey.cli.amounts import Amounts
     from hersey.damping.dwells import SteadyPoints
     from hersey.damping.surface import DampingSurface
     from hersey.log import TorqueLog
@@ -218,34 +219,67 @@ def _amounts(text: str) -> str | list[str] | None:
 
 @dataclass(frozen=True)
 class Belt:
-    """The options that describe a belt, its spring and its drag; the defaults are the paper's baseline."""
+    """The options that describe a belt, its spring and its drag; the defaults are the paper's baseline.
 
-    stiffness: Annotated[float, typer.Option(help="Spring stiffness k.")] = 1000.0
-    mass: Annotated[float, typer.Option(help="Belt mass m.")] = 1.0
+    Numbers are texts: with a unit, or bare in any consistent set of units (see `hersey.cli.amounts`).
+    """
+
+    stiffness: Annotated[
+        str | None, typer.Option(help="Spring stiffness k, as '11 N/mm'.  [default: 1000]")
+    ] = None
+    mass: Annotated[str | None, typer.Option(help="Belt mass m, as '11 kg'.  [default: 1]")] = None
     transition_force: Annotated[
-        float, typer.Option(help="Drag at the transition speed (B0 of the paper).")
-    ] = 50.0
-    transition_speed: Annotated[float, typer.Option(help="Speed where the branches meet.")] = 1.0
+        str | None,
+        typer.Option(help="Drag at the transition speed (B0 of the paper), as '14 N'.  [default: 50]"),
+    ] = None
+    transition_speed: Annotated[
+        str | None, typer.Option(help="Speed where the branches meet, as '25 mm/s'.  [default: 1]")
+    ] = None
     ehl_exponent: Annotated[float, typer.Option(help="Damping exponent above it.")] = -0.7
     mixed_exponent: Annotated[float, typer.Option(help="Damping exponent below it.")] = -1.2
-    stick_speed: Annotated[float, typer.Option(help="Speed below which the belt sticks.")] = 0.01
+    stick_speed: Annotated[
+        str | None,
+        typer.Option(help="Speed below which the belt sticks, as '0.3 mm/s'.  [default: 0.01]"),
+    ] = None
     closure: Annotated[
         str, typer.Option(help="What happens below it: retained, stiction, stribeck or lugre.")
     ] = "retained"
     bristle_stiffness: Annotated[
-        float | None, typer.Option(help="Of lugre: force per deflection of the bristles.")
+        str | None, typer.Option(help="Of lugre: force per deflection of the bristles, as '1000 N/mm'.")
     ] = None
-    bristle_damping: Annotated[float | None, typer.Option(help="Of lugre: force per rate of deflection.")] = (
-        None
-    )
+    bristle_damping: Annotated[
+        str | None, typer.Option(help="Of lugre: force per rate of deflection, as '10 N*s/m'.")
+    ] = None
+    machine: Annotated[
+        Path | None,
+        typer.Option(
+            "--machine",
+            metavar="TOML",
+            help="Machine's file: stiffness, mass and stick speed where they are not given.",
+        ),
+    ] = None
 
-    def parts(self) -> tuple[Drivetrain, Drag]:
-        """Return drivetrain and drag."""
+    def parts(
+        self, *, needed: tuple[str, ...] = (), **further: str | None
+    ) -> tuple[Drivetrain, Drag, Amounts]:
+        """Return drivetrain and drag, and all numbers; ``further`` are those of the command.
+
+        Of ``further`` those in ``needed`` are of the paper's baseline where they are not given.
+        """
+        from hersey.cli.amounts import amounts
         from hersey.motion.drag import Drag
         from hersey.motion.simulation import Drivetrain
 
-        given = asdict(self)
-        return Drivetrain(given.pop("stiffness"), given.pop("mass")), Drag(**given)
+        plain = {name: getattr(self, name) for name in ("ehl_exponent", "mixed_exponent", "closure")}
+        texts = {f.name: getattr(self, f.name) for f in fields(self) if f.name not in (*plain, "machine")}
+        numbers = amounts(
+            {**texts, **further},
+            needed=(*(name for name in texts if not name.startswith("bristle")), *needed),
+            machine_file=self.machine,
+        )
+        of_belt: dict[str, Any] = {name: numbers.values[name] for name in texts}
+        train = Drivetrain(of_belt.pop("stiffness"), of_belt.pop("mass"))
+        return train, Drag(**of_belt, **plain), numbers
 
 
 def temperature_of(text: str) -> float | None:
@@ -259,6 +293,18 @@ def temperature_of(text: str) -> float | None:
     if not value > 0:
         raise ParameterError(f"--at is {text}: it must be above absolute zero")
     return value
+
+
+def share(flag: str, text: str) -> float:
+    """Return the share that an option such as ``'2 %'`` names."""
+    import re
+
+    from hersey.errors import ParameterError
+
+    match = re.fullmatch(r"\s*([0-9]+(?:\.[0-9]*)?)\s*%\s*", text[:60])
+    if match is None:
+        raise ParameterError(f"{flag} is '{text}': write a share such as '2 %'")
+    return float(match[1]) / 100
 
 
 def takes(group: type, name: str) -> Callable[[Callable[..., None]], Callable[..., None]]:

@@ -20,9 +20,13 @@ from hersey.cli.terminal import say
 @takes(Belt, "belt")
 def simulate(
     belt: Belt,
-    drive_speed: Annotated[float, typer.Option(help="Speed of the drive.")] = 1.0,
+    drive_speed: Annotated[
+        str | None, typer.Option(help="Speed of the drive, as '30 mm/s'.  [default: 1]")
+    ] = None,
     start: Annotated[str, typer.Option(help="rest, or steady (sliding with the drive).")] = "rest",
-    duration: Annotated[float, typer.Option(help="Time simulated, for --csv and --check.")] = 2.0,
+    duration: Annotated[
+        str | None, typer.Option(help="Time simulated, for --csv and --check, as '2 s'.  [default: 2]")
+    ] = None,
     check: Annotated[
         bool, typer.Option("--check", help="Simulate with a second integrator too, and compare.")
     ] = False,
@@ -34,23 +38,25 @@ def simulate(
 ) -> None:
     """Simulate the belt at constant drive speed and say what it settles to (defaults: the paper's baseline).
 
-    Values are in any consistent set of units; the paper's are inches, ounces of force and seconds.
+    Numbers carry units, as '11 N/mm', or are bare in any consistent set of units; those of the paper are
+    inches, ounces of force and seconds. With units, results are in SI.
 
     Example: [bold]hersey simulate --stiffness 2000 --drive-speed 1.3[/bold]
     """
     if csv is not None:
-        may_write(csv, force)
+        may_write(csv, force, inputs=[belt.machine] if belt.machine else [])
 
     from hersey.motion import simulation as motion
     from hersey.result import json_value
 
-    train, drag = belt.parts()
-    cycle = motion.stick_slip(train, drag, drive_speed=drive_speed, start=start)
+    train, drag, numbers = belt.parts(
+        needed=("drive_speed", "duration"), drive_speed=drive_speed, duration=duration
+    )
+    speed, time = (numbers.values[name] or 0.0 for name in ("drive_speed", "duration"))
+    cycle = motion.stick_slip(train, drag, drive_speed=speed, start=start)
     run = None
     if csv is not None or check:
-        run = motion.simulate(
-            train, drag, drive_speed=drive_speed, duration=duration, start=start, check=check
-        )
+        run = motion.simulate(train, drag, drive_speed=speed, duration=time, start=start, check=check)
     if csv is not None and run is not None:
         import polars as pl
 
@@ -75,4 +81,4 @@ def simulate(
         lines.append(f"energy balance: {run.energy.residual:.1e} of the energy turned over is missing")
     if run is not None and run.check is not None:
         lines.append(str(run.check))
-    say("\n".join(lines))
+    say("\n".join([*lines, *numbers.words]))

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from hersey.cli.amounts import of_a_machine
 from hersey.cli.options import (
     AsJson,
     Force,
@@ -19,6 +20,14 @@ from hersey.errors import OutputError
 
 def sweep(
     scenario: Annotated[Path, typer.Argument(metavar="SCENARIO", help="TOML file that describes the sweep.")],
+    machine: Annotated[
+        Path | None,
+        typer.Option(
+            "--machine",
+            metavar="TOML",
+            help="Machine's file: stiffness, mass and stick speed where the scenario has none.",
+        ),
+    ] = None,
     out: Annotated[
         Path | None, typer.Option("--out", metavar="FILE", help="Write every set as a row: .parquet or .csv.")
     ] = None,
@@ -35,12 +44,16 @@ def sweep(
     if out is not None:
         if out.suffix not in (".parquet", ".csv"):
             raise OutputError(f"--out {out}: name a file that ends in .parquet or .csv")
-        may_write(out, force, inputs=[scenario])
+        may_write(out, force, inputs=[scenario, *([machine] if machine else [])])
 
     from hersey.files.writing import write_atomically
     from hersey.motion.scenario import read_scenario, rows, summary
 
-    described = read_scenario(scenario)
+    if machine is None:
+        described = read_scenario(scenario)
+    else:
+        stated = of_a_machine(machine)
+        described = read_scenario(scenario, stated=stated, stated_in=machine.name)
     with bar("simulating", unit="sets") as progress:
         result = described.run(threads=threads, progress=progress)
     if out is not None:

@@ -19,7 +19,7 @@ from hersey.damping.candidates.model_comparison import ModelComparison
 from hersey.damping.candidates.observations import Inputs
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.result import Result, json_record
-from hersey.units import convert, rpm
+from hersey.units import convert, rpm, takes_si
 
 if TYPE_CHECKING:
     import polars as pl
@@ -86,6 +86,7 @@ class TestDesign(Result):
         return f"{error:.3g} {self.unit}".rstrip()
 
 
+@takes_si(speeds="speed", temperatures="temperature")
 def design(
     comparison: ModelComparison,
     *,
@@ -104,7 +105,8 @@ def design(
     quantity
         Name, or its beginning, of the parameter to know best, as ``transition speed``; all if not given.
     speeds, temperatures
-        Ranges that can be run, rad/s and K; those measured if not given.
+        Ranges that can be run, rad/s and K, or with units as ``("2 rpm", "200 rpm")``; those measured if not
+        given.
     seed
         Of the draws of the fit.
 
@@ -174,7 +176,7 @@ def _dwells_to_try(
     temperatures: tuple[float, float] | None,
 ) -> Inputs:
     data = comparison.data
-    slow, fast = speeds or (float(data.speed.min()), float(data.speed.max()))
+    slow, fast = (data.speed.min(), data.speed.max()) if speeds is None else speeds
     if not 0 < slow < fast:
         raise ParameterError(f"speeds are {slow:g} to {fast:g} rad/s: they must ascend from above 0")
     grid = np.geomspace(slow, fast, SPEEDS)

@@ -5,6 +5,8 @@ sampling          a trace on even times: gaps, spikes and noise
 turning_points    where the force turns, by more than noise
 detection         slips: falls beyond noise, and how long they last
 slip_shape        the slip between two sticks as half a free oscillation
+slip_figures      figures of each slip
+motion_kind       what kind of motion the falls make
 cycle_record      cycles of a trace, their figures and kind
 waveform          the mean cycle of a trace, and of the model
 independence      which parameters a trace tells apart, in words

@@ -6,14 +6,22 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from hersey.arrays import FloatArray
+from hersey.damping.estimate import quantile
 from hersey.errors import ParameterError
-from hersey.identification.detection import FEWEST_SLIPS, found_falls, steep_lasts
+from hersey.identification.detection import (
+    FEWEST_OF_RHYTHM,
+    FEWEST_SLIPS,
+    beyond_noise,
+    of_at_least,
+    of_one_rhythm,
+)
+from hersey.identification.motion_kind import Motion, is_regular, motion_of
 from hersey.identification.sampling import Samples, even_samples
-from hersey.identification.slip_shape import SHARE, held_slope, slip_duration, stick_angle
-from hersey.identification.turning_points import Falls, crossing, curved, least_turn, smoothed
+from hersey.identification.slip_figures import slip_figures
+from hersey.identification.turning_points import least_turn
 from hersey.result import Result, json_record
 from hersey.units import takes_si
 
@@ -22,12 +30,12 @@ if TYPE_CHECKING:
 
 #: What a trace may hold.
 QUANTITIES = ("force", "speed")
-#: A belt that sticks for a smaller share of the lap merely touches rest: the oscillation is inertial.
-LEAST_STUCK = 0.15
-#: An oscillation is more regular than this (deviation of the period over its mean); drift and wear are not.
-_REGULAR = 0.25
-#: Rises of which the slope is taken, at most, spread over the trace.
-_RISES = 4000
+#: Half width of the 95 % interval of a drive speed of which nothing is stated, as a share of it.
+DRIVE_SPEED_UNCERTAINTY = 1e-3
+#: A channel of the drive speed is known to what the means of so many parts of it differ.
+_PARTS = 10
+#: A greater one would tell no drive.
+_GREATEST_UNCERTAINTY = 0.5
 #: Samples that a fall must last for its duration to be trusted.
 _FEW_SAMPLES = 6
 
@@ -59,18 +67,19 @@ class CycleRecord(Result):
     """Cycles of a trace at one drive speed.
 
     ``kind`` is ``steady_sliding`` (no cycles), ``inertial`` (an oscillation near the free period in which the
-    belt sticks for less than 15 % of the time) or ``stick_slip``. Arrays have one value per slip, ``period``
-    one per pair of slips with no gap between, ``rise_slope`` (of the steepest part of a rise) up to 4000 of
-    them.
+    belt sticks for less than 15 % of the time) or ``stick_slip``; like all of ``motion`` it follows from all
+    falls beyond the noise, whatever slips are counted. Arrays have one value per slip counted, ``period`` one
+    per pair of slips with no gap between, ``rise_slope`` (of the steepest part of a rise) up to 4000 of them.
     ``fall_duration`` is the time from maximum to minimum, ``steep_duration`` that of half a cosine as steep.
     Force is in the unit of the trace, time in s; for a trace of speed the "force" is the stretch of the
     spring, m, from an unknown zero.
     """
 
-    kind: str
+    motion: Motion
     quantity: str
     samples: Samples
     drive_speed: float | None
+    drive_speed_uncertainty: float
     least_drop: float
     slip_time: FloatArray
     force_max: FloatArray
@@ -93,30 +102,38 @@ class CycleRecord(Result):
         return self.force_max - self.force_min
 
     @property
+    def kind(self) -> str:
+        """``steady_sliding``, ``inertial`` or ``stick_slip``."""
+        return self.motion.kind
+
+    @property
+    def falls(self) -> int:
+        """Number of falls beyond the noise, counted as slips or not."""
+        return self.motion.falls
+
+    @property
     def loading_slope(self) -> float:
         """Slope of the force while the belt is held, per s: the steepest part of the rises.
 
         Creep before a slip and the rounded ends only lower a slope. Where the oscillation is inertial no
         part is straight, and the greatest slope of the ellipse is given.
         """
-        if self.kind == "inertial":
-            return held_slope(float(np.median(self.drop)), float(np.median(self.fall_duration)), 0.0)
-        return float(np.median(self.rise_slope)) if self.kind == "stick_slip" else float("nan")
+        return self.motion.loading_slope
 
     @property
     def free_period(self) -> float:
         """Period of the free oscillation, 2 pi sqrt(m/k), s: twice the typical fall, from its steep part.
 
         Good to 5 % where drag varies little in a slip; creep and drag that grows with speed cost up to 25 %.
+        Not a number, and a note says why, where it would be longer than a lap or shorter than the samples
+        resolve.
         """
-        return 2.0 * float(np.median(self.steep_duration)) if self.slips else float("nan")
+        return self.motion.free_period
 
     @property
     def stuck_fraction(self) -> float:
         """Share of the typical lap during which the belt sticks."""
-        if self.kind == "steady_sliding":
-            return 0.0
-        return _stuck_fraction(self.drop, self.fall_duration, self.rise_slope, self.period)
+        return self.motion.stuck_fraction
 
     @property
     def stiffness(self) -> float | None:
@@ -142,7 +159,9 @@ class CycleRecord(Result):
             "kind": self.kind,
             "quantity": self.quantity,
             "slips": self.slips,
+            "falls": self.falls,
             "drive_speed": self.drive_speed,
+            "drive_speed_uncertainty": self.drive_speed_uncertainty,
             "loading_slope": self.loading_slope,
             "stiffness": self.stiffness,
             "free_period": self.free_period,
@@ -172,14 +191,28 @@ class CycleRecord(Result):
             }
         )
 
+    def headline(self, unit: str = "") -> str:
+        """Return the kind and the number of slips, or of the falls that are none."""
+        words = self.kind.replace("_", " ")
+        beyond = f"{self.falls} falls beyond the noise"
+        if self.kind == "steady_sliding":
+            return (
+                f"{words}: no cycles" if self.falls < FEWEST_SLIPS else f"wandering: {beyond}, but no cycles"
+            )
+        if self.slips >= FEWEST_SLIPS:
+            return f"{words}: {self.slips} slips"
+        number = self.slips or "none"
+        least, greatest = (_amount(amount, unit) for amount in (self.least_drop, self.motion.greatest))
+        return f"{words}: {beyond}, {number} of {least} or more: the greatest is {greatest}"
+
     def summary(self, unit: str = "") -> str:
         """Return the figures in words, a line each; ``unit`` is that of the trace, for the words."""
-        words = self.kind.replace("_", " ")
-        if self.kind == "steady_sliding":
-            return "\n".join([f"{words}: no cycles", *(f"- {note}" for note in self.notes)])
-        period, drop = Scatter.of(self.period), Scatter.of(self.drop)
-        free = f"free period {self.free_period:.4g} s"
         of = f" {unit}" if unit not in ("", "1") else ""
+        heading = self.headline(unit)
+        if self.kind == "steady_sliding" or self.slips < FEWEST_SLIPS:
+            return "\n".join([heading, *(f"- {note}" for note in self.notes)])
+        period, drop = Scatter.of(self.period), Scatter.of(self.drop)
+        free = f"; free period {self.free_period:.4g} s" if np.isfinite(self.free_period) else ""
         turning = "rad" if unit == "N m" else "m"
         stiff = (
             f"stiffness     {self.stiffness:.5g}{of or ' 1'}/{turning} (slope / speed)"
@@ -187,8 +220,8 @@ class CycleRecord(Result):
             else ""
         )
         lines = [
-            f"{words}: {self.slips} slips",
-            f"period        {period.median:.4g} s (scatter {period.deviation:.2g} s); {free}",
+            heading,
+            f"period        {period.median:.4g} s (scatter {period.deviation:.2g} s){free}",
             f"drop          {drop.median:.4g}{of} (scatter {drop.deviation:.2g}{of})",
             f"force         {np.median(self.force_min):.4g} to {np.median(self.force_max):.4g}{of}",
             f"loading slope {self.loading_slope:.5g}{of or ' 1'}/s",
@@ -204,7 +237,8 @@ def cycles(
     time: ArrayLike,
     value: ArrayLike,
     *,
-    drive_speed: float | None = None,
+    drive_speed: ArrayLike | None = None,
+    drive_speed_uncertainty: float | None = None,
     quantity: str = "force",
     least_drop: float | None = None,
 ) -> CycleRecord:
@@ -221,10 +255,17 @@ def cycles(
         Force of the spring, or torque, in any unit; NaN where missing. With ``quantity="speed"`` the belt
         speed.
     drive_speed
-        Constant speed of the drive, m/s; gives the stiffness. A trace of speed without it takes its mean.
+        Constant speed of the drive, m/s; gives the stiffness. A channel of it, of shape (samples,), counts by
+        its mean. A trace of speed without it takes its own mean.
+    drive_speed_uncertainty
+        How far that may be off, as a share of it: half the width of its 95 % interval. `identify` carries it
+        into every interval. If it is not stated, 0.001, and for a channel what its mean is not known to.
     least_drop
         Count only falls and rises of at least this. Slips of real surfaces have all sizes, so a count means
         little without it; by default it is what noise could make.
+
+    What kind of motion it is does not depend on that: it follows from all falls beyond the noise. Where those
+    are the jitter of a slower noise on greater falls that have a rhythm, from these.
 
     Raises
     ------
@@ -242,14 +283,39 @@ def cycles(
     """
     if quantity not in QUANTITIES:
         raise ParameterError(f"quantity '{quantity}' is not known: {', '.join(QUANTITIES)}")
-    for name, given in (("drive_speed", drive_speed), ("least_drop", least_drop)):
+    speed, uncertainty = _driven(drive_speed, drive_speed_uncertainty, np.shape(time))
+    for name, given in (("drive_speed", speed), ("least_drop", least_drop)):
         if given is not None and not (np.isfinite(given) and given > 0):
             raise ParameterError(f"{name} is {given}: it must be greater than 0")
+    if not 0 < uncertainty <= _GREATEST_UNCERTAINTY:
+        raise ParameterError(
+            f"drive_speed_uncertainty is {uncertainty:.4g}: it must be greater than 0, and at most "
+            f"{_GREATEST_UNCERTAINTY} of the drive speed"
+        )
     samples = even_samples(time, value, name=quantity)
     if quantity == "speed":
-        samples = _stretch(samples, drive_speed)
-    slips, least, window = found_falls(samples, least_drop)
-    return _record(samples, slips, window, least, quantity, drive_speed, least_drop)
+        samples = _stretch(samples, speed)
+    return _record(samples, quantity, speed, uncertainty, least_drop)
+
+
+def _driven(
+    given: ArrayLike | None, stated: float | None, shape: tuple[int, ...]
+) -> tuple[float | None, float]:
+    """The drive speed and its uncertainty; of a channel from the means of its parts."""
+    speed = np.asarray(given, dtype=float) if given is not None else None
+    if speed is None or speed.ndim == 0:
+        stated = DRIVE_SPEED_UNCERTAINTY if stated is None else stated
+        return None if speed is None else float(speed), stated
+    if speed.shape != shape or speed.size < _PARTS:
+        raise ParameterError(
+            f"drive_speed has the shape {speed.shape} and time {shape}: give a number or equal lengths"
+        )
+    means = np.array([np.nanmean(part) for part in np.array_split(speed, _PARTS)])
+    mean = float(np.mean(means))
+    if stated is None:
+        error = float(np.std(means, ddof=1)) / float(np.sqrt(_PARTS))
+        stated = DRIVE_SPEED_UNCERTAINTY + quantile(_PARTS - 1) * error / abs(mean)
+    return mean, stated
 
 
 def _stretch(samples: Samples, drive_speed: float | None) -> Samples:
@@ -270,100 +336,61 @@ def _stretch(samples: Samples, drive_speed: float | None) -> Samples:
 
 def _record(
     samples: Samples,
-    slips: Falls,
-    window: int,
-    least: float,
     quantity: str,
     drive_speed: float | None,
+    uncertainty: float,
     least_drop: float | None,
 ) -> CycleRecord:
-    value, bridged = samples.value, np.concatenate([[0], np.cumsum(_long(samples.bridged, window))])
-    whole = bridged[slips.bottom] == bridged[slips.top]
-    top, bottom = slips.top[whole], slips.bottom[whole]
-    kept = Falls(top, bottom)
-    smooth = smoothed(value, window)
-    middle = crossing(smooth, kept, 0.5) if top.size else np.empty(0)
-    lasts = steep_lasts(value, kept, window) if top.size else np.empty(0)
-    pair = (bridged[bottom[1:]] == bridged[top[:-1]]) & (top[1:] > bottom[:-1] + 1)
-    pair &= np.searchsorted(slips.top, top[1:]) - np.searchsorted(slips.top, top[:-1]) == 1
-    period = np.diff(middle)[pair] * samples.interval
-    slopes = _rise_slopes(samples, bottom[:-1][pair], top[1:][pair])
-    crown = curved(value, window)
-    high, low = crown[top], crown[bottom]
-    drift = _slope(samples.interval * middle, 0.5 * (high + low)) if top.size >= FEWEST_SLIPS else 0.0
-    duration = (bottom - top) * samples.interval
-    kind, notes = _kind(high - low, duration, slopes, period)
-    notes += _notes(samples, least, least_drop, lasts, period, drift, high - low)
+    found = beyond_noise(samples)
+    figures = slip_figures(samples, found)
+    motion = motion_of(samples, figures, found.least)
+    notes = list(motion.notes)
+    if motion.kind == "steady_sliding" and (greater := of_one_rhythm(samples, found, is_regular)):
+        slower = slip_figures(samples, greater)
+        if slower.period.size >= FEWEST_OF_RHYTHM - 1 and is_regular(slower.period):
+            jitter = _jitter(motion.falls, greater.least)
+            found, figures = greater, slower
+            motion = motion_of(samples, figures, found.least)
+            notes = [*motion.notes, jitter]
+    if least_drop is not None and least_drop > found.least:
+        found = of_at_least(samples, found, least_drop)
+        figures = slip_figures(samples, found)
+    middle, drop = figures.middle, figures.drop
+    level = 0.5 * (figures.high + figures.low)
+    drift = _slope(middle, level) if middle.size >= FEWEST_SLIPS else 0.0
+    lasts = figures.steep / samples.interval
+    notes += _notes(samples, found.least, least_drop, lasts, figures.period, drift, drop)
     return CycleRecord(
-        kind,
+        motion,
         quantity,
         samples,
         drive_speed,
-        least,
-        samples.start + samples.interval * middle,
-        high,
-        low,
-        duration,
-        lasts * samples.interval,
-        period,
-        slopes,
+        uncertainty,
+        found.least,
+        samples.start + middle,
+        figures.high,
+        figures.low,
+        figures.duration,
+        figures.steep,
+        figures.period,
+        figures.slope,
         drift,
         tuple(notes),
     )
 
 
-def _long(bridged: NDArray[np.bool_], window: int) -> NDArray[np.bool_]:
-    """Gaps longer than what resolves a fall; a straight line across a shorter one does no harm."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], bridged, [False]]).astype(np.int8)))
-    long_gaps = np.zeros(bridged.size, dtype=bool)
-    for first, last in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
-        long_gaps[first:last] = last - first > window
-    return long_gaps
+def _jitter(falls: int, least: float) -> str:
+    return (
+        f"{falls} falls are beyond the noise from sample to sample, without a rhythm; those of {least:.3g} "
+        f"or more have one: the rest is taken for a slower noise"
+    )
 
 
-def _kind(
-    drop: FloatArray, duration: FloatArray, slopes: FloatArray, period: FloatArray
-) -> tuple[str, list[str]]:
-    if period.size < FEWEST_SLIPS - 1:
-        return "steady_sliding", []
-    if _stuck_fraction(drop, duration, slopes, period) >= LEAST_STUCK:
-        return "stick_slip", []
-    if float(np.std(period)) > _REGULAR * float(np.mean(period)):
-        return "steady_sliding", ["the force wanders irregularly without sticking: that is no cycle"]
-    return "inertial", []
-
-
-def _stuck_fraction(drop: FloatArray, duration: FloatArray, slopes: FloatArray, period: FloatArray) -> float:
-    angle = stick_angle(*_typical(drop, duration, slopes))
-    (fall, lap) = _typical(duration, period)
-    return max(0.0, 1.0 - slip_duration(fall, angle) / lap) if angle > 0 else 0.0
-
-
-def _typical(*columns: FloatArray) -> tuple[float, ...]:
-    return tuple(float(np.median(column)) for column in columns)
-
-
-def _rise_slopes(samples: Samples, bottom: np.ndarray, top: np.ndarray) -> FloatArray:
-    """Slope of the steepest part of each rise, per s: the greatest of lines through `SHARE` of it."""
-    if bottom.size > _RISES:
-        spread = np.linspace(0, bottom.size - 1, _RISES).astype(int)
-        bottom, top = bottom[spread], top[spread]
-    slopes = [_steepest(samples.value[i : j + 1]) for i, j in zip(bottom.tolist(), top.tolist(), strict=True)]
-    return np.array(slopes) / samples.interval
-
-
-def _steepest(rise: FloatArray) -> float:
-    width = max(2, int(SHARE * rise.size))
-    lever = np.arange(width) - 0.5 * (width - 1)
-    if rise.size * width < 20_000:
-        fitted = np.correlate(rise, lever, "valid") / float(lever @ lever)
-        return float(np.max(fitted))
-    shifted = rise - rise[0]
-    sums = np.concatenate([[0.0], np.cumsum(shifted)])
-    moments = np.concatenate([[0.0], np.cumsum(shifted * np.arange(rise.size))])
-    first = np.arange(rise.size - width + 1)
-    total, moment = sums[first + width] - sums[first], moments[first + width] - moments[first]
-    return float(np.max((moment - (first + 0.5 * (width - 1)) * total) / float(lever @ lever)))
+def _amount(amount: float, unit: str) -> str:
+    """An amount of force; of a share of the weight, in per cent."""
+    if unit == "1":
+        return f"{100 * amount:.3g} % of the load"
+    return f"{amount:.3g} {unit}".strip()
 
 
 def _slope(x: FloatArray, y: FloatArray) -> float:
@@ -400,8 +427,8 @@ def _notes(
         )
     if samples.spikes:
         notes.append(f"{samples.spikes} spikes of one or two samples were removed")
-    rise = float(np.median(period)) - float(np.median(lasts)) * samples.interval
-    if rise < 0.5 * float(np.median(lasts)) * samples.interval:
+    rise = float(np.median(period) if period.size else 0.0) - float(np.median(lasts)) * samples.interval
+    if period.size and rise < 0.5 * float(np.median(lasts)) * samples.interval:
         notes.append("the force rises faster than it falls: is its sign turned?")
     swing = abs(drift) * samples.interval * samples.value.size
     if swing > 0.5 * float(np.median(drop)):

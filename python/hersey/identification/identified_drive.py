@@ -12,9 +12,10 @@ from hersey.arrays import FloatArray
 from hersey.damping.estimate import Estimate, quantile
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.identification.cycle_record import CycleRecord
-from hersey.identification.drive_fit import EXPONENTS, DriveFit
+from hersey.identification.drive_fit import EXPONENTS, NORMAL_REACH, DriveFit
 from hersey.identification.independence import TOLD, in_words
-from hersey.identification.waveform import Waveform, mean_waveform
+from hersey.identification.motion_kind import LONGEST_OF_LAP
+from hersey.identification.waveform import FEWEST_LAPS, Waveform, mean_waveform
 from hersey.motion.drag import Drag
 from hersey.motion.parameters import KINDS, OF_THE_BELT
 from hersey.motion.simulation import Drivetrain
@@ -35,6 +36,10 @@ POOR = 0.05
 #: What needs no single parameter: the free period 2 pi sqrt(m/k), s, the force at which a held belt is
 #: released, and the drag at the drive speed.
 DERIVED = ("free_period", "release_force", "drag_at_drive_speed")
+#: Either, if known, makes of the slope of the force a measure of the drive speed.
+_SCALES = {"stiffness", "mass"}
+#: The drive speed is told anew only if what is known halves the interval that was stated.
+_TOLD_BETTER = 0.5
 
 
 @dataclass(frozen=True)
@@ -52,8 +57,10 @@ class IdentifiedDrive(Result):
 
     ``estimates`` holds every parameter that the record tells, with its 95 % interval; ``values`` all that
     make the best fit, told or not (those in ``known`` as given). ``derived`` are quantities that need no
-    single parameter. ``closure`` is the best; ``decided`` whether the others are worse by more than chance.
-    ``not_told`` says in words what the record leaves open.
+    single parameter; the drive speed is among them where what is known tells it better than stated.
+    ``systematic`` is the half width, in the unit of each quantity, that the uncertainty of the stated drive
+    speed adds to its interval. ``closure`` is the best; ``decided`` whether the others are worse by more than
+    chance. ``not_told`` says in words what the record leaves open.
     """
 
     closure: str
@@ -62,10 +69,12 @@ class IdentifiedDrive(Result):
     values: Mapping[str, float]
     known: Mapping[str, float]
     derived: Mapping[str, Estimate]
+    systematic: Mapping[str, float]
     not_told: tuple[str, ...]
     closures: tuple[ClosureFit, ...]
     misfit: float
     drive_speed: float
+    drive_speed_uncertainty: float
     waveform: Waveform
     fitted: FloatArray
     notes: tuple[str, ...]
@@ -92,9 +101,11 @@ class IdentifiedDrive(Result):
                 "known": self.known,
                 "best_fit": self.values,
                 "derived": self.derived,
+                "systematic": self.systematic,
                 "not_told": self.not_told,
                 "misfit": self.misfit,
                 "drive_speed": self.drive_speed,
+                "drive_speed_uncertainty": self.drive_speed_uncertainty,
                 "notes": self.notes,
             }
         )
@@ -129,6 +140,10 @@ class IdentifiedDrive(Result):
                 entry = "not told by this record" if told is None else f"{told}{units.get(name, '')}"
                 lines.append(f"{name:18s} {entry}")
         lines += [f"{name:18s} {estimate}{units.get(name, '')}" for name, estimate in self.derived.items()]
+        lines.append(
+            f"intervals hold for a drive speed of {self.drive_speed:.5g}{units.get('drive_speed', '')} to "
+            f"within {100 * self.drive_speed_uncertainty:.2g} %"
+        )
         lines.append(f"mean cycle within {self.misfit:.2%} of the drop")
         return "\n".join([*lines, *(f"- {text}" for text in (*self.not_told, *self.notes))])
 
@@ -143,6 +158,7 @@ _UNITS = {
     "free_period": " s",
     "release_force": " N",
     "drag_at_drive_speed": " N",
+    "drive_speed": " m/s",
 }
 
 
@@ -186,18 +202,19 @@ def identify(
         raise InsufficientDataError(
             "no drive of the model makes such a cycle: give known parameters, or check the units"
         )
-    freedom = max(wave.offset.size + 1 - len(best.names), 1)
+    freedom = max(wave.offset.size + 2 - len(best.names), 1)
     scale = max(1.0, best.chi_square / freedom)
     near = [fit for fit in fits if (fit.chi_square - best.chi_square) / scale <= UNDECIDED]
     decided = len(near) == 1
     covariances = [fit.covariance(scale) for fit in near]
-    intervals = _intervals(near, covariances, scale, wave.number)
-    not_told = in_words(best.names, covariances[0])
+    intervals, systematic = _intervals(near, covariances, scale, wave.number)
+    notes = _implausible(record, best, intervals)
+    not_told = in_words(best.names[:-1], covariances[0][:-1, :-1])
     not_told += _lost(best, covariances[0], intervals)
     misfit = best.misfit
-    notes = []
     if misfit > POOR:
         notes.append(f"the model misses the mean cycle by {misfit:.0%} of the drop: take parameters as rough")
+    notes += _contradiction(record, best, intervals)
     if not decided:
         alike = " and ".join(fit.closure for fit in near)
         notes.append(f"the closures {alike} fit alike: the record does not decide between them")
@@ -207,11 +224,13 @@ def identify(
         estimates={name: each for name, each in intervals.items() if name in OF_THE_BELT},
         values=best.parameters(best.values),
         known=given,
-        derived={name: each for name, each in intervals.items() if name in DERIVED},
+        derived={name: each for name, each in intervals.items() if name not in OF_THE_BELT},
+        systematic={name: systematic[name] for name in intervals},
         not_told=tuple(not_told),
         closures=tuple(ClosureFit(f.closure, f.chi_square, f.misfit) for f in fits),
         misfit=misfit,
         drive_speed=record.drive_speed,
+        drive_speed_uncertainty=record.drive_speed_uncertainty,
         waveform=wave,
         fitted=best.curve(best.values),
         notes=tuple(notes),
@@ -230,6 +249,8 @@ def _check(record: CycleRecord, known: Mapping[str, float], closures: tuple[str,
     if record.kind != "stick_slip":
         kind = record.kind.replace("_", " ")
         raise InsufficientDataError(f"the record shows {kind}: a drive is identified from stick-slip")
+    if record.slips < FEWEST_LAPS <= record.falls:
+        raise InsufficientDataError(f"{record.headline()}: leave least_drop out to identify a drive")
     if record.drive_speed is None:
         raise ParameterError("the drive speed is needed to identify a drive: give drive_speed to cycles()")
     for name, value in known.items():
@@ -244,28 +265,42 @@ def _check(record: CycleRecord, known: Mapping[str, float], closures: tuple[str,
 
 def _intervals(
     near: list[DriveFit], covariances: list[FloatArray], scale: float, laps: int
-) -> dict[str, Estimate]:
-    """Every quantity that the record tells: over all closures and drives that fit alike."""
+) -> tuple[dict[str, Estimate], dict[str, float]]:
+    """Every quantity that the record tells, over all closures and drives that fit alike.
+
+    Also the half width that the stated drive speed adds to each; it is added, not in quadrature, for it is
+    the same for every lap: whatever the speed is within what is stated, the interval holds.
+    """
     names = (*near[0].names, *DERIVED)
     reach = quantile(laps - 1)
-    lows, highs = [], []
+    lows, highs, shifts = [], [], []
     for fit, covariance in zip(near, covariances, strict=True):
         gradient = _gradient(fit)
         errors = np.sqrt(np.maximum(np.diag(gradient @ covariance @ gradient.T), 0.0))
-        drives = [fit.values, *fit.alternatives(covariance, scale)]
-        quantities = np.array([_quantities(fit, values[:-1]) for values in drives])
-        lows.append(np.min(quantities, axis=0) - reach * errors)
-        highs.append(np.max(quantities, axis=0) + reach * errors)
-    low, high = np.min(lows, axis=0), np.max(highs, axis=0)
+        shifts.append(NORMAL_REACH * np.abs(gradient @ fit.by_drive_speed()))
+        for values, share in ((fit.values, 0.0), *fit.alternatives(covariance, scale)):
+            # What an alternative costs is gone from what is left for the other values to be off.
+            half = reach * errors * np.sqrt(1.0 - share) + shifts[-1]
+            quantities = _quantities(fit, values[:-1])
+            lows.append(quantities - half)
+            highs.append(quantities + half)
+    low, high, shift = np.min(lows, axis=0), np.max(highs, axis=0), np.max(shifts, axis=0)
     middle = _quantities(near[0], near[0].values[:-1])
-    bound = [fit.at_bound(index) for index in range(len(near[0].names)) for fit in near[:1]] + [False] * len(
-        DERIVED
-    )
-    return {
-        name: _estimate(name, middle[i], low[i], high[i], reach)
+    bound = [near[0].at_bound(index) for index in range(len(near[0].names))] + [False] * len(DERIVED)
+    told = [
+        high[i] - low[i] < 2.0 * reach * TOLD and not bound[i] and (name != "drive_speed" or _better(near, i))
         for i, name in enumerate(names)
-        if high[i] - low[i] < 2.0 * reach * TOLD and not bound[i]
-    }
+    ]
+    rows = [(i, name) for i, name in enumerate(names) if told[i]]
+    intervals = {name: _estimate(name, middle[i], low[i], high[i], reach) for i, name in rows}
+    scales = {name: 1.0 if name in EXPONENTS else abs(each.value) for name, each in intervals.items()}
+    return intervals, {name: float(shift[i]) * scales[name] for i, name in rows}
+
+
+def _better(near: list[DriveFit], index: int) -> bool:
+    """Whether what is known tells the drive speed better than it was stated."""
+    left = max(abs(fit.by_drive_speed()[index]) / fit.stated_error for fit in near)
+    return bool(left < _TOLD_BETTER)
 
 
 def _estimate(name: str, value: float, low: float, high: float, reach: float) -> Estimate:
@@ -282,7 +317,8 @@ def _quantities(fit: DriveFit, values: FloatArray) -> FloatArray:
     drag = Drag(**{name: parameters[name] for name in OF_THE_BELT[2:]}, closure=fit.closure)
     free = 2.0 * np.pi * np.sqrt(parameters["mass"] / parameters["stiffness"])
     held = float(drag.force(parameters["stick_speed"])) if fit.closure == "retained" else drag.breakaway_force
-    return np.concatenate([values, np.log([free, held, float(drag.force(fit.drive_speed))])])
+    driven = float(drag.force(parameters["drive_speed"]))
+    return np.concatenate([values, np.log([free, held, driven])])
 
 
 def _gradient(fit: DriveFit) -> FloatArray:
@@ -294,10 +330,64 @@ def _gradient(fit: DriveFit) -> FloatArray:
     return np.stack(columns, axis=1)
 
 
+def _implausible(record: CycleRecord, best: DriveFit, told: dict[str, Estimate]) -> list[str]:
+    """Take back a free period that no such record has, and say why."""
+    free = told.get("free_period")
+    ends = [name for i, name in enumerate(best.names) if name in ("stiffness", "mass") and best.at_bound(i)]
+    if free is None:
+        return []
+    if ends:
+        why = f"the {' and the '.join(ends)} came to rest at the end of what is believed"
+    elif free.low > LONGEST_OF_LAP * best.period:
+        why = f"{free.value:.3g} s is longer than the lap of {best.period:.3g} s"
+    elif free.high < 2.0 * record.samples.interval:
+        why = f"{free.value:.3g} s is less than two samples"
+    else:
+        return []
+    del told["free_period"]
+    return [f"no free period is given: {why}"]
+
+
+def _contradiction(record: CycleRecord, best: DriveFit, told: Mapping[str, Estimate]) -> list[str]:
+    """Say so where the slope of the force of a held belt over the drive speed is another stiffness.
+
+    The slope, k times the drive speed less the creep, is a measurement of its own.
+    """
+    held = best.held_slope()
+    if held is None:
+        return []
+    over = held.slope / best.drive_speed
+    fitted, given = best.parameters(best.values)["stiffness"], "stiffness" in best.known
+    unsure = np.hypot(
+        quantile(best.wave.number - 1) * held.error / held.slope, record.drive_speed_uncertainty
+    )
+    if not given and "stiffness" not in told:
+        return []
+    if not given:
+        unsure += max(told["stiffness"].high / fitted, fitted / told["stiffness"].low) - 1.0
+    numbers = (
+        f"held, the belt loads the spring by {held.slope:.5g} per s: over the drive speed of "
+        f"{best.drive_speed:.5g} a stiffness of {over:.5g}, "
+        f"but {fitted:.5g} is {'given' if given else 'fitted'}"
+    )
+    if abs(over / held.followed / fitted - 1.0) > unsure:
+        agreed = held.slope / held.followed / fitted
+        return [
+            f"{numbers}; they agree at a drive speed of {agreed:.5g}: check it, and what is given as known"
+        ]
+    if best.known.keys() & _SCALES and "stick_speed" not in best.known and abs(over / fitted - 1.0) > unsure:
+        return [
+            f"{numbers}: the fit takes the difference for creep of the held belt, {1 - held.followed:.1%} of "
+            f"the drive speed; a drive speed of {held.slope / fitted:.5g} would do as well"
+        ]
+    return []
+
+
 def _lost(best: DriveFit, covariance: FloatArray, told: Mapping[str, Estimate]) -> list[str]:
     """Parameters that look told by the fit alone, but are not."""
     errors = best.errors(covariance)
-    lost = [name for i, name in enumerate(best.names) if name not in told and errors[i] < TOLD]
+    names = best.names[:-1]  # the drive speed was stated
+    lost = [name for i, name in enumerate(names) if name not in told and errors[i] < TOLD]
     if not lost:
         return []
     words = ", ".join(name.replace("_", " ") for name in lost)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass as plain_dataclass
 from dataclasses import field
 from pathlib import Path
@@ -113,14 +113,14 @@ _Exponent = Annotated[Any, _Values(None)]
 
 @dataclass(frozen=True)
 class _ParametersTable(Table):
-    stiffness: Annotated[Any, _Values("stiffness")]
-    mass: Annotated[Any, _Values("mass")]
-    transition_force: _Force
-    transition_speed: _Speed
-    ehl_exponent: _Exponent
-    mixed_exponent: _Exponent
-    stick_speed: _Speed
-    drive_speed: _Speed
+    stiffness: Annotated[Any, _Values("stiffness")] = None
+    mass: Annotated[Any, _Values("mass")] = None
+    transition_force: _Force = None
+    transition_speed: _Speed = None
+    ehl_exponent: _Exponent = None
+    mixed_exponent: _Exponent = None
+    stick_speed: _Speed = None
+    drive_speed: _Speed = None
 
 
 @dataclass(frozen=True)
@@ -141,8 +141,26 @@ class _ScenarioFile(Table):
     parameters: _ParametersTable
 
 
-def read_scenario(path: str | Path) -> Scenario:
+#: A line for each parameter that a scenario may lack.
+_LINES = {
+    "stiffness": '"11 N/mm"',
+    "mass": '"11 kg"',
+    "transition_force": '"14 N"',
+    "transition_speed": '"25 mm/s"',
+    "ehl_exponent": "-0.7",
+    "mixed_exponent": "-1.2",
+    "stick_speed": '"0.3 mm/s"',
+    "drive_speed": '"30 mm/s"',
+}
+
+
+def read_scenario(
+    path: str | Path, *, stated: Mapping[str, float] | None = None, stated_in: str = ""
+) -> Scenario:
     """Read a scenario: a table ``[parameters]`` with all eight, and ``[options]``.
+
+    ``stated`` are parameters in SI that the scenario need not state, from the file ``stated_in``; what it
+    states holds.
 
     A parameter is a string with its unit (``"11 N/mm"``), a list of such strings, or a table ``{from, to,
     count}`` with ``spacing = "linear"`` or ``"log"``. With ``units = "consistent"`` among the options it is a
@@ -154,12 +172,34 @@ def read_scenario(path: str | Path) -> Scenario:
         Each names the file and the key.
     """
     path = Path(path)
-    tables = read_tables(path, _ScenarioFile, plain=_is_plain(read_toml(path).get("options")))
+    plain = _is_plain(read_toml(path).get("options"))
+    if stated is not None and plain:
+        raise ParameterError(
+            f"{path.name}: {stated_in} is in SI: write values with their units, and leave out "
+            f'units = "consistent"'
+        )
+    tables = read_tables(path, _ScenarioFile, plain=plain)
     options = {key: value for key, value in vars(tables.options).items() if key != "units"}
-    scenario = Scenario(parameters=vars(tables.parameters), **options)
+    scenario = Scenario(parameters=_filled(path, tables.parameters, stated, stated_in), **options)
     if scenario.sets > MOST_SETS:
         raise ParameterError(f"{path.name}: {scenario.sets:.3g} parameter sets are more than {MOST_SETS:.0e}")
     return scenario
+
+
+def _filled(
+    path: Path, table: _ParametersTable, stated: Mapping[str, float] | None, stated_in: str
+) -> dict[str, FloatArray]:
+    """All eight parameters, those of the scenario first."""
+    parameters: dict[str, FloatArray] = {}
+    for name in PARAMETERS:
+        values = getattr(table, name)
+        if values is None and name in (stated or {}):
+            values = np.array([(stated or {})[name]])
+        if values is None:
+            also = f", and {stated_in} does not state it: add {name} = {_LINES[name]}" if stated_in else ""
+            raise ParameterError(f"{path.name}: [parameters] lacks '{name}'{also}")
+        parameters[name] = values
+    return parameters
 
 
 def _is_plain(options: object) -> bool:

@@ -22,7 +22,7 @@ from hersey.motion.drag import AnyDrag, Drag
 from hersey.motion.parameters import KINDS, MOST_STEPS, OF_THE_BELT, refuse_too_many, whole
 from hersey.motion.simulation import Drivetrain
 from hersey.result import Result, json_record, table_of
-from hersey.units import takes_si
+from hersey.units import argument, takes_si
 
 if TYPE_CHECKING:
     import polars as pl
@@ -195,7 +195,8 @@ def hysteresis(
     samples
         Draws of uncertain parameters (any of ``stiffness``, ``mass``, ``transition_force``,
         ``transition_speed``, ``ehl_exponent``, ``mixed_exponent``, ``stick_speed``), arrays of equal length
-        that go together, for example from `DampingSurface.drag_samples`. They give the intervals.
+        that go together, for example from `DampingSurface.drag_samples`; SI, or with units. They give the
+        intervals.
     sensitivity
         Whether to compute the change of the band with each parameter. Default: where that takes
         milliseconds, that is for a `Drag` with ``retained`` or ``stiction``.
@@ -229,7 +230,8 @@ def hysteresis(
     changes = _sensitivities(train, plain, tolerance, steps) if sensitivity else ({}, {})
     interval, lower_interval, share = None, None, None
     if samples is not None:
-        edges = _sampled(train, plain, samples, tolerance, steps)
+        drawn = {name: _drawn(name, values) for name, values in samples.items()}
+        edges = _sampled(train, plain, drawn, tolerance, steps)
         interval, lower_interval = _middle(edges.upper), _middle(edges.lower)
         share = float(np.mean(edges.upper > edges.transition))
     return HysteresisBand(
@@ -248,6 +250,13 @@ def hysteresis(
         interval=interval,
         lower_interval=lower_interval,
         share_bistable=share,
+    )
+
+
+def _drawn(name: str, values: Any) -> Any:
+    """Draws of a parameter in SI; a name that is not known is refused later."""
+    return (
+        argument(f"samples of {name}", _PARAMETER_KINDS[name], values) if name in _PARAMETER_KINDS else values
     )
 
 

@@ -23,7 +23,7 @@ from hersey.lubrication.film import REGIMES, Film, drag_torque, film_thickness
 from hersey.lubrication.lubricant import Lubricant
 from hersey.lubrication.reynolds import exponent, solve_line_contact
 from hersey.result import Result, json_record, table_of
-from hersey.units import celsius
+from hersey.units import celsius, takes_si
 from hersey.verdict.regime import Regime
 from hersey.verdict.regimes import Hypothesis, judged, listed
 
@@ -91,6 +91,7 @@ class MeasuredFilm(Result):
         )
 
 
+@takes_si(temperature="temperature")
 def measured_film(
     points: SteadyPoints,
     surface: DampingSurface,

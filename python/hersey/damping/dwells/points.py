@@ -44,7 +44,8 @@ class SteadyPoints(Result):
         Columns ``run`` (index), ``start``, ``end`` (s), ``speed``, ``speed_error`` (rad/s), ``torque``,
         ``torque_error`` (N m), ``temperature``, ``temperature_error`` (K, null if not recorded), ``rows``,
         ``effective_rows`` (independent samples), ``settling_rows`` (cut at the ends), ``approach``
-        (``from below``, ``from above`` or ``start``), ``load`` (N, null if not known), ``tare`` (N m). Errors are standard errors of the mean.
+        (``from below``, ``from above`` or ``start``), ``load`` (N, null if not known), ``tare`` (N m).
+        Errors are standard errors of the mean.
         Speed and torque carry the sign of the rotation.
     rejected
         Every other stretch, with the reason. Rows of the table and of this list add up to the log's.

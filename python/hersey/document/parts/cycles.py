@@ -36,9 +36,16 @@ class DrivePart(Part):
     known: dict[str, float]
     best_fit: dict[str, float | None]
     derived: dict[str, OpenInterval]
+    systematic: dict[str, float] = Field(
+        default_factory=dict,
+        description="half width that the uncertainty of the drive speed adds to an interval",
+    )
     not_told: list[str]
     misfit: float
     drive_speed: float = Field(description="m/s")
+    drive_speed_uncertainty: float | None = Field(
+        default=None, description="share, half of its 95 % interval"
+    )
     notes: list[str]
 
 
@@ -48,7 +55,11 @@ class CyclesPart(Part):
     kind: Literal["steady_sliding", "inertial", "stick_slip"]
     quantity: str
     slips: int
+    falls: int | None = Field(default=None, description="beyond the noise, counted or not")
     drive_speed: float | None = Field(description="m/s; rad/s with a torque")
+    drive_speed_uncertainty: float | None = Field(
+        default=None, description="share, half of its 95 % interval"
+    )
     loading_slope: float | None = Field(description="unit of the trace per s")
     stiffness: float | None = Field(description="unit of the trace per m; per rad with a torque")
     free_period: float | None = Field(description="s")

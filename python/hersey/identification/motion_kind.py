@@ -1,0 +1,105 @@
+"""What kind of motion the falls of a trace make, whatever slips are counted of it."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from hersey.arrays import FloatArray
+from hersey.identification.detection import FEWEST_SLIPS
+from hersey.identification.sampling import Samples
+from hersey.identification.slip_figures import SlipFigures
+from hersey.identification.slip_shape import held_slope, slip_duration, stick_angle
+
+#: A belt that sticks for a smaller share of the lap merely touches rest: the oscillation is inertial.
+LEAST_STUCK = 0.15
+#: An oscillation is more regular than this (deviation of the period over its mean); drift and wear are not.
+_REGULAR = 0.25
+#: Falls without a rhythm are slips if the typical one is this many times the least that noise does not make.
+_CLEAR = 2.0
+#: A free period is longer than a lap by no more than this: a belt that sticks only adds to it.
+LONGEST_OF_LAP = 1.3
+#: A fall that lasts fewer samples tells no duration.
+_RESOLVED = 3.0
+
+
+class Motion(NamedTuple):
+    """The kind, with the figures that are the motion's own.
+
+    ``kind`` is ``steady_sliding``, ``inertial`` or ``stick_slip``; ``falls`` the number of falls beyond the
+    noise, ``greatest`` the greatest of them. ``loading_slope`` is the slope of the force of a held belt, per
+    s, ``free_period`` 2 pi sqrt(m/k), s, and not a number where the trace gives none that is plausible.
+    """
+
+    kind: str
+    falls: int
+    greatest: float
+    loading_slope: float
+    free_period: float
+    stuck_fraction: float
+    notes: tuple[str, ...]
+
+
+def motion_of(samples: Samples, figures: SlipFigures, least: float) -> Motion:
+    """Return the kind of motion of a trace from all its falls beyond the noise, which are of ``least``."""
+    falls = figures.middle.size
+    greatest = float(np.max(figures.drop)) if falls else float("nan")
+    stuck = _stuck_fraction(figures) if figures.period.size >= FEWEST_SLIPS - 1 else 0.0
+    kind, notes = _kind(figures, stuck, least)
+    if kind == "steady_sliding":
+        nan = float("nan")
+        return Motion(kind, falls, greatest, nan, nan, 0.0, tuple(notes))
+    free, why = _free_period(samples, figures)
+    return Motion(kind, falls, greatest, _loading_slope(kind, figures), free, stuck, (*notes, *why))
+
+
+def is_regular(period: FloatArray) -> bool:
+    """Whether laps are as regular as those of an oscillation."""
+    return bool(float(np.std(period)) <= _REGULAR * float(np.mean(period)))
+
+
+def _kind(figures: SlipFigures, stuck: float, least: float) -> tuple[str, list[str]]:
+    if figures.period.size < FEWEST_SLIPS - 1:
+        apart = "gaps part the falls: no two are known to follow each other"
+        return "steady_sliding", [apart] if figures.middle.size >= FEWEST_SLIPS else []
+    regular = is_regular(figures.period)
+    if stuck >= LEAST_STUCK and (regular or float(np.median(figures.drop)) > _CLEAR * least):
+        return "stick_slip", []
+    if stuck >= LEAST_STUCK:
+        return "steady_sliding", ["falls hardly beyond the noise come without a rhythm: that is no cycle"]
+    if not regular:
+        return "steady_sliding", ["the force wanders irregularly without sticking: that is no cycle"]
+    return "inertial", []
+
+
+def _stuck_fraction(figures: SlipFigures) -> float:
+    drop, duration, slope, lap = _typical(figures.drop, figures.duration, figures.slope, figures.period)
+    angle = stick_angle(drop, duration, slope)
+    return max(0.0, 1.0 - slip_duration(duration, angle) / lap) if angle > 0 else 0.0
+
+
+def _loading_slope(kind: str, figures: SlipFigures) -> float:
+    drop, duration, slope = _typical(figures.drop, figures.duration, figures.slope)
+    return held_slope(drop, duration, 0.0) if kind == "inertial" else slope
+
+
+def _free_period(samples: Samples, figures: SlipFigures) -> tuple[float, list[str]]:
+    """Twice the typical fall, from its steep part; or why that is none."""
+    steep, lap = _typical(figures.steep, figures.period)
+    free, lasts = 2.0 * steep, samples.interval * samples.value.size
+    if steep < _RESOLVED * samples.interval:
+        why = f"a fall lasts {steep / samples.interval:.1f} samples, too few to time it"
+    elif free > LONGEST_OF_LAP * lap:
+        why = f"twice a fall is {free:.3g} s, longer than the lap of {lap:.3g} s: the fall is no free one"
+    elif free * FEWEST_SLIPS > lasts:
+        why = (
+            f"twice a fall is {free:.3g} s, which a trace of {lasts:.3g} s does not hold {FEWEST_SLIPS} times"
+        )
+    else:
+        return free, []
+    return float("nan"), [f"no free period is given: {why}"]
+
+
+def _typical(*columns: FloatArray) -> tuple[float, ...]:
+    return tuple(float(np.median(column)) for column in columns)

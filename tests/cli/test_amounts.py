@@ -1,0 +1,139 @@
+"""Numbers of a belt with units, bare, or from the machine's file: `simulate`, `hysteresis` and `sweep`."""
+
+from __future__ import annotations
+
+import inspect
+import json
+import shlex
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from hersey.cli.amounts import amounts
+from hersey.cli.hysteresis import hysteresis
+from hersey.cli.simulate import simulate
+from hersey.errors import HerseyError, ParameterError, UnitError
+from tests.cli.command import run
+from tests.conftest import ROOT
+
+MACHINE = ROOT / "examples" / "machine.toml"
+BELT = ("stiffness", "mass", "transition_force", "transition_speed", "stick_speed")
+OUNCE, INCH = 0.45359237 / 16 * 9.80665, 0.0254
+
+
+def of(
+    *, machine: Path | None = None, needed: tuple[str, ...] = BELT, **given: Any
+) -> dict[str, float | None]:
+    texts: dict[str, str | None] = dict.fromkeys(needed)
+    return dict(amounts(texts | given, needed=needed, machine_file=machine).values)
+
+
+def test_bare_numbers_are_in_any_consistent_set() -> None:
+    assert of() == dict(zip(BELT, (1000.0, 1.0, 50.0, 1.0, 0.01), strict=True))
+    assert of(stiffness="2e3") == of() | {"stiffness": 2000.0}
+    assert of(duration="500 ms", needed=("stiffness", "duration")) == {"stiffness": 1000.0, "duration": 0.5}
+
+
+def test_numbers_with_units_are_in_si_and_so_is_the_baseline_beside_them() -> None:
+    values = of(stiffness="11 N/mm", mass="2 lb")
+    assert values["stiffness"] == pytest.approx(11_000.0)
+    assert values["mass"] == pytest.approx(0.90718474)
+    assert values["transition_force"] == pytest.approx(50 * OUNCE, rel=1e-12)
+    assert values["stick_speed"] == pytest.approx(0.01 * INCH, rel=1e-12)
+    filled = amounts({"mass": None, "stiffness": "1 N/m"}, needed=("mass", "stiffness"))
+    assert filled.in_si
+    assert filled.values["mass"] == pytest.approx(OUNCE / INCH, rel=1e-12)
+    assert filled.words == [
+        "- in SI: m, s, N, kg",
+        "- not given, so that of the paper's baseline: mass 10.95 kg",
+    ]
+
+
+def test_the_machine_fills_what_is_not_given() -> None:
+    force: dict[str, Any] = {"transition_force": "14 N", "transition_speed": "25 mm/s"}
+    values = of(machine=MACHINE, **force)
+    assert values == pytest.approx(dict(zip(BELT, (11_000.0, 11.0, 14.0, 0.025, 3e-4), strict=True)))
+    assert of(machine=MACHINE, mass="1 kg", **force)["mass"] == 1.0
+
+
+@pytest.mark.parametrize(
+    ("given", "machine", "says"),
+    [
+        ({"stiffness": "11 N/mm", "mass": "1"}, None, "--mass 1 has no unit beside --stiffness '11 N/mm'"),
+        ({"mass": "1"}, MACHINE, "--mass 1 has no unit beside --machine: write it with one, as '1 kg'"),
+        ({"stiffness": "11 N/mmm"}, None, "--stiffness: unknown unit 'N/mmm'"),
+        ({"stiffness": "11 kg"}, None, "--stiffness: unit 'kg' is not a unit of stiffness"),
+        ({"mass": "heavy"}, None, "--mass is 'heavy': write a number"),
+        (
+            {},
+            MACHINE,
+            r"machine.toml does not state the transition force \(the drag where its branches meet\): add ",
+        ),
+    ],
+)
+def test_mistakes_are_named_with_the_way_out(given: dict[str, Any], machine: Path | None, says: str) -> None:
+    with pytest.raises((ParameterError, UnitError), match=says):
+        of(machine=machine, **given)
+
+
+def test_what_a_message_says_to_add_works(tmp_path: Path) -> None:
+    """From the machine alone to a result, by nothing but what each message says."""
+    typed: list[str] = ["--machine", str(MACHINE)]
+    for _ in range(5):
+        done = run("simulate", *typed, "--json", cwd=tmp_path)
+        if done.returncode == 0:
+            break
+        typed += shlex.split(done.stderr.split(": add ")[1])
+    assert json.loads(done.stdout)["kind"] in ("stick_slip", "steady_sliding")
+    assert typed[2:] == [
+        "--transition-force", "14 N", "--transition-speed", "25 mm/s", "--drive-speed", "120 mm/s",
+    ]  # fmt: skip
+
+
+def test_the_same_belt_in_both_units(tmp_path: Path) -> None:
+    """The paper's baseline, with one of its numbers in its unit: the same frequency, speeds in m/s."""
+    bare, si = (
+        json.loads(run(*command, "--json", cwd=tmp_path).stdout)
+        for command in (["simulate"], ["simulate", "--stiffness", "1000 ozf/in"])
+    )
+    assert si["frequency"] == pytest.approx(bare["frequency"], rel=1e-6)
+    assert si["speed_max"] == pytest.approx(INCH * bare["speed_max"], rel=1e-6)
+    step = ["--from-speed", "2.5 in/s", "--to-speed", "1.2 in/s"]
+    band = json.loads(run("hysteresis", *step, "--json", cwd=tmp_path).stdout)
+    assert band["upper"] == pytest.approx(INCH * 2.173493478, rel=1e-6)
+    assert band["step"]["sticks"]
+
+
+def test_a_sweep_takes_from_the_machine_what_its_file_lacks(tmp_path: Path) -> None:
+    lines = [
+        '[parameters]', 'transition_force = "14 N"', 'ehl_exponent = -0.7', 'mixed_exponent = -1.2',
+        'drive_speed = ["20 mm/s", "90 mm/s"]',
+    ]  # fmt: skip
+    path = tmp_path / "sweep.toml"
+    path.write_text("\n".join(lines))
+    refused = run("sweep", path, "--machine", MACHINE, cwd=tmp_path)
+    assert "[parameters] lacks 'transition_speed', and machine.toml does not state it: add " in refused.stderr
+    lines.append(refused.stderr.strip().split(": add ")[1])
+    path.write_text("\n".join(lines))
+    assert run("sweep", path, cwd=tmp_path).stderr.endswith("[parameters] lacks 'stiffness'\n")
+    done = json.loads(run("sweep", path, "--machine", MACHINE, "--json", cwd=tmp_path).stdout)
+    assert done["kinds"] == {"stick_slip": 1, "steady_sliding": 1}
+    path.write_text("\n".join([*lines, "[options]", 'units = "consistent"']))
+    assert "is in SI" in run("sweep", path, "--machine", MACHINE, cwd=tmp_path).stderr
+
+
+def test_every_number_of_a_belt_has_a_kind() -> None:
+    """No option of a dimension is a plain number: each is read by `amounts`."""
+    plain = [
+        f"{command.__name__} {name}"
+        for command in (simulate, hysteresis)
+        for name, parameter in inspect.signature(command).parameters.items()
+        if "float" in str(parameter.annotation)
+    ]
+    assert plain == [
+        f"{verb} {of}_exponent" for verb in ("simulate", "hysteresis") for of in ("ehl", "mixed")
+    ]
+    for name in ("bristle_stiffness", "bristle_damping", "from_speed"):
+        with pytest.raises(HerseyError, match="--" + name.replace("_", "-")):
+            amounts({name: "1 K"}, needed=())
