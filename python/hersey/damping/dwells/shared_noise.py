@@ -30,7 +30,7 @@ SLOW = 6
 #: Powers beyond so many times their expectation are ripple, not noise; the first few are never left out.
 RIPPLE, NEVER_RIPPLE = 16.0, 3
 #: Dwells do not share a shape if their slow parts scatter by so many standard errors more than chance.
-DISAGREE = 3.0
+DISAGREE = 5.0
 #: Longest time of the mixture, as a share of a dwell: of slower noise a dwell shows only the steepest part.
 LONGEST_TIME = 0.22
 #: Steps of the search for the mixture, and those after ripple was left out; from one time to the next.

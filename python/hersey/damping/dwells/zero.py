@@ -176,7 +176,7 @@ class Zero:
             return (
                 (
                     f"While the drive stands, torque differs by {rise:.3g} N m from stretch to stretch "
-                    f"(p = {p:.1g}): the zero drifts. It is not subtracted; if the drive stands free, "
+                    f"({_chance(p)}): the zero drifts. It is not subtracted; if the drive stands free, "
                     "say --tare standing.",
                 )
                 if drifts
@@ -186,7 +186,7 @@ class Zero:
         if drifts:
             rise = float(np.ptp(self.at(times)))
             out.append(
-                f"The tare drifts by {rise:.3g} N m over the dwells (p = {p:.1g}, {count} standing "
+                f"The tare drifts by {rise:.3g} N m over the dwells ({_chance(p)}, {count} standing "
                 "stretches): each dwell has the tare of its time, and the error of it."
             )
         if count == 2:
@@ -195,6 +195,10 @@ class Zero:
                 "did between and beyond them."
             )
         return tuple(out)
+
+
+def _chance(p_value: float) -> str:
+    return f"p = {p_value:.1g}" if p_value > 1e-12 else "p < 1e-12"
 
 
 _ONE = (
