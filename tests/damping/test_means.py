@@ -20,7 +20,7 @@ SPEEDS = (5.0, 10.0, 20.0, 40.0, 80.0, 140.0)
 
 def torque(rpm: float, celsius: float) -> float:
     """Torque of B = 60 T^-1.2 w^-0.8, mN m."""
-    return 60e3 * celsius**-1.2 * (rpm * RPM) ** 0.2
+    return float(60e3 * celsius**-1.2 * (rpm * RPM) ** 0.2)
 
 
 def table(header: str = "Temperature [degC],Speed [rpm],Torque [mN*m],Torque error [mN*m],n") -> str:

@@ -122,6 +122,7 @@ def test_ripple_is_no_noise() -> None:
     spread = float(np.std([np.mean(d) for d in dwells]))
     assert spread < np.mean(errors) < 2.0 * spread  # of a ripple of amplitude 1
     assert np.mean(errors) < 0.01
+    assert together.prior == np.inf
 
 
 @pytest.mark.parametrize("order", [0, 1, 2, 7])

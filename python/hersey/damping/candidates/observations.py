@@ -69,7 +69,7 @@ class Observations:
             torque_error=points.column("torque_error") / torque,
             speed_error=points.column("speed_error") / speed,
             temperature_error=zero if kelvin is None else points.column("temperature_error"),
-            tare=points.tare_errors / torque[:, None],
+            tare=points.tare_errors / points.column("torque")[:, None],
             visit=_visits(run, group),
             run=run,
             cluster=run if by_run else _levels(run, group, speed),
