@@ -38,7 +38,12 @@ def cautions(points: SteadyPoints, surface: DampingSurface) -> list[str]:
             )
     out += _tare_warning(points)
     out += points.notes
-    out += [dropped] if (dropped := points.dropped()) else []
+    if loads := points.varying_load:
+        low, high = loads
+        out.append(
+            f"The load differs from {low:.3g} to {high:.3g} N, and one law is fitted to all dwells: fit "
+            "each load alone."
+        )
     swinging = [r for r in points.rejected if "stick-slip" in r.reason]
     if swinging:
         out.append(

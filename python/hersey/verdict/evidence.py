@@ -18,7 +18,7 @@ from hersey.damping.dwells import SteadyPoints, groups_of_temperature
 from hersey.damping.estimate import Estimate, quantile
 from hersey.damping.surface import DampingSurface
 from hersey.errors import InsufficientDataError, ParameterError, UnfinishedError
-from hersey.lubrication.contact import Contact
+from hersey.lubrication.contact import Contact, nip_width
 from hersey.lubrication.film import REGIMES, Film, drag_torque, film_thickness
 from hersey.lubrication.lubricant import Lubricant
 from hersey.lubrication.reynolds import exponent, solve_line_contact
@@ -130,7 +130,8 @@ def measured_film(
     film = film_thickness(contact, lubricant, speed=speed, temperature=kelvin)
     expected = drag_torque(contact, lubricant, speed=speed, temperature=kelvin)
     radius, nip = contact.roll_radius, film.nip
-    thickness = film.viscosity * nip.width * contact.length * speed * radius**2 / torque
+    load, width = _loaded(points, contact, nip.width)
+    thickness = film.viscosity * width * contact.length * speed * radius**2 / torque
     relative = quantile(surface.freedom) * np.hypot(
         points.column("torque_error") / torque, surface.statistics.scatter
     )
@@ -148,9 +149,9 @@ def measured_film(
         low=thickness / reach,
         high=thickness * reach,
         systematic=systematic,
-        friction=torque / (radius * contact.load),
-        hersey_number=film.viscosity * sliding / nip.pressure_mean,
-        sommerfeld_number=film.viscosity * sliding / contact.load_per_length,
+        friction=torque / (radius * load),
+        hersey_number=film.viscosity * sliding * width * contact.length / load,
+        sommerfeld_number=film.viscosity * sliding * contact.length / load,
         lambda_ratio=None if roughness is None else thickness / roughness,
         predicted=film,
         predicted_torque=expected,
@@ -160,6 +161,15 @@ def measured_film(
         on_film=rises.astype(float),
         grip=grip,
     )
+
+
+def _loaded(points: SteadyPoints, contact: Contact, width: float) -> tuple[FloatArray, FloatArray]:
+    """Load of each dwell, N, as the log has it or else the contact, and the nip's width under it, m."""
+    loads = points.table["load"] if "load" in points.table.columns else None
+    if loads is None or loads.null_count():
+        return np.full(len(points), contact.load), np.full(len(points), width)
+    recorded = loads.to_numpy()
+    return recorded, np.asarray(nip_width(contact, load=recorded))
 
 
 def _rises(surface: DampingSurface, speed: float, kelvin: float) -> bool:

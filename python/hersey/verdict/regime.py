@@ -102,7 +102,7 @@ def regime(points: SteadyPoints, surface: DampingSurface) -> Regime:
         by.named,
         by.why_unnamed,
         by.lack_of_fit,
-        _verdict(surface, by),
+        " ".join(filter(None, (_verdict(surface, by), points.dropped()))),
     )
 
 

@@ -150,6 +150,15 @@ class SteadyPoints(Result):
             f"{torque.min():.4g} to {torque.max():.4g} N m"
         )
 
+    @property
+    def varying_load(self) -> tuple[float, float] | None:
+        """Least and greatest load of the dwells, N, if they differ by more than `SAME_LOAD`."""
+        loads = self.table["load"].drop_nulls() if "load" in self.table.columns else pl.Series()
+        if loads.is_empty():
+            return None
+        low, high = (float(np.asarray(loads).min()), float(np.asarray(loads).max()))
+        return (low, high) if high > (1.0 + SAME_LOAD) * low else None
+
     def dropped(self) -> str:
         """Return in a sentence which dwells are not used, at which speeds, and why; empty if none are."""
         lost = [r for r in self.rejected if r.is_dwell]
@@ -246,17 +255,10 @@ def _notes_of_means(table: MeansTable) -> tuple[str, ...]:
     errors = (
         "as stated" if table.stated_errors else "none are stated: the scatter about the law stands for them"
     )
-    notes = [
+    return (
         f"{name}: a table of means, one row per dwell. Without a trace, stick-slip, drift within a dwell, "
-        f"settling, the zero of the torque and the clock cannot be judged. Errors of torque: {errors}."
-    ]
-    loads = [row.load for row in table.means if row.load is not None]
-    if loads and max(loads) > (1.0 + SAME_LOAD) * min(loads):
-        notes.append(
-            f"The load differs from {min(loads):.3g} to {max(loads):.3g} N: one law of torque is fitted to "
-            "all rows; fit each load alone."
-        )
-    return tuple(notes)
+        f"settling, the zero of the torque and the clock cannot be judged. Errors of torque: {errors}.",
+    )
 
 
 #: Loads closer than this share count as the same.
