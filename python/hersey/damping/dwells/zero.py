@@ -23,7 +23,7 @@ from hersey.log.torque_log import Run
 SIZES = (0.0, 0.1, 0.2, 0.4, 0.8, 1.6, 3.2)
 #: Disturbances of the zero with less than this share of the variance of the largest are left to the dwells,
 #: and those that leave no dwell more than this share of its own error; there are so many at the most.
-SMALL, NEGLIGIBLE, MOST_DISTURBANCES = 1e-6, 0.3, 12
+SMALL, NEGLIGIBLE, MOST_DISTURBANCES = 1e-6, 0.1, 30
 #: Times at which disturbances are computed at the most; between them they are straight.
 MOST_TIMES = 300
 #: A difference of stretches is no chance below this p-value.
