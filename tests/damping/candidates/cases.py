@@ -9,6 +9,7 @@ import numpy as np
 from hersey.damping.candidates.branched import Law
 from hersey.damping.candidates.fitting import LawFit
 from hersey.damping.candidates.observations import Inputs, Observations
+from hersey.damping.candidates.shared_errors import Freedom
 from hersey.damping.candidates.stribeck import StribeckLaw
 from tests.damping.candidates.test_comparison import dwells
 
@@ -30,18 +31,22 @@ def hand_fit(
 ) -> LawFit:
     """Return a fit that nobody fitted, with numbers of its own everywhere."""
     size = len(values)
+    covariance = some_covariance(size) if covariance is None else covariance
     random = np.random.default_rng(11)
     return LawFit(
         law=law,
         values=np.array(values),
-        tare=0.4,
-        covariance=some_covariance(size) if covariance is None else covariance,
+        effects=np.array([0.4]),
+        disturbances=np.linspace(0.01, 0.02, points)[:, None],
+        covariance=covariance,
         clustered=some_covariance(size, 0.03, seed=4),
         scatter=scatter,
+        shared=(),
         errors=random.uniform(0.01, 0.06, points),
         residuals=0.03 * random.standard_normal(points),
         cost=17.0,
         deviance=deviance,
+        freedoms=Freedom(points - size, covariance),
     )
 
 

@@ -57,7 +57,8 @@ class ActivationEnergies:
 
 def scaled(energy: Estimate, factor: float) -> Estimate:
     """Return an energy in another unit."""
-    return Estimate(*(factor * v for v in (energy.value, energy.error, energy.low, energy.high)))
+    numbers = (energy.value, energy.error, energy.low, energy.high)
+    return Estimate(*(factor * v for v in numbers), energy.freedom, abs(factor) * energy.systematic)
 
 
 def activation_energies(
