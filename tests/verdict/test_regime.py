@@ -240,8 +240,8 @@ def test_the_verdict_of_one_branch_in_words() -> None:
     assert "lies between Dowson-Higginson EHL and dry Coulomb friction or a rigid film" in said(-0.85, 0.01)
     assert said(-1.2, 0.06 / reach) == (
         "Damping varies as speed to the power -1.20 [-1.26, -1.14], which has the exponent of falling "
-        "branch. Torque falls as speed rises over the whole range: mixed or boundary lubrication can do so, and "
-        "stick and slip."
+        "branch. Torque falls as speed rises over the whole range: mixed or boundary lubrication can do so, "
+        "and stick and slip."
     )
     assert "No transition" in said(-1.02, 0.03)  # it may as well be level
 
