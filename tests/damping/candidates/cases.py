@@ -6,11 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from hersey.damping.candidates.branched import Law
-from hersey.damping.candidates.fitting import LawFit
+from hersey.damping.candidates.fitting import AnyLaw, LawFit
 from hersey.damping.candidates.observations import Inputs, Observations
 from hersey.damping.candidates.shared_errors import Freedom
-from hersey.damping.candidates.stribeck import StribeckLaw
 from tests.damping.candidates.test_comparison import dwells
 
 
@@ -21,7 +19,7 @@ def some_covariance(size: int, scale: float = 0.02, seed: int = 3) -> np.ndarray
 
 
 def hand_fit(
-    law: Law | StribeckLaw,
+    law: AnyLaw,
     values: list[float],
     *,
     covariance: np.ndarray | None = None,
@@ -50,7 +48,7 @@ def hand_fit(
     )
 
 
-def even(law: Law | StribeckLaw, values: list[float], size: float = 0.02, seed: int = 5) -> Observations:
+def even(law: AnyLaw, values: list[float], size: float = 0.02, seed: int = 5) -> Observations:
     """Return dwells with errors of every kind whose residuals are all of one size: none is an outlier."""
     data = dwells(law, values, scatter=0.0)
     random = np.random.default_rng(seed)

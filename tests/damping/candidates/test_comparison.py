@@ -13,7 +13,7 @@ from hersey.damping.candidates import Candidate, Observations, compare_models
 from hersey.damping.candidates.branched import FREE, HELD, ONE, Law
 from hersey.damping.candidates.candidate import all_candidates
 from hersey.damping.candidates.errors_in_variables import orthogonal_fit
-from hersey.damping.candidates.fitting import fit_law, left_out
+from hersey.damping.candidates.fitting import AnyLaw, fit_law, left_out
 from hersey.damping.candidates.observations import Inputs
 from hersey.damping.candidates.stribeck import StribeckLaw
 from hersey.damping.candidates.thermal import ARRHENIUS, CELSIUS, GAS_CONSTANT, KELVIN, VFT, Thermal
@@ -25,7 +25,7 @@ TEMPERATURES = np.array([363.0, 393.0, 423.0, 453.0])
 
 
 def dwells(
-    law: Law | StribeckLaw,
+    law: AnyLaw,
     values: list[float],
     *,
     temperatures: np.ndarray | None = TEMPERATURES,
