@@ -207,9 +207,8 @@ def _of_the_log(log_says: Regime) -> str:
     """The film's sentence on what the log alone says."""
     *some, last = [e.name for e in log_says.explanations]
     listed = f"{', '.join(some)} and {last}" if some else last
-    if log_says.named is None:
-        return f"The log alone names no regime; not excluded: {listed}."
-    return f"This contradicts the log, which has the exponent of {log_says.named}."
+    assert log_says.named is None  # a rigid film beside a little friction measures that exponent too
+    return f"The log alone names no regime; not excluded: {listed}."
 
 
 def test_the_verdict_in_whole_sentences(says: Verdict, log_says: Regime) -> None:
@@ -247,6 +246,12 @@ def test_where_the_log_names_no_regime_the_contact_names_none(
         text = verdict(measured, replace(surface, c=c), contact, oil, says).text
         assert words in text
         assert ("is the one of that regime" in text) == (says.named == "soft EHL")
+    c = Estimate(-0.7, 1e-3, -0.702, -0.698)
+    says = seen(log_says, "Dowson-Higginson EHL")
+    text = verdict(measured, replace(surface, c=c), contact, oil, says).text
+    (sentence,) = (s for s in text.split(". ") if "contradict" in s)
+    assert "the log" in sentence
+    assert sentence.endswith("has the exponent of Dowson-Higginson EHL")
     thermal = verdict(measured, surface, contact, oil, log_says).thermal_expected
     at = float(measured.temperature.mean())
     share = (at - 273.15) / at
