@@ -203,55 +203,48 @@ def test_a_fit_in_kelvin_is_taken_as_it_is(
     assert found.thermal.value == surface.b.value
 
 
-def _of_the_log(log_says: Regime) -> str:
-    """The film's sentence on what the log alone says."""
-    *some, last = [e.name for e in log_says.explanations]
-    listed = f"{', '.join(some)} and {last}" if some else last
-    assert log_says.named is None  # a rigid film beside a little friction measures that exponent too
-    return f"The log alone names no regime; not excluded: {listed}."
-
-
 def test_the_verdict_in_whole_sentences(says: Verdict, log_says: Regime) -> None:
-    thermal = "agrees" if says.thermal.low <= says.thermal_expected <= says.thermal.high else "disagrees"  # type: ignore[union-attr]
-    assert says.text == (
+    assert log_says.named is None  # a rigid film beside a little friction measures that exponent too
+    assert says.thermal is not None
+    agrees = says.thermal.low <= says.thermal_expected <= says.thermal.high
+    sentences = (
         "The regime chart puts this contact in the isoviscous-elastic regime, where damping goes as speed to "
         f"the power {says.expected:.2f}; measured {says.exponent}. "
-        f"Solved numerically for this roll, the film gives the power {says.solved:.2f}. "
-        f"{_of_the_log(log_says)} "
-        "Eq. 5 of the paper (Dowson-Higginson) does not apply to this contact, whatever the exponent. "
+        f"Solved numerically for this roll, the film gives the power {says.solved:.2f}. ",
+        "The log alone names no regime",
+        " Eq. 5 of the paper (Dowson-Higginson) does not apply to this contact, whatever the exponent. "
         f"With temperature (K) damping goes to the power {says.thermal}; the film of this lubricant predicts "
-        f"{says.thermal_expected:.2f}, which {thermal}."
+        f"{says.thermal_expected:.2f}, which {'agrees' if agrees else 'disagrees'}.",
     )
+    places = [says.text.find(sentence) for sentence in sentences]
+    assert places[0] >= 0
+    assert places == sorted(places)
+    assert says.text.endswith(sentences[-1])
 
 
 def test_where_the_log_names_no_regime_the_contact_names_none(
     measured: MeasuredFilm, surface: DampingSurface, contact: Contact, oil: Lubricant, log_says: Regime
 ) -> None:
-    for value, says, words in (
-        (-0.58, seen(log_says, "soft EHL"), "The measured exponent is the one of that regime."),
-        (-0.3, seen(log_says, None, "THIS", "THAT"), "names no regime; not excluded: THIS and THAT."),
-        (
-            -0.7,
-            seen(log_says, "Dowson-Higginson EHL"),
-            "contradicts the log, which has the exponent of Dowson-",
-        ),
-        # the exponent is that of the regime chart, but the log does not let it be named
-        (
-            -0.58,
-            seen(log_says, None, "soft EHL", "THAT"),
-            "names no regime; not excluded: soft EHL and THAT.",
-        ),
-    ):
+    def text(value: float, says: Regime) -> str:
         c = Estimate(value, 1e-3, value - 2e-3, value + 2e-3)
-        text = verdict(measured, replace(surface, c=c), contact, oil, says).text
-        assert words in text
-        assert ("is the one of that regime" in text) == (says.named == "soft EHL")
-    c = Estimate(-0.7, 1e-3, -0.702, -0.698)
-    says = seen(log_says, "Dowson-Higginson EHL")
-    text = verdict(measured, replace(surface, c=c), contact, oil, says).text
-    (sentence,) = (s for s in text.split(". ") if "contradict" in s)
-    assert "the log" in sentence
-    assert sentence.endswith("has the exponent of Dowson-Higginson EHL")
+        return verdict(measured, replace(surface, c=c), contact, oil, says).text
+
+    same = text(-0.58, seen(log_says, "soft EHL"))
+    assert "The measured exponent is the one of that regime." in same
+    assert "contradict" not in same
+    # the exponent is that of the regime chart, but the log does not let it be named
+    for value, keys in ((-0.58, ("soft EHL", "THAT")), (-0.3, ("THIS", "THAT"))):
+        unnamed = text(value, seen(log_says, None, *keys))
+        assert "The log alone names no regime" in unnamed
+        assert "is the one of that regime" not in unnamed
+    other = text(-0.7, seen(log_says, "Dowson-Higginson EHL"))
+    assert "contradict" in other
+    assert "is the one of that regime" not in other
+
+
+def test_the_exponent_of_temperature_agrees_within_its_interval(
+    measured: MeasuredFilm, surface: DampingSurface, contact: Contact, oil: Lubricant, log_says: Regime
+) -> None:
     thermal = verdict(measured, surface, contact, oil, log_says).thermal_expected
     at = float(measured.temperature.mean())
     share = (at - 273.15) / at
