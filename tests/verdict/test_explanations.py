@@ -93,6 +93,18 @@ def test_torque_that_is_not_monotone_does_not_fall_over_the_whole_range() -> Non
     assert "whole range" in seen(SPEEDS**-0.2).verdict
 
 
+def test_torque_falls_over_the_whole_range_only_if_it_falls_at_both_ends() -> None:
+    """Where chance lets it rise at one end, it is not said of the whole."""
+    said = set()
+    for seed in range(10):
+        found = seen(SPEEDS**-0.15, 0.06, seed)
+        if "Torque falls" in found.verdict and found.lack_of_fit is not None:
+            falls = max(found.lack_of_fit.local_exponents) < -1.0
+            assert ("over the whole range" in found.verdict) == falls
+            said.add(falls)
+    assert said == {True, False}
+
+
 def test_too_few_speeds_name_nothing() -> None:
     w, t = grid(np.array([1.0, 4.0, 12.0]), np.array([90.0, 120.0, 150.0]))
     points = points_of(w, 62.0 * t**-0.9 * w**0.3, t, error=0.002)

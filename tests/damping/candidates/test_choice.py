@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hersey.damping.candidates.branched import FREE, HELD, ONE, Law
+from hersey.damping.candidates.branched import COULOMB_VISCOUS, FREE, HELD, ONE, Law
 from hersey.damping.candidates.candidate import Candidate, all_candidates
 from hersey.damping.candidates.collapse import temperature_collapse
 from hersey.damping.candidates.comparison import (
@@ -20,6 +20,7 @@ from hersey.damping.candidates.comparison import (
     compare_models,
     ranked,
 )
+from hersey.damping.candidates.constant_plus import ConstantPlusLaw
 from hersey.damping.candidates.energy import activation_energies
 from hersey.damping.candidates.errors_in_variables import OrthogonalFit, orthogonal_fit
 from hersey.damping.candidates.fitting import fit_law, left_out, resampled
@@ -257,6 +258,15 @@ def test_energies_come_from_the_likeliest_arrhenius_law() -> None:
     assert _energies((arrhenius(ONE, 0.5), free), chosen, DATA) == expected(arrhenius(ONE, 0.5), None)
     curve = replace(held, candidate=Candidate(ARRHENIUS, ONE, stribeck=True))
     assert _energies((curve, free), chosen, DATA) == expected(free, free)
+    # of friction beside a film only the film has an energy, not the torque
+    law = ConstantPlusLaw(Thermal(ARRHENIUS, REFERENCE), 0.0)
+    friction = replace(
+        held,
+        candidate=Candidate(ARRHENIUS, COULOMB_VISCOUS),
+        fit=hand_fit(law, [0.1, 2.8, -0.5], points=len(DATA)),
+    )
+    assert _energies((friction, held, free), chosen, DATA) == expected(held, free)
+    assert _energies((friction,), chosen, DATA).torque is None
     assert _energies((power,), chosen, DATA).torque is None
 
 

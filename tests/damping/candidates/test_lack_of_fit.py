@@ -132,6 +132,32 @@ def test_a_bend_that_visits_scatter_as_much_as_is_no_bend() -> None:
     assert p > 0.01
 
 
+def test_shared_errors_are_those_of_generalised_least_squares() -> None:
+    """Each p-value by the covariance of all dwells, those of a visit sharing one error."""
+    data = dwells(THERMAL, [0.1, -2.4, -0.7], temperatures=np.repeat([363.0, 393.0, 423.0, 453.0], 2), seed=8)
+    visit = data.inputs.group
+    off = 0.03 * np.random.default_rng(5).standard_normal(8)[visit]
+    data = replace(data, log_torque=data.log_torque + off, visit=visit)
+    fit = fit_law(THERMAL, data)
+    assert fit.shared[0].deviation > 0.01
+    assert np.max(np.abs(fit.residuals / fit.sigma)) < 2.5
+    same = np.equal.outer(visit, visit).astype(float)
+    root = np.linalg.inv(np.linalg.cholesky(np.diag(fit.sigma**2) + fit.shared[0].deviation ** 2 * same))
+    z, kelvin = data.inputs.log_speed, data.inputs.kelvin
+    assert kelvin is not None
+    white = [root @ column for column in (np.ones_like(z), np.log(kelvin / REFERENCE), z)]
+    whitened = replace(data, log_torque=root @ data.log_torque)
+    warm, ones = kelvin - kelvin.mean(), np.ones(len(data))
+    found = lack_of_fit(fit, data)
+    for p, terms in (
+        (found.curvature, [(z - z.mean()) ** 2, (z - z.mean()) ** 3]),
+        (found.exponent_with_temperature, [(z - z.mean()) * warm]),
+        (found.temperature, [warm**2]),
+    ):
+        expected = f_by_hand(whitened, ones, white, [root @ term for term in terms])
+        assert p == pytest.approx(expected, rel=1e-4)
+
+
 def test_too_few_speeds_or_temperatures_say_nothing() -> None:
     data = dwells(ISOTHERMAL, [0.1, -0.7], temperatures=None)
     step = np.argmin(np.abs(data.speed[:, None] - SPEEDS), axis=1)
