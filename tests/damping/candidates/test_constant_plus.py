@@ -30,8 +30,8 @@ def torque(
     law: ConstantPlusLaw, values: list[float], z: np.ndarray, s: np.ndarray | float = 0.0
 ) -> np.ndarray:
     """F (exp(e s) (w/w_ref)^(1 + c) + exp(rest + r s)), as the law is defined."""
-    named = {"e": 0.0, "r": 0.0, "c": law.exponent} | dict(zip(law.names, values, strict=True))
-    film = np.exp(named["e"] * s) * np.exp(z) ** (1.0 + named["c"])  # type: ignore[operator]
+    named = {"e": 0.0, "r": 0.0, "c": law.exponent or 0.0} | dict(zip(law.names, values, strict=True))
+    film = np.exp(named["e"] * s) * np.exp(z) ** (1.0 + named["c"])
     return np.asarray(np.exp(named["level"]) * (film + np.exp(named["rest"] + named["r"] * s)))
 
 
