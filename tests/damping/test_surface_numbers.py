@@ -26,10 +26,12 @@ def wave(count: int, size: float) -> np.ndarray:
     return size * np.where(np.arange(count) % 2, 1.0, -1.0)
 
 
-def thermal_case() -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+def thermal_case(scale: str = "degC") -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """A power of temperature in the scale, in which no visit is off."""
     w, t = grid(SPEEDS, TEMPERATURES)
+    hot = 62.0 * t**-0.9 if scale == "degC" else 3e7 * (t + 273.15) ** -3.0
     errors = np.resize([0.02, 0.03, 0.05], w.size)
-    torque = 62.0 * t**-0.9 * w**0.3 * np.exp(0.01 * np.random.default_rng(3).standard_normal(w.size))
+    torque = hot * w**0.3 * np.exp(0.01 * np.random.default_rng(3).standard_normal(w.size))
     return w, t, torque, errors
 
 
@@ -57,7 +59,7 @@ def test_a_law_of_speed_by_hand() -> None:
 
 @pytest.mark.parametrize("scale", ["degC", "K"])
 def test_a_law_of_temperature_by_hand(scale: str) -> None:
-    w, t, torque, errors = thermal_case()
+    w, t, torque, errors = thermal_case(scale)
     surface = hersey.fit(points_of(w, torque, t, errors), temperature_scale=scale)
     scaled = t + 273.15 if scale == "K" else t
     y = np.log(torque / w)
@@ -87,11 +89,32 @@ def test_intervals_are_students(count: int) -> None:
 
 
 def test_three_coefficients_take_three_degrees_of_freedom() -> None:
-    w, t = grid(np.array([1.0, 3.0, 9.0]), np.array([100.0, 160.0]))
+    w, t = grid(np.array([1.0, 3.0, 9.0]), np.array([100.0, 130.0, 160.0]))
     surface = hersey.fit(points_of(w, 5.0 * t**-0.9 * w**0.3, t, error=0.02))
     assert surface.b is not None
     for e in (surface.b, surface.c):
-        assert (e.high - e.value) / e.error == pytest.approx(float(stats.t.ppf(0.975, 3)), rel=1e-9)
+        assert (e.high - e.value) / e.error == pytest.approx(float(stats.t.ppf(0.975, 6)), rel=1e-9)
+
+
+def test_two_visits_tell_the_exponent_of_speed_and_not_that_of_temperature() -> None:
+    """That takes up the one difference between them, so that nothing is left to say how visits scatter."""
+    w, t = grid(np.array([1.0, 3.0, 9.0]), np.array([100.0, 160.0]))
+    torque = 5.0 * t**-0.9 * w**0.3
+    surface = hersey.fit(points_of(w, torque, t, error=0.02))
+    a, b, c = surface.a, surface.b, surface.c
+    assert b is not None
+    assert b.value == pytest.approx(-0.9, abs=1e-9)
+    assert (b.told, a.told, c.told) == (False, False, True)
+    assert (b.low, b.high) == (-np.inf, np.inf)
+    assert (c.high - c.value) / c.error == pytest.approx(float(stats.t.ppf(0.975, 3)), rel=1e-9)
+    assert [s.told for s in surface.statistics.shared] == [False]
+    # the first temperature visited again, after the second: now they say it
+    again = np.tile([100.0, 160.0, 100.0], (3, 1)).T.ravel()
+    speed = np.tile([1.0, 3.0, 9.0], 3)
+    visited = hersey.fit(points_of(speed, 5.0 * again**-0.9 * speed**0.3, again, error=0.02))
+    assert visited.b is not None
+    assert visited.b.told
+    assert [s.told for s in visited.statistics.shared] == [True]
 
 
 def test_scatter_by_hand() -> None:
@@ -346,7 +369,7 @@ def test_the_summary_of_two_branches() -> None:
     assert float(mixed.split()[1]) == pytest.approx(surface.transition.mixed_exponent.value, rel=1e-6)
     (at,) = (row for row in lines if row.startswith("    w_t "))
     assert float(at.split()[1]) == pytest.approx(surface.transition.speed.value, rel=1e-6)
-    assert at.endswith("]  rad/s")
+    assert at.endswith("]  sensors +/- 0.002  rad/s")  # 0.1 % of 2 rad/s
     assert "varies as" not in surface.summary()
 
 
@@ -358,7 +381,8 @@ def test_the_summary_of_two_branches_says_where_they_move() -> None:
     assert surface.transition is not None
     text = surface.summary()
     assert "B = a T^b w^c    (B in N m s/rad, T in degC, w in rad/s)" in text
-    assert f"]  rad/s at {float(surface.reference_temperature or 0.0) - 273.15:.4g} degC" in text
+    (row,) = (row for row in text.splitlines() if row.startswith("    w_t  ") and "sensors" in row)
+    assert row.endswith(f"  rad/s at {float(surface.reference_temperature or 0.0) - 273.15:.4g} degC")
     assert f"w_t varies as T^{surface.transition.temperature_exponent:.3g} (fixed Hersey number)" in text
 
 

@@ -20,7 +20,9 @@ from hersey.lubrication.lubricant import Lubricant
 from hersey.machine.machine import Machine, read_machine
 from hersey.verdict.checks import check_film
 from hersey.verdict.evidence import MeasuredFilm, Verdict, measured_film, verdict
+from hersey.verdict.regime import Regime, regime
 from tests.conftest import ROOT
+from tests.verdict.cases import RANGES, alone, holm, seen
 
 GAS = 8.31446261815324
 
@@ -132,34 +134,28 @@ def test_an_isothermal_log_needs_its_temperature(
 
 
 @pytest.fixture(scope="module")
-def says(measured: MeasuredFilm, surface: DampingSurface, contact: Contact, oil: Lubricant) -> Verdict:
-    return verdict(measured, surface, contact, oil)
+def log_says(points: hersey.SteadyPoints, surface: DampingSurface) -> Regime:
+    return regime(points, surface)
+
+
+@pytest.fixture(scope="module")
+def says(
+    measured: MeasuredFilm, surface: DampingSurface, contact: Contact, oil: Lubricant, log_says: Regime
+) -> Verdict:
+    return verdict(measured, surface, contact, oil, log_says)
 
 
 def test_each_prediction_has_its_probability(says: Verdict, surface: DampingSurface) -> None:
-    freedom = surface.statistics.points - surface.statistics.variables
-    c, error = surface.c.value, surface.c.error
-    ranges = {
-        "constant film": (0.0, 0.0),
-        "soft EHL": (-0.60, -0.56),
-        "rigid piezoviscous film": (-2 / 3, -2 / 3),
-        "Dowson-Higginson EHL": (-0.70, -0.70),
-        "dry Coulomb friction or a rigid film": (-1.0, -1.0),
-    }
     found = {p.name: p for p in says.predictions}
-    assert list(found) == [*ranges, "falling branch"]
-    for name, (low, high) in ranges.items():
-        away = max(low - c, c - high, 0.0) / error
-        expected = min(1.0, 2 * stats.t.sf(away, freedom))
+    assert list(found) == [*RANGES, "falling branch"]
+    for name, expected in holm(alone(surface.c)).items():
         assert found[name].p_value == pytest.approx(expected, rel=1e-9), name
         assert found[name].consistent == (expected > 0.05)
-    one_sided = stats.t.sf((c + 1.0) / error, freedom)
-    assert found["falling branch"].p_value == pytest.approx(one_sided, rel=1e-9)
     assert [p.name for p in says.predictions if p.consistent] == ["Dowson-Higginson EHL"]
 
 
 def test_probabilities_near_the_level(
-    measured: MeasuredFilm, surface: DampingSurface, contact: Contact, oil: Lubricant
+    measured: MeasuredFilm, surface: DampingSurface, contact: Contact, oil: Lubricant, log_says: Regime
 ) -> None:
     """A damping exponent 1.9 and 2.1 errors from a prediction, and 1.5 above -1, where one side counts."""
     freedom = surface.statistics.points - surface.statistics.variables
@@ -168,11 +164,14 @@ def test_probabilities_near_the_level(
         (-0.541, "soft EHL"),
         (-0.985, "falling branch"),
     ):
-        c = Estimate(value, 0.01, value - 0.02, value + 0.02)
-        found = verdict(measured, replace(surface, c=c), contact, oil)
+        c = Estimate(value, 0.01, value - 0.02, value + 0.02, freedom)
+        found = verdict(measured, replace(surface, c=c), contact, oil, log_says)
         p = next(p.p_value for p in found.predictions if p.name == name)
         sides, away = (1, 1.5) if name == "falling branch" else (2, 2.0 if value == -0.62 else 1.9)
-        assert p == pytest.approx(sides * stats.t.sf(away, freedom), rel=1e-6)
+        times = (
+            2 if name == "falling branch" else 1
+        )  # level torque is likelier, all others are refuted before
+        assert p == pytest.approx(times * sides * stats.t.sf(away, freedom), rel=1e-6)
 
 
 def test_exponents_expected_of_this_contact(
@@ -188,49 +187,70 @@ def test_exponents_expected_of_this_contact(
     assert surface.b is not None
     assert says.thermal is not None
     scale = kelvin / (kelvin - 273.15)
-    for name in ("value", "error", "low", "high"):
+    assert says.thermal.freedom == surface.b.freedom
+    for name in ("value", "error", "low", "high", "systematic"):
         assert getattr(says.thermal, name) == pytest.approx(scale * getattr(surface.b, name), rel=1e-12)
     assert says.activation_energy == pytest.approx(-GAS * kelvin * scale * surface.b.value, rel=1e-9)
     assert says.viscosity_activation_energy == pytest.approx(float(oil.activation_energy(kelvin)), rel=1e-12)
 
 
 def test_a_fit_in_kelvin_is_taken_as_it_is(
-    measured: MeasuredFilm, surface: DampingSurface, contact: Contact, oil: Lubricant
+    measured: MeasuredFilm, surface: DampingSurface, contact: Contact, oil: Lubricant, log_says: Regime
 ) -> None:
-    found = verdict(measured, replace(surface, temperature_scale="K"), contact, oil)
+    found = verdict(measured, replace(surface, temperature_scale="K"), contact, oil, log_says)
     assert found.thermal is not None
     assert surface.b is not None
     assert found.thermal.value == surface.b.value
 
 
-def test_the_verdict_in_whole_sentences(says: Verdict) -> None:
-    thermal = "agrees" if says.thermal.low <= says.thermal_expected <= says.thermal.high else "disagrees"  # type: ignore[union-attr]
-    assert says.text == (
+def test_the_verdict_in_whole_sentences(says: Verdict, log_says: Regime) -> None:
+    assert log_says.named is None  # a rigid film beside a little friction measures that exponent too
+    assert says.thermal is not None
+    agrees = says.thermal.low <= says.thermal_expected <= says.thermal.high
+    sentences = (
         "The regime chart puts this contact in the isoviscous-elastic regime, where damping goes as speed to "
         f"the power {says.expected:.2f}; measured {says.exponent}. "
-        f"Solved numerically for this roll, the film gives the power {says.solved:.2f}. "
-        "The measured exponent agrees with Dowson-Higginson EHL instead. "
-        "Eq. 5 of the paper (Dowson-Higginson) does not apply to this contact, whatever the exponent. "
+        f"Solved numerically for this roll, the film gives the power {says.solved:.2f}. ",
+        "The log alone names no regime",
+        " Eq. 5 of the paper (Dowson-Higginson) does not apply to this contact, whatever the exponent. "
         f"With temperature (K) damping goes to the power {says.thermal}; the film of this lubricant predicts "
-        f"{says.thermal_expected:.2f}, which {thermal}."
+        f"{says.thermal_expected:.2f}, which {'agrees' if agrees else 'disagrees'}.",
     )
+    places = [says.text.find(sentence) for sentence in sentences]
+    assert places[0] >= 0
+    assert places == sorted(places)
+    assert says.text.endswith(sentences[-1])
 
 
-def test_a_verdict_that_agrees_with_nothing(
-    measured: MeasuredFilm, surface: DampingSurface, contact: Contact, oil: Lubricant
+def test_where_the_log_names_no_regime_the_contact_names_none(
+    measured: MeasuredFilm, surface: DampingSurface, contact: Contact, oil: Lubricant, log_says: Regime
 ) -> None:
-    for value, words in (
-        (-0.3, "The measured exponent agrees with no regime."),
-        (-0.58, "The measured exponent agrees with it."),
-    ):
+    def text(value: float, says: Regime) -> str:
         c = Estimate(value, 1e-3, value - 2e-3, value + 2e-3)
-        assert words in verdict(measured, replace(surface, c=c), contact, oil).text
-    thermal = verdict(measured, surface, contact, oil).thermal_expected
+        return verdict(measured, replace(surface, c=c), contact, oil, says).text
+
+    same = text(-0.58, seen(log_says, "soft EHL"))
+    assert "The measured exponent is the one of that regime." in same
+    assert "contradict" not in same
+    # the exponent is that of the regime chart, but the log does not let it be named
+    for value, keys in ((-0.58, ("soft EHL", "THAT")), (-0.3, ("THIS", "THAT"))):
+        unnamed = text(value, seen(log_says, None, *keys))
+        assert "The log alone names no regime" in unnamed
+        assert "is the one of that regime" not in unnamed
+    other = text(-0.7, seen(log_says, "Dowson-Higginson EHL"))
+    assert "contradict" in other
+    assert "is the one of that regime" not in other
+
+
+def test_the_exponent_of_temperature_agrees_within_its_interval(
+    measured: MeasuredFilm, surface: DampingSurface, contact: Contact, oil: Lubricant, log_says: Regime
+) -> None:
+    thermal = verdict(measured, surface, contact, oil, log_says).thermal_expected
     at = float(measured.temperature.mean())
     share = (at - 273.15) / at
     for off, words in ((0.0, "which agrees."), (0.2, "which disagrees.")):
         b = Estimate(thermal * share + off, 0.01, thermal * share + off - 0.02, thermal * share + off + 0.02)
-        assert verdict(measured, replace(surface, b=b), contact, oil).text.endswith(words)
+        assert verdict(measured, replace(surface, b=b), contact, oil, log_says).text.endswith(words)
 
 
 def film_at(
@@ -437,11 +457,3 @@ def test_the_regime_chart_in_numbers(contact: Contact, oil: Lubricant, measured:
     )
     assert hidden["layer"][2]["data"]["values"] == []
     assert hidden["title"]["subtitle"][0].endswith(" No point is shown: alpha is not known, g_V = 0.")
-
-
-def test_an_exponent_that_no_regime_has_is_said_so(
-    measured: MeasuredFilm, surface: DampingSurface, contact: Contact, oil: Lubricant
-) -> None:
-    c = Estimate(-0.85, 0.001, -0.852, -0.848)
-    text = verdict(measured, replace(surface, c=c), contact, oil).text
-    assert ". The measured exponent agrees with no regime. " in text

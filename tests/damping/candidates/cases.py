@@ -6,10 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from hersey.damping.candidates.branched import Law
-from hersey.damping.candidates.fitting import LawFit
+from hersey.damping.candidates.fitting import AnyLaw, LawFit
 from hersey.damping.candidates.observations import Inputs, Observations
-from hersey.damping.candidates.stribeck import StribeckLaw
+from hersey.damping.candidates.shared_errors import Freedom
 from tests.damping.candidates.test_comparison import dwells
 
 
@@ -20,7 +19,7 @@ def some_covariance(size: int, scale: float = 0.02, seed: int = 3) -> np.ndarray
 
 
 def hand_fit(
-    law: Law | StribeckLaw,
+    law: AnyLaw,
     values: list[float],
     *,
     covariance: np.ndarray | None = None,
@@ -30,22 +29,26 @@ def hand_fit(
 ) -> LawFit:
     """Return a fit that nobody fitted, with numbers of its own everywhere."""
     size = len(values)
+    covariance = some_covariance(size) if covariance is None else covariance
     random = np.random.default_rng(11)
     return LawFit(
         law=law,
         values=np.array(values),
-        tare=0.4,
-        covariance=some_covariance(size) if covariance is None else covariance,
+        effects=np.array([0.4]),
+        disturbances=np.linspace(0.01, 0.02, points)[:, None],
+        covariance=covariance,
         clustered=some_covariance(size, 0.03, seed=4),
         scatter=scatter,
+        shared=(),
         errors=random.uniform(0.01, 0.06, points),
         residuals=0.03 * random.standard_normal(points),
         cost=17.0,
         deviance=deviance,
+        freedoms=Freedom(points - size, covariance),
     )
 
 
-def even(law: Law | StribeckLaw, values: list[float], size: float = 0.02, seed: int = 5) -> Observations:
+def even(law: AnyLaw, values: list[float], size: float = 0.02, seed: int = 5) -> Observations:
     """Return dwells with errors of every kind whose residuals are all of one size: none is an outlier."""
     data = dwells(law, values, scatter=0.0)
     random = np.random.default_rng(seed)

@@ -78,9 +78,9 @@ def test_profile_of_a_transition_bounds_the_cost() -> None:
     from hersey.damping.candidates.fitting import search
 
     target = stats.t.ppf(0.975, fit.freedom) ** 2
-    start = np.append(fit.values, fit.tare)
+    start = np.append(fit.values, fit.effects)
     for end in (low, high):
-        rise = search(law, data, fit.sigma, start, held=(at, end)).cost - fit.cost
+        rise = search(law, data, fit.disturbances, fit.sigma, start, held=(at, end)).cost - fit.cost
         assert rise == pytest.approx(target, rel=0.15)
 
 

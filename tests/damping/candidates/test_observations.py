@@ -34,7 +34,7 @@ def points(*, run: list[int] = RUN, temperature: bool = True, speed: list[float]
     )
     return SimpleNamespace(  # type: ignore[return-value]
         table=table,
-        tare_errors=np.full((9, 1), 0.002),
+        tare_errors=0.002 * np.column_stack([np.ones(9), np.linspace(-1.0, 1.0, 9)]),
         log=SimpleNamespace(has_temperature=temperature),
         column=lambda name: table[name].to_numpy(),
     )
@@ -53,7 +53,10 @@ def test_dwells_in_logarithms_by_hand() -> None:
     assert found.torque_error == pytest.approx(np.linspace(0.001, 0.003, 9) / torque, rel=1e-12)
     assert found.speed_error == pytest.approx(np.linspace(0.01, 0.05, 9) / speed, rel=1e-12)
     assert found.temperature_error == pytest.approx(np.linspace(0.1, 0.5, 9), rel=1e-12)
-    assert found.tare == pytest.approx(0.002 / torque, rel=1e-12)
+    assert found.tare.shape == (9, 2)
+    assert found.tare[:, 0] == pytest.approx(0.002 / torque, rel=1e-12)
+    assert found.tare[:, 1] == pytest.approx(0.002 * np.linspace(-1.0, 1.0, 9) / torque, rel=1e-12)
+    assert found.run.tolist() == RUN
     assert len(found) == 9
     # two groups of temperature, coldest first
     assert found.inputs.group.tolist() == [0, 0, 0, 1, 1, 1, 0, 0, 0]
@@ -113,7 +116,17 @@ def test_observations_are_taken_with_repeats() -> None:
     whole = Observations.of(points())
     index = np.array([4, 0, 4])
     some = whole.take(index)
-    for name in ("log_torque", "torque_error", "speed_error", "temperature_error", "tare", "cluster"):
+    names = (
+        "log_torque",
+        "torque_error",
+        "speed_error",
+        "temperature_error",
+        "tare",
+        "visit",
+        "run",
+        "cluster",
+    )
+    for name in names:
         assert getattr(some, name).tolist() == getattr(whole, name)[index].tolist()
     assert some.inputs.log_speed.tolist() == whole.inputs.log_speed[index].tolist()
     assert whole.inputs.kelvin is not None

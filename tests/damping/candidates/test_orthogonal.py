@@ -34,17 +34,17 @@ def blurred() -> tuple[Observations, LawFit]:
         inputs=replace(data.inputs, log_speed=data.inputs.log_speed + shift),
         torque_error=np.full(count, 0.03),
         speed_error=np.full(count, 0.2),
-        tare=0.1 * data.inputs.log_speed + 0.05,
+        tare=(0.1 * data.inputs.log_speed + 0.05)[:, None],
     )
     fit = hand_fit(law, [0.12, -0.41], points=count, scatter=0.04)
     errors = np.hypot(0.03, np.linspace(0.05, 0.2, count))
-    return data, replace(fit, errors=errors, tare=0.4)
+    return data, replace(fit, errors=errors, disturbances=data.tare)
 
 
 def test_a_line_is_deming_s() -> None:
     data, fit = blurred()
     found = orthogonal_fit(fit, data)
-    y = data.log_torque - 0.4 * data.tare
+    y = data.log_torque - 0.4 * data.tare[:, 0]
     level, slope = deming(data.inputs.log_speed, y, (0.03**2 + 0.04**2) / 0.2**2)
     assert found.converged
     assert found.values == pytest.approx([level, slope - 1.0], rel=1e-6)
@@ -73,7 +73,7 @@ def test_temperature_is_an_unknown_of_its_own() -> None:
         temperature_error=0.01 * hot,
     )
     fit = hand_fit(law, [0.1, -2.4, -0.7], points=count, scatter=0.0)
-    found = orthogonal_fit(replace(fit, tare=0.0), data)
+    found = orthogonal_fit(replace(fit, effects=np.zeros(1)), data)
     # the line y - (1 + c) z on ln T, by Deming; c by the least total distance
     x, z = np.log(hot / REFERENCE), data.inputs.log_speed
 
@@ -95,7 +95,7 @@ def test_inputs_without_errors_are_exact() -> None:
     zero = np.zeros(len(data))
     weights = np.linspace(0.5, 2.0, len(data))
     data = replace(data, speed_error=zero, temperature_error=zero, torque_error=0.02 * weights)
-    fit = replace(hand_fit(law, [0.1, 2.8, -0.7], points=len(data), scatter=0.01), tare=0.0)
+    fit = replace(hand_fit(law, [0.1, 2.8, -0.7], points=len(data), scatter=0.01), effects=np.zeros(1))
     fit = replace(fit, errors=0.9 * data.torque_error)
     found = orthogonal_fit(fit, data)
     assert data.inputs.kelvin is not None

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from hersey.damping.candidates.branched import FREE, HELD, NO_SPEED, ONE, Law
+from hersey.damping.candidates.branched import CONSTANT_PLUS, COULOMB_VISCOUS, FREE, HELD, NO_SPEED, ONE, Law
 from hersey.damping.candidates.candidate import Candidate, all_candidates, viscosity_candidates
+from hersey.damping.candidates.constant_plus import ConstantPlusLaw
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.candidates.stribeck import StribeckLaw
 from hersey.damping.candidates.thermal import ARRHENIUS, CELSIUS, KELVIN, VFT, Thermal
@@ -20,8 +21,18 @@ ALL = {
     "power-K/one": ("power law in K x power of speed, one branch", 3),
     "arrhenius/one": ("Arrhenius x power of speed, one branch", 3),
     "vft/one": ("VFT x power of speed, one branch", 4),
+    "isothermal/coulomb-viscous": ("Coulomb plus viscous, no temperature", 2),
+    "isothermal/constant-plus-power": ("constant torque plus power of speed, no temperature", 3),
     "isothermal/two-free": ("no temperature x power of speed, two branches, free", 4),
     "isothermal/stribeck": ("Stribeck curve, no temperature", 4),
+    "power-degC/coulomb-viscous": ("Coulomb plus viscous, film by power law in degC", 3),
+    "power-degC/constant-plus-power": ("constant torque plus power of speed, film by power law in degC", 4),
+    "power-K/coulomb-viscous": ("Coulomb plus viscous, film by power law in K", 3),
+    "power-K/constant-plus-power": ("constant torque plus power of speed, film by power law in K", 4),
+    "arrhenius/coulomb-viscous": ("Coulomb plus viscous, film by Arrhenius", 3),
+    "arrhenius/constant-plus-power": ("constant torque plus power of speed, film by Arrhenius", 4),
+    "vft/coulomb-viscous": ("Coulomb plus viscous, film by VFT", 4),
+    "vft/constant-plus-power": ("constant torque plus power of speed, film by VFT", 5),
     "power-degC/two-hersey": ("power law in degC x power of speed, two branches, one Hersey number", 5),
     "power-K/two-hersey": ("power law in K x power of speed, two branches, one Hersey number", 5),
     "arrhenius/two-hersey": ("Arrhenius x power of speed, two branches, one Hersey number", 5),
@@ -75,6 +86,8 @@ def test_a_law_stands_about_the_reference_of_the_data() -> None:
     assert Candidate(KELVIN, ONE, per_temperature=True).law(data) == Law(Thermal(KELVIN, 400.0), ONE, 4)
     assert Candidate(ARRHENIUS, ONE, stribeck=True).law(data) == StribeckLaw(Thermal(ARRHENIUS, 400.0))
     assert Candidate(None, ONE, stribeck=True).law(data) == StribeckLaw(None)
+    assert Candidate(VFT, CONSTANT_PLUS).law(data) == ConstantPlusLaw(Thermal(VFT, 400.0), None)
+    assert Candidate(None, COULOMB_VISCOUS).law(data) == ConstantPlusLaw(None, 0.0)
     cold = dwells(Law(None, ONE), [0.1, -0.7], temperatures=None)
     assert Candidate(KELVIN, NO_SPEED).law(cold) == Law(None, NO_SPEED, 1)
 
@@ -109,6 +122,10 @@ def with_(temperatures: list[float] | None, keep: list[int] | None = None, twice
         (Candidate(KELVIN, HELD), with_([390.0, 410.0], [0, 2, 4, 6, 8]), ""),
         (Candidate(None, ONE, stribeck=True), with_(None, [0, 2, 4, 6]), "needs 5 speeds, the log has 4"),
         (Candidate(None, ONE, stribeck=True), with_(None, [0, 2, 4, 6, 8]), ""),
+        (Candidate(None, CONSTANT_PLUS), with_(None, [0, 4, 8]), "needs 4 speeds, the log has 3"),
+        (Candidate(None, CONSTANT_PLUS), with_(None, [0, 2, 4, 6]), ""),
+        (Candidate(None, COULOMB_VISCOUS), with_(None, [0, 4, 8]), "needs 4 speeds, the log has 3"),
+        (Candidate(None, COULOMB_VISCOUS), with_(None, [0, 2, 4, 6]), ""),
         (Candidate(None, ONE), with_(None, [0, 4], 3), ""),
         (Candidate(None, ONE), with_(None, [0, 2, 4, 6], 1), "2 parameters need 5 dwells, the log has 4"),
         (Candidate(None, ONE), with_(None, [0, 2, 4, 6, 8], 1), ""),

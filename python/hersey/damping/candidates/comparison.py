@@ -13,6 +13,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from hersey.damping.candidates.branched import Law
 from hersey.damping.candidates.candidate import Candidate, all_candidates
 from hersey.damping.candidates.collapse import HerseyCollapse, temperature_collapse
 from hersey.damping.candidates.energy import ActivationEnergies, activation_energies, usable_for_transition
@@ -200,7 +201,10 @@ def _energies(
     arrhenius = [
         r
         for r in ranked
-        if r.candidate.thermal == ARRHENIUS and not r.candidate.stribeck and not r.candidate.per_temperature
+        if r.candidate.thermal == ARRHENIUS
+        and isinstance(r.fit.law, Law)  # others have no energy of all the torque
+        and not r.candidate.stribeck
+        and not r.candidate.per_temperature
     ]
     sound = [r for r in arrhenius if not r.not_identified] or arrhenius
     free = next((r.fit for r in sound if usable_for_transition(r.fit) and not r.not_identified), None)

@@ -57,7 +57,10 @@ class ActivationEnergies:
 
 def scaled(energy: Estimate, factor: float) -> Estimate:
     """Return an energy in another unit."""
-    return Estimate(*(factor * v for v in (energy.value, energy.error, energy.low, energy.high)))
+    value, error, low, high, systematic = (
+        factor * v for v in (energy.value, energy.error, energy.low, energy.high, energy.systematic)
+    )
+    return Estimate(value, error, low, high, energy.freedom, systematic)
 
 
 def activation_energies(

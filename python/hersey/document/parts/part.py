@@ -20,11 +20,7 @@ class Part(BaseModel):
 
 
 class Interval(Part):
-    """A number with standard error and 95 % interval, null where it is not told.
-
-    ``freedom`` is the error's degrees of freedom, null if without bound; ``systematic`` the half width that
-    errors of the sensors may add.
-    """
+    """A number with error, 95 % interval (null: not told), degrees of freedom, and what sensors may add."""
 
     value: float
     error: float
