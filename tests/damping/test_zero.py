@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import hersey
-from hersey.damping.dwells.zero import MOST_DISTURBANCES, Standing, Zero
+from hersey.damping.dwells.zero import MOST_DISTURBANCES, NEGLIGIBLE, Standing, Zero
 from tests.damping.test_dwells import dwells, log_of
 
 RATE = 50
@@ -100,15 +100,15 @@ def test_disturbances_make_up_the_covariance() -> None:
     random = np.random.default_rng(5)
     stretches = tuple(Standing(0, t, 0.02 * random.standard_normal(), 0.001) for t in range(0, 101, 20))
     zero = Zero(stretches, 100.0)
-    times = np.linspace(2.0, 98.0, 30)
+    times = np.linspace(2.0, 98.0, 60)
     whole = zero._predicted(times)[1]
-    modes, left = zero.disturbances(times, np.zeros(30))
-    assert modes.shape == (30, MOST_DISTURBANCES)
+    modes, left = zero.disturbances(times, np.zeros(60))
+    assert modes.shape == (60, MOST_DISTURBANCES)
     assert np.sum(modes**2, axis=1) + left**2 == pytest.approx(np.diag(whole), rel=1e-6)
     assert np.abs(modes @ modes.T - whole).max() < 0.25 * whole.max()
-    few, more_left = zero.disturbances(times, np.full(30, 0.02))
+    few, more_left = zero.disturbances(times, np.full(60, 0.02))
     assert few.shape[1] < modes.shape[1]
-    assert (more_left <= 0.3 * 0.02 + 1e-12).all()
+    assert (more_left <= NEGLIGIBLE * 0.02 + 1e-12).all()
 
 
 def test_one_stretch_is_one_disturbance_of_all_dwells() -> None:

@@ -260,7 +260,9 @@ def _mean(difference: FloatArray, covariance: FloatArray, freedom: float) -> Est
     centre, error = float(share @ difference), float(np.sqrt(share @ covariance @ share))
     reach = float(stats.t.ppf(0.5 + CONFIDENCE / 2, freedom)) * error
     ratio = float(np.exp(centre))
-    return Estimate(ratio, ratio * error, float(np.exp(centre - reach)), float(np.exp(centre + reach)))
+    return Estimate(
+        ratio, ratio * error, float(np.exp(centre - reach)), float(np.exp(centre + reach)), freedom
+    )
 
 
 def _changes(a: CandidateFit, b: CandidateFit, of_a: Observations, of_b: Observations) -> tuple[Change, ...]:

@@ -183,7 +183,8 @@ def _mean_ratio(measured: FloatArray, expected: FloatArray) -> Estimate:
     error = float(logs.std(ddof=1) / np.sqrt(logs.size)) if logs.size > 1 else 0.0
     reach = quantile(logs.size - 1) * error
     value = float(np.exp(mean))
-    return Estimate(value, value * error, float(np.exp(mean - reach)), float(np.exp(mean + reach)))
+    ends = float(np.exp(mean - reach)), float(np.exp(mean + reach))
+    return Estimate(value, value * error, *ends, max(logs.size - 1, 1))
 
 
 @dataclass(frozen=True, repr=False)
@@ -329,7 +330,8 @@ def _text(
             "Eq. 5 of the paper (Dowson-Higginson) does not apply to this contact, whatever the exponent."
         )
     if thermal is not None:
-        says = "agrees" if thermal.low <= thermal_expected <= thermal.high else "disagrees"
+        apart = max(thermal.low - thermal_expected, thermal_expected - thermal.high)
+        says = "agrees" if apart <= thermal.systematic else "disagrees"
         lines.append(
             f"With temperature (K) damping goes to the power {thermal}; the film of this lubricant predicts "
             f"{thermal_expected:.2f}, which {says}."

@@ -15,7 +15,7 @@ from hersey.damping.surface import DampingSurface
 from hersey.result import Result, json_record
 from hersey.units import celsius, rpm
 from hersey.verdict.explanations import Explained, Explanation, explained
-from hersey.verdict.regimes import FALLING, REGIMES, Hypothesis, judged, listed
+from hersey.verdict.regimes import REGIMES, Hypothesis, judged, listed
 
 if TYPE_CHECKING:
     import polars as pl
@@ -187,7 +187,7 @@ def _films(by: Explained) -> list[Explanation]:
 
 
 def _no_transition(surface: DampingSurface, by: Explained) -> str:
-    if surface.c.high >= -1.0 or FALLING not in {e.key for e in by.explanations}:
+    if surface.c.high >= -1.0:
         return "No transition to a falling branch shows in these data."
     ends = (surface.c.high,) if by.lack_of_fit is None else by.lack_of_fit.local_exponents
     where = " over the whole range" if max(ends) < -1.0 else ""

@@ -49,9 +49,6 @@ def test_each_p_value_by_two_least_squares() -> None:
     assert found.temperature == pytest.approx(f_by_hand(data, fit.sigma, columns, [warm**2]), rel=1e-5)
 
 
-@pytest.mark.xfail(
-    strict=True, reason="the power that changes when z^3 is added is left as it was without it"
-)
 def test_local_exponents_are_the_slopes_of_a_cubic() -> None:
     """Of ln torque against ln speed, less one."""
     data = dwells(ISOTHERMAL, [0.1, -0.7], temperatures=None)

@@ -54,8 +54,8 @@ def test_dwells_in_logarithms_by_hand() -> None:
     assert found.speed_error == pytest.approx(np.linspace(0.01, 0.05, 9) / speed, rel=1e-12)
     assert found.temperature_error == pytest.approx(np.linspace(0.1, 0.5, 9), rel=1e-12)
     assert found.tare.shape == (9, 2)
-    assert found.tare[:, 0] == pytest.approx(0.002 / torque, rel=1e-12)
-    assert found.tare[:, 1] == pytest.approx(0.002 * np.linspace(-1.0, 1.0, 9) / torque, rel=1e-12)
+    assert found.tare[:, 0] == pytest.approx(0.002 / np.array(TORQUE), rel=1e-12)
+    assert found.tare[:, 1] == pytest.approx(0.002 * np.linspace(-1.0, 1.0, 9) / np.array(TORQUE), rel=1e-12)
     assert found.run.tolist() == RUN
     assert len(found) == 9
     # two groups of temperature, coldest first
