@@ -102,7 +102,8 @@ def _surface(
     coefficients = _coefficients(fit, data, fit.values, fit.covariance, scale, shifts)
     if measured_transition is not None:
         measured_transition = _with_sensors(measured_transition, law, shifts)
-    labels = {"level": "ln B_ref", "e": "b", "at": "ln(w_t/w_ref)"}
+    gradual = measured_transition is not None and measured_transition.gradual
+    labels = {"level": "ln B_ref", "e": "b", "at": "ln(w_meet/w_ref)" if gradual else "ln(w_t/w_ref)"}
     residuals = data.log_torque - law.predict(fit.values, data.inputs)
     return DampingSurface(
         a=coefficients["a"],

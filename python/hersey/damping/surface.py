@@ -151,6 +151,21 @@ class DampingSurface(Result):
         moved = self.transition.temperature_exponent * self._checked_temperature(temperature)
         return float(self.transition.speed.value * np.exp(moved))
 
+    @takes_si(temperature="temperature")
+    def transition_torque(self, temperature: float | None = None) -> float:
+        """Return the torque in N m there, at a temperature (K); NaN where the data show no transition.
+
+        In a gradual bend it is that of a smooth curve through the dwells.
+        """
+        if self.transition is None:
+            return float("nan")
+        values, _ = self._closure
+        at = self.reference_temperature if temperature is None else temperature
+        inputs = self._inputs(
+            np.array([self.transition_speed(temperature)]), None if at is None else np.array([at])
+        )
+        return float(np.exp(self._law.predict(self._with_torque(values), inputs))[0])
+
     @takes_si(roll_radius="length", stick_speed="belt speed", temperature="temperature")
     def drag(self, *, roll_radius: float, stick_speed: float, temperature: float | None = None) -> Drag:
         """Return the drag on the belt surface, at one temperature or varying with it.
@@ -186,13 +201,9 @@ class DampingSurface(Result):
                 speed_temperature_exponent=exponent,
                 temperature_zero=zero,
             )
-        speed = self.transition_speed(temperature)
-        kelvin = None if temperature is None else np.array([temperature])
-        values, _ = self._closure
-        torque = np.exp(self._law.predict(self._with_torque(values), self._inputs(np.array([speed]), kelvin)))
         return Drag(
-            transition_force=float(torque[0]) / roll_radius,
-            transition_speed=speed * roll_radius,
+            transition_force=self.transition_torque(temperature) / roll_radius,
+            transition_speed=self.transition_speed(temperature) * roll_radius,
             ehl_exponent=self.c.value,
             mixed_exponent=self.transition.mixed_exponent.value,
             stick_speed=stick_speed,
@@ -457,6 +468,9 @@ def _summary(s: DampingSurface) -> str:
         if s.b:
             lines.append(f"    w_t varies as T^{s.transition.temperature_exponent:.3g} (fixed Hersey number)")
         lines.append("    below w_t the exponent is c_mixed")
+        if s.transition.gradual:
+            lines.append("    the bend is gradual: w_t is where a smooth curve through the dwells is least,")
+            lines.append(f"    the trend lines on either side meet at {s.transition.meeting_speed:.4g} rad/s")
     lines += ["[[Fitted in torque space, errors absolute]]"]
     lines += [_variable(name, estimate) for name, estimate in s.torque_space.items()]
     lines += ["[[Correlations]] (unreported are below 0.1)", *_correlations(s)]
