@@ -5,6 +5,7 @@ dwells      dwells, reduced to steady points with honest errors
 estimate    a number with its uncertainty
 smoothing   a smooth curve through dwells, and where it is least
 branches    two branches of the law: whether, and where torque is least
+shown       whether the dwells show a transition, in each direction
 surface     the damping surface, and what can be asked of it
 fit         fitting it: the paper's candidate among all
 candidates  every law fitted to the same dwells, one chosen

@@ -1,10 +1,10 @@
 """Two branches of the law: where they part, whether the data prove them, and where they meet.
 
 The points part where torque is least (isotonic regression, no law assumed). From there the law with a corner
-is fitted. Where a gradual bend describes the data much better than a corner, or a corner leaves a trend, each
-branch is instead the trend line through the points on its side, as one would draw it by hand. Trend lines meet
-below the torque measured, and not where it is least: the transition is then the minimum of a smooth curve
-through the points.
+is fitted. Where a gradual bend describes the data better than a corner, or a corner leaves a trend, each
+branch is instead the trend line through the points on its side, as one would draw it by hand. Trend lines
+meet below the torque measured, and not where it is least: the transition is then the minimum of a smooth
+curve through the points.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ class Transition:
 
     @property
     def gradual(self) -> bool:
-        """Whether the bend is gradual: its minimum is read off a smooth curve, the branches are trend lines."""
+        """Whether the bend is gradual: the branches are trend lines, its minimum that of a smooth curve."""
         return self.closure is not None
 
 
@@ -88,7 +88,7 @@ def fit_branches(data: Observations, single: LawFit) -> Branches | None:
         powers = _powers(trend)
     assert trend is not None
     corner = fit_law(law, data, [trend.values])
-    below = np.asarray(_scaled_speed(data, corner) < corner.values[-1])
+    below = np.asarray(scaled_speed(data, corner) < corner.values[-1])
     if not (_enough(data, below) and _enough(data, ~below)) or _is_gradual(data, law, corner):
         return _around_a_bend(data, trend, _parted(data, trend, splits))
     ends = profile_interval(corner, data, law.index("at"))
@@ -107,7 +107,7 @@ def why_no_transition(data: Observations, single: LawFit, branches: Branches) ->
         return f"below {bend:.3g} rpm the exponent is {below}: torque does not fall with speed beyond doubt"
     if above.low <= -1.0:
         return f"above the bend the exponent is {above}: torque does not rise with speed beyond doubt"
-    scaled = _scaled_speed(data, fit)
+    scaled = scaled_speed(data, fit)
     if not scaled.min() < at < scaled.max():
         return "the falling and the rising branch do not meet within the speeds measured"
     if not np.all(np.isfinite(branches.ends)):
@@ -151,10 +151,20 @@ def _temperatures(data: Observations, law: Law) -> FloatArray:
     return law.thermal.shape(data.inputs.kelvin)[0]
 
 
-def _scaled_speed(data: Observations, fit: LawFit) -> FloatArray:
-    """Logarithm of speed at the same Hersey number at the reference temperature."""
+def scaled_speed(data: Observations, fit: LawFit) -> FloatArray:
+    """Return ln(w/w_ref) at the same Hersey number at the reference temperature, shape (points,)."""
     shift = transition_exponent(*_powers(fit)) * _temperatures(data, _law_of(fit))
     return np.asarray(data.inputs.log_speed - shift)
+
+
+def scaled_torque(data: Observations, fit: LawFit) -> FloatArray:
+    """Return ln torque at the same Hersey number at the reference temperature, shape (points,).
+
+    It is the ln torque measured unless 1 + c is so small that the move of the transition is bounded.
+    """
+    e, c = _powers(fit)
+    power = e + (1.0 + c) * transition_exponent(e, c)
+    return np.asarray(data.log_torque - power * _temperatures(data, _law_of(fit)))
 
 
 def _trend_lines(
@@ -167,7 +177,7 @@ def _trend_lines(
 
 def _parted(data: Observations, trend: LawFit, splits: list[tuple[float, BoolArray]]) -> tuple[float, float]:
     """Scaled speeds between which the points part, by all splits that may as well be taken."""
-    limit, scaled = splits[0][0] + quantile(len(data)) ** 2, _scaled_speed(data, trend)
+    limit, scaled = splits[0][0] + quantile(len(data)) ** 2, scaled_speed(data, trend)
     kept = [below for chi, below in splits if chi <= limit]
     return min(float(scaled[b].max()) for b in kept), max(float(scaled[~b].min()) for b in kept)
 
@@ -183,10 +193,7 @@ def _is_gradual(data: Observations, law: Law, corner: LawFit) -> bool:
 
 def _around_a_bend(data: Observations, trend: LawFit, parted: tuple[float, float]) -> Branches:
     """The trend lines on either side, and the minimum of a smooth curve through all points between them."""
-    e, c = _powers(trend)
-    power = e + (1.0 + c) * transition_exponent(e, c)  # of torque at one Hersey number: nil unless bounded
-    level = data.log_torque - power * _temperatures(data, _law_of(trend))
-    curve, groups = _curve(data, trend, level)
+    curve, groups = _curve(data, trend, scaled_torque(data, trend))
     least = curve.least()
     if least is None:
         return Branches(trend, np.nan, (-np.inf, np.inf), None)
@@ -206,7 +213,7 @@ def _curve(
     How the transition moves with temperature is as uncertain as the fit has it. ``known`` is as `Curve` has
     it, per point; a parabola if not given.
     """
-    scaled = _scaled_speed(data, fit)
+    scaled = scaled_speed(data, fit)
     variance = fit.sigma**2 + EXACT**2
     groups = _grouped(scaled, variance)
     shared = groups @ np.column_stack([fit.disturbances, _by_move(data, fit) * _move_error(fit)])
@@ -248,7 +255,7 @@ def _by_power(fit: LawFit) -> FloatArray:
 
 def _move_error(fit: LawFit) -> float:
     by = _by_power(fit)
-    return float(np.sqrt(max(by @ fit.covariance @ by, 0.0)))
+    return float(np.sqrt(max(float(by @ fit.covariance @ by), 0.0)))
 
 
 def _closure(
@@ -272,9 +279,7 @@ def _closure(
     to_level = np.eye(len(covariance))  # level = ln torque there - (1 + c) z - ln w_ref
     to_level[0, law.index("c")], to_level[0, -1] = -z, -(1.0 + c)
     level = least.log_torque - (1.0 + c) * z - float(np.log(data.reference_speed))
-    return Closure(
-        np.array([level, *trend.values[1:-1], z]), np.asarray(to_level @ covariance @ to_level.T)
-    )
+    return Closure(np.array([level, *trend.values[1:-1], z]), np.asarray(to_level @ covariance @ to_level.T))
 
 
 def _gains(data: Observations, fit: LawFit) -> FloatArray:

@@ -74,9 +74,7 @@ class Curve:
         inflated = 1.0 + ratios[:, None] * spread
         misfit = np.sum(squares / inflated, axis=1)
         scale = np.maximum(misfit / squares.size, self.floor)
-        log_likelihood = -0.5 * (
-            squares.size * np.log(scale) + misfit / scale + np.log(inflated).sum(axis=1)
-        )
+        log_likelihood = -0.5 * (squares.size * np.log(scale) + misfit / scale + np.log(inflated).sum(axis=1))
         return ratios, log_likelihood, scale
 
     def trend(self) -> float:
@@ -136,13 +134,13 @@ class Curve:
         """By how much one unit of each point moves the curve and its slope, shape (grid, points)."""
         at = grid - self.at.min()
         inverse, bread = self._solved(ratio)
-        gains = []
+        gains: list[FloatArray] = []
         for cross, known in (
             (ratio * _covariance(at, self._away), np.vander(at, 3, increasing=True)),
             (ratio * _slope_covariance(at, self._away), _slopes_of_known(at)),
         ):
             rest = known - cross @ inverse @ self.known
-            gains.append(cross @ inverse + rest @ bread @ self.known.T @ inverse)
+            gains.append(np.asarray(cross @ inverse + rest @ bread @ self.known.T @ inverse))
         return gains[0], gains[1]
 
     def _solved(self, ratio: float) -> tuple[FloatArray, FloatArray]:

@@ -26,7 +26,7 @@ class TransitionPart(Part):
     temperature_exponent: float
     evidence: float = Field(description="gain in AICc over a single power law")
     closure: ClosurePart | None = Field(
-        description="what motion is given of a gradual bend, whose branches are trend lines; null for a corner"
+        description="what motion is given of a gradual bend, its branches trend lines; null for a corner"
     )
 
 
