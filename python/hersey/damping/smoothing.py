@@ -144,8 +144,10 @@ class Curve:
         return gains[0], gains[1]
 
     def _solved(self, ratio: float) -> tuple[FloatArray, FloatArray]:
-        inverse = np.linalg.inv(self.noise + ratio * _covariance(self._away, self._away))
-        return inverse, np.linalg.inv(self.known.T @ inverse @ self.known)
+        whole = self.noise + ratio * _covariance(self._away, self._away)
+        inverse = np.asarray(np.linalg.inv(whole), dtype=np.float64)
+        bread = np.linalg.inv(self.known.T @ inverse @ self.known)
+        return inverse, np.asarray(bread, dtype=np.float64)
 
 
 def parabola(at: FloatArray) -> FloatArray:
