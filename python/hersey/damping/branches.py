@@ -15,14 +15,15 @@ import numpy as np
 from scipy import optimize
 
 from hersey.arrays import BoolArray, FloatArray
-from hersey.damping.candidates.branched import HELD, LEAST_POWER, Bend, Law, transition_exponent
+from hersey.damping.candidates.branched import HELD, Bend, Law, transition_exponent
 from hersey.damping.candidates.fitting import LawFit, fit_law
 from hersey.damping.candidates.intervals import profile_interval
 from hersey.damping.candidates.likelihood import EVIDENCE, scatter_beyond
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.dwells import SAME_SPEED, distinct_speeds
 from hersey.damping.estimate import Estimate, quantile
-from hersey.damping.smoothing import MOST_GROUPS, Curve, Least, parabola
+from hersey.damping.gradual import Closure, closure_at, least_around, trend_left
+from hersey.damping.scaled import law_of, powers_of, scaled_speed, temperatures_of
 from hersey.units import rpm
 
 #: Widths of a bend, in the logarithm of speed, that a corner is compared with.
@@ -31,8 +32,6 @@ BEND_WIDTHS = (0.15, 0.3, 0.6)
 MIN_BRANCH_POINTS, MIN_BRANCH_SPEEDS = 4, 3
 #: Twice the logarithm of likelihood by which a corner leaves a trend: one time in a hundred by chance.
 TREND = 5.4
-#: Relative error below which dwells count as exact.
-EXACT = 1e-6
 
 
 @dataclass(frozen=True)
@@ -43,18 +42,6 @@ class Branches:
     least: float  #: not a number if a smooth curve has no minimum
     ends: tuple[float, float]  #: 95 % interval
     closure: Closure | None  #: None where the branches meet in a corner
-
-
-@dataclass(frozen=True)
-class Closure:
-    """The law with a corner at a gradual bend: least speed and torque there, exponents of the branches.
-
-    ``values`` and ``covariance`` are of the variables of the surface. It leaves the transition at the torque
-    that the dwells show there, which the trend lines themselves do not.
-    """
-
-    values: FloatArray
-    covariance: FloatArray
 
 
 @dataclass(frozen=True)
@@ -76,23 +63,23 @@ class Transition:
 
 def fit_branches(data: Observations, single: LawFit) -> Branches | None:
     """Return the best two branches, or None if there are too few points for any."""
-    law = replace(_law_of(single), branches=HELD)
-    trend, powers, splits = None, _powers(single), []
+    law = replace(law_of(single), branches=HELD)
+    trend, powers, splits = None, powers_of(single), []
     for _ in range(4):  # which points are slow depends on the law, which depends on it
         splits = _splits(data, single, transition_exponent(*powers))
         if not splits:
             return None
         trend = _trend_lines(data, law, single, splits)
-        if np.allclose(powers, _powers(trend), rtol=1e-9):
+        if np.allclose(powers, powers_of(trend), rtol=1e-9):
             break
-        powers = _powers(trend)
+        powers = powers_of(trend)
     assert trend is not None
     corner = fit_law(law, data, [trend.values])
     below = np.asarray(scaled_speed(data, corner) < corner.values[-1])
-    if not (_enough(data, below) and _enough(data, ~below)) or _is_gradual(data, law, corner):
-        return _around_a_bend(data, trend, _parted(data, trend, splits))
-    ends = profile_interval(corner, data, law.index("at"))
-    return Branches(corner, float(corner.values[-1]), ends, None)
+    parted = _parted(data, trend, splits)
+    if not (_enough(data, below) and _enough(data, ~below)):
+        return _around_a_bend(data, trend, parted, None)
+    return _bent(data, law, corner, trend, parted)
 
 
 def why_no_transition(data: Observations, single: LawFit, branches: Branches) -> str:
@@ -126,45 +113,10 @@ def transition(data: Observations, single: LawFit, branches: Branches) -> Transi
         speed=Estimate(best, best * float(np.log(high / low)) / (2 * reach), low, high),
         meeting_speed=meeting,
         mixed_exponent=fit.estimate("c_mixed"),
-        temperature_exponent=transition_exponent(*_powers(fit)),
+        temperature_exponent=transition_exponent(*powers_of(fit)),
         evidence=single.aicc - fit.aicc,
         closure=branches.closure,
     )
-
-
-def _law_of(fit: LawFit) -> Law:
-    assert isinstance(fit.law, Law)
-    return fit.law
-
-
-def _powers(fit: LawFit) -> tuple[float, float]:
-    """Exponents of temperature (0 if isothermal) and of speed above the transition."""
-    law = _law_of(fit)
-    e = float(fit.values[law.index("e")]) if law.thermal else 0.0
-    return e, float(fit.values[law.index("c")])
-
-
-def _temperatures(data: Observations, law: Law) -> FloatArray:
-    """Logarithm of temperature about the reference, in the scale of the law; zeros if isothermal."""
-    if law.thermal is None or data.inputs.kelvin is None:
-        return np.zeros(len(data))
-    return law.thermal.shape(data.inputs.kelvin)[0]
-
-
-def scaled_speed(data: Observations, fit: LawFit) -> FloatArray:
-    """Return ln(w/w_ref) at the same Hersey number at the reference temperature, shape (points,)."""
-    shift = transition_exponent(*_powers(fit)) * _temperatures(data, _law_of(fit))
-    return np.asarray(data.inputs.log_speed - shift)
-
-
-def scaled_torque(data: Observations, fit: LawFit) -> FloatArray:
-    """Return ln torque at the same Hersey number at the reference temperature, shape (points,).
-
-    It is the ln torque measured unless 1 + c is so small that the move of the transition is bounded.
-    """
-    e, c = _powers(fit)
-    power = e + (1.0 + c) * transition_exponent(e, c)
-    return np.asarray(data.log_torque - power * _temperatures(data, _law_of(fit)))
 
 
 def _trend_lines(
@@ -182,19 +134,34 @@ def _parted(data: Observations, trend: LawFit, splits: list[tuple[float, BoolArr
     return min(float(scaled[b].max()) for b in kept), max(float(scaled[~b].min()) for b in kept)
 
 
-def _is_gradual(data: Observations, law: Law, corner: LawFit) -> bool:
-    """Whether a bend of some width describes the data better than a corner, or a corner leaves a trend."""
-    bends = (fit_law(replace(law, bend=Bend(width)), data, [corner.values]) for width in BEND_WIDTHS)
-    if any(bend.aicc_with(1) < corner.aicc for bend in bends):
-        return True
-    curve, _ = _curve(data, corner, corner.residuals, law.jacobian(corner.values, data.inputs))
-    return curve.trend() > TREND
+def _bent(
+    data: Observations, law: Law, corner: LawFit, trend: LawFit, parted: tuple[float, float]
+) -> Branches:
+    """A corner, or trend lines about a gradual bend; while neither is excluded, the interval holds both."""
+    bends = [fit_law(replace(law, bend=Bend(width)), data, [corner.values]) for width in BEND_WIDTHS]
+    gain = corner.aicc - min(bend.aicc_with(1) for bend in bends)
+    proven = gain > EVIDENCE or trend_left(data, corner) > TREND
+    if proven:
+        return _around_a_bend(data, trend, parted, None)
+    ends = profile_interval(corner, data, law.index("at"))
+    sharp = Branches(corner, float(corner.values[-1]), ends, None)
+    if min(bend.deviance for bend in bends) >= corner.deviance:
+        return sharp
+    gradual = _around_a_bend(data, trend, parted, ends)
+    if gain > 0.0 and gradual.closure is not None:
+        return gradual
+    return sharp if gradual.closure is None else replace(sharp, ends=_both(ends, gradual.ends))
 
 
-def _around_a_bend(data: Observations, trend: LawFit, parted: tuple[float, float]) -> Branches:
-    """The trend lines on either side, and the minimum of a smooth curve through all points between them."""
-    curve, groups = _curve(data, trend, scaled_torque(data, trend))
-    least = curve.least()
+def _around_a_bend(
+    data: Observations, trend: LawFit, parted: tuple[float, float], corner: tuple[float, float] | None
+) -> Branches:
+    """The trend lines on either side, and the minimum between them.
+
+    Where the dwells do not bound it, the speeds between which they part do. ``corner`` is the interval of a
+    corner that is not excluded.
+    """
+    least, groups = least_around(data, trend)
     if least is None:
         return Branches(trend, np.nan, (-np.inf, np.inf), None)
     low, high = least.ends
@@ -202,97 +169,17 @@ def _around_a_bend(data: Observations, trend: LawFit, parted: tuple[float, float
         low if np.isfinite(low) else min(parted[0], least.log_speed),
         high if np.isfinite(high) else max(parted[1], least.log_speed),
     )
-    return Branches(trend, least.log_speed, ends, _closure(data, trend, least, groups, ends))
+    ends = ends if corner is None else _both(ends, corner)
+    return Branches(trend, least.log_speed, ends, closure_at(data, trend, least, groups, ends))
 
 
-def _curve(
-    data: Observations, fit: LawFit, values: FloatArray, known: FloatArray | None = None
-) -> tuple[Curve, FloatArray]:
-    """A smooth curve in scaled speed through values of the points, and how these are put into groups.
-
-    How the transition moves with temperature is as uncertain as the fit has it. ``known`` is as `Curve` has
-    it, per point; a parabola if not given.
-    """
-    scaled = scaled_speed(data, fit)
-    variance = fit.sigma**2 + EXACT**2
-    groups = _grouped(scaled, variance)
-    shared = groups @ np.column_stack([fit.disturbances, _by_move(data, fit) * _move_error(fit)])
-    at = groups @ scaled
-    curve = Curve(
-        at=at,
-        values=groups @ values,
-        noise=np.diag(groups**2 @ variance) + shared @ shared.T,
-        floor=float(np.median((fit.errors**2 + EXACT**2) / variance)),
-        known=parabola(at) if known is None else groups @ known,
-        freedom=max(fit.freedom_of("at"), 1.0),
-    )
-    return curve, groups
-
-
-def _grouped(scaled: FloatArray, variance: FloatArray) -> FloatArray:
-    """Weights that average neighbouring points, shape (groups, points); each its own group if not many."""
-    members = np.array_split(np.argsort(scaled, kind="stable"), min(scaled.size, MOST_GROUPS))
-    weights = np.zeros((len(members), scaled.size))
-    for row, member in zip(weights, members, strict=True):
-        row[member] = 1.0 / variance[member] / np.sum(1.0 / variance[member])
-    return weights
-
-
-def _by_move(data: Observations, fit: LawFit) -> FloatArray:
-    """By how much one unit of the transition's exponent in temperature moves ln torque, shape (points,)."""
-    slope, _ = _law_of(fit).slopes(fit.values, data.inputs)
-    return np.asarray(slope * _temperatures(data, _law_of(fit)))
-
-
-def _by_power(fit: LawFit) -> FloatArray:
-    """Derivative of that exponent by the values of the fit; zeros if isothermal or bounded."""
-    law, out = _law_of(fit), np.zeros(fit.values.size)
-    e, c = _powers(fit)
-    if law.thermal and 1.0 + c > LEAST_POWER:
-        out[law.index("e")], out[law.index("c")] = -1.0 / (1.0 + c), e / (1.0 + c) ** 2
-    return out
-
-
-def _move_error(fit: LawFit) -> float:
-    by = _by_power(fit)
-    return float(np.sqrt(max(float(by @ fit.covariance @ by), 0.0)))
-
-
-def _closure(
-    data: Observations, trend: LawFit, least: Least, groups: FloatArray, ends: tuple[float, float]
-) -> Closure:
-    """The corner at a minimum, and how its numbers go together: each is nearly linear in ln torque."""
-    law, z = _law_of(trend), least.log_speed
-    gains = _gains(data, trend)
-    moved = _by_move(data, trend)[:, None] * (_by_power(trend) @ gains)[None, :]
-    speed, torque = (
-        per_point - per_point @ moved for per_point in (least.speed_gain @ groups, least.torque_gain @ groups)
-    )
-    together = np.vstack([torque, gains[1:-1], speed])
-    shared = together @ trend.disturbances
-    covariance = (together * trend.sigma**2) @ together.T + shared @ shared.T
-    error = (ends[1] - ends[0]) / (2.0 * quantile(trend.freedom_of("at")))
-    widened = np.ones(len(covariance))
-    widened[-1] = max(error / float(np.sqrt(max(covariance[-1, -1], 1e-300))), 1.0)
-    covariance = covariance * np.outer(widened, widened)
-    c = float(trend.values[law.index("c")])
-    to_level = np.eye(len(covariance))  # level = ln torque there - (1 + c) z - ln w_ref
-    to_level[0, law.index("c")], to_level[0, -1] = -z, -(1.0 + c)
-    level = least.log_torque - (1.0 + c) * z - float(np.log(data.reference_speed))
-    return Closure(np.array([level, *trend.values[1:-1], z]), np.asarray(to_level @ covariance @ to_level.T))
-
-
-def _gains(data: Observations, fit: LawFit) -> FloatArray:
-    """By how much one unit of each ln torque moves the values of a fit, shape (values, points)."""
-    slopes = np.column_stack([_law_of(fit).jacobian(fit.values, data.inputs), fit.disturbances])
-    prior = np.diag(np.append(np.zeros(fit.values.size), np.ones(fit.disturbances.shape[1])))
-    weighed = slopes / fit.sigma[:, None] ** 2
-    return np.asarray(np.linalg.pinv(slopes.T @ weighed + prior) @ weighed.T)[: fit.values.size]
+def _both(one: tuple[float, float], other: tuple[float, float]) -> tuple[float, float]:
+    return min(one[0], other[0]), max(one[1], other[1])
 
 
 def _fit_split(data: Observations, law: Law, single: LawFit, below: BoolArray) -> LawFit:
     """The law with each point held to its branch, from two lines of their own."""
-    z, heat = data.inputs.log_speed, [_temperatures(data, law)] if law.thermal else []
+    z, heat = data.inputs.log_speed, [temperatures_of(data, law)] if law.thermal else []
     columns = [np.ones_like(z), *heat, z, below * 1.0, below * z]
     weights = 1.0 / single.sigma
     linear, *_ = np.linalg.lstsq(
@@ -311,7 +198,7 @@ def _splits(data: Observations, single: LawFit, exponent: float) -> list[tuple[f
     At a fixed Hersey number torque is a function of scaled speed alone. Its best falling curve below the
     split and best rising curve above it (isotonic regression, no law assumed) say how likely the split is.
     """
-    scaled = data.inputs.log_speed - exponent * _temperatures(data, _law_of(single))
+    scaled = data.inputs.log_speed - exponent * temperatures_of(data, law_of(single))
     order = np.argsort(scaled, kind="stable")
     torque = data.log_torque
     residuals = _unimodal_residuals(torque[order])

@@ -9,10 +9,11 @@ from __future__ import annotations
 import numpy as np
 
 from hersey.arrays import BoolArray, FloatArray
-from hersey.damping.branches import MIN_BRANCH_SPEEDS, Branches, scaled_speed, scaled_torque
+from hersey.damping.branches import MIN_BRANCH_SPEEDS, Branches
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.dwells import SAME_SPEED, SteadyPoints, distinct_speeds
 from hersey.damping.estimate import quantile
+from hersey.damping.scaled import scaled_speed, scaled_torque
 from hersey.units import rpm
 
 #: Speeds on either side whose torque must exceed the least.

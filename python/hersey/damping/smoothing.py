@@ -39,6 +39,7 @@ class Least:
     ends: tuple[float, float]  #: of ``log_speed``, 95 %; infinite where the dwells do not bound it
     speed_gain: FloatArray
     torque_gain: FloatArray
+    scale: float  #: of the covariance of the points
 
 
 @dataclass(frozen=True)
@@ -100,10 +101,16 @@ class Curve:
             min(_crossing(closer, falling, turn, -1), z) if low >= 0 else -np.inf,
             max(_crossing(closer, falling, turn, 1), z) if high < grid.size else np.inf,
         )
-        likeliest = float(self._weighed[0][1 + int(np.argmax(self._weighed[1][1:]))])
-        by_value, by_slope = self._gains(np.array([z]), likeliest)
+        ratios, log_likelihood, scale = self._weighed
+        likeliest = 1 + int(np.argmax(log_likelihood[1:]))
+        by_value, by_slope = self._gains(np.array([z]), float(ratios[likeliest]))
         return Least(
-            z, float(by_value[0] @ self.values), ends, np.asarray(-by_slope[0] / curvature), by_value[0]
+            log_speed=z,
+            log_torque=float(by_value[0] @ self.values),
+            ends=ends,
+            speed_gain=np.asarray(-by_slope[0] / curvature),
+            torque_gain=by_value[0],
+            scale=float(scale[likeliest]),
         )
 
     def _slopes(self, grid: FloatArray) -> tuple[FloatArray, FloatArray]:

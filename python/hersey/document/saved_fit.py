@@ -8,10 +8,11 @@ from pathlib import Path
 import numpy as np
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from hersey.damping.branches import Closure, Transition
+from hersey.damping.branches import Transition
 from hersey.damping.candidates.branched import transition_exponent
 from hersey.damping.candidates.shared_errors import Freedom, SharedScatter
 from hersey.damping.estimate import Estimate
+from hersey.damping.gradual import Closure
 from hersey.damping.surface import DampingSurface, FitStatistics
 from hersey.document.parts import ClosurePart, FitPart, InputFile, Interval, Point, TransitionPart
 from hersey.errors import ParameterError
