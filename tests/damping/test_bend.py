@@ -81,23 +81,20 @@ def test_the_least_of_a_parabola_is_as_uncertain_as_its_slope() -> None:
     reach = float(stats.t.ppf(0.975, 12))
     for end, side in zip(found.ends, (-1.0, 1.0), strict=True):
         by = np.array([0.0, 1.0, 2.0 * (end + 2.0)])
-        # the weight of curves that bend more widens it somewhat
-        assert 1.0 < side * 0.6 * (end - 0.7) / (reach * float(np.sqrt(by @ bread @ by))) < 1.8
+        # curves that bend more have a weight, which widens it
+        assert 1.0 < side * 0.6 * (end - found.log_speed) / (reach * float(np.sqrt(by @ bread @ by))) < 2.5
 
 
-def test_by_how_much_each_point_moves_the_least() -> None:
-    at = np.linspace(-2.0, 3.0, 15)
+def test_the_least_scatters_as_its_gains_say() -> None:
+    rng, at, noise = np.random.default_rng(6), np.linspace(-2.0, 3.0, 15), 0.01
     values = np.log(stribeck(np.exp(at)))
-    found = curve(at, values, 1e-3).least()
-    assert found is not None
-    for i in (2, 7, 11):
-        moved = [curve(at, values + step * np.eye(15)[i], 1e-3).least() for step in (-1e-5, 1e-5)]
-        assert moved[0] is not None
-        assert moved[1] is not None
-        by_speed = (moved[1].log_speed - moved[0].log_speed) / 2e-5
-        by_torque = (moved[1].log_torque - moved[0].log_torque) / 2e-5
-        assert found.speed_gain[i] == pytest.approx(by_speed, rel=0.1, abs=0.03)
-        assert found.torque_gain[i] == pytest.approx(by_torque, rel=0.05, abs=0.01)
+    found = [curve(at, values + noise * rng.standard_normal(15), noise).least() for _ in range(200)]
+    told = [each for each in found if each is not None]
+    assert len(told) == 200
+    for name, gains in (("log_speed", "speed_gain"), ("log_torque", "torque_gain")):
+        by_gain = [noise * float(np.linalg.norm(getattr(each, gains))) for each in told]
+        spread = float(np.std([getattr(each, name) for each in told]))
+        assert np.median(by_gain) == pytest.approx(spread, rel=0.3)
 
 
 def test_a_curve_without_a_minimum_has_none() -> None:
@@ -130,7 +127,7 @@ def test_the_transition_is_where_torque_is_least(surface: DampingSurface) -> Non
 
 
 def test_drag_starts_from_the_least_torque(surface: DampingSurface) -> None:
-    speed, torque = least_of()
+    _, torque = least_of()
     t = surface.transition
     assert t is not None
     drag = surface.drag(roll_radius=RADIUS, stick_speed=STICK)
@@ -216,11 +213,13 @@ def test_a_corner_stays_a_corner() -> None:
     assert all(t.meeting_speed == pytest.approx(t.speed.value, rel=1e-12) for t in corners)
 
 
-def test_a_saved_fit_keeps_its_bend(surface: DampingSurface, log: hersey.TorqueLog, tmp_path: Path) -> None:
-    w = np.append(SPEEDS, SPEEDS[::-1])
-    points = points_of(w, stribeck(w), error=0.001)
-    part = PRINTED["fit"].model_validate(surface_document(surface, points, log))
+def test_a_saved_fit_keeps_its_bend(
+    surface: DampingSurface, log: hersey.TorqueLog, points: hersey.SteadyPoints, tmp_path: Path
+) -> None:
+    """In the document of another fit, whose dwells do not matter here."""
+    part = PRINTED["fit"].model_validate(fit_document(log, points, hersey.fit(points)))
     document = {"hersey_version": surface.version} | part.model_dump(mode="json")
+    document["fit"] |= surface.to_dict()
     path = tmp_path / "fit.json"
     path.write_text(json.dumps(document))
     again = read_fit(path)
@@ -237,10 +236,6 @@ def test_a_saved_fit_keeps_its_bend(surface: DampingSurface, log: hersey.TorqueL
     path.write_text(json.dumps(document))
     with pytest.raises(ParameterError, match=r"fit.transition.closure: not 4 values"):
         read_fit(path)
-
-
-def surface_document(surface: DampingSurface, points: hersey.SteadyPoints, log: hersey.TorqueLog) -> object:
-    return fit_document(log, points, surface)
 
 
 def corner(away: np.ndarray) -> np.ndarray:

@@ -10,6 +10,7 @@ from scipy import stats
 
 import hersey
 from hersey.damping.estimate import Estimate
+from hersey.damping.gradual import Closure
 from hersey.damping.surface import DampingSurface
 from hersey.units import celsius
 from hersey.verdict.regimes import REGIMES, Hypothesis
@@ -232,8 +233,7 @@ def test_the_verdict_of_two_branches_in_words() -> None:
         surface.transition,
         speed=Estimate(20 * RPM, RPM, 18 * RPM, 22 * RPM),
         mixed_exponent=Estimate(-1.2, 0.01, -1.22, -1.18),
-        least_torque_speed=24 * RPM,
-        gradual=False,
+        closure=None,
     )
     surface = replace(surface, transition=exact, c=Estimate(-0.7, 0.01, -0.72, -0.68))
     assert hersey.regime(points, surface).verdict == (
@@ -242,9 +242,9 @@ def test_the_verdict_of_two_branches_in_words() -> None:
         "the drive slows (exponent -1.200 [-1.220, -1.180], below -1): mixed lubrication, where the drive "
         "can stick and slip."
     )
-    gradual = replace(surface, transition=replace(exact, gradual=True))
+    gradual = replace(surface, transition=replace(exact, closure=Closure(surface.values, surface.covariance)))
     assert hersey.regime(points, gradual).verdict.startswith(
-        "Above about 24 rpm, where torque is least, torque rises with speed"
+        "Above 20 rpm [18, 22], where torque is least, torque rises with speed"
     )
 
 
