@@ -187,16 +187,6 @@ def test_draws_go_together_as_the_covariance_says() -> None:
     )
 
 
-def test_draws_of_a_gradual_transition_spread_as_its_interval() -> None:
-    w = np.geomspace(0.3, 30, 14)
-    surface = hersey.fit(points_of(w, 0.3 * (1 + 0.8 * np.exp(-w / 2) + 0.12 * w / 2), error=0.01))
-    assert surface.transition is not None
-    error = surface.transition.speed.error / surface.transition.speed.value
-    assert error > 2.0 * surface.covariance[-1, -1] ** 0.5
-    low, high = ends(np.log(draws(surface, 20_000)["transition_speed"]))
-    assert (high - low) / 2.0 == pytest.approx(float(stats.t.ppf(0.975, 10)) * error, rel=0.05)
-
-
 @pytest.mark.parametrize("celsius", [100.0, 150.0, 180.0])
 def test_draws_are_centred_on_the_drag_of_their_temperature(surface: DampingSurface, celsius: float) -> None:
     drag = surface.drag(roll_radius=RADIUS, stick_speed=STICK, temperature=celsius + 273.15)

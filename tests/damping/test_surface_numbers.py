@@ -257,36 +257,6 @@ def test_a_corner_is_as_uncertain_as_the_profile_of_its_likelihood() -> None:
     assert speed.error / speed.value == pytest.approx(np.log(speed.high / speed.low) / (2 * reach), rel=1e-9)
 
 
-def meeting(z: np.ndarray, y: np.ndarray, slow: int, sigma: float) -> tuple[float, float]:
-    """The 95 % interval of where the line through the slow points meets that through the others."""
-    side = np.arange(z.size) < slow
-    columns = [side * 1.0, side * z, ~side * 1.0, ~side * z]
-    (a, p, b, q), unit = line(columns, y, np.ones(z.size))
-    residuals = y - np.column_stack(columns) @ np.array([a, p, b, q])
-    variance = max(float(residuals @ residuals) / (z.size - 4), sigma**2)
-    at = (b - a) / (p - q)
-    slopes = np.array([-1.0, -at, 1.0, at]) / (p - q)
-    reach = float(stats.t.ppf(0.975, z.size - 4)) * float(np.sqrt(slopes @ unit @ slopes * variance))
-    return float(np.exp(at - reach)), float(np.exp(at + reach))
-
-
-def test_a_gradual_transition_is_as_uncertain_as_the_split() -> None:
-    """Its interval holds those of all splits that may as well be taken."""
-    w = np.geomspace(0.3, 30, 14)
-    torque = 0.3 * (1 + 0.8 * np.exp(-w / 2) + 0.12 * w / 2)
-    surface = hersey.fit(points_of(w, torque, error=0.01))
-    assert surface.transition is not None
-    assert surface.transition.gradual
-    speed, least = surface.transition.speed, int(np.argmin(torque))
-    for slow in (least - 1, least, least + 1):
-        low, high = meeting(np.log(w), np.log(torque / w), slow, 0.01)
-        assert speed.low <= low * 1.001
-        assert speed.high >= high * 0.999
-    assert w[least - 1] < surface.transition.least_torque_speed < w[least + 1]
-    reach = float(stats.t.ppf(0.975, 10))
-    assert speed.error / speed.value == pytest.approx(np.log(speed.high / speed.low) / (2 * reach), rel=1e-6)
-
-
 def test_why_no_transition_is_said() -> None:
     few = hersey.fit(points_of(SPEEDS[:6], SPEEDS[:6] ** 0.3, error=0.01))
     assert few.rejected_transition == "too few points for a second branch"

@@ -55,7 +55,10 @@ def test_drive_1_has_a_falling_and_a_rising_branch() -> None:
     # published: exponent -1.055 for 10-50 rpm, -0.81 for 60-199 rpm, Stribeck speed 61 rpm
     assert surface.transition.mixed_exponent.value == pytest.approx(-1.055, abs=0.01)
     assert surface.c.value == pytest.approx(-0.81, abs=0.01)
-    assert 40 < surface.transition.least_torque_speed / RPM < 60
+    assert surface.transition.gradual
+    assert 45 < surface.transition.speed.value / RPM < 65
+    assert surface.transition.speed.low < 50 * RPM  # where the dwell of least torque was held
+    assert surface.transition_torque() == pytest.approx(2.56e-3, rel=0.015)
     assert surface.transition.speed.low < 61 * RPM < surface.transition.speed.high
     verdict = hersey.regime(points, surface).verdict
     assert "can stick and slip" in verdict

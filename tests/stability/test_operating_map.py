@@ -211,10 +211,10 @@ def test_draws_without_a_falling_branch_are_counted(surface: DampingSurface) -> 
         hopeless.drag_samples(300, 0, **AT, temperature=400.0)
 
 
-def test_a_gradual_bend_is_as_uncertain_as_its_split(surface: DampingSurface) -> None:
+def test_a_transition_is_drawn_as_wide_as_its_interval(surface: DampingSurface) -> None:
     best = surface.transition.speed
     wide = Estimate(best.value, 0.1 * best.value, 0.82 * best.value, 1.22 * best.value)
-    gradual = replace(surface, transition=replace(surface.transition, speed=wide, gradual=True))
+    gradual = replace(surface, transition=replace(surface.transition, speed=wide))
     speeds = gradual.drag_samples(5000, 0, **AT, temperature=404.4)["transition_speed"]
     assert np.std(np.log(speeds)) == pytest.approx(0.1, rel=0.05)
 

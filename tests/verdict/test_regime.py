@@ -10,6 +10,7 @@ from scipy import stats
 
 import hersey
 from hersey.damping.estimate import Estimate
+from hersey.damping.gradual import Closure
 from hersey.damping.surface import DampingSurface
 from hersey.units import celsius
 from hersey.verdict.regimes import REGIMES, Hypothesis
@@ -253,8 +254,7 @@ def test_the_verdict_of_two_branches_in_words() -> None:
         surface.transition,
         speed=Estimate(20 * RPM, RPM, 18 * RPM, 22 * RPM),
         mixed_exponent=Estimate(-1.2, 0.01, -1.22, -1.18),
-        least_torque_speed=24 * RPM,
-        gradual=False,
+        closure=None,
     )
     surface = replace(surface, transition=exact, c=Estimate(-0.7, 0.01, -0.72, -0.68))
     assert hersey.regime(points, surface).verdict == (
@@ -263,22 +263,10 @@ def test_the_verdict_of_two_branches_in_words() -> None:
         "rises as the drive slows (exponent -1.200 [-1.220, -1.180], below -1): mixed lubrication, where the "
         "drive can stick and slip."
     )
-
-
-@pytest.mark.xfail(strict=True, reason="a gradual bend is said to be least where its branches meet")
-def test_where_torque_is_least_is_the_least_torque_of_a_gradual_bend() -> None:
-    points, surface = bent(celsius=False)
-    assert surface.transition is not None
-    gradual = replace(
-        surface.transition,
-        speed=Estimate(20 * RPM, RPM, 18 * RPM, 22 * RPM),
-        least_torque_speed=24 * RPM,
-        gradual=True,
+    gradual = replace(surface, transition=replace(exact, closure=Closure(surface.values, surface.covariance)))
+    assert hersey.regime(points, gradual).verdict.startswith(
+        "Above 20 rpm [18, 22], where torque is least, torque rises with speed"
     )
-    said = hersey.regime(points, replace(surface, transition=gradual)).verdict
-    where = said.split("where torque is least", 1)[0]
-    assert "24 rpm" in where
-    assert "20 rpm" not in where
 
 
 @pytest.mark.parametrize(

@@ -65,7 +65,7 @@ def surface_chart(surface: DampingSurface) -> Chart:
         bands = [surface.predict(speed, None if t is None else np.full_like(speed, t)) for t in hot]
         bends = [(surface.transition_speed(t), t) for t in hot]
         marked = [
-            (at, float(surface.torque(at, t)), t)
+            (at, surface.transition_torque(t), t)
             for at, t in bends
             if surface.speed_range[0] < at < surface.speed_range[1]
         ]

@@ -3,7 +3,11 @@
 ==========  =========================================================
 dwells      dwells, reduced to steady points with honest errors
 estimate    a number with its uncertainty
-branches    two branches of the law: whether, and where they meet
+smoothing   a smooth curve through dwells, and where it is least
+scaled      dwells of all temperatures on one curve
+gradual     a gradual bend: its minimum, and what motion is given of it
+branches    two branches of the law: whether, and where torque is least
+shown       whether the dwells show a transition, in each direction
 surface     the damping surface, and what can be asked of it
 fit         fitting it: the paper's candidate among all
 candidates  every law fitted to the same dwells, one chosen

@@ -1,8 +1,10 @@
 """Two branches of the law: where they part, whether the data prove them, and where they meet.
 
 The points part where torque is least (isotonic regression, no law assumed). From there the law with a corner
-is fitted; where a gradual bend describes the data much better than a corner, each branch is instead the trend
-line through the points on its side, as one would draw it by hand.
+is fitted. Where a gradual bend describes the data better than a corner, or a corner leaves a trend, each
+branch is instead the trend line through the points on its side, as one would draw it by hand. Trend lines
+meet below the torque measured, and not where it is least: the transition is then the minimum of a smooth
+curve through the points.
 """
 
 from __future__ import annotations
@@ -20,73 +22,82 @@ from hersey.damping.candidates.likelihood import EVIDENCE, scatter_beyond
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.dwells import SAME_SPEED, distinct_speeds
 from hersey.damping.estimate import Estimate, quantile
+from hersey.damping.gradual import Closure, closure_at, least_around, trend_left
+from hersey.damping.scaled import law_of, powers_of, scaled_speed, temperatures_of
 from hersey.units import rpm
 
 #: Widths of a bend, in the logarithm of speed, that a corner is compared with.
 BEND_WIDTHS = (0.15, 0.3, 0.6)
 #: Points and distinct speeds that each branch needs.
 MIN_BRANCH_POINTS, MIN_BRANCH_SPEEDS = 4, 3
+#: Twice the logarithm of likelihood by which a corner leaves a trend: one time in a hundred by chance.
+TREND = 5.4
 
 
 @dataclass(frozen=True)
 class Branches:
-    """Two branches as fitted, and where they part and meet (logarithms of scaled speed)."""
+    """Two branches as fitted, and where torque is least (logarithms of scaled speed)."""
 
     fit: LawFit
-    parted_at: float
-    meeting: tuple[float, float]  #: 95 % interval
-    gradual: bool
+    least: float  #: not a number if a smooth curve has no minimum
+    ends: tuple[float, float]  #: 95 % interval
+    closure: Closure | None  #: None where the branches meet in a corner
 
 
 @dataclass(frozen=True)
 class Transition:
-    """Where the falling (mixed) branch meets the rising (EHL) one."""
+    """Where torque is least, between the falling (mixed) and the rising (EHL) branch."""
 
-    speed: Estimate  #: rad/s, at the reference temperature of the surface, where the branches meet
-    least_torque_speed: float  #: rad/s, there too: between the slow and the fast points
-    mixed_exponent: Estimate  #: exponent of damping in speed below it
+    speed: Estimate  #: rad/s, at the reference temperature of the surface
+    meeting_speed: float  #: rad/s, there too, where the lines of the branches meet; the same in a corner
+    mixed_exponent: Estimate  #: exponent of damping in speed below it, of the trend line if gradual
     temperature_exponent: float  #: transition speed varies as T to this power
     evidence: float  #: AICc of the single power law minus that of the two branches
-    gradual: bool  #: whether the branches are trend lines on either side of a gradual bend
+    closure: Closure | None = None  #: what motion is given in the place of a gradual bend
+
+    @property
+    def gradual(self) -> bool:
+        """Whether the bend is gradual: the branches are trend lines, its minimum that of a smooth curve."""
+        return self.closure is not None
 
 
 def fit_branches(data: Observations, single: LawFit) -> Branches | None:
     """Return the best two branches, or None if there are too few points for any."""
-    law = replace(_law_of(single), branches=HELD)
-    trend, powers = None, _powers(single)
+    law = replace(law_of(single), branches=HELD)
+    trend, powers, splits = None, powers_of(single), []
     for _ in range(4):  # which points are slow depends on the law, which depends on it
         splits = _splits(data, single, transition_exponent(*powers))
         if not splits:
             return None
-        trend = _trend_lines(data, law, single, splits, transition_exponent(*powers))
-        if np.allclose(powers, _powers(trend.fit), rtol=1e-9):
+        trend = _trend_lines(data, law, single, splits)
+        if np.allclose(powers, powers_of(trend), rtol=1e-9):
             break
-        powers = _powers(trend.fit)
+        powers = powers_of(trend)
     assert trend is not None
-    corner = fit_law(law, data, [trend.fit.values])
-    below = np.asarray(_scaled_speed(data, corner) < corner.values[-1])
-    if not (_enough(data, below) and _enough(data, ~below)) or _is_gradual(data, law, corner):
-        return trend
-    meeting = profile_interval(corner, data, law.index("at"))
-    return Branches(corner, trend.parted_at, meeting, gradual=False)
+    corner = fit_law(law, data, [trend.values])
+    below = np.asarray(scaled_speed(data, corner) < corner.values[-1])
+    parted = _parted(data, trend, splits)
+    if not (_enough(data, below) and _enough(data, ~below)):
+        return _around_a_bend(data, trend, parted, None)
+    return _bent(data, law, corner, trend, parted)
 
 
 def why_no_transition(data: Observations, single: LawFit, branches: Branches) -> str:
     """Return why a second branch is not announced; empty if torque falls and rises beyond doubt."""
     fit = branches.fit
-    below, above, at = fit.estimate("c_mixed"), fit.estimate("c"), float(fit.values[-1])
+    below, above, at = fit.estimate("c_mixed"), fit.estimate("c"), branches.least
     gain = single.aicc - fit.aicc
     if gain < EVIDENCE:
         return f"a second branch does not pay: its AICc is better by {gain:.1f}, {EVIDENCE:g} are asked"
     if below.high >= -1.0:
-        bend = rpm(data.reference_speed * float(np.exp(at)))
+        bend = rpm(data.reference_speed * float(np.exp(fit.values[-1])))
         return f"below {bend:.3g} rpm the exponent is {below}: torque does not fall with speed beyond doubt"
     if above.low <= -1.0:
         return f"above the bend the exponent is {above}: torque does not rise with speed beyond doubt"
-    scaled = _scaled_speed(data, fit)
+    scaled = scaled_speed(data, fit)
     if not scaled.min() < at < scaled.max():
         return "the falling and the rising branch do not meet within the speeds measured"
-    if not np.all(np.isfinite(branches.meeting)):
+    if not np.all(np.isfinite(branches.ends)):
         return "where the falling and the rising branch meet has no bound in these data"
     return ""
 
@@ -94,73 +105,81 @@ def why_no_transition(data: Observations, single: LawFit, branches: Branches) ->
 def transition(data: Observations, single: LawFit, branches: Branches) -> Transition:
     """Return the transition that branches show."""
     fit = branches.fit
-    best, low, high, least = (
-        data.reference_speed * float(np.exp(v))
-        for v in (fit.values[-1], *branches.meeting, branches.parted_at)
+    best, low, high, meeting = (
+        data.reference_speed * float(np.exp(v)) for v in (branches.least, *branches.ends, fit.values[-1])
     )
     reach = quantile(fit.freedom_of("at"))
     return Transition(
         speed=Estimate(best, best * float(np.log(high / low)) / (2 * reach), low, high),
-        least_torque_speed=least,
+        meeting_speed=meeting,
         mixed_exponent=fit.estimate("c_mixed"),
-        temperature_exponent=transition_exponent(*_powers(fit)),
+        temperature_exponent=transition_exponent(*powers_of(fit)),
         evidence=single.aicc - fit.aicc,
-        gradual=branches.gradual,
+        closure=branches.closure,
     )
-
-
-def _law_of(fit: LawFit) -> Law:
-    assert isinstance(fit.law, Law)
-    return fit.law
-
-
-def _powers(fit: LawFit) -> tuple[float, float]:
-    """Exponents of temperature (0 if isothermal) and of speed above the transition."""
-    law = _law_of(fit)
-    e = float(fit.values[law.index("e")]) if law.thermal else 0.0
-    return e, float(fit.values[law.index("c")])
-
-
-def _temperatures(data: Observations, law: Law) -> FloatArray:
-    """Logarithm of temperature about the reference, in the scale of the law; zeros if isothermal."""
-    if law.thermal is None or data.inputs.kelvin is None:
-        return np.zeros(len(data))
-    return law.thermal.shape(data.inputs.kelvin)[0]
-
-
-def _scaled_speed(data: Observations, fit: LawFit) -> FloatArray:
-    """Logarithm of speed at the same Hersey number at the reference temperature."""
-    shift = transition_exponent(*_powers(fit)) * _temperatures(data, _law_of(fit))
-    return np.asarray(data.inputs.log_speed - shift)
 
 
 def _trend_lines(
-    data: Observations, law: Law, single: LawFit, splits: list[tuple[float, BoolArray]], exponent: float
+    data: Observations, law: Law, single: LawFit, splits: list[tuple[float, BoolArray]]
+) -> LawFit:
+    """A trend line on either side of the likeliest split."""
+    likeliest = [below for chi, below in splits if chi <= splits[0][0] + 1e-9]
+    return min((_fit_split(data, law, single, below) for below in likeliest), key=lambda fit: fit.aicc)
+
+
+def _parted(data: Observations, trend: LawFit, splits: list[tuple[float, BoolArray]]) -> tuple[float, float]:
+    """Scaled speeds between which the points part, by all splits that may as well be taken."""
+    limit, scaled = splits[0][0] + quantile(len(data)) ** 2, scaled_speed(data, trend)
+    kept = [below for chi, below in splits if chi <= limit]
+    return min(float(scaled[b].max()) for b in kept), max(float(scaled[~b].min()) for b in kept)
+
+
+def _bent(
+    data: Observations, law: Law, corner: LawFit, trend: LawFit, parted: tuple[float, float]
 ) -> Branches:
-    """A trend line on either side of the likeliest split; where they meet is as uncertain as the split."""
-    limit = splits[0][0] + quantile(len(data)) ** 2
-    solved = [(chi, below, _fit_split(data, law, single, below)) for chi, below in splits if chi <= limit]
-    meetings = [fit.estimate("at") for _, _, fit in solved]
-    likeliest = [s for s in solved if s[0] <= splits[0][0] + 1e-9]
-    _, below, best = min(likeliest, key=lambda s: s[2].aicc)
-    scaled = data.inputs.log_speed - exponent * _temperatures(data, law)
-    return Branches(
-        best,
-        parted_at=0.5 * float(scaled[below].max() + scaled[~below].min()),
-        meeting=(min(m.low for m in meetings), max(m.high for m in meetings)),
-        gradual=True,
+    """A corner, or trend lines about a gradual bend; while neither is excluded, the interval holds both."""
+    bends = [fit_law(replace(law, bend=Bend(width)), data, [corner.values]) for width in BEND_WIDTHS]
+    gain = corner.aicc - min(bend.aicc_with(1) for bend in bends)
+    proven = gain > EVIDENCE or trend_left(data, corner) > TREND
+    if proven:
+        return _around_a_bend(data, trend, parted, None)
+    ends = profile_interval(corner, data, law.index("at"))
+    sharp = Branches(corner, float(corner.values[-1]), ends, None)
+    if min(bend.deviance for bend in bends) >= corner.deviance:
+        return sharp
+    gradual = _around_a_bend(data, trend, parted, ends)
+    if gain > 0.0 and gradual.closure is not None:
+        return gradual
+    return sharp if gradual.closure is None else replace(sharp, ends=_both(ends, gradual.ends))
+
+
+def _around_a_bend(
+    data: Observations, trend: LawFit, parted: tuple[float, float], corner: tuple[float, float] | None
+) -> Branches:
+    """The trend lines on either side, and the minimum between them.
+
+    Where the dwells do not bound it, the speeds between which they part do. ``corner`` is the interval of a
+    corner that is not excluded.
+    """
+    least, groups = least_around(data, trend)
+    if least is None:
+        return Branches(trend, np.nan, (-np.inf, np.inf), None)
+    low, high = least.ends
+    ends = (
+        low if np.isfinite(low) else min(parted[0], least.log_speed),
+        high if np.isfinite(high) else max(parted[1], least.log_speed),
     )
+    ends = ends if corner is None else _both(ends, corner)
+    return Branches(trend, least.log_speed, ends, closure_at(data, trend, least, groups, ends))
 
 
-def _is_gradual(data: Observations, law: Law, corner: LawFit) -> bool:
-    """Whether a bend of some width describes the data much better than a corner."""
-    bends = (fit_law(replace(law, bend=Bend(width)), data, [corner.values]) for width in BEND_WIDTHS)
-    return any(bend.aicc_with(1) < corner.aicc - EVIDENCE for bend in bends)
+def _both(one: tuple[float, float], other: tuple[float, float]) -> tuple[float, float]:
+    return min(one[0], other[0]), max(one[1], other[1])
 
 
 def _fit_split(data: Observations, law: Law, single: LawFit, below: BoolArray) -> LawFit:
     """The law with each point held to its branch, from two lines of their own."""
-    z, heat = data.inputs.log_speed, [_temperatures(data, law)] if law.thermal else []
+    z, heat = data.inputs.log_speed, [temperatures_of(data, law)] if law.thermal else []
     columns = [np.ones_like(z), *heat, z, below * 1.0, below * z]
     weights = 1.0 / single.sigma
     linear, *_ = np.linalg.lstsq(
@@ -179,7 +198,7 @@ def _splits(data: Observations, single: LawFit, exponent: float) -> list[tuple[f
     At a fixed Hersey number torque is a function of scaled speed alone. Its best falling curve below the
     split and best rising curve above it (isotonic regression, no law assumed) say how likely the split is.
     """
-    scaled = data.inputs.log_speed - exponent * _temperatures(data, _law_of(single))
+    scaled = data.inputs.log_speed - exponent * temperatures_of(data, law_of(single))
     order = np.argsort(scaled, kind="stable")
     torque = data.log_torque
     residuals = _unimodal_residuals(torque[order])

@@ -17,6 +17,7 @@ from hersey.damping.candidates.observations import Observations
 from hersey.damping.candidates.thermal import scaled_temperature
 from hersey.damping.dwells import SteadyPoints, groups_of_temperature
 from hersey.damping.estimate import Estimate, estimate
+from hersey.damping.shown import why_not_shown
 from hersey.damping.surface import SCALES, DampingSurface, FitStatistics
 from hersey.damping.systematic import sensor_shifts
 from hersey.errors import InsufficientDataError, ParameterError
@@ -53,7 +54,7 @@ def fit(points: SteadyPoints, *, temperature_scale: str = "degC") -> DampingSurf
     branches = fit_branches(data, single)
     if branches is None:
         return _surface(points, data, single, None, "too few points for a second branch", temperature_scale)
-    refused = why_no_transition(data, single, branches)
+    refused = why_no_transition(data, single, branches) or why_not_shown(points, data, branches)
     if refused:
         return _surface(points, data, single, None, refused, temperature_scale)
     measured_transition = transition(data, single, branches)
@@ -102,7 +103,8 @@ def _surface(
     coefficients = _coefficients(fit, data, fit.values, fit.covariance, scale, shifts)
     if measured_transition is not None:
         measured_transition = _with_sensors(measured_transition, fit, shifts)
-    labels = {"level": "ln B_ref", "e": "b", "at": "ln(w_t/w_ref)"}
+    gradual = measured_transition is not None and measured_transition.gradual
+    labels = {"level": "ln B_ref", "e": "b", "at": "ln(w_meet/w_ref)" if gradual else "ln(w_t/w_ref)"}
     residuals = data.log_torque - law.predict(fit.values, data.inputs)
     return DampingSurface(
         a=coefficients["a"],

@@ -89,7 +89,9 @@ class DampingSurface(Result):
     def damping(self, speed: ArrayLike, temperature: ArrayLike | None = None) -> FloatArray:
         """Return damping in N m s/rad at speeds (rad/s) and temperatures (K), broadcast together.
 
-        Warns with `ExtrapolationWarning` outside the range of the data.
+        Warns with `ExtrapolationWarning` outside the range of the data. Around a gradual bend it is that of
+        the trend lines on either side, as are `torque` and `predict`: they describe each branch, but meet
+        below the torque measured, so that `drag` has the torque of the dwells at the transition instead.
         """
         speeds = np.abs(np.asarray(speed, dtype=float))
         self._warn_outside("speed", speeds, self.speed_range)
@@ -112,8 +114,19 @@ class DampingSurface(Result):
 
     @cached_property
     def _law_values(self) -> FloatArray:
-        """The values as the law has them, whose level is of torque."""
-        return np.append(self.values[0] + np.log(self.reference_speed), self.values[1:])
+        """The values as the law has them."""
+        return self._with_torque(self.values)
+
+    def _with_torque(self, values: FloatArray) -> FloatArray:
+        """Values whose level is of torque, not of damping."""
+        return np.append(values[0] + np.log(self.reference_speed), values[1:])
+
+    @property
+    def _closure(self) -> tuple[FloatArray, FloatArray]:
+        """Values and covariance of the law with a corner at the transition."""
+        assert self.transition is not None
+        closure = self.transition.closure
+        return (self.values, self.covariance) if closure is None else (closure.values, closure.covariance)
 
     def _inputs(self, speed: FloatArray, kelvin: FloatArray | None) -> Inputs:
         z = np.log(speed.ravel() / self.reference_speed)
@@ -127,7 +140,10 @@ class DampingSurface(Result):
 
     @takes_si(temperature="temperature")
     def transition_speed(self, temperature: float | None = None) -> float:
-        """Return the transition speed in rad/s at a temperature (K); NaN where the data show none."""
+        """Return the transition speed in rad/s at a temperature (K); NaN where the data show none.
+
+        It is where torque is least: the corner, or the minimum of a gradual bend.
+        """
         if self.transition is None:
             return float("nan")
         if temperature is None or self.reference_temperature is None:
@@ -135,9 +151,26 @@ class DampingSurface(Result):
         moved = self.transition.temperature_exponent * self._checked_temperature(temperature)
         return float(self.transition.speed.value * np.exp(moved))
 
+    @takes_si(temperature="temperature")
+    def transition_torque(self, temperature: float | None = None) -> float:
+        """Return the torque in N m there, at a temperature (K); NaN where the data show no transition.
+
+        In a gradual bend it is that of a smooth curve through the dwells.
+        """
+        if self.transition is None:
+            return float("nan")
+        values, _ = self._closure
+        at = self.reference_temperature if temperature is None else temperature
+        inputs = self._inputs(
+            np.array([self.transition_speed(temperature)]), None if at is None else np.array([at])
+        )
+        return float(np.exp(self._law.predict(self._with_torque(values), inputs))[0])
+
     @takes_si(roll_radius="length", stick_speed="belt speed", temperature="temperature")
     def drag(self, *, roll_radius: float, stick_speed: float, temperature: float | None = None) -> Drag:
         """Return the drag on the belt surface, at one temperature or varying with it.
+
+        Both branches start from the torque at the transition, where it is least, with their exponents.
 
         Parameters
         ----------
@@ -168,13 +201,9 @@ class DampingSurface(Result):
                 speed_temperature_exponent=exponent,
                 temperature_zero=zero,
             )
-        speed = self.transition_speed(temperature)
-        with warnings.catch_warnings():  # the transition may lie below the slowest dwell at this temperature
-            warnings.simplefilter("ignore", ExtrapolationWarning)
-            torque = float(self.torque(speed, temperature))
         return Drag(
-            transition_force=torque / roll_radius,
-            transition_speed=speed * roll_radius,
+            transition_force=self.transition_torque(temperature) / roll_radius,
+            transition_speed=self.transition_speed(temperature) * roll_radius,
             ehl_exponent=self.c.value,
             mixed_exponent=self.transition.mixed_exponent.value,
             stick_speed=stick_speed,
@@ -258,18 +287,19 @@ class DampingSurface(Result):
     def _draws(self, count: int, seed: int, x: float, slowest: float) -> tuple[FloatArray, int, int]:
         """Draws of level, b, c, c_mixed and at that have both branches; how many were drawn, and refused."""
         assert self.transition is not None
-        covariance = self.covariance.copy()
-        # Where the bend is gradual the meeting of the branches is less certain than a corner's.
-        meeting = self.transition.speed.error / self.transition.speed.value
-        covariance[-1, -1] = max(covariance[-1, -1], meeting**2)
+        centre, covariance = self._closure
+        covariance = covariance.copy()
+        # The likelihood of a corner is less sharp than its curvature.
+        error = self.transition.speed.error / self.transition.speed.value
+        covariance[-1, -1] = max(covariance[-1, -1], error**2)
         freedoms = [self.freedoms.of(row) for row in np.eye(self.values.size)]
         rng = np.random.default_rng(seed)
         kept, total = np.empty((0, 5)), 0
         while len(kept) < count:
-            values = rng.multivariate_normal(np.zeros(self.values.size), covariance, size=count)
+            values = rng.multivariate_normal(np.zeros(centre.size), covariance, size=count)
             share = rng.random(count)  # one quantile of chi-square for all values of a draw
             wider = [np.sqrt(f / stats.chi2.ppf(share, f)) for f in freedoms]
-            values = self.values + values * np.column_stack(wider)
+            values = centre + values * np.column_stack(wider)
             if self.b is None:
                 values = np.insert(values, 1, 0.0, axis=1)
             _, b, c, mixed, at = values.T
@@ -438,6 +468,9 @@ def _summary(s: DampingSurface) -> str:
         if s.b:
             lines.append(f"    w_t varies as T^{s.transition.temperature_exponent:.3g} (fixed Hersey number)")
         lines.append("    below w_t the exponent is c_mixed")
+        if s.transition.gradual:
+            lines.append("    the bend is gradual: w_t is where a smooth curve through the dwells is least,")
+            lines.append(f"    the trend lines on either side meet at {s.transition.meeting_speed:.4g} rad/s")
     lines += ["[[Fitted in torque space, errors absolute]]"]
     lines += [_variable(name, estimate) for name, estimate in s.torque_space.items()]
     lines += ["[[Correlations]] (unreported are below 0.1)", *_correlations(s)]

@@ -12,8 +12,9 @@ from hersey.damping.branches import Transition
 from hersey.damping.candidates.branched import transition_exponent
 from hersey.damping.candidates.shared_errors import Freedom, SharedScatter
 from hersey.damping.estimate import Estimate
+from hersey.damping.gradual import Closure
 from hersey.damping.surface import DampingSurface, FitStatistics
-from hersey.document.parts import FitPart, InputFile, Interval, Point, TransitionPart
+from hersey.document.parts import ClosurePart, FitPart, InputFile, Interval, Point, TransitionPart
 from hersey.errors import ParameterError
 from hersey.files.text import read_text
 
@@ -109,9 +110,19 @@ def _check(path: Path, document: _FitFile) -> None:
         raise _broken(path, "fit.variance_parts", f"not {size} rows of {size} numbers for each variance")
     if not _is_covariance(covariance):
         raise _broken(path, "fit.covariance", "it is not symmetric with no negative variance")
+    if fit.transition is not None and fit.transition.closure is not None:
+        _check_closure(path, fit.transition.closure, size)
     for field, value, expected in _derived(fit):
         if not np.isclose(value, expected, rtol=_ROUNDING):
             raise _broken(path, f"fit.{field}", "it differs from fit.values, so one of them was changed")
+
+
+def _check_closure(path: Path, closure: ClosurePart, size: int) -> None:
+    rows = {len(row) for row in closure.covariance}
+    if len(closure.values) != size or len(closure.covariance) != size or rows != {size}:
+        raise _broken(path, "fit.transition.closure", f"not {size} values and {size} rows of {size} numbers")
+    if not _is_covariance(np.array(closure.covariance)):
+        raise _broken(path, "fit.transition.closure", "it is not symmetric with no negative variance")
 
 
 def _derived(fit: FitPart) -> list[tuple[str, float, float]]:
@@ -122,10 +133,16 @@ def _derived(fit: FitPart) -> list[tuple[str, float, float]]:
     if thermal:
         derived.append(("coefficients.b", fit.coefficients["b"].value, b))
     if fit.transition is not None:
-        mixed, at = fit.values[-2:]
-        speed = fit.reference_speed * float(np.exp(at))
+        mixed, meeting = fit.values[-2:]
+        closure = fit.transition.closure
+        at = meeting if closure is None else closure.values[-1]
         derived += [
-            ("transition.speed", fit.transition.speed.value, speed),
+            ("transition.speed", fit.transition.speed.value, fit.reference_speed * float(np.exp(at))),
+            (
+                "transition.meeting_speed",
+                fit.transition.meeting_speed,
+                fit.reference_speed * float(np.exp(meeting)),
+            ),
             ("transition.mixed_exponent", fit.transition.mixed_exponent.value, mixed),
             (
                 "transition.temperature_exponent",
@@ -153,11 +170,13 @@ def _estimate(part: Interval) -> Estimate:
 def _transition(part: TransitionPart) -> Transition:
     return Transition(
         speed=_estimate(part.speed),
-        least_torque_speed=part.least_torque_speed,
+        meeting_speed=part.meeting_speed,
         mixed_exponent=_estimate(part.mixed_exponent),
         temperature_exponent=part.temperature_exponent,
         evidence=part.evidence,
-        gradual=part.gradual,
+        closure=None
+        if part.closure is None
+        else Closure(np.array(part.closure.values), np.array(part.closure.covariance)),
     )
 
 

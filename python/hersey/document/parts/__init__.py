@@ -22,6 +22,7 @@ from hersey.document.parts.film import FilmPart, FilmPoint, FilmStatesPart, Meas
 from hersey.document.parts.fit import (
     BranchPart,
     Cell,
+    ClosurePart,
     Curve,
     FitDocument,
     FitPart,
@@ -73,6 +74,7 @@ __all__ = [
     "BranchPart",
     "Cell",
     "ChannelUse",
+    "ClosurePart",
     "ComparisonPart",
     "Curve",
     "CyclesPart",

@@ -10,15 +10,24 @@ from hersey.document.parts.log import InputFile, Point
 from hersey.document.parts.part import Interval, Part
 
 
+class ClosurePart(Part):
+    """The law with a corner at the minimum of a gradual bend, in the variables of the fit."""
+
+    values: list[float]
+    covariance: list[list[float]]
+
+
 class TransitionPart(Part):
-    """Where falling and rising branch meet: speeds in rad/s at the reference temperature."""
+    """Where torque is least, between the branches: speeds in rad/s at the reference temperature."""
 
     speed: Interval
-    least_torque_speed: float
+    meeting_speed: float = Field(description="where the lines of the branches meet; speed if in a corner")
     mixed_exponent: Interval
     temperature_exponent: float
     evidence: float = Field(description="gain in AICc over a single power law")
-    gradual: bool = Field(description="branches are trend lines on either side of a gradual bend")
+    closure: ClosurePart | None = Field(
+        description="what motion is given of a gradual bend, its branches trend lines; null for a corner"
+    )
 
 
 class Curve(Part):

@@ -196,8 +196,8 @@ async function main() {
   const at = level === null ? "" : ` (at ${degrees(level)})`;
   add(report, "p", data.fit.transition
     ? `The second branch is better than a single power law by ${data.fit.transition.evidence.toFixed(0)} in AICc. Torque is least `
-      + `near ${digits(data.fit.transition.least_torque_speed * TO_RPM, 3)} rpm; the ${data.fit.transition.gradual ? "bend is gradual: trend lines on either side" : "branches"} `
-      + `meet at ${interval(data.fit.transition.speed, TO_RPM, 3)} rpm${at}.`
+      + `at ${interval(data.fit.transition.speed, TO_RPM, 3)} rpm${at}, ${data.fit.transition.closure === null ? "where the branches meet."
+        : `the minimum of a smooth curve: the bend is gradual, and the trend lines on either side meet at ${digits(data.fit.transition.meeting_speed * TO_RPM, 3)} rpm.`}`
     : `No falling branch is announced: ${data.fit.no_transition}.`);
   await film();
   add(report, "h2", "What stick-slip looks like");

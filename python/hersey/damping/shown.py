@@ -1,0 +1,103 @@
+"""Whether the dwells themselves show that torque falls and rises: enough of them, in each direction.
+
+Two branches can be fitted where one dwell stands out, or where the forward rotation falls and the reverse one
+does not. A transition is announced of what the dwells show by themselves.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from hersey.arrays import BoolArray, FloatArray
+from hersey.damping.branches import MIN_BRANCH_SPEEDS, Branches
+from hersey.damping.candidates.observations import Observations
+from hersey.damping.dwells import SAME_SPEED, SteadyPoints, distinct_speeds
+from hersey.damping.estimate import quantile
+from hersey.damping.scaled import scaled_speed, scaled_torque
+from hersey.units import rpm
+
+#: Speeds on either side whose torque must exceed the least.
+ABOVE_LEAST = 2
+#: Standard errors by which it must fall and rise in each direction that has enough speeds.
+_IN_EACH = 1.0
+
+
+def why_not_shown(points: SteadyPoints, data: Observations, branches: Branches) -> str:
+    """Return why the dwells do not show the transition that branches have; empty if they do."""
+    z, y = scaled_speed(data, branches.fit), scaled_torque(data, branches.fit)
+    sides = (z < branches.least, "below", "fall"), (z >= branches.least, "above", "rise")
+    at = f"{rpm(data.reference_speed * float(np.exp(branches.least))):.3g} rpm"
+    for side, where, _ in sides:
+        high, speeds = _higher(z, y, side, branches, _least(branches, float(np.log(data.reference_speed))))
+        if high < ABOVE_LEAST:
+            return (
+                f"{where} {at} torque is beyond its errors above the least at {high} of {speeds} speeds, and "
+                f"{ABOVE_LEAST} are asked: record more dwells {where}"
+            )
+    for ways, advice in _directions(points):
+        judged = [
+            (way, dwells) for way, dwells in ways if all(_enough(data, dwells & s) for s, _, _ in sides)
+        ]
+        for side, where, does in sides:
+            missing = [way for way, dwells in judged if _trend(z, y, branches, side & dwells) < _IN_EACH]
+            if missing:
+                return f"{where} {at} torque does not {does} in the dwells {' or '.join(missing)}{advice}"
+    return ""
+
+
+def _higher(
+    z: FloatArray, y: FloatArray, side: BoolArray, branches: Branches, least: tuple[float, float]
+) -> tuple[int, int]:
+    """How many speeds of a side have more torque than the least beyond the errors, and of how many."""
+    torque, error = least
+    order = np.flatnonzero(side)[np.argsort(z[side], kind="stable")]
+    levels = np.split(order, np.flatnonzero(np.diff(z[order]) > 0.5 * SAME_SPEED) + 1)
+    reach, weight = quantile(branches.fit.freedom), 1.0 / branches.fit.sigma**2
+    high = 0
+    for level in levels:
+        mean = float(np.average(y[level], weights=weight[level]))
+        high += mean - torque > reach * float(np.hypot(error, np.sum(weight[level]) ** -0.5))
+    return high, len(levels)
+
+
+def _least(branches: Branches, log_reference: float) -> tuple[float, float]:
+    """Least ln torque of the law with a corner at the transition, and its standard error."""
+    fit, closure = branches.fit, branches.closure
+    values = fit.values if closure is None else closure.values
+    covariance = fit.covariance if closure is None else closure.covariance
+    c = fit.law.index("c")
+    by = np.zeros(values.size)
+    by[0], by[c], by[-1] = 1.0, values[-1], 1.0 + values[c]
+    level = values[0] + (0.0 if closure is None else log_reference)  # of torque, not of damping
+    torque = float(level + (1.0 + values[c]) * values[-1])
+    return torque, float(np.sqrt(max(float(by @ covariance @ by), 0.0)))
+
+
+def _directions(points: SteadyPoints) -> list[tuple[list[tuple[str, BoolArray]], str]]:
+    """The ways in which dwells were come to, each with its dwells, and what to do if one shows none."""
+    forward = np.asarray(points.column("speed") > 0.0)
+    out = [
+        (
+            [("of forward rotation", forward), ("of reverse rotation", ~forward)],
+            ": fit each alone with --rotation",
+        )
+    ]
+    if "approach" in points.table.columns:
+        approach = np.asarray(points.table["approach"].to_list())
+        ways = [(f"approached {way}", np.asarray(approach == way)) for way in ("from below", "from above")]
+        out.append(
+            (ways, ": warming or running in can do that; let it run in, then record up and down again")
+        )
+    return out
+
+
+def _enough(data: Observations, members: BoolArray) -> bool:
+    return distinct_speeds(data.speed[members]) >= MIN_BRANCH_SPEEDS
+
+
+def _trend(z: FloatArray, y: FloatArray, branches: Branches, members: BoolArray) -> float:
+    """By how many standard errors torque rises away from the transition, by a line of these dwells alone."""
+    away, weight = np.abs(z[members] - branches.least), 1.0 / branches.fit.sigma[members] ** 2
+    centred = away - np.average(away, weights=weight)
+    spread = float(np.sum(weight * centred**2))
+    return float(np.sum(weight * centred * y[members]) / np.sqrt(spread))
