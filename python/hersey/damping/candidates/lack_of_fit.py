@@ -92,17 +92,18 @@ def lack_of_fit(fit: LawFit, data: Observations) -> LackOfFit:
     z = data.inputs.log_speed - float(np.mean(data.inputs.log_speed))
     speeds = distinct_speeds(data.speed)
     bent = [z**2, z**3] if speeds > SPEEDS_OF_CURVATURE else [z**2]
-    curvature, added = _tested(fit, data, bent) if speeds >= SPEEDS_OF_CURVATURE else (None, np.zeros(1))
-    by_speed = fit.law.slopes(fit.values, data.inputs)[0]
-    local = by_speed - 1.0 + sum((k + 2) * b * z ** (k + 1) for k, b in enumerate(added))
+    nothing = None, np.zeros(1), fit.values
+    curvature, added, values = _tested(fit, data, bent) if speeds >= SPEEDS_OF_CURVATURE else nothing
+    local = fit.law.slopes(values, data.inputs)[0] - 1.0
+    local = local + sum((k + 2) * b * z ** (k + 1) for k, b in enumerate(added))
     slow, fast = int(np.argmin(z)), int(np.argmax(z))
     ends = float(local[slow]), float(local[fast])
     kelvin = data.inputs.kelvin
     if fit.law.thermal is None or kelvin is None:
         return LackOfFit(curvature, None, None, ends, (float(np.mean(local)),) * 2)
     warm = kelvin / float(np.mean(kelvin)) - 1.0
-    varying, tilt = _tested(fit, data, [z * warm])
-    middle = float(np.mean(by_speed)) - 1.0
+    varying, tilt, values = _tested(fit, data, [z * warm])
+    middle = float(np.mean(fit.law.slopes(values, data.inputs)[0])) - 1.0
     by_temperature = middle + float(tilt[0]) * float(warm.min()), middle + float(tilt[0]) * float(warm.max())
     hot = None
     if data.temperatures.size >= TEMPERATURES_OF_CURVATURE:
@@ -110,8 +111,10 @@ def lack_of_fit(fit: LawFit, data: Observations) -> LackOfFit:
     return LackOfFit(curvature, varying, hot, ends, by_temperature)
 
 
-def _tested(fit: LawFit, data: Observations, terms: list[FloatArray]) -> tuple[float | None, FloatArray]:
-    """p-value of no such terms, and their coefficients.
+def _tested(
+    fit: LawFit, data: Observations, terms: list[FloatArray]
+) -> tuple[float | None, FloatArray, FloatArray]:
+    """p-value of no such terms, their coefficients, and the values of the law beside them.
 
     There is no p-value if the law has such terms already, or no freedom is left.
     """
@@ -121,14 +124,16 @@ def _tested(fit: LawFit, data: Observations, terms: list[FloatArray]) -> tuple[f
     rows = np.vstack([known * weigh, np.eye(modes, known.shape[1], known.shape[1] - modes)])
     added = np.vstack([np.column_stack(terms) * weigh, np.zeros((modes, len(terms)))])
     rest = np.append((fit.residuals + fit.disturbances @ fit.effects) * weigh[:, 0], np.zeros(modes))
-    left = added - rows @ np.linalg.lstsq(rows, added, rcond=None)[0]
+    taken = np.linalg.lstsq(rows, added, rcond=None)[0]  # what of the terms the law itself can take
+    left = added - rows @ taken
     rest = rest - rows @ np.linalg.lstsq(rows, rest, rcond=None)[0]
     gone = np.linalg.norm(left, axis=0) < 1e-6 * np.linalg.norm(added, axis=0)
     freedom = fit.freedom - len(terms)
     if np.any(gone) or freedom < 1:
-        return None, np.zeros(len(terms))
+        return None, np.zeros(len(terms)), fit.values
     coefficients, *_ = np.linalg.lstsq(left, rest, rcond=None)
     after = float(np.sum((rest - left @ coefficients) ** 2))
     gain = float(rest @ rest) - after
     ratio = gain / len(terms) / max(after / freedom, 1e-300)
-    return float(stats.f.sf(ratio, len(terms), freedom)), coefficients
+    values = fit.values - (taken @ coefficients)[: fit.values.size]
+    return float(stats.f.sf(ratio, len(terms), freedom)), coefficients, values
