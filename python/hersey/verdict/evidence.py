@@ -284,7 +284,7 @@ def _thermal(surface: DampingSurface, kelvin: float) -> Estimate | None:
     scale = 1.0 if surface.temperature_scale == "K" else kelvin / celsius(kelvin)
     b = surface.b
     ends = sorted((b.low * scale, b.high * scale))
-    return Estimate(b.value * scale, b.error * abs(scale), *ends)
+    return Estimate(b.value * scale, b.error * abs(scale), *ends, b.freedom, b.systematic * abs(scale))
 
 
 def _text(
@@ -319,12 +319,19 @@ def _text(
             "Eq. 5 of the paper (Dowson-Higginson) does not apply to this contact, whatever the exponent."
         )
     if thermal is not None:
-        says = "agrees" if thermal.low <= thermal_expected <= thermal.high else "disagrees"
         lines.append(
             f"With temperature (K) damping goes to the power {thermal}; the film of this lubricant predicts "
-            f"{thermal_expected:.2f}, which {says}."
+            f"{thermal_expected:.2f}, {_agreement(thermal, thermal_expected)}."
         )
     return " ".join(lines)
+
+
+def _agreement(measured: Estimate, expected: float) -> str:
+    """Whether an exponent agrees with the one expected, errors of the sensors allowed for."""
+    if not measured.told:
+        return "which these data do not test"
+    inside = measured.low - measured.systematic <= expected <= measured.high + measured.systematic
+    return "which agrees" if inside else "which disagrees"
 
 
 def _dwell_lines(measured: MeasuredFilm) -> list[str]:
