@@ -110,12 +110,13 @@ class Reading:
 
     def log(self, paths: list[Path]) -> TorqueLog | MeansTable:
         """Read the files as one log, or as tables of means, with a progress bar."""
-        table = self.means_table(paths)
-        if table is not None:
-            return table
         from hersey.log import memory_limit
         from hersey.log.mapping import read_with_mapping
 
+        with memory_limit(self.max_memory):
+            table = self.means_table(paths)
+        if table is not None:
+            return table
         with bar("reading") as progress, memory_limit(self.max_memory):
             done = read_with_mapping(paths, **self.given(), progress=progress)
         for file in done.log.files:
