@@ -283,8 +283,8 @@ def _thermal(surface: DampingSurface, kelvin: float) -> Estimate | None:
         return None
     scale = 1.0 if surface.temperature_scale == "K" else kelvin / celsius(kelvin)
     b = surface.b
-    ends = sorted((b.low * scale, b.high * scale))
-    return Estimate(b.value * scale, b.error * abs(scale), *ends, b.freedom, b.systematic * abs(scale))
+    low, high = sorted((b.low * scale, b.high * scale))
+    return Estimate(b.value * scale, b.error * abs(scale), low, high, b.freedom, b.systematic * abs(scale))
 
 
 def _text(
