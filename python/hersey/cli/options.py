@@ -135,11 +135,16 @@ class Reading:
         refuse_corrections(mapping.corrects, str(mapping.source and mapping.source.name))
         given = self.given()
         channels, units = given["channels"], given["units"]
+        stated = {
+            role: given.get(role, None if role in channels else getattr(mapping.stated, role))
+            for role in ("radius", "load")
+        }
         table = read_means(
             paths,
             channels={r: name for r, name in (mapping.channels | channels).items() if r != "time"},
             units={r: unit for r, unit in (mapping.units | units).items() if r != "time"},
             isothermal=self.isothermal,
+            **stated,
         )
         return replace(table, sensors=mapping.sensors)
 

@@ -233,7 +233,7 @@ def inspect(
     known = Stated(*(getattr(stated, f.name) or getattr(said.stated, f.name) for f in fields(Stated)))
     reports = tuple(_file_report(raw_channels(file), choices, known) for file in files)
     if means:
-        return _of_means(files, reports, choices, isothermal, chosen.sensors, rotation)
+        return _of_means(files, reports, choices, isothermal, known, chosen.sensors, rotation)
     hopeless = any(set(report.without) - {"temperature"} for report in reports)
     holes = any(c.role and c.traits.missing for report in reports for c in report.channels)
     cold = any("temperature" in report.without for report in reports)
@@ -259,6 +259,7 @@ def _of_means(
     reports: tuple[FileReport, ...],
     choices: dict[str, ChannelChoice],
     isothermal: bool,
+    known: Stated,
     sensors: Sensors,
     rotation: str,
 ) -> Inspection:
@@ -278,6 +279,8 @@ def _of_means(
             channels={role: choice.name for role, choice in stated.items() if choice.name},
             units={role: choice.unit for role, choice in stated.items() if choice.unit},
             isothermal=isothermal,
+            radius=known.radius,
+            load=known.load,
         )
     except HerseyError as error:
         return Inspection(reports, str(error), (), {}, (), None)
