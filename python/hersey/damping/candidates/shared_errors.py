@@ -216,7 +216,8 @@ def freedom_of(
     moved = np.zeros(parameters)
     for grouping, shared in zip(grouped, scatter, strict=True):
         if not shared.told:
-            moved += np.sum((gain @ grouping.member) ** 2, axis=1) / np.sum(gain**2, axis=1)
+            own = np.maximum(np.sum(gain**2, axis=1), 1e-300)  # nil where nothing tells a value
+            moved += np.sum((gain @ grouping.member) ** 2, axis=1) / own
     if not members:
         return Freedom(residual, covariance, moved_by_untold=moved)
     left, singular, _ = np.linalg.svd(bread)
