@@ -158,6 +158,8 @@ class Reading:
         given = self.given()
         channels, units = given["channels"], given["units"]
         mapping = mapping_of(paths, self.mapping or None)
+        if mapping.time.every is not None:
+            return False
         return all(
             is_means_table(Path(path), mapping.channels | channels, mapping.units | units) for path in paths
         )

@@ -26,7 +26,7 @@ from hersey.errors import (
     UnitError,
     UnreadableLogError,
 )
-from hersey.log.channels import ChannelChoice, Stated, find_channel, no_channel, role_conversion
+from hersey.log.channels import ChannelChoice, Stated, called, find_channel, no_channel, role_conversion
 from hersey.log.formats import format_of, opened
 from hersey.log.formats.frame import is_frame
 from hersey.log.friction import beside, in_rotation, notes_on
@@ -227,6 +227,8 @@ def is_means_table(path: Path, channels: Mapping[str, str], units: Mapping[str, 
             return False
         cells = _cells(path, path.name)
         if not cells.cells or not 0 < len(cells.cells[0]) <= FEW_ROWS or _clock(cells.columns):
+            return False
+        if (clock := channels.get("time")) and called(clock, cells.columns):
             return False
         columns = _measured(cells.columns)
         choices = {r: ChannelChoice(channels.get(r, ""), units.get(r, "")) for r in ("speed", "torque")}
