@@ -98,6 +98,7 @@ _USUAL: dict[str, str] = {
     "torsional stiffness": "N*m/rad N*m/deg mN*m/rad",
     "moment of inertia": "kg*m^2 g*cm^2 kg*cm^2",
     "load per length": "N/m N/mm kN/m lbf/in",
+    "friction coefficient": "1",
 }
 #: How alike (`difflib`) a usual unit must be to an unknown one, and to one of another kind, to be proposed.
 _ALIKE, _ALIKE_OF_ANOTHER_KIND = 0.6, 0.8

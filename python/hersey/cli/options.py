@@ -110,12 +110,13 @@ class Reading:
 
     def log(self, paths: list[Path]) -> TorqueLog | MeansTable:
         """Read the files as one log, or as tables of means, with a progress bar."""
-        table = self.means_table(paths)
-        if table is not None:
-            return table
         from hersey.log import memory_limit
         from hersey.log.mapping import read_with_mapping
 
+        with memory_limit(self.max_memory):
+            table = self.means_table(paths)
+        if table is not None:
+            return table
         with bar("reading") as progress, memory_limit(self.max_memory):
             done = read_with_mapping(paths, **self.given(), progress=progress)
         for file in done.log.files:
@@ -134,11 +135,16 @@ class Reading:
         refuse_corrections(mapping.corrects, str(mapping.source and mapping.source.name))
         given = self.given()
         channels, units = given["channels"], given["units"]
+        stated = {
+            role: given.get(role, None if role in channels else getattr(mapping.stated, role))
+            for role in ("radius", "load")
+        }
         table = read_means(
             paths,
             channels={r: name for r, name in (mapping.channels | channels).items() if r != "time"},
             units={r: unit for r, unit in (mapping.units | units).items() if r != "time"},
             isothermal=self.isothermal,
+            **stated,
         )
         return replace(table, sensors=mapping.sensors)
 
@@ -152,6 +158,8 @@ class Reading:
         given = self.given()
         channels, units = given["channels"], given["units"]
         mapping = mapping_of(paths, self.mapping or None)
+        if mapping.time.every is not None:
+            return False
         return all(
             is_means_table(Path(path), mapping.channels | channels, mapping.units | units) for path in paths
         )

@@ -65,7 +65,7 @@ def analyse(
     """
     surface = fit(points, temperature_scale=temperature_scale)
     seen = regime(points, surface)
-    film = film_part(points, surface, machine)
+    film = film_part(points, surface, machine, seen)
     return Analysis(
         hersey_version=_core.VERSION,
         title=_title(log),

@@ -11,11 +11,16 @@ from hersey.lubrication.film import REGIMES, Film, film_thickness
 from hersey.machine.machine import Machine
 from hersey.verdict.checks import check_film
 from hersey.verdict.evidence import MeasuredFilm, Verdict, measured_film, verdict
-from hersey.verdict.regime import regime
+from hersey.verdict.regime import Regime
 
 
-def film_part(points: SteadyPoints, surface: DampingSurface, machine: Machine | None) -> FilmPart | None:
-    """Return what theory says of the nip; None if nip, lubricant or temperatures are not known."""
+def film_part(
+    points: SteadyPoints, surface: DampingSurface, machine: Machine | None, seen: Regime
+) -> FilmPart | None:
+    """Return what theory says of the nip, beside what the log alone says (``seen``).
+
+    None if nip, lubricant or temperatures are not known.
+    """
     if machine is None or machine.contact is None or machine.lubricant is None or surface.b is None:
         return None
     contact, lubricant = machine.contact, machine.lubricant
@@ -32,7 +37,7 @@ def film_part(points: SteadyPoints, surface: DampingSurface, machine: Machine | 
         film,
         [point.name for point in machine.points],
         measured,
-        verdict(measured, surface, contact, lubricant, regime(points, surface)),
+        verdict(measured, surface, contact, lubricant, seen),
         check_film(machine, film, measured),
     )
 

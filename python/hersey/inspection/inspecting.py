@@ -21,6 +21,7 @@ from hersey.log.channels import OTHER_ROLES, ROLES, ChannelChoice, Stated
 from hersey.log.corrections import Corrected
 from hersey.log.mapping import LogMapping, as_stated, mapping_of, read_with_mapping, without_what_is_said
 from hersey.log.means import read_means
+from hersey.log.sensors import Sensors
 from hersey.log.torque_log import Correction, LogFile
 from hersey.result import Result, json_record
 from hersey.units import conversion, takes_si
@@ -232,7 +233,7 @@ def inspect(
     known = Stated(*(getattr(stated, f.name) or getattr(said.stated, f.name) for f in fields(Stated)))
     reports = tuple(_file_report(raw_channels(file), choices, known) for file in files)
     if means:
-        return _of_means(files, reports, choices, isothermal)
+        return _of_means(files, reports, choices, isothermal, known, chosen.sensors, rotation)
     hopeless = any(set(report.without) - {"temperature"} for report in reports)
     holes = any(c.role and c.traits.missing for report in reports for c in report.channels)
     cold = any("temperature" in report.without for report in reports)
@@ -258,6 +259,9 @@ def _of_means(
     reports: tuple[FileReport, ...],
     choices: dict[str, ChannelChoice],
     isothermal: bool,
+    known: Stated,
+    sensors: Sensors,
+    rotation: str,
 ) -> Inspection:
     """What a table of means holds: it needs no clock."""
     reports = tuple(
@@ -275,11 +279,15 @@ def _of_means(
             channels={role: choice.name for role, choice in stated.items() if choice.name},
             units={role: choice.unit for role, choice in stated.items() if choice.unit},
             isothermal=isothermal,
+            radius=known.radius,
+            load=known.load,
         )
     except HerseyError as error:
         return Inspection(reports, str(error), (), {}, (), None)
     dropped = {file.name: file.missing_rows for file in table.files if file.missing_rows}
-    return Inspection(reports, "", (), dropped, (), support_of_means(table))
+    return Inspection(
+        reports, "", (), dropped, (), support_of_means(replace(table, sensors=sensors), rotation=rotation)
+    )
 
 
 def _with_notes(report: FileReport, files: Sequence[LogFile]) -> FileReport:

@@ -71,10 +71,10 @@ def support_of(
     return support_of_points(points)
 
 
-def support_of_means(table: MeansTable) -> Support:
+def support_of_means(table: MeansTable, *, rotation: str = "both") -> Support:
     """Return what a table of means supports."""
     try:
-        points = SteadyPoints.from_table(table)
+        points = SteadyPoints.from_table(table, rotation=rotation)
     except InsufficientDataError as error:
         return Support(0, 0, None, (), {}, (), (str(error),))
     return support_of_points(points)
@@ -144,15 +144,15 @@ def _temperature(levels: tuple[float, ...], points: SteadyPoints) -> Said:
 
 
 def _branches(points: SteadyPoints, groups: list[NDArray[np.intp]], speed: FloatArray) -> Said:
-    counts = [distinct_speeds(speed[group]) for group in groups]
-    most = max(counts)
-    if most < BRANCH_SPEEDS:
-        few = f"at most {most} speed{'s' if most > 1 else ''} at one temperature"
-        return [], [f"a transition: {few}; two branches need {BRANCH_SPEEDS} or more"]
+    most = max(distinct_speeds(speed[group]) for group in groups)
+    few = f"at most {most} speed{'s' if most > 1 else ''} at one temperature"
+    too_few = [f"a transition: {few}; two branches need {BRANCH_SPEEDS} or more"]
     try:
         surface = fit(_comparable(points, len(groups)))
     except InsufficientDataError as error:
-        return [], [f"a transition: {error}"]
+        return [], too_few if most < BRANCH_SPEEDS else [f"a transition: {error}"]
+    if most < BRANCH_SPEEDS and surface.transition is None:
+        return _one_exponent(points, surface, too_few)
     if surface.transition is None:
         return _one_exponent(points, surface, [f"a transition: {_without(surface)}"])
     at = surface.transition.speed

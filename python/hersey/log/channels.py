@@ -49,6 +49,8 @@ _OSCILLATION = re.compile(r"frequen[cz]|oscillat|oszillat", re.IGNORECASE)
 _TELLING = 20
 #: A clock of a part of a run, beside which that of the whole run counts.
 _PART_OF_A_RUN = re.compile(r"step|segment|interval|cycle|lap", re.IGNORECASE)
+#: Characters of a name at the most.
+_LONGEST_NAME = 200
 #: Columns named in a message at the most.
 _SHOWN = 40
 _SETPOINT = re.compile(r"\b(set|cmd|command|commanded|target|demand|reference|soll|nominal)", re.IGNORECASE)
@@ -95,7 +97,7 @@ def find_channel(
     """
     if choice.name:
         return _with_unit(role, _named(role, columns, choice.name, file), choice, file)
-    named = [c for c in columns if re.fullmatch(_NAMES[role], c.name, re.IGNORECASE)]
+    named = [c for c in columns if _is_named(_NAMES[role], c)]
     measured = [c for c in named if not _SETPOINT.search(c.name)] or named
     # a column of another kind of unit is out; one without a unit could still be it
     candidates = (
@@ -118,6 +120,11 @@ def find_channel(
             raise _repeated(role, candidates, file)
         raise ChannelError(f"{file}: {role} could be {listed}: choose with --{role} '{candidates[0].path}'")
     return _with_unit(role, candidates[0], choice, file)
+
+
+def _is_named(pattern: str, column: Column) -> bool:
+    """Whether a column is called so; longer than any name it is not, for the patterns would take long."""
+    return len(column.name) <= _LONGEST_NAME and bool(re.fullmatch(pattern, column.name, re.IGNORECASE))
 
 
 def is_dead(values: FloatArray) -> bool:
@@ -241,12 +248,12 @@ def _telling(role: str, candidates: list[Column]) -> list[Column]:
 def _in_friction(role: str, columns: tuple[Column, ...], measured: list[Column]) -> list[Column]:
     """Columns of a friction force, or else a coefficient, or of a sliding speed."""
     if role == "speed":
-        sliding = [c for c in columns if re.fullmatch(_FRICTION["belt speed"], c.name, re.I)]
+        sliding = [c for c in columns if _is_named(_FRICTION["belt speed"], c)]
         return [c for c in measured or sliding if _is_unit_of("belt speed", c.unit)]
     if role != "torque":
         return []
-    coefficients = [c for c in columns if re.fullmatch(_FRICTION["friction coefficient"], c.name, re.I)]
-    forces = [c for c in columns if re.fullmatch(_FRICTION["force"], c.name, re.I) and c not in coefficients]
+    coefficients = [c for c in columns if _is_named(_FRICTION["friction coefficient"], c)]
+    forces = [c for c in columns if _is_named(_FRICTION["force"], c) and c not in coefficients]
     forces = [c for c in forces if not c.unit or _is_unit_of("force", c.unit)]
     return (
         forces
@@ -264,12 +271,12 @@ def _is_unit_of(kind: str, unit: str) -> bool:
 
 def _with_unit(role: str, column: Column, choice: ChannelChoice, file: str) -> tuple[Column, Conversion]:
     unit = choice.unit or column.unit
-    if not unit and role == "torque" and re.fullmatch(_FRICTION["friction coefficient"], column.name, re.I):
+    if not unit and role == "torque" and _is_named(_FRICTION["friction coefficient"], column):
         unit = "1"
     if role == "run":
         return column, Conversion(unit, 1.0, 0.0)
     if not unit:
-        of_a_force = role == "torque" and re.fullmatch(_FRICTION["force"], column.name, re.I)
+        of_a_force = role == "torque" and _is_named(_FRICTION["force"], column)
         example = KINDS["force" if of_a_force else ROLE_KINDS[role][0]][1]
         raise UnitError(
             f"{file}: column '{column.path}' has no unit: write '{column.name} [{example}]' in the header, "

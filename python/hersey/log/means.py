@@ -19,17 +19,24 @@ import numpy as np
 import polars as pl
 
 from hersey.arrays import FloatArray
-from hersey.errors import HerseyError, InsufficientDataError, ParameterError, UnitError
-from hersey.log.channels import ChannelChoice, find_channel, no_channel
+from hersey.errors import (
+    HerseyError,
+    InsufficientDataError,
+    ParameterError,
+    UnitError,
+    UnreadableLogError,
+)
+from hersey.log.channels import ChannelChoice, Stated, called, find_channel, no_channel, role_conversion
 from hersey.log.formats import format_of, opened
 from hersey.log.formats.frame import is_frame
+from hersey.log.friction import beside, in_rotation, notes_on
 from hersey.log.recording import split_unit
 from hersey.log.sensors import Sensors
 from hersey.log.text.delimited import open_delimited
 from hersey.log.text.layout import Column, split
-from hersey.log.torque_log import Channel, LogFile
+from hersey.log.torque_log import LARGEST, Channel, LogFile
 from hersey.result import Result, json_record
-from hersey.units import Conversion, conversion
+from hersey.units import Conversion, conversion, takes_si
 
 #: Rows and bytes of a file that is taken for a table of means without being called one, at the most.
 FEW_ROWS, FEW_BYTES = 300, 200_000
@@ -147,12 +154,15 @@ class _Cells:
         return float("nan") if cell is None else float(cell)  # type: ignore[arg-type]
 
 
+@takes_si(radius="length", load="force")
 def read_means(
     tables: Any,
     *,
     channels: Mapping[str, str] | None = None,
     units: Mapping[str, str] | None = None,
     isothermal: bool = False,
+    radius: float | Sequence[float] | None = None,
+    load: float | Sequence[float] | None = None,
 ) -> MeansTable:
     """Read a table of means, or several.
 
@@ -161,9 +171,13 @@ def read_means(
     tables
         File or files, a polars or pandas frame, or columns by name.
     channels, units
-        Column and unit by role (``torque``, ``speed``, ``temperature``), where the header does not say.
+        Column and unit by role (``torque``, ``speed``, ``temperature``; ``load``, ``radius``), where the
+        header does not say. Torque may be a friction force or a coefficient, speed one of sliding.
     isothermal
         Leave temperature out.
+    radius, load
+        At which a friction force acts and a sliding speed is measured, m, and normal load, N, where no column
+        holds them; one for all tables, or one for each.
 
     Raises
     ------
@@ -174,13 +188,36 @@ def read_means(
     means: list[MeanRow] = []
     files: list[LogFile] = []
     stated = []
+    choices = _choices(dict(channels or {}), dict(units or {}))
+    radii, loads = (_for_each(name, of, len(listed)) for name, of in (("radius", radius), ("load", load)))
     for number, table in enumerate(listed):
         cells = _cells(table, f"table {number + 1}" if len(listed) > 1 else "table")
-        rows, file, errors = _read(cells, dict(channels or {}), dict(units or {}), isothermal, means)
+        said = Stated(None, radii[number], loads[number])
+        rows, file, errors = _read(cells, choices, said, isothermal, means)
         means += rows
         files.append(file)
         stated.append(errors)
     return MeansTable(tuple(means), tuple(files), all(stated))
+
+
+def _choices(channels: dict[str, str], units: dict[str, str]) -> dict[str, ChannelChoice]:
+    return {
+        role: ChannelChoice(channels.get(role, ""), units.get(role, ""))
+        for role in ("torque", "speed", "temperature", "load", "radius")
+    }
+
+
+def _for_each(name: str, given: float | Sequence[float] | None, tables: int) -> list[float | None]:
+    """What is said of a load or a radius, for each table."""
+    if given is None:
+        return [None] * tables
+    values = [float(v) for v in np.ravel(given)] * (1 if np.ndim(given) else tables)
+    if len(values) != tables:
+        raise ParameterError(f"{name} has {len(values)} values for {tables} tables: give one for each")
+    for value in values:
+        if not 0 < value < LARGEST:
+            raise ParameterError(f"{name} is {value:g} in SI: it must be greater than 0")
+    return list(values)
 
 
 def is_means_table(path: Path, channels: Mapping[str, str], units: Mapping[str, str]) -> bool:
@@ -190,6 +227,8 @@ def is_means_table(path: Path, channels: Mapping[str, str], units: Mapping[str, 
             return False
         cells = _cells(path, path.name)
         if not cells.cells or not 0 < len(cells.cells[0]) <= FEW_ROWS or _clock(cells.columns):
+            return False
+        if (clock := channels.get("time")) and called(clock, cells.columns):
             return False
         columns = _measured(cells.columns)
         choices = {r: ChannelChoice(channels.get(r, ""), units.get(r, "")) for r in ("speed", "torque")}
@@ -228,6 +267,8 @@ def _cells(table: Any, name: str) -> _Cells:
             columns = tuple(Column(i, s.name, s.unit, s.group) for i, s in enumerate(recording.signals))
             loaded = tuple(list(signal.load()) for signal in recording.signals)
             source = recording.source
+        if len({len(cells) for cells in loaded}) > 1:
+            raise UnreadableLogError(f"{path.name}: its columns differ in length: it is no table of means")
         if source is None:
             content = path.read_bytes()
             return _Cells(path.name, _sha(content), len(content), columns, loaded, float)
@@ -275,22 +316,32 @@ def _plays(column: Column, name: str, columns: tuple[Column, ...]) -> bool:
     """Whether a column plays a role without a conversion; n is a count beside a speed, or the speed."""
     if name == "count" and column.name.lower() == "n" and not column.unit:
         return any(c != column and re.search("speed|rpm|drehzahl", str(c), re.IGNORECASE) for c in columns)
+    if name == "load" and re.search("torque|moment", column.name, re.IGNORECASE):  # a load torque is a torque
+        return False
     return bool(_PLAIN[name].fullmatch(column.name))
 
 
 def _read(
-    cells: _Cells, channels: dict[str, str], units: dict[str, str], isothermal: bool, before: list[MeanRow]
+    cells: _Cells,
+    choices: dict[str, ChannelChoice],
+    said: Stated,
+    isothermal: bool,
+    before: list[MeanRow],
 ) -> tuple[list[MeanRow], LogFile, bool]:
-    roles = _roles(cells, channels, units, isothermal)
-    values = {role: _si(cells, *role_of) for role, role_of in roles.items()}
+    roles = _roles(cells, choices, isothermal)
+    others = beside(cells.columns, choices, said, roles, cells.name)
+    values = {role: _si(cells, *role_of) for role, role_of in (roles | others).items()}
+    lever = in_rotation(values | {"torque": np.ones_like(values["torque"])}, roles, said)["torque"]
     error = _errors(cells, roles["torque"])
+    error = None if error is None else error * lever
+    values = in_rotation(values, roles, said)
     count = _plain(cells, "count")
     counts = np.ones_like(values["torque"]) if count is None else np.maximum(cells.numbers(count), 1.0)
     run, approach, load = (_plain(cells, name) for name in ("run", "approach", "load"))
     runs = _indices(cells.texts(run)) if run is not None else np.zeros(counts.size, dtype=np.intp)
     runs = runs + (max(row.run for row in before) + 1 if before else 0)
     ways = [_way(text) for text in cells.texts(approach)] if approach is not None else ["start"] * counts.size
-    loads = _load(cells, load)
+    loads = values.get("load", _load(cells, load))
     temperature = values.get("temperature")
     needed = {role: values[role] for role in roles} | ({} if error is None else {"torque error": error})
     rows, left_out = [], []
@@ -313,8 +364,8 @@ def _read(
         )
     if not rows:
         raise InsufficientDataError(f"{cells.name}: no row holds both a speed and a torque")
-    used = tuple(Channel(role, c[0].name, c[1].unit) for role, c in roles.items())
-    notes = tuple(_named(left_out))
+    used = tuple(Channel(role, c[0].name, c[1].unit) for role, c in (roles | others).items())
+    notes = (*notes_on(roles | others, said), *_named(left_out))
     file = LogFile(
         cells.name, cells.sha256, cells.size, len(rows), len(left_out), used, cells.comments, False, notes
     )
@@ -324,17 +375,15 @@ def _read(
 Role = tuple[Column, Conversion]
 
 
-def _roles(
-    cells: _Cells, channels: dict[str, str], units: dict[str, str], isothermal: bool
-) -> dict[str, Role]:
+def _roles(cells: _Cells, choices: dict[str, ChannelChoice], isothermal: bool) -> dict[str, Role]:
     """Columns of torque, speed and, if there is one, temperature, with their conversions."""
     measured = _measured(cells.columns)
     roles = {}
     for role in ("torque", "speed", "temperature"):
         if role == "temperature" and isothermal:
             continue
-        choice = ChannelChoice(channels.get(role, ""), units.get(role, ""))
-        channel = find_channel(role, cells.columns if choice.name else measured, choice, cells.name)
+        columns = cells.columns if choices[role].name else measured
+        channel = find_channel(role, columns, choices[role], cells.name)
         if channel is not None:
             roles[role] = channel
         elif role != "temperature":
@@ -347,7 +396,7 @@ def _si(cells: _Cells, column: Column, unit: Conversion) -> FloatArray:
 
 
 def _errors(cells: _Cells, torque: Role) -> FloatArray | None:
-    """Standard errors of the torque, N m, from a column of errors, or of deviations with a count."""
+    """Standard errors of what the column of torque holds, in SI, from errors, or deviations and counts."""
     about_torque = [c for c in cells.columns if c != torque[0] and _is_of_torque(c)]
     count = _plain(cells, "count")
     for column in about_torque:
@@ -370,7 +419,7 @@ def _is_of_torque(column: Column) -> bool:
 def _scaled(cells: _Cells, column: Column, torque: Role) -> FloatArray:
     if column.unit == "%":
         return np.asarray(cells.numbers(column) / 100.0 * np.abs(_si(cells, *torque)))
-    scale = conversion("torque", column.unit).scale if column.unit else torque[1].scale
+    scale = role_conversion("torque", column.unit)[1].scale if column.unit else torque[1].scale
     return np.asarray(scale * cells.numbers(column))
 
 

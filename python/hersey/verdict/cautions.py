@@ -29,8 +29,6 @@ def cautions(points: SteadyPoints, surface: DampingSurface) -> list[str]:
         if file.cut_off:
             out.append(f"{file.name}: the file ends before its time.")
         out += [f"{file.name}: {note}." for note in file.notes]
-        if run is not None and file.missing_rows:
-            out.append(f"{file.name}: {file.missing_rows} rows without a number were left out, as asked.")
         if run is not None and run.gaps():
             share = 1.0 - run.time.size * run.sampling_interval / max(float(run.time[-1] - run.time[0]), 1e-9)
             out.append(

@@ -330,13 +330,19 @@ def _text(
             "Eq. 5 of the paper (Dowson-Higginson) does not apply to this contact, whatever the exponent."
         )
     if thermal is not None:
-        apart = max(thermal.low - thermal_expected, thermal_expected - thermal.high)
-        says = "agrees" if apart <= thermal.systematic else "disagrees"
         lines.append(
             f"With temperature (K) damping goes to the power {thermal}; the film of this lubricant predicts "
-            f"{thermal_expected:.2f}, which {says}."
+            f"{thermal_expected:.2f}, {_agreement(thermal, thermal_expected)}."
         )
     return " ".join(lines)
+
+
+def _agreement(measured: Estimate, expected: float) -> str:
+    """Whether an exponent agrees with the one expected, errors of the sensors allowed for."""
+    if not measured.told:
+        return "which these data do not test"
+    inside = measured.low - measured.systematic <= expected <= measured.high + measured.systematic
+    return "which agrees" if inside else "which disagrees"
 
 
 def _dwell_lines(measured: MeasuredFilm) -> list[str]:

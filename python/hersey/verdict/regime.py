@@ -54,7 +54,9 @@ class Regime(Result):
 
     def summary(self) -> str:
         """Return the verdict, the hypotheses and the exponents as text."""
-        lines = [self.verdict, "not excluded:", *(f"  {e.name}" for e in self.explanations)]
+        lines = [self.verdict]
+        if self.explanations:
+            lines += ["not excluded:", *(f"  {e.name}" for e in self.explanations)]
         lines.append("hypothesis                  exponent           p")
         for h in self.hypotheses:
             values = f"{h.high:.3g}" if h.low == h.high else f"{h.low:.3g} to {h.high:.3g}"
@@ -71,6 +73,8 @@ class Regime(Result):
         """Return the regime named, or what is not excluded."""
         if self.named:
             return f"has the exponent of {self.named}"
+        if not self.explanations:
+            return "no regime named: the exponent is that of none"
         return "no regime named; not excluded: " + listed([e.name for e in self.explanations])
 
     def to_dict(self) -> dict[str, Any]:

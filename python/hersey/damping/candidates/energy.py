@@ -7,13 +7,14 @@ one over the viscosity, and so carries the viscosity's energy too: whether the t
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import stats
 
 from hersey.arrays import FloatArray
 from hersey.damping.candidates.branched import FREE, LEAST_POWER, Law
+from hersey.damping.candidates.constant_plus import ConstantPlusLaw
 from hersey.damping.candidates.fitting import LawFit
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.estimate import Estimate, estimate, quantile
@@ -29,7 +30,8 @@ class ActivationEnergies:
     """Energies in J/mol from the Arrhenius candidate, and what they say of each other.
 
     ``local`` holds the chosen law's apparent energy of torque at the coldest, the reference and the hottest
-    temperature, K: equal if the law is Arrhenius.
+    temperature, K: equal if the law is Arrhenius. ``of_film`` says that a constant part of the torque is
+    left out of them: ``torque`` is then that of the film.
     """
 
     torque: Estimate | None
@@ -39,18 +41,23 @@ class ActivationEnergies:
     p_value: float | None  #: of the transition's energy being the viscosity's
     verdict: str
     local: tuple[tuple[float, float], ...] = ()
+    of_film: bool = False
 
     def lines(self) -> list[str]:
         """Return the energies as text, in kJ/mol and cal/mol."""
         lines = []
         named = (
-            ("torque, apparent", self.torque),
+            ("torque of the film, apparent" if self.of_film else "torque, apparent", self.torque),
             ("viscosity, from torque and its exponent", self.viscosity),
             ("viscosity, from the transition speed", self.transition),
         )
         for name, energy in named:
-            if energy is not None:
-                kj, cal = scaled(energy, 1e-3), scaled(energy, 1.0 / CALORIE)
+            if energy is None:
+                continue
+            kj, cal = scaled(energy, 1e-3), scaled(energy, 1.0 / CALORIE)
+            if not energy.told:
+                lines.append(f"{name}: {kj.value:.4g} kJ/mol = {cal.value:.0f} cal/mol, interval not told")
+            else:
                 lines.append(f"{name}: {kj} kJ/mol = {cal.value:.0f} [{cal.low:.0f}, {cal.high:.0f}] cal/mol")
         return [*lines, self.verdict]
 
@@ -82,17 +89,29 @@ def activation_energies(
             None, None, None, None, None, "No activation energy: the log holds fewer than two temperatures."
         )
     per_unit = best.law.thermal.energy(data.reference_kelvin)
-    torque = _linear(best, {"e": per_unit})
-    power = _linear(best, {"c": 1.0}, offset=1.0)
+    torque = _untold(best, _linear(best, {"e": per_unit}))
+    of_film = isinstance(best.law, ConstantPlusLaw)
+    power = _linear(best, {"c": 1.0}, offset=1.0 + _held(best))
     viscosity = None
     if power.low > LEAST_POWER:
-        viscosity = _ratio(best, per_unit)
+        viscosity = _untold(best, _ratio(best, per_unit))
     transition = p_value = None
     if free is not None:
         transition = _linear(free, {"d": -per_unit})
         p_value = _disagreement(free)
     verdict = _verdict(viscosity, transition, p_value, power)
-    return ActivationEnergies(torque, power, viscosity, transition, p_value, verdict, _local(chosen, data))
+    local = _local(chosen, data)
+    return ActivationEnergies(torque, power, viscosity, transition, p_value, verdict, local, of_film)
+
+
+def _held(fit: LawFit) -> float:
+    """The exponent of speed of a law that does not fit it; 0 if it is fitted."""
+    return (fit.law.exponent or 0.0) if isinstance(fit.law, ConstantPlusLaw) else 0.0
+
+
+def _untold(fit: LawFit, energy: Estimate) -> Estimate:
+    """An energy without an interval where the law of temperature has none."""
+    return replace(energy, low=-np.inf, high=np.inf) if fit.untold("e") else energy
 
 
 def _linear(fit: LawFit, share: dict[str, float], offset: float = 0.0) -> Estimate:
@@ -103,7 +122,8 @@ def _linear(fit: LawFit, share: dict[str, float], offset: float = 0.0) -> Estima
 
 def _ratio(fit: LawFit, per_unit: float) -> Estimate:
     """E/(1 + c), its interval symmetric in the logarithm where it is positive."""
-    e, c = (fit.values[fit.law.index(name)] for name in ("e", "c"))
+    e = fit.values[fit.law.index("e")]
+    c = fit.values[fit.law.index("c")] if "c" in fit.law.names else _held(fit)
     value = per_unit * float(e / (1.0 + c))
     slopes = _gradient(fit, e=per_unit / (1.0 + c), c=-per_unit * e / (1.0 + c) ** 2)
     error = float(np.sqrt(slopes @ fit.covariance @ slopes))

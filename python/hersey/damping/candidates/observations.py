@@ -9,6 +9,7 @@ import numpy as np
 from hersey.arrays import FloatArray, IntArray
 from hersey.damping.dwells import SAME_SPEED, SteadyPoints, distinct_speeds, groups_of_temperature
 from hersey.errors import InsufficientDataError
+from hersey.log.means import MeansTable
 from hersey.units import rpm
 
 #: Runs from which on they are resampled and left out whole; fewer say too little of their spread.
@@ -70,7 +71,7 @@ class Observations:
             speed_error=points.column("speed_error") / speed,
             temperature_error=zero if kelvin is None else points.column("temperature_error"),
             tare=points.tare_errors / points.column("torque")[:, None],
-            visit=_visits(run, group),
+            visit=_stays(run, group) if isinstance(points.log, MeansTable) else _visits(run, group),
             run=run,
             cluster=run if by_run else _levels(run, group, speed),
             clustered_by="run" if by_run else "level",
@@ -134,6 +135,13 @@ def _visits(run: IntArray, group: IntArray) -> IntArray:
     if np.unique(run).size <= run.size // 2:
         changes |= np.diff(run) != 0
     return np.cumsum(np.append(0, changes))
+
+
+def _stays(run: IntArray, group: IntArray) -> IntArray:
+    """Visits in a table of means, whose rows stand in any order: all dwells of a run at one temperature."""
+    several = np.unique(run).size <= run.size // 2
+    _, stay = np.unique(np.column_stack([run * several, group]), axis=0, return_inverse=True)
+    return np.asarray(stay, dtype=np.intp)
 
 
 def _levels(run: IntArray, group: IntArray, speed: FloatArray) -> IntArray:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -89,6 +90,8 @@ class SteadyPoints(Result):
         units: dict[str, str] | None = None,
         isothermal: bool = False,
         rotation: str = "both",
+        radius: float | Sequence[float] | None = None,
+        load: float | Sequence[float] | None = None,
     ) -> SteadyPoints:
         """Return the steady points that a table of means states: one row per dwell, no clock.
 
@@ -104,6 +107,9 @@ class SteadyPoints(Result):
             Leave temperature out.
         rotation
             ``both``, or only ``forward`` (positive speed) or ``reverse`` rows.
+        radius, load
+            At which a friction force acts and a sliding speed is measured, m, and normal load, N, where no
+            column holds them; strings such as ``"25 mm"`` and pint quantities too.
 
         Raises
         ------
@@ -117,7 +123,9 @@ class SteadyPoints(Result):
         3
         """
         if not isinstance(table, MeansTable):
-            table = read_means(table, channels=channels, units=units, isothermal=isothermal)
+            table = read_means(
+                table, channels=channels, units=units, isothermal=isothermal, radius=radius, load=load
+            )
         dwells, rejected = _stated(table, rotation)
         if not dwells:
             raise InsufficientDataError(f"{table.files[0].name}: no row can be used: {rejected[0].reason}")

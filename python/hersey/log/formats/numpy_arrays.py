@@ -31,6 +31,9 @@ def open_numpy_arrays(file: BinaryIO, _name: str) -> Iterator[Recording]:
     else:
         with zipfile.ZipFile(file) as archive:
             for member in archive.namelist():
+                if not member.endswith(".npy"):
+                    others.append(f"'{member}' (no array)")
+                    continue
                 with archive.open(member) as content:
                     _add(member.removesuffix(".npy"), content, signals, others)
     yield Recording("NumPy", tuple(signals), tuple(others))
