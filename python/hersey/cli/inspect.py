@@ -64,6 +64,7 @@ def inspect(
             min_dwell=parse("time", reading.min_dwell),
             tare=reading.tare,
             rotation=reading.rotation,
+            temperature_scale=reading.temperature_scale,
             means=reading.are_means(logs),
         )
     if kept is not None:

@@ -194,6 +194,7 @@ def inspect(
     min_dwell: float = 2.0,
     tare: str = "none",
     rotation: str = "both",
+    temperature_scale: str = "degC",
     means: bool = False,
 ) -> Inspection:
     """Look at logs before a fit: also at such that cannot be fitted, or have no torque.
@@ -206,6 +207,8 @@ def inspect(
         As for `hersey.log.mapping.read_with_mapping`.
     min_dwell, tare, rotation
         As for `TorqueLog.steady`.
+    temperature_scale
+        As for `hersey.fit`.
     means
         Whether the files are tables of means: one row per dwell, no clock.
 
@@ -232,8 +235,9 @@ def inspect(
     }
     known = Stated(*(getattr(stated, f.name) or getattr(said.stated, f.name) for f in fields(Stated)))
     reports = tuple(_file_report(raw_channels(file), choices, known) for file in files)
+    of_fit = {"rotation": rotation, "temperature_scale": temperature_scale}
     if means:
-        return _of_means(files, reports, choices, isothermal, known, chosen.sensors, rotation)
+        return _of_means(files, reports, choices, isothermal, known, chosen.sensors, **of_fit)
     hopeless = any(set(report.without) - {"temperature"} for report in reports)
     holes = any(c.role and c.traits.missing for report in reports for c in report.channels)
     cold = any("temperature" in report.without for report in reports)
@@ -250,7 +254,7 @@ def inspect(
         return Inspection(reports, problem, (), {}, (), None)
     reports = tuple(_with_notes(report, read.log.files) for report in reports)
     dropped = {file.name: file.missing_rows for file in read.log.files if file.missing_rows}
-    support = support_of(read.log, min_dwell=min_dwell, tare=tare, rotation=rotation)
+    support = support_of(read.log, min_dwell=min_dwell, tare=tare, **of_fit)
     return Inspection(reports, "", needed, dropped, read.corrections, support)
 
 
@@ -261,9 +265,9 @@ def _of_means(
     isothermal: bool,
     known: Stated,
     sensors: Sensors,
-    rotation: str,
+    **of_fit: str,
 ) -> Inspection:
-    """What a table of means holds: it needs no clock."""
+    """What a table of means holds: it needs no clock; ``of_fit`` as `support_of_means` takes it."""
     reports = tuple(
         replace(
             report,
@@ -285,9 +289,9 @@ def _of_means(
     except HerseyError as error:
         return Inspection(reports, str(error), (), {}, (), None)
     dropped = {file.name: file.missing_rows for file in table.files if file.missing_rows}
-    return Inspection(
-        reports, "", (), dropped, (), support_of_means(replace(table, sensors=sensors), rotation=rotation)
-    )
+    reports = tuple(_with_notes(report, table.files) for report in reports)
+    support = support_of_means(replace(table, sensors=sensors), **of_fit)
+    return Inspection(reports, "", (), dropped, (), support)
 
 
 def _with_notes(report: FileReport, files: Sequence[LogFile]) -> FileReport:

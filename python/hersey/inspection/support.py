@@ -58,29 +58,36 @@ class Support:
 
 
 def support_of(
-    log: TorqueLog, *, min_dwell: float = 2.0, tare: str = "none", rotation: str = "both"
+    log: TorqueLog,
+    *,
+    min_dwell: float = 2.0,
+    tare: str = "none",
+    rotation: str = "both",
+    temperature_scale: str = "degC",
 ) -> Support:
     """Return what a log supports; a log without a dwell supports nothing, and says why.
 
-    ``min_dwell`` (s), ``tare`` and ``rotation`` are those of the fit to come.
+    ``min_dwell`` (s), ``tare``, ``rotation`` and ``temperature_scale`` are those of the fit to come.
     """
     try:
         points = log.steady(min_dwell=min_dwell, tare=tare, rotation=rotation)
     except InsufficientDataError as error:
         return Support(0, 0, None, (), {}, (), (str(error),))
-    return support_of_points(points)
+    return support_of_points(points, temperature_scale=temperature_scale)
 
 
-def support_of_means(table: MeansTable, *, rotation: str = "both") -> Support:
+def support_of_means(
+    table: MeansTable, *, rotation: str = "both", temperature_scale: str = "degC"
+) -> Support:
     """Return what a table of means supports."""
     try:
         points = SteadyPoints.from_table(table, rotation=rotation)
     except InsufficientDataError as error:
         return Support(0, 0, None, (), {}, (), (str(error),))
-    return support_of_points(points)
+    return support_of_points(points, temperature_scale=temperature_scale)
 
 
-def support_of_points(points: SteadyPoints) -> Support:
+def support_of_points(points: SteadyPoints, *, temperature_scale: str = "degC") -> Support:
     """Return what dwells support."""
     log = points.log
     speed = np.abs(points.column("speed"))
@@ -92,7 +99,7 @@ def support_of_points(points: SteadyPoints) -> Support:
     for says in (
         _speed(speed),
         _temperature(levels, points),
-        _branches(points, groups or [np.arange(speed.size)], speed),
+        _branches(points, groups or [np.arange(speed.size)], speed, temperature_scale),
         *(() if isinstance(log, MeansTable) else (_approach(points), _tare(points))),
     ):
         can += says[0]
@@ -143,12 +150,12 @@ def _temperature(levels: tuple[float, ...], points: SteadyPoints) -> Said:
     return can, cannot
 
 
-def _branches(points: SteadyPoints, groups: list[NDArray[np.intp]], speed: FloatArray) -> Said:
+def _branches(points: SteadyPoints, groups: list[NDArray[np.intp]], speed: FloatArray, scale: str) -> Said:
     most = max(distinct_speeds(speed[group]) for group in groups)
     few = f"at most {most} speed{'s' if most > 1 else ''} at one temperature"
     too_few = [f"a transition: {few}; two branches need {BRANCH_SPEEDS} or more"]
     try:
-        surface = fit(_comparable(points, len(groups)))
+        surface = fit(_comparable(points, len(groups)), temperature_scale=scale)
     except InsufficientDataError as error:
         return [], too_few if most < BRANCH_SPEEDS else [f"a transition: {error}"]
     if most < BRANCH_SPEEDS and surface.transition is None:
