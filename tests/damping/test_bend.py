@@ -280,6 +280,7 @@ def test_one_speed_is_no_falling_branch() -> None:
     w = np.repeat(np.geomspace(1.0, 20.0, 12), 2)
     rng, level = np.random.default_rng(12), np.unique(w)
     rises = np.where(w > level[5], 0.4 * np.log(w / level[5]), 0.0)
-    values = rises + 0.03 * (w == level[0]) + 0.002 * rng.standard_normal(w.size)
+    values = rises + 0.06 * (w == level[0]) + 0.002 * rng.standard_normal(w.size)
     surface = hersey.fit(points_of(w, np.exp(values), error=0.001))
     assert surface.transition is None
+    assert "above the least at 1 of 5 speeds, and 2 are asked" in surface.rejected_transition

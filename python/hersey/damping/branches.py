@@ -30,8 +30,9 @@ from hersey.units import rpm
 BEND_WIDTHS = (0.15, 0.3, 0.6)
 #: Points and distinct speeds that each branch needs.
 MIN_BRANCH_POINTS, MIN_BRANCH_SPEEDS = 4, 3
-#: Twice the logarithm of likelihood by which a corner leaves a trend: one time in a hundred by chance.
-TREND = 5.4
+#: Twice the logarithm of likelihood by which a corner leaves a trend: by chance one time in a hundred, and
+#: in a thousand.
+TREND, PROVEN_TREND = 5.4, 9.6
 
 
 @dataclass(frozen=True)
@@ -140,15 +141,15 @@ def _bent(
     """A corner, or trend lines about a gradual bend; while neither is excluded, the interval holds both."""
     bends = [fit_law(replace(law, bend=Bend(width)), data, [corner.values]) for width in BEND_WIDTHS]
     gain = corner.aicc - min(bend.aicc_with(1) for bend in bends)
-    proven = gain > EVIDENCE or trend_left(data, corner) > TREND
-    if proven:
+    trend_of_corner = trend_left(data, corner)
+    if gain > EVIDENCE or trend_of_corner > PROVEN_TREND:
         return _around_a_bend(data, trend, parted, None)
     ends = profile_interval(corner, data, law.index("at"))
     sharp = Branches(corner, float(corner.values[-1]), ends, None)
-    if min(bend.deviance for bend in bends) >= corner.deviance:
+    if min(bend.deviance for bend in bends) >= corner.deviance and trend_of_corner < TREND:
         return sharp
     gradual = _around_a_bend(data, trend, parted, ends)
-    if gain > 0.0 and gradual.closure is not None:
+    if max(gain, trend_of_corner - TREND) > 0.0 and gradual.closure is not None:
         return gradual
     return sharp if gradual.closure is None else replace(sharp, ends=_both(ends, gradual.ends))
 
