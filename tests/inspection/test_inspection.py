@@ -307,7 +307,7 @@ def test_wear_tests_and_a_dynamometer() -> None:
 
 def test_screw_drives_together_can_tell_what_each_alone_cannot() -> None:
     paths = sorted(shared("data/friction/tro2021_screw_drives/driveNo1/steady_state").glob("*.csv"))
-    found = inspect(paths, units={"torque": "9.84 mN*m / 100"})
+    found = inspect(paths, units={"torque": "9.84 mN*m / 100"}, rotation="reverse")  # signs are opposite
     assert found.needed == ("--isothermal",)
     assert found.support is not None
     assert found.support.speeds == 15

@@ -386,7 +386,7 @@ def test_what_is_said_of_a_log(machine: Machine, measured: MeasuredFilm) -> None
         text = (
             f"measured torque is {value:.3g} times the predicted one: viscosity, nip or what the torque "
             f"holds "
-            "besides the film is not as stated; exponents are unaffected"
+            "besides the film is not as stated; the last of these moves exponents too"
         )
         assert (text in notes(calibration=Estimate(value, 0.1, value, value))) == said
     rough = np.where(on > 0.5, 0.8, 0.1)

@@ -478,8 +478,10 @@ def _summary(s: DampingSurface) -> str:
 
 
 def _variable(name: str, e: Estimate) -> str:
+    if not e.told:
+        return f"    {name:8s} {e.value: .7g}, interval not told"
     share = f"({abs(e.error / e.value):.2%})" if e.value else ""
-    ends = f"[{e.low:.6g}, {e.high:.6g}]" if e.told else "not told"
+    ends = f"[{e.low:.6g}, {e.high:.6g}]"
     sensors = f"  sensors +/- {e.systematic:.2g}" if e.systematic else ""
     return f"    {name:8s} {e.value: .7g} +/- {e.error:.3g} {share:10s} {ends}{sensors}"
 

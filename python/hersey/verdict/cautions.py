@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from scipy import stats
 
 from hersey.arrays import FloatArray
 from hersey.damping.dwells import SteadyPoints
@@ -15,6 +16,8 @@ from hersey.units import celsius
 NOTABLE_DIFFERENCE, SIGNIFICANT = 0.02, 3.0
 #: A tare beyond this share of the least torque is asked about.
 LARGE_TARE = 0.1
+#: Rank correlation with time beyond which a quantity goes together with it, for so many dwells at least.
+IN_ORDER, FEWEST_IN_ORDER = 0.9, 5
 #: p-value of chance below which a scatter of whole visits is spoken of.
 SURE = 0.01
 
@@ -49,6 +52,7 @@ def cautions(points: SteadyPoints, surface: DampingSurface) -> list[str]:
             f"{'stretch' if len(swinging) == 1 else 'stretches'} of held speed, left out of the fit."
         )
     out += _direction_warnings(points, surface)
+    out += _order_warnings(points, surface)
     out += _fit_warnings(surface)
     return out
 
@@ -127,6 +131,22 @@ def _fit_warnings(surface: DampingSurface) -> list[str]:
             "scatter between dwells, or a law that does not hold."
         )
     return out
+
+
+def _order_warnings(points: SteadyPoints, surface: DampingSurface) -> list[str]:
+    """What goes together with time cannot be told from a drift of the drive."""
+    if len(points) < FEWEST_IN_ORDER or len(points.log.runs) != 1:
+        return []
+    named = {"speed": ("c", np.log(np.abs(points.column("speed"))))}
+    if surface.b is not None:
+        named["temperature"] = ("b", points.column("temperature"))
+    order = np.arange(len(points))
+    return [
+        f"{what.capitalize()} and time go together: wear-in or any other drift would pass for {what} in "
+        f"exponent {exponent}. Go back to the first {what} at the end."
+        for what, (exponent, values) in named.items()
+        if abs(float(stats.spearmanr(order, values).statistic)) > IN_ORDER
+    ]
 
 
 def _shared_warnings(surface: DampingSurface) -> list[str]:

@@ -150,7 +150,7 @@ def _check_measured(measured: MeasuredFilm, contact: Contact) -> list[str]:
     if not 1 / _FAR < factor.value < _FAR:
         notes.append(
             f"measured torque is {factor.value:.3g} times the predicted one: viscosity, nip or what the "
-            "torque holds besides the film is not as stated; exponents are unaffected"
+            "torque holds besides the film is not as stated; the last of these moves exponents too"
         )
     if measured.lambda_ratio is not None:
         thin = measured.lambda_ratio[measured.on_film > 0.5]

@@ -87,13 +87,21 @@ def explained(points: SteadyPoints, surface: DampingSurface, hypotheses: tuple[H
     lack, bent = branch.lack_of_fit, branch.bent
     single = () if bent else _alone(films)
     beside = _beside_constant(branch, {h.name for h in films})
+    too_few = len(branch.data) < len(branch.fit.law.names) + 1 + LEAST_FREEDOM
     listed = [*single, *beside]
+    if not bent and surface.c.low > -1.0 and surface.c.high < -LEVEL:
+        # a power-law fluid between walls: neither speed nor temperature can tell it from a film
+        n = 1.0 + surface.c.value
+        words = f"{_WORDS[THINNING]} (as shear rate to the power {n:.2f}) in a film of fixed thickness"
+        listed.append(Explanation(THINNING, words))
     if (bent and lack.drift <= 0) or not listed:
         listed += _bending(lack, bent, surface)
     named = None if bent else _sole(films, surface)
     why = "; ".join(lack.misses()) if bent else ""
     if named and beside:
         named, why = None, f"{beside[0].name} explains the dwells as well"
+    if named and too_few:
+        named, why = None, "too few dwells to try a constant torque beside the film"
     return Explained(named, tuple(listed), lack, why)
 
 

@@ -210,7 +210,8 @@ def _or(names: list[str]) -> str:
 
 def _in_words(e: Estimate) -> str:
     digits = int(np.clip(1 - np.floor(np.log10(max(e.high - e.low, 1e-4))), 2, 4))
-    return f"{e.value:.{digits}f} [{e.low:.{digits}f}, {e.high:.{digits}f}]"
+    sensors = f" (sensors +/- {e.systematic:.2g})" if e.systematic else ""
+    return f"{e.value:.{digits}f} [{e.low:.{digits}f}, {e.high:.{digits}f}]{sensors}"
 
 
 def _degrees(kelvin: float, scale: str) -> str:

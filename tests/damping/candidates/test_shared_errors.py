@@ -11,7 +11,7 @@ from scipy import optimize, stats
 from hersey.damping.candidates.branched import ONE, Law
 from hersey.damping.candidates.fitting import LawFit, fit_law
 from hersey.damping.candidates.likelihood import deviance, log_normalisation
-from hersey.damping.candidates.observations import Inputs, Observations
+from hersey.damping.candidates.observations import Inputs, Observations, _visits
 from hersey.damping.candidates.shared_errors import Freedom, SharedScatter, groupings, shared_scatter
 from hersey.damping.candidates.thermal import KELVIN, Thermal
 
@@ -194,7 +194,17 @@ def test_groups_are_visits_of_several_dwells_and_runs_of_several_visits() -> Non
     assert run.member.sum(axis=0).tolist() == [12.0] * 3
     assert [g.name for g in groupings(visited([363.0, 393.0, 423.0]))] == ["visit"]
     each = replace(data, visit=np.arange(len(data)))  # a dwell for each: that is the scatter between dwells
-    assert groupings(each) == ()
+    assert [g.name for g in groupings(each)] == ["run"]
+    assert groupings(replace(each, run=np.zeros(len(data), dtype=np.intp))) == ()
+
+
+def test_visits_are_stays_whatever_they_differ_by() -> None:
+    one_run = np.zeros(6, dtype=np.intp)
+    close = np.array([373.0, 373.2, 377.0, 377.1, 381.0, 380.8])  # three stays 4 K apart
+    assert _visits(one_run, close).tolist() == [0, 0, 1, 1, 2, 2]
+    wandering = np.array([373.0, 376.0, 379.0, 375.0, 372.0, 400.0])  # one stay, and another
+    assert _visits(one_run, wandering).tolist() == [0, 0, 0, 0, 0, 1]
+    assert _visits(np.array([0, 0, 0, 1, 1, 1]), None).tolist() == [0, 0, 0, 1, 1, 1]
 
 
 def test_what_runs_share_is_told_from_what_visits_share() -> None:

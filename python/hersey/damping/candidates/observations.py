@@ -12,6 +12,8 @@ from hersey.errors import InsufficientDataError
 from hersey.log.means import MeansTable
 from hersey.units import rpm
 
+#: Change of temperature from dwell to dwell, K, that ends a stay.
+STEP = 6.0
 #: Runs from which on they are resampled and left out whole; fewer say too little of their spread.
 MANY_RUNS = 8
 
@@ -61,6 +63,8 @@ class Observations:
         kelvin = points.column("temperature") if points.log.has_temperature else None
         group, means = _groups(kelvin, speed.size)
         run = points.column("run").astype(np.intp)
+        # a file for each dwell is ordered by its name, a table as it was typed
+        unordered = isinstance(points.log, MeansTable) or np.unique(run).size > run.size // 2
         by_run = np.unique(run).size >= MANY_RUNS
         zero = np.zeros_like(speed)
         reference = float(np.exp(np.mean(np.log(speed))))
@@ -71,7 +75,7 @@ class Observations:
             speed_error=points.column("speed_error") / speed,
             temperature_error=zero if kelvin is None else points.column("temperature_error"),
             tare=points.tare_errors / points.column("torque")[:, None],
-            visit=_stays(run, group) if isinstance(points.log, MeansTable) else _visits(run, group),
+            visit=_stays(run, group) if unordered else _visits(run, kelvin),
             run=run,
             cluster=run if by_run else _levels(run, group, speed),
             clustered_by="run" if by_run else "level",
@@ -126,19 +130,20 @@ def _groups(kelvin: FloatArray | None, count: int) -> tuple[IntArray, FloatArray
     return group, np.array(means)
 
 
-def _visits(run: IntArray, group: IntArray) -> IntArray:
-    """Stays at a temperature, of dwells in their order: one ends where the temperature changes, or the run.
+def _visits(run: IntArray, kelvin: FloatArray | None) -> IntArray:
+    """Stays at a temperature, of dwells in their order: one ends with a step of temperature, or the run.
 
-    Where every run is one dwell, as with a file for each, runs do not end a stay.
+    A step is more than `STEP`, or less where dwells of one stay differ by much less.
     """
-    changes = np.diff(group) != 0
-    if np.unique(run).size <= run.size // 2:
-        changes |= np.diff(run) != 0
+    changes = np.diff(run) != 0
+    if kelvin is not None:
+        steps = np.abs(np.diff(kelvin))
+        changes |= steps > min(STEP, max(1.0, STEP * float(np.median(steps))))
     return np.cumsum(np.append(0, changes))
 
 
 def _stays(run: IntArray, group: IntArray) -> IntArray:
-    """Visits in a table of means, whose rows stand in any order: all dwells of a run at one temperature."""
+    """Visits of dwells that stand in no order of time: all dwells of a run at one temperature."""
     several = np.unique(run).size <= run.size // 2
     _, stay = np.unique(np.column_stack([run * several, group]), axis=0, return_inverse=True)
     return np.asarray(stay, dtype=np.intp)

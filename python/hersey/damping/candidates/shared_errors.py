@@ -35,11 +35,9 @@ class Grouping:
 
 
 def groupings(data: Observations) -> tuple[Grouping, ...]:
-    """Return the groups of dwells that may share an error: visits, and runs of several visits."""
+    """Return the groups of dwells that may share an error: visits, and runs of several."""
     visits = _indicator(data.visit)
-    if np.count_nonzero(visits.sum(axis=0) > 1) < 2:
-        return ()
-    out = [Grouping("visit", visits)]
+    out = [Grouping("visit", visits)] if np.count_nonzero(visits.sum(axis=0) > 1) >= 2 else []
     runs = _indicator(data.run)
     per_run = np.unique(np.column_stack([data.run, data.visit]), axis=0).shape[0] / runs.shape[1]
     if runs.shape[1] > 2 and per_run >= 2:
