@@ -186,6 +186,7 @@ def inspect(
     channels: Mapping[str, str] | None = None,
     units: Mapping[str, str] | None = None,
     isothermal: bool = False,
+    signs: Mapping[str, int] | None = None,
     drop_missing: bool = False,
     every: float | None = None,
     radius: float | Sequence[float] | None = None,
@@ -201,7 +202,7 @@ def inspect(
     ----------
     paths, channels, units, isothermal, drop_missing, every, radius, load
         As for `hersey.read`.
-    mapping
+    mapping, signs
         As for `hersey.log.mapping.read_with_mapping`.
     min_dwell, tare, rotation
         As for `TorqueLog.steady`.
@@ -220,6 +221,7 @@ def inspect(
     """
     files = [paths] if isinstance(paths, str | Path) else list(paths)
     chosen = mapping if isinstance(mapping, LogMapping) else mapping_of(files, mapping)
+    chosen = chosen.turned(signs or {})
     stated = Stated(every, as_stated(radius), as_stated(load))
     said = without_what_is_said(chosen, channels or {}, stated)
     choices = {
@@ -232,7 +234,7 @@ def inspect(
     known = Stated(*(getattr(stated, f.name) or getattr(said.stated, f.name) for f in fields(Stated)))
     reports = tuple(_file_report(raw_channels(file), choices, known) for file in files)
     if means:
-        return _of_means(files, reports, choices, isothermal)
+        return _of_means(files, reports, choices, isothermal, signs)
     hopeless = any(set(report.without) - {"temperature"} for report in reports)
     holes = any(c.role and c.traits.missing for report in reports for c in report.channels)
     cold = any("temperature" in report.without for report in reports)
@@ -258,6 +260,7 @@ def _of_means(
     reports: tuple[FileReport, ...],
     choices: dict[str, ChannelChoice],
     isothermal: bool,
+    signs: Mapping[str, int] | None,
 ) -> Inspection:
     """What a table of means holds: it needs no clock."""
     reports = tuple(
@@ -275,6 +278,7 @@ def _of_means(
             channels={role: choice.name for role, choice in stated.items() if choice.name},
             units={role: choice.unit for role, choice in stated.items() if choice.unit},
             isothermal=isothermal,
+            signs=signs,
         )
     except HerseyError as error:
         return Inspection(reports, str(error), (), {}, (), None)

@@ -11,7 +11,7 @@ import hashlib
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -153,6 +153,7 @@ def read_means(
     channels: Mapping[str, str] | None = None,
     units: Mapping[str, str] | None = None,
     isothermal: bool = False,
+    signs: Mapping[str, int] | None = None,
 ) -> MeansTable:
     """Read a table of means, or several.
 
@@ -164,6 +165,8 @@ def read_means(
         Column and unit by role (``torque``, ``speed``, ``temperature``), where the header does not say.
     isothermal
         Leave temperature out.
+    signs
+        -1 by role, ``torque`` or ``speed``, turns the sign.
 
     Raises
     ------
@@ -180,7 +183,12 @@ def read_means(
         means += rows
         files.append(file)
         stated.append(errors)
-    return MeansTable(tuple(means), tuple(files), all(stated))
+    return MeansTable(tuple(_turned(row, signs or {}) for row in means), tuple(files), all(stated))
+
+
+def _turned(row: MeanRow, signs: Mapping[str, int]) -> MeanRow:
+    torque, speed = (signs.get(role, 1) for role in ("torque", "speed"))
+    return replace(row, torque=torque * row.torque, speed=speed * row.speed)
 
 
 def is_means_table(path: Path, channels: Mapping[str, str], units: Mapping[str, str]) -> bool:
