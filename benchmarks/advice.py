@@ -1,4 +1,4 @@
-"""What a message of the command proposes to type: read from its words, and put into the command that it refused."""
+"""What a message of the command proposes to type, read from its words and put into the command it refused."""
 
 from __future__ import annotations
 

@@ -28,7 +28,8 @@ if TYPE_CHECKING:
 #: What the tables that a film needs say at least, as examples.
 _EXAMPLES = {
     "contact": (
-        'rubber_thickness = "3.5 mm"; modulus = "1 MPa"; poisson_ratio = 0.48; length = "220 mm"; load = "300 N"'
+        'rubber_thickness = "3.5 mm"; modulus = "1 MPa"; poisson_ratio = 0.48; length = "220 mm"; '
+        'load = "300 N"'
     ),
     "lubricant": (
         'name = "oil"; model = "arrhenius"; '
@@ -78,8 +79,8 @@ def film(
     if machine.contact is None or machine.lubricant is None:
         missing = "contact" if machine.contact is None else "lubricant"
         raise ParameterError(
-            f"{machine_file.name}: the film needs a table [{missing}]: write [{missing}] and below it yours of "
-            f"{_EXAMPLES[missing]}"
+            f"{machine_file.name}: the film needs a table [{missing}]: write [{missing}] and below it yours "
+            f"of {_EXAMPLES[missing]}"
         )
     kelvin = temperature_of(at)
     if not log and reading != Reading():

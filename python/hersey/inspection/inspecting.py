@@ -21,7 +21,7 @@ from hersey.log.channels import OTHER_ROLES, ROLES, ChannelChoice, Stated
 from hersey.log.corrections import Corrected
 from hersey.log.mapping import LogMapping, as_stated, mapping_of, read_with_mapping, without_what_is_said
 from hersey.log.means import read_means
-from hersey.log.torque_log import Correction, LogFile
+from hersey.log.torque_log import NO_CLOCK, Correction, LogFile
 from hersey.result import Result, json_record
 from hersey.units import conversion, takes_si
 
@@ -358,7 +358,7 @@ def _clocks(
         channel = beside[0]
         if stated.every is not None:
             seconds = np.arange(channel.values.size, dtype=float) * stated.every
-            clocks[channel.tick] = clock_of("number of the row", seconds)
+            clocks[channel.tick] = clock_of(NO_CLOCK, seconds)
             continue
         if channel.clock is not None:
             clocks[channel.tick] = clock_of(f"of {channel.column.path}", channel.clock)

@@ -66,8 +66,8 @@ def _unit_warnings(points: SteadyPoints) -> list[str]:
         hottest = celsius(float(points.column("temperature").max()))
         if hottest > TOO_HOT:
             out.append(
-                f"Temperature reaches {hottest:.0f} degC, more than a lubricant stands: if the numbers are in "
-                "K, say --temperature-unit K."
+                f"Temperature reaches {hottest:.0f} degC, more than a lubricant stands: if the numbers are "
+                "in K, say --temperature-unit K."
             )
     return out
 

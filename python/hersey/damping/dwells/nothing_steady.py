@@ -11,7 +11,7 @@ import numpy as np
 from hersey.damping.dwells.groups import MIN_SAMPLES
 from hersey.damping.dwells.judging import Asked
 from hersey.damping.dwells.points import Rejection
-from hersey.log.torque_log import Run, TorqueLog
+from hersey.log.torque_log import NO_CLOCK, Run, TorqueLog
 from hersey.units import rpm
 
 #: Dwells that a shorter --min-dwell must give to be proposed.
@@ -23,8 +23,8 @@ _BLOCKS, _TURN = 60, 0.1
 #: Median change from row to row, as share of the mean one, below which the speed changes in steps.
 _FEW = 0.2
 _TOO_SHORT = re.compile(r"dwell too short: ([0-9.]+) s or ([0-9]+) rows")
-#: A log shorter than so many dwells has a clock in another unit.
-_TOO_BRIEF = 1.0
+#: A log shorter than so many dwells has a clock in another unit, or rows less often: so many times, say.
+_TOO_BRIEF, _RARER = 1.0, 50
 
 
 def nothing_steady(
@@ -49,9 +49,7 @@ def _way_out(
     held = f"a dwell holds one speed for at least {asked.min_dwell:g} s"
     lasted = sum(float(run.time[-1] - run.time[0]) for run in log.runs)
     if lasted < _TOO_BRIEF * asked.min_dwell:
-        return (
-            f"{held}, and the whole log lasts {lasted:.3g} s: if its clock counts seconds, say --time-unit s"
-        )
+        return f"{held}, and the whole log lasts {lasted:.3g} s: {_other_clock(log)}"
     if any(r.reason.startswith("rotation not") for r in rejected):
         other = "reverse" if asked.rotation == "forward" else "forward"
         return f"the drive turns {other}: say --rotation {other}"
@@ -62,11 +60,19 @@ def _way_out(
         kind = "short step" if all(map(_steps, log.runs)) else "ramp"
         ramps = f"{count} {kind}{'s' if count > 1 else ''} between {slow:.3g} and {fast:.3g} rpm"
         return f"the speed never holds: {ramps}. Record dwells: {held}"
-    enough = sorted({math.floor(10 * s) / 10 for s, rows in short if rows >= MIN_SAMPLES and s >= 0.1})
+    enough = sorted({math.floor(10 * s - 0.5) / 10 for s, rows in short if rows >= MIN_SAMPLES and s > 0.2})
     for shorter in enough:
         if (count := dwells_with(shorter)) >= WORTH_IT:
             return f"{held}: {count} dwells are there with --min-dwell '{shorter:g} s'"
     return held
+
+
+def _other_clock(log: TorqueLog) -> str:
+    """What to say of the clock of a log that is over before a dwell."""
+    if any(c.name == NO_CLOCK for file in log.files for c in file.channels):
+        rarer = _RARER * log.runs[0].sampling_interval
+        return f"if rows come less often, say so, as with --every '{rarer:.3g} s'"
+    return "if its clock counts seconds, say --time-unit s"
 
 
 def _runs_up_and_down(log: TorqueLog, rejected: tuple[Rejection, ...]) -> bool:
