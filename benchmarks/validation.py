@@ -269,6 +269,26 @@ def inspected(text: str) -> str:
     return f"{told}. Cannot tell {len(cannot)} things" if cannot else told
 
 
+def merged(rows: list[Row]) -> list[Row]:
+    """Rows of one source of which the same is said, as one."""
+    alike: dict[tuple[str, ...], list[Row]] = {}
+    for row in rows:
+        said = tuple(cell.replace(row.name, "the file") for cell in (row.inspected, row.reported))
+        alike.setdefault((row.source, row.options, *said), []).append(row)
+    return [
+        rows[0]
+        if len(rows) == 1
+        else Row(key[0], f"{len(rows)} files, each: {listed(rows)}", key[1], key[2], key[3], "")
+        for key, rows in alike.items()
+    ]
+
+
+def listed(rows: list[Row]) -> str:
+    """The names of some files, the first and the last where they are many."""
+    names = [row.name for row in rows]
+    return ", ".join(names) if len(names) < 4 else f"{names[0]} to {names[-1]}"
+
+
 def quoted(text: str) -> str:
     """Options as code, or nothing."""
     return f"`{text}`" if text else ""
@@ -291,7 +311,7 @@ def page(rows: list[Row]) -> str:
             for cell in (r.source, r.name, r.options, r.inspected, r.reported)
         )
         + " |"
-        for r in rows
+        for r in merged(rows)
     ]
     return "\n".join([*head, *body, ""])
 

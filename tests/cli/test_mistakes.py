@@ -210,8 +210,8 @@ def given_as(it: Refused) -> list[str]:
 def slower_recorded(it: Refused) -> list[str]:
     """Record slower dwells, in which torque rises as the drive slows."""
     assert "record slower dwells, until torque rises as the drive slows" in it.message
-    mixed = rows((1, 2, 3, 4, 6, 8, 10, 20, 40, 80, 120))
-    slow = [(t, q + 0.6 * drag(10, k) * ((10 / w) ** 0.8 - 1) * (w < 10), w, k) for t, q, w, k in mixed]
+    mixed = rows((1, 2, 3, 4, 6, 8, 10, 20, 40, 80, 120), (100,))
+    slow = [(t, q * max(1.0, (10 / w) ** 0.85), w, k) for t, q, w, k in mixed]
     (it.folder / "log.csv").write_text(table(slow))
     return it.arguments
 
@@ -426,9 +426,9 @@ MISTAKES: dict[str, Mistake] = {
         "report log.csv --machine machine.tml",
         ("machine.tml: there is no such file",),
     ),
-    "a plan from a log without a transition": Mistake(
+    "a map of a log without a transition": Mistake(
         {**GOOD, "machine.toml": MACHINE},
-        "plan machine.toml log.csv --at '130 degC' --target '120 mm/s'",
+        "map machine.toml log.csv --isothermal",
         ("no falling branch",),
         slower_recorded,
     ),

@@ -392,6 +392,8 @@ def _too_many(table: _Table, rows: list[list[str]], named: int) -> str:
     """What to do where rows have more cells than the header: a comma within the numbers parts them too."""
     cells = [row for row in rows if len(row) == table.width]
     whole = cells and all(re.fullmatch(r"[-+]?\d+", cell.strip()) for row in cells for cell in row)
+    if table.width < named:
+        return "leave out the names that have no column"
     if table.separator != "," or table.width > 2 * named:
         return "give every column a name"
     if table.width == 2 * named and whole:
