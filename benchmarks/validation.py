@@ -10,13 +10,19 @@ Usage: python -m benchmarks.validation [--folder ../shared/data] [--only NAME]
 from __future__ import annotations
 
 import argparse
+import contextlib
 import fnmatch
+import importlib
+import multiprocessing
 import re
-import subprocess
 import sys
 import tempfile
-from dataclasses import dataclass, field
+import traceback
+from dataclasses import dataclass
+from multiprocessing.connection import Connection
 from pathlib import Path
+
+from tests.cli import command
 
 from benchmarks.advice import followed
 
@@ -38,7 +44,6 @@ class Line:
     each: bool = False
     #: what no verdict on them may say, as a pattern
     never: str = ""
-    left_out: tuple[str, ...] = field(default=())
 
 
 #: What stands above the table.
@@ -53,6 +58,10 @@ stand: such a line shows that the advice works, not what was measured.
 #: What nothing but a log of a transition may be told.
 _TRANSITION = r"rises as the drive slows|can stick and slip"
 _SCREW = ("--torque-unit", "-9.84 mN*m / 100", "--speed-unit", "-1 rpm", "--isothermal")
+_TE67 = (
+    "--torque", "Friction Force#1", "--torque-unit", "N", "--radius-unit", "mm", "--speed", "Speed",
+    "--speed-unit", "rpm", "--temperature-unit", "degC", "--time", "Time",
+)  # fmt: skip
 _NEWPORT = ("--time", "#2", "--time-unit", "s", "--torque", "#4", "--torque-unit", "N*m", "--speed", "#6",
             "--speed-unit", "rev/s", "--isothermal")  # fmt: skip
 LINES = (
@@ -90,6 +99,7 @@ LINES = (
     Line(
         "pin on disc TE67, kyembot/pin-on-disk-data-analysis",
         "friction/te67_pin_on_disc/*.tsv",
+        _TE67,
         each=True,
         never=_TRANSITION + r"|exponent of damping is",
     ),
@@ -141,6 +151,8 @@ def main() -> int:
     if not given.folder.is_dir():
         print("the collection of public measurements is not here: nothing to do")
         return 0
+    for room in ("inspection", "document.assembly", "report.page"):  # once, not in every process
+        importlib.import_module(f"hersey.{room}")
     rows = []
     for line in LINES:
         if not fnmatch.fnmatch(line.files, given.only):
@@ -207,21 +219,30 @@ def added(before: list[str], after: list[str]) -> list[str]:
 
 def run(arguments: list[str]) -> tuple[int, str]:
     """Exit code of a command, and what it says; 124 if it takes too long."""
+    ours, theirs = multiprocessing.Pipe(duplex=False)
+    child = multiprocessing.get_context("fork").Process(target=typed, args=(arguments, theirs))
+    child.start()
+    theirs.close()
+    told = None
+    if ours.poll(LIMIT):
+        with contextlib.suppress(EOFError):
+            told = ours.recv()
+    child.kill()
+    child.join()
+    if told is None:
+        return 124, f"no answer within {LIMIT} s, or the process died"
+    code, out, error = told
+    return code, out if code == 0 else error.strip()
+
+
+def typed(arguments: list[str], answer: Connection) -> None:
+    """Type a command in a folder of its own, in a process of its own, and hand on what it left."""
     with tempfile.TemporaryDirectory() as folder:
-        command = [sys.executable, "-m", "hersey.cli", *arguments]
         try:
-            done = subprocess.run(
-                command,
-                cwd=folder,
-                capture_output=True,
-                text=True,
-                timeout=LIMIT,
-                check=False,
-                stdin=subprocess.DEVNULL,
-            )
-        except subprocess.TimeoutExpired:
-            return 124, f"no answer within {LIMIT} s"
-    return done.returncode, done.stdout if done.returncode == 0 else done.stderr.strip()
+            done = command.run(*arguments, cwd=Path(folder))
+            answer.send((done.returncode, done.stdout, done.stderr))
+        except Exception:  # what no command should end in
+            answer.send((1, "", traceback.format_exc()))
 
 
 def fault(code: int, said: str) -> str:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import re
 import shlex
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
@@ -62,7 +62,7 @@ def rows(
     return [(i * step, drag(w, t) * (1 + 0.002 * ((i * 7) % 5)), w, t) for i, (w, t) in enumerate(stairs)]
 
 
-def table(lines: list[Row], *header: str, mark: str = ",", number: str = "{:.6g}") -> str:
+def table(lines: Sequence[Row], *header: str, mark: str = ",", number: str = "{:.6g}") -> str:
     """A log as text."""
     body = [mark.join(number.format(x) for x in line) for line in lines]
     return "\n".join([mark.join(header or HEADER), *body]) + "\n"
@@ -225,7 +225,7 @@ class Mistake:
     """Files, what is typed, what the message must say (what and where), and how its advice is followed."""
 
     files: dict[str, str]
-    typed: str
+    command: str
     says: tuple[str, ...]
     way_out: WayOut = typed
     after: tuple[str, ...] = field(default=())  #: what the command says once the advice is followed
@@ -487,7 +487,7 @@ def test_there_are_forty_of_them() -> None:
 def test_the_advice_of_a_message_works(case: str, tmp_path: Path) -> None:
     mistake = MISTAKES[case]
     written(tmp_path, mistake.files)
-    arguments = shlex.split(mistake.typed)
+    arguments = shlex.split(mistake.command)
     done = run(*arguments, cwd=tmp_path)
     line = refusal(done)
     for words in mistake.says:
@@ -574,7 +574,7 @@ def test_signs_of_an_option_multiply_those_of_a_mapping(tmp_path: Path) -> None:
 
 
 def test_a_table_of_means_takes_the_signs_too(tmp_path: Path) -> None:
-    means = [(w, -drag(w, 100)) for w in (10, 20, 40, 80, 120)]
+    means = [(float(w), -drag(w, 100)) for w in (10, 20, 40, 80, 120)]
     (tmp_path / "log.csv").write_text(table(means, "Speed [rpm]", "Torque [N*m]"))
     for verb in ("fit", "inspect"):
         arguments = [verb, "log.csv", "--means", "--isothermal"]
@@ -588,7 +588,8 @@ def test_a_table_of_means_takes_the_signs_too(tmp_path: Path) -> None:
 
 def test_a_workbook_of_two_tables_asks_which(tmp_path: Path) -> None:
     pytest.importorskip("fastexcel")
-    sheet = [list(HEADER), *map(list, rows())]
+    sheet: list[list[object]] = [[*HEADER]]
+    sheet += [[*line] for line in rows()]
     (tmp_path / "log.xlsx").write_bytes(xlsx({"First": sheet[:400], "Second": sheet}))
     line = refusal(run("fit", "log.xlsx", cwd=tmp_path))
     assert "'First/Torque [N*m]' or 'Second/Torque [N*m]'" in line

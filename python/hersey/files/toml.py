@@ -90,7 +90,8 @@ class Quantity:
             return float(given) if isinstance(given, int) else given
         value = self._number(given) if self.kind is None or info.context.plain else self._with_unit(given)
         if self.low > 0 >= value:
-            such = f", such as {self.example}" if self.example else ""
+            example = f'"{self.example}"' if self.kind else self.example
+            such = f", such as {example}" if self.example else ""
             raise ParameterError(f"is {_written(given)}: it must be greater than 0{such}")
         if not self.low <= value <= self.high:
             believed = f"{self.low:g} to {self.high:g} {self.unit}".rstrip()
