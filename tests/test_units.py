@@ -79,7 +79,7 @@ def test_temperatures_have_an_offset(unit: str, boiling: float) -> None:
         ("speed", "Hz", "revolutions or radians"),
         ("speed", "1/s", "revolutions or radians"),
         ("speed", "mm/s", "not a unit of speed"),
-        ("torque", "%", "--torque-unit"),
+        ("torque", "%", "9.84 mN"),
         ("torque", "rpm", "not a unit of torque"),
         ("torque", "furlongz", "unknown unit"),
         ("torque", "(", "unknown unit"),

@@ -268,7 +268,7 @@ def _from_registry(kind: str, text: str, unit: str) -> tuple[float, float]:
     ):
         if unit.strip() in ("%", "percent") and kind == "torque":
             raise WrongKindError(
-                "unit '%' of a torque needs the torque that 100 % stands for: --torque-unit '9.84 mN*m / 100'"
+                "unit '%' of a torque needs the torque that 100 % stands for, as in '9.84 mN*m / 100'"
             )
         raise _wrong_kind(kind, unit)
     if "delta_" in names:
@@ -293,11 +293,17 @@ def _wrong_kind(kind: str, unit: str) -> WrongKindError:
 
 def _meant(kind: str, unit: str, alike: float = _ALIKE) -> str:
     """The way out: the usual unit of the kind that the one written is nearest to, or an example."""
+    near = nearest_unit(kind, unit, alike)
+    return f"did you mean {near}?" if near else f"write one such as {KINDS[kind][1]}"
+
+
+def nearest_unit(kind: str, unit: str, alike: float = _ALIKE) -> str:
+    """Return the usual unit of a kind that one with a slip is nearest to, or an empty text."""
     from difflib import get_close_matches
 
     usual = {_folded(each): each for each in reversed(_USUAL[kind].split())}
     match = get_close_matches(_folded(unit), usual, n=1, cutoff=alike)
-    return f"did you mean {usual[match[0]]}?" if match else f"write one such as {KINDS[kind][1]}"
+    return usual[match[0]] if match else ""
 
 
 def _folded(unit: str) -> str:

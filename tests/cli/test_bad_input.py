@@ -72,7 +72,7 @@ FILES: dict[str, tuple[bytes, list[str]]] = {
     ),
     "signs against each other": (
         text([",".join([r.split(",")[0], "-1", *r.split(",")[2:]]) for r in staircase()]),
-        ["opposite signs", "--torque-unit"],
+        ["opposite signs", "--torque-sign"],
     ),
     "binary file": (bytes(range(256)) * 40, ["binary"]),
     "text that is no table": (b"Dear sir,\nthe log is late.\nYours\n", ["table"]),

@@ -25,6 +25,19 @@ if TYPE_CHECKING:
     from hersey.verdict.evidence import MeasuredFilm, Verdict
 
 
+#: What the tables that a film needs say at least, as examples.
+_EXAMPLES = {
+    "contact": (
+        'rubber_thickness = "3.5 mm"; modulus = "1 MPa"; poisson_ratio = 0.48; length = "220 mm"; '
+        'load = "300 N"'
+    ),
+    "lubricant": (
+        'name = "oil"; model = "arrhenius"; '
+        'viscosities = [["40 degC", "120 mPa*s"], ["100 degC", "12 mPa*s"]]; pressure_viscosity = "20 GPa^-1"'
+    ),
+}
+
+
 @reads_logs
 def film(
     machine_file: Annotated[
@@ -65,7 +78,10 @@ def film(
     machine = read_machine(machine_file)
     if machine.contact is None or machine.lubricant is None:
         missing = "contact" if machine.contact is None else "lubricant"
-        raise ParameterError(f"{machine_file.name}: the film needs a table [{missing}]")
+        raise ParameterError(
+            f"{machine_file.name}: the film needs a table [{missing}]: write [{missing}] and below it yours "
+            f"of {_EXAMPLES[missing]}"
+        )
     kelvin = temperature_of(at)
     if not log and reading != Reading():
         raise ParameterError("options that say how to read a log need --log")

@@ -52,8 +52,10 @@ class Reading:
     torque_unit: Annotated[
         str, typer.Option(help="Unit of torque, may carry a factor: '9.84 mN*m / 100' for %.")
     ] = ""
+    torque_sign: Annotated[int, typer.Option(help="-1 turns the sign of the torque.")] = 1
     speed: Annotated[str, typer.Option(help="Name of the speed column.")] = ""
-    speed_unit: Annotated[str, typer.Option(help="Unit of speed, as 'rpm'; '-1 rpm' turns the sign.")] = ""
+    speed_unit: Annotated[str, typer.Option(help="Unit of speed, as 'rpm'.")] = ""
+    speed_sign: Annotated[int, typer.Option(help="-1 turns the sign of the speed.")] = 1
     temperature: Annotated[str, typer.Option(help="Name of the temperature column.")] = ""
     temperature_unit: Annotated[str, typer.Option(help="Unit of temperature, as 'degC'.")] = ""
     time: Annotated[str, typer.Option(help="Name of the time column.")] = ""
@@ -145,6 +147,7 @@ class Reading:
             units={r: unit for r, unit in (mapping.units | units).items() if r != "time"},
             isothermal=self.isothermal,
             **stated,
+            signs=given["signs"],
         )
         return replace(table, sensors=mapping.sensors)
 
@@ -176,6 +179,7 @@ class Reading:
             "mapping": self.mapping or None,
             "channels": channels,
             "units": units,
+            "signs": {"torque": self.torque_sign, "speed": self.speed_sign},
             "isothermal": self.isothermal,
             "drop_missing": self.drop_missing,
             **{name: amount for name, amount in stated.items() if amount},

@@ -196,7 +196,8 @@ def _shared(a: Observations, b: Observations) -> tuple[FloatArray, FloatArray]:
         raise InsufficientDataError(
             "the logs share no range of speed: "
             f"A has {rpm(a.speed.min()):.3g} to {rpm(a.speed.max()):.3g} rpm, "
-            f"B {rpm(b.speed.min()):.3g} to {rpm(b.speed.max()):.3g} rpm"
+            f"B {rpm(b.speed.min()):.3g} to {rpm(b.speed.max()):.3g} rpm; "
+            "record one of them at speeds of the other"
         )
     speeds = np.geomspace(slow, fast, SPEEDS)
     if a.inputs.kelvin is None or b.inputs.kelvin is None:

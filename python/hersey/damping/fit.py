@@ -23,6 +23,8 @@ from hersey.damping.systematic import sensor_shifts
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.units import celsius
 
+#: Temperature below which no lubricant flows, K: what reads less is in another unit.
+NO_OIL_FLOWS = 193.15
 #: Rounds in which the scatter of the fit to torque settles.
 _ROUNDS = 12
 
@@ -72,7 +74,17 @@ def _require_temperatures(data: Observations, scale: str) -> None:
             "claimed; record other temperatures, or say --isothermal to fit B = a w^c at this one"
         )
     if np.any(scaled_temperature(kelvin, scale) <= 0):
-        raise InsufficientDataError("T^b has no meaning at or below 0 degC: fit with --temperature-scale K")
+        raise InsufficientDataError(
+            f"T^b has no meaning at or below 0 degC, and the steady points go down to {_lowest(kelvin)}"
+        )
+
+
+def _lowest(kelvin: FloatArray) -> str:
+    """The lowest temperature, and what to do about it: no oil flows so far below."""
+    low = float(kelvin.min())
+    if low < NO_OIL_FLOWS:
+        return f"{celsius(low):.0f} degC: if the numbers are degC and no K, say --temperature-unit degC"
+    return f"{celsius(low):.3g} degC: fit with --temperature-scale K"
 
 
 def _require_dwells(data: Observations) -> None:

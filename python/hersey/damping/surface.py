@@ -188,7 +188,10 @@ class DampingSurface(Result):
             If the data show no transition: without a falling branch there is no stick-slip to compute.
         """
         if self.transition is None:
-            raise InsufficientDataError(f"the data show no falling branch ({self.rejected_transition})")
+            raise InsufficientDataError(
+                f"the data show no falling branch ({self.rejected_transition}); "
+                "record slower dwells, until torque rises as the drive slows"
+            )
         if temperature is None and self.b is not None and self.reference_temperature is not None:
             zero = 0.0 if self.temperature_scale == "K" else ZERO_CELSIUS
             reference = self.reference_temperature
@@ -253,7 +256,10 @@ class DampingSurface(Result):
             If a value is out of range, with its name.
         """
         if self.transition is None:
-            raise InsufficientDataError(f"the data show no falling branch ({self.rejected_transition})")
+            raise InsufficientDataError(
+                f"the data show no falling branch ({self.rejected_transition}); "
+                "record slower dwells, until torque rises as the drive slows"
+            )
         if count < 1 or seed < 0:
             name, value, least = ("count", count, 1) if count < 1 else ("seed", seed, 0)
             raise ParameterError(f"{name} is {value}: it must be at least {least}")

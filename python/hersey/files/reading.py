@@ -15,9 +15,12 @@ from pathlib import Path
 from typing import BinaryIO
 
 from hersey.errors import HerseyError, MissingFileError, UnreadableLogError
+from hersey.spelling import meant, printable
 
 _WAY_OUT = "wait until the logger has closed it, or copy it first"
 _CHUNK = 1 << 20
+#: Endings of files of which one is named where a folder was given.
+_OF_A_LOG = frozenset((".csv", ".txt", ".tsv", ".dat", ".xlsx", ".lvm", ".tdms", ".mf4", ".mat", ".parquet"))
 #: Coarsest step of the times that a file system keeps, ns.
 _STEP = 2_000_000_000
 
@@ -131,7 +134,7 @@ def open_file(path: Path) -> Iterator[BinaryIO]:
     """
     try:
         if path.exists() and not path.is_file():
-            what = "a directory: name a file in it" if path.is_dir() else "no ordinary file"
+            what = f"a directory: name a file in it{_one_in(path)}" if path.is_dir() else "no ordinary file"
             raise MissingFileError(f"{path} is {what}")
         try:
             file = path.open("rb")
@@ -142,9 +145,27 @@ def open_file(path: Path) -> Iterator[BinaryIO]:
     except HerseyError:
         raise
     except FileNotFoundError:
-        raise MissingFileError(f"{path}: there is no such file") from None
+        raise MissingFileError(f"{path}: there is no such file{_near(path)}") from None
     except OSError as error:
         raise MissingFileError(f"{path} cannot be read: {error.strerror}") from None
+
+
+def _near(path: Path) -> str:
+    """The file beside a missing one that was probably meant, or nothing."""
+    try:
+        near = meant(path.name, [each.name for each in path.parent.iterdir() if each.is_file()])
+    except (OSError, ValueError):
+        return ""
+    return f": did you mean '{printable(str(path.with_name(near)))}'?" if near else ""
+
+
+def _one_in(folder: Path) -> str:
+    """A file in a folder as an example: the first by name that could be a log, or nothing."""
+    try:
+        files = sorted(each for each in folder.iterdir() if each.is_file() and each.suffix in _OF_A_LOG)
+    except OSError:
+        return ""
+    return f", as '{printable(str(files[0]))}'" if files else ""
 
 
 @contextmanager

@@ -33,6 +33,7 @@ from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from hersey.errors import HerseyError, ParameterError, UnitError
 from hersey.files.text import read_text, shown
+from hersey.spelling import meant
 from hersey.units import KINDS, parse
 
 Tables = TypeVar("Tables")
@@ -89,7 +90,9 @@ class Quantity:
             return float(given) if isinstance(given, int) else given
         value = self._number(given) if self.kind is None or info.context.plain else self._with_unit(given)
         if self.low > 0 >= value:
-            raise ParameterError(f"is {_written(given)}: it must be greater than 0")
+            example = f'"{self.example}"' if self.kind else self.example
+            such = f", such as {example}" if self.example else ""
+            raise ParameterError(f"is {_written(given)}: it must be greater than 0{such}")
         if not self.low <= value <= self.high:
             believed = f"{self.low:g} to {self.high:g} {self.unit}".rstrip()
             raise ParameterError(f"is {_written(given)}: {believed} is believed")
@@ -170,10 +173,21 @@ def read_toml(path: str | Path) -> dict[str, Any]:
     except HerseyError:
         raise
     except (ValueError, RecursionError) as error:  # a number of thousands of digits is no TOMLDecodeError
-        raise ParameterError(f"{path.name} is not valid TOML: {error}") from None
+        raise ParameterError(f"{path.name} is not valid TOML: {error}{_no_toml(path, text)}") from None
     with naming(path.name):
         _refuse_large(document)
     return document
+
+
+def _no_toml(path: Path, text: str) -> str:
+    """What to say of a file that is no TOML at all, by its name or because it is a table; else nothing."""
+    first = text.lstrip().partition("\n")[0]
+    if path.suffix == ".toml" or ("," not in first and ";" not in first and "\t" not in first):
+        return ""
+    return (
+        "; it looks like a log, and a machine's file or a mapping (TOML) is needed here: "
+        "are the two files swapped?"
+    )
 
 
 def _refuse_long_keys(text: str) -> None:
@@ -255,13 +269,20 @@ def _told(kind: str, loc: tuple[str | int, ...], given: object, about: Mapping[s
             return f"{_place(loc[:-1], {})} lacks '{loc[-1]}'"
         case "unknown" if not loc:
             tables = ", ".join(f"[{name}]" for name in about["known"])
-            return f"there is no table '{about['key']}': {tables} are known"
+            return f"there is no table '{about['key']}': {tables} are known{_near(about, '[{}]')}"
         case "unknown":
-            return f"{_place(loc, {})} has no key '{about['key']}': {', '.join(about['known'])} are known"
+            known = ", ".join(about["known"])
+            return f"{_place(loc, {})} has no key '{about['key']}': {known} are known{_near(about)}"
         case "dataclass_type" | "dict_type":
             return f"{_place(loc, given)} is not a table: write [{loc[0]}]"
     way_out = _WAY_OUT.get(kind, "another kind of value is needed")
     return f"{_place(loc, given)} is {shown(given)}: {way_out.format(**about)}"
+
+
+def _near(about: Mapping[str, Any], written: str = "'{}'") -> str:
+    """Which of the known names was probably meant, or nothing."""
+    near = meant(str(about["key"]), about["known"])
+    return f"; did you mean {written.format(near)}?" if near else ""
 
 
 def _place(loc: tuple[str | int, ...], given: object) -> str:

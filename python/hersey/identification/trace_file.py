@@ -141,7 +141,10 @@ def _quantity(opened: OpenColumns, value: str) -> str:
     if value and not known:
         return "force"
     what = " and ".join(known) or "no force, torque or speed"
-    raise ChannelError(f"{opened.file} holds {what}: name the column with --value; it has {_listed(opened)}")
+    usual = {name for quantity in known for name in QUANTITIES[quantity][1]}
+    first = next((c for c in opened.columns if _plain(c.name) in usual), None)
+    named = f"--value '{first.path}'" if first and not value else "--value"
+    raise ChannelError(f"{opened.file} holds {what}: name the column with {named}; it has {_listed(opened)}")
 
 
 def _listed(opened: OpenColumns) -> str:

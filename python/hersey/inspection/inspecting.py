@@ -22,7 +22,7 @@ from hersey.log.corrections import Corrected
 from hersey.log.mapping import LogMapping, as_stated, mapping_of, read_with_mapping, without_what_is_said
 from hersey.log.means import read_means
 from hersey.log.sensors import Sensors
-from hersey.log.torque_log import Correction, LogFile
+from hersey.log.torque_log import NO_CLOCK, Correction, LogFile
 from hersey.result import Result, json_record
 from hersey.units import conversion, takes_si
 
@@ -187,6 +187,7 @@ def inspect(
     channels: Mapping[str, str] | None = None,
     units: Mapping[str, str] | None = None,
     isothermal: bool = False,
+    signs: Mapping[str, int] | None = None,
     drop_missing: bool = False,
     every: float | None = None,
     radius: float | Sequence[float] | None = None,
@@ -203,7 +204,7 @@ def inspect(
     ----------
     paths, channels, units, isothermal, drop_missing, every, radius, load
         As for `hersey.read`.
-    mapping
+    mapping, signs
         As for `hersey.log.mapping.read_with_mapping`.
     min_dwell, tare, rotation
         As for `TorqueLog.steady`.
@@ -224,6 +225,7 @@ def inspect(
     """
     files = [paths] if isinstance(paths, str | Path) else list(paths)
     chosen = mapping if isinstance(mapping, LogMapping) else mapping_of(files, mapping)
+    chosen = chosen.turned(signs or {})
     stated = Stated(every, as_stated(radius), as_stated(load))
     said = without_what_is_said(chosen, channels or {}, stated)
     choices = {
@@ -237,7 +239,7 @@ def inspect(
     reports = tuple(_file_report(raw_channels(file), choices, known) for file in files)
     of_fit = {"rotation": rotation, "temperature_scale": temperature_scale}
     if means:
-        return _of_means(files, reports, choices, isothermal, known, chosen.sensors, **of_fit)
+        return _of_means(files, reports, choices, isothermal, signs, known, chosen.sensors, **of_fit)
     hopeless = any(set(report.without) - {"temperature"} for report in reports)
     holes = any(c.role and c.traits.missing for report in reports for c in report.channels)
     cold = any("temperature" in report.without for report in reports)
@@ -263,6 +265,7 @@ def _of_means(
     reports: tuple[FileReport, ...],
     choices: dict[str, ChannelChoice],
     isothermal: bool,
+    signs: Mapping[str, int] | None,
     known: Stated,
     sensors: Sensors,
     **of_fit: str,
@@ -285,6 +288,7 @@ def _of_means(
             isothermal=isothermal,
             radius=known.radius,
             load=known.load,
+            signs=signs,
         )
     except HerseyError as error:
         return Inspection(reports, str(error), (), {}, (), None)
@@ -366,7 +370,7 @@ def _clocks(
         channel = beside[0]
         if stated.every is not None:
             seconds = np.arange(channel.values.size, dtype=float) * stated.every
-            clocks[channel.tick] = clock_of("number of the row", seconds)
+            clocks[channel.tick] = clock_of(NO_CLOCK, seconds)
             continue
         if channel.clock is not None:
             clocks[channel.tick] = clock_of(f"of {channel.column.path}", channel.clock)

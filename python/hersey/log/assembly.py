@@ -24,7 +24,7 @@ from hersey.log.recording import Recording, Signal
 from hersey.log.rows import LeftOut, runs_with_records
 from hersey.log.text.layout import Column
 from hersey.log.text.stamps import counted_since, is_clock_name
-from hersey.log.torque_log import LARGEST, Channel, LogFile, Run
+from hersey.log.torque_log import LARGEST, NO_CLOCK, Channel, LogFile, Run
 from hersey.units import Conversion
 
 
@@ -213,7 +213,7 @@ class Assembly:
         if (every := self.stated.every) is not None:
             tick = f"every {signal.rows}"
             if tick not in self._clocks:
-                channel = Channel("time", "number of the row", f"{every:g} s")
+                channel = Channel("time", NO_CLOCK, f"{every:g} s")
                 self._clocks[tick] = (np.arange(signal.rows, dtype=float) * every, tick, channel)
             return self._clocks[tick]
         if signal.clock is not None and not choice.name:

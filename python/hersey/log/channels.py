@@ -11,8 +11,8 @@ import numpy as np
 from hersey.arrays import FloatArray
 from hersey.errors import ChannelError, ParameterError, UnitError, WrongKindError
 from hersey.log.text.layout import Column
-from hersey.spelling import printable
-from hersey.units import KINDS, Conversion, conversion
+from hersey.spelling import meant, printable
+from hersey.units import KINDS, Conversion, conversion, nearest_unit
 
 #: Roles of a log's columns, in the order in which they are asked for.
 ROLES = ("time", "torque", "speed", "temperature")
@@ -45,6 +45,8 @@ _FRICTION = {
 }
 #: What has the unit of a speed of rotation and is none.
 _OSCILLATION = re.compile(r"frequen[cz]|oscillat|oszillat", re.IGNORECASE)
+#: What a current stands for in a motor of 35 mN m/A, as an example.
+_AMPERES = {"A": "35 mN*m", "mA": "0.035 mN*m"}
 #: As many numbers, all the same, make a dead channel.
 _TELLING = 20
 #: A clock of a part of a run, beside which that of the whole run counts.
@@ -96,7 +98,7 @@ def find_channel(
         If the column that must be it has no unit, an unknown one, or one of another kind.
     """
     if choice.name:
-        return _with_unit(role, _named(role, columns, choice.name, file), choice, file)
+        return _with_unit(role, _named(role, columns, choice.name, file), choice, file, columns)
     named = [c for c in columns if _is_named(_NAMES[role], c)]
     measured = [c for c in named if not _SETPOINT.search(c.name)] or named
     # a column of another kind of unit is out; one without a unit could still be it
@@ -119,7 +121,7 @@ def find_channel(
         if len({c.path for c in candidates}) == 1:
             raise _repeated(role, candidates, file)
         raise ChannelError(f"{file}: {role} could be {listed}: choose with --{role} '{candidates[0].path}'")
-    return _with_unit(role, candidates[0], choice, file)
+    return _with_unit(role, candidates[0], choice, file, columns)
 
 
 def _is_named(pattern: str, column: Column) -> bool:
@@ -169,6 +171,11 @@ def no_channel(role: str, columns: tuple[Column, ...], file: str) -> ChannelErro
     way_out = f"name it with --{role}"
     if role == "torque" and any(_is_unit_of("force", c.unit) for c in columns):
         way_out += " (a friction force too, with the --radius at which it acts)"
+    elif role == "torque" and (current := next((c for c in columns if c.unit in _AMPERES), None)):
+        way_out = (
+            f"if '{current.path}' is the motor's current, say --torque '{current.path}' and the torque of "
+            f"1 {current.unit} as --torque-unit '{_AMPERES[current.unit]}'"
+        )
     elif role == "time":
         way_out += ", or say the time between rows with --every '2 ms'"
     return ChannelError(f"{file}: no {role} column among {_listed(columns)}: {way_out}")
@@ -194,7 +201,11 @@ def _spellings(c: Column) -> set[str]:
 def _named(role: str, columns: tuple[Column, ...], name: str, file: str) -> Column:
     same = called(name, columns)
     if not same:
-        raise ChannelError(f"{file}: --{role}: there is no column '{name}'; the file has {_listed(columns)}")
+        near = meant(name, [*(c.path for c in columns), *(str(c) for c in columns)])
+        way_out = f": did you mean --{role} '{near}'?" if near else ""
+        raise ChannelError(
+            f"{file}: --{role}: there is no column '{name}'; the file has {_listed(columns)}{way_out}"
+        )
     if len(same) > 1 and len({c.path for c in same}) == 1:
         raise _repeated(role, same, file)
     if len(same) > 1:
@@ -269,7 +280,9 @@ def _is_unit_of(kind: str, unit: str) -> bool:
         return False
 
 
-def _with_unit(role: str, column: Column, choice: ChannelChoice, file: str) -> tuple[Column, Conversion]:
+def _with_unit(
+    role: str, column: Column, choice: ChannelChoice, file: str, columns: tuple[Column, ...]
+) -> tuple[Column, Conversion]:
     unit = choice.unit or column.unit
     if not unit and role == "torque" and _is_named(_FRICTION["friction coefficient"], column):
         unit = "1"
@@ -277,7 +290,9 @@ def _with_unit(role: str, column: Column, choice: ChannelChoice, file: str) -> t
         return column, Conversion(unit, 1.0, 0.0)
     if not unit:
         of_a_force = role == "torque" and _is_named(_FRICTION["force"], column)
-        example = KINDS["force" if of_a_force else ROLE_KINDS[role][0]][1]
+        of_sliding = role == "speed" and _is_named(_FRICTION["belt speed"], column)
+        kind = "force" if of_a_force else "belt speed" if of_sliding else ROLE_KINDS[role][0]
+        example = KINDS[kind][1]
         raise UnitError(
             f"{file}: column '{column.path}' has no unit: write '{column.name} [{example}]' in the header, "
             f"add a row of units, or say --{role}-unit '{example}'"
@@ -285,4 +300,22 @@ def _with_unit(role: str, column: Column, choice: ChannelChoice, file: str) -> t
     try:
         return column, role_conversion(role, unit)[1]
     except UnitError as error:
-        raise UnitError(f"{file}: column '{column.path}': {error}") from None
+        way_out = _right_unit(role, column, unit, columns)
+        raise UnitError(f"{file}: column '{column.path}': {error}{way_out}") from None
+
+
+def _right_unit(role: str, column: Column, unit: str, columns: tuple[Column, ...]) -> str:
+    """What to type where a column has a unit that its role cannot have; empty if nothing helps."""
+    flag = f"--{role}-unit"
+    if role == "torque" and unit.strip() in ("%", "percent"):
+        return f": say {flag} '9.84 mN*m / 100' with yours"
+    if role == "speed" and unit.strip() in ("Hz", "1/s"):
+        return f", that is {flag} 'rev/s'"
+    others = [c for c in columns if c != column and c.unit and _could_be(role, c, surely=True)]
+    elsewhere = [r for r in ROLES if r != role and _could_be(r, column, surely=True)]
+    if others and elsewhere and unit == column.unit:
+        return f"; it is one of {elsewhere[0]}: are the columns swapped? Say --{role} '{others[0].path}'"
+    if role == "torque" and unit in _AMPERES:
+        return f"; if it is the motor's current, say the torque of 1 {unit} as {flag} '{_AMPERES[unit]}'"
+    near = nearest_unit(ROLE_KINDS[role][0], unit)
+    return f" Say {flag} '{near or KINDS[ROLE_KINDS[role][0]][1]}'" if near or not elsewhere else ""

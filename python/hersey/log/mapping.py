@@ -19,7 +19,7 @@ from pydantic import BeforeValidator, ValidationInfo
 from pydantic.dataclasses import dataclass
 
 from hersey.errors import ChannelError, HerseyError, ParameterError, UnitError
-from hersey.files.toml import Quantity, Share, Table, Text, naming, read_tables
+from hersey.files.toml import Quantity, Share, Table, Text, naming, read_tables, read_toml
 from hersey.log import corrections
 from hersey.log.channels import (
     OTHER_ROLES,
@@ -245,6 +245,26 @@ class LogMapping(_Roles):
         )
         return Stated(self.time.every, radius, load)
 
+    def turned(self, signs: Mapping[str, int]) -> LogMapping:
+        """Return the mapping with the signs of torque and speed multiplied by those given by role.
+
+        Raises
+        ------
+        ParameterError
+            If a sign is neither 1 nor -1.
+        """
+        for role, value in signs.items():
+            if value not in (1, -1):
+                raise ParameterError(
+                    f"the sign of {role} is {value}: write --{role}-sign -1, or leave it out"
+                )
+        torque, speed = (signs.get(role, 1) for role in ("torque", "speed"))
+        return replace(
+            self,
+            torque=replace(self.torque, sign=self.torque.sign * torque),
+            speed=replace(self.speed, sign=self.speed.sign * speed),
+        )
+
     def correct(self, log: Any) -> Corrected:
         """Apply the corrections that are stated, in the order of `hersey.log.corrections`."""
         done = self._at_the_sensor(log)
@@ -296,6 +316,11 @@ def read_mapping(path: str | Path) -> LogMapping:
         Each names the file and the key.
     """
     path = Path(path)
+    if "drivetrain" in read_toml(path):
+        raise ParameterError(
+            f"{path.name} is a machine's file, with [drivetrain], and no mapping of a log: "
+            f"give it as --machine '{printable(str(path))}'"
+        )
     mapping = LogMapping(**vars(read_tables(path, _Roles)), source=path)
     for role in ROLE_KINDS:
         with naming(f"{path.name}: {role}.unit"):
@@ -330,6 +355,7 @@ def read_with_mapping(
     channels: Mapping[str, str] | None = None,
     units: Mapping[str, str] | None = None,
     isothermal: bool = False,
+    signs: Mapping[str, int] | None = None,
     drop_missing: bool = False,
     every: float | None = None,
     radius: float | Sequence[float] | None = None,
@@ -345,6 +371,8 @@ def read_with_mapping(
     channels, units
         By role; they outrank the mapping's. A role whose channel or unit is given so is not corrected for
         a motor constant.
+    signs
+        -1 by role, ``torque`` or ``speed``, turns the sign once more than the mapping does.
     isothermal, drop_missing, every, radius, load, progress
         As for `hersey.read`; they outrank the mapping's.
 
@@ -361,7 +389,7 @@ def read_with_mapping(
     files = [paths] if isinstance(paths, str | Path) else list(paths)
     needed = _without_temperature if isothermal else dict
     chosen = mapping if isinstance(mapping, LogMapping) else mapping_of(files, mapping)
-    chosen = _outranked(chosen, channels or {}, units or {})
+    chosen = _outranked(chosen, channels or {}, units or {}).turned(signs or {})
     stated = Stated(every, as_stated(radius), as_stated(load))
     chosen = without_what_is_said(chosen, channels or {}, stated)
     try:

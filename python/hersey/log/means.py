@@ -11,7 +11,7 @@ import hashlib
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -163,6 +163,7 @@ def read_means(
     isothermal: bool = False,
     radius: float | Sequence[float] | None = None,
     load: float | Sequence[float] | None = None,
+    signs: Mapping[str, int] | None = None,
 ) -> MeansTable:
     """Read a table of means, or several.
 
@@ -178,6 +179,8 @@ def read_means(
     radius, load
         At which a friction force acts and a sliding speed is measured, m, and normal load, N, where no column
         holds them; one for all tables, or one for each.
+    signs
+        -1 by role, ``torque`` or ``speed``, turns the sign.
 
     Raises
     ------
@@ -197,7 +200,12 @@ def read_means(
         means += rows
         files.append(file)
         stated.append(errors)
-    return MeansTable(tuple(means), tuple(files), all(stated))
+    return MeansTable(tuple(_turned(row, signs or {}) for row in means), tuple(files), all(stated))
+
+
+def _turned(row: MeanRow, signs: Mapping[str, int]) -> MeanRow:
+    torque, speed = (signs.get(role, 1) for role in ("torque", "speed"))
+    return replace(row, torque=torque * row.torque, speed=speed * row.speed)
 
 
 def _choices(channels: dict[str, str], units: dict[str, str]) -> dict[str, ChannelChoice]:

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
 #: SI unit of each channel that can be corrected.
 CHANNEL_UNITS = {"torque": "N m", "speed": "rad/s", "temperature": "K"}
+#: Name of the clock of a log without one: rows are counted.
+NO_CLOCK = "number of the row"
 #: No quantity of a drive comes near this, in SI.
 LARGEST = 1e12
 #: Slower than this, rad/s (a fiftieth of a revolution a minute), the drive stands.

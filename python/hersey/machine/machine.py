@@ -12,13 +12,14 @@ from pydantic import BeforeValidator
 from pydantic.dataclasses import dataclass
 
 from hersey.errors import ParameterError
-from hersey.files.toml import Quantity, Table, naming, read_tables
+from hersey.files.toml import Quantity, Table, naming, read_tables, read_toml
 from hersey.lubrication.contact import Contact
 from hersey.lubrication.lubricant import Lubricant
 from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.nip import ContactTable, LubricantTable
 from hersey.machine.uncertainty import Uncertainty, read_uncertainty
 from hersey.motion.simulation import Drivetrain
+from hersey.spelling import printable
 
 
 @plain_dataclass(frozen=True)
@@ -85,6 +86,12 @@ def read_machine(path: str | Path) -> Machine:
         Each names the file and the key.
     """
     path = Path(path)
+    document = read_toml(path)
+    if "drivetrain" not in document and {"torque", "speed"} & set(document):
+        raise ParameterError(
+            f"{path.name} is a mapping of a log, with [{min({'torque', 'speed'} & set(document))}], and no "
+            f"machine's file: give it as --mapping '{printable(str(path))}'"
+        )
     tables = read_tables(path, _MachineFile)
     uncertainty, contact, lubricant = {}, None, None
     for parameter, text in tables.uncertainty.items():

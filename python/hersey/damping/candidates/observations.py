@@ -55,7 +55,7 @@ class Observations:
         """Return the observations that steady points are."""
         speed, torque = np.abs(points.column("speed")), np.abs(points.column("torque"))
         if distinct_speeds(speed) < 3:
-            held = " and ".join(f"{rpm(float(v)):.4g} rpm" for v in np.unique(np.round(speed, 2))[:2])
+            held = " and ".join(f"{v} rpm" for v in sorted({f"{rpm(w):.3g}" for w in speed}, key=float)[:2])
             raise InsufficientDataError(
                 f"the steady points are all at {held}: no law of speed can be fitted or compared; "
                 "record dwells at three speeds or more"

@@ -1,18 +1,19 @@
 """Dwells: stretches of constant speed, reduced to one steady point each, with honest standard errors.
 
-============  =======================================================================
-groups        points that share a temperature or a speed
-points        `SteadyPoints`: one row per dwell, and what is not used
-segments      stretches of a run in which the speed holds
-ripple        dwells whose speed ripples with the shaft, put together again
-noise         the standard error of a mean where neighbours are correlated
-shared_noise  the noise of all dwells together: slow noise is seen
-steadiness    whether a stretch is a steady dwell, and why not
-settling      where a dwell has settled
-judging       which rows of a stretch are a dwell, or why none are
-zero          the zero of the torque over the log, from every standing stretch
-reduction     `steady_points`: from a log to its dwells
-============  =======================================================================
+==============  =======================================================================
+groups          points that share a temperature or a speed
+points          `SteadyPoints`: one row per dwell, and what is not used
+segments        stretches of a run in which the speed holds
+ripple          dwells whose speed ripples with the shaft, put together again
+noise           the standard error of a mean where neighbours are correlated
+shared_noise    the noise of all dwells together: slow noise is seen
+steadiness      whether a stretch is a steady dwell, and why not
+settling        where a dwell has settled
+judging         which rows of a stretch are a dwell, or why none are
+nothing_steady  why a log has no dwell at all, and what to do
+zero            the zero of the torque over the log, from every standing stretch
+reduction       `steady_points`: from a log to its dwells
+==============  =======================================================================
 
 The settling at the start of a dwell is cut by the marginal standard error rule (White, Simulation 69
 (1997) 323): drop as many samples as makes the standard error of the rest least.

@@ -84,7 +84,7 @@ def judged(
     if reason:
         return reject(reason)
     if np.mean(run.speed[start:end]) * (np.mean(run.torque[start:end]) - tare) <= 0:
-        return reject("torque and speed have opposite signs: turn one with --torque-unit '-1 N*m'")
+        return reject("torque and speed have opposite signs: turn one with --torque-sign -1")
     return Dwell(stretch.run, segment, stretch.previous, start, end)
 
 

@@ -253,7 +253,7 @@ def _no_mean(row: MeanRow, rotation: str) -> str:
     if row.torque == 0.0:
         return "torque is zero: is the sensor connected?"
     if row.torque * row.speed < 0.0:
-        return "torque and speed have opposite signs: turn one with --torque-unit '-1 N*m'"
+        return "torque and speed have opposite signs: turn one with --torque-sign -1"
     return ""
 
 

@@ -9,6 +9,7 @@ from hersey.arrays import FloatArray
 from hersey.damping.dwells.groups import MIN_SAMPLES
 from hersey.damping.dwells.judging import Asked, Dwell, Stretch, judged
 from hersey.damping.dwells.noise import mean_and_error
+from hersey.damping.dwells.nothing_steady import nothing_steady
 from hersey.damping.dwells.points import Rejection, SteadyPoints
 from hersey.damping.dwells.ripple import joined_over_turns, turned, without_ripple
 from hersey.damping.dwells.segments import Segment, segments_of
@@ -71,7 +72,8 @@ class _Reduction:
         self.zero = self._zero(None)
         if subtracted and self.zero is None:
             raise InsufficientDataError(
-                "the drive never stands still for 2 s: there is no torque to tare with"
+                "the drive never stands still for 2 s: there is no torque to tare with; leave out --tare, or "
+                'write the zero into hersey.toml beside the log, under [torque], as tare = "4 mN*m"'
             )
 
     def points(self) -> SteadyPoints:
@@ -89,13 +91,18 @@ class _Reduction:
         dwells = [o for o in outcomes if isinstance(o, Dwell)]
         rejected = tuple(o for o in outcomes if isinstance(o, Rejection))
         if not dwells:
-            raise InsufficientDataError(_nothing_steady(self.log, rejected, self.asked.min_dwell))
+            raise InsufficientDataError(nothing_steady(self.log, rejected, self.asked, self._dwells_with))
         return self._reduced(dwells, rejected, noise)
 
-    def _judged(self, noise: SharedNoise | None) -> list[Dwell | Rejection]:
+    def _dwells_with(self, min_dwell: float) -> int:
+        """How many dwells there were if they might be shorter."""
+        asked = Asked(min_dwell, self.asked.rotation)
+        return sum(isinstance(outcome, Dwell) for outcome in self._judged(None, asked))
+
+    def _judged(self, noise: SharedNoise | None, asked: Asked | None = None) -> list[Dwell | Rejection]:
         tares = self._tares(self._middles([(s.run, s.segment.start, s.segment.end) for s in self.stretches]))
         return [
-            judged(self.log.runs[stretch.run], stretch, self.asked, float(tare), noise)
+            judged(self.log.runs[stretch.run], stretch, asked or self.asked, float(tare), noise)
             for stretch, tare in zip(self.stretches, tares, strict=True)
         ]
 
@@ -234,13 +241,3 @@ def _torque(time: FloatArray, torque: FloatArray, noise: SharedNoise | None) -> 
         error = noise.mean_error(Powers.of(steady, _interval(time)))
         independent = float(np.clip(np.var(steady) / error**2, 1.0, torque.size))
     return mean, float(np.hypot(error, rise / np.sqrt(12.0))), independent
-
-
-def _nothing_steady(log: TorqueLog, rejected: tuple[Rejection, ...], min_dwell: float) -> str:
-    reasons: dict[str, int] = {}
-    for r in rejected:
-        kind = r.reason if "opposite signs" in r.reason else r.reason.split(":")[0].split(" by ")[0]
-        reasons[kind] = reasons.get(kind, 0) + 1
-    listed = ", ".join(f"{count} x {reason}" for reason, count in reasons.items())
-    name = log.files[0].name + (f" and {len(log.files) - 1} more" if len(log.files) > 1 else "")
-    return f"{name}: no steady stretch ({listed}); a dwell holds one speed for at least {min_dwell:g} s"

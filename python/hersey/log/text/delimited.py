@@ -36,7 +36,7 @@ from hersey.log.text.footer import end_of_table
 from hersey.log.text.layout import BLANKS, SNIFFED, Column, Layout, find_layout, split, tabbed
 from hersey.log.text.numbers import MISSING, is_missing, looks_numeric
 from hersey.log.text.stamps import Stamps
-from hersey.log.torque_log import LARGEST, Channel, LogFile, Run
+from hersey.log.torque_log import LARGEST, NO_CLOCK, Channel, LogFile, Run
 from hersey.spelling import printable
 from hersey.units import Conversion
 
@@ -75,7 +75,7 @@ def read_delimited(
         growth = file.opened.growth(table.digest.hexdigest())
     used = tuple(Channel(role, column.name, si.unit) for role, (column, si) in table.channels.items())
     if stated.every is not None:
-        used = (Channel("time", "number of the row", f"{stated.every:g} s"), *used)
+        used = (Channel("time", NO_CLOCK, f"{stated.every:g} s"), *used)
     log = LogFile(
         name,
         table.digest.hexdigest(),
@@ -172,6 +172,16 @@ class _Dead:
         return self._known[column.index]
 
 
+def _by_number(layout: Layout, lacking: list[str], used: list[str]) -> str:
+    """Why columns must be named, and the options that name those that are not, as an example."""
+    if len(layout.columns) < len(used):
+        why, _, _ = layout.headless.partition(";")
+        needed = f"{', '.join(used[:-1])} and {used[-1]}"
+        return f"{why}, and there are {len(layout.columns)} columns, where a log has {needed}"
+    named = " ".join(f"--{role} '#{used.index(role) + 1}'" for role in lacking)
+    return layout.headless.replace("--torque '#2'", named)
+
+
 def _channels(
     layout: Layout,
     choices: dict[str, ChannelChoice],
@@ -186,7 +196,7 @@ def _channels(
     left = {"temperature"} if isothermal else set()
     used = [role for role in ROLES if role not in (left | {"time"} if stated.every is not None else left)]
     if layout.headless and not all(choices[role].name for role in used):
-        raise UnreadableLogError(layout.headless)
+        raise UnreadableLogError(_by_number(layout, [role for role in used if not choices[role].name], used))
     chosen: dict[str, tuple[Column, Conversion]] = {}
     for role in sorted(used, key=lambda r: r != "torque"):  # without it the rest is of no use
         channel = find_channel(role, layout.named, choices[role], name, dead)

@@ -125,7 +125,7 @@ def find_layout(start: bytes, name: str, *, separators: str = SEPARATORS) -> Lay
         raise UnreadableLogError(
             f"{name} has a header but no rows of numbers below it"
             if _looks_like_header(numbered[-1][1])
-            else f"{name} holds no table of numbers with at least two columns"
+            else f"{name} holds no table of numbers with at least two columns{_of_another_kind(name)}"
         )
     rows = [split(line, table.separator) for _, line in numbered[table.first :]]
     rows = [row for row in rows if len(row) == table.width]
@@ -368,6 +368,13 @@ def _names(line: str, table: _Table) -> list[str]:
     return next((cells for cells in splits if len(cells) == table.width), splits[0])
 
 
+def _of_another_kind(name: str) -> str:
+    """What a file is that was given in the place of a log, by the ending of its name; or nothing."""
+    if name.endswith(".toml"):
+        return ": a machine's file is given as --machine, a mapping of the channels as --mapping"
+    return ": what 'hersey fit --json' printed is given as --fit" if name.endswith(".json") else ""
+
+
 def _require_width(
     table: _Table, numbered: list[tuple[int, str]], header: list[str], line: int, file: str
 ) -> None:
@@ -377,8 +384,24 @@ def _require_width(
     if beyond or any(header[table.width :]):
         raise UnreadableLogError(
             f"{file}, line {line}: the header has {len(header)} cells where the rows have {table.width}: "
-            "give every column a name"
+            f"{_too_many(table, rows, len(header))}"
         )
+
+
+def _too_many(table: _Table, rows: list[list[str]], named: int) -> str:
+    """What to do where rows have more cells than the header: a comma within the numbers parts them too."""
+    cells = [row for row in rows if len(row) == table.width]
+    whole = cells and all(re.fullmatch(r"[-+]?\d+", cell.strip()) for row in cells for cell in row)
+    if table.width < named:
+        return "leave out the names that have no column"
+    if table.separator != "," or table.width > 2 * named:
+        return "give every column a name"
+    if table.width == 2 * named and whole:
+        return (
+            "its numbers have decimal commas, and commas part its columns too: export it with ';' between "
+            "the columns, or with decimal points"
+        )
+    return "give every column a name, or export it with ';' between the columns if a comma marks thousands"
 
 
 def _is_units_row(row: list[str]) -> bool:

@@ -1,0 +1,114 @@
+"""Why a log has no dwell at all, in a sentence that ends in what to type or to record."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable
+
+import numpy as np
+
+from hersey.damping.dwells.groups import MIN_SAMPLES
+from hersey.damping.dwells.judging import Asked
+from hersey.damping.dwells.points import Rejection
+from hersey.log.torque_log import NO_CLOCK, Run, TorqueLog
+from hersey.units import rpm
+
+#: Dwells that a shorter --min-dwell must give to be proposed.
+WORTH_IT = 3
+#: A speed whose correlation with time is beyond this over a stretch runs up or down all the time.
+RUNNING = 0.7
+#: Blocks into which a run is cut to count its ramps, at the most, and share of its span that is a turn.
+_BLOCKS, _TURN = 60, 0.1
+#: Median change from row to row, as share of the mean one, below which the speed changes in steps.
+_FEW = 0.2
+_TOO_SHORT = re.compile(r"dwell too short: ([0-9.]+) s or ([0-9]+) rows")
+#: A log shorter than so many dwells has a clock in another unit, or rows less often: so many times, say.
+_TOO_BRIEF, _RARER = 1.0, 50
+
+
+def nothing_steady(
+    log: TorqueLog,
+    rejected: tuple[Rejection, ...],
+    asked: Asked,
+    dwells_with: Callable[[float], int],
+) -> str:
+    """Return the message; ``dwells_with`` counts the dwells that another least duration, s, would give."""
+    name = log.files[0].name + (f" and {len(log.files) - 1} more" if len(log.files) > 1 else "")
+    reasons: dict[str, int] = {}
+    for r in rejected:
+        kind = r.reason if "opposite signs" in r.reason else r.reason.split(":")[0].split(" by ")[0]
+        reasons[kind] = reasons.get(kind, 0) + 1
+    listed = ", ".join(f"{count} x {reason}" for reason, count in reasons.items())
+    return f"{name}: no steady stretch ({listed}); {_way_out(log, rejected, asked, dwells_with)}"
+
+
+def _way_out(
+    log: TorqueLog, rejected: tuple[Rejection, ...], asked: Asked, dwells_with: Callable[[float], int]
+) -> str:
+    held = f"a dwell holds one speed for at least {asked.min_dwell:g} s"
+    lasted = sum(float(run.time[-1] - run.time[0]) for run in log.runs)
+    if lasted < _TOO_BRIEF * asked.min_dwell:
+        return f"{held}, and the whole log lasts {lasted:.3g} s: {_other_clock(log)}"
+    if any(r.reason.startswith("rotation not") for r in rejected):
+        other = "reverse" if asked.rotation == "forward" else "forward"
+        return f"the drive turns {other}: say --rotation {other}"
+    short = [(float(m[1]), int(m[2])) for r in rejected if (m := _TOO_SHORT.match(r.reason))]
+    if _runs_up_and_down(log, rejected):
+        slow, fast = (rpm(float(f([f(np.abs(run.speed)) for run in log.runs]))) for f in (np.min, np.max))
+        count = sum(map(_ramps, log.runs))
+        kind = "short step" if all(map(_steps, log.runs)) else "ramp"
+        ramps = f"{count} {kind}{'s' if count > 1 else ''} between {slow:.3g} and {fast:.3g} rpm"
+        return f"the speed never holds: {ramps}. Record dwells: {held}"
+    enough = sorted({math.floor(10 * s - 0.5) / 10 for s, rows in short if rows >= MIN_SAMPLES and s > 0.2})
+    for shorter in enough:
+        if (count := dwells_with(shorter)) >= WORTH_IT:
+            return f"{held}: {count} dwells are there with --min-dwell '{shorter:g} s'"
+    return held
+
+
+def _other_clock(log: TorqueLog) -> str:
+    """What to say of the clock of a log that is over before a dwell."""
+    if any(c.name == NO_CLOCK for file in log.files for c in file.channels):
+        rarer = _RARER * log.runs[0].sampling_interval
+        return f"if rows come less often, say so, as with --every '{rarer:.3g} s'"
+    return "if its clock counts seconds, say --time-unit s"
+
+
+def _runs_up_and_down(log: TorqueLog, rejected: tuple[Rejection, ...]) -> bool:
+    """Whether the speed changes all the time: in what is too short for a dwell, too."""
+    short = [r for r in rejected if _TOO_SHORT.match(r.reason)]
+    if not short:
+        return bool(rejected) and all(r.reason.startswith("speed changing") for r in rejected)
+    return float(np.median([abs(_trend(log.runs[r.run], r)) for r in short])) > RUNNING
+
+
+def _trend(run: Run, stretch: Rejection) -> float:
+    """Correlation of the speed with time over a stretch."""
+    here = (run.time >= stretch.start) & (run.time <= stretch.end)
+    time, speed = run.time[here], run.speed[here]
+    if time.size < 3 or not np.ptp(speed) or not np.ptp(time):
+        return 0.0
+    return float(np.corrcoef(time, speed)[0, 1])
+
+
+def _steps(run: Run) -> bool:
+    """Whether the speed of a run changes at a few places, and not all the time."""
+    changes = np.abs(np.diff(run.speed))
+    return float(np.median(changes)) < _FEW * float(np.mean(changes))
+
+
+def _ramps(run: Run) -> int:
+    """How many times the speed of a run sets out up or down."""
+    blocks = [float(np.mean(part)) for part in np.array_split(run.speed, min(_BLOCKS, run.speed.size))]
+    least = _TURN * (max(blocks) - min(blocks))
+    ways: list[int] = []
+    end = blocks[0]
+    for level in blocks[1:]:
+        way = 1 if level - end > 0 else -1
+        if ways and way == ways[-1]:
+            end = level
+        elif abs(level - end) > least:
+            ways.append(way)
+            end = level
+    return max(1, len(ways))

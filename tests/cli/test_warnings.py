@@ -1,0 +1,110 @@
+"""What must be known before a fit is trusted: said alike by `fit`, `report` and `inspect`."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from hersey.units import rpm
+from tests.cli.command import run
+
+SPEEDS = (2, 4, 8, 16, 32, 64, 128)
+OFFSET = 0.004
+
+
+def log(path: Path, torque: Any, directions: tuple[int, ...]) -> None:
+    """Write a staircase at two temperatures that begins with a stand, sensor offset included."""
+    random, lines, time = (
+        np.random.default_rng(5),
+        ["Time [s],Torque [N*m],Speed [rpm],Temperature [degC]"],
+        0.0,
+    )
+    for degc in (100, 150):
+        for speed in (0, *(way * w for way in directions for w in SPEEDS)):
+            for _ in range(50):
+                level = np.sign(speed) * torque(abs(speed), degc, speed > 0) if speed else 0.0
+                noise = 0.0005 * random.standard_normal()
+                lines.append(f"{time:.1f},{level + OFFSET + noise:.6g},{speed},{degc}")
+                time += 0.1
+    path.write_text("\n".join(lines) + "\n")
+
+
+def two_ways(speed: float, degc: float, forward: bool) -> float:
+    """A film that drags a tenth more in reverse."""
+    return float(0.1 * (speed / 10) ** 0.35 * (100 / degc) ** 0.5 * (1.0 if forward else 1.1))
+
+
+def falling(speed: float, degc: float, forward: bool) -> float:  # noqa: ARG001 - both turn alike
+    """Torque that only falls with speed."""
+    return float(0.3 * (speed / 10) ** -0.2 * (100 / degc) ** 0.5)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("logs")
+    log(path / "two-ways.csv", two_ways, (1, -1))
+    log(path / "falling.csv", falling, (1,))
+    return path
+
+
+def told(folder: Path, verb: str, *options: str) -> Any:
+    done = run(verb, *options, "--json", cwd=folder)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+CASES = [
+    ("two-ways.csv",),
+    ("two-ways.csv", "--rotation", "forward"),
+    ("two-ways.csv", "--rotation", "reverse", "--tare", "standing"),
+    ("falling.csv",),
+    ("falling.csv", "--tare", "standing"),
+]
+
+
+@pytest.mark.parametrize("asked", CASES, ids=" ".join)
+def test_fit_says_what_the_report_warns_of(asked: tuple[str, ...], folder: Path) -> None:
+    warnings = told(folder, "report", *asked)["warnings"]
+    warned = [each for each in warnings if not each.startswith("The simulation shows")]
+    assert told(folder, "fit", *asked)["warnings"] == warned
+    printed = run("fit", *asked, cwd=folder).stdout.splitlines()
+    assert [line.removeprefix("- ") for line in printed if line.startswith("- ")] == warned
+
+
+def test_what_the_two_directions_differ_by_is_warned_of_until_one_is_taken(folder: Path) -> None:
+    for verb in ("fit", "report"):
+        both = told(folder, verb, "two-ways.csv", "--tare", "standing")["warnings"]
+        assert any("between forward and reverse rotation" in each and "--rotation" in each for each in both)
+        one = told(folder, verb, "two-ways.csv", "--tare", "standing", "--rotation", "forward")["warnings"]
+        assert not any("reverse rotation" in each for each in one)
+
+
+def test_an_offset_is_warned_of_until_it_is_subtracted(folder: Path) -> None:
+    for verb in ("fit", "report"):
+        assert any("say --tare standing" in each for each in told(folder, verb, "falling.csv")["warnings"])
+        tared = told(folder, verb, "falling.csv", "--tare", "standing")["warnings"]
+        assert not any("--tare standing" in each for each in tared)
+
+
+@pytest.mark.parametrize("asked", CASES, ids=" ".join)
+def test_inspect_and_report_do_not_contradict_each_other(asked: tuple[str, ...], folder: Path) -> None:
+    support = told(folder, "inspect", *asked)["support"]
+    document = told(folder, "report", *asked)
+    assert support["dwells"] == len(document["points"])
+    speeds = [abs(point["speed"]) for point in document["points"]]
+    assert support["speeds"] == len(SPEEDS)
+    (said,) = [each for each in support["can"] if each.startswith("exponent c of speed")]
+    assert f"{rpm(min(speeds)):.3g} to {rpm(max(speeds)):.3g} rpm" in said
+    transitions = [each for each in support["can"] if each.startswith("a transition")]
+    assert bool(transitions) == (document["fit"]["transition"] is not None)
+    assert any("one exponent" in each for each in support["cannot"]) == bool(_drifts(document))
+
+
+def _drifts(document: Any) -> list[str]:
+    """Where the verdict says that no one exponent holds."""
+    return [each for each in document["verdict"] if re.search("no one exponent holds", each, re.IGNORECASE)]
