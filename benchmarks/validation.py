@@ -209,12 +209,19 @@ def row_of(line: Line, files: list[Path]) -> Row:
     code, looked = run(["inspect", *arguments[1:]])
     wrong = wrong or fault(code, looked)
     name = files[0].name if len(files) == 1 else f"{len(files)} files"
-    return Row(line.source, name, quoted(" ".join(line.options)), inspected(looked), "<br>".join(told), wrong)
+    return Row(
+        line.source,
+        name,
+        quoted(" ".join(added([], [*line.options]))),
+        inspected(looked),
+        "<br>".join(told),
+        wrong,
+    )
 
 
 def added(before: list[str], after: list[str]) -> list[str]:
     """What was put to a command."""
-    return [f"'{word}'" if " " in word or "#" in word else word for word in after if word not in before]
+    return [f"'{word}'" if re.search("[ #]", word) else word for word in after if word not in before]
 
 
 def run(arguments: list[str]) -> tuple[int, str]:
