@@ -118,7 +118,7 @@ def judged() -> Any:
     contact, lubricant = machine().contact, machine().lubricant
     assert contact is not None
     assert lubricant is not None
-    return verdict(measured(), surface(), contact, lubricant)
+    return verdict(measured(), surface(), contact, lubricant, hersey.regime(points(), surface()))
 
 
 #: How each result is made, and the part of the document that holds it.

@@ -166,4 +166,4 @@ def test_fit_builds_no_simulation(files: dict[str, str], monkeypatch: pytest.Mon
     monkeypatch.setattr(assembly, "stick_slip", refuse)
     monkeypatch.setattr(assembly, "simulate", refuse)
     assert Path(files["FIT"]).exists()
-    assert set(printed(["fit", BENCH, *TARE])) == HEADER | {"files", "points", "fit", "regime"}
+    assert set(printed(["fit", BENCH, *TARE])) == HEADER | {"warnings", "files", "points", "fit", "regime"}

@@ -74,7 +74,7 @@ LOADS = {
     "hysteresis": "numpy",
     "hysteresis --from-speed 2.5 --to-speed 1.2 --drive-speed 1.2 --json": "numpy",
     "simulate --csv motion.csv": "numpy polars",
-    "inspect examples/bench.csv": "numpy polars scipy",
+    "inspect examples/bench.csv": "numpy odrpack polars scipy",
     f"fit {LOG}": "numpy odrpack polars scipy",
     f"compare {LOG} examples/bench.csv": "numpy odrpack polars scipy",
     f"film {MACHINE}": "numpy odrpack pint polars scipy",

@@ -11,6 +11,7 @@ import pytest
 
 import hersey
 from hersey.charts.operating_map import map_chart
+from hersey.damping.candidates.shared_errors import Freedom
 from hersey.damping.surface import DampingSurface
 from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.machine import Machine
@@ -49,6 +50,7 @@ def isothermal(surface: DampingSurface) -> DampingSurface:
         variables=tuple(surface.variables[i] for i in keep),
         values=surface.values[keep],
         covariance=surface.covariance[np.ix_(keep, keep)],
+        freedoms=Freedom(surface.freedom, surface.covariance[np.ix_(keep, keep)]),
     )
 
 

@@ -15,12 +15,14 @@ import hersey
 from hersey.charts import PICTURES
 from hersey.charts.operating_map import map_chart
 from hersey.charts.render import picture
+from hersey.damping.candidates.shared_errors import Freedom
 from hersey.damping.estimate import Estimate
 from hersey.damping.surface import DampingSurface
 from hersey.document.saved_fit import read_fit
 from hersey.errors import InsufficientDataError, MissingFileError, OutputError, ParameterError
 from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.machine import Machine
+from hersey.result import json_value
 from hersey.stability.operating_map import STATES, OperatingMap, operating_map
 from tests.cli.command import run
 from tests.conftest import ROOT
@@ -55,6 +57,7 @@ def isothermal(surface: DampingSurface) -> DampingSurface:
         variables=tuple(surface.variables[i] for i in keep),
         values=surface.values[keep],
         covariance=surface.covariance[np.ix_(keep, keep)],
+        freedoms=Freedom(surface.freedom, surface.covariance[np.ix_(keep, keep)]),
     )
 
 
@@ -182,7 +185,9 @@ def test_the_interval_of_the_transition_is_that_of_the_fit(surface: DampingSurfa
 def test_draws_without_covariance_are_the_drag(surface: DampingSurface, isothermal: DampingSurface) -> None:
     for fit, t in ((surface, 365.0), (surface, 450.0), (isothermal, None)):
         speed = replace(fit.transition.speed, error=0.0)
-        exact = replace(fit, covariance=0 * fit.covariance, transition=replace(fit.transition, speed=speed))
+        none = Freedom(fit.freedom, 0 * fit.covariance)
+        certain = replace(fit.transition, speed=speed)
+        exact = replace(fit, covariance=none.covariance, freedoms=none, transition=certain)
         drag = fit.drag(**AT, temperature=t)
         for name, values in exact.drag_samples(3, 0, **AT, temperature=t).items():
             assert values == pytest.approx(np.full(3, getattr(drag, name)), rel=1e-12)
@@ -369,6 +374,8 @@ def test_a_fit_is_read_back_as_it_was(surface: DampingSurface, fit_json: Path) -
     for name, value in vars(surface).items():
         if isinstance(value, np.ndarray):
             assert np.array_equal(getattr(again, name), value), name
+        elif name == "freedoms":
+            assert json_value(getattr(again, name)) == json_value(replace(value, moved_by_untold=np.empty(0)))
         else:
             assert getattr(again, name) == value, name
 

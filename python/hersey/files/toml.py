@@ -165,7 +165,7 @@ def read_toml(path: str | Path) -> dict[str, Any]:
     ParameterError
         If it is not TOML.
     """
-    path = Path(path)
+    path, text = Path(path), ""
     try:
         text = read_text(path, most=_MOST_BYTES)
         _refuse_long_keys(text)

@@ -111,7 +111,7 @@ class LogFilePart(Part):
 
 
 class RunPart(Part):
-    """What a file recorded: least and greatest time (s), torque (N m), speed (rad/s) and temperature (K)."""
+    """What a file recorded: least and greatest time (s), torque (N m), speed (rad/s) and more where known."""
 
     name: str
     rows: int
@@ -120,7 +120,8 @@ class RunPart(Part):
     time: tuple[float, float]
     torque: tuple[float, float]
     speed: tuple[float, float]
-    temperature: tuple[float, float] | None
+    temperature: tuple[float, float] | None = Field(description="K")
+    load: tuple[float, float] | None = Field(description="N")
 
 
 class EffectPart(Part):
