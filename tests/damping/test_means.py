@@ -115,7 +115,7 @@ def test_rows_that_state_no_dwell_are_said() -> None:
         "drive standing",
         "torque and speed have opposite signs",
     ]
-    assert points.dropped().startswith("1 of 4 dwells, at 20 rpm, were dropped")
+    assert points.dropped().startswith("1 of 4 dwells, at 20 rpm, was dropped")
     forward = hersey.SteadyPoints.from_table(
         {"speed [rpm]": [10, 40, -5], "torque [N*m]": [1.0, 1.2, -1.3]}, rotation="forward"
     )

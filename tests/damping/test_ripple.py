@@ -109,4 +109,4 @@ def test_a_speed_that_is_not_held_says_from_where_to_where() -> None:
     assert points.rejected[0].reason == (
         "speed not held: it varies by 60% (standard deviation), 12 to 48 rpm"
     )
-    assert points.dropped() == "1 of 2 dwells, below 60 rpm, were dropped: speed not held by 60 %."
+    assert points.dropped() == "1 of 2 dwells, below 60 rpm, was dropped: speed not held by 60 %."

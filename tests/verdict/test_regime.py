@@ -269,7 +269,7 @@ def test_the_verdict_of_two_branches_in_words() -> None:
 
 
 @pytest.mark.parametrize(
-    ("exponent", "words"), [(3.0, ", higher when hotter torque"), (-3.0, "150 degC torque")]
+    ("exponent", "words"), [(3.0, "150 degC (higher when hotter) torque"), (-3.0, "150 degC torque")]
 )
 def test_the_verdict_says_where_the_transition_moves(exponent: float, words: str) -> None:
     points, surface = bent(celsius=True)

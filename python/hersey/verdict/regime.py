@@ -159,7 +159,7 @@ def _verdict(surface: DampingSurface, by: Explained) -> str:
     where += f" [{rpm(t.speed.low):.3g}, {rpm(t.speed.high):.3g}]" if t.speed.told else " (interval not told)"
     if surface.reference_temperature is not None:
         where += f" at {_degrees(surface.reference_temperature, surface.temperature_scale)}"
-        where += ", higher when hotter" if t.temperature_exponent > 0 else ""
+        where += " (higher when hotter)" if t.temperature_exponent > 0 else ""
     least = ", where torque is least," if t.gradual else ""
     return (
         f"Above {where}{least} torque rises with speed, as under a carrying film: "

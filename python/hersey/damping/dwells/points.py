@@ -174,7 +174,8 @@ class SteadyPoints(Result):
             return ""
         speeds = np.abs([r.speed for r in lost])
         where = _placed(speeds, np.abs(self.column("speed")))
-        return f"{len(lost)} of {len(lost) + len(self)} dwells, {where}, were dropped: {_reasons(lost)}."
+        verb = "was" if len(lost) == 1 else "were"
+        return f"{len(lost)} of {len(lost) + len(self)} dwells, {where}, {verb} dropped: {_reasons(lost)}."
 
     def _unused(self) -> dict[str, int]:
         """Rows of every other stretch by its reason."""
