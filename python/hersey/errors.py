@@ -100,3 +100,14 @@ class OutputError(HerseyError, OSError):
 
 class ExtrapolationWarning(UserWarning):
     """A fitted law is used outside the range of its data."""
+
+
+class UntoldWarning(UserWarning):
+    """Limits that hold for the visits recorded alone: the data do not tell how far visits scatter."""
+
+    def __init__(self) -> None:
+        """Say it."""
+        super().__init__(
+            "limits hold for the visits recorded: each temperature was visited once, and how far visits "
+            "scatter is not told"
+        )

@@ -28,7 +28,7 @@ from hersey.damping.candidates.observations import Inputs
 from hersey.damping.candidates.shared_errors import Freedom, SharedScatter
 from hersey.damping.candidates.thermal import CELSIUS, KELVIN, Thermal, scaled_temperature
 from hersey.damping.estimate import Estimate
-from hersey.errors import ExtrapolationWarning, InsufficientDataError, ParameterError
+from hersey.errors import ExtrapolationWarning, InsufficientDataError, ParameterError, UntoldWarning
 from hersey.motion.drag import Drag
 from hersey.result import Result, json_record
 from hersey.units import ZERO_CELSIUS, celsius, takes_si
@@ -272,6 +272,7 @@ class DampingSurface(Result):
         if temperature is not None and self.reference_temperature is not None:
             x = self._checked_temperature(temperature)
         slowest = np.log(stick_speed / roll_radius / self.reference_speed)
+        self._warn_untold()
         kept, total, failed = self._draws(count, seed, x, slowest)
         if failed:
             warnings.warn(
@@ -348,7 +349,12 @@ class DampingSurface(Result):
             speeds, kelvin = np.broadcast_arrays(speeds, kelvin)
         dwell = float(np.hypot(self.statistics.scatter, self.statistics.dwell_error))
         inputs = self._inputs(speeds, kelvin)
+        self._warn_untold()
         return band_of(self._law, self._law_values, self.freedoms, dwell, inputs)
+
+    def _warn_untold(self) -> None:
+        if self.b is not None and not self.b.told:
+            warnings.warn(UntoldWarning(), stacklevel=4)
 
     @property
     def freedom(self) -> int:

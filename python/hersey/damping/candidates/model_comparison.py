@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -18,7 +19,7 @@ from hersey.damping.candidates.intervals import METHODS, Band, Ends, ParameterEs
 from hersey.damping.candidates.lack_of_fit import LackOfFit
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.estimate import Estimate
-from hersey.errors import ParameterError
+from hersey.errors import ParameterError, UntoldWarning
 from hersey.result import Result, json_record
 from hersey.units import convert, takes_si
 
@@ -85,6 +86,8 @@ class ModelComparison(Result):
         hot = None
         if temperature is not None:
             speeds, hot = np.broadcast_arrays(speeds, np.asarray(temperature, dtype=np.float64))
+        if self.chosen.fit.law.thermal is not None and self.chosen.fit.untold("e"):
+            warnings.warn(UntoldWarning(), stacklevel=4)
         return band(self.chosen.fit, self.data.at(speeds, hot))
 
     def summary(self) -> str:

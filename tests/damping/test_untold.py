@@ -1,0 +1,42 @@
+"""Two temperatures visited once each: what hangs on temperature is not told, and every limit says so."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import hersey
+from hersey.damping.candidates import compare_models
+from hersey.errors import UntoldWarning
+
+SPEEDS = np.geomspace(5.0, 100.0, 8)
+NOISE = 1.0 + 0.003 * np.random.default_rng(4).standard_normal(16)
+
+
+def points(*temperatures: float) -> hersey.SteadyPoints:
+    speed, hot = np.tile(SPEEDS, len(temperatures)), np.repeat(temperatures, SPEEDS.size)
+    torque = 2.0 * hot**-0.9 * speed**0.3 * np.resize(NOISE, speed.size)
+    return hersey.SteadyPoints.from_table(
+        {"speed [rpm]": speed, "torque [N*m]": torque, "temperature [degC]": hot}
+    )
+
+
+def test_limits_of_two_visits_say_that_they_are_those_of_these_visits() -> None:
+    two = points(100.0, 160.0)
+    surface = hersey.fit(two)
+    assert surface.b is not None
+    assert not surface.b.told
+    assert surface.c.told
+    assert "interval not told" in surface.summary()
+    with pytest.warns(UntoldWarning, match="visits recorded"):
+        surface.predict("20 rpm", "120 degC")
+    with pytest.warns(UntoldWarning):
+        compare_models(two, bootstrap=0, cross_validate=False).predict("20 rpm", "120 degC")
+
+
+@pytest.mark.filterwarnings("error::hersey.errors.UntoldWarning")
+def test_a_third_temperature_tells_it() -> None:
+    surface = hersey.fit(points(100.0, 130.0, 160.0))
+    assert surface.b is not None
+    assert surface.b.told
+    surface.predict("20 rpm", "120 degC")
