@@ -58,9 +58,11 @@ def closure_at(
     together = np.vstack([torque, gains[1:-1], speed])
     shared = together @ trend.disturbances
     covariance = (together * trend.sigma**2) @ together.T + shared @ shared.T
-    error = (ends[1] - ends[0]) / (2.0 * quantile(trend.freedom_of("at")))
     by = np.ones(len(covariance))
-    by[0], by[-1] = np.sqrt(least.scale), error / np.sqrt(max(float(covariance[-1, -1]), 1e-300))
+    by[0] = np.sqrt(least.scale)
+    if np.all(np.isfinite(ends)):  # a minimum without a bound is not announced
+        error = (ends[1] - ends[0]) / (2.0 * quantile(trend.freedom_of("at")))
+        by[-1] = error / np.sqrt(max(float(covariance[-1, -1]), 1e-300))
     covariance = covariance * np.outer(by, by)
     c = float(trend.values[law.index("c")])
     to_level = np.eye(len(covariance))  # level = ln torque there - (1 + c) z - ln w_ref
