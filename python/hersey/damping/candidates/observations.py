@@ -138,7 +138,7 @@ def _visits(run: IntArray, kelvin: FloatArray | None) -> IntArray:
     changes = np.diff(run) != 0
     if kelvin is not None:
         steps = np.abs(np.diff(kelvin))
-        changes |= steps > min(STEP, max(1.0, STEP * float(np.median(steps))))
+        changes |= steps > min(STEP, max(2.0, 10.0 * float(np.median(steps))))
     return np.cumsum(np.append(0, changes))
 
 
