@@ -17,6 +17,7 @@ from hersey.damping.candidates.observations import Observations
 from hersey.damping.candidates.thermal import scaled_temperature
 from hersey.damping.dwells import SteadyPoints, groups_of_temperature
 from hersey.damping.estimate import Estimate, estimate
+from hersey.damping.scaled import law_of
 from hersey.damping.shown import why_not_shown
 from hersey.damping.surface import SCALES, DampingSurface, FitStatistics
 from hersey.damping.systematic import sensor_shifts
@@ -96,11 +97,6 @@ def _require_dwells(data: Observations) -> None:
         )
 
 
-def _law(fit: LawFit) -> Law:
-    assert isinstance(fit.law, Law)
-    return fit.law
-
-
 def _surface(
     points: SteadyPoints,
     data: Observations,
@@ -109,7 +105,7 @@ def _surface(
     refused: str,
     scale: str,
 ) -> DampingSurface:
-    law = _law(fit)
+    law = law_of(fit)
     kelvin = data.inputs.kelvin
     shifts = sensor_shifts(fit, data, points.log.sensors)
     coefficients = _coefficients(fit, data, fit.values, fit.covariance, scale, shifts)
@@ -149,7 +145,7 @@ def _coefficients(
     shifts: FloatArray | None = None,
 ) -> dict[str, Estimate]:
     """a, b and c as Eq. 4 has them, from values about the reference point; ``shifts`` as `sensor_shifts`."""
-    law = _law(fit)
+    law = law_of(fit)
     weights = np.zeros(values.size)
     weights[0], weights[law.index("c")] = 1.0, -np.log(data.reference_speed)
     if law.thermal:
@@ -180,7 +176,7 @@ def _together(shifts: FloatArray) -> float:
 
 
 def _with_sensors(transition: Transition, fit: LawFit, shifts: FloatArray) -> Transition:
-    law, speed, mixed = _law(fit), transition.speed, transition.mixed_exponent
+    law, speed, mixed = law_of(fit), transition.speed, transition.mixed_exponent
     if fit.untold("at"):
         speed = replace(speed, low=-np.inf, high=np.inf)
     moved = speed.value * _together(shifts[:, law.index("at")])
