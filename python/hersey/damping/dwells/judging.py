@@ -34,20 +34,24 @@ class Stretch:
     segment: Segment
     previous: float | None
 
+    @property
+    def approach(self) -> str:
+        """Whether the speed was come to ``from below``, ``from above``, or is the first (``start``)."""
+        if self.previous is None:
+            return "start"
+        return "from below" if self.previous < abs(self.segment.speed) else "from above"
+
 
 @dataclass(frozen=True)
-class Dwell:
+class Dwell(Stretch):
     """Rows [start, end) of a stretch that are steady."""
 
-    run: int
-    segment: Segment
-    previous: float | None
     start: int
     end: int
 
 
 def judged(
-    run: Run, stretch: Stretch, asked: Asked, tare: float, noise: SharedNoise | None
+    run: Run, stretch: Stretch, asked: Asked, tare: float, noise: SharedNoise | None, common: float = 0.0
 ) -> Dwell | Rejection:
     """Return the dwell in a stretch, or why there is none.
 
@@ -57,6 +61,8 @@ def judged(
         Torque to subtract, N m.
     noise
         What the dwells of the log show; without it each is judged by its own noise.
+    common
+        How long dwells that are come to like this one take to settle, s.
     """
     segment = stretch.segment
 
@@ -71,6 +77,9 @@ def judged(
         start, end = segment.start, segment.end
     else:
         start, end = settled(run, segment, noise)
+        later = segment.start + round(common / run.sampling_interval)
+        if later > start and end - later >= max((end - start) / 2.0, asked.min_dwell / run.sampling_interval):
+            start = later
     reason = unsteady(run, start, end, asked.min_dwell, tare, noise, segment.ripple)
     for share in LATER_STARTS:  # a warm-up at the same speed may come before what is steady
         later = start + round(share * (end - start))

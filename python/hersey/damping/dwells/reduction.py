@@ -13,6 +13,7 @@ from hersey.damping.dwells.nothing_steady import nothing_steady
 from hersey.damping.dwells.points import Rejection, SteadyPoints
 from hersey.damping.dwells.ripple import joined_over_turns, turned, without_ripple
 from hersey.damping.dwells.segments import Segment, segments_of
+from hersey.damping.dwells.settling import common_settling
 from hersey.damping.dwells.shared_noise import Powers, SharedNoise, shared_noise
 from hersey.damping.dwells.steadiness import drift_over, straightened
 from hersey.damping.dwells.zero import Zero, standing_stretches, starts_of
@@ -69,6 +70,7 @@ class _Reduction:
         self.starts = starts_of(log.runs)
         self.segments = [joined_over_turns(run, segments_of(run)) for run in log.runs]
         self.stretches = [s for i in range(len(log.runs)) for s in _in_order(i, self.segments[i])]
+        self.settling: dict[str, float] = {}
         self.zero = self._zero(None)
         if subtracted and self.zero is None:
             raise InsufficientDataError(
@@ -80,6 +82,7 @@ class _Reduction:
         """Judge the stretches by the noise of those that are dwells, until both agree, and reduce."""
         noise: SharedNoise | None = None
         outcomes = self._judged(None)
+        self.settling = self._settling([o for o in outcomes if isinstance(o, Dwell)])
         for _ in range(ROUNDS):
             noise = self._noise([o for o in outcomes if isinstance(o, Dwell)])
             if noise is None:
@@ -102,7 +105,14 @@ class _Reduction:
     def _judged(self, noise: SharedNoise | None, asked: Asked | None = None) -> list[Dwell | Rejection]:
         tares = self._tares(self._middles([(s.run, s.segment.start, s.segment.end) for s in self.stretches]))
         return [
-            judged(self.log.runs[stretch.run], stretch, asked or self.asked, float(tare), noise)
+            judged(
+                self.log.runs[stretch.run],
+                stretch,
+                asked or self.asked,
+                float(tare),
+                noise,
+                self.settling.get(stretch.approach, 0.0),
+            )
             for stretch, tare in zip(self.stretches, tares, strict=True)
         ]
 
@@ -153,6 +163,16 @@ class _Reduction:
             middles.append(self.starts[index] + (time[start] + time[end - 1]) / 2.0 - time[0])
         return np.array(middles)
 
+    def _settling(self, dwells: list[Dwell]) -> dict[str, float]:
+        """How long dwells take to settle, s, by the way in which their speed was come to."""
+        calm = [d for d in dwells if not d.segment.ripple]
+        return {
+            way: common_settling(
+                [(self.log.runs[d.run], d.segment.start, d.end) for d in calm if d.approach == way]
+            )
+            for way in dict.fromkeys(d.approach for d in calm)
+        }
+
     def _noise(self, dwells: list[Dwell]) -> SharedNoise | None:
         """The noise of the dwells, without the drifts that are more than it."""
         series = [_calm_torque(self.log.runs[d.run], d) for d in dwells]
@@ -189,9 +209,6 @@ def _row(run: Run, dwell: Dwell, tare: float, noise: SharedNoise | None) -> dict
     torque_mean, torque_error, independent = _torque(run.time[rows], _calm_torque(run, dwell) - tare, noise)
     torque_error = float(np.hypot(torque_error, _curvature(run.speed[rows]) * torque_mean))
     hot = mean_and_error(run.temperature[rows]) if run.temperature is not None else (None, None)
-    approach = "start"
-    if dwell.previous is not None:
-        approach = "from below" if dwell.previous < abs(speed_mean) else "from above"
     return {
         "run": dwell.run,
         "start": float(run.time[dwell.start]),
@@ -205,7 +222,7 @@ def _row(run: Run, dwell: Dwell, tare: float, noise: SharedNoise | None) -> dict
         "rows": dwell.end - dwell.start,
         "effective_rows": independent,
         "settling_rows": dwell.segment.end - dwell.segment.start - (dwell.end - dwell.start),
-        "approach": approach,
+        "approach": dwell.approach,
         "load": None if run.load is None else float(np.mean(run.load[rows])),
         "tare": tare,
     }

@@ -1,4 +1,8 @@
-"""Where a dwell has settled."""
+"""Where a dwell has settled: by what it shows itself, and by what all dwells show together.
+
+A tail that is lost in the noise of one dwell stands out of the mean of many: torque beside its settled level,
+averaged over the dwells that were come to in the same way, at the same time after the change of speed.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +13,13 @@ from hersey.damping.dwells.segments import BLOCK_DURATION, SPEED_NOISE, Segment
 from hersey.damping.dwells.shared_noise import Powers, SharedNoise
 from hersey.damping.dwells.steadiness import MAX_SPEED_DRIFT, SIGNIFICANT
 from hersey.log.torque_log import Run
+
+#: Fewest dwells that show a settling in common, and the steps in which it is told.
+FEWEST, STEPS = 5, 400
+#: Share of the dwells that are long enough to be taken.
+LONG_ENOUGH = 0.75
+#: Shares of a dwell at its start that are held against the rest of it.
+WINDOWS = (0.02, 0.05, 0.1, 0.2)
 
 
 def settled(run: Run, segment: Segment, noise: SharedNoise | None = None) -> tuple[int, int]:
@@ -34,6 +45,53 @@ def settled(run: Run, segment: Segment, noise: SharedNoise | None = None) -> tup
                 continue
             cut = max(cut, first + dropped)
     return segment.start + cut * size, segment.end - last * size
+
+
+def common_settling(dwells: list[tuple[Run, int, int]]) -> float:
+    """Return how long dwells (run, first row, row after the last) take to settle, s; 0 if they show nothing.
+
+    The rows are all that the speed was held, settling included.
+    """
+    lasting = [run.time[end - 1] - run.time[start] for run, start, end in dwells]
+    if len(dwells) < FEWEST:
+        return 0.0
+    shown = float(np.quantile(lasting, 1.0 - LONG_ENOUGH))
+    long = [dwell for dwell, time in zip(dwells, lasting, strict=True) if time >= shown]
+    step = max(shown / STEPS, *(run.sampling_interval for run, _, _ in long))
+    count = int(shown / step)
+    if count < 8 or len(long) < FEWEST:
+        return 0.0
+    each = np.array([_beside_level(run, start, end, step, count) for run, start, end in long])
+    dropped = 0
+    while dropped < count // 2 and (wide := _still_settling(each[:, dropped:])):
+        dropped += wide
+    return dropped * step
+
+
+def _still_settling(each: FloatArray) -> int:
+    """Steps at the start of the dwells, shape (dwells, steps), in which they differ from what follows; or 0."""
+    steps = each.shape[1]
+    for share in WINDOWS:
+        wide = max(1, round(share * steps))
+        beyond = each[:, :wide].mean(axis=1) - each[:, wide:].mean(axis=1)
+        error = float(np.std(beyond, ddof=1)) / beyond.size**0.5
+        if abs(float(beyond.mean())) > SIGNIFICANT * error:
+            return max(1, wide // 2)
+    return 0
+
+
+def _beside_level(run: Run, start: int, end: int, step: float, count: int) -> FloatArray:
+    """Torque over its level in the second half of a dwell, in steps of time from its start."""
+    since = run.time[start:end] - run.time[start]
+    torque = run.torque[start:end]
+    level = float(np.mean(torque[torque.size // 2 :]))
+    bins = np.minimum((since / step).astype(np.intp), count)
+    rows = np.bincount(bins, minlength=count + 1)[:count]
+    sums = np.bincount(bins, torque, count + 1)[:count]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        means = np.where(rows > 0, sums / rows, np.nan) / level
+    known = np.isfinite(means)
+    return np.asarray(np.interp(np.arange(count), np.flatnonzero(known), means[known]))
 
 
 def _is_chance(means: FloatArray, dropped: int, noise: SharedNoise, interval: float) -> bool:
