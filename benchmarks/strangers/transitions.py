@@ -38,7 +38,7 @@ def one_log(seed: int, name: str, index: int) -> Announced | str:
     """Return what is said of one log, or the message with which it was refused."""
     rng = generator(seed, name, index)
     law, errors = _truth(name, rng)
-    found = judged(record(law, PLAN, errors, rng))
+    found = judged(record(law, PLAN, errors, rng), verdict=False)
     if found.surface is None:
         return found.refusal
     return Announced(found.surface.transition is not None, found.surface.rejected_transition)

@@ -69,8 +69,8 @@ def common_settling(dwells: list[tuple[Run, int, int]]) -> float:
 
 
 def _still_settling(each: FloatArray) -> int:
-    """Steps at the start of the dwells, shape (dwells, steps), in which they differ from what follows; or 0."""
-    steps = each.shape[1]
+    """Steps in which the dwells, shape (dwells, steps), begin unlike what follows; 0 if they do not."""
+    steps: int = each.shape[1]
     for share in WINDOWS:
         wide = max(1, round(share * steps))
         beyond = each[:, :wide].mean(axis=1) - each[:, wide:].mean(axis=1)

@@ -60,14 +60,13 @@ def unsteady(
     if ripple:
         angle = turned(time, speed)
         speed, torque = without_ripple(angle, speed), without_ripple(angle, torque)
-    drift, _ = drift_over(time, speed)
-    if abs(drift) > MAX_SPEED_DRIFT * abs(float(np.mean(speed))):
+    drift, _ = drift_over(time, speed, least=MAX_SPEED_DRIFT * abs(float(np.mean(speed))))
+    if drift:
         return f"speed drifts by {drift / float(np.mean(speed)):+.1%} over the dwell"
-    drift, _ = drift_over(time, temperature) if temperature is not None else (0.0, 0.0)
-    if abs(drift) > MAX_TEMPERATURE_DRIFT:
+    if temperature is not None and (drift := drift_over(time, temperature, least=MAX_TEMPERATURE_DRIFT)[0]):
         return f"temperature drifts by {drift:+.1f} K over the dwell"
-    drift, deviation = drift_over(time, torque, noise)
-    if abs(drift) > max(MAX_TORQUE_DRIFT * abs(float(np.mean(torque))), MAX_DRIFT_TO_NOISE * deviation):
+    drift, deviation = drift_over(time, torque, noise, least=MAX_TORQUE_DRIFT * abs(float(np.mean(torque))))
+    if abs(drift) > MAX_DRIFT_TO_NOISE * deviation:
         return f"torque drifts by {drift / float(np.mean(torque)):+.1%} over the dwell"
     return None
 
@@ -85,21 +84,27 @@ def _skewness_of_changes(torque: FloatArray) -> float:
     return least
 
 
-def drift_over(time: FloatArray, values: FloatArray, noise: SharedNoise | None = None) -> tuple[float, float]:
-    """Change along a straight line over the dwell, 0 if within chance, and the deviation about the line.
+def drift_over(
+    time: FloatArray, values: FloatArray, noise: SharedNoise | None = None, *, least: float = 0.0
+) -> tuple[float, float]:
+    """Change along a straight line over the dwell, and the deviation about the line.
 
-    Chance is what the values themselves show, or the noise given.
+    The change is 0 if within chance (what the values themselves show, or the noise given) or ``least``.
     """
     interval = float(time[-1] - time[0]) / max(time.size - 1, 1)
-    powers = None if noise is None else Powers.of(values, interval)
+    every = values
     time, values = thinned(time), thinned(values)
     slope = _slope(time, values)
     residual = values - values.mean() - slope * (time - time.mean())
-    error = mean_and_error(residual)[1] * np.sqrt(12.0)  # of a line's rise, uniform times
-    if noise is not None and powers is not None and error > 0.0:
-        error = noise.rise_error(powers)
+    deviation = float(np.std(residual))
     rise = slope * float(time[-1] - time[0])
-    return (rise if abs(rise) > SIGNIFICANT * error else 0.0), float(np.std(residual))
+    if abs(rise) <= least:
+        return 0.0, deviation
+    if noise is not None and deviation > 1e-12 * abs(float(values.mean())):
+        error = noise.rise_error(Powers.of(every, interval))
+    else:
+        error = mean_and_error(residual)[1] * np.sqrt(12.0)  # of a line's rise, uniform times
+    return (rise if abs(rise) > SIGNIFICANT * error else 0.0), deviation
 
 
 def straightened(time: FloatArray, values: FloatArray) -> FloatArray:

@@ -9,6 +9,7 @@ covariances and with what they differ by. Few stretches thus leave much open, by
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy import linalg, stats
@@ -66,6 +67,18 @@ def standing_stretches(
 
 
 @dataclass(frozen=True)
+class _Drift:
+    """A line and a walk of given sizes, N m over the log, beside what the stretches show."""
+
+    line: float
+    walk: float
+    inverse: FloatArray  #: of the covariance of the stretches
+    level: float  #: about which they drift, N m
+    solved: FloatArray  #: weights by which a stretch bears on the zero at another time
+    likelihood: float  #: restricted, logarithm
+
+
+@dataclass(frozen=True)
 class Zero:
     """What the stretches say of the zero, N m, at any time of the log, s."""
 
@@ -120,45 +133,50 @@ class Zero:
         least = 1e-5 * max(1e-9, float(np.max(np.abs(self._torque))))
         return np.maximum([s.error for s in self.stretches], least)
 
-    def _predicted(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """The zero at these times and its covariance, averaged over sizes of line and walk."""
-        count = len(self.stretches)
-        if count == 1:
-            return np.full(times.size, self._torque[0]), np.full((times.size,) * 2, self._errors[0] ** 2)
+    @cached_property
+    def _drifts(self) -> tuple[tuple[float, _Drift], ...]:
+        """Sizes of line and walk that the stretches allow, each with its weight."""
         size = max(float(np.ptp(self._torque)), float(np.min(self._errors)))
-        pairs = [(size * line, size * walk) for line in SIZES for walk in SIZES]
+        drifts = [self._drift(size * line, size * walk) for line in SIZES for walk in SIZES]
         # each alone: no line, or one of any size; no walk, or one of any size
         nothing = 0.5
         prior = np.where(np.array(SIZES) == 0.0, nothing, (1.0 - nothing) / (len(SIZES) - 1))
-        fitted = [self._kriged(times, line, walk) for line, walk in pairs]
-        weight = (
-            np.array([likelihood for _, _, likelihood in fitted]) + np.log(np.outer(prior, prior)).ravel()
-        )
+        weight = np.array([drift.likelihood for drift in drifts]) + np.log(np.outer(prior, prior)).ravel()
         weight = np.exp(weight - weight.max())
-        weight /= weight.sum()
-        mean = np.sum([w * values for w, (values, _, _) in zip(weight, fitted, strict=True)], axis=0)
+        kept = np.flatnonzero(weight > 1e-6 * weight.sum())
+        return tuple((float(weight[i] / weight[kept].sum()), drifts[i]) for i in kept)
+
+    def _predicted(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """The zero at these times and its covariance, averaged over sizes of line and walk."""
+        if len(self.stretches) == 1:
+            return np.full(times.size, self._torque[0]), np.full((times.size,) * 2, self._errors[0] ** 2)
+        each = [(weight, *self._kriged(times, drift)) for weight, drift in self._drifts]
+        mean = np.sum([weight * values for weight, values, _ in each], axis=0)
         covariance = np.zeros((times.size, times.size))
-        for w, (values, spread, _) in zip(weight, fitted, strict=True):
-            if w > 1e-6:
-                covariance += w * (spread + np.outer(values - mean, values - mean))
+        for weight, values, spread in each:
+            covariance += weight * (spread + np.outer(values - mean, values - mean))
         return np.asarray(mean), covariance
 
-    def _kriged(self, times: FloatArray, line: float, walk: float) -> tuple[FloatArray, FloatArray, float]:
-        """The zero, its covariance and the restricted log-likelihood, for sizes (N m) over the log."""
+    def _drift(self, line: float, walk: float) -> _Drift:
+        """What the stretches say, if line and walk have these sizes (N m) over the log."""
         own = np.array([s.time for s in self.stretches])
         inside = self._kernel(own, own, line, walk) + np.diag(self._errors**2)
-        across = self._kernel(times, own, line, walk)
-        root = linalg.cho_factor(inside, lower=True)
-        ones = np.ones(own.size)
-        solved_ones = linalg.cho_solve(root, ones)
-        of_level = float(ones @ solved_ones)
-        level = float(self._torque @ solved_ones) / of_level
-        solved = linalg.cho_solve(root, self._torque - level)
-        likelihood = -0.5 * float((self._torque - level) @ solved) - float(np.sum(np.log(np.diag(root[0]))))
-        likelihood -= 0.5 * float(np.log(of_level))
-        left = 1.0 - across @ solved_ones
-        spread = self._kernel(times, times, line, walk) - across @ linalg.cho_solve(root, across.T)
-        return level + across @ solved, spread + np.outer(left, left) / of_level, likelihood
+        inverse = linalg.inv(inside)
+        of_ones = inverse.sum(axis=1)
+        level = float(self._torque @ of_ones) / float(of_ones.sum())
+        solved = inverse @ (self._torque - level)
+        likelihood = -0.5 * (float((self._torque - level) @ solved) + float(np.linalg.slogdet(inside)[1]))
+        likelihood -= 0.5 * float(np.log(of_ones.sum()))
+        return _Drift(line, walk, inverse, level, solved, likelihood)
+
+    def _kriged(self, times: FloatArray, drift: _Drift) -> tuple[FloatArray, FloatArray]:
+        """The zero at these times and its covariance, for one size of line and of walk."""
+        own = np.array([s.time for s in self.stretches])
+        across = self._kernel(times, own, drift.line, drift.walk)
+        of_ones = drift.inverse.sum(axis=1)
+        left = 1.0 - across @ of_ones
+        spread = self._kernel(times, times, drift.line, drift.walk) - across @ drift.inverse @ across.T
+        return drift.level + across @ drift.solved, spread + np.outer(left, left) / float(of_ones.sum())
 
     def _kernel(self, first: FloatArray, second: FloatArray, line: float, walk: float) -> FloatArray:
         """Covariance of line and walk between times."""

@@ -247,18 +247,22 @@ def encoding_of(start: bytes, name: str) -> str:
 
 def _table(numbered: list[tuple[int, str]], separator: str) -> _Table:
     """The longest reading of the lines as rows of numbers with this separator."""
-    cells = [split(line, separator) for _, line in numbered]
     lines: dict[int, list[int]] = {}  # of rows, by their width
-    for number, row in enumerate(cells):
-        if len(row) > 1 and _mostly_numbers(row):
+    scores: dict[int, int] = {}
+    for number, (_, line) in enumerate(numbered):
+        if separator not in line and separator != BLANKS:
+            continue
+        row = split(line, separator)
+        numeric = [_may_be_number(cell) for cell in row] if len(row) > 1 else []
+        if numeric and _mostly_numbers(row, numeric):
             lines.setdefault(len(row), []).append(number)
-    # cells that are none speak against a separator: "0,5;1,5" is no row of "0", "5;1" and "5"
-    scores = {width: sum(sum(map(_may_be_number, cells[n])) for n in own) for width, own in lines.items()}
+            # cells that are none speak against a separator: "0,5;1,5" is no row of "0", "5;1" and "5"
+            scores[len(row)] = scores.get(len(row), 0) + sum(numeric)
     width = max(scores, key=lambda w: scores[w], default=0)
     if not width or not scores[width]:
         return _Table(separator, 0, 0, 0)
     rows = set(lines[width])
-    first = _first_of_block([number in rows for number in range(len(cells))])
+    first = _first_of_block([number in rows for number in range(len(numbered))])
     pure = scores[width] == width * len(rows)
     return _Table(separator, width, first, scores[width], len(rows), pure)
 
@@ -267,10 +271,10 @@ def _may_be_number(cell: str) -> bool:
     return is_missing(cell) or looks_numeric(cell) or is_stamp(cell)
 
 
-def _mostly_numbers(row: list[str]) -> bool:
-    filled = [cell for cell in row if not is_missing(cell)]
-    numbers = sum(map(_may_be_number, filled))
-    return (numbers > 0 and 2 * numbers > len(filled)) or (not filled and any(row))
+def _mostly_numbers(row: list[str], numeric: list[bool]) -> bool:
+    missing = sum(map(is_missing, row))
+    numbers, filled = sum(numeric) - missing, len(row) - missing  # what is missing may be a number
+    return (numbers > 0 and 2 * numbers > filled) or (not filled and any(row))
 
 
 def _first_of_block(rows: list[bool]) -> int:

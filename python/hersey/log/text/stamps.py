@@ -77,6 +77,8 @@ def is_stamp(cell: str) -> bool:
 
 def stamp_style(cells: list[str]) -> StampStyle | None:
     """Return how a column writes its time stamps, or None if most of its cells are none."""
+    if 2 * sum(":" in cell for cell in cells) <= len(cells):
+        return None
     for style in _STYLES:
         count = sum(re.fullmatch(style.pattern, cell) is not None for cell in cells)
         if 2 * count > len(cells):
