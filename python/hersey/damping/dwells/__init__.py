@@ -8,7 +8,7 @@ ripple          dwells whose speed ripples with the shaft, put together again
 noise           the standard error of a mean where neighbours are correlated
 shared_noise    the noise of all dwells together: slow noise is seen
 steadiness      whether a stretch is a steady dwell, and why not
-settling        where a dwell has settled
+settling        where a dwell has settled, by itself and by what all show together
 judging         which rows of a stretch are a dwell, or why none are
 nothing_steady  why a log has no dwell at all, and what to do
 zero            the zero of the torque over the log, from every standing stretch
