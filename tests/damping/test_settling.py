@@ -17,7 +17,7 @@ NOISE = 0.03
 
 
 def staircase(seed: int, size: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Speed, torque with noise, and the true torque of each dwell; all dwells but the first come from below."""
+    """Speed, torque with noise, and the true torque of each dwell, come to from below but for the first."""
     speed = dwells(*STEPS, seconds=SECONDS, dt=DT)
     count = round(SECONDS / DT)
     level = np.geomspace(1.0, 3.0, len(STEPS))
