@@ -14,8 +14,8 @@ import numpy as np
 import hersey
 from benchmarks.strangers.logs import Log
 
-#: Beside a log whose temperature sensor is declared to be wrong by up to so much.
-SENSORS = '[temperature]\nzero_error = "{bias:g} K"\n'
+#: Beside a log whose film is declared to be heated by up to so much.
+SENSORS = '[temperature]\nfilm_heating = "{heating:g} K"\n'
 
 
 @dataclass(frozen=True)
@@ -34,8 +34,8 @@ def generator(seed: int, name: str, index: int) -> np.random.Generator:
     return np.random.default_rng([seed, zlib.crc32(name.encode()), index])
 
 
-def judged(log: Log, *, tare: bool = False, bias: float = 0.0, verdict: bool = True) -> Judged:
-    """Return what hersey says of a log written to a file; ``bias`` (K) is declared of the temperature.
+def judged(log: Log, *, tare: bool = False, heating: float = 0.0, verdict: bool = True) -> Judged:
+    """Return what hersey says of a log written to a file; ``heating`` (K) is declared of the film.
 
     Without a ``verdict`` no regime is asked for, which takes as long as the rest.
     """
@@ -43,7 +43,7 @@ def judged(log: Log, *, tare: bool = False, bias: float = 0.0, verdict: bool = T
         warnings.simplefilter("ignore")
         path = log.write(Path(folder) / "log.csv")
         try:
-            points = _read(path, bias).steady(tare="standing" if tare else "none")
+            points = _read(path, heating).steady(tare="standing" if tare else "none")
             surface = hersey.fit(points)
             regime = hersey.regime(points, surface) if verdict else None
         except hersey.HerseyError as error:
@@ -53,11 +53,11 @@ def judged(log: Log, *, tare: bool = False, bias: float = 0.0, verdict: bool = T
     return Judged(surface, points, _named(regime), _explanations(regime))
 
 
-def _read(path: Path, bias: float) -> hersey.TorqueLog:
+def _read(path: Path, heating: float) -> hersey.TorqueLog:
     """Read a log, with what is declared of its sensors where this version can be told so."""
-    if not bias:
+    if not heating:
         return hersey.read(path)
-    path.with_name("hersey.toml").write_text(SENSORS.format(bias=bias), encoding="utf-8")
+    path.with_name("hersey.toml").write_text(SENSORS.format(heating=heating), encoding="utf-8")
     return hersey.read_with_mapping(path).log
 
 

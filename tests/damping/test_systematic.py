@@ -10,6 +10,8 @@ import pytest
 import hersey
 from hersey.damping.candidates.branched import ONE, Law
 from hersey.damping.candidates.fitting import fit_law
+from hersey.damping.candidates.observations import Observations
+from hersey.damping.candidates.shared_errors import disturbances
 from hersey.damping.candidates.thermal import KELVIN, Thermal
 from hersey.damping.systematic import sensor_shifts
 from hersey.log.mapping import LogMapping, SpeedMapping, TemperatureMapping, TorqueMapping
@@ -142,6 +144,47 @@ def test_the_mapping_states_the_sensors() -> None:
     said = LogMapping(
         torque=TorqueMapping("M", "N*m", zero_error=0.002),
         speed=SpeedMapping("n", "rpm", gain_error=0.01),
-        temperature=TemperatureMapping("T", "degC", zero_error=0.5),
+        temperature=TemperatureMapping("T", "degC", zero_error=0.5, film_heating=3.0),
     )
-    assert said.sensors == Sensors(0.5, 0.01, 0.002, 0.01, stated=("temperature", "torque", "speed"))
+    assert said.sensors == Sensors(0.5, 0.01, 0.002, 0.01, 3.0, stated=("temperature", "torque", "speed"))
+    assert str(said.sensors).startswith("temperature 0.5 K, film heated by up to 3 K,")
+
+
+#: Speeds (rad/s), readings (K) and exponents of a drive whose film friction heats.
+W, READ = np.tile(np.geomspace(1.0, 20.0, 8), 4), np.repeat([360.0, 390.0, 420.0, 450.0], 8)
+B, C, BOUND = -6.0, -0.7, 6.0
+
+
+def heated(share: float, sensors: Sensors) -> hersey.DampingSurface:
+    """The fit of a film that runs hotter than its reading by a share of the bound at the greatest power."""
+    cool = (READ / REFERENCE) ** B * W ** (1.0 + C)
+    film = READ + share * BOUND * cool * W / np.max(cool * W)
+    noise = 0.002 * np.random.default_rng(3).standard_normal(W.size)
+    points = points_of(W, (film / REFERENCE) ** B * W ** (1.0 + C) * np.exp(noise), READ - 273.15, error=0.002)
+    return hersey.fit(replace(points, log=replace(points.log, sensors=sensors)), temperature_scale="K")
+
+
+@pytest.mark.parametrize("share", [0.1, 0.5, 0.9])
+def test_a_bound_on_film_heating_is_enough_to_find_it(share: float) -> None:
+    """Friction heats in proportion to power, a shape of its own: c keeps its value and a narrow interval."""
+    unknown, bounded = heated(share, Sensors()), heated(share, Sensors(film_heating=BOUND))
+    assert unknown.b is not None
+    assert bounded.b is not None
+    for estimate, truth in ((bounded.c, C), (bounded.b, B)):
+        assert abs(estimate.value - truth) < 3.0 * estimate.error
+    assert abs(unknown.c.value - C) > 3.0 * unknown.c.error or share < 0.2
+    whole = np.hypot(unknown.c.systematic, unknown.c.high - unknown.c.value)
+    assert np.hypot(bounded.c.systematic, bounded.c.high - bounded.c.value) < 0.5 * whole
+    assert "film heated by up to 6 K" in bounded.summary()
+
+
+def test_the_bound_on_film_heating_is_a_prior_of_its_size() -> None:
+    """Dwells of one power say nothing of the heating: its bound stands in the error of the level."""
+    film = Sensors(film_heating=BOUND)
+    speed, kelvin = np.tile([1.0, 2.0, 4.0], 4), np.repeat([360.0, 390.0, 420.0, 450.0], 3)
+    points = points_of(speed, 1.0 / speed, kelvin - 273.15, error=0.002)  # 1 W everywhere
+    data = Observations.of(replace(points, log=replace(points.log, sensors=film)))
+    assert data.heating == pytest.approx(np.full(speed.size, BOUND / 12.0**0.5))
+    assert data.inputs.kelvin == pytest.approx(kelvin + BOUND / 2.0)
+    slope = np.full(speed.size, -0.02)
+    assert disturbances(data, (), (), slope)[:, -1] == pytest.approx(slope * data.heating)

@@ -133,6 +133,7 @@ def _surface(
         residuals=residuals,
         rejected_transition=refused,
         data_sha256=tuple(file.sha256 for file in points.log.files),
+        sensors=str(points.log.sensors),
     )
 
 

@@ -83,6 +83,7 @@ class DampingSurface(Result):
     residuals: FloatArray  #: ln(measured/fitted), shape (points,)
     rejected_transition: str  #: why a second branch is not announced, empty if it is
     data_sha256: tuple[str, ...]
+    sensors: str = ""  #: their errors in words, which the systematic parts stand for
     version: str = field(default=_core.VERSION)
 
     @takes_si(speed="speed", temperature="temperature")
@@ -399,6 +400,7 @@ class DampingSurface(Result):
                 **statistics,
                 "speed_range": self.speed_range,
                 "temperature_range": self.temperature_range,
+                "sensors": self.sensors,
                 "summary": self.summary(),
             }
         )
@@ -456,6 +458,7 @@ def _summary(s: DampingSurface) -> str:
         "    # fitting method   = robust likelihood of ln torque, errors of torque, speed and temperature",
         f"    # scatter added    = {st.scatter:.3%} between dwells, beyond the errors of their means",
         *(f"    # scatter shared   = {_shared_text(shared)}" for shared in st.shared),
+        *([f"    # sensors +/-      = {s.sensors}"] if s.sensors else []),
         f"    # data points      = {st.points}",
         f"    # variables        = {st.variables}",
         f"    chi-square         = {st.chi_square:.6g}  (against the errors of the dwells alone)",

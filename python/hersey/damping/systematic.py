@@ -16,7 +16,8 @@ def sensor_shifts(fit: LawFit, data: Observations, sensors: Sensors) -> FloatArr
     """Return the changes of the values of a fit, shape (errors, parameters).
 
     One row for each error at its limit: gain and zero of torque, gain of speed, and the temperature of the
-    film off its reading, everywhere alike, and the more the faster the drive runs.
+    film off its reading, everywhere alike, and the more the faster the drive runs unless film heating has a
+    bound of its own.
     """
     torque = np.exp(data.log_torque)
     zero = sensors.torque_zero
@@ -29,8 +30,10 @@ def sensor_shifts(fit: LawFit, data: Observations, sensors: Sensors) -> FloatArr
         _with_inputs(data, z + sensors.speed_gain, kelvin),
     ]
     if kelvin is not None and fit.law.thermal is not None and sensors.temperature_zero:
-        faster = (z - z.min()) / max(float(np.ptp(z)), 1e-12)
-        erring += [_with_inputs(data, z, kelvin + sensors.temperature_zero * by) for by in (1.0, faster)]
+        shapes = [np.ones_like(z)]
+        if not sensors.film_heating:
+            shapes.append((z - z.min()) / max(float(np.ptp(z)), 1e-12))
+        erring += [_with_inputs(data, z, kelvin + sensors.temperature_zero * shape) for shape in shapes]
     start = np.append(fit.values, fit.effects)
     moved = [search(fit.law, each, fit.disturbances, fit.sigma, start) for each in erring]
     return np.array([minimum.values[: fit.values.size] - fit.values for minimum in moved])

@@ -218,5 +218,6 @@ def _surface(document: _FitFile) -> DampingSurface:
         residuals=np.array([point.residual for point in document.points]),
         rejected_transition=fit.no_transition,
         data_sha256=tuple(file.sha256 for file in document.files),
+        sensors=fit.sensors,
         version=document.hersey_version,
     )

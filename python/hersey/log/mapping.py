@@ -110,7 +110,7 @@ _GearRatio = Annotated[float, Quantity(None, 1e-4, 1e4, "12.5")]
 
 
 #: Keys of a role that state no correction.
-_NO_CORRECTIONS = ("channel", "unit", "gain_error", "zero_error")
+_NO_CORRECTIONS = ("channel", "unit", "gain_error", "zero_error", "film_heating")
 
 
 @dataclass(frozen=True)
@@ -170,11 +170,12 @@ class SpeedMapping(RoleMapping):
 
 @dataclass(frozen=True)
 class TemperatureMapping(RoleMapping):
-    """What it says of the temperature, in SI: film minus reading, and the lag of the sensor."""
+    """What it says of the temperature, in SI: film minus reading, the lag of the sensor, their bounds."""
 
     offset: Annotated[float, _Amount("temperature difference", -100.0, 100.0, "-1.5 K")] = 0.0
     time_constant: Annotated[float, Quantity("time", 1e-3, 1e4, "4 s")] = 0.0
     zero_error: Annotated[float, _Amount("temperature difference", 0.0, 100.0, "2 K")] | None = None
+    film_heating: Annotated[float, _Amount("temperature difference", 0.0, 100.0, "3 K")] | None = None
 
 
 @dataclass(frozen=True)
@@ -219,7 +220,10 @@ class LogMapping(_Roles):
     def sensors(self) -> Sensors:
         """Errors of the sensors as stated, defaults for the others."""
         stated = {
-            "temperature": {"temperature_zero": self.temperature.zero_error},
+            "temperature": {
+                "temperature_zero": self.temperature.zero_error,
+                "film_heating": self.temperature.film_heating,
+            },
             "torque": {"torque_gain": self.torque.gain_error, "torque_zero": self.torque.zero_error},
             "speed": {"speed_gain": self.speed.gain_error},
         }
@@ -463,6 +467,7 @@ _EXAMPLES: dict[str, tuple[str, ...]] = {
         '# offset = "-1.5 K"             # film minus reading',
         '# time_constant = "4 s"         # lag of the sensor',
         '# zero_error = "2 K"            # by how much the film may differ from the reading, at 95 %',
+        '# film_heating = "3 K"          # by how much friction may heat it at the greatest power',
     ),
     "time": (),
 }

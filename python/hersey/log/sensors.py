@@ -12,21 +12,25 @@ class Sensors:
     """Errors of the sensors, half widths at 95 %.
 
     ``temperature_zero`` also bounds by how much the film is warmer or colder than the reading, whether at all
-    speeds or more the faster it shears. ``torque_zero`` None stands for `SHARE_OF_LARGEST` of the largest
-    torque measured. What is not in ``stated`` is a default.
+    speeds or more the faster it shears. ``film_heating`` bounds by how much friction heats the film above
+    what is read: in proportion to the power it takes, between nothing and this bound where that is greatest
+    in the log; it is then fitted, and no longer part of ``temperature_zero``. ``torque_zero`` None stands for
+    `SHARE_OF_LARGEST` of the largest torque measured. What is not in ``stated`` is a default.
     """
 
     temperature_zero: float = 2.0  #: K
     torque_gain: float = 0.01
     torque_zero: float | None = None  #: N m
     speed_gain: float = 0.001
+    film_heating: float = 0.0  #: K
     stated: tuple[str, ...] = ()
 
     def __str__(self) -> str:
         """Return the errors in words, the defaults named as such."""
         zero = "0.1 % of the largest torque" if self.torque_zero is None else _newton_metre(self.torque_zero)
         said = {
-            "temperature": f"temperature {self.temperature_zero:g} K",
+            "temperature": f"temperature {self.temperature_zero:g} K"
+            + (f", film heated by up to {self.film_heating:g} K" if self.film_heating else ""),
             "torque": f"torque {100 * self.torque_gain:.3g} % and {zero}",
             "speed": f"speed {100 * self.speed_gain:.3g} %",
         }

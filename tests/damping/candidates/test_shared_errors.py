@@ -84,6 +84,7 @@ def scatter_of(data: Observations, sigma: np.ndarray) -> SharedScatter:
         (SharedScatter("visit", 0.0, 1.0, told=True),),
         data,
         design(data),
+        np.zeros(len(data)),
         straight(data),
         sigma,
     )

@@ -129,7 +129,7 @@ def fit_law(law: AnyLaw, data: Observations, starts: list[FloatArray] | None = N
     size = len(law.names)
     grouped = groupings(data)
     shared = tuple(SharedScatter(g.name, 0.0, 1.0, told=True) for g in grouped)
-    columns = disturbances(data, grouped, shared)
+    columns = disturbances(data, grouped, shared, np.zeros(len(data)))
     weights = 1.0 / (data.torque_error**2 + _FIRST_SCATTER**2)
     tried = starts or law.starts(data.inputs, data.log_torque, weights)
     errors = np.array(data.torque_error)
@@ -154,8 +154,9 @@ def fit_law(law: AnyLaw, data: Observations, starts: list[FloatArray] | None = N
         if grouped:
             whole = residuals + columns @ best.values[size:]
             slopes = law.jacobian(values, data.inputs)
-            shared = shared_scatter(grouped, shared, data, slopes, whole, _widened(residuals, sigma))
-            columns = disturbances(data, grouped, shared)
+            wide = _widened(residuals, sigma)
+            shared = shared_scatter(grouped, shared, data, slopes, by_heat, whole, wide)
+        columns = disturbances(data, grouped, shared, by_heat)
         effects = best.values[size:] if columns.shape == before.shape else np.zeros(columns.shape[1])
         best = search(law, data, columns, sigma, np.append(values, effects))
         if _settled(scatter, scatter_before, shared, shared_before, float(np.max(errors))):
@@ -179,7 +180,8 @@ def _law_fit(
     bread = np.asarray(np.linalg.pinv(best.jacobian.T @ best.jacobian, rcond=1e-14), dtype=np.float64)
     slopes = np.column_stack([law.jacobian(best.values[:size], data.inputs), columns])
     effects = best.values[size:]
-    tared = columns[:, : data.tare.shape[1]] @ effects[: data.tare.shape[1]]
+    known = data.tare.shape[1] + bool(data.heating.size)  # disturbances whose size is no guess of the fit
+    stated = columns[:, :known] @ effects[:known]
     return LawFit(
         law=law,
         values=best.values[:size],
@@ -192,8 +194,8 @@ def _law_fit(
         errors=errors,
         residuals=residuals,
         cost=best.cost,
-        deviance=_deviance(grouped, shared, residuals, columns @ effects - tared, errors)
-        + float(np.sum(effects[: data.tare.shape[1]] ** 2)),
+        deviance=_deviance(grouped, shared, residuals, columns @ effects - stated, errors)
+        + float(np.sum(effects[:known] ** 2)),
         freedoms=freedom_of(grouped, shared, slopes, _widened(residuals, sigma), bread, size),
     )
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -49,6 +49,8 @@ class Observations:
     reference_speed: float  #: rad/s
     reference_kelvin: float | None
     temperatures: FloatArray  #: K, mean of each group, shape (groups,)
+    #: standard error of the heating of the film by friction, K, shape (points,); (0,) where none is declared
+    heating: FloatArray = field(default_factory=lambda: np.empty(0))
 
     @classmethod
     def of(cls, points: SteadyPoints) -> Observations:
@@ -62,6 +64,9 @@ class Observations:
             )
         kelvin = points.column("temperature") if points.log.has_temperature else None
         group, means = _groups(kelvin, speed.size)
+        heating = np.empty(0)
+        if kelvin is not None and points.log.sensors.film_heating:
+            kelvin, heating = _heated(kelvin, torque * speed, points.log.sensors.film_heating)
         run = points.column("run").astype(np.intp)
         # a file for each dwell is ordered by its name, a table as it was typed
         unordered = isinstance(points.log, MeansTable) or np.unique(run).size > run.size // 2
@@ -82,6 +87,7 @@ class Observations:
             reference_speed=reference,
             reference_kelvin=None if kelvin is None else float(1.0 / np.mean(1.0 / kelvin)),
             temperatures=means,
+            heating=heating,
         )
 
     def __len__(self) -> int:
@@ -103,6 +109,7 @@ class Observations:
             speed_error=self.speed_error[index],
             temperature_error=self.temperature_error[index],
             tare=self.tare[index],
+            heating=self.heating[index] if self.heating.size else self.heating,
             visit=self.visit[index],
             run=self.run[index],
             cluster=self.cluster[index],
@@ -128,6 +135,12 @@ def _groups(kelvin: FloatArray | None, count: int) -> tuple[IntArray, FloatArray
         group[members] = index
         means.append(float(np.mean(kelvin[members])))
     return group, np.array(means)
+
+
+def _heated(kelvin: FloatArray, power: FloatArray, bound: float) -> tuple[FloatArray, FloatArray]:
+    """Temperature of a film that friction heats, K, by anything between 0 and a bound; its standard error."""
+    share = power / power.max()
+    return kelvin + 0.5 * bound * share, bound / 12.0**0.5 * share
 
 
 def _visits(run: IntArray, kelvin: FloatArray | None) -> IntArray:

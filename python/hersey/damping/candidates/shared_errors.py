@@ -64,13 +64,19 @@ class SharedScatter:
 
 
 def disturbances(
-    data: Observations, grouped: tuple[Grouping, ...], scatter: tuple[SharedScatter, ...]
+    data: Observations,
+    grouped: tuple[Grouping, ...],
+    scatter: tuple[SharedScatter, ...],
+    by_heat: FloatArray,
 ) -> FloatArray:
     """Return by how much one standard error of each shared error moves ln torque, shape (points, errors).
 
-    They are those of the zero, then of every group whose scatter is not nil.
+    They are those of the zero, of the heating of the film (``by_heat`` is the change of ln torque by
+    temperature, 1/K, shape (points,)), then of every group whose scatter is not nil.
     """
     columns = [data.tare]
+    if data.heating.size:
+        columns.append((by_heat * data.heating)[:, None])
     for grouping, shared in zip(grouped, scatter, strict=True):
         if shared.deviation > 0:
             columns.append(shared.deviation * grouping.member)
@@ -82,6 +88,7 @@ def shared_scatter(
     before: tuple[SharedScatter, ...],
     data: Observations,
     slopes: FloatArray,
+    by_heat: FloatArray,
     residuals: FloatArray,
     sigma: FloatArray,
 ) -> tuple[SharedScatter, ...]:
@@ -91,6 +98,8 @@ def shared_scatter(
     ----------
     slopes
         Derivatives of ln torque by the parameters of the law, shape (points, parameters).
+    by_heat
+        Its derivative by temperature, 1/K, shape (points,).
     residuals
         ln(measured/fitted), no disturbance taken off, shape (points,).
     sigma
@@ -100,7 +109,7 @@ def shared_scatter(
     for number, grouping in enumerate(grouped):
         others = tuple(g for i, g in enumerate(grouped) if i != number)
         rest = tuple(s for i, s in enumerate(out) if i != number)
-        held = disturbances(data, others, rest)
+        held = disturbances(data, others, rest, by_heat)
         out[number] = _restricted(grouping, slopes, held, residuals, sigma)
     return tuple(out)
 

@@ -95,6 +95,7 @@ class FitPart(Part):
     r_squared_torque: float
     speed_range: tuple[float, float] = Field(description="rad/s")
     temperature_range: tuple[float, float] | None = Field(description="K")
+    sensors: str = Field(default="", description="errors that the systematic parts stand for, in words")
     summary: str
     curves: list[Curve] = Field(default=[], description="the law at the temperatures measured")
     cells: list[Cell] = Field(default=[], description="the law over the range measured")
