@@ -160,7 +160,9 @@ def heated(share: float, sensors: Sensors) -> hersey.DampingSurface:
     cool = (READ / REFERENCE) ** B * W ** (1.0 + C)
     film = READ + share * BOUND * cool * W / np.max(cool * W)
     noise = 0.002 * np.random.default_rng(3).standard_normal(W.size)
-    points = points_of(W, (film / REFERENCE) ** B * W ** (1.0 + C) * np.exp(noise), READ - 273.15, error=0.002)
+    points = points_of(
+        W, (film / REFERENCE) ** B * W ** (1.0 + C) * np.exp(noise), READ - 273.15, error=0.002
+    )
     return hersey.fit(replace(points, log=replace(points.log, sensors=sensors)), temperature_scale="K")
 
 

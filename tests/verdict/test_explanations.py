@@ -117,6 +117,18 @@ def test_too_few_speeds_name_nothing() -> None:
     assert found.why_unnamed
 
 
+def test_what_too_few_dwells_cannot_try_is_listed() -> None:
+    """Five dwells hold one exponent, and say nothing of a constant torque beside the film."""
+    few = np.geomspace(0.5, 15.0, 5)
+    points = points_of(few, 2.0 * few**0.3 * (1.0 + 0.002 * np.array([1, -1, 0, 1, -1])), error=0.002)
+    found = hersey.regime(points, hersey.fit(points))
+    assert found.named is None
+    assert keys(found)[0] == "Dowson-Higginson EHL"
+    assert "film + constant torque" in keys(found)
+    assert "any film beside a constant torque (too few dwells to try it)" in found.verdict
+    assert "film + constant torque" not in keys(seen(2.0 * SPEEDS**0.3))
+
+
 def test_a_regime_is_named_from_the_dwells_of_several_temperatures() -> None:
     w, t = grid(SPEEDS, np.array([90.0, 120.0, 150.0]))
     noise = 0.003 * np.random.default_rng(2).standard_normal(w.size)

@@ -7,15 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from hersey.damping.candidates.branched import ONE, Law
+from hersey.damping.candidates.candidate import LEAST_FREEDOM
 from hersey.damping.candidates.fitting import LawFit, fit_law
 from hersey.damping.candidates.lack_of_fit import SPEEDS_OF_CURVATURE, LackOfFit, lack_of_fit
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.candidates.thermal import Thermal
 from hersey.damping.dwells import SteadyPoints, distinct_speeds
 from hersey.damping.surface import SCALES, DampingSurface
-
-#: Dwells that a law must leave for its errors.
-LEAST_FREEDOM = 3
 
 
 @dataclass(frozen=True)

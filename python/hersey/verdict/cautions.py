@@ -137,7 +137,7 @@ def _fit_warnings(surface: DampingSurface) -> list[str]:
         ):
             out.append(
                 f"Exponent {name} is {coefficient.value:.3f} fitted in logarithms but {estimate.value:.3f} "
-                "fitted in torque: the power law does not hold over the whole range."
+                "fitted in torque, which weighs dwells of great torque most: see what the residuals leave."
             )
     if surface.temperature_range:
         low, high = (celsius(t) for t in surface.temperature_range)

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hersey.arrays import FloatArray
+from hersey.damping.candidates.candidate import LEAST_FREEDOM
 from hersey.damping.candidates.constant_plus import ConstantPlusLaw
 from hersey.damping.candidates.fitting import LawFit, fit_law
 from hersey.damping.candidates.lack_of_fit import LackOfFit, lack_of_fit
@@ -21,7 +22,7 @@ from hersey.damping.candidates.observations import Observations
 from hersey.damping.candidates.stribeck import StribeckLaw
 from hersey.damping.candidates.thermal import ARRHENIUS, VFT, Thermal
 from hersey.damping.dwells import SteadyPoints
-from hersey.damping.rising import LEAST_FREEDOM, Rising, rising
+from hersey.damping.rising import Rising, rising
 from hersey.damping.surface import DampingSurface
 from hersey.verdict.regimes import COULOMB, FALLING, REGIMES, Hypothesis
 
@@ -32,11 +33,13 @@ LEVEL = 0.05
 CONSTANT = " + constant torque"
 COULOMB_VISCOUS, STRIBECK = "Coulomb + viscous", "Stribeck curve"
 THINNING, HEATING, OTHER = "shear thinning", "shear heating", "other curvature"
+UNTRIED = "film" + CONSTANT
 _WORDS = {
     STRIBECK: "a Stribeck curve near its least torque",
     THINNING: "a lubricant that thins with shear",
     HEATING: "a film warmed by its own shear",
     OTHER: "a bend that none of the laws tried describes",
+    UNTRIED: "any film beside a constant torque (too few dwells to try it)",
 }
 
 
@@ -94,6 +97,8 @@ def explained(points: SteadyPoints, surface: DampingSurface, hypotheses: tuple[H
         n = 1.0 + surface.c.value
         words = f"{_WORDS[THINNING]} (as shear rate to the power {n:.2f}) in a film of fixed thickness"
         listed.append(Explanation(THINNING, words))
+    if too_few:
+        listed.append(Explanation(UNTRIED, _WORDS[UNTRIED]))
     if (bent and lack.drift <= 0) or not listed:
         listed += _bending(lack, bent, surface)
     named = None if bent else _sole(films, surface)
