@@ -69,6 +69,17 @@ READERS = {
     ".npz": "numpy_arrays",
     ".npy": "numpy_arrays",
 }
+#: What a person calls a file of each of these modules.
+FILES = {
+    "tdms": "a LabVIEW TDMS file",
+    "mdf": "an ASAM MDF file",
+    "matlab": "a MATLAB file",
+    "hdf5": "an HDF5 file",
+    "parquet": "a Parquet file",
+    "lvm": "a LabVIEW measurement file",
+    "excel": "an Excel workbook",
+    "numpy_arrays": "a NumPy file",
+}
 #: Bytes of the start that are looked at.
 _LOOKED_AT = 512
 #: First bytes of a format, which outrank the suffix.
@@ -282,8 +293,8 @@ class _Reader:
             return self._not_started(message)
         told = _plain(message).partition("\n")[0][:160] or kind
         return UnreadableLogError(
-            f"{self.file.path.name} cannot be read as {self.kind.upper()}: the file is damaged, cut off or "
-            f"of another kind ({told})"
+            f"{self.file.path.name} cannot be read as {_called(self.kind)}: it is damaged, cut off or of "
+            f"another kind ({told})"
         )
 
     def _loss(self, error: LostError) -> UnreadableLogError:
@@ -311,6 +322,11 @@ class _Reader:
             f"{self.file.path.name} takes more than {self.limit / 1e9:g} GB of memory: if it may, raise the "
             "limit with --max-memory '8 GB' (hersey.memory_limit in Python)"
         )
+
+
+def _called(kind: str) -> str:
+    """A file of a format in words, with the suffixes that it usually has."""
+    return f"{FILES[kind]} ({', '.join(suffix for suffix, reader in READERS.items() if reader == kind)})"
 
 
 def _plain(text: str, most: int = _LONGEST) -> str:
