@@ -14,6 +14,7 @@ assembly     from a recording to a run on the clock of the torque
 reading      `read`: from files to a log
 corrections  what lies between sensor and film, taken off with a record
 means        a table of means: a row per dwell, no clock
+doubtful     numbers that would be ordinary in another unit
 mapping      which channel plays which role, kept beside the data
 ===========  =======================================================================
 
