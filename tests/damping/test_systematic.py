@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,6 +15,8 @@ from hersey.damping.candidates.thermal import KELVIN, Thermal
 from hersey.damping.systematic import sensor_shifts
 from hersey.log.mapping import LogMapping, SpeedMapping, TemperatureMapping, TorqueMapping
 from hersey.log.sensors import Sensors
+from hersey.machine import read_machine
+from tests.conftest import ROOT
 from tests.damping.candidates.test_comparison import REFERENCE, dwells
 from tests.damping.test_surface import SPEEDS, grid, points_of
 
@@ -145,3 +148,18 @@ def test_the_mapping_states_the_sensors() -> None:
         temperature=TemperatureMapping("T", "degC", zero_error=0.5),
     )
     assert said.sensors == Sensors(0.5, 0.01, 0.002, 0.01, stated=("temperature", "torque", "speed"))
+
+
+def test_the_machine_states_what_the_mapping_does_not(tmp_path: Path) -> None:
+    path = tmp_path / "machine.toml"
+    path.write_text(
+        (ROOT / "examples" / "machine.toml").read_text()
+        + '[sensors.torque]\ngain_error = "3 %"\n[sensors.temperature]\nzero_error = "5 K"\n'
+    )
+    assert read_machine(ROOT / "examples" / "machine.toml").sensors == Sensors()
+    of_machine = read_machine(path).sensors
+    assert of_machine == Sensors(5.0, 0.03, stated=("temperature", "torque"))
+    said = LogMapping(torque=TorqueMapping("M", "N*m", zero_error=0.002)).sensors
+    assert said.or_else(of_machine) == Sensors(5.0, 0.01, 0.002, stated=("torque", "temperature"))
+    assert Sensors().or_else(of_machine) == of_machine
+    assert said.or_else(Sensors()) == said
