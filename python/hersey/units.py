@@ -73,6 +73,8 @@ KINDS: dict[str, tuple[str, str]] = {
     "torsional stiffness": ("N*m/rad", "N*m/rad"),
     "moment of inertia": ("kg*m^2", "kg*m^2"),
     "load per length": ("N/m", "N/m"),
+    "stiffness per weight": ("m^-1", "m^-1"),
+    "mass per weight": ("s^2/m", "s^2/m"),
     "friction coefficient": ("1", "1"),
 }
 
@@ -98,6 +100,8 @@ _USUAL: dict[str, str] = {
     "torsional stiffness": "N*m/rad N*m/deg mN*m/rad",
     "moment of inertia": "kg*m^2 g*cm^2 kg*cm^2",
     "load per length": "N/m N/mm kN/m lbf/in",
+    "stiffness per weight": "m^-1 mm^-1 in^-1",
+    "mass per weight": "s^2/m s^2/mm s^2/in",
     "friction coefficient": "1",
 }
 #: How alike (`difflib`) a usual unit must be to an unknown one, and to one of another kind, to be proposed.

@@ -84,6 +84,52 @@ def test_the_uncertainty_of_the_drive_speed_and_falls_that_are_not_counted(tmp_p
         assert "falls beyond the noise, none of 20 % of the load or more: the greatest is 9" in told
 
 
+def numbers_of(heading: str, tmp_path: Path) -> Path:
+    """The shipped trace under another heading: the same numbers, so the same drive in the units of that."""
+    path = tmp_path / "other.csv"
+    path.write_text(CSV.read_text().replace("time [s],force [N]", heading))
+    return path
+
+
+@pytest.mark.parametrize(
+    ("heading", "drive_speed", "known", "missing"),
+    [
+        (
+            "time [s],torque [N*m]",
+            "0.02 rad/s",
+            {"mass": "5000 kg*cm^2", "stick_speed": "0.0019098593 rpm", "transition_force": "1000 mN*m"},
+            "'1' needs a number and a unit of moment of inertia, such as '1 kg*m^2'",
+        ),
+        (
+            "time [s],force [1]",
+            "20 mm/s",
+            {"mass": "500 s^2/km", "stick_speed": "0.2 mm/s", "transition_force": "100 %"},
+            "'1' needs a number and a unit of mass per weight, such as '1 s^2/m'",
+        ),
+    ],
+)
+def test_known_numbers_of_a_torque_and_of_a_share_carry_units(
+    heading: str, drive_speed: str, known: dict[str, str], missing: str, tmp_path: Path
+) -> None:
+    path, identified = numbers_of(heading, tmp_path), ["--identify", "--closures", "retained"]
+    given = [part for name, amount in known.items() for part in ("--known", f"{name}={amount}")]
+    document = json.loads(printed(path, "--drive-speed", drive_speed, *identified, *given, "--json"))
+    truth = {"mass": 0.5, "stick_speed": 2e-4, "transition_force": 1.0}
+    assert document["drive"]["known"] == pytest.approx(truth, rel=1e-7)
+    bare = run("cycles", path, "--drive-speed", drive_speed, *identified, "--known", "mass=1", cwd=ROOT)
+    assert (bare.returncode, missing in bare.stderr) == (2, True)
+
+
+def test_a_torque_is_told_in_its_units(tmp_path: Path) -> None:
+    path = numbers_of("time [s],torque [mN*m]", tmp_path)
+    told = printed(path, "--drive-speed", "0.02 rad/s", "--least-drop", "0.1 mN*m")
+    assert "N m/rad (slope / speed)" in told
+    assert "falls beyond the noise, none of 1 N m or more" in printed(path, "--least-drop", "1 N*m")
+    known = ["--known", "mass=5 kg*cm^2", "--closures", "retained"]
+    told = printed(path, "--drive-speed", "0.02 rad/s", "--identify", *known)
+    assert "mass               0.0005 kg m^2 (given)" in told
+
+
 def test_a_channel_of_the_drive_speed(tmp_path: Path) -> None:
     path = tmp_path / "pull.csv"
     rows = [f"{0.01 * i:.2f},{i % 50 / 5},{20 + (i % 2)}" for i in range(600)]
@@ -113,7 +159,10 @@ def test_a_mistake_ends_in_one_line(tmp_path: Path) -> None:
         (["--identify"], "give drive_speed"),
         (["--identify", "--known", "weight=1 kg"], "write NAME=VALUE with one of stiffness, mass"),
         (["--identify", "--known", "mass=1 s"], "--known mass: unit 's' is not a unit of mass"),
-        (["--least-drop", "5 mm"], "--least-drop"),
+        (["--identify", "--known", "mass=1"], "--known mass: '1' needs a number and a unit of mass"),
+        (["--identify", "--known", "ehl_exponent=-0.7 s"], "ehl_exponent is '-0.7 s': write a number"),
+        (["--least-drop", "5 mm"], "--least-drop: unit 'mm' is not a unit of force"),
+        (["--least-drop", "5"], "--least-drop: '5' needs a number and a unit of force"),
         (["--drive-speed-uncertainty", "2"], "--drive-speed-uncertainty is '2': write a share such as '2 %'"),
         (["--drive-speed-uncertainty", "90 %"], "drive_speed_uncertainty is 0.9: it must be greater than 0"),
         (["--value", "pull"], "there is no column 'pull': it has time [s], force [N]"),

@@ -516,13 +516,16 @@ DOUBTFUL: dict[str, tuple[str, str, str]] = {
 }
 
 
+@pytest.mark.parametrize("command", ["fit", "inspect"])
 @pytest.mark.parametrize("case", DOUBTFUL)
-def test_what_is_doubtful_is_cautioned_of_and_its_advice_ends_the_caution(case: str, tmp_path: Path) -> None:
+def test_what_is_doubtful_is_cautioned_of_and_its_advice_ends_the_caution(
+    case: str, command: str, tmp_path: Path
+) -> None:
     content, words, _ = DOUBTFUL[case]
     (tmp_path / "log.csv").write_text(content)
-    done = run("fit", "log.csv", cwd=tmp_path)
+    done = run(command, "log.csv", cwd=tmp_path)
     (caution,) = [line for line in done.stdout.splitlines() if words in line]
-    done = run(*typed(Refused(tmp_path, ["fit", "log.csv"], f"hersey: {caution}")), cwd=tmp_path)
+    done = run(*typed(Refused(tmp_path, [command, "log.csv"], f"hersey: {caution}")), cwd=tmp_path)
     assert done.returncode == 0
     assert words not in done.stdout
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -16,6 +17,8 @@ from hersey.damping.candidates.thermal import KELVIN, Thermal
 from hersey.damping.systematic import sensor_shifts
 from hersey.log.mapping import LogMapping, SpeedMapping, TemperatureMapping, TorqueMapping
 from hersey.log.sensors import Sensors
+from hersey.machine import read_machine
+from tests.conftest import ROOT
 from tests.damping.candidates.test_comparison import REFERENCE, dwells
 from tests.damping.test_surface import SPEEDS, grid, points_of
 
@@ -190,3 +193,20 @@ def test_the_bound_on_film_heating_is_a_prior_of_its_size() -> None:
     assert data.inputs.kelvin == pytest.approx(kelvin + BOUND / 2.0)
     slope = np.full(speed.size, -0.02)
     assert disturbances(data, (), (), slope)[:, -1] == pytest.approx(slope * data.heating)
+
+
+def test_the_machine_states_what_the_mapping_does_not(tmp_path: Path) -> None:
+    path = tmp_path / "machine.toml"
+    path.write_text(
+        (ROOT / "examples" / "machine.toml").read_text()
+        + '[sensors.torque]\ngain_error = "3 %"\n'
+        + '[sensors.temperature]\nzero_error = "5 K"\nfilm_heating = "4 K"\n'
+    )
+    assert read_machine(ROOT / "examples" / "machine.toml").sensors == Sensors()
+    of_machine = read_machine(path).sensors
+    assert of_machine == Sensors(5.0, 0.03, film_heating=4.0, stated=("temperature", "torque"))
+    said = LogMapping(torque=TorqueMapping("M", "N*m", zero_error=0.002)).sensors
+    either = Sensors(5.0, 0.01, 0.002, film_heating=4.0, stated=("torque", "temperature"))
+    assert said.or_else(of_machine) == either
+    assert Sensors().or_else(of_machine) == of_machine
+    assert said.or_else(Sensors()) == said

@@ -358,3 +358,24 @@ def test_what_is_no_log_is_refused(tmp_path: Path) -> None:
     result = run("inspect", "none.csv", cwd=tmp_path)
     assert result.returncode == 2
     assert "there is no such file" in result.stderr
+
+
+def test_a_doubtful_unit_is_told_of_logs_and_of_tables_of_means(tmp_path: Path) -> None:
+    """Also where no dwell is left to fit; a spike is no unit."""
+    rows = [f"{0.05 * i:.2f},{1 + i / 1e4},{60 + 10 * (i // 400)},{150 + i / 1e3}" for i in range(2000)]
+    log, heading = tmp_path / "log.csv", "time [s],torque [N*m],speed [rpm],temp"
+    log.write_text("\n".join([f"{heading} [degC]", *rows[:900], "45,1,80,900", *rows[901:]]))
+    assert inspect(log).cautions == ()
+    kelvin = [f"{row.rsplit(',', 1)[0]},{float(row.rsplit(',', 1)[1]) + 273.15:.3f}" for row in rows]
+    log.write_text("\n".join([f"{heading} [degC]", *kelvin]))
+    (told,) = inspect(log).cautions
+    assert told.startswith("Temperature reaches 425 degC")
+    assert f"\n! {told}\n" in inspect(log).summary()
+    assert inspect(log, units={"temperature": "K"}).cautions == ()
+    log.write_text("\n".join(["time [s],torque [N*m],speed [rpm]", *(f"{50 * i},1,{i}" for i in range(200))]))
+    seen = inspect(log, isothermal=True)
+    assert seen.support is not None
+    assert seen.support.dwells == 0
+    assert seen.cautions[0].startswith("Rows come every 50 s")
+    log.write_text("speed [rpm],torque [N*m],temp [degC]\n10,1,420\n20,1.1,421\n30,1.3,422\n")
+    assert inspect(log, means=True).cautions[0].startswith("Temperature reaches 422 degC")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import io
 import pickle
 import zipfile
@@ -14,7 +15,9 @@ import pytest
 import hersey
 from hersey.errors import ChannelError, UnitError, UnreadableLogError
 from hersey.log import list_channels
-from hersey.log.formats import format_of
+from hersey.log.formats import format_of, opened
+from hersey.log.means import is_means_table, read_means
+from hersey.log.recording import LONGEST_CELL
 from tests.conftest import shared
 from tests.strangers.other_blocks import xlsx
 
@@ -201,3 +204,54 @@ def test_cells_of_matlab(case: str, tmp_path: Path) -> None:
     savemat(tmp_path / "a.mat", {"rig": CELLS[case], "note": "hello"})
     named = {"time": "rig#1", "torque": "rig#2", "speed": "rig#3", "temperature": "rig#4"}
     assert_same(hersey.read(tmp_path / "a.mat", channels=named if case == "structs" else None))
+
+
+MEANS = [
+    ["Run", "Speed [rpm]", "Torque [mN*m]", "Torque error", "Temp [degC]", "Approach", "n", "Remark"],
+    ["new roll", 10.0, 5.0, 0.1, 120.0, "up", 12.0, "first try"],
+    ["new roll", 20.5, 5.6, 0.1, 121.25, "up", 11.0, None],
+    ["new roll", 40.0, 6.3, 0.2, 122.0, "start", 12.0, "ok"],
+    ["old roll", 40.0, "n/a", 0.2, 122.0, "Down", 12.0, "cable off"],
+    ["old roll", 20.0, 5.7, 0.1, 121.0, "falling", 12.0, "ok"],
+    ["old roll", None, 5.1, 0.1, 120.0, "down", 12.0, "ok"],
+    ["old roll", 10.0, 5.1, 0.1, 120.0, "from above", 12.0, 'a "quoted" \N{GREEK SMALL LETTER MU}'],
+]
+
+
+def delimited(table: list[list[Any]], path: Path) -> Path:
+    with path.open("w", encoding="utf-8", newline="") as file:
+        csv.writer(file).writerows([["" if cell is None else cell for cell in row] for row in table])
+    return path
+
+
+@pytest.mark.parametrize(
+    "numbers", [str, float, lambda x: str(x).replace(".", ",")], ids=["text", "numbers", "commas"]
+)
+def test_means_of_a_workbook_are_those_of_the_same_cells_in_a_text(numbers: Any, tmp_path: Path) -> None:
+    """Words too: runs by name, the approach; rows left out, and why."""
+    head, *table = MEANS
+    sheet = [[numbers(cell) if isinstance(cell, float) else cell for cell in row] for row in table]
+    book = workbook(
+        tmp_path / "means.xlsx", Notes=[["Operator", "me"]], Means=[["~ SYNTHETIC"], head, *sheet]
+    )
+    text = delimited([["~ SYNTHETIC"], *MEANS], tmp_path / "means.csv")
+    assert is_means_table(book, {}, {})
+    assert is_means_table(text, {}, {})
+    of_book, of_text = (read_means(path) for path in (book, text))
+    assert of_book.means == of_text.means
+    assert [row.run for row in of_book.means] == [0, 0, 0, 1, 1]
+    assert [row.approach for row in of_book.means] == ["from below"] * 2 + ["start"] + ["from above"] * 2
+    assert of_book.stated_errors
+    (first,), (second,) = of_book.files, of_text.files
+    assert (first.notes, first.comments, first.missing_rows) == (second.notes, second.comments, 2)
+    assert first.comments == ("SYNTHETIC",)
+    assert "row 4 (torque 'n/a'), row 6 (no speed)" in first.notes[-1]
+
+
+def test_a_cell_of_a_workbook_is_cut_where_no_name_is_as_long(tmp_path: Path) -> None:
+    long = [[*row[:-1], "é" * 5000 if row[-1] else None] for row in MEANS[1:]]
+    path = workbook(tmp_path / "long.xlsx", Means=[MEANS[0], *long])
+    with opened(path, "excel") as recording:
+        remark = recording.cells[-1]
+        assert (remark.name, remark.load()[0]) == ("Remark", "é" * LONGEST_CELL)
+    assert len(read_means(path).means) == 5

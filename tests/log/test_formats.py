@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import warnings
 from collections.abc import Callable
 from pathlib import Path
@@ -14,7 +15,8 @@ import pytest
 import hersey
 from hersey.errors import ChannelError, UnitError, UnreadableLogError
 from hersey.log import list_channels
-from hersey.log.formats import format_of, opened
+from hersey.log.formats import READERS, format_of, opened
+from hersey.log.formats.opening import FILES
 from hersey.log.recording import library
 from hersey.log.torque_log import LogFile, Run
 from tests.conftest import shared
@@ -479,8 +481,24 @@ def test_a_wrong_type_in_a_matlab_file_does_not_end_python(kind_of_data: int, tm
     tag = data.index(b"\x09\x00\x00\x00\x40\x06\x00\x00")  # double, 1600 bytes
     data[tag] = kind_of_data
     (tmp_path / "a.mat").write_bytes(data)
-    with pytest.raises(UnreadableLogError, match=r"a\.mat cannot be read as MATLAB"):
+    with pytest.raises(UnreadableLogError, match=r"a\.mat cannot be read as a MATLAB file"):
         hersey.read(tmp_path / "a.mat")
+
+
+@pytest.mark.parametrize("suffix", [suffix for suffix in READERS if suffix != ".lvm"])
+def test_a_damaged_file_is_called_what_its_owner_calls_it(suffix: str, tmp_path: Path) -> None:
+    path = tmp_path / f"a{suffix}"
+    path.write_bytes(b"no such thing\n" * 40)
+    with pytest.raises(UnreadableLogError) as caught:
+        hersey.read(path)
+    one_line(caught.value, path)
+    called = rf"a{suffix} cannot be read as {FILES[READERS[suffix]]} \([.a-z0-9, ]*{suffix}\b"
+    assert re.match(called, str(caught.value))
+
+
+def test_every_format_has_a_name_of_its_own() -> None:
+    assert set(FILES) == set(READERS.values())
+    assert not any(kind in name for kind, name in FILES.items())
 
 
 def test_the_spring_pulled_slider_by_others() -> None:

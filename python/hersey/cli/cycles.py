@@ -22,6 +22,22 @@ if TYPE_CHECKING:
     from hersey.arrays import FloatArray
     from hersey.identification.trace_file import TraceFile
 
+_SHARE = "friction coefficient"
+#: Kinds of the known parameters where they are not those of a belt: of a roll on a torsional spring, and of a
+#: belt whose force is a share of its weight.
+_OF_A_TORQUE: dict[str, str | None] = {
+    "stiffness": "torsional stiffness",
+    "mass": "moment of inertia",
+    "transition_force": "torque",
+    "transition_speed": "speed",
+    "stick_speed": "speed",
+}
+_OF_A_SHARE: dict[str, str | None] = {
+    "stiffness": "stiffness per weight",
+    "mass": "mass per weight",
+    "transition_force": _SHARE,
+}
+
 
 def cycles(
     trace: Annotated[Path, typer.Argument(metavar="TRACE", help="Trace in any format that a log may have.")],
@@ -51,7 +67,9 @@ def cycles(
     known: Annotated[
         list[str] | None,
         typer.Option(
-            "--known", metavar="NAME=VALUE", help="A known parameter, as 'mass=0.3 kg'; repeatable."
+            "--known",
+            metavar="NAME=VALUE",
+            help="A known parameter, as 'mass=0.3 kg' ('mass=2 kg*cm^2' with a torque); repeatable.",
         ),
     ] = None,
     closures: Annotated[
@@ -86,6 +104,7 @@ def cycles(
         channel = (
             read_trace(trace, quantity="speed", value=drive_speed_channel) if drive_speed_channel else None
         )
+    unit_shown = given.unit.replace("*", " ")
     speed = _drive_speed(drive_speed, given) if channel is None else _of_channel(channel, given)
     values = _known(known or [], given)
     record = find_cycles(
@@ -106,7 +125,7 @@ def cycles(
         from hersey.charts import chart_of
         from hersey.charts.render import picture
 
-        unit_text = "share of the weight" if given.unit == "1" else given.unit
+        unit_text = "share of the weight" if given.unit == "1" else unit_shown
         with working("drawing"):
             drawing = picture(chart_of(record, drive=drive, unit=unit_text), figure.suffix)
         write_atomically(figure, drawing, overwrite=True)
@@ -114,9 +133,9 @@ def cycles(
         driven = None if drive is None else drive.to_dict()
         print_json("cycles", record.to_dict() | {"unit": given.unit, "drive": driven})
         return
-    say(record.summary(given.unit))
+    say(record.summary(unit_shown))
     if drive is not None:
-        say("\n" + drive.summary(given.unit))
+        say("\n" + drive.summary(unit_shown))
     if figure is not None:
         say(f"figure: {figure}")
 
@@ -153,14 +172,15 @@ def _drive_speed(text: str, given: TraceFile) -> float | None:
 
 
 def _least_drop(text: str, given: TraceFile) -> float | None:
+    from hersey.identification.trace_file import RELATIVE
     from hersey.units import parse
 
     if not text:
         return None
     if given.quantity == "speed":
         raise ParameterError("--least-drop counts falls of a force: leave it out with a trace of speed")
-    if given.unit == "1":
-        return share("--least-drop", text) if text.strip().endswith("%") else _number("--least-drop", text)
+    if given.unit == RELATIVE:
+        return _of_the_weight("--least-drop", text)
     try:
         return parse(given.quantity, text)
     except UnitError as error:
@@ -168,27 +188,38 @@ def _least_drop(text: str, given: TraceFile) -> float | None:
 
 
 def _known(texts: list[str], given: TraceFile) -> dict[str, float]:
+    from hersey.identification.trace_file import RELATIVE
     from hersey.motion.parameters import KINDS, OF_THE_BELT
     from hersey.units import parse
 
+    kinds = KINDS | (_OF_A_TORQUE if given.quantity == "torque" else {})
+    kinds |= _OF_A_SHARE if given.unit == RELATIVE else {}
     values = {}
     for text in texts:
         name, sign, amount = (part.strip() for part in text.partition("="))
         if not sign or name not in OF_THE_BELT:
             raise ParameterError(f"--known '{text}': write NAME=VALUE with one of {', '.join(OF_THE_BELT)}")
-        kind = KINDS[name]
-        if kind is None or given.quantity == "torque" or given.unit == "1":
-            values[name] = _number(f"--known {name}", amount)
+        where, kind = f"--known {name}", kinds[name]
+        if kind is None:
+            values[name] = _number(where, amount)
+            continue
+        if kind == _SHARE:
+            values[name] = _of_the_weight(where, amount)
             continue
         try:
             values[name] = parse(kind, amount)
         except UnitError as error:
-            raise UnitError(f"--known {name}: {error}") from None
+            raise type(error)(f"{where}: {error}") from None
     return values
+
+
+def _of_the_weight(where: str, text: str) -> float:
+    """A force as a share of the weight: the one number that needs no unit."""
+    return share(where, text) if text.strip().endswith("%") else _number(where, text)
 
 
 def _number(where: str, text: str) -> float:
     try:
         return float(text)
     except ValueError:
-        raise ParameterError(f"{where} is '{text}': write a number, in SI") from None
+        raise ParameterError(f"{where} is '{text}': write a number") from None

@@ -52,7 +52,7 @@ def map_(
     from hersey.stability.operating_map import operating_map
 
     machine = read_machine(machine_file)
-    surface = reading.surface(logs, fit_file)
+    surface = reading.surface(logs, fit_file, machine)
     with working("finding the bands"):
         map_of_belt = operating_map(
             surface,

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from hersey.damping.surface import DampingSurface
     from hersey.log import TorqueLog
     from hersey.log.means import MeansTable
+    from hersey.machine.machine import Machine
     from hersey.motion.drag import Drag
     from hersey.motion.simulation import Drivetrain
 
@@ -110,8 +111,23 @@ class Reading:
             named += [paths] if isinstance(paths, Path) else paths or []
         return named
 
-    def log(self, paths: list[Path]) -> TorqueLog | MeansTable:
-        """Read the files as one log, or as tables of means, with a progress bar."""
+    def log(self, paths: list[Path], machine: Machine | None = None) -> TorqueLog | MeansTable:
+        """Read the files as one log, or as tables of means, with a progress bar.
+
+        Errors of a sensor of which the mapping states none are those of the machine.
+        """
+        log = self._read(paths)
+        if machine is None:
+            return log
+        for role in sorted(set(log.sensors.stated) & set(machine.sensors.stated)):
+            say(
+                f"errors of the sensor of {role}: those of the mapping are used, not those of the "
+                "machine's file",
+                file=sys.stderr,
+            )
+        return replace(log, sensors=log.sensors.or_else(machine.sensors))
+
+    def _read(self, paths: list[Path]) -> TorqueLog | MeansTable:
         from hersey.log import memory_limit
         from hersey.log.mapping import read_with_mapping
 
@@ -202,8 +218,10 @@ class Reading:
 
         return log.steady(min_dwell=parse("time", self.min_dwell), tare=self.tare, rotation=self.rotation)
 
-    def surface(self, paths: list[Path] | None, fit_file: Path | None) -> DampingSurface:
-        """Read a finished fit, or fit the log."""
+    def surface(
+        self, paths: list[Path] | None, fit_file: Path | None, machine: Machine | None = None
+    ) -> DampingSurface:
+        """Read a finished fit, or fit the log of a machine."""
         from hersey.damping.fit import fit
         from hersey.document.saved_fit import read_fit
         from hersey.errors import ParameterError
@@ -215,8 +233,13 @@ class Reading:
                 raise ParameterError(
                     "--fit holds a finished fit: leave out the options that say how to read a log"
                 )
+            if machine is not None and machine.sensors.stated:
+                say(
+                    "errors of the sensors: those of the fit are used, not those of the machine's file",
+                    file=sys.stderr,
+                )
             return read_fit(fit_file)
-        log = self.log(paths or [])
+        log = self.log(paths or [], machine)
         with working("fitting the surface"):
             return fit(self.points(log), temperature_scale=self.temperature_scale)
 

@@ -96,7 +96,7 @@ def plan(
     kelvin = temperature_of(at)
     with memory_limit(reading.max_memory):
         profile = None if profile_file is None else read_temperature_profile(profile_file)
-    surface = reading.surface(logs, fit_file)
+    surface = reading.surface(logs, fit_file, machine)
     drag, samples = _drag(surface, machine, kelvin, seed, varies=profile is not None)
     with bar("planning", unit="profiles") as progress:
         planned = plan_profile(

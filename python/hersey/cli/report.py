@@ -53,7 +53,7 @@ def report(
     from hersey.report.page import render
 
     machine = None if machine_file is None else read_machine(machine_file)
-    log = reading.log(logs)
+    log = reading.log(logs, machine)
     with working("fitting the surface"):
         points = reading.points(log)
         document = analyse(

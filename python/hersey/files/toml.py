@@ -274,7 +274,8 @@ def _told(kind: str, loc: tuple[str | int, ...], given: object, about: Mapping[s
             known = ", ".join(about["known"])
             return f"{_place(loc, {})} has no key '{about['key']}': {known} are known{_near(about)}"
         case "dataclass_type" | "dict_type":
-            return f"{_place(loc, given)} is not a table: write [{loc[0]}]"
+            table = ".".join(name for name in loc if isinstance(name, str))
+            return f"{_place(loc, given)} is not a table: write [{table}]"
     way_out = _WAY_OUT.get(kind, "another kind of value is needed")
     return f"{_place(loc, given)} is {shown(given)}: {way_out.format(**about)}"
 

@@ -115,7 +115,7 @@ class IdentifiedDrive(Result):
         import polars as pl
 
         rows = [
-            (name, e.value, e.error, e.low, e.high, _UNITS.get(name, "").strip())
+            (name, e.value, e.error, e.low, e.high, _UNITS["N"].get(name, "").strip())
             for name, e in {**self.estimates, **self.derived}.items()
         ]
         columns = ("value", "error", "low", "high")
@@ -127,8 +127,8 @@ class IdentifiedDrive(Result):
         return f"closure {self.closure}, told: {', '.join(self.estimates) or 'nothing'}"
 
     def summary(self, unit: str = "") -> str:
-        """Return the result in words, a line each; units where that of the trace is newtons."""
-        units = _UNITS if unit == "N" else {}
+        """Return the result in words, a line each; units where that of the trace is N or N m."""
+        units = _UNITS.get(unit, {})
         decided = "" if self.decided else " (not decided)"
         ranked = ", ".join(f"{fit.closure} {fit.chi_square:.4g}" for fit in self.closures)
         lines = [f"closure: {self.closure}{decided}; chi-square: {ranked}"]
@@ -148,17 +148,30 @@ class IdentifiedDrive(Result):
         return "\n".join([*lines, *(f"- {text}" for text in (*self.not_told, *self.notes))])
 
 
-#: Units of what is identified from a force in newtons.
+#: Units of what is identified from a force, and from a torque.
 _UNITS = {
-    "stiffness": " N/m",
-    "mass": " kg",
-    "transition_force": " N",
-    "transition_speed": " m/s",
-    "stick_speed": " m/s",
-    "free_period": " s",
-    "release_force": " N",
-    "drag_at_drive_speed": " N",
-    "drive_speed": " m/s",
+    "N": {
+        "stiffness": " N/m",
+        "mass": " kg",
+        "transition_force": " N",
+        "transition_speed": " m/s",
+        "stick_speed": " m/s",
+        "free_period": " s",
+        "release_force": " N",
+        "drag_at_drive_speed": " N",
+        "drive_speed": " m/s",
+    },
+    "N m": {
+        "stiffness": " N m/rad",
+        "mass": " kg m^2",
+        "transition_force": " N m",
+        "transition_speed": " rad/s",
+        "stick_speed": " rad/s",
+        "free_period": " s",
+        "release_force": " N m",
+        "drag_at_drive_speed": " N m",
+        "drive_speed": " rad/s",
+    },
 }
 
 

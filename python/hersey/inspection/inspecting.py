@@ -19,6 +19,7 @@ from hersey.inspection.raw import RawChannel, RawLog, raw_channels, roles_of
 from hersey.inspection.support import Support, support_of, support_of_means
 from hersey.log.channels import OTHER_ROLES, ROLES, ChannelChoice, Stated
 from hersey.log.corrections import Corrected
+from hersey.log.doubtful import doubtful_units
 from hersey.log.mapping import LogMapping, as_stated, mapping_of, read_with_mapping, without_what_is_said
 from hersey.log.means import read_means
 from hersey.log.sensors import Sensors
@@ -85,6 +86,8 @@ class Inspection(Result):
         What the mapping had corrected.
     support
         Dwells and what they can tell, or None if the logs cannot be read.
+    cautions
+        Units that are doubtful, as a fit says them too.
     """
 
     files: tuple[FileReport, ...]
@@ -93,6 +96,7 @@ class Inspection(Result):
     dropped: Mapping[str, int]
     corrections: tuple[Correction, ...]
     support: Support | None
+    cautions: tuple[str, ...] = ()
 
     def to_dict(self) -> dict[str, Any]:
         """Return everything; traits of a channel in its own unit, all else in SI."""
@@ -141,6 +145,7 @@ class Inspection(Result):
         ]
         if self.needed:
             lines.append(f"readable as a log of torque with {' '.join(self.needed)}")
+        lines += [f"! {caution}" for caution in self.cautions]
         if self.support is None:
             return "\n".join([*lines, f"No fit is possible: {self._hindrance()}"])
         lines.append(f"{self.support.dwells} dwells")
@@ -257,7 +262,8 @@ def inspect(
     reports = tuple(_with_notes(report, read.log.files) for report in reports)
     dropped = {file.name: file.missing_rows for file in read.log.files if file.missing_rows}
     support = support_of(read.log, min_dwell=min_dwell, tare=tare, **of_fit)
-    return Inspection(reports, "", needed, dropped, read.corrections, support)
+    doubts = tuple(doubtful_units(read.log))
+    return Inspection(reports, "", needed, dropped, read.corrections, support, doubts)
 
 
 def _of_means(
@@ -295,7 +301,7 @@ def _of_means(
     dropped = {file.name: file.missing_rows for file in table.files if file.missing_rows}
     reports = tuple(_with_notes(report, table.files) for report in reports)
     support = support_of_means(replace(table, sensors=sensors), **of_fit)
-    return Inspection(reports, "", (), dropped, (), support)
+    return Inspection(reports, "", (), dropped, (), support, tuple(doubtful_units(table)))
 
 
 def _with_notes(report: FileReport, files: Sequence[LogFile]) -> FileReport:

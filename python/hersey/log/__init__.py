@@ -1,21 +1,24 @@
 """A `TorqueLog` from any file, or from frames in memory.
 
-===========  =======================================================================
-torque_log   `TorqueLog`: channels in SI, with where they came from
-sensors      what the sensors do not know
-text         CSV and its relatives
-recording    what a file of any other format holds: channels with clocks of their own
-formats      one reader per format, and which one opens a file
-channels     which column plays which role
-friction     friction forces and coefficients as torques, sliding speeds as those of a rotation
-rows         which rows can be used, and where one run ends and the next begins
-columns      columns as they stand, for readers with roles of their own
-assembly     from a recording to a run on the clock of the torque
-reading      `read`: from files to a log
-corrections  what lies between sensor and film, taken off with a record
-means        a table of means: a row per dwell, no clock
-mapping      which channel plays which role, kept beside the data
-===========  =======================================================================
+=============  =======================================================================
+torque_log     `TorqueLog`: channels in SI, with where they came from
+sensors        what the sensors do not know
+text           CSV and its relatives
+recording      what a file of any other format holds: channels with clocks of their own
+formats        one reader per format, and which one opens a file
+channels       which column plays which role
+friction       friction forces and coefficients as torques, sliding speeds as those of a rotation
+rows           which rows can be used, and where one run ends and the next begins
+columns        columns as they stand, for readers with roles of their own
+assembly       from a recording to a run on the clock of the torque
+reading        `read`: from files to a log
+corrections    what lies between sensor and film, taken off with a record
+means          a table of means: a row per dwell, no clock
+doubtful       numbers that would be ordinary in another unit
+quantities     quantities that no log holds
+sensor_tables  what a file says of the errors of the sensors
+mapping        which channel plays which role, kept beside the data
+=============  =======================================================================
 
 A further format is one more context manager that yields a `Recording`, entered in `formats.READERS`.
 """

@@ -19,7 +19,7 @@ from pydantic import BeforeValidator, ValidationInfo
 from pydantic.dataclasses import dataclass
 
 from hersey.errors import ChannelError, HerseyError, ParameterError, UnitError
-from hersey.files.toml import Quantity, Share, Table, Text, naming, read_tables, read_toml
+from hersey.files.toml import Quantity, Table, Text, naming, read_tables, read_toml
 from hersey.log import corrections
 from hersey.log.channels import (
     OTHER_ROLES,
@@ -34,7 +34,9 @@ from hersey.log.channels import (
 )
 from hersey.log.columns import open_columns
 from hersey.log.corrections import Corrected
+from hersey.log.quantities import Amount, amount
 from hersey.log.reading import list_channels, read
+from hersey.log.sensor_tables import SpeedErrors, TemperatureErrors, TorqueErrors, sensors_of
 from hersey.log.sensors import Sensors
 from hersey.log.text.delimited import Progress
 from hersey.log.text.layout import Column
@@ -45,45 +47,7 @@ from hersey.units import Conversion, registry, takes_si
 #: A mapping for every log in its directory; one for a single log is called after it, ``bench.hersey.toml``.
 FILE_NAME = "hersey.toml"
 _SUFFIX = ".hersey.toml"
-_FACTOR = r"[A-Za-zµμ]{1,20}(?:(?:\^|\*\*)[1-4])?"  # nothing that pint would compute for ever
-_AMOUNT = re.compile(
-    rf"([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)\s*({_FACTOR}(?:\s*[*/.·]\s*{_FACTOR}){{0,4}})"
-)
-
-#: Characters of an amount at the most: the pattern takes longer than linear.
-_LONGEST_AMOUNT = 160
-
 _ALL_ROLES = (*ROLES, *OTHER_ROLES)
-#: SI units of what no log holds.
-_UNITS = {"motor constant": "N*m/A", "moment of inertia": "kg*m^2", "temperature difference": "K"}
-
-
-def _amount(text: str) -> re.Match[str] | None:
-    return _AMOUNT.fullmatch(text.strip()) if len(text) <= _LONGEST_AMOUNT else None
-
-
-class _Amount(Quantity):
-    """A quantity of a kind that no log holds."""
-
-    @property
-    def unit(self) -> str:
-        """SI unit."""
-        return _UNITS[str(self.kind)]
-
-    def parsed(self, text: str) -> float:
-        """Return the SI value of a text such as ``"35 mN*m/A"``."""
-        match = _amount(text)
-        try:
-            if match is None:
-                raise ValueError(text)
-            unit = registry.parse_units(re.sub("[.·]", "*", match[2]))
-            if self.kind == "temperature difference" and str(unit).startswith("degree"):
-                raise ValueError(text)
-            return float(registry.Quantity(float(match[1]), unit).to(self.unit).magnitude)
-        except Exception:  # pint raises many kinds, from its tokenizer too
-            raise UnitError(
-                f"is '{text}': write a number and a unit of {self.kind}, such as \"{self.example}\""
-            ) from None
 
 
 class _NoLoad(Quantity):
@@ -91,7 +55,7 @@ class _NoLoad(Quantity):
 
     def checked(self, given: Any, info: ValidationInfo[Any]) -> Any:
         """Return the torque in SI or the path."""
-        if info.context is None or not isinstance(given, str) or _amount(given):
+        if info.context is None or not isinstance(given, str) or amount(given):
             return super().checked(given, info)
         named = info.context.path.parent / given
         if not os.path.isfile(named):  # noqa: PTH113 - a name too long for the system is none
@@ -145,37 +109,32 @@ class RadiusMapping(RoleMapping):
 
 
 @dataclass(frozen=True)
-class TorqueMapping(RoleMapping):
+class TorqueMapping(TorqueErrors, RoleMapping):
     """What it says of the torque, in SI; ``no_load`` is a torque or a log."""
 
     sign: _Sign = 1
-    motor_constant: Annotated[float, _Amount("motor constant", 1e-6, 1e3, "35 mN*m/A")] | None = None
+    motor_constant: Annotated[float, Amount("motor constant", 1e-6, 1e3, "35 mN*m/A")] | None = None
     tare: Annotated[float, Quantity("torque", -1e6, 1e6, "4 mN*m")] = 0.0
     no_load: Annotated[float | Path, _NoLoad("torque", 0.0, 1e6, "4 mN*m")] = 0.0
     gear_ratio: _GearRatio = 1.0
     efficiency: Annotated[float, Quantity(None, 0.05, 1.0, "0.9")] = 1.0
-    inertia: Annotated[float, _Amount("moment of inertia", 1e-12, 1e6, "2e-4 kg*m^2")] = 0.0
-    gain_error: Share | None = None
-    zero_error: Annotated[float, Quantity("torque", 0.0, 1e6, "2 mN*m")] | None = None
+    inertia: Annotated[float, Amount("moment of inertia", 1e-12, 1e6, "2e-4 kg*m^2")] = 0.0
 
 
 @dataclass(frozen=True)
-class SpeedMapping(RoleMapping):
+class SpeedMapping(SpeedErrors, RoleMapping):
     """What it says of the speed."""
 
     sign: _Sign = 1
     gear_ratio: _GearRatio = 1.0
-    gain_error: Share | None = None
 
 
 @dataclass(frozen=True)
-class TemperatureMapping(RoleMapping):
+class TemperatureMapping(TemperatureErrors, RoleMapping):
     """What it says of the temperature, in SI: film minus reading, the lag of the sensor, their bounds."""
 
-    offset: Annotated[float, _Amount("temperature difference", -100.0, 100.0, "-1.5 K")] = 0.0
+    offset: Annotated[float, Amount("temperature difference", -100.0, 100.0, "-1.5 K")] = 0.0
     time_constant: Annotated[float, Quantity("time", 1e-3, 1e4, "4 s")] = 0.0
-    zero_error: Annotated[float, _Amount("temperature difference", 0.0, 100.0, "2 K")] | None = None
-    film_heating: Annotated[float, _Amount("temperature difference", 0.0, 100.0, "3 K")] | None = None
 
 
 @dataclass(frozen=True)
@@ -219,17 +178,7 @@ class LogMapping(_Roles):
     @property
     def sensors(self) -> Sensors:
         """Errors of the sensors as stated, defaults for the others."""
-        stated = {
-            "temperature": {
-                "temperature_zero": self.temperature.zero_error,
-                "film_heating": self.temperature.film_heating,
-            },
-            "torque": {"torque_gain": self.torque.gain_error, "torque_zero": self.torque.zero_error},
-            "speed": {"speed_gain": self.speed.gain_error},
-        }
-        given = {k: v for errors in stated.values() for k, v in errors.items() if v is not None}
-        roles = tuple(role for role, errors in stated.items() if any(v is not None for v in errors.values()))
-        return Sensors(**given, stated=roles)
+        return sensors_of(self.torque, self.speed, self.temperature)
 
     @property
     def corrects(self) -> bool:

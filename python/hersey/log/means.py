@@ -30,7 +30,7 @@ from hersey.log.channels import ChannelChoice, Stated, called, find_channel, no_
 from hersey.log.formats import format_of, opened
 from hersey.log.formats.frame import is_frame
 from hersey.log.friction import beside, in_rotation, notes_on
-from hersey.log.recording import split_unit
+from hersey.log.recording import Cells, Signal, split_unit
 from hersey.log.sensors import Sensors
 from hersey.log.text.delimited import open_delimited
 from hersey.log.text.layout import Column, split
@@ -272,15 +272,16 @@ def _cells(table: Any, name: str) -> _Cells:
     path = Path(table)
     if kind := format_of(path):
         with opened(path, kind) as recording:
-            columns = tuple(Column(i, s.name, s.unit, s.group) for i, s in enumerate(recording.signals))
-            loaded = tuple(list(signal.load()) for signal in recording.signals)
-            source = recording.source
+            held: Sequence[Cells | Signal] = recording.cells or recording.signals
+            columns = tuple(Column(i, s.name, s.unit, s.group) for i, s in enumerate(held))
+            loaded: tuple[Sequence[object], ...] = tuple(list(each.load()) for each in held)
+            source, comments = recording.source, recording.comments
         if len({len(cells) for cells in loaded}) > 1:
             raise UnreadableLogError(f"{path.name}: its columns differ in length: it is no table of means")
         if source is None:
             content = path.read_bytes()
-            return _Cells(path.name, _sha(content), len(content), columns, loaded, float)
-        return _Cells(path.name, source.sha256, source.bytes, columns, loaded, float)
+            return _Cells(path.name, _sha(content), len(content), columns, loaded, float, comments)
+        return _Cells(path.name, source.sha256, source.bytes, columns, loaded, float, comments)
     with open_delimited(path) as file:
         layout = file.layout
         text, _ = file.text()

@@ -19,6 +19,8 @@ import numpy as np
 from hersey.arrays import FloatArray
 from hersey.errors import UnreadableLogError
 
+#: Characters of a cell of text at the most: what it says beyond is no name.
+LONGEST_CELL = 300
 #: Units that a name may end with where the format has no place for a unit: ``torque_Nm``, ``t_s``.
 _ENDINGS = {
     "s": "s",
@@ -60,6 +62,21 @@ class Signal:
 
 
 @dataclass(frozen=True)
+class Cells:
+    """One column of a table of cells: ``load`` returns all of them as text, the words beside the numbers.
+
+    A number is written as Python reads it, whatever its decimal mark in the file; no cell is longer than
+    `LONGEST_CELL`.
+    """
+
+    name: str
+    unit: str
+    rows: int
+    load: Callable[[], list[str]]
+    group: str = ""
+
+
+@dataclass(frozen=True)
 class Source:
     """Where a recording came from: name, SHA-256 and bytes."""
 
@@ -80,6 +97,7 @@ class Recording:
     cut_off: bool = False
     nothing: str = ""  #: why there are no signals, if the format can tell
     source: Source = Source("", "", 0)
+    cells: tuple[Cells, ...] = ()  #: every named column as text, where the file is one of cells
 
 
 def library(module: str, reads: str) -> Any:

@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from hersey.units import convert
+
+#: What is an error of each sensor.
+OF_ROLE = {
+    "temperature": ("temperature_zero", "film_heating"),
+    "torque": ("torque_gain", "torque_zero"),
+    "speed": ("speed_gain",),
+}
 
 
 @dataclass(frozen=True)
@@ -24,6 +31,12 @@ class Sensors:
     speed_gain: float = 0.001
     film_heating: float = 0.0  #: K
     stated: tuple[str, ...] = ()
+
+    def or_else(self, others: Sensors) -> Sensors:
+        """Return these errors, and those of ``others`` for each sensor of which these state none."""
+        taken = tuple(role for role in others.stated if role not in self.stated)
+        errors = {name: getattr(others, name) for role in taken for name in OF_ROLE[role]}
+        return replace(self, **errors, stated=(*self.stated, *taken))
 
     def __str__(self) -> str:
         """Return the errors in words, the defaults named as such."""

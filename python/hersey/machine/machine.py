@@ -13,6 +13,8 @@ from pydantic.dataclasses import dataclass
 
 from hersey.errors import ParameterError
 from hersey.files.toml import Quantity, Table, naming, read_tables, read_toml
+from hersey.log.sensor_tables import SensorTables, sensors_of
+from hersey.log.sensors import Sensors
 from hersey.lubrication.contact import Contact
 from hersey.lubrication.lubricant import Lubricant
 from hersey.machine.limits import Limits, OperatingPoint
@@ -28,7 +30,8 @@ class Machine:
 
     ``stiffness`` (N/m) and ``mass`` (kg) at the belt, ``roll_radius`` (m) at which torque acts on it, and
     ``stick_speed`` (m/s) below which the belt sticks. ``uncertainty`` says how far parameters are known.
-    ``contact`` and ``lubricant`` make the film, if they are stated.
+    ``contact`` and ``lubricant`` make the film, if they are stated. ``sensors`` are those of its logs, so
+    far as a log's own mapping states no errors of them.
     """
 
     stiffness: float
@@ -40,6 +43,7 @@ class Machine:
     uncertainty: Mapping[str, Uncertainty] = field(default_factory=dict)
     contact: Contact | None = None
     lubricant: Lubricant | None = None
+    sensors: Sensors = field(default_factory=Sensors)
 
     @property
     def train(self) -> Drivetrain:
@@ -70,12 +74,14 @@ class _MachineFile(Table):
     lubricant: LubricantTable | None = None
     points: Annotated[tuple[OperatingPoint, ...], BeforeValidator(_named)] = ()
     uncertainty: dict[str, Any] = field(default_factory=dict)
+    sensors: SensorTables = field(default_factory=SensorTables)
 
 
 def read_machine(path: str | Path) -> Machine:
     """Read ``[drivetrain]``, and the other tables if they are there.
 
-    These are ``[limits]``, ``[contact]``, ``[lubricant]``, ``[[points]]`` and ``[uncertainty]``.
+    These are ``[limits]``, ``[contact]``, ``[lubricant]``, ``[[points]]``, ``[uncertainty]``, and
+    ``[sensors.torque]``, ``[sensors.speed]`` and ``[sensors.temperature]`` with the errors of a mapping.
 
     Every value is a string such as ``"11 N/mm"``; an uncertainty is ``"10 %"`` or ``"0.1 mm/s to 1 mm/s"``
     (see `Uncertainty`).
@@ -110,4 +116,5 @@ def read_machine(path: str | Path) -> Machine:
         uncertainty=uncertainty,
         contact=contact,
         lubricant=lubricant,
+        sensors=sensors_of(**vars(tables.sensors)),
     )

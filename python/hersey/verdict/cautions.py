@@ -10,6 +10,7 @@ from scipy import stats
 from hersey.arrays import FloatArray
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.surface import DampingSurface
+from hersey.log.doubtful import doubtful_units
 from hersey.units import celsius
 
 #: A difference between directions counts as one beyond this share and this many standard errors.
@@ -18,8 +19,6 @@ NOTABLE_DIFFERENCE, SIGNIFICANT = 0.02, 3.0
 LARGE_TARE = 0.1
 #: Rank correlation with time beyond which a quantity goes together with it, for so many dwells at least.
 IN_ORDER, FEWEST_IN_ORDER = 0.9, 5
-#: A log of a drive has rows more often than so, s, and no lubricant is hotter, degC.
-RARE, TOO_HOT = 10.0, 320.0
 #: p-value of chance below which a scatter of whole visits is spoken of.
 SURE = 0.01
 
@@ -39,7 +38,7 @@ def cautions(points: SteadyPoints, surface: DampingSurface) -> list[str]:
             out.append(
                 f"{file.name}: rows are missing at {run.gaps()} places ({max(share, 0):.1%} of the time)."
             )
-    out += _unit_warnings(points)
+    out += doubtful_units(log)
     out += _tare_warning(points)
     out += points.notes
     if loads := points.varying_load:
@@ -57,25 +56,6 @@ def cautions(points: SteadyPoints, surface: DampingSurface) -> list[str]:
     out += _direction_warnings(points, surface)
     out += _order_warnings(points, surface)
     out += _fit_warnings(surface)
-    return out
-
-
-def _unit_warnings(points: SteadyPoints) -> list[str]:
-    """Numbers that would be ordinary in another unit than the one they are read in."""
-    out = []
-    steps = [run.sampling_interval for run in points.log.runs]
-    if steps and min(steps) >= RARE:
-        out.append(
-            f"Rows come every {min(steps):.4g} s, as the clock is read: if it counts milliseconds, say "
-            "--time-unit ms."
-        )
-    if points.log.has_temperature:
-        hottest = celsius(float(points.column("temperature").max()))
-        if hottest > TOO_HOT:
-            out.append(
-                f"Temperature reaches {hottest:.0f} degC, more than a lubricant stands: if the numbers are "
-                "in K, say --temperature-unit K."
-            )
     return out
 
 

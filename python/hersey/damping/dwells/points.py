@@ -17,6 +17,11 @@ from hersey.log.torque_log import TorqueLog
 from hersey.result import Result, json_record
 from hersey.units import rpm
 
+#: Loads closer than this share count as the same.
+SAME_LOAD = 0.03
+#: Reasons of stretches that nobody meant as a dwell.
+_NO_DWELL = ("drive standing", "speed changing", "rotation not")
+
 
 @dataclass(frozen=True)
 class Rejection:
@@ -268,12 +273,6 @@ def _notes_of_means(table: MeansTable) -> tuple[str, ...]:
         f"{name}: a table of means, one row per dwell. Without a trace, stick-slip, drift within a dwell, "
         f"settling, the zero of the torque and the clock cannot be judged. Errors of torque: {errors}.",
     )
-
-
-#: Loads closer than this share count as the same.
-SAME_LOAD = 0.03
-#: Reasons of stretches that nobody meant as a dwell.
-_NO_DWELL = ("drive standing", "speed changing", "rotation not")
 
 
 def _placed(lost: FloatArray, used: FloatArray) -> str:

@@ -1,7 +1,7 @@
-"""The process in which files are read: a reader opens one, and its numbers are sent as they are asked for.
+"""The process in which files are read: a reader opens one, and what it holds is sent as it is asked for.
 
 Run by `hersey.processes.server`. Requests: ``open`` (a file, its format and name, bounds of memory and time),
-``load`` and ``clock`` (the numbers of one signal), ``close``.
+``load`` and ``clock`` (the numbers of one signal), ``cells`` (the text of one column), ``close``.
 """
 
 from __future__ import annotations
@@ -43,8 +43,9 @@ class _Open:
         self.file.seek(0)  # the place in a file that was passed is shared
         self.context = getattr(reader, f"open_{request['format']}")(self.file, request["name"])
         self.recording = recording = self.context.__enter__()
-        if len(recording.signals) > _MOST_SIGNALS:
-            raise UnreadableLogError(f"holds {len(recording.signals)} channels: {_MOST_SIGNALS} at the most")
+        channels = max(len(recording.signals), len(recording.cells))
+        if channels > _MOST_SIGNALS:
+            raise UnreadableLogError(f"holds {channels} channels: {_MOST_SIGNALS} at the most")
         return self.state() | {
             "format": recording.format,
             "others": recording.others,
@@ -62,6 +63,10 @@ class _Open:
                 }
                 for signal in recording.signals
             ],
+            "cells": [
+                {"name": cells.name, "unit": cells.unit, "rows": cells.rows, "group": cells.group}
+                for cells in recording.cells
+            ],
         }
 
     def state(self) -> dict[str, Any]:
@@ -76,6 +81,12 @@ class _Open:
         source = signal.clock if what == "clock" else signal.load
         assert source is not None
         return source().tobytes()
+
+    def cells(self, index: int) -> bytes:
+        """The text of a column: its cells with a zero between them."""
+        assert self.recording is not None
+        cells = (cell.replace("\0", " ") for cell in self.recording.cells[index].load())
+        return "\0".join(cells).encode(errors="replace")
 
     def close(self) -> None:
         """Close the file; one that could not be opened may fail at that, too."""
@@ -101,5 +112,6 @@ def answer(request: dict[str, Any], _payload: bytes) -> tuple[dict[str, Any], by
             closing, _open = _open, _Open()
             closing.close()
             return {}, b""
-        content = _open.numbers(request["do"], request["index"])
+        index = request["index"]
+        content = _open.cells(index) if request["do"] == "cells" else _open.numbers(request["do"], index)
     return _open.state(), content

@@ -13,7 +13,7 @@ import polars as pl
 
 from hersey.arrays import FloatArray
 from hersey.errors import HerseyError
-from hersey.log.recording import Recording, Signal, library
+from hersey.log.recording import LONGEST_CELL, Cells, Recording, Signal, library
 from hersey.log.text.footer import summary_lines
 from hersey.log.text.layout import SNIFFED, Column, Layout, find_layout
 from hersey.log.text.stamps import Stamps
@@ -50,11 +50,15 @@ def open_excel(file: BinaryIO, _name: str) -> Iterator[Recording]:
         except HerseyError as error:
             others.append(str(error))
     signals: list[Signal] = []
+    columns: list[Cells] = []
     for title, (cells, layout) in tables.items():
-        signals += _signals(recording, title if len(tables) > 1 else "", cells, layout)
+        group = title if len(tables) > 1 else ""
+        table = _rows(recording, group, cells, layout)
+        signals += _signals(recording, group, table, layout)
+        columns += _columns(group, table, layout)
         recording.notes += layout.notes
-        recording.comments += layout.comments
-    recording.signals, recording.others = tuple(signals), tuple(others)
+        recording.comments += tuple(comment.rstrip() for comment in layout.comments)
+    recording.signals, recording.others, recording.cells = tuple(signals), tuple(others), tuple(columns)
     yield recording
 
 
@@ -84,7 +88,8 @@ def _line(row: tuple[str | None, ...]) -> str:
     return _TAB.join(" ".join((cell or "").replace('"', "'").split()) for cell in row)
 
 
-def _signals(recording: Recording, group: str, cells: pl.DataFrame, layout: Layout) -> Iterator[Signal]:
+def _rows(recording: Recording, group: str, cells: pl.DataFrame, layout: Layout) -> pl.DataFrame:
+    """The rows of a table, without a summary below it."""
     table = cells.slice(layout.first_line - 1)
     filled = np.flatnonzero(~table.select(pl.all_horizontal(pl.all().is_null())).to_series().to_numpy())
     rows = int(filled[-1]) + 1 if filled.size else 0
@@ -95,11 +100,29 @@ def _signals(recording: Recording, group: str, cells: pl.DataFrame, layout: Layo
             f"{place}{summary} row(s) below the table were left out: '{last[-summary][:60]}'"
         )
         rows = int(filled[filled < rows - summary][-1]) + 1
+    return table.head(rows)
+
+
+def _signals(recording: Recording, group: str, table: pl.DataFrame, layout: Layout) -> Iterator[Signal]:
     for column in layout.named:
         if column.index in layout.texts:
             continue
-        load = _numbers(recording, group, table.to_series(column.index).head(rows), layout, column)
-        yield Signal(column.name, column.unit, rows, load, group=group, line=layout.first_line)
+        load = _numbers(recording, group, table.to_series(column.index), layout, column)
+        yield Signal(column.name, column.unit, table.height, load, group=group, line=layout.first_line)
+
+
+def _columns(group: str, table: pl.DataFrame, layout: Layout) -> Iterator[Cells]:
+    """Every named column as text, for a table whose words count: that of means."""
+    for column in layout.named:
+        load = partial(_texts, table.to_series(column.index), layout)
+        yield Cells(column.name, column.unit, table.height, load, group)
+
+
+def _texts(cells: pl.Series, layout: Layout) -> list[str]:
+    style, texts = layout.style, [(cell or "")[:LONGEST_CELL] for cell in cells]
+    if style.is_plain:
+        return texts
+    return [repr(style.value(cell)) if style.is_number(cell) else cell for cell in texts]
 
 
 def _numbers(

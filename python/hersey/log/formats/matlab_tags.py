@@ -44,7 +44,9 @@ def check_tags(data: bytes, file: str) -> None:
             else:
                 _check(data, kind, start, end, order, 0)
     except (_TagError, struct.error, zlib.error):
-        raise UnreadableLogError(f"{file} cannot be read as MATLAB: it is damaged or cut off") from None
+        raise UnreadableLogError(
+            f"{file} cannot be read as a MATLAB file: it is damaged or cut off"
+        ) from None
 
 
 def _unpacked(packed: bytes, order: str) -> bytes:

@@ -23,7 +23,7 @@ from hersey.arrays import FloatArray
 from hersey.errors import HerseyError, ParameterError, UnreadableLogError
 from hersey.files.reading import OpenFile, open_file, unchanged
 from hersey.log.formats.hdf5 import MAGIC as HDF5
-from hersey.log.recording import Recording, Signal, Source
+from hersey.log.recording import LONGEST_CELL, Cells, Recording, Signal, Source
 from hersey.processes.child import Child, FailedError, LostError
 from hersey.processes.forks import refuse_after_fork
 from hersey.spelling import printable
@@ -31,14 +31,15 @@ from hersey.spelling import printable
 #: What a file may take while it is read, bytes, where the user does not say otherwise, and now.
 _USUAL_MEMORY = 2e9
 _memory = _USUAL_MEMORY
-#: Bytes for each number that is read: it is held here, and so is what is computed from it.
-_BYTES_PER_NUMBER = 16
+#: Bytes for each number that is read: it is held here, and so is what is computed from it; for a cell of text
+#: beside its characters.
+_BYTES_PER_NUMBER, _BYTES_PER_CELL = 16, 64
 #: Processor time for a file, s, and per byte of it: far more than a sound one needs.
 _TIME, _TIME_PER_BYTE = 3.0, 2e-6
 #: The libraries alone need some of it.
 _LEAST = 3e8
 #: Characters of what a file says of itself, and of a name or unit in it.
-_LONGEST, _LONGEST_NAME = 1000, 300
+_LONGEST, _LONGEST_NAME = 1000, LONGEST_CELL
 _KEPT = ("PATH", "LD_LIBRARY_PATH", "DYLD_LIBRARY_PATH", "SYSTEMROOT", "PYTHONHOME", "LANG", "LC_ALL", "TZ")
 #: By the clock, as many times the processor time: for a process that waits for ever.
 _PATIENCE = 60
@@ -68,6 +69,17 @@ READERS = {
     ".xls": "excel",
     ".npz": "numpy_arrays",
     ".npy": "numpy_arrays",
+}
+#: What a person calls a file of each of these modules.
+FILES = {
+    "tdms": "a LabVIEW TDMS file",
+    "mdf": "an ASAM MDF file",
+    "matlab": "a MATLAB file",
+    "hdf5": "an HDF5 file",
+    "parquet": "a Parquet file",
+    "lvm": "a LabVIEW measurement file",
+    "excel": "an Excel workbook",
+    "numpy_arrays": "a NumPy file",
 }
 #: Bytes of the start that are looked at.
 _LOOKED_AT = 512
@@ -231,7 +243,13 @@ class _Reader:
             source,
         )
         recording.signals = tuple(self._signal(recording, i, about) for i, about in enumerate(signals))
+        recording.cells = tuple(self._column(i, about) for i, about in enumerate(about["cells"]))
         return recording
+
+    def _column(self, index: int, about: dict[str, Any]) -> Cells:
+        rows = int(about["rows"])
+        name, unit, group = (_plain(about[of], _LONGEST_NAME) for of in ("name", "unit", "group"))
+        return Cells(name, unit, rows, partial(self._texts, index, rows), group)
 
     def _signal(self, recording: Recording, index: int, about: dict[str, Any]) -> Signal:
         rows = int(about["rows"])
@@ -258,6 +276,18 @@ class _Reader:
         recording.cut_off = about["cut_off"]
         return np.frombuffer(content, dtype=float)
 
+    def _texts(self, index: int, rows: int) -> list[str]:
+        self.left -= _BYTES_PER_CELL * rows
+        if self.left < 0:
+            raise self._too_large()
+        most = (4 * LONGEST_CELL + 1) * rows  # UTF-8
+        _, content = self._asked({"do": "cells", "index": index}, most=most)
+        self.left -= len(content)
+        cells = content.decode(errors="replace").split("\0") if rows else []
+        if len(cells) != rows:
+            raise UnreadableLogError(f"{self.file.path.name} cannot be read: its cells came in part")
+        return [_plain(cell, LONGEST_CELL) for cell in cells]
+
     def _asked(
         self, request: dict[str, Any], *, file: int | None = None, most: int = 0
     ) -> tuple[dict[str, Any], bytearray]:
@@ -282,8 +312,8 @@ class _Reader:
             return self._not_started(message)
         told = _plain(message).partition("\n")[0][:160] or kind
         return UnreadableLogError(
-            f"{self.file.path.name} cannot be read as {self.kind.upper()}: the file is damaged, cut off or "
-            f"of another kind ({told})"
+            f"{self.file.path.name} cannot be read as {_called(self.kind)}: it is damaged, cut off or of "
+            f"another kind ({told})"
         )
 
     def _loss(self, error: LostError) -> UnreadableLogError:
@@ -311,6 +341,11 @@ class _Reader:
             f"{self.file.path.name} takes more than {self.limit / 1e9:g} GB of memory: if it may, raise the "
             "limit with --max-memory '8 GB' (hersey.memory_limit in Python)"
         )
+
+
+def _called(kind: str) -> str:
+    """A file of a format in words, with the suffixes that it usually has."""
+    return f"{FILES[kind]} ({', '.join(suffix for suffix, reader in READERS.items() if reader == kind)})"
 
 
 def _plain(text: str, most: int = _LONGEST) -> str:

@@ -1,0 +1,42 @@
+"""Numbers that would be ordinary in another unit than the one they are read in."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from hersey.arrays import FloatArray
+from hersey.log.means import MeansTable
+from hersey.log.torque_log import TorqueLog
+from hersey.units import celsius
+
+#: A log of a drive has rows more often than so, s, and no lubricant is hotter, degC.
+RARE, TOO_HOT = 10.0, 320.0
+#: Share of the temperatures that is looked at: a spike of the sensor is no unit.
+_MOST = 0.99
+
+
+def doubtful_units(log: TorqueLog | MeansTable) -> list[str]:
+    """Return in sentences which unit of a log is doubtful, with the option that mends it; often none."""
+    out = []
+    steps = [run.sampling_interval for run in log.runs]
+    if steps and min(steps) >= RARE:
+        out.append(
+            f"Rows come every {min(steps):.4g} s, as the clock is read: if it counts milliseconds, say "
+            "--time-unit ms."
+        )
+    hottest = max((celsius(float(np.quantile(each, _MOST))) for each in _temperatures(log)), default=0.0)
+    if hottest > TOO_HOT:
+        out.append(
+            f"Temperature reaches {hottest:.0f} degC, more than a lubricant stands: if the numbers are in K, "
+            "say --temperature-unit K."
+        )
+    return out
+
+
+def _temperatures(log: TorqueLog | MeansTable) -> list[FloatArray]:
+    """The temperatures of each run, or of the rows of a table, K; none unless all have one."""
+    if not log.has_temperature:
+        return []
+    if isinstance(log, MeansTable):
+        return [np.array([row.temperature for row in log.means], dtype=float)]
+    return [run.temperature for run in log.runs if run.temperature is not None]
