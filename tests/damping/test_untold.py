@@ -40,3 +40,25 @@ def test_a_third_temperature_tells_it() -> None:
     assert surface.b is not None
     assert surface.b.told
     surface.predict("20 rpm", "120 degC")
+
+
+def test_a_transition_that_moves_does_not_tell_how_far_two_visits_scatter() -> None:
+    """It shows the law of temperature a second time, too loosely to hold a visit against it."""
+    speed, hot = np.tile(np.geomspace(5.0, 150.0, 16), 2), np.repeat([80.0, 180.0], 16)
+    at = 25.0 * (hot / 120.0) ** 3
+    law = hot**-0.9 * at**0.3 * (speed / at) ** np.where(speed < at, -0.25, 0.3)
+    for seed in range(12):
+        noise = np.random.default_rng(seed)
+        visits = np.repeat(0.03 * noise.standard_normal(2), 16) + 0.01 * noise.standard_normal(32)
+        surface = hersey.fit(
+            hersey.SteadyPoints.from_table(
+                {
+                    "speed [rpm]": speed,
+                    "torque [N*m]": 2.0 * law * np.exp(visits),
+                    "temperature [degC]": hot,
+                }
+            )
+        )
+        assert surface.transition is not None
+        assert surface.b is not None
+        assert not surface.b.told

@@ -19,9 +19,12 @@ from scipy import optimize, stats
 from hersey.arrays import FloatArray, IntArray
 from hersey.damping.candidates.observations import Observations
 
-#: Share of a contrast between groups that the law must leave: small changes of temperature within a visit
-#: do not tell its scatter from the law of temperature.
-_LEFT = 0.01
+#: Groups that tell how far groups scatter: two may lie close by chance, and would show none.
+FEWEST_GROUPS = 3
+#: Share of a contrast between groups that the law must leave. Of what it all but takes up (small changes of
+#: temperature within a visit, a transition that moves with temperature) too little is left to show a scatter:
+#: it would pass for none.
+_LEFT = 0.25
 #: Variances searched, over that of an average group of dwells, and how many are tried first.
 _SEARCHED, _TRIED = (1e-3, 1e6), 46
 
@@ -129,12 +132,16 @@ def _restricted(
     padded = np.vstack([grouping.member * weigh[:, None], np.zeros((modes, grouping.member.shape[1]))])
     basis = _column_space(known)
     groups = padded - basis @ (basis.T @ padded)
+    whole = padded
+    if modes:
+        others = _column_space(known[:, -modes:])
+        whole = padded - others @ (others.T @ padded)
     rest = np.append(residuals * weigh, np.zeros(modes))
     rest = rest - basis @ (basis.T @ rest)
     spread, axes = np.linalg.eigh(groups.T @ groups)
-    seen = spread > _LEFT * float(np.max(np.sum(padded**2, axis=0)))
+    seen = spread > _LEFT * float(np.max(np.sum(whole**2, axis=0)))
     spread, along = spread[seen], (axes.T @ (groups.T @ rest))[seen]
-    if not spread.size:
+    if not spread.size or grouping.member.shape[1] < FEWEST_GROUPS:
         return SharedScatter(grouping.name, 0.0, 1.0, told=False)
     between = float(np.sum(along**2 / spread))
     freedom = residuals.size - basis.shape[1] + modes - spread.size
