@@ -12,6 +12,7 @@ import pytest
 from hersey.damping.candidates.observations import Inputs, Observations
 from hersey.damping.dwells import SteadyPoints
 from hersey.errors import InsufficientDataError
+from hersey.log.sensors import Sensors
 
 SPEED = [-10.0, 30.0, 20.0, 10.2, 30.2, 20.0, 10.0, 30.0, 30.1]
 TORQUE = [-0.5, 0.4, 0.45, 0.52, 0.38, 0.41, 0.6, 0.35, 0.36]
@@ -35,7 +36,7 @@ def points(*, run: list[int] = RUN, temperature: bool = True, speed: list[float]
     return SimpleNamespace(  # type: ignore[return-value]
         table=table,
         tare_errors=0.002 * np.column_stack([np.ones(9), np.linspace(-1.0, 1.0, 9)]),
-        log=SimpleNamespace(has_temperature=temperature),
+        log=SimpleNamespace(has_temperature=temperature, sensors=Sensors()),
         column=lambda name: table[name].to_numpy(),
     )
 
