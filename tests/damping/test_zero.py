@@ -133,3 +133,13 @@ def test_runs_follow_one_another() -> None:
     tares = points.table["tare"].to_numpy()
     assert (np.diff(tares) > 0).all()
     assert tares[0] > 0.1
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_drive_that_stands_may_read_one_number_all_the_time() -> None:
+    random = np.random.default_rng(3)
+    speed = dwells(0, 10, 20, 40, 80, 60, 30, 0, seconds=7.0)
+    torque = np.where(speed > 0, 1.0 + 0.01 * random.standard_normal(speed.size), 0.25)
+    points = log_of(speed, torque).steady(tare="standing")
+    assert points.tare == pytest.approx(0.25)
+    assert points.tare_error < 1e-4

@@ -120,6 +120,8 @@ class SharedNoise:
 
     def _slow_level(self, powers: Powers, first: int) -> float:
         """Level of the slow part of a dwell, its own and the common one each as far as it is known."""
+        if not np.any(powers.power):  # a drive that stands may read one number all the time
+            return 0.0
         expected = self.expected(powers.order, powers.duration)
         whole = _level(powers, expected)
         common = whole * self.level
