@@ -281,7 +281,7 @@ def _changes(a: CandidateFit, b: CandidateFit, of_a: Observations, of_b: Observa
         values = p.of(u), q.of(v)
         error = math.hypot(
             *(
-                float(np.sqrt(r.fit.covariance[k.parameter, k.parameter])) * _slope(k.of, w, is_ratio)
+                r.fit.error(r.fit.law.names[k.parameter]) * _slope(k.of, w, is_ratio)
                 for r, k, w in ((a, p, u), (b, q, v))
             )
         )

@@ -285,3 +285,15 @@ def test_keys_and_names_of_candidates_are_their_own() -> None:
     candidates = all_candidates()
     assert len({r.key for r in candidates}) == len({r.name for r in candidates}) == len(candidates)
     assert Candidate(VFT, HELD).key == "vft/two-hersey"
+
+
+@pytest.mark.filterwarnings("error")
+def test_exact_data_leave_no_warning() -> None:
+    """Their variances are so small that rounding takes them below 0."""
+    speed, hot = np.tile(np.geomspace(10.0, 150.0, 8), 4), np.repeat([90.0, 120.0, 150.0, 180.0], 8)
+    torque = 2.0 * (speed * np.pi / 30.0) ** 0.3 * (hot / 100.0) ** -0.9
+    points = hersey.SteadyPoints.from_table(
+        {"speed [rpm]": speed, "torque [N*m]": torque, "temperature [degC]": hot}
+    )
+    found = compare_models(points, bootstrap=0, cross_validate=False)
+    assert found.chosen.candidate.key == "power-degC/one"

@@ -103,11 +103,14 @@ class LawFit:
             "the visits: how far visits scatter is not told; visit a temperature again, or record another"
         )
 
+    def error(self, name: str) -> float:
+        """Return the standard error of a parameter; of exact data the variance may round to below 0."""
+        index = self.law.index(name)
+        return float(np.sqrt(max(self.covariance[index, index], 0.0)))
+
     def estimate(self, name: str) -> Estimate:
         """Return a parameter of the law with its interval by covariance; unbounded if it is not told."""
-        index = self.law.index(name)
-        error = float(np.sqrt(max(self.covariance[index, index], 0.0)))
-        value = float(self.values[index])
+        value, error = float(self.values[self.law.index(name)]), self.error(name)
         if self.untold(name):
             return Estimate(value, error, -np.inf, np.inf)
         return estimate(value, error, self.freedom_of(name))
@@ -318,8 +321,7 @@ def resampled(fit: LawFit, data: Observations, count: int, seed: int) -> FloatAr
     clusters = [np.flatnonzero(data.cluster == label) for label in np.unique(data.cluster)]
     starts = [np.append(fit.values, fit.effects)]
     if fit.law.broken:  # the cost has several minima in a corner
-        at = fit.law.index("at")
-        error = min(float(np.sqrt(fit.covariance[at, at])), 0.5)
+        at, error = fit.law.index("at"), min(fit.error("at"), 0.5)
         for aside in (-error, error):
             moved = starts[0].copy()
             moved[at] += aside
@@ -371,7 +373,7 @@ def not_identified(fit: LawFit, data: Observations) -> dict[str, str]:
     if law.broken:
         out |= _branches_shown(fit, data)
     if "q" in law.names:
-        q, error = fit.values[law.index("q")], fit.covariance[law.index("q"), law.index("q")] ** 0.5
+        q, error = fit.values[law.index("q")], fit.error("q")
         if q <= 2.0 * error:
             out["q"] = "T0 has no lower bound in these data: record temperatures further apart"
     if "q" not in out and law.branches == "two branches, one Hersey number" and law.thermal:
@@ -405,8 +407,7 @@ def _branches_shown(fit: LawFit, data: Observations) -> dict[str, str]:
             reason = f"only {count} dwells lie {where} the transition: record dwells at {what} speeds"
             lost = ["at", "c_mixed"] if what == "slower" else ["at", "c"]
             return {name: reason for name in lost if name in fit.law.names}
-    at = fit.law.index("at")
-    if fit.covariance[at, at] ** 0.5 > 0.25 * float(np.ptp(data.inputs.log_speed)):
+    if fit.error("at") > 0.25 * float(np.ptp(data.inputs.log_speed)):
         return {
             "at": "the branches differ too little to say where they meet: record slower and faster speeds"
         }

@@ -146,7 +146,7 @@ def estimates(
         if "profile" in raw and not np.all(np.isfinite(raw["profile"])):
             out.append(ParameterEstimate(q.name, q.unit, q.of(value), None, {}, _open(raw["profile"])))
             continue
-        error = float(np.sqrt(fit.covariance[q.parameter, q.parameter]))
+        error = fit.error(name)
         step = 1e-4 * max(error, 1e-12)
         slope = abs(q.of(value + step) - q.of(value - step)) / (2 * step)
         ends = {method: _mapped(q.of, limits) for method, limits in raw.items()}
@@ -157,7 +157,7 @@ def estimates(
 def profile_interval(fit: LawFit, data: Observations, parameter: int) -> Ends:
     """Return where the profile of the cost crosses t^2 on either side; infinite where it never does."""
     target = quantile(fit.freedom_of(fit.law.names[parameter])) ** 2
-    error = float(np.sqrt(max(fit.covariance[parameter, parameter], 0.0)))
+    error = fit.error(fit.law.names[parameter])
     if not error > 0:  # exact data
         return float(fit.values[parameter]), float(fit.values[parameter])
     below, above = (_crossing(fit, data, parameter, side * error, target) for side in (-1.0, 1.0))
