@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy import stats
 
+from hersey.damping.candidates import Candidate, compare_models
 from hersey.damping.candidates.branched import FREE, HELD, ONE, Law
 from hersey.damping.candidates.energy import CALORIE, activation_energies, scaled, usable_for_transition
-from hersey.damping.candidates.fitting import LawFit
+from hersey.damping.candidates.fitting import LawFit, fit_law
 from hersey.damping.candidates.stribeck import StribeckLaw
 from hersey.damping.candidates.thermal import ARRHENIUS, CELSIUS, VFT, Thermal
 from tests.damping.candidates.cases import hand_fit, some_covariance
@@ -205,3 +207,25 @@ def test_which_laws_carry_a_transition_of_their_own() -> None:
     each = Law(Thermal(ARRHENIUS, REFERENCE), FREE, groups=2)
     assert not usable_for_transition(hand_fit(each, [0.1, 2.7, -0.6, -0.7, -1.2, -0.9, -6.5]))
     assert not usable_for_transition(hand_fit(StribeckLaw(None), [-1.2, -0.2, -2.0, 0.2]))
+
+
+def test_a_law_without_a_transition_has_no_energy_of_one() -> None:
+    """Where T in degC is the law, Arrhenius with two branches bends to follow it: that is no transition."""
+    straight = dwells(Law(Thermal(CELSIUS, REFERENCE), ONE), [0.1, -0.9, -0.7], scatter=5e-4)
+    laws = tuple(Candidate(*law) for law in ((CELSIUS, ONE), (ARRHENIUS, ONE), (ARRHENIUS, FREE)))
+    found = compare_models(straight, candidates=laws, bootstrap=0, cross_validate=False)
+    assert found.chosen.candidate.key == "power-degC/one"
+    assert found.energies.transition is None
+    assert found.energies.verdict.startswith("The transition does not move measurably")
+
+
+def test_energies_of_temperatures_visited_once_are_not_held_against_each_other() -> None:
+    two = dwells(HELD_LAW, HELD_VALUES, temperatures=TEMPERATURES[::3], scatter=2e-3)
+    stood_off = two.log_torque + np.where(two.inputs.group == 1, 0.2, 0.0)
+    data = replace(two, log_torque=stood_off, visit=two.inputs.group)
+    free = fit_law(FREE_LAW, data)
+    found = activation_energies(free, free, free, data)
+    assert found.p_value is None
+    assert found.viscosity is not None
+    assert not found.viscosity.told
+    assert "is not told: each temperature was visited once" in found.verdict

@@ -209,8 +209,8 @@ def _energies(
     sound = [r for r in arrhenius if not r.not_identified] or arrhenius
     free = next((r.fit for r in sound if usable_for_transition(r.fit) and not r.not_identified), None)
     best = sound[0] if sound else None
-    if best is not None and not best.fit.law.broken:
-        free = None
+    if not chosen.fit.law.broken or (best is not None and not best.fit.law.broken):
+        free = None  # a law of temperature that misses bends where no transition is
     return activation_energies(None if best is None else best.fit, free, chosen.fit, data)
 
 

@@ -97,8 +97,8 @@ def activation_energies(
         viscosity = _untold(best, _ratio(best, per_unit))
     transition = p_value = None
     if free is not None:
-        transition = _linear(free, {"d": -per_unit})
-        p_value = _disagreement(free)
+        transition = _untold(free, _linear(free, {"d": -per_unit}))
+        p_value = None if free.untold("e") else _disagreement(free)
     verdict = _verdict(viscosity, transition, p_value, power)
     local = _local(chosen, data)
     return ActivationEnergies(torque, power, viscosity, transition, p_value, verdict, local, of_film)
@@ -162,6 +162,11 @@ def _verdict(
         return (
             f"Torque varies as viscosity to the power {power}, not told from zero: torque gives no energy of "
             "viscosity; record faster speeds, where it rises with speed."
+        )
+    if transition is not None and p_value is None:
+        return (
+            "Whether the energies of viscosity from the transition speed and from torque agree is not told: "
+            "each temperature was visited once; visit one again, or record another."
         )
     if transition is None or p_value is None:
         return (
