@@ -20,7 +20,14 @@ HOT = [350.0, 352.0, 351.0, 400.0, 401.0, 402.0, 351.0, 350.5, 350.0]
 RUN = [0, 0, 0, 0, 0, 0, 1, 1, 0]
 
 
-def points(*, run: list[int] = RUN, temperature: bool = True, speed: list[float] = SPEED) -> SteadyPoints:
+def points(
+    *,
+    run: list[int] = RUN,
+    temperature: bool = True,
+    speed: list[float] = SPEED,
+    hot: list[float] = HOT,
+    heating: float = 0.0,
+) -> SteadyPoints:
     """Steady points of a table by hand; what else a log holds is of no concern here."""
     table = pl.DataFrame(
         {
@@ -29,14 +36,14 @@ def points(*, run: list[int] = RUN, temperature: bool = True, speed: list[float]
             "torque": TORQUE,
             "speed_error": np.linspace(0.01, 0.05, 9),
             "torque_error": np.linspace(0.001, 0.003, 9),
-            "temperature": HOT,
+            "temperature": hot,
             "temperature_error": np.linspace(0.1, 0.5, 9),
         }
     )
     return SimpleNamespace(  # type: ignore[return-value]
         table=table,
         tare_errors=0.002 * np.column_stack([np.ones(9), np.linspace(-1.0, 1.0, 9)]),
-        log=SimpleNamespace(has_temperature=temperature, sensors=Sensors()),
+        log=SimpleNamespace(has_temperature=temperature, sensors=Sensors(film_heating=heating)),
         column=lambda name: table[name].to_numpy(),
     )
 
@@ -158,3 +165,14 @@ def test_other_speeds_and_temperatures_are_grouped_with_the_nearest_measured() -
     assert none.kelvin is None
     assert none.group.tolist() == [0, 0]
     assert data.at(np.float64(5.0), None).log_speed.shape == (1,)  # type: ignore[arg-type]
+
+
+def test_visits_are_stays_of_what_is_read_however_friction_heats_the_film() -> None:
+    speed = [1.0, 90.0, 2.0, 80.0, 1.0, 90.0, 2.0, 80.0, 5.0]
+    hot = [373.0, 373.1, 373.0, 373.1, 403.0, 403.1, 403.0, 403.1, 403.0]
+    plain, warmed = (
+        Observations.of(points(run=[0] * 9, speed=speed, hot=hot, heating=bound)) for bound in (0.0, 30.0)
+    )
+    assert plain.visit.tolist() == [0] * 4 + [1] * 5
+    assert warmed.visit.tolist() == plain.visit.tolist()
+    assert np.ptp(warmed.heating) > 5.0

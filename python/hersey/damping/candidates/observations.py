@@ -64,12 +64,13 @@ class Observations:
             )
         kelvin = points.column("temperature") if points.log.has_temperature else None
         group, means = _groups(kelvin, speed.size)
-        heating = np.empty(0)
-        if kelvin is not None and points.log.sensors.film_heating:
-            kelvin, heating = _heated(kelvin, torque * speed, points.log.sensors.film_heating)
         run = points.column("run").astype(np.intp)
         # a file for each dwell is ordered by its name, a table as it was typed
         unordered = isinstance(points.log, MeansTable) or np.unique(run).size > run.size // 2
+        visit = _stays(run, group) if unordered else _visits(run, kelvin)
+        heating = np.empty(0)
+        if kelvin is not None and points.log.sensors.film_heating:  # visits are stays of what is read
+            kelvin, heating = _heated(kelvin, torque * speed, points.log.sensors.film_heating)
         by_run = np.unique(run).size >= MANY_RUNS
         zero = np.zeros_like(speed)
         reference = float(np.exp(np.mean(np.log(speed))))
@@ -80,7 +81,7 @@ class Observations:
             speed_error=points.column("speed_error") / speed,
             temperature_error=zero if kelvin is None else points.column("temperature_error"),
             tare=points.tare_errors / points.column("torque")[:, None],
-            visit=_stays(run, group) if unordered else _visits(run, kelvin),
+            visit=visit,
             run=run,
             cluster=run if by_run else _levels(run, group, speed),
             clustered_by="run" if by_run else "level",
