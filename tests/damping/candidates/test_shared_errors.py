@@ -199,6 +199,12 @@ def test_groups_are_visits_of_several_dwells_and_runs_of_several_visits() -> Non
     assert groupings(replace(each, run=np.zeros(len(data), dtype=np.intp))) == ()
 
 
+def test_without_temperatures_what_dwells_share_is_that_of_their_run() -> None:
+    data = visited(None, visits=3, runs=[0, 1, 2])
+    assert [g.name for g in groupings(data)] == ["run"]
+    assert [g.name for g in groupings(visited([363.0, 393.0, 423.0], runs=[0, 1, 2]))] == ["visit"]
+
+
 def test_visits_are_stays_whatever_they_differ_by() -> None:
     one_run = np.zeros(6, dtype=np.intp)
     close = np.array([373.0, 373.2, 377.0, 377.1, 381.0, 380.8])  # three stays 4 K apart

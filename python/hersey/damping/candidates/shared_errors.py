@@ -38,11 +38,14 @@ class Grouping:
 
 
 def groupings(data: Observations) -> tuple[Grouping, ...]:
-    """Return the groups of dwells that may share an error: visits, and runs of several."""
-    visits = _indicator(data.visit)
-    out = [Grouping("visit", visits)] if np.count_nonzero(visits.sum(axis=0) > 1) >= 2 else []
-    runs = _indicator(data.run)
+    """Return the groups of dwells that may share an error: visits, and runs of several.
+
+    Without temperatures nothing but runs parts visits, and they are called so.
+    """
+    visits, runs = _indicator(data.visit), _indicator(data.run)
     per_run = np.unique(np.column_stack([data.run, data.visit]), axis=0).shape[0] / runs.shape[1]
+    name = "run" if data.inputs.kelvin is None and per_run == 1 else "visit"
+    out = [Grouping(name, visits)] if np.count_nonzero(visits.sum(axis=0) > 1) >= 2 else []
     if runs.shape[1] > 2 and per_run >= 2:
         out.append(Grouping("run", runs))
     return tuple(out)
