@@ -20,7 +20,8 @@ from hersey.damping.surface import SCALES, DampingSurface
 class Rising:
     """The dwells above the transition, all where there is none, and one power law fitted to them.
 
-    ``fit`` and ``lack_of_fit`` are None, and ``why_not`` says why, where the dwells are too few to tell.
+    ``fit`` and ``lack_of_fit`` are None, and ``why_not`` says why, where the dwells are too few to tell, or under
+    several loads.
     """
 
     data: Observations
@@ -37,6 +38,12 @@ def rising(points: SteadyPoints, surface: DampingSurface) -> Rising:
     It is bent if its exponent changes beyond chance, and by more than errors of the sensors explain.
     """
     data = _above(Observations.of(points), surface)
+    if loads := points.varying_load:
+        low, high = loads
+        why_not = (
+            f"the load varies from {low:.3g} to {high:.3g} N, and no law here has a load: take one at a time"
+        )
+        return Rising(data, None, None, None, False, why_not)
     thermal = None
     if surface.b is not None and data.reference_kelvin is not None:
         thermal = Thermal(SCALES[surface.temperature_scale], data.reference_kelvin)

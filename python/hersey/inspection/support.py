@@ -94,12 +94,13 @@ def support_of_points(points: SteadyPoints, *, temperature_scale: str = "degC") 
     kelvin = points.column("temperature") if log.has_temperature else None
     groups = [] if kelvin is None else list(groups_of_temperature(kelvin))
     levels = () if kelvin is None else tuple(float(np.mean(kelvin[group])) for group in groups)
+    fitted = _fitted(_comparable(points, len(groups)), temperature_scale)
     can: list[str] = []
     cannot: list[str] = []
     for says in (
         _speed(speed),
-        _temperature(levels, points),
-        _branches(points, groups or [np.arange(speed.size)], speed, temperature_scale),
+        _temperature(levels, points, fitted),
+        _branches(points, groups or [np.arange(speed.size)], speed, fitted),
         *(() if isinstance(log, MeansTable) else (_approach(points), _tare(points))),
     ):
         can += says[0]
@@ -117,6 +118,14 @@ def support_of_points(points: SteadyPoints, *, temperature_scale: str = "degC") 
 Said = tuple[list[str], list[str]]
 
 
+def _fitted(points: SteadyPoints, scale: str) -> DampingSurface | str:
+    """The surface that a fit gives, or why there is none."""
+    try:
+        return fit(points, temperature_scale=scale)
+    except InsufficientDataError as error:
+        return str(error)
+
+
 def _speed(speed: FloatArray) -> Said:
     count, low, high = distinct_speeds(speed), float(speed.min()), float(speed.max())
     span = f"{rpm(low):.3g} to {rpm(high):.3g} rpm"
@@ -129,7 +138,7 @@ def _speed(speed: FloatArray) -> Said:
     return [f"exponent c of speed: {count} speeds, {span}"], []
 
 
-def _temperature(levels: tuple[float, ...], points: SteadyPoints) -> Said:
+def _temperature(levels: tuple[float, ...], points: SteadyPoints, fitted: DampingSurface | str) -> Said:
     if not levels:
         return [], ["anything of temperature: none was recorded"]
     temperatures = _levels(levels)
@@ -142,6 +151,14 @@ def _temperature(levels: tuple[float, ...], points: SteadyPoints) -> Said:
         span = f"only {levels[-1] - levels[0]:.0f} K ({temperatures})"
         return [], [f"exponent b of temperature, well: the dwells span {span}; go beyond 30 K"]
     can, cannot = [f"exponent b of temperature: {len(levels)} temperatures, {temperatures}"], []
+    if isinstance(fitted, DampingSurface) and fitted.b is not None and not fitted.b.told:
+        can, cannot = (
+            [],
+            [
+                f"how far exponent b of temperature may be off: {temperatures} were visited once each; visit one "
+                "again, or record another"
+            ],
+        )
     laws = "which law of temperature holds (power, Arrhenius, VFT)"
     if len(levels) > 3:
         can.append(laws)
@@ -150,14 +167,17 @@ def _temperature(levels: tuple[float, ...], points: SteadyPoints) -> Said:
     return can, cannot
 
 
-def _branches(points: SteadyPoints, groups: list[NDArray[np.intp]], speed: FloatArray, scale: str) -> Said:
+def _branches(
+    points: SteadyPoints,
+    groups: list[NDArray[np.intp]],
+    speed: FloatArray,
+    surface: DampingSurface | str,
+) -> Said:
     most = max(distinct_speeds(speed[group]) for group in groups)
     few = f"at most {most} speed{'s' if most > 1 else ''} at one temperature"
     too_few = [f"a transition: {few}; two branches need {BRANCH_SPEEDS} or more"]
-    try:
-        surface = fit(_comparable(points, len(groups)), temperature_scale=scale)
-    except InsufficientDataError as error:
-        return [], too_few if most < BRANCH_SPEEDS else [f"a transition: {error}"]
+    if isinstance(surface, str):
+        return [], too_few if most < BRANCH_SPEEDS else [f"a transition: {surface}"]
     if most < BRANCH_SPEEDS and surface.transition is None:
         return _one_exponent(points, surface, too_few)
     if surface.transition is None:

@@ -78,12 +78,6 @@ def explained(points: SteadyPoints, surface: DampingSurface, hypotheses: tuple[H
         From `regimes.judged`, for the surface's exponent.
     """
     films = [h for h in hypotheses if h.consistent]
-    if loads := points.varying_load:
-        low, high = loads
-        why = (
-            f"the load varies from {low:.3g} to {high:.3g} N, and no law here has a load: take one at a time"
-        )
-        return Explained(None, _alone(films), None, why)
     branch = rising(points, surface)
     if branch.fit is None or branch.lack_of_fit is None:
         return Explained(None, _alone(films), None, branch.why_not)
