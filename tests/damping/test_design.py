@@ -11,10 +11,11 @@ from hersey.damping.candidates import ModelComparison, compare_models
 from hersey.damping.candidates.branched import HELD, ONE, Law
 from hersey.damping.candidates.candidate import Candidate
 from hersey.damping.candidates.fitting import fit_law
-from hersey.damping.candidates.thermal import ARRHENIUS, Thermal
+from hersey.damping.candidates.thermal import ARRHENIUS, KELVIN, Thermal
 from hersey.damping.design import design
 from hersey.errors import ParameterError
 from tests.damping.candidates.test_comparison import REFERENCE, SPEEDS, TEMPERATURES, dwells
+from tests.damping.candidates.test_shared_errors import visited
 
 STRAIGHT = Law(Thermal(ARRHENIUS, REFERENCE), ONE)
 
@@ -113,3 +114,19 @@ def test_the_design_is_one_document(bent: ModelComparison) -> None:
     assert "rpm at" in text
     assert "standard error" in text
     assert fit_law(STRAIGHT, bent.data).freedom > 0
+
+
+def test_a_dwell_more_takes_away_no_error_that_the_others_share() -> None:
+    """Visits that stand off the law leave the level open, whatever a single dwell is good for."""
+    data = visited([363.0, 383.0, 403.0, 423.0, 443.0, 453.0], between=0.03, within=0.002, seed=2)
+    found = compare_models(data, candidates=(Candidate(KELVIN, ONE),), bootstrap=0, cross_validate=False)
+    fit = found.chosen.fit
+    assert fit.shared[0].deviation > 5.0 * fit.scatter
+    proposed = design(found, count=2, quantity="damping at reference")
+    assert proposed.error_now is not None
+    first, second = (p.error for p in proposed.points)
+    assert first is not None
+    assert second is not None
+    # one visit beside six: by 1/6 of the variance and what its temperature adds
+    assert 0.85 * proposed.error_now < first < proposed.error_now
+    assert 0.85 * first < second < first

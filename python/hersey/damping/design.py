@@ -3,7 +3,8 @@
 D-optimal points make the volume of the joint confidence region of all parameters least; c-optimal points make
 the variance of one quantity least. Points are added one at a time, each the best given those before it
 (Fedorov's exchange, additions only). As a law with a corner is not smooth in where it bends, the gain is
-averaged over draws of the fit.
+averaged over draws of the fit. No dwell more takes away what those measured share: each further one is taken
+as a visit of its own.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hersey.arrays import FloatArray
+from hersey.damping.candidates.fitting import LawFit
 from hersey.damping.candidates.intervals import Quantity, quantities
 from hersey.damping.candidates.model_comparison import ModelComparison
 from hersey.damping.candidates.observations import Inputs
@@ -123,9 +125,10 @@ def design(
     wanted = _wanted(comparison, quantity)
     candidates = _dwells_to_try(comparison, speeds, temperatures)
     values = _draws(comparison, seed)
-    sigma = float(np.sqrt(fit.scatter**2 + np.median(fit.errors) ** 2 + 1e-20))
+    shared = sum(s.deviation**2 for s in fit.shared)  # each further dwell is a visit of its own
+    sigma = float(np.sqrt(fit.scatter**2 + shared + np.median(fit.errors) ** 2 + 1e-20))
     rows = np.stack([fit.law.jacobian(v, candidates) / sigma for v in values])
-    measured = np.stack([fit.law.jacobian(v, data.inputs) / fit.sigma[:, None] for v in values])
+    measured = np.stack([_beside_shared(fit, fit.law.jacobian(v, data.inputs)) for v in values])
     information = np.einsum("kni,knj->kij", measured, measured)
     scale = np.sqrt(np.diag(fit.covariance))
     if not np.all(np.isfinite(scale)) or np.any(scale <= 0):
@@ -151,9 +154,17 @@ def design(
         picked.append(DesignPoint(speed, kelvin, error, volume))
     now = None
     if wanted is not None:
-        now = float(np.sqrt(fit.covariance[wanted.parameter, wanted.parameter])) * _slope(comparison, wanted)
+        now = fit.error(fit.law.names[wanted.parameter]) * _slope(comparison, wanted)
     name, unit = (wanted.name, wanted.unit) if wanted else ("", "")
     return TestDesign(name, unit, now, tuple(picked), comparison.chosen.candidate.name, seed)
+
+
+def _beside_shared(fit: LawFit, slopes: FloatArray) -> FloatArray:
+    """Derivatives (points, parameters) in standard errors, what shared errors explain taken off."""
+    modes = fit.disturbances.shape[1]
+    own = np.vstack([slopes / fit.sigma[:, None], np.zeros((modes, slopes.shape[1]))])
+    common = np.linalg.qr(np.vstack([fit.disturbances / fit.sigma[:, None], np.eye(modes)]))[0]
+    return np.asarray(own - common @ (common.T @ own))
 
 
 def _wanted(comparison: ModelComparison, quantity: str) -> Quantity | None:

@@ -20,8 +20,8 @@ from hersey.damping.surface import SCALES, DampingSurface
 class Rising:
     """The dwells above the transition, all where there is none, and one power law fitted to them.
 
-    ``fit`` and ``lack_of_fit`` are None, and ``why_not`` says why, where the dwells are too few to tell, or under
-    several loads.
+    ``fit`` and ``lack_of_fit`` are None, and ``why_not`` says why, where the dwells are too few to tell, or
+    have several loads.
     """
 
     data: Observations

@@ -152,13 +152,8 @@ def _temperature(levels: tuple[float, ...], points: SteadyPoints, fitted: Dampin
         return [], [f"exponent b of temperature, well: the dwells span {span}; go beyond 30 K"]
     can, cannot = [f"exponent b of temperature: {len(levels)} temperatures, {temperatures}"], []
     if isinstance(fitted, DampingSurface) and fitted.b is not None and not fitted.b.told:
-        can, cannot = (
-            [],
-            [
-                f"how far exponent b of temperature may be off: {temperatures} were visited once each; visit one "
-                "again, or record another"
-            ],
-        )
+        once = f"{temperatures} were visited once each; visit one again, or record another"
+        can, cannot = [], [f"how far exponent b of temperature may be off: {once}"]
     laws = "which law of temperature holds (power, Arrhenius, VFT)"
     if len(levels) > 3:
         can.append(laws)
