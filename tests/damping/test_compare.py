@@ -15,6 +15,7 @@ from hersey.damping.compare import compare
 from hersey.errors import InsufficientDataError
 from tests.conftest import shared
 from tests.damping.candidates.test_comparison import REFERENCE, dwells
+from tests.damping.candidates.test_shared_errors import visited
 
 LAW = Law(Thermal(ARRHENIUS, REFERENCE), HELD)
 VALUES = [0.1, 2.8, -0.7, -1.2, -0.9]
@@ -97,3 +98,19 @@ def test_two_screw_drives_differ() -> None:
     assert found.temperatures.size == 0
     assert "drive 2 drags" in found.verdict
     assert found.mean_ratio.low > 1.0 or found.mean_ratio.high < 1.0
+
+
+def test_two_visits_of_one_lubricant_are_not_two_lubricants() -> None:
+    """Two temperatures visited once: 3 % by visit pass for another energy, and no log tells that they may."""
+    a, b = (visited([363.0, 423.0], between=0.03, within=0.003, seed=seed) for seed in (1, 2))
+    found = compare(a, b, names=("new", "aged"))
+    assert [change.name for change in found.changes] == ["c"]
+    assert "in the visits recorded" in found.verdict
+    assert any(note.startswith("new and aged do not tell how far one visit") for note in found.notes)
+    again = [363.0, 423.0, 363.0, 423.0, 393.0]
+    a, b = (visited(again, between=0.03, within=0.003, seed=seed) for seed in (1, 2))
+    found = compare(a, b)
+    assert len(found.changes) == 2
+    assert not any(change.real for change in found.changes)
+    assert found.verdict.startswith("No difference")
+    assert not any("do not tell" in note for note in found.notes)

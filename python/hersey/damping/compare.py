@@ -3,7 +3,8 @@
 Both are given the candidate that describes them best together (least sum of AICc, the simplest unless a
 larger law is beyond doubt). The ratio of damping, B over A, is taken where both were measured; its interval
 is simultaneous over that range (Scheffe), so that a verdict of a difference anywhere in it is wrong in 5 %
-of cases at most.
+of cases at most. Where a log does not tell how far visits scatter, it is a difference of the visits recorded,
+and what hangs on temperature is not compared.
 """
 
 from __future__ import annotations
@@ -175,6 +176,7 @@ def compare(
     ratio, low, high = (
         np.exp(v).reshape(shape) for v in (difference, difference - reach, difference + reach)
     )
+    once = [name for name, r, c in zip(names, (of_a, of_b), (first, second), strict=True) if _once(r, c.data)]
     return LogComparison(
         candidate=of_a.candidate.name,
         speeds=speeds,
@@ -184,9 +186,22 @@ def compare(
         high=high,
         mean_ratio=mean,
         changes=changes,
-        verdict=_verdict(mean, low, high, changes, names),
-        notes=_notes(first, second, of_a),
+        verdict=_verdict(mean, low, high, changes, names, of_visits=bool(once)),
+        notes=(*_notes(first, second, of_a), *([_of_visits(once)] if once else [])),
         names=names,
+    )
+
+
+def _once(candidate: CandidateFit, data: Observations) -> bool:
+    """Whether a log does not tell how far visits scatter."""
+    return np.unique(data.visit).size == 1 or any(not shared.told for shared in candidate.fit.shared)
+
+
+def _of_visits(names: list[str]) -> str:
+    verb = "does" if len(names) == 1 else "do"
+    return (
+        f"{' and '.join(names)} {verb} not tell how far one visit to a temperature differs from the next: "
+        "limits are those of the visits recorded; record one again."
     )
 
 
@@ -276,6 +291,8 @@ def _changes(a: CandidateFit, b: CandidateFit, of_a: Observations, of_b: Observa
         if not energy and name not in _QUOTED and not name.startswith("c at"):
             continue
         p, q = in_a[name], in_b[name]
+        if any(r.fit.untold(r.fit.law.names[k.parameter]) for r, k in ((a, p), (b, q))):
+            continue
         u, v = float(a.fit.values[p.parameter]), float(b.fit.values[q.parameter])
         is_ratio = name.endswith("speed")
         values = p.of(u), q.of(v)
@@ -328,7 +345,13 @@ def _slope(of: Callable[[float], float], value: float, logarithmic: bool) -> flo
 
 
 def _verdict(
-    mean: Estimate, low: FloatArray, high: FloatArray, changes: tuple[Change, ...], names: tuple[str, str]
+    mean: Estimate,
+    low: FloatArray,
+    high: FloatArray,
+    changes: tuple[Change, ...],
+    names: tuple[str, str],
+    *,
+    of_visits: bool,
 ) -> str:
     a, b = names
     higher, lower = bool(np.any(low > 1.0)), bool(np.any(high < 1.0))
@@ -342,6 +365,8 @@ def _verdict(
     else:
         widest = max(float(np.max(high)) - 1.0, 1.0 - float(np.min(low)))
         said = f"No difference of damping is proven: any there is stays within {widest:.1%}"
+    if of_visits and (higher or lower):
+        said += ", in the visits recorded"
     real = [c.name for c in changes if c.real]
     if real:
         said += f"; also different: {', '.join(real)}"
