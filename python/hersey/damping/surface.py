@@ -23,7 +23,7 @@ from hersey import _core
 from hersey.arrays import FloatArray
 from hersey.damping.branches import Transition
 from hersey.damping.candidates.branched import HELD, ONE, Law, transition_exponent
-from hersey.damping.candidates.intervals import Band, band_of
+from hersey.damping.candidates.intervals import Band, band_of, of_one_dwell
 from hersey.damping.candidates.observations import Inputs
 from hersey.damping.candidates.shared_errors import Freedom, SharedScatter
 from hersey.damping.candidates.thermal import CELSIUS, KELVIN, Thermal, scaled_temperature
@@ -322,7 +322,7 @@ class DampingSurface(Result):
 
     @takes_si(speed="speed", temperature="temperature")
     def predict(self, speed: Any, temperature: Any = None) -> Band:
-        """Return torque with its 95 % limits: of the law, and of one further dwell.
+        """Return torque with its 95 % limits: of the law, and of one further dwell in a visit of its own.
 
         Parameters
         ----------
@@ -348,7 +348,8 @@ class DampingSurface(Result):
             kelvin = np.asarray(temperature, dtype=float)
             self._warn_outside("temperature", kelvin, self.temperature_range)
             speeds, kelvin = np.broadcast_arrays(speeds, kelvin)
-        dwell = float(np.hypot(self.statistics.scatter, self.statistics.dwell_error))
+        of_points = self.statistics
+        dwell = of_one_dwell(of_points.scatter, of_points.dwell_error, of_points.shared)
         inputs = self._inputs(speeds, kelvin)
         self._warn_untold()
         return band_of(self._law, self._law_values, self.freedoms, dwell, inputs)

@@ -28,6 +28,7 @@ from hersey.damping.candidates.likelihood import (
 from hersey.damping.candidates.stribeck import StribeckLaw
 from hersey.damping.candidates.thermal import ARRHENIUS, CELSIUS, VFT, Thermal
 from tests.damping.candidates.test_comparison import LAWS, REFERENCE, SPEEDS, dwells
+from tests.damping.candidates.test_shared_errors import THERMAL, visited
 
 
 def test_the_density_integrates_to_one_and_is_normal_without_a_limit() -> None:
@@ -187,3 +188,16 @@ def test_likelihood_ratio_of_laws_within_laws_is_uniform() -> None:
     data = dwells(Law(Thermal(ARRHENIUS, REFERENCE), FREE), [0.1, 2.8, -0.7, -1.2, -0.9, -3.0])
     assert likelihood_ratio(fit_law(small, data), fit_law(large, data)) < 1e-6
     assert Law(Thermal(ARRHENIUS, REFERENCE), HELD).broken
+
+
+def test_limits_of_one_further_dwell_hold_it_in_another_visit() -> None:
+    kelvin = [363.0, 383.0, 403.0, 423.0, 443.0, 373.0, 393.0, 413.0]
+    random = np.random.default_rng(7)
+    inside = 0
+    for seed in range(40):
+        data = visited(kelvin, between=0.03, within=0.003, seed=seed)
+        found = band(fit_law(THERMAL, data), data.at(np.array([3.0]), np.array([REFERENCE])))
+        z = np.log(3.0 / data.reference_speed)
+        dwell = 0.1 + 0.3 * z + 0.03 * random.standard_normal() + 0.003 * random.standard_normal()
+        inside += bool(np.log(found.prediction[0][0]) < dwell < np.log(found.prediction[1][0]))
+    assert inside >= 35

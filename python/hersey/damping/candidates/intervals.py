@@ -25,7 +25,7 @@ from hersey.damping.candidates.branched import FREE, Law
 from hersey.damping.candidates.constant_plus import ConstantPlusLaw
 from hersey.damping.candidates.fitting import AnyLaw, LawFit, not_identified, resampled, search
 from hersey.damping.candidates.observations import Inputs, Observations
-from hersey.damping.candidates.shared_errors import Freedom
+from hersey.damping.candidates.shared_errors import Freedom, SharedScatter
 from hersey.damping.candidates.stribeck import StribeckLaw
 from hersey.damping.candidates.thermal import ARRHENIUS, VFT
 from hersey.damping.estimate import CONFIDENCE, quantile
@@ -74,7 +74,7 @@ class ParameterEstimate:
 
 @dataclass(frozen=True)
 class Band:
-    """Torque, N m, with 95 % limits: of the law, and of one further dwell."""
+    """Torque, N m, with 95 % limits: of the law, and of one further dwell in a visit of its own."""
 
     torque: FloatArray
     confidence: tuple[FloatArray, FloatArray]
@@ -171,8 +171,13 @@ def bootstrap_draws(fit: LawFit, data: Observations, count: int = 400, seed: int
 
 def band(fit: LawFit, inputs: Inputs) -> Band:
     """Return the torque of a fit at inputs, the median of what one would measure, with its limits."""
-    dwell = float(np.hypot(fit.scatter, np.median(fit.errors)))
+    dwell = of_one_dwell(fit.scatter, float(np.median(fit.errors)), fit.shared)
     return band_of(fit.law, fit.values, fit.freedoms, dwell, inputs)
+
+
+def of_one_dwell(scatter: float, error: float, shared: tuple[SharedScatter, ...]) -> float:
+    """Return the relative error of one further dwell, in a visit and a run of its own."""
+    return float(np.sqrt(scatter**2 + error**2 + sum(s.deviation**2 for s in shared)))
 
 
 def band_of(law: AnyLaw, values: FloatArray, freedom: Freedom, dwell: float, inputs: Inputs) -> Band:
