@@ -41,3 +41,21 @@ def test_no_exponent_holds_under_several_loads() -> None:
     found = support_of_points(several)
     assert why in found.cannot
     assert not any(said.startswith("one exponent") for said in found.can)
+
+
+def test_an_exponent_that_does_not_hold_says_nothing_of_where_torque_rises() -> None:
+    """Torque rises with speed where it is cold and falls where it is hot: no exponent is that of both."""
+    speed, hot = np.tile(np.geomspace(5.0, 200.0, 12), 2), np.repeat([90.0, 150.0], 12)
+    at = 40.0 * (hot / 100.0) ** 3
+    torque = hot**-0.9 * np.exp(0.3 * np.abs(np.log(speed / at)))
+    noise = 1.0 + 0.003 * np.random.default_rng(1).standard_normal(speed.size)
+    two = hersey.SteadyPoints.from_table(
+        {"speed [rpm]": speed, "torque [N*m]": torque * noise, "temperature [degC]": hot}
+    )
+    surface = hersey.fit(two)
+    assert surface.transition is None
+    assert surface.c.high < -1.0
+    assert not any("torque does not rise towards" in said for said in support_of_points(two).cannot)
+    said = regime(two, surface).verdict
+    assert said.startswith("No one exponent holds")
+    assert "Torque falls as speed rises where its exponent is below -1" in said

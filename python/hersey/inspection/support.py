@@ -14,7 +14,7 @@ from hersey.arrays import FloatArray
 from hersey.damping.dwells import SteadyPoints, distinct_speeds, groups_of_temperature
 from hersey.damping.estimate import Estimate
 from hersey.damping.fit import fit
-from hersey.damping.rising import rising
+from hersey.damping.rising import Rising, rising
 from hersey.damping.surface import DampingSurface
 from hersey.errors import InsufficientDataError
 from hersey.log.means import MeansTable
@@ -173,24 +173,28 @@ def _branches(
     too_few = [f"a transition: {few}; two branches need {BRANCH_SPEEDS} or more"]
     if isinstance(surface, str):
         return [], too_few if most < BRANCH_SPEEDS else [f"a transition: {surface}"]
+    branch = rising(_comparable(points, 0 if surface.b is None else 2), surface)
     if most < BRANCH_SPEEDS and surface.transition is None:
-        return _one_exponent(points, surface, too_few)
+        return _one_exponent(branch, too_few)
     if surface.transition is None:
-        return _one_exponent(points, surface, [f"a transition: {_without(surface)}"])
+        return _one_exponent(branch, [f"a transition: {_without(surface, branch)}"])
     at = surface.transition.speed
     said = f"a transition: torque falls, then rises, beyond doubt; {_in_rpm(at)}"
     if surface.reference_temperature is not None:
         said += f" at {_levels([surface.reference_temperature])}"
-    can, cannot = _one_exponent(points, surface, [])
+    can, cannot = _one_exponent(branch, [])
     return [said, *can], cannot
 
 
-def _without(surface: DampingSurface) -> str:
-    """Why there is no transition, and where one could lie."""
+def _without(surface: DampingSurface, branch: Rising) -> str:
+    """Why there is no transition, and where one could lie; an exponent that does not hold says neither."""
     low, high = (rpm(end) for end in surface.speed_range)
-    if surface.c.low > -1.0:
+    ends = [surface.c.low, surface.c.high]
+    if branch.bent and branch.lack_of_fit is not None:
+        ends += [*branch.lack_of_fit.local_exponents, *branch.lack_of_fit.by_temperature]
+    if min(ends) > -1.0:
         return f"torque rises from {low:.3g} rpm on; one could lie at slower speeds"
-    if surface.c.high < -1.0:
+    if max(ends) < -1.0:
         return f"torque does not rise towards {high:.3g} rpm; one could lie at faster speeds"
     return surface.rejected_transition
 
@@ -210,9 +214,8 @@ def _bare(recorded: tuple[Any, ...]) -> tuple[Any, ...]:
     return tuple(replace(each, temperature=None) for each in recorded)
 
 
-def _one_exponent(points: SteadyPoints, surface: DampingSurface, cannot: list[str]) -> Said:
+def _one_exponent(branch: Rising, cannot: list[str]) -> Said:
     """Whether one exponent of speed holds, above the transition if there is one."""
-    branch = rising(_comparable(points, 0 if surface.b is None else 2), surface)
     if branch.lack_of_fit is None:
         return [], [*cannot, branch.why_not]
     if branch.bent:

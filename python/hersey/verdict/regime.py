@@ -193,8 +193,10 @@ def _films(by: Explained) -> list[Explanation]:
 def _no_transition(surface: DampingSurface, by: Explained) -> str:
     if surface.c.high >= -1.0:
         return "No transition to a falling branch shows in these data."
-    ends = (surface.c.high,) if by.lack_of_fit is None else by.lack_of_fit.local_exponents
-    where = " over the whole range" if max(ends) < -1.0 else ""
+    lack = by.lack_of_fit
+    ends = (surface.c.high,) if lack is None else (*lack.local_exponents, *lack.by_temperature)
+    bent = " where its exponent is below -1" if lack is not None and lack.in_speed else ""
+    where = " over the whole range" if max(ends) < -1.0 else bent
     steep = ""
     if surface.c.value < STEEP:
         steep = " So steep a fall also comes from magnetic braking, a controller or heating."
