@@ -191,3 +191,14 @@ def test_what_holds_misses_nothing() -> None:
     assert not plain.holds
     one_of_many = replace(found, curvature=None)
     assert one_of_many.holds
+
+
+def test_a_law_without_temperature_does_not_hold_where_torque_varies_with_it() -> None:
+    data = dwells(THERMAL, [0.1, -2.4, -0.7])
+    found = lack_of_fit(fit_law(ISOTHERMAL, data), data)
+    assert found.temperature is not None
+    assert found.in_temperature
+    assert not found.holds
+    assert found.misses()[-1].startswith("torque varies with temperature as the law does not")
+    alike = dwells(ISOTHERMAL, [0.1, -0.7])
+    assert lack_of_fit(fit_law(ISOTHERMAL, alike), alike).holds

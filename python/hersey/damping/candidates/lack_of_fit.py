@@ -1,8 +1,8 @@
 """Whether a law holds at all: what its residuals still say of speed and temperature.
 
-Terms that the law has not are added to it in the logarithm, z^2 and z^3 in the speed, z s(T) for an exponent
-that varies with temperature and s(T)^2 for the law of temperature, each group tested by F against what is
-left when they are there. The errors are those of the fit, shared ones among them.
+Terms that the law has not are added to it in the logarithm, z^2 and z^3 in the speed, z t for an exponent
+that varies with temperature and t^2 for the law of temperature (t where the law has none), each group tested
+by F against what is left when they are there. The errors are those of the fit, shared ones among them.
 """
 
 from __future__ import annotations
@@ -78,7 +78,7 @@ class LackOfFit:
                 f"the hottest (p = {self.exponent_with_temperature:.1g})"
             )
         if self.in_temperature:
-            out.append(f"the law of temperature misses a bend (p = {self.temperature:.1g})")
+            out.append(f"torque varies with temperature as the law does not (p = {self.temperature:.1g})")
         return out
 
     @property
@@ -100,9 +100,11 @@ def lack_of_fit(fit: LawFit, data: Observations) -> LackOfFit:
     slow, fast = int(np.argmin(z)), int(np.argmax(z))
     ends = float(local[slow]), float(local[fast])
     kelvin = data.inputs.kelvin
-    if fit.law.thermal is None or kelvin is None:
+    if kelvin is None or data.temperatures.size < 2:
         return LackOfFit(curvature, None, None, ends, (float(np.mean(local)),) * 2)
     warm = kelvin / float(np.mean(kelvin)) - 1.0
+    if fit.law.thermal is None:
+        return LackOfFit(curvature, None, _tested(fit, data, [warm])[0], ends, (float(np.mean(local)),) * 2)
     varying, tilt, values = _tested(fit, data, [z * warm])
     middle = float(np.mean(fit.law.slopes(values, data.inputs)[0])) - 1.0
     by_temperature = middle + float(tilt[0]) * float(warm.min()), middle + float(tilt[0]) * float(warm.max())
