@@ -266,6 +266,10 @@ def test_the_verdict_of_two_branches_in_words() -> None:
     assert hersey.regime(points, gradual).verdict.startswith(
         "Above 20 rpm [18, 22], where torque is least, torque rises with speed"
     )
+    erring = replace(surface, transition=replace(exact, speed=exact.speed.with_systematic(0.5 * RPM)))
+    assert hersey.regime(points, erring).verdict.startswith(
+        "Above 20 rpm [18, 22] (sensors +/- 0.5 rpm) torque"
+    )
 
 
 @pytest.mark.parametrize(

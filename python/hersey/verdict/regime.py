@@ -157,6 +157,7 @@ def _verdict(surface: DampingSurface, by: Explained) -> str:
     t = surface.transition
     where = f"{rpm(t.speed.value):.3g} rpm"
     where += f" [{rpm(t.speed.low):.3g}, {rpm(t.speed.high):.3g}]" if t.speed.told else " (interval not told)"
+    where += f" (sensors +/- {rpm(t.speed.systematic):.2g} rpm)" if t.speed.systematic else ""
     if surface.reference_temperature is not None:
         where += f" at {_degrees(surface.reference_temperature, surface.temperature_scale)}"
         where += " (higher when hotter)" if t.temperature_exponent > 0 else ""
