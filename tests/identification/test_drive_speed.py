@@ -119,3 +119,13 @@ def test_a_model_that_misses_the_laps_buys_no_better_fit_with_another_speed() ->
     fit = DriveFit(mean_waveform(given), given, {"mass": 1.3}, "stiction")
     assert fit.misfit > 0.01
     assert abs(np.log(fit.parameters(fit.values)["drive_speed"])) < fit.stated_error
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize(
+    ("value", "words"), [(0.0, "drive_speed is 0"), (np.nan, "drive_speed holds 0 numbers")]
+)
+def test_a_channel_of_a_drive_that_stands_or_without_numbers_is_refused(value: float, words: str) -> None:
+    times = np.linspace(0.0, 1.0, 100)
+    with pytest.raises(ParameterError, match=words):
+        cycles(times, np.sin(40.0 * times), drive_speed=np.full(times.size, value))

@@ -310,12 +310,15 @@ def _driven(
         raise ParameterError(
             f"drive_speed has the shape {speed.shape} and time {shape}: give a number or equal lengths"
         )
-    means = np.array([np.nanmean(part) for part in np.array_split(speed, _PARTS)])
+    held = speed[np.isfinite(speed)]
+    if held.size < _PARTS:
+        raise ParameterError(f"drive_speed holds {held.size} numbers: give a number, or a channel of it")
+    means = np.array([np.mean(part) for part in np.array_split(held, _PARTS)])
     mean = float(np.mean(means))
-    if stated is None:
+    if stated is None and mean:
         error = float(np.std(means, ddof=1)) / float(np.sqrt(_PARTS))
         stated = DRIVE_SPEED_UNCERTAINTY + quantile(_PARTS - 1) * error / abs(mean)
-    return mean, stated
+    return mean, DRIVE_SPEED_UNCERTAINTY if stated is None else stated
 
 
 def _stretch(samples: Samples, drive_speed: float | None) -> Samples:
