@@ -62,3 +62,11 @@ def test_a_transition_that_moves_does_not_tell_how_far_two_visits_scatter() -> N
         assert surface.transition is not None
         assert surface.b is not None
         assert not surface.b.told
+
+
+def test_two_runs_at_one_temperature_are_too_few_and_no_law_takes_them_up() -> None:
+    speed, run = np.tile(SPEEDS, 2), np.repeat([1, 2], SPEEDS.size)
+    torque = 2.0 * speed**0.3 * np.resize(NOISE, speed.size) * np.where(run == 1, 1.0, 1.05)
+    table = {"speed [rpm]": speed, "torque [N*m]": torque, "run": run}
+    said = hersey.fit(hersey.SteadyPoints.from_table(table)).summary()
+    assert "by the dwells of a run: not told, they are too few, or" in said

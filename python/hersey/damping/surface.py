@@ -504,7 +504,8 @@ def _variable(name: str, e: Estimate) -> str:
 
 def _shared_text(shared: SharedScatter) -> str:
     if not shared.told:
-        return f"by the dwells of a {shared.name}: not told, the law takes up all differences between them"
+        few = "too few, or the law takes up what they differ by"
+        return f"by the dwells of a {shared.name}: not told, they are {few}"
     return f"{shared.deviation:.3%} by the dwells of a {shared.name} (p = {shared.p_value:.2g} for none)"
 
 
