@@ -27,10 +27,10 @@ def staircase(seed: int, size: float) -> tuple[np.ndarray, np.ndarray, np.ndarra
     return speed, torque, level
 
 
-def all_dwells(speed: np.ndarray, torque: np.ndarray) -> list[tuple[Run, int, int]]:
+def all_dwells(speed: np.ndarray, torque: np.ndarray) -> list[tuple[Run, int, int, float]]:
     count = round(SECONDS / DT)
     run = Run("run", np.arange(speed.size) * DT, torque, speed, None)
-    return [(run, i * count, (i + 1) * count) for i in range(len(STEPS))]
+    return [(run, i * count, (i + 1) * count, 0.0) for i in range(len(STEPS))]
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -38,7 +38,7 @@ def test_a_tail_lost_in_the_noise_of_one_dwell_is_cut_from_all(seed: int) -> Non
     speed, torque, level = staircase(seed, SIZE)
     assert 0.4 <= common_settling(all_dwells(speed, torque)) <= 2.0
     off = log_of(speed, torque, dt=DT).steady().column("torque") / level - 1.0
-    kept = [np.mean(torque[start + 10 : end - 10]) for _, start, end in all_dwells(speed, torque)]
+    kept = [np.mean(torque[start + 10 : end - 10]) for _, start, end, _ in all_dwells(speed, torque)]
     assert abs(np.mean(off[1:])) < 0.5 * abs(np.mean(np.array(kept[1:]) / level[1:] - 1.0))
 
 
@@ -46,6 +46,13 @@ def test_noise_alone_hardly_ever_settles() -> None:
     cut = [common_settling(all_dwells(*staircase(seed, 0.0)[:2])) for seed in range(40)]
     assert sum(c > 0.0 for c in cut) <= 4
     assert max(cut) <= 0.1 * SECONDS
+
+
+def test_the_tare_is_no_part_of_the_level() -> None:
+    speed, torque, _ = staircase(1, SIZE)
+    plain = all_dwells(speed, torque)
+    off = [(run, start, end, -2.0) for run, start, end, _ in all_dwells(speed, torque - 2.0)]
+    assert common_settling(off) == common_settling(plain) > 0.0
 
 
 def test_a_few_dwells_have_no_settling_in_common() -> None:

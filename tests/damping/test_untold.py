@@ -28,6 +28,7 @@ def test_limits_of_two_visits_say_that_they_are_those_of_these_visits() -> None:
     assert not surface.b.told
     assert surface.c.told
     assert "interval not told" in surface.summary()
+    assert "by the dwells of a visit: not told, they are too few" in surface.summary()
     with pytest.warns(UntoldWarning, match="visits recorded"):
         surface.predict("20 rpm", "120 degC")
     with pytest.warns(UntoldWarning):
@@ -64,9 +65,13 @@ def test_a_transition_that_moves_does_not_tell_how_far_two_visits_scatter() -> N
         assert not surface.b.told
 
 
-def test_two_runs_at_one_temperature_are_too_few_and_no_law_takes_them_up() -> None:
+def test_two_runs_without_temperatures_tell_by_how_much_they_stand_apart() -> None:
     speed, run = np.tile(SPEEDS, 2), np.repeat([1, 2], SPEEDS.size)
     torque = 2.0 * speed**0.3 * np.resize(NOISE, speed.size) * np.where(run == 1, 1.0, 1.05)
     table = {"speed [rpm]": speed, "torque [N*m]": torque, "run": run}
-    said = hersey.fit(hersey.SteadyPoints.from_table(table)).summary()
-    assert "by the dwells of a run: not told, they are too few, or" in said
+    surface = hersey.fit(hersey.SteadyPoints.from_table(table))
+    (shared,) = surface.statistics.shared
+    assert (shared.name, shared.told) == ("run", True)
+    assert shared.deviation == pytest.approx(np.log(1.05) / 2**0.5, rel=0.1)
+    assert surface.a.low < 2.0 * (30 / np.pi) ** 0.3 * 1.025 < surface.a.high
+    assert surface.a.high > 1.2 * surface.a.value  # one degree of freedom

@@ -132,9 +132,10 @@ def measured_film(
     radius, nip = contact.roll_radius, film.nip
     load, width = _loaded(points, contact, nip.width)
     thickness = film.viscosity * width * contact.length * speed * radius**2 / torque
-    relative = quantile(surface.freedom) * np.hypot(
-        points.column("torque_error") / torque, surface.statistics.scatter
-    )
+    variance = (points.column("torque_error") / torque) ** 2 + surface.statistics.scatter**2
+    variance += np.sum(points.tare_errors**2, axis=1) / torque**2
+    variance += sum(shared.deviation**2 for shared in surface.statistics.shared)
+    relative = quantile(surface.freedom) * np.sqrt(variance)
     shares = [share for share in (lubricant.uncertainty, contact.nip_uncertainty) if share is not None]
     systematic = float(np.exp(np.sqrt(sum(np.log1p(share) ** 2 for share in shares))))
     reach = np.exp(np.hypot(relative, np.log(systematic)))

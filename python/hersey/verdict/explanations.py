@@ -91,7 +91,7 @@ def explained(points: SteadyPoints, surface: DampingSurface, hypotheses: tuple[H
         n = 1.0 + surface.c.value
         words = f"{_WORDS[THINNING]} (as shear rate to the power {n:.2f}) in a film of fixed thickness"
         listed.append(Explanation(THINNING, words))
-    if too_few:
+    if too_few and not beside:
         listed.append(Explanation(UNTRIED, _WORDS[UNTRIED]))
     if (bent and lack.drift <= 0) or not listed:
         listed += _bending(lack, bent, surface)

@@ -205,6 +205,17 @@ def test_without_temperatures_what_dwells_share_is_that_of_their_run() -> None:
     assert [g.name for g in groupings(visited([363.0, 393.0, 423.0], runs=[0, 1, 2]))] == ["visit"]
 
 
+def test_two_runs_without_a_law_of_temperature_tell_how_far_they_stand_apart() -> None:
+    """Of the level; with one, two visits may lie close by chance and tell nothing."""
+    held = 0
+    for seed in range(20):
+        fit = fit_law(ISOTHERMAL, visited(None, visits=2, between=0.03, seed=seed))
+        assert fit.shared[0].told
+        level = fit.estimate("level")
+        held += level.low <= VALUES[None][0] <= level.high
+    assert held >= 17
+
+
 def test_visits_are_stays_whatever_they_differ_by() -> None:
     one_run = np.zeros(6, dtype=np.intp)
     close = np.array([373.0, 373.2, 377.0, 377.1, 381.0, 380.8])  # three stays 4 K apart

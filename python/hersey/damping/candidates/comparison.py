@@ -91,6 +91,8 @@ def compare_models(
     by_aicc = ranked(fits, data, cross_validate)
     chosen = choose(by_aicc)
     draws = bootstrap_draws(chosen.fit, data, bootstrap, seed) if bootstrap else None
+    if draws is not None and not draws.size:
+        draws, bootstrap = None, 0
     return ModelComparison(
         candidates=by_aicc,
         refused=tuple(refused),

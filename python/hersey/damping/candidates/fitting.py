@@ -37,6 +37,8 @@ AnyLaw = Law | StribeckLaw | ConstantPlusLaw
 _ROUNDS = 8
 #: Relative error assumed of a dwell while the search for a start goes on.
 _FIRST_SCATTER = 0.03
+#: Resamples tried for one that holds every temperature.
+_MOST_TRIES = 300
 #: Largest number of parts in which data are left out in turn.
 MOST_FOLDS = 40
 
@@ -72,7 +74,7 @@ class LawFit:
     @property
     def parameters(self) -> int:
         """How many numbers were fitted, the scatters among them."""
-        return int(self.values.size + 1 + sum(s.deviation > 0 for s in self.shared))
+        return int(self.values.size + 1 + len(self.shared))
 
     @property
     def aicc(self) -> float:
@@ -316,7 +318,10 @@ def left_out(fit: LawFit, data: Observations) -> FloatArray:
 
 
 def resampled(fit: LawFit, data: Observations, count: int, seed: int) -> FloatArray:
-    """Return values fitted to data drawn cluster by cluster with replacement, shape (count, parameters)."""
+    """Return values fitted to data drawn cluster by cluster with replacement, shape (count, parameters).
+
+    None, shape (0, parameters), where hardly a draw holds all the temperatures that the law has exponents of.
+    """
     random = np.random.default_rng(seed)
     clusters = [np.flatnonzero(data.cluster == label) for label in np.unique(data.cluster)]
     starts = [np.append(fit.values, fit.effects)]
@@ -329,7 +334,7 @@ def resampled(fit: LawFit, data: Observations, count: int, seed: int) -> FloatAr
     draws = np.empty((count, fit.values.size))
     groups = getattr(fit.law, "groups", 1)
     for row in range(count):
-        while True:
+        for _ in range(_MOST_TRIES):
             sample = np.concatenate(
                 [clusters[i] for i in random.integers(0, len(clusters), len(clusters))]
             ).astype(np.intp)
@@ -337,6 +342,8 @@ def resampled(fit: LawFit, data: Observations, count: int, seed: int) -> FloatAr
                 groups == 1 or np.unique(data.inputs.group[sample]).size == groups
             ):
                 break
+        else:
+            return np.empty((0, fit.values.size))
         refit = partial(
             search,
             fit.law,

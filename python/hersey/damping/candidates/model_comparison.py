@@ -138,7 +138,8 @@ def _summary(comparison: ModelComparison) -> str:
     for parameter in comparison.parameters:
         lines += _parameter_lines(parameter)
     counted = f"{comparison.bootstrap} resampled fits by {data.clustered_by}, seed {comparison.seed}"
-    lines.append(f"    (bootstrap: {counted if comparison.bootstrap else 'not asked for'})")
+    none = "none: not asked for, or hardly a resample holds every temperature"
+    lines.append(f"    (bootstrap: {counted if comparison.bootstrap else none})")
     lines.append(f"    {comparison.orthogonal.verdict}")
     if data.inputs.kelvin is not None:
         lines += ["[[Activation energy]]", *(f"    {line}" for line in comparison.energies.lines())]

@@ -19,7 +19,8 @@ from scipy import optimize, stats
 from hersey.arrays import FloatArray, IntArray
 from hersey.damping.candidates.observations import Observations
 
-#: Groups that tell how far groups scatter: two may lie close by chance, and would show none.
+#: Groups that tell how far groups scatter, where a law of temperature is fitted to them too: two may lie
+#: close by chance, and would show none.
 FEWEST_GROUPS = 3
 #: Share of a contrast between groups that the law must leave. Of what it all but takes up (small changes of
 #: temperature within a visit, a transition that moves with temperature) too little is left to show a scatter:
@@ -116,7 +117,11 @@ def shared_scatter(
         others = tuple(g for i, g in enumerate(grouped) if i != number)
         rest = tuple(s for i, s in enumerate(out) if i != number)
         held = disturbances(data, others, rest, by_heat)
-        out[number] = _restricted(grouping, slopes, held, residuals, sigma)
+        fewest = FEWEST_GROUPS if np.any(by_heat) else 2
+        if grouping.member.shape[1] < fewest:
+            out[number] = SharedScatter(grouping.name, 0.0, 1.0, told=False)
+        else:
+            out[number] = _restricted(grouping, slopes, held, residuals, sigma)
     return tuple(out)
 
 
@@ -144,7 +149,7 @@ def _restricted(
     spread, axes = np.linalg.eigh(groups.T @ groups)
     seen = spread > _LEFT * float(np.max(np.sum(whole**2, axis=0)))
     spread, along = spread[seen], (axes.T @ (groups.T @ rest))[seen]
-    if not spread.size or grouping.member.shape[1] < FEWEST_GROUPS:
+    if not spread.size:
         return SharedScatter(grouping.name, 0.0, 1.0, told=False)
     between = float(np.sum(along**2 / spread))
     freedom = residuals.size - basis.shape[1] + modes - spread.size

@@ -166,12 +166,11 @@ class _Reduction:
     def _settling(self, dwells: list[Dwell]) -> dict[str, float]:
         """How long dwells take to settle, s, by the way in which their speed was come to."""
         calm = [d for d in dwells if not d.segment.ripple]
-        return {
-            way: common_settling(
-                [(self.log.runs[d.run], d.segment.start, d.end) for d in calm if d.approach == way]
-            )
-            for way in dict.fromkeys(d.approach for d in calm)
-        }
+        tares = self._tares(self._middles([(d.run, d.start, d.end) for d in calm])).tolist()
+        ways: dict[str, list[tuple[Run, int, int, float]]] = {}
+        for d, tare in zip(calm, tares, strict=True):
+            ways.setdefault(d.approach, []).append((self.log.runs[d.run], d.segment.start, d.end, tare))
+        return {way: common_settling(held) for way, held in ways.items()}
 
     def _noise(self, dwells: list[Dwell]) -> SharedNoise | None:
         """The noise of the dwells, without the drifts that are more than it."""

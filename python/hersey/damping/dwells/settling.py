@@ -47,21 +47,22 @@ def settled(run: Run, segment: Segment, noise: SharedNoise | None = None) -> tup
     return segment.start + cut * size, segment.end - last * size
 
 
-def common_settling(dwells: list[tuple[Run, int, int]]) -> float:
-    """Return how long dwells (run, first row, row after the last) take to settle, s; 0 if they show nothing.
+def common_settling(dwells: list[tuple[Run, int, int, float]]) -> float:
+    """Return how long dwells take to settle, s; 0 if they show nothing.
 
-    The rows are all that the speed was held, settling included.
+    Each is a run, the first row and that after the last at which the speed was held, settling included, and
+    the tare of its torque, N m.
     """
-    lasting = [run.time[end - 1] - run.time[start] for run, start, end in dwells]
+    lasting = [run.time[end - 1] - run.time[start] for run, start, end, _ in dwells]
     if len(dwells) < FEWEST:
         return 0.0
     shown = float(np.quantile(lasting, 1.0 - LONG_ENOUGH))
     long = [dwell for dwell, time in zip(dwells, lasting, strict=True) if time >= shown]
-    step = max(shown / STEPS, *(run.sampling_interval for run, _, _ in long))
+    step = max(shown / STEPS, *(run.sampling_interval for run, *_ in long))
     count = int(shown / step)
     if count < 8 or len(long) < FEWEST:
         return 0.0
-    each = np.array([_beside_level(run, start, end, step, count) for run, start, end in long])
+    each = np.array([_beside_level(*dwell, step, count) for dwell in long])
     dropped = 0
     while dropped < count // 2 and (wide := _still_settling(each[:, dropped:])):
         dropped += wide
@@ -80,10 +81,10 @@ def _still_settling(each: FloatArray) -> int:
     return 0
 
 
-def _beside_level(run: Run, start: int, end: int, step: float, count: int) -> FloatArray:
+def _beside_level(run: Run, start: int, end: int, tare: float, step: float, count: int) -> FloatArray:
     """Torque over its level in the second half of a dwell, in steps of time from its start."""
     since = run.time[start:end] - run.time[start]
-    torque = run.torque[start:end]
+    torque = run.torque[start:end] - tare
     level = float(np.mean(torque[torque.size // 2 :]))
     bins = np.minimum((since / step).astype(np.intp), count)
     rows = np.bincount(bins, minlength=count + 1)[:count]
