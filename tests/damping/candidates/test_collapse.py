@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy import stats
@@ -244,3 +246,22 @@ def test_what_is_no_list_of_logarithms_is_refused() -> None:
                 match=r"^a Hersey number or a friction is not positive: its logarithm has no meaning$",
             ):
                 hersey_collapse(*pair, np.repeat([0, 1], 3))
+
+
+def test_temperatures_that_stand_off_as_whole_visits_do_are_not_said_to_part() -> None:
+    """Each visit some per cent off, the same Stribeck curve underneath: the curves are not to blame."""
+    exact = dwells(Law(Thermal(KELVIN, REFERENCE), FREE), [0.1, 3.2, -0.6, -1.6, 0.0, -8.0], scatter=0.0)
+    group = exact.inputs.group
+
+    def judged(size: float, seed: int, shared: float) -> HerseyCollapse:
+        random = np.random.default_rng(seed)
+        off = size * random.standard_normal(4)[group] + 0.002 * random.standard_normal(group.size)
+        return temperature_collapse(replace(exact, log_torque=exact.log_torque + off), shared=shared)
+
+    alone = [judged(0.08, seed, 0.0) for seed in range(4)]
+    beside = [judged(0.08, seed, 0.08) for seed in range(4)]
+    assert [b.deviation for b in beside] == [a.deviation for a in alone]
+    assert any(a.collapses is False for a in alone)
+    assert all(b.collapses is not False for b in beside)
+    assert any("no more than whole visits scatter (8%)" in b.verdict for b in beside)
+    assert judged(0.5, 1, 0.05).collapses is False

@@ -78,8 +78,11 @@ def hersey_collapse(
     return _judged(x, y, group, np.empty(0), 0.0)
 
 
-def temperature_collapse(data: Observations) -> HerseyCollapse:
+def temperature_collapse(data: Observations, shared: float = 0.0) -> HerseyCollapse:
     """Judge the temperatures of a log: viscosity at each is whatever brings its curve nearest the others'.
+
+    ``shared`` is the relative scatter of whole visits: by so much a temperature stands off for no fault of
+    its curve.
 
     Raises
     ------
@@ -104,7 +107,7 @@ def temperature_collapse(data: Observations) -> HerseyCollapse:
     start = min(candidates, key=cost)
     optimum = optimize.fmin(cost, start, maxfun=3000, xtol=1e-5, ftol=1e-10, disp=False)
     shifts = np.append(0.0, np.asarray(optimum, dtype=np.float64))
-    return _judged(z + shifts[group], y, group, shifts, before)
+    return _judged(z + shifts[group], y, group, shifts, before, shared)
 
 
 def _require(group: IntArray) -> None:
@@ -116,7 +119,7 @@ def _require(group: IntArray) -> None:
 
 
 def _judged(
-    x: FloatArray, y: FloatArray, group: IntArray, shifts: FloatArray, before: float
+    x: FloatArray, y: FloatArray, group: IntArray, shifts: FloatArray, before: float, shared: float = 0.0
 ) -> HerseyCollapse:
     deviation, scatter, p_value = _deviation(x, y, group, fitted=max(shifts.size - 1, 0))
     overlap = _overlap(x, group)
@@ -126,6 +129,12 @@ def _judged(
         verdict = (
             f"Whether the curves collapse cannot be told: only {overlap:.0%} of the points share a Hersey "
             "number with another curve. Widen the range of speeds."
+        )
+    elif p_value < _CHANCE and max(NEGLIGIBLE, 0.5 * scatter) < deviation <= 2.0 * shared:
+        collapses = None
+        verdict = (
+            f"Whether the curves collapse cannot be told: they stand {deviation:.0%} (root mean square) off "
+            f"a common curve, no more than whole visits scatter ({shared:.0%})."
         )
     elif p_value < _CHANCE and deviation > max(NEGLIGIBLE, 0.5 * scatter):
         collapses = False

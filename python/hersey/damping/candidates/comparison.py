@@ -100,7 +100,7 @@ def compare_models(
         reasons=_reasons(by_aicc, chosen, data),
         parameters=estimates(chosen.fit, data, draws=draws),
         energies=_energies(by_aicc, chosen, data),
-        collapse=_collapse(data),
+        collapse=_collapse(data, chosen.fit),
         orthogonal=orthogonal_fit(chosen.fit, data),
         data=data,
         bootstrap=bootstrap,
@@ -216,8 +216,8 @@ def _energies(
     return activation_energies(None if best is None else best.fit, free, chosen.fit, data)
 
 
-def _collapse(data: Observations) -> HerseyCollapse | None:
+def _collapse(data: Observations, fit: LawFit) -> HerseyCollapse | None:
     try:
-        return temperature_collapse(data)
+        return temperature_collapse(data, float(np.sqrt(sum(s.deviation**2 for s in fit.shared))))
     except InsufficientDataError:
         return None
