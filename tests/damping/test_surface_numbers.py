@@ -172,19 +172,19 @@ def test_an_error_of_the_tare_moves_all_dwells_together() -> None:
 
 @pytest.mark.parametrize("thermal", [False, True])
 def test_aicc_by_hand(thermal: bool) -> None:
-    """Errors that explain all residuals leave no scatter, yet it is one of the numbers fitted."""
+    """Errors that explain all residuals leave no scatter, of dwells or visits; each is a number fitted."""
     if thermal:
         w, t, torque, errors = thermal_case()
         surface = hersey.fit(points_of(w, torque, t, errors))
     else:
         w, errors = SPEEDS, np.linspace(0.02, 0.04, 8)
         surface = hersey.fit(points_of(w, w**0.3 * np.exp(wave(8, 0.01)), error=errors))
-    n, k = w.size, 4 if thermal else 3
+    n, k = w.size, 5 if thermal else 3
     deviance = float(np.sum(np.log(2 * np.pi * errors**2) + (surface.residuals / errors) ** 2))
     assert surface.statistics.aicc == pytest.approx(
         deviance + 2 * k + 2 * k * (k + 1) / (n - k - 1), abs=0.15
     )
-    assert (surface.statistics.points, surface.statistics.variables) == (n, k - 1)
+    assert (surface.statistics.points, surface.statistics.variables) == (n, 3 if thermal else 2)
 
 
 def test_shares_of_variance_explained_by_hand() -> None:

@@ -62,7 +62,9 @@ def test_the_interval_of_the_film_holds_torque_scatter_viscosity_and_nip(
     statistics = surface.statistics
     t = stats.t.ppf(0.975, statistics.points - statistics.variables)
     torque = np.abs(points.column("torque"))
-    random = t * np.sqrt((points.column("torque_error") / torque) ** 2 + statistics.scatter**2)
+    relative = np.hypot(points.column("torque_error"), points.tare_error) / torque
+    visits = sum(shared.deviation**2 for shared in statistics.shared)
+    random = t * np.sqrt(relative**2 + statistics.scatter**2 + visits)
     stated = np.log(1.2) ** 2 + np.log(1.1) ** 2
     reach = np.exp(np.sqrt(random**2 + stated))
     np.testing.assert_allclose(measured.high / measured.thickness, reach, rtol=1e-12)
