@@ -152,12 +152,13 @@ def _disturbance(errors: Errors, stretches: _Stretches, rng: np.random.Generator
 
 
 def _traces(stretches: _Stretches, moving: Counts, torque: Array, plan: Plan) -> tuple[Array, Array]:
-    """True torque and speed (rpm) of every sample: each stretch begins with a ramp and a relaxation."""
+    """True torque and speed (rpm) of every sample: each change of speed is a ramp and a relaxation."""
     held = np.zeros(stretches.rpm.size)
     held[moving] = torque
     since = np.concatenate([np.arange(n) for n in stretches.samples]) / plan.rate
     part = np.clip(since / RAMP, 0.0, 1.0)
-    over = 1.0 + OVERSHOOT * np.exp(-since / SETTLING)
+    changed = np.append(True, np.diff(stretches.rpm) != 0)  # the fastest speed of up and down is one dwell
+    over = 1.0 + OVERSHOOT * np.exp(-since / SETTLING) * np.repeat(changed, stretches.samples)
     return _ramped(held, stretches, part) * over, _ramped(stretches.rpm, stretches, part)
 
 

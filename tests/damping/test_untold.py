@@ -63,6 +63,7 @@ def test_a_transition_that_moves_does_not_tell_how_far_two_visits_scatter() -> N
         assert surface.transition is not None
         assert surface.b is not None
         assert not surface.b.told
+        assert not surface.transition.speed.told
 
 
 def test_two_runs_without_temperatures_tell_by_how_much_they_stand_apart() -> None:

@@ -37,6 +37,9 @@ AnyLaw = Law | StribeckLaw | ConstantPlusLaw
 _ROUNDS = 8
 #: Relative error assumed of a dwell while the search for a start goes on.
 _FIRST_SCATTER = 0.03
+#: Variance of a value by a scatter of groups that is not told, over that by as much of dwells, that is
+#: little: groups may scatter several times as much as dwells.
+_LITTLE = 0.1
 #: Resamples tried for one that holds every temperature.
 _MOST_TRIES = 300
 #: Largest number of parts in which data are left out in turn.
@@ -98,7 +101,7 @@ class LawFit:
         """
         heat = name in ("e", "q", "at", "d") and self.law.thermal is not None
         moved = self.freedoms.moved_by_untold
-        if not heat or not moved.size or moved[self.law.index(name)] < 1.0:
+        if not heat or not moved.size or moved[self.law.index(name)] < _LITTLE:
             return ""
         return (
             "each temperature was visited once, and the law of temperature takes up every difference between "
