@@ -16,7 +16,7 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.damping.candidates.fitting import LawFit
-from hersey.damping.candidates.intervals import Quantity, quantities
+from hersey.damping.candidates.intervals import Quantity, of_one_dwell, quantities
 from hersey.damping.candidates.model_comparison import ModelComparison
 from hersey.damping.candidates.observations import Inputs
 from hersey.errors import InsufficientDataError, ParameterError
@@ -125,8 +125,8 @@ def design(
     wanted = _wanted(comparison, quantity)
     candidates = _dwells_to_try(comparison, speeds, temperatures)
     values = _draws(comparison, seed)
-    shared = sum(s.deviation**2 for s in fit.shared)  # each further dwell is a visit of its own
-    sigma = float(np.sqrt(fit.scatter**2 + shared + np.median(fit.errors) ** 2 + 1e-20))
+    # each further dwell is a visit of its own; of exact data it has no error
+    sigma = max(of_one_dwell(fit.scatter, float(np.median(fit.errors)), fit.shared), 1e-10)
     rows = np.stack([fit.law.jacobian(v, candidates) / sigma for v in values])
     measured = np.stack([_beside_shared(fit, fit.law.jacobian(v, data.inputs)) for v in values])
     information = np.einsum("kni,knj->kij", measured, measured)

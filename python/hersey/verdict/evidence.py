@@ -14,6 +14,7 @@ import numpy as np
 
 from hersey import _core
 from hersey.arrays import FloatArray
+from hersey.damping.candidates.shared_errors import shared_variance
 from hersey.damping.dwells import SteadyPoints, groups_of_temperature
 from hersey.damping.estimate import Estimate, quantile
 from hersey.damping.surface import DampingSurface
@@ -134,7 +135,7 @@ def measured_film(
     thickness = film.viscosity * width * contact.length * speed * radius**2 / torque
     variance = (points.column("torque_error") / torque) ** 2 + surface.statistics.scatter**2
     variance += np.sum(points.tare_errors**2, axis=1) / torque**2
-    variance += sum(shared.deviation**2 for shared in surface.statistics.shared)
+    variance += shared_variance(surface.statistics.shared)
     relative = quantile(surface.freedom) * np.sqrt(variance)
     shares = [share for share in (lubricant.uncertainty, contact.nip_uncertainty) if share is not None]
     systematic = float(np.exp(np.sqrt(sum(np.log1p(share) ** 2 for share in shares))))

@@ -27,6 +27,7 @@ from hersey.damping.candidates.lack_of_fit import lack_of_fit
 from hersey.damping.candidates.likelihood import EVIDENCE
 from hersey.damping.candidates.model_comparison import CandidateFit, ModelComparison
 from hersey.damping.candidates.observations import Observations
+from hersey.damping.candidates.shared_errors import shared_variance
 from hersey.damping.candidates.thermal import ARRHENIUS
 from hersey.damping.dwells import SteadyPoints
 from hersey.errors import InsufficientDataError, ParameterError
@@ -218,6 +219,6 @@ def _energies(
 
 def _collapse(data: Observations, fit: LawFit) -> HerseyCollapse | None:
     try:
-        return temperature_collapse(data, float(np.sqrt(sum(s.deviation**2 for s in fit.shared))))
+        return temperature_collapse(data, shared_variance(fit.shared) ** 0.5)
     except InsufficientDataError:
         return None

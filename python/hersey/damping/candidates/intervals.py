@@ -25,7 +25,7 @@ from hersey.damping.candidates.branched import FREE, Law
 from hersey.damping.candidates.constant_plus import ConstantPlusLaw
 from hersey.damping.candidates.fitting import AnyLaw, LawFit, not_identified, resampled, search
 from hersey.damping.candidates.observations import Inputs, Observations
-from hersey.damping.candidates.shared_errors import Freedom, SharedScatter
+from hersey.damping.candidates.shared_errors import Freedom, SharedScatter, shared_variance
 from hersey.damping.candidates.stribeck import StribeckLaw
 from hersey.damping.candidates.thermal import ARRHENIUS, VFT
 from hersey.damping.estimate import CONFIDENCE, quantile
@@ -177,7 +177,7 @@ def band(fit: LawFit, inputs: Inputs) -> Band:
 
 def of_one_dwell(scatter: float, error: float, shared: tuple[SharedScatter, ...]) -> float:
     """Return the relative error of one further dwell, in a visit and a run of its own."""
-    return float(np.sqrt(scatter**2 + error**2 + sum(s.deviation**2 for s in shared)))
+    return float(np.sqrt(scatter**2 + error**2 + shared_variance(shared)))
 
 
 def band_of(law: AnyLaw, values: FloatArray, freedom: Freedom, dwell: float, inputs: Inputs) -> Band:

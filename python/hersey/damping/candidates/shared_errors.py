@@ -70,6 +70,11 @@ class SharedScatter:
     told: bool
 
 
+def shared_variance(scatter: tuple[SharedScatter, ...]) -> float:
+    """Return the relative variance of a dwell by all that it shares, in a visit and a run of its own."""
+    return sum(shared.deviation**2 for shared in scatter)
+
+
 def disturbances(
     data: Observations,
     grouped: tuple[Grouping, ...],
