@@ -10,6 +10,7 @@ meets the first there. The transition sits at a fixed Hersey number, so that it 
 
 from __future__ import annotations
 
+import textwrap
 import warnings
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -459,7 +460,7 @@ def _summary(s: DampingSurface) -> str:
         "    # fitting method   = robust likelihood of ln torque, errors of torque, speed and temperature",
         f"    # scatter added    = {st.scatter:.3%} between dwells, beyond the errors of their means",
         *(f"    # scatter shared   = {_shared_text(shared)}" for shared in st.shared),
-        *([f"    # sensors +/-      = {s.sensors}"] if s.sensors else []),
+        *_sensors_text(s.sensors),
         f"    # data points      = {st.points}",
         f"    # variables        = {st.variables}",
         f"    chi-square         = {st.chi_square:.6g}  (against the errors of the dwells alone)",
@@ -500,6 +501,15 @@ def _variable(name: str, e: Estimate) -> str:
     ends = f"[{e.low:.6g}, {e.high:.6g}]"
     sensors = f"  sensors +/- {e.systematic:.2g}" if e.systematic else ""
     return f"    {name:8s} {e.value: .7g} +/- {e.error:.3g} {share:10s} {ends}{sensors}"
+
+
+def _sensors_text(sensors: str) -> list[str]:
+    """Errors of the sensors in lines that a page holds."""
+    return (
+        textwrap.wrap(f"    # sensors +/-      = {sensors}", 96, subsequent_indent=25 * " ")
+        if sensors
+        else []
+    )
 
 
 def _shared_text(shared: SharedScatter) -> str:
