@@ -10,6 +10,7 @@
 //! | `lubrication::paper`      | Eqs. 5-10 of the paper                                                             |
 //! | `lubrication::film`       | the four regimes of a line contact, elliptic contacts                              |
 //! | `lubrication::correction` | starvation, inlet heating and shear thinning as factors                            |
+//! | `lubrication::mixed`      | film and asperities share the load: force, lambda, transition                      |
 //! | `lubrication::reynolds`   | the Reynolds equation and elasticity of a line contact, solved numerically         |
 //! | `drag`                    | drag against belt speed and temperature: EHL and mixed branches                    |
 //! | `drag::closure`           | what the drag does below the stick speed                                           |

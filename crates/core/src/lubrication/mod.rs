@@ -8,6 +8,7 @@
 //! | `paper`      | Eqs. 5-10 of the paper                                                           |
 //! | `film`       | the four regimes of a line contact, elliptic contacts                            |
 //! | `correction` | starvation, inlet heating and shear thinning as factors, each with its validity  |
+//! | `mixed`      | film and asperities share the load: force, lambda, transition                     |
 //! | `reynolds`   | the Reynolds equation and elasticity of a line contact, solved numerically        |
 //!
 //! Conventions: SI; entrainment speed is the mean (u1 + u2)/2; the effective modulus E' is
@@ -17,6 +18,7 @@ pub mod contact;
 pub mod correction;
 pub mod film;
 pub mod layer;
+pub mod mixed;
 pub mod paper;
 pub mod reynolds;
 pub mod viscosity;
