@@ -85,6 +85,8 @@ fn check(random: &mut Random) -> &'static str {
         CycleKind::Oscillation => "oscillation",
         CycleKind::StickSlip => "stick-slip",
         CycleKind::Unsettled => "unsettled",
+        CycleKind::Stalled => "stalled",
+        CycleKind::GripSlip => "grip slip",
     }
 }
 

@@ -1,6 +1,7 @@
 //! The drag law as an object that Python holds.
 
-use hersey_core::drag::{Closure, Drag, TemperatureLaw};
+use hersey_core::Error;
+use hersey_core::drag::{Closure, Drag, Rest, TemperatureLaw};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 
@@ -42,6 +43,32 @@ pub fn closure_from((name, stiffness, damping): ClosureArguments) -> PyResult<Cl
     }
 }
 
+/// Static force, if it is not that which makes drag continuous, and force and damping of the rest of the drive.
+pub type CommonArguments = (Option<f64>, f64, f64);
+
+pub fn with_common(drag: Drag, (force, rest, damping): CommonArguments) -> Result<Drag, Error> {
+    let drag = match force {
+        Some(force) => drag.with_breakaway_force(force)?,
+        None => drag,
+    };
+    drag.with_rest(Rest { force: rest, damping })
+}
+
+/// The same of each of many sets, from columns in that order; not a number where there is no static force.
+pub fn beside_from(
+    py: Python<'_>,
+    columns: Option<[PyReadonlyArray1<'_, f64>; 3]>,
+) -> PyResult<impl Fn(usize) -> CommonArguments + Sync + use<>> {
+    let columns = columns.map(|c| -> PyResult<Vec<Vec<f64>>> {
+        c.iter().map(|column| copied(py, column)).collect()
+    });
+    let columns = columns.transpose()?;
+    Ok(move |i: usize| match &columns {
+        None => (None, 0.0, 0.0),
+        Some(c) => (Some(c[0][i]).filter(|force| !force.is_nan()), c[1][i], c[2][i]),
+    })
+}
+
 #[pymethods]
 impl Law {
     /// Two branches that meet at the transition.
@@ -79,9 +106,16 @@ impl Law {
         reference: f64,
         force_exponent: f64,
         speed_exponent: f64,
+        rest_slope: f64,
     ) -> PyResult<Self> {
-        let temperature_law = TemperatureLaw { reference, force_exponent, speed_exponent };
+        let temperature_law =
+            TemperatureLaw { reference, force_exponent, speed_exponent, rest_slope };
         self.0.clone().with_temperature_law(temperature_law).map(Self).map_err(raised)
+    }
+
+    /// The same law with another static force, unless there is none, and the rest of the drive beside it.
+    fn with_common(&self, common: CommonArguments) -> PyResult<Self> {
+        with_common(self.0.clone(), common).map(Self).map_err(raised)
     }
 
     /// The law at one temperature.
@@ -111,7 +145,26 @@ impl Law {
         Pair { slower, faster }
     }
 
-    /// Drag that a belt at rest can bear.
+    /// Drag of the contact at the transition speed.
+    #[getter]
+    fn transition_force(&self) -> f64 {
+        self.0.transition_force()
+    }
+
+    /// Drag of the rest of the drive at rest, and per speed.
+    #[getter]
+    fn rest(&self) -> (f64, f64) {
+        let Rest { force, damping } = self.0.rest();
+        (force, damping)
+    }
+
+    /// Force that holds a belt at rest, the rest of the drive counted.
+    #[getter]
+    fn holding_force(&self) -> f64 {
+        self.0.holding_force(0.0)
+    }
+
+    /// Drag of the contact that a belt at rest can bear.
     #[getter]
     fn breakaway_force(&self) -> f64 {
         self.0.breakaway_force()

@@ -10,15 +10,16 @@ use hersey_core::work::Work;
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 
-use crate::drag::{ClosureArguments, closure_from};
+use crate::drag::{ClosureArguments, CommonArguments, beside_from, closure_from, with_common};
 use crate::errors::{Failure, raised, raised_at};
 use crate::interrupt::{PATIENCE, copied, interruptible};
 
 /// Names behind the indices of kinds; the last is for motion that cannot be continued.
-pub const KINDS: [&str; 5] = ["steady_sliding", "oscillation", "stick_slip", "unsettled", "failed"];
+pub const KINDS: [&str; 7] =
+    ["steady_sliding", "oscillation", "stick_slip", "unsettled", "stalled", "grip_slip", "failed"];
 
 /// Index of motion that cannot be continued.
-const FAILED: u8 = 4;
+const FAILED: u8 = 6;
 
 /// Belts that one thread takes at a time.
 const CHUNK: usize = 512;
@@ -37,6 +38,7 @@ pub struct Sweep {
     speed_max: Py<PyArray1<f64>>,
     stretch_min: Py<PyArray1<f64>>,
     stretch_max: Py<PyArray1<f64>>,
+    grip_slip_duration: Py<PyArray1<f64>>,
     drag_work: Py<PyArray1<f64>>,
     laps: Py<PyArray1<u32>>,
     failures: Vec<Py<Failure>>,
@@ -58,6 +60,7 @@ impl Sweep {
             speed_max: column(|c| c.speed_max),
             stretch_min: column(|c| c.stretch_min),
             stretch_max: column(|c| c.stretch_max),
+            grip_slip_duration: column(|c| c.grip_slip_duration),
             drag_work: column(|c| c.drag_work),
             laps: PyArray1::from_iter(py, results.iter().map(laps)).unbind(),
             failures: failures(py, results)?,
@@ -90,6 +93,8 @@ pub fn sweep<'py>(
     py: Python<'py>,
     parameters: [PyReadonlyArray1<'py, f64>; 8],
     closure: ClosureArguments<'_>,
+    beside: Option<[PyReadonlyArray1<'py, f64>; 3]>,
+    grip: Option<f64>,
     steady: bool,
     duration: Option<f64>,
     tolerance: f64,
@@ -101,9 +106,10 @@ pub fn sweep<'py>(
         parameters.iter().map(|column| copied(py, column)).collect::<PyResult<_>>()?;
     let sets = columns[0].len();
     let closure = closure_from(closure)?;
+    let common = beside_from(py, beside)?;
     let belt = |i: usize| {
         let set = std::array::from_fn(|c| columns[c][i]);
-        belt_of(set, closure, steady).map_err(|error| (i, error))
+        belt_of(set, closure, common(i), grip, steady).map_err(|error| (i, error))
     };
     let belts = each(py, sets, belt)?;
     let belts = belts.map_err(|(i, error)| match sets {
@@ -126,10 +132,17 @@ pub fn each<T: Send, E: Send>(
 }
 
 /// The belt of a parameter set, in the order of `sweep`.
-fn belt_of(set: [f64; 8], closure: Closure, steady: bool) -> Result<Belt, Error> {
+fn belt_of(
+    set: [f64; 8],
+    closure: Closure,
+    common: CommonArguments,
+    grip: Option<f64>,
+    steady: bool,
+) -> Result<Belt, Error> {
     let [k, m, force, speed, ehl, mixed, stick, drive_speed] = set;
-    let drag = Drag::new(force, speed, ehl, mixed, stick, closure)?;
+    let drag = with_common(Drag::new(force, speed, ehl, mixed, stick, closure)?, common)?;
     let train = Drivetrain::new(k, m)?;
+    let train = grip.map_or(Ok(train), |grip| train.with_grip(grip))?;
     let start =
         if steady { Start::steady(&train, &drag, drive_speed)?.nudged() } else { Start::REST };
     Ok(Belt { train, drag, drive_speed, start })

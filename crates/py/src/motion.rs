@@ -42,6 +42,7 @@ impl From<&[motion::Event]> for Events {
 pub struct Energy {
     work: f64,
     dissipated: f64,
+    slipped: f64,
     stored: f64,
     residual: f64,
 }
@@ -53,6 +54,7 @@ pub struct Trajectory {
     belt_speed: Py<PyArray1<f64>>,
     stretch: Py<PyArray1<f64>>,
     mode_index: Py<PyArray1<u8>>,
+    slipping: Py<PyArray1<bool>>,
     events: Py<Events>,
     energy: Py<Energy>,
     steps: usize,
@@ -69,7 +71,9 @@ pub struct Cycle {
     speed_max: f64,
     stretch_min: f64,
     stretch_max: f64,
+    grip_slip_duration: f64,
     drag_work: f64,
+    laps_per_period: usize,
     laps: usize,
 }
 
@@ -78,6 +82,14 @@ pub struct Cycle {
 pub struct State {
     belt_speed: f64,
     stretch: f64,
+}
+
+/// Stiffness, mass, and the force up to which the roll grips the belt, if that is known.
+pub type TrainArguments = (f64, f64, Option<f64>);
+
+pub fn drivetrain_from((stiffness, mass, grip): TrainArguments) -> PyResult<Drivetrain> {
+    let train = Drivetrain::new(stiffness, mass).map_err(raised)?;
+    grip.map_or(Ok(train), |grip| train.with_grip(grip).map_err(raised))
 }
 
 pub fn mode_name(mode: Mode) -> &'static str {
@@ -108,7 +120,7 @@ fn schedule_from(
 #[allow(clippy::too_many_arguments)] // the Python layer names them all
 pub fn simulate(
     py: Python<'_>,
-    train: (f64, f64),
+    train: TrainArguments,
     drag: &Law,
     drive: (&str, ScheduleArguments),
     temperature: Option<ScheduleArguments>,
@@ -119,7 +131,7 @@ pub fn simulate(
     integrator: &str,
     most_steps: u64,
 ) -> PyResult<Trajectory> {
-    let train = Drivetrain::new(train.0, train.1).map_err(raised)?;
+    let train = drivetrain_from(train)?;
     let drive = match drive {
         ("speed", schedule) => Drive::Speed(schedule_from("drive_speed", schedule)?),
         (_, schedule) => Drive::Force(schedule_from("drive_torque", schedule)?),
@@ -136,15 +148,16 @@ pub fn simulate(
         motion::simulate(&system, start, duration, samples, tolerance, integrator, work)
     })?;
     let modes: Vec<u8> = run.mode.iter().map(|m| *m as u8).collect();
-    let motion::Energy { work, dissipated, stored, .. } = run.energy;
+    let motion::Energy { work, dissipated, slipped, stored, .. } = run.energy;
     let residual = run.energy.residual();
     Ok(Trajectory {
         time: run.time.into_pyarray(py).unbind(),
         belt_speed: run.belt_speed.into_pyarray(py).unbind(),
         stretch: run.stretch.into_pyarray(py).unbind(),
         mode_index: modes.into_pyarray(py).unbind(),
+        slipping: run.slipping.into_pyarray(py).unbind(),
         events: Py::new(py, Events::from(run.events.as_slice()))?,
-        energy: Py::new(py, Energy { work, dissipated, stored, residual })?,
+        energy: Py::new(py, Energy { work, dissipated, slipped, stored, residual })?,
         steps: run.steps,
     })
 }
@@ -154,7 +167,7 @@ pub fn simulate(
 #[allow(clippy::too_many_arguments)] // the Python layer names them all
 pub fn stick_slip(
     py: Python<'_>,
-    train: (f64, f64),
+    train: TrainArguments,
     drag: &Law,
     drive_speed: f64,
     start: (f64, f64),
@@ -162,7 +175,7 @@ pub fn stick_slip(
     tolerance: f64,
     most_steps: u64,
 ) -> PyResult<Cycle> {
-    let train = Drivetrain::new(train.0, train.1).map_err(raised)?;
+    let train = drivetrain_from(train)?;
     let start = Start { belt_speed: start.0, stretch: start.1 };
     let span = duration.map_or(Span::UntilClosed, Span::Lasting);
     let cycle = interruptible(py, most_steps, |work| {
@@ -177,15 +190,22 @@ pub fn stick_slip(
         speed_max: cycle.speed_max,
         stretch_min: cycle.stretch_min,
         stretch_max: cycle.stretch_max,
+        grip_slip_duration: cycle.grip_slip_duration,
         drag_work: cycle.drag_work,
+        laps_per_period: cycle.laps_per_period,
         laps: cycle.laps,
     })
 }
 
 /// Sliding at a speed with the spring stretched to match, and nudged off that balance if asked for.
 #[pyfunction]
-pub fn steady_start(train: (f64, f64), drag: &Law, speed: f64, nudged: bool) -> PyResult<State> {
-    let train = Drivetrain::new(train.0, train.1).map_err(raised)?;
+pub fn steady_start(
+    train: TrainArguments,
+    drag: &Law,
+    speed: f64,
+    nudged: bool,
+) -> PyResult<State> {
+    let train = drivetrain_from(train)?;
     let steady = Start::steady(&train, &drag.0, speed).map_err(raised)?;
     let Start { belt_speed, stretch } = if nudged { steady.nudged() } else { steady };
     Ok(State { belt_speed, stretch })

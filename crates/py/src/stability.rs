@@ -8,10 +8,11 @@ use hersey_core::work::{MOST_STEPS, Work};
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 
-use crate::drag::{ClosureArguments, Law, closure_from};
+use crate::drag::{ClosureArguments, Law, beside_from, closure_from, with_common};
 use crate::ensemble::{column, each, failures, in_chunks};
-use crate::errors::{Failure, raised, raised_at};
+use crate::errors::{Failure, raised_at};
 use crate::interrupt::{copied, interruptible};
+use crate::motion::{TrainArguments, drivetrain_from};
 
 /// Belts that one thread takes at a time.
 const CHUNK: usize = 64;
@@ -76,12 +77,12 @@ fn few(laps: usize) -> u32 {
 #[pyfunction]
 pub fn band(
     py: Python<'_>,
-    train: (f64, f64),
+    train: TrainArguments,
     drag: &Law,
     tolerance: f64,
     most_steps: u64,
 ) -> PyResult<Band> {
-    let belt = [(Drivetrain::new(train.0, train.1).map_err(raised)?, drag.0.clone())];
+    let belt = [(drivetrain_from(train)?, drag.0.clone())];
     let found = interruptible(py, most_steps, |work| {
         stability::bands(&belt, true, tolerance, work).and_then(|mut bands| bands.remove(0))
     })?;
@@ -106,6 +107,7 @@ pub fn bands<'py>(
     py: Python<'py>,
     parameters: [PyReadonlyArray1<'py, f64>; 7],
     closure: ClosureArguments<'_>,
+    beside: Option<[PyReadonlyArray1<'py, f64>; 3]>,
     lower: bool,
     tolerance: f64,
     threads: usize,
@@ -115,9 +117,11 @@ pub fn bands<'py>(
     let columns: Vec<Vec<f64>> =
         parameters.iter().map(|column| copied(py, column)).collect::<PyResult<_>>()?;
     let closure = closure_from(closure)?;
+    let common = beside_from(py, beside)?;
     let belt = |i: usize| -> Result<(Drivetrain, Drag), Error> {
         let [k, m, force, speed, ehl, mixed, stick] = std::array::from_fn(|c| columns[c][i]);
-        Ok((Drivetrain::new(k, m)?, Drag::new(force, speed, ehl, mixed, stick, closure)?))
+        let drag = Drag::new(force, speed, ehl, mixed, stick, closure)?;
+        Ok((Drivetrain::new(k, m)?, with_common(drag, common(i))?))
     };
     let belts = each(py, columns[0].len(), |i| belt(i).map_err(|error| (i, error)))?
         .map_err(|(i, error)| raised_at("set", i, error))?;
@@ -141,12 +145,12 @@ pub struct Swings {
 #[pyfunction]
 pub fn swings(
     py: Python<'_>,
-    train: (f64, f64),
+    train: TrainArguments,
     drag: &Law,
     slowest: PyReadonlyArray1<'_, f64>,
     tolerance: f64,
 ) -> PyResult<Option<Swings>> {
-    let train = Drivetrain::new(train.0, train.1).map_err(raised)?;
+    let train = drivetrain_from(train)?;
     let slowest = copied(py, &slowest)?;
     let found = interruptible(py, MOST_STEPS, |work| {
         stability::swings(&train, &drag.0, &slowest, tolerance, work)

@@ -14,9 +14,14 @@ from hersey.units import fields_in_si, takes_si
 
 #: What the belt does near zero speed; see docs/closures.md.
 CLOSURES = ("retained", "stiction", "stribeck", "lugre")
+#: What every law takes besides its shape.
+BESIDE = ("static_force", "rest_force", "rest_damping")
 #: Kinds of what a drag law takes.
 _KINDS = {
     "stick_speed": "belt speed",
+    "static_force": "force",
+    "rest_force": "force",
+    "rest_damping": "translational damping",
     "bristle_stiffness": "stiffness",
     "bristle_damping": "translational damping",
 }
@@ -48,7 +53,7 @@ class AnyDrag:
 
     @property
     def breakaway_force(self) -> float:
-        """The drag A that a belt at rest can bear (Eq. 29)."""
+        """The drag A of the contact that a belt at rest can bear: ``static_force``, or that of Eq. 29."""
         return self.law().breakaway_force
 
     @takes_si(force="force", temperature="temperature")
@@ -83,6 +88,12 @@ class Drag(AnyDrag):
     With temperature all forces vary as (T/T_ref)^force_temperature_exponent and all speeds as
     (T/T_ref)^speed_temperature_exponent, T counted from ``temperature_zero`` (273.15 for degC).
 
+    ``static_force`` is the drag that a belt at rest can bear; if not given it is such that drag falls by a
+    factor e up to the stick speed, continuously (Eqs. 28-30). The rest of the drive, what moves with the
+    belt besides the lubricated contact, adds ``rest_force + rest_damping v``, which changes by
+    ``rest_temperature_slope`` (relative, per K) with temperature; with ``lugre`` ``rest_damping`` is the
+    viscous part beside the bristles.
+
     Raises
     ------
     ParameterError
@@ -101,6 +112,10 @@ class Drag(AnyDrag):
     force_temperature_exponent: float = 0.0
     speed_temperature_exponent: float = 0.0
     temperature_zero: float = 0.0
+    static_force: float | None = None
+    rest_force: float = 0.0
+    rest_damping: float = 0.0
+    rest_temperature_slope: float = 0.0
 
     def __post_init__(self) -> None:
         """Bring the values to SI if they come with units, and let the core check them."""
@@ -135,9 +150,13 @@ class Drag(AnyDrag):
             return self
         return replace(
             self,
-            transition_force=float(law.force(np.array([law.transition_speed]))[0]),
+            transition_force=law.transition_force,
             transition_speed=law.transition_speed,
             stick_speed=law.stick_speed,
+            static_force=None if self.static_force is None else law.breakaway_force,
+            rest_force=law.rest[0],
+            rest_damping=law.rest[1],
+            rest_temperature_slope=0.0,
             reference_temperature=None,
             force_temperature_exponent=0.0,
             speed_temperature_exponent=0.0,
@@ -152,13 +171,23 @@ class Drag(AnyDrag):
             float(self.mixed_exponent),
             float(self.stick_speed),
             (self.closure, self.bristle_stiffness, self.bristle_damping),
-        )
+        ).with_common(_common(self))
         if self.reference_temperature is None:
             return law
         reference = self.reference_temperature - self.temperature_zero
         return law.with_temperature_law(
-            reference, float(self.force_temperature_exponent), float(self.speed_temperature_exponent)
+            reference,
+            float(self.force_temperature_exponent),
+            float(self.speed_temperature_exponent),
+            float(self.rest_temperature_slope),
         )
+
+    def beside(self, sets: int) -> list[FloatArray] | None:
+        """Return `BESIDE`, each for so many sets; not a number where there is no static force."""
+        if self.static_force is None and not self.rest_force and not self.rest_damping:
+            return None
+        force, rest, damping = _common(self)
+        return [np.full(sets, np.nan if value is None else value) for value in (force, rest, damping)]
 
 
 @dataclass(frozen=True)
@@ -185,6 +214,9 @@ class DragTable(AnyDrag):
     closure: str = "retained"
     bristle_stiffness: float | None = None
     bristle_damping: float | None = None
+    static_force: float | None = None
+    rest_force: float = 0.0
+    rest_damping: float = 0.0
 
     def __post_init__(self) -> None:
         """Bring the values to SI if they come with units, and let the core check them."""
@@ -196,4 +228,11 @@ class DragTable(AnyDrag):
     def law(self) -> _core.Law:
         """Return the law as the core holds it."""
         closure = (self.closure, self.bristle_stiffness, self.bristle_damping)
-        return _core.Law.tabulated(list(self.speeds), list(self.forces), float(self.stick_speed), closure)
+        law = _core.Law.tabulated(list(self.speeds), list(self.forces), float(self.stick_speed), closure)
+        return law.with_common(_common(self))
+
+
+def _common(drag: Drag | DragTable) -> tuple[float | None, float, float]:
+    """Return what every law of the core takes besides its shape."""
+    static = None if drag.static_force is None else float(drag.static_force)
+    return static, float(drag.rest_force), float(drag.rest_damping)

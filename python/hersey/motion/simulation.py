@@ -36,14 +36,19 @@ NUDGE = _core.NUDGE
 
 @dataclass(frozen=True)
 class Drivetrain:
-    """Spring (gear train, roll core and rubber) of ``stiffness`` and moving ``mass``."""
+    """Spring (gear train, roll core and rubber) of ``stiffness`` and moving ``mass``.
+
+    ``grip`` is the force up to which the roll grips the belt, its friction times the load; beyond, it
+    slips. If it is not given the roll never slips, as Eq. 11 assumes.
+    """
 
     stiffness: float
     mass: float
+    grip: float | None = None
 
     def __post_init__(self) -> None:
         """Bring the values to SI if they come with units."""
-        fields_in_si(self, {"stiffness": "stiffness", "mass": "mass"})
+        fields_in_si(self, {"stiffness": "stiffness", "mass": "mass", "grip": "force"})
 
     @classmethod
     @takes_si(stiffness="torsional stiffness", inertia="moment of inertia", roll_radius="length")
@@ -70,8 +75,8 @@ class Drivetrain:
         return cls(stiffness / roll_radius**2, inertia / roll_radius**2)
 
     @property
-    def _arguments(self) -> tuple[float, float]:
-        return float(self.stiffness), float(self.mass)
+    def _arguments(self) -> tuple[float, float, float | None]:
+        return float(self.stiffness), float(self.mass), None if self.grip is None else float(self.grip)
 
 
 class Event(NamedTuple):
@@ -92,11 +97,13 @@ _event_columns = attrgetter(*Event._fields)
 class Energy:
     """Where the work of the drive went over a run: each figure is its own integral.
 
-    ``residual`` is what is missing (work less dissipated less stored) as a share of all energy turned over.
+    ``slipped`` was lost where the roll slipped on the belt; ``residual`` is what is missing (work less
+    dissipated less slipped less stored) as a share of all energy turned over.
     """
 
     work: float
     dissipated: float
+    slipped: float
     stored: float
     residual: float
 
@@ -132,7 +139,8 @@ class Trajectory(Result):
     """Motion at equally spaced times: arrays of shape (samples,), every change of mode, and the energies.
 
     ``stretch`` is drive position minus belt position; with a torque drive, the position of the mass (zero
-    without a spring). ``spring_force`` is stiffness times stretch.
+    without a spring). ``spring_force`` is stiffness times stretch; ``slipping`` tells where the roll slips
+    on the belt.
     """
 
     time: FloatArray
@@ -140,6 +148,7 @@ class Trajectory(Result):
     stretch: FloatArray
     spring_force: FloatArray
     mode_index: NDArray[np.uint8]
+    slipping: NDArray[np.bool_]
     events: tuple[Event, ...]
     energy: Energy
     steps: int
@@ -164,7 +173,7 @@ class Trajectory(Result):
 
     def to_dict(self) -> dict[str, Any]:
         """Return samples, events, energies and check; in SI if the arguments were."""
-        arrays = ("time", "belt_speed", "stretch", "spring_force", "mode")
+        arrays = ("time", "belt_speed", "stretch", "spring_force", "mode", "slipping")
         return json_record(
             {
                 **{name: getattr(self, name) for name in arrays},
@@ -186,6 +195,7 @@ class Trajectory(Result):
                 "stretch (m)": self.stretch,
                 "spring force (N)": self.spring_force,
                 "mode": self.mode,
+                "roll slips": self.slipping,
             }
         )
 
@@ -194,10 +204,14 @@ class Trajectory(Result):
 class StickSlipCycle(Result):
     """What the motion settles to.
 
-    ``kind`` is ``steady_sliding``, ``oscillation`` (without sticking), ``stick_slip``, or ``unsettled`` if
-    no orbit closed within the laps allowed. Frequency is in laps per unit of time, 0 in steady sliding;
-    ``drag_work`` is the work against drag per lap, likewise. With a smooth closure, which never holds the
-    belt, the belt counts as stuck while it creeps below the stick speed.
+    ``kind`` is ``steady_sliding``, ``oscillation`` (without sticking), ``stick_slip``, ``stalled`` (the belt
+    is held while the roll slips on it), ``grip_slip`` (it slides steadily, slower than the roll that slips
+    on it), or ``unsettled`` if no orbit closed within the laps allowed. Frequency is in laps per unit of
+    time, 0 in steady sliding; ``drag_work`` is the work against drag per lap and ``grip_slip_duration`` the
+    time per lap during which the roll slips, likewise. Bristles remember, so with them the motion may repeat
+    itself after ``laps_per_period`` laps; then frequency, durations and work are those of the mean lap, and
+    extremes those of all. With a smooth closure, which never holds the belt, the belt counts as stuck while
+    it creeps below the stick speed.
     """
 
     kind: str
@@ -208,7 +222,9 @@ class StickSlipCycle(Result):
     speed_max: float
     stretch_min: float
     stretch_max: float
+    grip_slip_duration: float
     drag_work: float
+    laps_per_period: int
     laps: int
 
     @property
@@ -255,7 +271,9 @@ _CYCLE_UNITS = {
     "speed_max": "m/s",
     "stretch_min": "m",
     "stretch_max": "m",
+    "grip_slip_duration": "s",
     "drag_work": "J",
+    "laps_per_period": "",
     "laps": "",
 }
 
@@ -349,8 +367,9 @@ def simulate(
         stretch=trajectory.stretch,
         spring_force=train.stiffness * trajectory.stretch,
         mode_index=trajectory.mode_index,
+        slipping=trajectory.slipping,
         events=tuple(map(Event._make, zip(*_event_columns(trajectory.events), strict=True))),
-        energy=Energy(energy.work, energy.dissipated, energy.stored, energy.residual),
+        energy=Energy(energy.work, energy.dissipated, energy.slipped, energy.stored, energy.residual),
         steps=trajectory.steps,
         check=_self_check(lambda: run("dormand-prince"), trajectory) if check else None,
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -28,6 +28,7 @@ NUMBERS = (
     "speed_max",
     "stretch_min",
     "stretch_max",
+    "grip_slip_duration",
     "drag_work",
 )
 
@@ -98,7 +99,7 @@ def sweep(
     if start not in ("rest", "steady"):
         raise ParameterError(f"start '{start}' is not known: rest or steady")
     workers, steps = whole("threads", threads), whole("most_steps", most_steps)
-    parameters = {**vars(train), **vars(drag)}
+    parameters: dict[str, Any] = {**vars(train), **vars(drag)}
     varied = {
         "stiffness": stiffness,
         "mass": mass,
@@ -118,6 +119,8 @@ def sweep(
     motions = _core.sweep(
         [np.ascontiguousarray(columns[name].ravel()) for name in PARAMETERS],
         (drag.closure, drag.bristle_stiffness, drag.bristle_damping),
+        drag.beside(int(np.prod(shape))),
+        train.grip,
         start == "steady",
         None if duration is None else float(duration),
         float(tolerance),

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 from hersey import _core
 from hersey.arrays import FloatArray, crossed, numbers_of, together
 from hersey.errors import ParameterError
-from hersey.motion.drag import AnyDrag, Drag
+from hersey.motion.drag import BESIDE, AnyDrag, Drag
 from hersey.motion.parameters import KINDS, MOST_STEPS, OF_THE_BELT, refuse_too_many, whole
 from hersey.motion.simulation import Drivetrain
 from hersey.result import Result, json_record, table_of
@@ -407,7 +407,8 @@ def _at_temperatures(drag: Drag, temperatures: FloatArray) -> dict[str, FloatArr
     """The parameters that vary with temperature, at each."""
     values, place = np.unique(temperatures, return_inverse=True)
     laws = [drag.at(float(t)) for t in values]
-    names = ("transition_force", "transition_speed", "stick_speed")
+    beside = tuple(name for name in BESIDE if getattr(drag, name))
+    names = ("transition_force", "transition_speed", "stick_speed", *beside)
     place = place.reshape(temperatures.shape)
     return {name: np.array([getattr(law, name) for law in laws])[place] for name in names}
 
@@ -425,7 +426,14 @@ def _bands(
     workers, steps = whole("threads", threads), whole("most_steps", most_steps)
     arrays = [np.ascontiguousarray(columns[name].ravel()) for name in OF_THE_BELT]
     closure = (drag.closure, drag.bristle_stiffness, drag.bristle_damping)
-    return _core.bands(arrays, closure, lower, float(tolerance), workers, progress, steps)
+    beside = drag.beside(arrays[0].size)
+    if beside is not None:
+        # those that vary with temperature have a column of their own
+        beside = [
+            np.ascontiguousarray(columns[name].ravel()) if name in columns else column
+            for name, column in zip(BESIDE, beside, strict=True)
+        ]
+    return _core.bands(arrays, closure, beside, lower, float(tolerance), workers, progress, steps)
 
 
 def _sensitivities(

@@ -41,22 +41,20 @@ impl Closure {
         matches!(self, Self::Stribeck | Self::LuGre { .. })
     }
 
-    /// Drag in steady sliding at `x` stick speeds, where `A exp(-x)` is `exponential`.
-    pub(super) fn below_stick_speed(self, exponential: f64, x: f64) -> f64 {
-        match self {
-            Self::Stribeck => exponential * (x / SMOOTHING).tanh(),
-            _ => exponential,
-        }
+    /// Whether the force depends on more than the speed and the pull.
+    #[must_use]
+    pub fn has_memory(self) -> bool {
+        matches!(self, Self::LuGre { .. })
     }
 
-    /// Its slope in `x`.
-    pub(super) fn slope_below_stick_speed(self, exponential: f64, x: f64) -> f64 {
+    /// Share of the drag that acts at `x` stick speeds, below one, and its slope in `x`.
+    pub(super) fn smoothed(self, x: f64) -> (f64, f64) {
         match self {
             Self::Stribeck => {
                 let t = (x / SMOOTHING).tanh();
-                exponential * ((1.0 - t * t) / SMOOTHING - t)
+                (t, (1.0 - t * t) / SMOOTHING)
             }
-            _ => -exponential,
+            _ => (1.0, 0.0),
         }
     }
 }

@@ -4,14 +4,19 @@
 //! that meet at the transition are the paper's law; a chain through measured points is a tabulated one,
 //! monotone between its points. Drag is odd in speed: reversal works.
 //!
+//! Below the stick speed `v_s` drag falls from the force `A` that breaks a belt at rest away to that of the law at
+//! `v_s`: `A exp(-k |v|/v_s)` with `k = ln(A/F(v_s))`. The paper's `A = e F(v_s)` makes `k = 1` (Eqs. 28-30).
+//!
 //! With temperature the law keeps its shape: all forces vary as `(T/T_0)^b`, all speeds, the stick speed
 //! among them, as `(T/T_0)^d`. Two fitted surfaces `B = a T^b w^c` that meet at a transition are of this form.
+//!
+//! Beside the lubricated contact stands the rest of the drive, `r_0 + r_1 v`: bearings, gears, the roll's own losses.
 
 mod closure;
 
 pub use closure::Closure;
 
-use crate::error::{Error, above, below, finite};
+use crate::error::{Error, above, at_least, below, finite};
 
 /// State of lubrication, which decides the equation of motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -35,6 +40,42 @@ pub struct TemperatureLaw {
     pub force_exponent: f64,
     /// Exponent of every speed.
     pub speed_exponent: f64,
+    /// Relative change of the rest of the drive per unit of temperature.
+    pub rest_slope: f64,
+}
+
+impl TemperatureLaw {
+    /// Factor of the rest of the drive at `temperature`.
+    pub(crate) fn rest_factor(&self, temperature: f64) -> Result<f64, Error> {
+        let factor = 1.0 + self.rest_slope * (temperature - self.reference);
+        at_least("rest of the drive at this temperature", factor, 0.0)
+    }
+}
+
+/// What moves with the belt besides the lubricated contact: a drag of its own, `force + damping v`.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Rest {
+    /// Drag at any speed.
+    pub force: f64,
+    /// Drag per speed.
+    pub damping: f64,
+}
+
+impl Rest {
+    /// Drag at `u >= 0`.
+    pub(crate) fn at(&self, u: f64) -> f64 {
+        self.force + self.damping * u
+    }
+
+    /// Whether there is any.
+    pub(crate) fn is_none(&self) -> bool {
+        self.force == 0.0 && self.damping == 0.0
+    }
+
+    /// The same, `factor` times as large.
+    pub(crate) fn scaled(self, factor: f64) -> Self {
+        Self { force: self.force * factor, damping: self.damping * factor }
+    }
 }
 
 /// Drag force of a lubricated contact as a function of sliding speed and temperature.
@@ -49,6 +90,9 @@ pub struct Drag {
     stick_speed: f64,
     closure: Closure,
     breakaway_force: f64,
+    /// Speed over which drag falls by a factor `e` below the stick speed.
+    decay_speed: f64,
+    rest: Rest,
     temperature_law: Option<TemperatureLaw>,
 }
 
@@ -132,12 +176,55 @@ impl Drag {
             stick_speed,
             closure,
             breakaway_force: f64::NAN,
+            decay_speed: stick_speed,
+            rest: Rest::default(),
             temperature_law: None,
         };
-        let at_stick_speed = drag.branch_force(drag.branch(stick_speed), stick_speed);
-        drag.breakaway_force = finite("breakaway force", std::f64::consts::E * at_stick_speed)?;
+        let continuous = std::f64::consts::E * drag.force_at_stick_speed();
+        drag.breakaway_force = finite("breakaway force", continuous)?;
         above("breakaway force", drag.breakaway_force, 0.0)?;
         Ok(drag)
+    }
+
+    /// The same law with another force that breaks a belt at rest away.
+    ///
+    /// # Errors
+    /// If `breakaway_force` is not finite, or not above the drag at the stick speed.
+    pub fn with_breakaway_force(mut self, breakaway_force: f64) -> Result<Self, Error> {
+        let sliding = self.force_at_stick_speed();
+        above("breakaway_force", breakaway_force, sliding)?;
+        self.decay_speed = self.stick_speed / ((breakaway_force - sliding) / sliding).ln_1p();
+        self.breakaway_force = breakaway_force;
+        self.check_rest()?;
+        Ok(self)
+    }
+
+    /// The same law beside what else moves with the belt.
+    ///
+    /// # Errors
+    /// If a value is not finite or negative, or the rest grows with speed as fast as the drag below the stick speed falls.
+    pub fn with_rest(mut self, rest: Rest) -> Result<Self, Error> {
+        at_least("rest_force", rest.force, 0.0)?;
+        at_least("rest_damping", rest.damping, 0.0)?;
+        self.rest = rest;
+        self.check_rest()?;
+        Ok(self)
+    }
+
+    /// A belt that the paper's rule holds while it moves is held the less the faster it is.
+    fn check_rest(&self) -> Result<(), Error> {
+        if self.rest.damping > 0.0 && self.closure == Closure::Retained {
+            below(
+                "rest_damping",
+                self.rest.damping,
+                self.force_at_stick_speed() / self.decay_speed,
+            )?;
+        }
+        Ok(())
+    }
+
+    fn force_at_stick_speed(&self) -> f64 {
+        self.branch_force(self.branch(self.stick_speed), self.stick_speed)
     }
 
     /// The same law, varying with temperature.
@@ -148,6 +235,7 @@ impl Drag {
         above("reference_temperature", temperature_law.reference, 0.0)?;
         finite("force_temperature_exponent", temperature_law.force_exponent)?;
         finite("speed_temperature_exponent", temperature_law.speed_exponent)?;
+        finite("rest_temperature_slope", temperature_law.rest_slope)?;
         self.temperature_law = Some(temperature_law);
         Ok(self)
     }
@@ -168,7 +256,10 @@ impl Drag {
             *f = above("drag at this temperature", *f * force, 0.0)?;
         }
         drag.stick_speed = above("stick speed at this temperature", drag.stick_speed * speed, 0.0)?;
+        drag.decay_speed = finite("stick speed at this temperature", drag.decay_speed * speed)?;
         drag.breakaway_force = finite("drag at this temperature", drag.breakaway_force * force)?;
+        drag.rest = drag.rest.scaled(temperature_law.rest_factor(temperature)?);
+        drag.check_rest()?;
         Ok(drag)
     }
 
@@ -202,44 +293,76 @@ impl Drag {
         self.closure
     }
 
-    /// `A`, the drag that a belt at rest can bear: `e F(v_s)`, which makes drag continuous at `v_s` (Eq. 29).
+    /// What else moves with the belt.
+    #[must_use]
+    pub fn rest(&self) -> Rest {
+        self.rest
+    }
+
+    /// `A`, the drag of the contact that a belt at rest can bear; if not given `e F(v_s)`, the paper's (Eq. 29).
     #[must_use]
     pub fn breakaway_force(&self) -> f64 {
         self.breakaway_force
     }
 
-    /// Largest force that drag can oppose at `speed` (below `v_s`) without the belt accelerating (Eqs. 25-26).
+    /// Largest force that drag can oppose at `speed` (below `v_s`) without the belt accelerating (Eqs. 25-26), the rest
+    /// of the drive counted.
     #[must_use]
     pub fn holding_force(&self, speed: f64) -> f64 {
+        let u = speed.abs();
         match self.closure {
-            Closure::Stiction => self.breakaway_force,
-            _ => self.exponential(speed.abs()),
+            Closure::Stiction => self.breakaway_force + self.rest.force,
+            _ => self.exponential(u) + self.rest.at(u),
         }
     }
 
-    /// Drag force in steady sliding at `speed`, with its sign; zero at rest, where it takes whatever value is needed.
+    /// Drag force in steady sliding at `speed`, with its sign and the rest of the drive; zero at rest, where it takes
+    /// whatever value is needed.
     #[must_use]
     pub fn force(&self, speed: f64) -> f64 {
         let u = speed.abs();
-        let magnitude = match u {
-            0.0 => return 0.0,
-            _ if u >= self.stick_speed => self.branch_force(self.branch(u), u),
-            _ => self.force_and_slope_below(u).0,
-        };
-        magnitude.copysign(speed)
+        match u {
+            0.0 => 0.0,
+            _ => (self.contact_force(u) + self.rest.at(u) * self.smoothed(u).0).copysign(speed),
+        }
+    }
+
+    /// Drag of the lubricated contact alone in steady sliding at `u > 0`.
+    pub(crate) fn contact_force(&self, u: f64) -> f64 {
+        if u >= self.stick_speed {
+            self.branch_force(self.branch(u), u)
+        } else {
+            self.force_and_slope_below(u).0
+        }
+    }
+
+    /// Share of a constant drag that acts at `u`, and its slope: less than one where the closure is smooth through zero.
+    pub(crate) fn smoothed(&self, u: f64) -> (f64, f64) {
+        if u >= self.stick_speed { (1.0, 0.0) } else { self.smoothed_below(u) }
+    }
+
+    /// The same below the stick speed, continued through zero speed.
+    pub(crate) fn smoothed_below(&self, u: f64) -> (f64, f64) {
+        let (share, slope) = self.closure.smoothed(u / self.stick_speed);
+        (share, slope / self.stick_speed)
     }
 
     /// The speeds on either side of the transition at which drag has risen to `force`: below it none, so zero, where
     /// the stick speed is reached first; above it infinite, where drag never gets there.
     ///
-    /// On a law that falls to the transition and rises from it these are the only ones; at the transition itself or
-    /// for less force, both are the transition speed.
+    /// On a law that falls to its least force and rises from it these are the only ones; for less force, both are the
+    /// speed of least force.
     #[must_use]
     pub fn speeds_of(&self, force: f64) -> (f64, f64) {
-        let (speed, least) = self.knots[self.transition];
-        if force <= least {
-            return (speed, speed);
+        let foot =
+            if self.rest.damping > 0.0 { self.rising_from() } else { self.transition_speed() };
+        if force <= self.force(foot) {
+            return (foot, foot);
         }
+        if self.rest.damping > 0.0 {
+            return self.searched_speeds(force, foot);
+        }
+        let force = force - self.rest.force;
         let on = |branch: usize, knot: usize| {
             let ((v, f), exponent) = (self.knots[knot], self.exponents[branch]);
             v * (force / f).powf(1.0 / exponent)
@@ -258,28 +381,76 @@ impl Drag {
         (slower.unwrap_or(0.0), faster.unwrap_or(f64::INFINITY))
     }
 
+    /// As `speeds_of`, on either side of the speed of least force, by halving.
+    fn searched_speeds(&self, force: f64, foot: f64) -> (f64, f64) {
+        let slower = if self.force(self.stick_speed) < force {
+            0.0
+        } else {
+            halved(self.stick_speed, foot, |v| self.force(v) >= force)
+        };
+        let mut high = 2.0 * foot;
+        while self.force(high) < force {
+            high *= 2.0;
+            if high > HIGHEST * foot {
+                return (slower, f64::INFINITY);
+            }
+        }
+        (slower, halved(0.5 * high, high, |v| self.force(v) < force))
+    }
+
+    /// Speed from which on the drag rises, the rest of the drive counted: the transition speed, or below it where the
+    /// rest rises more than the contact falls; above it the last speed at which it falls.
+    #[must_use]
+    pub fn rising_from(&self) -> f64 {
+        let mut from = self.stick_speed;
+        for branch in self.branch(self.stick_speed)..self.exponents.len() {
+            let (exponent, end) =
+                (self.exponents[branch], self.upper_knot(branch).unwrap_or(f64::INFINITY));
+            if exponent >= 0.0 {
+                continue;
+            }
+            let (speed, force) = self.knots[branch.saturating_sub(1)];
+            // where exponent F/v = -damping
+            let fall = -exponent * force / speed;
+            let least = if self.rest.damping > 0.0 {
+                speed * (fall / self.rest.damping).powf(1.0 / (1.0 - exponent))
+            } else {
+                f64::INFINITY
+            };
+            from = from.max(least.min(end));
+        }
+        from
+    }
+
     /// Slope of the drag force in steady sliding at `speed`.
     #[must_use]
     pub fn slope(&self, speed: f64) -> f64 {
         let u = speed.abs();
-        if u >= self.stick_speed {
+        let (share, growth) = self.smoothed(u);
+        let contact = if u >= self.stick_speed {
             let branch = self.branch(u);
             self.exponents[branch] * self.branch_force(branch, u) / u
         } else {
             self.force_and_slope_below(u).1
-        }
+        };
+        contact + self.rest.damping * share + self.rest.at(u) * growth
     }
 
-    /// Drag below the stick speed and its slope, continued through zero speed.
+    /// Drag of the contact below the stick speed and its slope, continued through zero speed.
     pub(crate) fn force_and_slope_below(&self, u: f64) -> (f64, f64) {
-        let (exponential, x) = (self.exponential(u), u / self.stick_speed);
-        let slope = self.closure.slope_below_stick_speed(exponential, x) / self.stick_speed;
-        (self.closure.below_stick_speed(exponential, x), slope)
+        let exponential = self.exponential(u);
+        let (share, growth) = self.closure.smoothed(u / self.stick_speed);
+        (exponential * share, exponential * (growth / self.stick_speed - share / self.decay_speed))
     }
 
-    /// `A exp(-u/v_s)` (Eq. 30).
+    /// `A exp(-k u/v_s)` (Eq. 30, where k is 1).
     pub(crate) fn exponential(&self, u: f64) -> f64 {
-        self.breakaway_force * (-u / self.stick_speed).exp()
+        self.breakaway_force * (-u / self.decay_speed).exp()
+    }
+
+    /// Speed over which drag falls by a factor `e` below the stick speed.
+    pub(crate) fn decay_speed(&self) -> f64 {
+        self.decay_speed
     }
 
     /// Branch on which `u` lies; at a knot the upper one.
@@ -323,15 +494,25 @@ impl Drag {
         branch.checked_sub(1).map(|i| self.knots[i].0).filter(|speed| *speed > self.stick_speed)
     }
 
-    /// Whether drag nowhere falls above the transition speed.
-    pub(crate) fn rises_from_transition(&self) -> bool {
-        self.exponents[self.transition + 1..].iter().all(|exponent| *exponent >= 0.0)
-    }
-
     /// Whether the knot between `branch` and the one above is the transition.
     pub(crate) fn is_transition(&self, branch: usize) -> bool {
         branch == self.transition
     }
+}
+
+/// Most that a speed is looked for beyond that of least force.
+const HIGHEST: f64 = 1e12;
+
+/// Where `holds`, which is true at `low` and not at `high`, changes.
+fn halved(mut low: f64, mut high: f64, holds: impl Fn(f64) -> bool) -> f64 {
+    while high - low > f64::EPSILON * high {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            break;
+        }
+        if holds(middle) { low = middle } else { high = middle }
+    }
+    high
 }
 
 #[cfg(test)]

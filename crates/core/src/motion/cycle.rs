@@ -4,12 +4,16 @@
 //! belt sticks, otherwise the moment when belt speed rises through drive speed. The orbit has closed
 //! once two laps in a row start at the same state.
 
+use std::collections::VecDeque;
+
 use super::event::Event;
 use super::hybrid::Motion;
-use super::lap::{Extrapolation, Lap, Section, overtaking, release};
-use super::piece::Piece;
+use super::lap::{
+    Extrapolation, Lap, Section, at_drive_speed, gripping_again, overtaking, release,
+};
+use super::piece::{Phase, Piece};
 use super::system::{Drivetrain, Integrator, Start, System};
-use crate::drag::{Closure, Drag, Mode};
+use crate::drag::{Drag, Mode};
 use crate::error::{Error, above};
 use crate::work::Work;
 
@@ -24,6 +28,10 @@ pub enum CycleKind {
     StickSlip,
     /// No periodic motion was reached within the laps allowed.
     Unsettled,
+    /// The belt is held, and the roll slips on it.
+    Stalled,
+    /// The belt slides steadily, more slowly than the roll that slips on it.
+    GripSlip,
 }
 
 /// The settled motion; of `Unsettled` motion, its last lap.
@@ -45,8 +53,12 @@ pub struct StickSlipCycle {
     pub stretch_min: f64,
     /// Greatest spring stretch.
     pub stretch_max: f64,
+    /// Time per lap during which the roll slips on the belt; zero where it always does, or never.
+    pub grip_slip_duration: f64,
     /// Work against drag per lap; zero in steady sliding, which has no laps.
     pub drag_work: f64,
+    /// Laps after which the motion repeats itself; of several, durations and work are means and extremes those of all.
+    pub laps_per_period: usize,
     /// Laps simulated.
     pub laps: usize,
 }
@@ -63,9 +75,17 @@ impl StickSlipCycle {
             speed_max: drive_speed,
             stretch_min: stretch,
             stretch_max: stretch,
+            grip_slip_duration: 0.0,
             drag_work: 0.0,
+            laps_per_period: 1,
             laps,
         }
+    }
+
+    /// The same at another speed of the belt, on which the roll slips.
+    fn slipping(belt_speed: f64, stuck: bool, stretch: f64, laps: usize) -> Self {
+        let kind = if stuck { CycleKind::Stalled } else { CycleKind::GripSlip };
+        Self { kind, ..Self::steady(belt_speed, stretch, laps) }
     }
 }
 
@@ -79,6 +99,8 @@ const MAX_PIECES_PER_LAP: usize = 1_000_000;
 const CLOSED: f64 = 1e-9;
 /// The same for smooth closures, in tolerances: their steps are of low order and leave more noise.
 const CLOSED_SMOOTH: f64 = 100.0;
+/// Laps after which a motion with memory may repeat itself.
+const MAX_PERIOD: usize = 16;
 /// Swing of the belt speed, relative to the drive speed, below which it counts as steady.
 const STEADY: f64 = 1e-7;
 /// Swing, relative to the drive speed, below which a lap on the falling branch is still growing out of rounding.
@@ -148,6 +170,9 @@ struct Laps<'a> {
     lap: Lap,
     /// Where the lap under way began, if it began at a section.
     previous: Option<Section>,
+    /// Whether the drag remembers, so that laps may repeat in groups; those before, each with its begin.
+    memory: bool,
+    past: VecDeque<(Section, Lap)>,
     /// The last whole lap, of a motion that has an end.
     whole: Option<StickSlipCycle>,
     extrapolation: Extrapolation,
@@ -180,6 +205,8 @@ impl<'a> Laps<'a> {
             most,
             lap: Lap::starting_at(0.0),
             previous: None,
+            memory: system.drag.closure().has_memory(),
+            past: VecDeque::new(),
             whole: None,
             extrapolation: Extrapolation::default(),
             pieces: 0,
@@ -211,6 +238,9 @@ impl<'a> Laps<'a> {
         if let Some(kind) = self.verdict(&section) {
             return Ok(Some(self.cycle(kind, section.time)));
         }
+        if let Some(period) = self.closed_period(&section) {
+            return Ok(Some(period));
+        }
         if !self.skip_ahead(&section) {
             self.begin_lap(section, &piece);
         }
@@ -219,6 +249,11 @@ impl<'a> Laps<'a> {
 
     /// What the motion is if it slides steadily from this piece on, or makes no laps at all.
     fn end_without_lap(&self, piece: &Piece) -> Option<StickSlipCycle> {
+        if piece.start.slipping && (piece.duration.is_infinite() || has_come_to_slip(piece)) {
+            let (belt_speed, pull) = piece.at(0.0);
+            let (stretch, stuck) = (pull / self.train.stiffness(), piece.start.mode == Mode::Stuck);
+            return Some(StickSlipCycle::slipping(belt_speed, stuck, stretch, self.count));
+        }
         let still = piece.duration.is_infinite()
             || is_steady(piece, self.train, self.drag, self.drive_speed);
         if still {
@@ -231,13 +266,31 @@ impl<'a> Laps<'a> {
 
     /// The section at which the lap ends with this piece, if it does.
     fn section(&mut self, event: Option<Event>, piece: &Piece) -> Option<Section> {
-        let found =
-            release(event, self.smooth, self.train).or_else(|| overtaking(piece, self.drive_speed));
+        if self.memory {
+            // bristles swing below the stick speed, and leave it many times a lap
+            let found = self.overtaking(piece)?;
+            return Some(found.with_memory(piece, self.lap.stick_duration > 0.0));
+        }
+        let found = release(event, self.smooth, self.train)
+            .or_else(|| self.overtaking(piece))
+            .or_else(|| gripping_again(event, self.train));
         let section = found.filter(|s| s.stuck || self.lap.stick_duration == 0.0)?;
         // every slip after a release overtakes the drive once; a second time means that it did not stick
         self.overtakings += u32::from(!section.stuck);
         let within_slip = !section.stuck && self.overtakings < 2;
         (!within_slip || self.previous.is_none_or(|p| !p.stuck)).then_some(section)
+    }
+
+    /// Where the belt overtakes the drive, be it on a corner of the law, where the piece ends.
+    #[allow(clippy::float_cmp)] // a corner is met by assigning its speed
+    fn overtaking(&self, piece: &Piece) -> Option<Section> {
+        overtaking(piece, self.drive_speed).or_else(|| {
+            let (Phase { direction, speed, .. }, before) = (self.motion.phase(), piece.start);
+            let met = direction * speed == self.drive_speed
+                && before.mode != Mode::Stuck
+                && before.speed < *speed;
+            met.then(|| at_drive_speed(piece, self.drive_speed))
+        })
     }
 
     /// Keep the lap that ends here as the last whole one, if it began at the same kind of section.
@@ -261,6 +314,24 @@ impl<'a> Laps<'a> {
         }
     }
 
+    /// The motion as one that repeats itself with this lap after several, if it does.
+    fn closed_period(&mut self, section: &Section) -> Option<StickSlipCycle> {
+        let previous = self.previous.filter(|_| self.memory)?;
+        self.past.push_front((previous, self.lap));
+        self.past.truncate(MAX_PERIOD);
+        let repeats = |p: &Section| section.repeats(p, self.drag, self.train, self.near);
+        let laps = 1 + self.past.iter().position(|(begin, _)| repeats(begin)).filter(|i| *i > 0)?;
+        let group = self.past.iter().take(laps).map(|(_, lap)| *lap).rev();
+        let joined = group.reduce(|all, next| all.joined(&next))?;
+        if joined.speed.1 - joined.speed.0 <= GROWING * self.drive_speed.abs() {
+            return None;
+        }
+        let kind =
+            if joined.stick_duration > 0.0 { CycleKind::StickSlip } else { CycleKind::Oscillation };
+        let stiffness = self.train.stiffness();
+        Some(joined.cycle(kind, section.time, self.count, self.drive_speed, stiffness, laps))
+    }
+
     /// Pass over laps that can be foreseen, if they can.
     fn skip_ahead(&mut self, section: &Section) -> bool {
         if section.stuck {
@@ -271,6 +342,7 @@ impl<'a> Laps<'a> {
         let Some(pull) = self.extrapolation.ahead(section.pull, steady_pull) else { return false };
         self.motion.resume(section.time, self.drive_speed, pull);
         (self.previous, self.lap) = (None, Lap::starting_at(section.time));
+        self.past.clear();
         true
     }
 
@@ -283,7 +355,7 @@ impl<'a> Laps<'a> {
 
     /// The lap under way as a cycle that ends at `end`.
     fn cycle(&self, kind: CycleKind, end: f64) -> StickSlipCycle {
-        self.lap.cycle(kind, end, self.count, self.drive_speed, self.train.stiffness())
+        self.lap.cycle(kind, end, self.count, self.drive_speed, self.train.stiffness(), 1)
     }
 }
 
@@ -297,23 +369,38 @@ fn is_steady(piece: &Piece, train: &Drivetrain, drag: &Drag, drive_speed: f64) -
     if piece.start.creeping {
         return (belt_speed - drive_speed).abs() <= STEADY * drag.stick_speed();
     }
-    let margin = drive_speed.abs() - drag.transition_speed();
-    if piece.start.mode != Mode::Ehl || margin < 0.0 {
+    // only the rest of the drive makes drag rise below the transition
+    if piece.start.mode != Mode::Ehl && drag.rest().damping == 0.0 {
         return false;
     }
+    let (speed, foot) = (drive_speed.abs(), drag.rising_from());
     // bristles remember: their force lags behind the speed, and can feed a swing
-    let memory = matches!(drag.closure(), Closure::LuGre { .. });
-    let rising = drag.rises_from_transition() && !memory;
-    let reach =
-        if rising { margin.max(STEADY * drive_speed.abs()) } else { STEADY * drive_speed.abs() };
-    let off = pull - drag.force(drive_speed);
+    let memory = drag.closure().has_memory();
+    let rising = speed >= foot && !memory;
+    let margin = speed - if rising { foot } else { drag.transition_speed() };
+    let above = piece.start.mode == Mode::Ehl || (rising && belt_speed.abs() > foot);
+    if !above || margin < 0.0 {
+        return false;
+    }
+    let reach = if rising { margin.max(STEADY * speed) } else { STEADY * speed };
+    let steady_pull = drag.force(drive_speed);
+    let off = pull - steady_pull;
     let energy = train.mass() * (belt_speed - drive_speed).powi(2) + off * off / train.stiffness();
-    energy < train.mass() * reach * reach
+    energy < train.mass() * reach * reach && steady_pull.abs() <= train.grip()
+}
+
+/// Whether a belt on which the roll slips has come to the speed at which drag is what the grip bears, for good.
+fn has_come_to_slip(piece: &Piece) -> bool {
+    let Phase { pull, speed, mode, .. } = piece.start;
+    let drag = piece.flow.drag;
+    let slope = drag.slope(speed);
+    mode != Mode::Stuck && slope > 0.0 && (pull - drag.force(speed)).abs() <= STEADY * slope * speed
 }
 
 /// Spring stretch of steady motion at the drive speed.
 fn steady_stretch(piece: &Piece, train: &Drivetrain, drag: &Drag, drive_speed: f64) -> f64 {
-    if piece.start.mode == Mode::Ehl {
+    let settling = piece.start.mode == Mode::Mixed && piece.duration.is_finite();
+    if piece.start.mode == Mode::Ehl || settling {
         drag.force(drive_speed) / train.stiffness()
     } else {
         piece.at(0.0).1 / train.stiffness()

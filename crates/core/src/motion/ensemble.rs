@@ -56,6 +56,8 @@ pub fn ensemble(
     run_lanes(tolerance, work, admit, |member, lanes, l| {
         let verdict = member.follow(lanes, l, span, tolerance, work);
         match verdict {
+            // a grip that the belt never needed changes nothing; else the motion is another
+            Verdict::Arrived if member.slips() => {}
             Verdict::Arrived => results[member.index] = Some(Ok(member.cycle())),
             Verdict::TooLong => results[member.index] = Some(Err(member.too_long(lanes, l, work))),
             Verdict::Rides | Verdict::Leaves => {}
@@ -134,6 +136,8 @@ struct Member {
     /// Pull and speed at the release that began the lap, if one did.
     released: Option<(f64, f64)>,
     whole: Option<(Lap, f64)>,
+    /// Greatest pull of the laps before, either way.
+    hardest: f64,
     laps: usize,
     turns: u32,
     steps: u32,
@@ -167,6 +171,7 @@ impl Member {
         let plain = drag.closure() == Closure::Retained
             && drive > 1.01 * stick_speed
             && drive < 1e3
+            && drag.rest().is_none()
             && damping * ehl.max(mixed) < STIFF
             && damping > 1e-6
             && damping < 1e3;
@@ -190,6 +195,7 @@ impl Member {
             lap: Lap::starting(0.0),
             released: None,
             whole: None,
+            hardest: 0.0,
             laps: 0,
             turns: 0,
             steps: 0,
@@ -339,6 +345,7 @@ impl Member {
             }
         }
         self.released = Some(state);
+        self.hardest = self.hardest_pull();
         self.lap = Lap { impulse, ..Lap::starting(time) };
         self.lap.add_speed(state.1);
         self.lap.add_pull(state.0);
@@ -397,6 +404,17 @@ impl Member {
 
     fn too_long(&self, lanes: &Lanes, l: usize, work: &Work) -> Error {
         Error::TooLong { steps: work.allowed(), time: lanes.time[l] * self.scale.time }
+    }
+
+    /// Greatest pull so far, either way, scaled.
+    fn hardest_pull(&self) -> f64 {
+        let (low, high) = self.lap.pull;
+        if low > high { self.hardest } else { self.hardest.max(-low).max(high) }
+    }
+
+    /// Whether the belt pulled harder than the roll's grip on it bears.
+    fn slips(&self) -> bool {
+        self.hardest_pull() * self.scale.pull >= self.system.train.grip()
     }
 
     /// Extremes and stuck time of a piece off the lanes.
@@ -466,6 +484,8 @@ impl Member {
             speed_max: lap.speed.1 * speed,
             stretch_min: lap.pull.0 * stretch,
             stretch_max: lap.pull.1 * stretch,
+            grip_slip_duration: 0.0,
+            laps_per_period: 1,
             drag_work: self.drive * speed * lap.impulse * pull * time,
             laps: self.laps,
         }

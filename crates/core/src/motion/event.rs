@@ -18,6 +18,10 @@ pub enum Guard {
     Reversal,
     /// Belt speed passes a point of a tabulated law; the mode does not change.
     TablePoint,
+    /// The spring pulls as hard as the roll's grip on the belt bears: the roll begins to slip.
+    GripLost,
+    /// The belt is as fast as the roll that slipped on it: the roll grips it again.
+    GripRegained,
 }
 
 impl Guard {
@@ -30,6 +34,8 @@ impl Guard {
             Self::HoldingForce => "holding_force",
             Self::Reversal => "reversal",
             Self::TablePoint => "table_point",
+            Self::GripLost => "grip_lost",
+            Self::GripRegained => "grip_regained",
         }
     }
 }

@@ -71,6 +71,7 @@ impl<'a> Motion<'a> {
             stopped: 0.0,
         };
         motion.bend_bristles();
+        motion.take_grip();
         motion.enter_mode_at_start();
         Ok(motion)
     }
@@ -84,6 +85,7 @@ impl<'a> Motion<'a> {
         (self.phase.speed, self.phase.pull) = (direction * belt_speed, direction * pull);
         self.next_step = f64::INFINITY;
         self.bend_bristles();
+        self.take_grip();
         self.enter_mode_at_start();
     }
 
@@ -100,9 +102,7 @@ impl<'a> Motion<'a> {
         self.steps += 1;
         self.work.take(1).map_err(|error| error.at_time(self.now.time))?;
         self.now.take_temperature();
-        if self.phase.creeping
-            && self.rate()[0] >= self.now.system.train.stiffness() * self.phase.speed
-        {
+        if self.phase.creeping && self.rate()[0] >= self.stiffness() * self.phase.speed {
             // the drive has turned: the backward pull no longer grows, and the belt is held
             (self.phase.creeping, self.phase.mode) = (false, Mode::Stuck);
         }
@@ -160,9 +160,19 @@ impl<'a> Motion<'a> {
         }))
     }
 
-    /// Rate of the pull if the belt stood still, about now, mirrored.
+    /// Rate of the pull if the belt stood still, about now, mirrored; nil while the roll slips.
     pub(super) fn rate(&self) -> Cubic {
+        if self.phase.slipping { [0.0; 4] } else { self.drive_rate() }
+    }
+
+    /// The same if the roll gripped the belt.
+    pub(super) fn drive_rate(&self) -> Cubic {
         self.now.rate(self.phase.direction)
+    }
+
+    /// What the pull loses per length that the belt moves: the stiffness of the spring, nil while the roll slips.
+    pub(super) fn stiffness(&self) -> f64 {
+        if self.phase.slipping { 0.0 } else { self.now.system.train.stiffness() }
     }
 }
 
@@ -175,6 +185,7 @@ fn phase_at(start: Start, pull: f64) -> Phase {
         branch: 0,
         released: false,
         creeping: false,
+        slipping: false,
         direction,
         pull: direction * pull,
         speed: direction * start.belt_speed,

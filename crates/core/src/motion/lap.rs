@@ -4,7 +4,7 @@ use super::cycle::{CycleKind, StickSlipCycle};
 use super::event::{Event, Guard};
 use super::piece::Piece;
 use super::system::Drivetrain;
-use crate::drag::{Drag, Mode};
+use crate::drag::{Closure, Drag, Mode};
 
 /// State where a lap ends and the next begins.
 #[derive(Debug, Clone, Copy)]
@@ -13,6 +13,8 @@ pub(super) struct Section {
     pub stuck: bool,
     belt_speed: f64,
     pub pull: f64,
+    /// Force of the bristles, if there are any.
+    bristles: f64,
 }
 
 impl Section {
@@ -29,6 +31,17 @@ impl Section {
         self.stuck == previous.stuck
             && (self.belt_speed - previous.belt_speed).abs() <= near * speed_scale
             && (self.pull - previous.pull).abs() <= near * pull_scale
+            && (self.bristles - previous.bristles).abs() <= near * pull_scale
+    }
+
+    /// The same with what the bristles remember, after a lap during which the belt stuck, or did not.
+    pub(super) fn with_memory(mut self, piece: &Piece, stuck: bool) -> Self {
+        if let Closure::LuGre { bristle_stiffness, .. } = piece.flow.drag.closure() {
+            let deflection = piece.state(self.time - piece.time)[2];
+            self.bristles = bristle_stiffness * deflection * piece.start.direction;
+        }
+        self.stuck = stuck;
+        self
     }
 }
 
@@ -82,20 +95,40 @@ pub(super) fn release(event: Option<Event>, smooth: bool, train: &Drivetrain) ->
             || (smooth && e.from == Mode::Microslip && e.guard == Guard::StickSpeed)
     };
     let Event { time, belt_speed, stretch, .. } = event.filter(released)?;
-    Some(Section { time, stuck: true, belt_speed, pull: train.stiffness() * stretch })
+    let pull = train.stiffness() * stretch;
+    Some(Section { time, stuck: true, belt_speed, pull, bristles: 0.0 })
+}
+
+/// The belt has come up to the drive that slipped on it.
+pub(super) fn gripping_again(event: Option<Event>, train: &Drivetrain) -> Option<Section> {
+    let Event { time, belt_speed, stretch, .. } =
+        event.filter(|e| e.guard == Guard::GripRegained && e.from != Mode::Stuck)?;
+    let pull = train.stiffness() * stretch;
+    Some(Section { time, stuck: false, belt_speed, pull, bristles: 0.0 })
+}
+
+/// The same where the piece ends just there.
+pub(super) fn at_drive_speed(piece: &Piece, drive_speed: f64) -> Section {
+    let pull = piece.at(piece.duration).1;
+    let time = piece.time + piece.duration;
+    Section { time, stuck: false, belt_speed: drive_speed, pull, bristles: 0.0 }
 }
 
 /// The section of motion without sticking: the belt overtakes the drive.
 pub(super) fn overtaking(piece: &Piece, drive_speed: f64) -> Option<Section> {
     let elapsed = piece.overtaking(drive_speed)?;
     let (belt_speed, pull) = piece.at(elapsed);
-    Some(Section { time: piece.time + elapsed, stuck: false, belt_speed, pull })
+    let time = piece.time + elapsed;
+    Some(Section { time, stuck: false, belt_speed, pull, bristles: 0.0 })
 }
 
 /// Extremes and durations of the lap under way.
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Lap {
     begin: f64,
     pub stick_duration: f64,
+    /// Time during which the roll slips on the belt, what the pull does on the belt meanwhile, and its impulse.
+    slipping: (f64, f64, f64),
     pub speed: (f64, f64),
     pull: (f64, f64),
     /// Integral of the pull over time.
@@ -105,7 +138,8 @@ pub(super) struct Lap {
 impl Lap {
     pub(super) fn starting_at(time: f64) -> Self {
         let none = (f64::INFINITY, f64::NEG_INFINITY);
-        Self { begin: time, stick_duration: 0.0, speed: none, pull: none, impulse: 0.0 }
+        let (stick_duration, slipping, impulse) = (0.0, (0.0, 0.0, 0.0), 0.0);
+        Self { begin: time, stick_duration, slipping, speed: none, pull: none, impulse }
     }
 
     pub(super) fn add(&mut self, piece: &Piece, smooth: bool) {
@@ -121,7 +155,13 @@ impl Lap {
             return;
         }
         let begin = time - piece.time;
-        self.impulse += piece.impulse(begin);
+        let impulse = piece.impulse(begin);
+        self.impulse += impulse;
+        if piece.start.slipping {
+            self.slipping.0 += piece.duration - begin;
+            self.slipping.1 += piece.start.pull * piece.start.direction * piece.way(begin);
+            self.slipping.2 += impulse;
+        }
         let turning = piece.turning_points().map(|t| t.filter(|t| *t >= begin));
         for elapsed in
             [Some(begin), Some(piece.duration), turning[0], turning[1]].into_iter().flatten()
@@ -129,6 +169,20 @@ impl Lap {
             let (belt_speed, pull) = piece.at(elapsed);
             self.speed = (self.speed.0.min(belt_speed), self.speed.1.max(belt_speed));
             self.pull = (self.pull.0.min(pull), self.pull.1.max(pull));
+        }
+    }
+
+    /// This lap and the one after it, as one.
+    pub(super) fn joined(self, next: &Self) -> Self {
+        let widest = |a: (f64, f64), b: (f64, f64)| (a.0.min(b.0), a.1.max(b.1));
+        let (a, b) = (self.slipping, next.slipping);
+        Self {
+            begin: self.begin,
+            stick_duration: self.stick_duration + next.stick_duration,
+            slipping: (a.0 + b.0, a.1 + b.1, a.2 + b.2),
+            speed: widest(self.speed, next.speed),
+            pull: widest(self.pull, next.pull),
+            impulse: self.impulse + next.impulse,
         }
     }
 
@@ -140,20 +194,29 @@ impl Lap {
         laps: usize,
         drive_speed: f64,
         stiffness: f64,
+        laps_per_period: usize,
     ) -> StickSlipCycle {
-        let duration = end - self.begin;
+        #[allow(clippy::cast_precision_loss)] // a few
+        let share = 1.0 / laps_per_period as f64;
+        let duration = share * (end - self.begin);
         let periodic = duration.is_finite() && duration > 0.0;
         StickSlipCycle {
             kind,
             frequency: if periodic { 1.0 / duration } else { 0.0 },
-            slip_duration: if periodic { duration - self.stick_duration } else { 0.0 },
-            stick_duration: if periodic { self.stick_duration } else { 0.0 },
+            slip_duration: if periodic { duration - share * self.stick_duration } else { 0.0 },
+            stick_duration: if periodic { share * self.stick_duration } else { 0.0 },
             speed_min: self.speed.0,
             speed_max: self.speed.1,
             stretch_min: self.pull.0 / stiffness,
             stretch_max: self.pull.1 / stiffness,
-            // over a closed lap all work of the drive ends in drag
-            drag_work: if periodic { drive_speed * self.impulse } else { 0.0 },
+            grip_slip_duration: if periodic { share * self.slipping.0 } else { 0.0 },
+            // over a closed lap all work of the drive ends in drag, but for what the slipping roll takes
+            drag_work: if periodic {
+                share * (drive_speed * (self.impulse - self.slipping.2) + self.slipping.1)
+            } else {
+                0.0
+            },
+            laps_per_period,
             laps,
         }
     }

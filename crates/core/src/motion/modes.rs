@@ -12,8 +12,44 @@ impl Motion<'_> {
         if let Closure::LuGre { bristle_stiffness, .. } = self.now.system.drag.closure()
             && self.phase.speed >= self.now.speed(self.now.system.drag.stick_speed())
         {
-            self.phase.bristle = self.now.steady_drag(self.phase.speed) / bristle_stiffness;
+            let still = self.now.contact_drag(self.phase.speed) + self.now.rest(0.0);
+            self.phase.bristle = still / bristle_stiffness;
         }
+    }
+
+    /// Whether the roll slips at the start, where the spring pulls as hard as its grip bears, or harder.
+    pub(super) fn take_grip(&mut self) {
+        self.phase.slipping = false;
+        let Some(grip) = self.now.system.grip() else { return };
+        let towards = self.phase.pull.signum();
+        if towards * self.phase.pull >= grip {
+            self.phase.pull = towards * grip;
+            let stiffness = self.now.system.train.stiffness();
+            let ahead = self.drive_rate()[0] - stiffness * self.phase.speed;
+            self.phase.slipping = towards * ahead > 0.0;
+        }
+    }
+
+    /// Lose or regain the roll's grip on the belt; the mode of the belt stays.
+    fn change_grip(&mut self, lost: bool, crept: bool) -> Mode {
+        let towards = self.phase.pull.signum();
+        self.phase.pull = towards * self.now.system.train.grip();
+        self.phase.slipping = lost;
+        // the backward pull grows no more
+        if crept {
+            return Mode::Stuck;
+        }
+        if !lost && self.phase.mode != Mode::Stuck {
+            // as fast as the roll to the last bit, or the grip would be lost again at once
+            let (rate, stiffness) = (self.drive_rate()[0], self.now.system.train.stiffness());
+            self.phase.speed = rate / stiffness;
+            if towards * (rate - stiffness * self.phase.speed) > 0.0 {
+                let up = towards > 0.0;
+                let speed = self.phase.speed;
+                self.phase.speed = if up { speed.next_up() } else { speed.next_down() };
+            }
+        }
+        self.phase.mode
     }
 
     /// Enter the mode that pull and speed ask for.
@@ -33,7 +69,7 @@ impl Motion<'_> {
         }
         // on a boundary the motion itself says which side it belongs to: m u' and, where that is nil, u''
         let net_force = pull - self.now.steady_drag(speed);
-        let onward = self.rate()[0] - self.now.system.train.stiffness() * speed;
+        let onward = self.rate()[0] - self.stiffness() * speed;
         let rising = net_force > 0.0 || (net_force == 0.0 && onward >= 0.0);
         let x = self.now.at_reference(speed);
         let mut branch = drag.branch(x);
@@ -79,6 +115,8 @@ impl Motion<'_> {
             (Guard::HoldingForce, Mode::Stuck) => self.released(),
             (Guard::HoldingForce, _) => self.caught(),
             (Guard::Reversal, _) => self.turned(crept),
+            (Guard::GripLost, _) => self.change_grip(true, crept),
+            (Guard::GripRegained, _) => self.change_grip(false, crept),
         };
     }
 
@@ -165,6 +203,15 @@ impl Motion<'_> {
         }
         let mut watch = Watch::over(piece, self.now.thermal.as_ref());
         let drag = &self.now.system.drag;
+        if let Some(grip) = self.now.system.grip() {
+            if self.phase.slipping {
+                let ahead = Condition::Ahead(self.drive_rate(), self.now.system.train.stiffness());
+                watch.look(ahead, Guard::GripRegained);
+            } else {
+                watch.look(Condition::GripsForward(grip), Guard::GripLost);
+                watch.look(Condition::GripsBack(grip), Guard::GripLost);
+            }
+        }
         match self.phase.mode {
             Mode::Stuck => {
                 watch.look(Condition::HeldForward, Guard::HoldingForce);
@@ -178,7 +225,8 @@ impl Motion<'_> {
                 match drag.closure() {
                     Closure::Retained => watch.look(Condition::Overcome, Guard::HoldingForce),
                     Closure::Stiction => {
-                        watch.look(Condition::Pulled(drag.breakaway_force()), Guard::HoldingForce);
+                        let holding = Condition::Pulled(drag.breakaway_force(), drag.rest().force);
+                        watch.look(holding, Guard::HoldingForce);
                     }
                     Closure::Stribeck | Closure::LuGre { .. } => {}
                 }

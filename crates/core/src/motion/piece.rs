@@ -1,7 +1,8 @@
 //! A stretch of smooth motion: the state along it, the conditions that end it, and its turning points.
 
 use super::polynomial::{ORDER, Polynomial, derivative, first_crossing, subtracted_from, value};
-use super::runge_kutta::{Flow, Formula, State};
+use super::runge_kutta::{Flow, Formula, State, horner};
+use super::schedule::Cubic;
 use super::taylor::{Series, ThermalFactors};
 use crate::drag::Mode;
 
@@ -15,6 +16,8 @@ pub(super) struct Phase {
     pub released: bool,
     /// In microslip: the spring pulls back with just the holding force (see `creep_series`).
     pub creeping: bool,
+    /// The roll slips on the belt: the pull keeps at what the grip bears.
+    pub slipping: bool,
     pub direction: f64,
     pub pull: f64,
     pub speed: f64,
@@ -55,14 +58,21 @@ pub(super) enum Condition {
     Faster(f64),
     /// The belt is slower than this speed of the drag law.
     Slower(f64),
-    /// The spring pulls harder than this force of the drag law.
-    Pulled(f64),
+    /// The spring pulls harder than this force of the drag law and of the rest of the drive.
+    Pulled(f64, f64),
     /// The spring pulls harder than the drag.
     Overcome,
     /// The held belt is pulled forward by less than can hold it.
     HeldForward,
     /// The held belt is pulled back by less than can hold it.
     HeldBack,
+    /// The spring pulls forward by less than the roll's grip on the belt bears.
+    GripsForward(f64),
+    /// The spring pulls back by less than that.
+    GripsBack(f64),
+    /// The roll, which slips, is ahead of the belt in the direction of the pull: rate of the pull if the belt stood
+    /// still and the roll gripped, and stiffness.
+    Ahead(Cubic, f64),
 }
 
 impl Piece<'_> {
@@ -199,22 +209,32 @@ impl Piece<'_> {
 
     /// Integral of the pull over the piece from `begin` on, signed.
     pub(super) fn impulse(&self, begin: f64) -> f64 {
-        let integral = match &self.path {
+        self.start.direction * self.integral(begin, 0)
+    }
+
+    /// Way of the belt over the piece from `begin` on, signed.
+    pub(super) fn way(&self, begin: f64) -> f64 {
+        self.start.direction * self.integral(begin, 1)
+    }
+
+    /// Integral of a component of the state over the piece from `begin` on, mirrored.
+    fn integral(&self, begin: f64, component: usize) -> f64 {
+        match &self.path {
             Path::Series(series) => {
+                let c = if component == 0 { &series.pull } else { &series.speed };
                 let antiderivative = |t: f64| {
-                    let sum = (0..=ORDER).rev().fold(0.0, |sum, i| {
-                        sum * t + series.pull[i] * super::polynomial::INVERSE_NEXT[i]
-                    });
+                    let sum = (0..=ORDER)
+                        .rev()
+                        .fold(0.0, |sum, i| sum * t + c[i] * super::polynomial::INVERSE_NEXT[i]);
                     sum * t
                 };
                 antiderivative(self.duration) - antiderivative(begin)
             }
             Path::Steps { .. } => {
                 let span = self.duration - begin;
-                GAUSS.iter().map(|(x, w)| w * span * self.state(begin + x * span)[0]).sum()
+                GAUSS.iter().map(|(x, w)| w * span * self.state(begin + x * span)[component]).sum()
             }
-        };
-        self.start.direction * integral
+        }
     }
 }
 
@@ -249,9 +269,17 @@ impl Condition {
         match self {
             Self::Faster(limit) => difference(&series.speed, &scaled(limit, |w| &w.speed)),
             Self::Slower(limit) => difference(&scaled(limit, |w| &w.speed), &series.speed),
-            Self::Pulled(limit) => {
-                difference(&series.pull.map(|c| towards * c), &scaled(limit, |w| &w.force))
+            Self::Pulled(limit, rest) => {
+                let holding = scaled(limit, |w| &w.force);
+                let rest = scaled(rest, |w| &w.rest);
+                std::array::from_fn(|i| towards * series.pull[i] - holding[i] - rest[i])
             }
+            Self::GripsForward(grip) => subtracted_from(grip, &series.pull),
+            Self::GripsBack(grip) => subtracted_from(grip, &series.pull.map(|c| -c)),
+            Self::Ahead(rate, stiffness) => std::array::from_fn(|i| {
+                let driven = rate.get(i).copied().unwrap_or(0.0);
+                towards * (driven - stiffness * series.speed[i])
+            }),
             Self::Overcome => difference(&series.pull.map(|c| towards * c), &series.drag),
             Self::HeldForward => difference(&series.drag, &series.pull),
             Self::HeldBack => std::array::from_fn(|i| series.drag[i] + series.pull[i]),
@@ -264,7 +292,10 @@ impl Condition {
         match self {
             Self::Faster(_) => rates[1],
             Self::Slower(_) => -rates[1],
-            Self::Pulled(_) => towards * rates[0],
+            Self::Pulled(..) => towards * rates[0],
+            Self::GripsForward(_) => -rates[0],
+            Self::GripsBack(_) => rates[0],
+            Self::Ahead(rate, stiffness) => towards * (rate[1] - stiffness * rates[1]),
             Self::Overcome => towards * rates[0] - flow.force_slope(y) * rates[1],
             Self::HeldForward | Self::HeldBack => f64::NAN,
         }
@@ -275,7 +306,12 @@ impl Condition {
         match self {
             Self::Faster(limit) => y[1] - limit * speed,
             Self::Slower(limit) => limit * speed - y[1],
-            Self::Pulled(limit) => towards * y[0] - limit * force,
+            Self::Pulled(limit, rest) => {
+                towards * y[0] - limit * force - rest * flow.rest_factor(t)
+            }
+            Self::GripsForward(grip) => grip - y[0],
+            Self::GripsBack(grip) => grip + y[0],
+            Self::Ahead(rate, stiffness) => towards * (horner(&rate, t) - stiffness * y[1]),
             Self::Overcome => towards * y[0] - flow.force(t, y),
             Self::HeldForward | Self::HeldBack => f64::NAN, // a held belt has a series
         }

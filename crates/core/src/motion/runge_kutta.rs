@@ -35,8 +35,15 @@ impl Flow<'_> {
         })
     }
 
-    /// Steady drag at `u` and its slope.
-    fn steady_drag(&self, t: f64, u: f64) -> (f64, f64) {
+    /// Factor of the rest of the drive at time `t`.
+    pub(super) fn rest_factor(&self, t: f64) -> f64 {
+        self.temperature_law.map_or(1.0, |(temperature, temperature_law)| {
+            1.0 + temperature_law.rest_slope * (horner(&temperature, t) - temperature_law.reference)
+        })
+    }
+
+    /// Steady drag of the contact at `u` and its slope.
+    fn contact_drag(&self, t: f64, u: f64) -> (f64, f64) {
         let (force, speed) = self.factors(t);
         let x = u / speed;
         let (f, slope) = if let Some(branch) = self.branch {
@@ -50,10 +57,21 @@ impl Flow<'_> {
 
     /// Drag and its slopes in speed and deflection, and the rate of deflection with its slopes.
     fn friction(&self, t: f64, y: &State) -> ([f64; 3], [f64; 3]) {
-        let (g, slope) = self.steady_drag(t, y[1]);
+        let (contact, slope) = self.contact_drag(t, y[1]);
+        let rest = self.drag.rest().scaled(self.rest_factor(t));
         let Closure::LuGre { bristle_stiffness, bristle_damping } = self.drag.closure() else {
-            return ([g, slope, 0.0], [0.0; 3]);
+            let (_, speed) = self.factors(t);
+            let (share, growth) = if self.branch.is_some() {
+                (1.0, 0.0)
+            } else {
+                self.drag.smoothed_below(y[1] / speed)
+            };
+            let force = contact + rest.at(y[1]) * share;
+            let slope = slope + rest.damping * share + rest.at(y[1]) * growth / speed;
+            return ([force, slope, 0.0], [0.0; 3]);
         };
+        // bristles bear what is there at rest; what grows with speed is viscous, and acts beside them
+        let g = contact + rest.force;
         let (u, z) = (y[1], y[2]);
         let bent = bristle_stiffness * z / g;
         let rate = u * (1.0 - bent);
@@ -62,8 +80,8 @@ impl Flow<'_> {
         let (_, speed) = self.factors(t);
         let v_s = self.drag.stick_speed() * speed;
         let damping = bristle_damping * (-(u / v_s).powi(2)).exp();
-        let force = bristle_stiffness * z + damping * rate;
-        let force_u = damping * (rate_u - 2.0 * u / (v_s * v_s) * rate);
+        let force = bristle_stiffness * z + damping * rate + rest.damping * u;
+        let force_u = damping * (rate_u - 2.0 * u / (v_s * v_s) * rate) + rest.damping;
         let force_z = bristle_stiffness + damping * rate_z;
         ([force, force_u, force_z], [rate, rate_u, rate_z])
     }
@@ -94,7 +112,7 @@ impl Flow<'_> {
     }
 }
 
-fn horner(c: &Cubic, t: f64) -> f64 {
+pub(super) fn horner(c: &Cubic, t: f64) -> f64 {
     c[0] + t * (c[1] + t * (c[2] + t * c[3]))
 }
 

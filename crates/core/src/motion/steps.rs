@@ -48,9 +48,8 @@ impl<'a> Motion<'a> {
             return false;
         }
         let drag = &self.now.system.drag;
-        let onward = (self.rate()[0] - self.now.system.train.stiffness() * speed).abs();
-        let steady = self.is_driven_evenly()
-            && onward <= ROUNDING * self.now.system.train.stiffness() * speed;
+        let onward = (self.rate()[0] - self.stiffness() * speed).abs();
+        let steady = self.is_driven_evenly() && onward <= ROUNDING * self.stiffness() * speed;
         steady
             && [drag.upper_knot(branch), drag.lower_knot(branch)].into_iter().flatten().any(
                 |knot| {
@@ -104,7 +103,7 @@ impl<'a> Motion<'a> {
     /// How long the drive, at constant speed, takes to overcome what holds the belt.
     fn release_time(&self) -> f64 {
         let Phase { pull, speed, .. } = self.phase;
-        let rate = self.rate()[0] - self.now.system.train.stiffness() * speed;
+        let rate = self.rate()[0] - self.stiffness() * speed;
         let limit = self.now.holding_force(speed);
         if rate == 0.0 { f64::INFINITY } else { ((limit.copysign(rate) - pull) / rate).max(0.0) }
     }
@@ -134,7 +133,8 @@ impl<'a> Motion<'a> {
         let horizon = longest.min(self.now.system.train.time_scale());
         let exponent = drag.branch_exponent(self.phase.branch);
         let force = self.phase.pull.max(drag.transition_force());
-        exponent * force / (self.phase.speed * self.now.system.train.mass()) * horizon > STIFF
+        let slope = exponent * force / self.phase.speed + drag.rest().damping;
+        slope / self.now.system.train.mass() * horizon > STIFF
     }
 
     fn slip_start(&self) -> SlipStart<'_> {
@@ -147,19 +147,22 @@ impl<'a> Motion<'a> {
             }
             Mode::Stuck if self.now.held_fast(self.phase.speed) => {
                 let exponent = drag.branch_exponent(drag.branch(x));
-                (drag.force(x), Recurrence::power(exponent, x))
+                (drag.contact_force(x), Recurrence::power(exponent, x))
             }
-            _ => (drag.exponential(x), Recurrence::exponential(drag.stick_speed())),
+            _ => (drag.exponential(x), Recurrence::exponential(drag.decay_speed())),
         };
-        let force = if self.phase.released { pull / self.now.force(1.0) } else { base };
+        let released = self.phase.released;
+        let total = if released { pull } else { self.now.force(base) + self.now.rest(speed) };
         SlipStart {
-            stiffness: self.now.system.train.stiffness(),
+            stiffness: self.stiffness(),
             mass: self.now.system.train.mass(),
             rate: self.rate(),
             pull,
             speed,
-            force,
+            force: base,
+            total,
             law,
+            rest: drag.rest(),
             thermal: self.now.thermal.as_ref(),
         }
     }
@@ -170,9 +173,9 @@ impl<'a> Motion<'a> {
             pull_scale = self.phase.pull.abs(); // the speed follows its logarithm
         }
         let start = self.slip_start();
-        let v_s = self.now.system.drag.stick_speed();
+        let decay_speed = self.now.system.drag.decay_speed();
         let series = if self.phase.creeping {
-            creep_series(&start, v_s)
+            creep_series(&start, decay_speed)
         } else {
             self.arch.dispatch(Slip(start))
         };
@@ -191,7 +194,7 @@ impl<'a> Motion<'a> {
             branch: sliding.then_some(self.phase.branch),
             temperature_law: self.now.temperature_law(),
             rate: self.rate(),
-            stiffness: self.now.system.train.stiffness(),
+            stiffness: self.stiffness(),
             mass: self.now.system.train.mass(),
         }
     }

@@ -4,7 +4,7 @@ use super::event::ROUNDING;
 use super::schedule::Cubic;
 use super::system::{Drive, System};
 use super::taylor::ThermalFactors;
-use crate::drag::TemperatureLaw;
+use crate::drag::{Closure, TemperatureLaw};
 
 /// Drive and drag law at the time that the motion has reached.
 pub(super) struct Surroundings<'a> {
@@ -101,6 +101,11 @@ impl<'a> Surroundings<'a> {
             thermal.force = thermal.force.map(|c| c * force);
             thermal.speed = thermal.speed.map(|c| c * speed);
             thermal.slowness = thermal.slowness.map(|c| c / speed);
+            let slope = temperature_law.rest_slope;
+            for (rest, c) in thermal.rest.iter_mut().zip(temperature) {
+                *rest = slope * c;
+            }
+            thermal.rest[0] += 1.0 - slope * temperature_law.reference;
             thermal
         });
     }
@@ -133,12 +138,28 @@ impl<'a> Surroundings<'a> {
     /// What can hold a belt at `speed`; a law that moves may leave a held belt above the stick speed.
     pub(super) fn holding_force(&self, speed: f64) -> f64 {
         let (drag, x) = (&self.system.drag, self.at_reference(speed));
-        let fast = x > drag.stick_speed();
-        self.force(if fast { drag.force(x) } else { drag.holding_force(x) })
+        if x > drag.stick_speed() {
+            return self.force(drag.contact_force(x)) + self.rest(speed);
+        }
+        match drag.closure() {
+            Closure::Stiction => self.force(drag.breakaway_force()) + self.rest(0.0),
+            _ => self.force(drag.exponential(x)) + self.rest(speed),
+        }
     }
 
-    /// Drag in steady sliding at `speed`.
+    /// Drag of the contact in steady sliding at `speed > 0`, without the rest of the drive.
+    pub(super) fn contact_drag(&self, speed: f64) -> f64 {
+        self.force(self.system.drag.contact_force(self.at_reference(speed)))
+    }
+
+    /// Drag in steady sliding at `speed >= 0`, which is at least the stick speed or of a closure that is not smooth.
     pub(super) fn steady_drag(&self, speed: f64) -> f64 {
-        self.force(self.system.drag.force(self.at_reference(speed)))
+        self.contact_drag(speed) + self.rest(speed)
+    }
+
+    /// Drag of the rest of the drive at `speed >= 0`, as it is now.
+    pub(super) fn rest(&self, speed: f64) -> f64 {
+        let rest = self.system.drag.rest().at(speed);
+        self.thermal.as_ref().map_or(rest, |thermal| rest * thermal.rest[0])
     }
 }

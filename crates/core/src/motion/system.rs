@@ -9,6 +9,7 @@ use crate::error::{Error, above, at_least, at_most, below, finite};
 pub struct Drivetrain {
     stiffness: f64,
     mass: f64,
+    grip: f64,
 }
 
 impl Drivetrain {
@@ -20,7 +21,25 @@ impl Drivetrain {
         Ok(Self {
             stiffness: at_least("stiffness", stiffness, 0.0)?,
             mass: above("mass", mass, 0.0)?,
+            grip: f64::INFINITY,
         })
+    }
+
+    /// The same, of a roll that grips the belt no harder than with the force `grip` (Eq. 11 assumes that it always does).
+    ///
+    /// The spring ends at the roll, so it pulls no harder either: beyond, the roll slips on the belt.
+    ///
+    /// # Errors
+    /// If `grip` is not positive.
+    pub fn with_grip(mut self, grip: f64) -> Result<Self, Error> {
+        self.grip = above("grip", grip, 0.0)?;
+        Ok(self)
+    }
+
+    /// Force up to which the roll grips the belt; infinite if it always does.
+    #[must_use]
+    pub fn grip(&self) -> f64 {
+        self.grip
     }
 
     /// Spring stiffness `k`.
@@ -170,6 +189,12 @@ impl System {
             Drive::Speed(_) => pull / self.train.stiffness,
             Drive::Force(force) => (force.at(time) - pull) / self.train.stiffness,
         }
+    }
+
+    /// Force up to which the roll grips the belt, if there is such a limit; a drive that gives a force has no roll.
+    pub(super) fn grip(&self) -> Option<f64> {
+        (self.train.grip.is_finite() && matches!(self.drive, Drive::Speed(_)))
+            .then_some(self.train.grip)
     }
 
     pub(super) fn has_bristles(&self) -> bool {

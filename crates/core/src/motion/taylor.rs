@@ -7,6 +7,7 @@
 
 use super::polynomial::{INVERSE, ORDER, POWERS, Polynomial, fused};
 use super::schedule::Cubic;
+use crate::drag::Rest;
 
 /// How the drag term follows a series `q`: `n f_n = (weight sum i q_i f_{n-i} - back n sum q_i f_{n-i}) inverse`.
 #[derive(Debug, Clone, Copy)]
@@ -48,6 +49,8 @@ pub(super) struct ThermalFactors {
     pub speed: Polynomial,
     /// Inverse of the factor of every speed.
     pub slowness: Polynomial,
+    /// Factor of the rest of the drive.
+    pub rest: Polynomial,
 }
 
 impl ThermalFactors {
@@ -60,9 +63,17 @@ impl ThermalFactors {
             force: power(force_exponent),
             speed: power(speed_exponent),
             slowness: power(-speed_exponent),
+            rest: UNCHANGED,
         }
     }
 }
+
+/// The factor of what does not move.
+pub(super) const UNCHANGED: Polynomial = {
+    let mut c = [0.0; ORDER + 1];
+    c[0] = 1.0;
+    c
+};
 
 /// What a slip step starts from.
 #[derive(Debug, Clone, Copy)]
@@ -73,9 +84,12 @@ pub(super) struct SlipStart<'a> {
     pub rate: Cubic,
     pub pull: f64,
     pub speed: f64,
-    /// Drag at the start, before temperature has any part in it.
+    /// Drag of the contact at the start, before temperature has any part in it.
     pub force: f64,
+    /// Drag at the start, all of it.
+    pub total: f64,
     pub law: Recurrence,
+    pub rest: Rest,
     pub thermal: Option<&'a ThermalFactors>,
 }
 
@@ -97,8 +111,8 @@ impl pulp::WithSimd for Slip<'_> {
 #[allow(clippy::inline_always)] // so that it is compiled for the instruction set it is dispatched to
 fn slip_series(start: &SlipStart) -> Series {
     match start.thermal {
-        None => plain_series(start),
-        Some(thermal) => thermal_series(start, thermal),
+        None if start.rest.is_none() => plain_series(start),
+        thermal => full_series(start, thermal),
     }
 }
 
@@ -111,7 +125,7 @@ fn plain_series(start: &SlipStart) -> Series {
     let Recurrence { weight, back, inverse } = start.law;
     let (weight, back) = (weight * inverse, back * inverse);
     let per_mass = 1.0 / start.mass;
-    (p[0], u[0], f[0]) = (start.pull, start.speed, start.force);
+    (p[0], u[0], f[0]) = (start.pull, start.speed, start.total);
     // not fused: at a release the two forces are equal, and their difference is exactly nil
     rate[1] = (p[0] - f[0]) * per_mass;
     u[1] = rate[1];
@@ -135,22 +149,33 @@ fn plain_series(start: &SlipStart) -> Series {
     Series { pull: p, speed: u, drag: f }
 }
 
-/// The same with a law that moves with temperature: its speeds enter as `q = u/v(T)`, its forces as a factor.
-fn thermal_series(start: &SlipStart, thermal: &ThermalFactors) -> Series {
+/// The same with the rest of the drive, and a law that moves with temperature: its speeds enter as `q = u/v(T)`, its
+/// forces as a factor.
+fn full_series(start: &SlipStart, thermal: Option<&ThermalFactors>) -> Series {
     let (mut p, mut u, mut f) = ([0.0; ORDER + 1], [0.0; ORDER + 1], [0.0; ORDER + 1]);
     let (mut q, mut rate, mut g) = ([0.0; ORDER + 1], [0.0; ORDER + 1], [0.0; ORDER + 1]);
-    (p[0], u[0], f[0]) = (start.pull, start.speed, start.force * thermal.force[0]);
-    (q[0], g[0]) = (start.speed * thermal.slowness[0], start.force);
+    (p[0], u[0], f[0]) = (start.pull, start.speed, start.total);
+    (q[0], g[0]) = (start.speed * thermal.map_or(1.0, |t| t.slowness[0]), start.force);
     for n in 1..=ORDER {
         u[n] = (p[n - 1] - f[n - 1]) / start.mass * INVERSE[n];
         let driven = if n < 5 { start.rate[n - 1] } else { 0.0 };
         p[n] = (driven - start.stiffness * u[n - 1]) * INVERSE[n];
-        q[n] = product(&u, &thermal.slowness, n);
+        q[n] = thermal.map_or(u[n], |t| product(&u, &t.slowness, n));
         rate[n] = POWERS[n] * q[n];
         g[n] = drag_term(start.law, n, &q, &rate, &g);
-        f[n] = product(&g, &thermal.force, n);
+        f[n] = thermal.map_or(g[n], |t| product(&g, &t.force, n)) + rest_term(start, &u, n);
     }
     Series { pull: p, speed: u, drag: f }
+}
+
+/// Coefficient `n` of the drag of the rest of the drive along the speed `u`.
+fn rest_term(start: &SlipStart, u: &Polynomial, n: usize) -> f64 {
+    let Rest { force, damping } = start.rest;
+    match start.thermal {
+        _ if start.rest.is_none() => 0.0,
+        None => damping * u[n],
+        Some(thermal) => force * thermal.rest[n] + damping * product(u, &thermal.rest, n),
+    }
 }
 
 /// Coefficient `n` of the drag term along `q`, whose coefficients times their power are `rate`.
@@ -179,7 +204,7 @@ pub(super) fn composed(law: Recurrence, q: &Polynomial, first: f64) -> Polynomia
 /// Series of a held belt, which keeps `speed`: the pull grows as the drive says.
 pub(super) fn held_series(start: &SlipStart) -> Series {
     let (mut p, mut u, mut f) = ([0.0; ORDER + 1], [0.0; ORDER + 1], [0.0; ORDER + 1]);
-    (p[0], u[0], f[0]) = (start.pull, start.speed, start.force);
+    (p[0], u[0], f[0]) = (start.pull, start.speed, start.total);
     for (j, driven) in start.rate.iter().enumerate() {
         let pulled = if j == 0 { driven - start.stiffness * start.speed } else { *driven };
         p[j + 1] = pulled * INVERSE[j + 1];
@@ -187,8 +212,8 @@ pub(super) fn held_series(start: &SlipStart) -> Series {
     if let Some(thermal) = start.thermal {
         let q = thermal.slowness.map(|c| start.speed * c);
         let holding = composed(start.law, &q, start.force);
-        for (n, c) in f.iter_mut().enumerate() {
-            *c = product(&holding, &thermal.force, n);
+        for (n, c) in f.iter_mut().enumerate().skip(1) {
+            *c = product(&holding, &thermal.force, n) + rest_term(start, &u, n);
         }
     }
     Series { pull: p, speed: u, drag: f }
@@ -196,23 +221,36 @@ pub(super) fn held_series(start: &SlipStart) -> Series {
 
 /// Series of creep, where the belt slows just as fast as the growing backward pull allows.
 ///
-/// A belt that moves at `speed < v_s` against the pull of the spring cannot leave the holding force
-/// `A exp(-u/v_s)`: any faster and it is held, any slower and it slips. So `A exp(-u/v_s) = -p` stays
-/// true while `p' = rate - k u`, that is `(u/v_s)' = (ln A - ln(-p))'`.
-pub(super) fn creep_series(start: &SlipStart, stick_speed: f64) -> Series {
-    let (mut p, mut u) = ([0.0; ORDER + 1], [0.0; ORDER + 1]);
+/// A belt that moves at `u < v_s` against the pull of the spring cannot leave the holding force
+/// `A exp(-u/v_d) + r(u)`, `r` that of the rest of the drive: any faster and it is held, any slower and it slips. So
+/// `A exp(-u/v_d) = y` with `y = -p - r(u)` stays true while `p' = rate - k u`, that is
+/// `(u/v_d)' = (ln A - ln y)'`.
+pub(super) fn creep_series(start: &SlipStart, decay_speed: f64) -> Series {
+    let (mut p, mut u, mut y) = ([0.0; ORDER + 1], [0.0; ORDER + 1], [0.0; ORDER + 1]);
     let (mut log, mut x) = ([0.0; ORDER + 1], [0.0; ORDER + 1]);
+    let Rest { force, damping } = start.rest;
+    let rest = start.thermal.map_or(UNCHANGED, |thermal| thermal.rest);
+    let scale = start.thermal.map_or(UNCHANGED, |thermal| thermal.speed);
     (p[0], u[0]) = (start.pull, start.speed);
-    x[0] = start.speed / stick_speed * start.thermal.map_or(1.0, |thermal| thermal.slowness[0]);
+    y[0] = -p[0] - rest[0] * (force + damping * u[0]);
+    x[0] = start.speed / decay_speed * start.thermal.map_or(1.0, |thermal| thermal.slowness[0]);
     let growth = start.thermal.map_or([0.0; ORDER + 1], |thermal| logarithm(&thermal.force));
+    // y_n and ln y hold a share of u_n each, which is brought to the other side
+    let share = 1.0 - decay_speed * scale[0] * rest[0] * damping / y[0];
     for j in 0..ORDER {
         let n = j + 1;
         let driven = if j < 4 { start.rate[j] } else { 0.0 };
         p[n] = (driven - start.stiffness * u[j]) * INVERSE[n];
-        let sum: f64 = (1..n).map(|i| POWERS[i] * log[i] * p[n - i]).sum();
-        log[n] = (p[n] - sum * INVERSE[n]) / p[0];
+        let moved: f64 = (0..n).map(|i| u[i] * rest[n - i]).sum();
+        y[n] = -p[n] - force * rest[n] - damping * moved;
+        let sum: f64 = (1..n).map(|i| POWERS[i] * log[i] * y[n - i]).sum();
+        log[n] = (y[n] - sum * INVERSE[n]) / y[0];
         x[n] = growth[n] - log[n];
-        u[n] = stick_speed * start.thermal.map_or(x[n], |thermal| product(&x, &thermal.speed, n));
+        u[n] = decay_speed * product(&x, &scale, n) / share;
+        let own = rest[0] * damping * u[n];
+        y[n] -= own;
+        log[n] -= own / y[0];
+        x[n] += own / y[0];
     }
     Series { pull: p, speed: u, drag: p.map(|c| -c) }
 }

@@ -22,6 +22,8 @@ pub struct Trajectory {
     pub stretch: Vec<f64>,
     /// Mode at each sample.
     pub mode: Vec<Mode>,
+    /// Whether the roll slips on the belt at each sample.
+    pub slipping: Vec<bool>,
     /// Every change of mode.
     pub events: Vec<Event>,
     /// Where the work of the drive went.
@@ -37,6 +39,8 @@ pub struct Energy {
     pub work: f64,
     /// Work done against drag.
     pub dissipated: f64,
+    /// Work lost where the roll slipped on the belt.
+    pub slipped: f64,
     /// Growth of kinetic and spring energy.
     pub stored: f64,
     /// Sum of the magnitudes of all work done, the measure of the residual.
@@ -47,7 +51,7 @@ impl Energy {
     /// What is missing, as a share of the energy turned over.
     #[must_use]
     pub fn residual(&self) -> f64 {
-        let missing = self.work - self.dissipated - self.stored;
+        let missing = self.work - self.dissipated - self.slipped - self.stored;
         if missing == 0.0 { 0.0 } else { missing / self.turnover }
     }
 }
@@ -81,7 +85,7 @@ pub fn simulate(
     let arch = pulp::Arch::new();
     let time = sample_times(duration, samples);
     let (mut speed, mut pull) = (vec![0.0; samples], vec![0.0; samples]);
-    let mut mode = Vec::with_capacity(samples);
+    let (mut mode, mut slipping) = (Vec::with_capacity(samples), Vec::with_capacity(samples));
     let (mut events, mut elapsed) = (Vec::new(), Vec::new());
     let mut energy = Energy::default();
     // what was asked for is read, however much it is
@@ -104,6 +108,7 @@ pub fn simulate(
             sample(arch, &piece, times, speeds, pulls);
         }
         mode.resize(begin + count, piece.start.mode);
+        slipping.resize(begin + count, piece.start.slipping);
         energy.add(&piece, system, arch);
         end_state = piece.at(piece.duration);
         if let Some(event) = event {
@@ -116,7 +121,8 @@ pub fn simulate(
     energy.stored = (end.0 - initial.0) + (end.1 - initial.1);
     energy.turnover += energy.stored.abs();
     let stretch = time.iter().zip(&pull).map(|(t, p)| system.stretch(*p, *t)).collect();
-    Ok(Trajectory { time, belt_speed: speed, stretch, mode, events, energy, steps: motion.steps })
+    let steps = motion.steps;
+    Ok(Trajectory { time, belt_speed: speed, stretch, mode, slipping, events, energy, steps })
 }
 
 /// Kinetic energy and energy of the spring.
@@ -178,7 +184,9 @@ impl Energy {
             let span = weight * panel;
             self.work += span * power;
             self.dissipated += span * friction * speed;
-            self.turnover += span * (power.abs() + (friction * speed).abs());
+            let slip = if piece.start.slipping { pull * (given - speed) } else { 0.0 };
+            self.slipped += span * slip;
+            self.turnover += span * (power.abs() + (friction * speed).abs() + slip.abs());
         }
     }
 }

@@ -156,12 +156,15 @@ impl<'a> Motions<'a> {
 }
 
 /// The belt in scaled units, if its drag has two power branches whose force follows the speed at once.
+///
+/// A constant drag of the rest of the drive only shifts the pull; one that grows with speed has no scaled lap.
 #[must_use]
 pub fn slip_lap(train: &Drivetrain, drag: &Drag) -> Option<SlipLap> {
     let (mixed, ehl) = drag.two_branches()?;
     let pull = drag.transition_speed() * (train.stiffness() * train.mass()).sqrt();
     let memory = matches!(drag.closure(), Closure::LuGre { .. });
-    (!memory && mixed < 0.0 && ehl > 0.0).then(|| SlipLap {
+    let plain = !memory && drag.rest().damping == 0.0;
+    (plain && mixed < 0.0 && ehl > 0.0).then(|| SlipLap {
         damping: drag.transition_force() / pull,
         slowest: drag.stick_speed() / drag.transition_speed(),
         mixed,
@@ -208,8 +211,9 @@ fn leaving_stick_speed(
 ) -> Option<(f64, f64)> {
     let speed = drag.transition_speed();
     let system = System::at_speed(*train, drag, drive_speed * speed).ok()?;
-    let start = Start { belt_speed: 0.0, stretch: drag.breakaway_force() / train.stiffness() };
+    let start = Start { belt_speed: 0.0, stretch: drag.holding_force(0.0) / train.stiffness() };
     let (pull, belt_speed) = first_slide(&system, start, tolerance, &work.apart(work.allowed()))?;
+    let pull = pull - drag.rest().force;
     let impedance = (train.stiffness() * train.mass()).sqrt();
     Some((pull / (speed * impedance), belt_speed / speed))
 }
