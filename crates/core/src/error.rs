@@ -39,6 +39,11 @@ pub enum Error {
         /// What it must stay below.
         limit: f64,
     },
+    /// The quantity must fall somewhere before it rises, and does not.
+    NotFalling {
+        /// Name of the quantity, as the user knows it.
+        quantity: &'static str,
+    },
     /// There are too few values.
     TooFew {
         /// What there is too little of.
@@ -114,6 +119,9 @@ impl fmt::Display for Error {
             Self::NotBelow { quantity, value, limit } => {
                 write!(f, "{quantity} is {value}: it must be less than {limit}")
             }
+            Self::NotFalling { quantity } => {
+                write!(f, "{quantity} rises at all speeds: without a transition nothing sticks")
+            }
             Self::TooFew { quantity, needed } => {
                 write!(f, "too few {quantity}: at least {needed} are needed")
             }
@@ -170,6 +178,7 @@ impl Error {
             | Self::TooSmall { quantity, .. }
             | Self::TooLarge { quantity, .. }
             | Self::NotBelow { quantity, .. }
+            | Self::NotFalling { quantity }
             | Self::TooFew { quantity, .. }
             | Self::Backwards { quantity, .. }
             | Self::GivenUp { quantity, .. }
@@ -193,7 +202,8 @@ impl Error {
             | Self::Backwards { value, .. }
             | Self::GivenUp { value, .. }
             | Self::NotConverged { value, .. } => Some(value),
-            Self::TooFew { .. }
+            Self::NotFalling { .. }
+            | Self::TooFew { .. }
             | Self::TooLong { .. }
             | Self::WorkSpent { .. }
             | Self::Stopped

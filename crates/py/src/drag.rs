@@ -1,12 +1,14 @@
 //! The drag law as an object that Python holds.
 
 use hersey_core::Error;
-use hersey_core::drag::{Closure, Drag, Rest, TemperatureLaw};
+use hersey_core::drag::{Closure, Drag, Rest, SpeedLaw, TemperatureLaw};
+use hersey_core::lubrication::mixed::{MixedLaw, Sharing};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 
 use crate::errors::{raised, refused};
 use crate::interrupt::{copied, interruptible};
+use crate::lubrication::ViscosityLaw;
 
 /// A drag law.
 #[pyclass(frozen, module = "hersey._core")]
@@ -100,6 +102,54 @@ impl Law {
             .map_err(raised)
     }
 
+    /// A contact whose load film and asperities share, from the numbers of `MixedLaw` and a viscosity.
+    #[staticmethod]
+    fn mixed(
+        numbers: [f64; 8],
+        viscosity: f64,
+        stick_speed: f64,
+        closure: ClosureArguments<'_>,
+    ) -> PyResult<Self> {
+        let [
+            reference,
+            film_exponent,
+            load_exponent,
+            stiffness,
+            boundary,
+            shear,
+            rolling,
+            rolling_exponent,
+        ] = numbers;
+        let law = MixedLaw::new(Sharing {
+            reference,
+            film_exponent,
+            load_exponent,
+            stiffness,
+            boundary,
+            shear,
+            rolling,
+            rolling_exponent,
+        });
+        let closure = closure_from(closure)?;
+        law.and_then(|law| Drag::mixed(law, viscosity, stick_speed, closure))
+            .map(Self)
+            .map_err(raised)
+    }
+
+    /// The same law, its speeds varying as the inverse of a viscosity, at temperatures in K.
+    fn with_viscosity_law(
+        &self,
+        reference: f64,
+        viscosity: &ViscosityLaw,
+        boundary_slope: f64,
+        rest_slope: f64,
+    ) -> PyResult<Self> {
+        let speed = SpeedLaw::Viscosity(viscosity.0);
+        let temperature_law =
+            TemperatureLaw { reference, force_exponent: 0.0, speed, boundary_slope, rest_slope };
+        self.0.clone().with_temperature_law(temperature_law).map(Self).map_err(raised)
+    }
+
     /// The same law, varying with temperature.
     fn with_temperature_law(
         &self,
@@ -108,8 +158,8 @@ impl Law {
         speed_exponent: f64,
         rest_slope: f64,
     ) -> PyResult<Self> {
-        let temperature_law =
-            TemperatureLaw { reference, force_exponent, speed_exponent, rest_slope };
+        let powers = TemperatureLaw::powers(reference, force_exponent, speed_exponent);
+        let temperature_law = TemperatureLaw { rest_slope, ..powers };
         self.0.clone().with_temperature_law(temperature_law).map(Self).map_err(raised)
     }
 

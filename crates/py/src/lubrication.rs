@@ -134,7 +134,7 @@ pub struct ShearHeating {
 
 /// How viscosity falls with temperature.
 #[pyclass(frozen, module = "hersey._core")]
-pub struct ViscosityLaw(TemperatureLaw);
+pub struct ViscosityLaw(pub TemperatureLaw);
 
 #[pymethods]
 impl ViscosityLaw {

@@ -10,13 +10,20 @@
 //! With temperature the law keeps its shape: all forces vary as `(T/T_0)^b`, all speeds, the stick speed
 //! among them, as `(T/T_0)^d`. Two fitted surfaces `B = a T^b w^c` that meet at a transition are of this form.
 //!
+//! A third law is that of mixed lubrication, where film and asperities share the load: smooth, it falls and rises by
+//! itself, and its knot is the speed of least force. It hangs on viscosity times speed, which moves its speeds with
+//! temperature, and on boundary friction.
+//!
 //! Beside the lubricated contact stands the rest of the drive, `r_0 + r_1 v`: bearings, gears, the roll's own losses.
 
 mod closure;
+mod temperature;
 
 pub use closure::Closure;
+pub use temperature::{SpeedLaw, TemperatureLaw};
 
 use crate::error::{Error, above, at_least, below, finite};
+use crate::lubrication::mixed::MixedLaw;
 
 /// State of lubrication, which decides the equation of motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -29,27 +36,6 @@ pub enum Mode {
     Microslip,
     /// Slower than the stick speed, and held by the drag.
     Stuck,
-}
-
-/// How a law varies with temperature: forces as `(T/reference)^force_exponent`, speeds likewise.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TemperatureLaw {
-    /// Temperature at which the law is given, in the scale of its exponents.
-    pub reference: f64,
-    /// Exponent of every force.
-    pub force_exponent: f64,
-    /// Exponent of every speed.
-    pub speed_exponent: f64,
-    /// Relative change of the rest of the drive per unit of temperature.
-    pub rest_slope: f64,
-}
-
-impl TemperatureLaw {
-    /// Factor of the rest of the drive at `temperature`.
-    pub(crate) fn rest_factor(&self, temperature: f64) -> Result<f64, Error> {
-        let factor = 1.0 + self.rest_slope * (temperature - self.reference);
-        at_least("rest of the drive at this temperature", factor, 0.0)
-    }
 }
 
 /// What moves with the belt besides the lubricated contact: a drag of its own, `force + damping v`.
@@ -87,13 +73,39 @@ pub struct Drag {
     exponents: Vec<f64>,
     /// Knot of the transition between mixed and EHL.
     transition: usize,
+    /// The law of both branches, if it is that of mixed lubrication.
+    mixed: Option<MixedContact>,
     stick_speed: f64,
     closure: Closure,
     breakaway_force: f64,
     /// Speed over which drag falls by a factor `e` below the stick speed.
     decay_speed: f64,
     rest: Rest,
+    /// Speed from which on all drag together rises.
+    rising_from: f64,
     temperature_law: Option<TemperatureLaw>,
+}
+
+/// A contact whose load film and asperities share.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct MixedContact {
+    pub law: MixedLaw,
+    pub viscosity: f64,
+}
+
+impl MixedContact {
+    /// Speed and force of the transition.
+    fn knot(&self) -> Result<(f64, f64), Error> {
+        let transition = self.law.transition().ok_or(Error::NotFalling { quantity: "drag" })?;
+        Ok((above("transition_speed", transition.product / self.viscosity, 0.0)?, transition.force))
+    }
+
+    /// Force and slope at `u`, boundary friction being `boundary` times as large.
+    fn force_and_slope(&self, u: f64, boundary: f64) -> (f64, f64) {
+        let (force, slope) =
+            self.law.with_forces(1.0, boundary).force_and_slope(self.viscosity * u);
+        (force, slope * self.viscosity)
+    }
 }
 
 impl Drag {
@@ -159,6 +171,23 @@ impl Drag {
         Self::chain(knots, exponents, least, stick_speed, closure)
     }
 
+    /// The law of mixed lubrication, of a contact of `law` at a `viscosity` (Pa s).
+    ///
+    /// # Errors
+    /// If drag rises at all speeds, so that there is no transition, a value is not positive and finite, or `stick_speed`
+    /// is not below the transition speed.
+    pub fn mixed(
+        law: MixedLaw,
+        viscosity: f64,
+        stick_speed: f64,
+        closure: Closure,
+    ) -> Result<Self, Error> {
+        let contact = MixedContact { law, viscosity: above("viscosity", viscosity, 0.0)? };
+        let mut drag = Self::without_closure(vec![contact.knot()?], vec![-1.0, 1.0], 0);
+        drag.mixed = Some(contact);
+        drag.closed(stick_speed, closure)
+    }
+
     fn chain(
         knots: Vec<(f64, f64)>,
         exponents: Vec<f64>,
@@ -166,24 +195,35 @@ impl Drag {
         stick_speed: f64,
         closure: Closure,
     ) -> Result<Self, Error> {
-        above("stick_speed", stick_speed, 0.0)?;
-        below("stick_speed", stick_speed, knots[transition].0)?;
-        closure.check()?;
-        let mut drag = Self {
+        Self::without_closure(knots, exponents, transition).closed(stick_speed, closure)
+    }
+
+    fn without_closure(knots: Vec<(f64, f64)>, exponents: Vec<f64>, transition: usize) -> Self {
+        Self {
             knots,
             exponents,
             transition,
-            stick_speed,
-            closure,
+            mixed: None,
+            stick_speed: f64::NAN,
+            closure: Closure::Retained,
             breakaway_force: f64::NAN,
-            decay_speed: stick_speed,
+            decay_speed: f64::NAN,
             rest: Rest::default(),
+            rising_from: f64::NAN,
             temperature_law: None,
-        };
-        let continuous = std::f64::consts::E * drag.force_at_stick_speed();
-        drag.breakaway_force = finite("breakaway force", continuous)?;
-        above("breakaway force", drag.breakaway_force, 0.0)?;
-        Ok(drag)
+        }
+    }
+
+    fn closed(mut self, stick_speed: f64, closure: Closure) -> Result<Self, Error> {
+        above("stick_speed", stick_speed, 0.0)?;
+        below("stick_speed", stick_speed, self.transition_speed())?;
+        closure.check()?;
+        (self.stick_speed, self.decay_speed, self.closure) = (stick_speed, stick_speed, closure);
+        let continuous = std::f64::consts::E * self.force_at_stick_speed();
+        self.breakaway_force = finite("breakaway force", continuous)?;
+        above("breakaway force", self.breakaway_force, 0.0)?;
+        self.rising_from = self.found_rising_from();
+        Ok(self)
     }
 
     /// The same law with another force that breaks a belt at rest away.
@@ -208,6 +248,7 @@ impl Drag {
         at_least("rest_damping", rest.damping, 0.0)?;
         self.rest = rest;
         self.check_rest()?;
+        self.rising_from = self.found_rising_from();
         Ok(self)
     }
 
@@ -232,10 +273,7 @@ impl Drag {
     /// # Errors
     /// If a value is not finite, or the reference temperature is not positive in its scale.
     pub fn with_temperature_law(mut self, temperature_law: TemperatureLaw) -> Result<Self, Error> {
-        above("reference_temperature", temperature_law.reference, 0.0)?;
-        finite("force_temperature_exponent", temperature_law.force_exponent)?;
-        finite("speed_temperature_exponent", temperature_law.speed_exponent)?;
-        finite("rest_temperature_slope", temperature_law.rest_slope)?;
+        temperature_law.check()?;
         self.temperature_law = Some(temperature_law);
         Ok(self)
     }
@@ -246,9 +284,9 @@ impl Drag {
     /// If the temperature is not positive, or the law leaves the range of numbers there.
     pub fn at(&self, temperature: f64) -> Result<Self, Error> {
         let Some(temperature_law) = self.temperature_law else { return Ok(self.clone()) };
-        let ratio = above("temperature", temperature, 0.0)? / temperature_law.reference;
-        let force = ratio.powf(temperature_law.force_exponent);
-        let speed = ratio.powf(temperature_law.speed_exponent);
+        above("temperature", temperature, 0.0)?;
+        let force = temperature_law.force_factor(temperature);
+        let speed = temperature_law.speed_factor(temperature)?;
         let mut drag = self.clone();
         drag.temperature_law = None;
         for (v, f) in &mut drag.knots {
@@ -257,9 +295,19 @@ impl Drag {
         }
         drag.stick_speed = above("stick speed at this temperature", drag.stick_speed * speed, 0.0)?;
         drag.decay_speed = finite("stick speed at this temperature", drag.decay_speed * speed)?;
-        drag.breakaway_force = finite("drag at this temperature", drag.breakaway_force * force)?;
+        let boundary = temperature_law.boundary_factor(temperature)?;
+        let below_stick_speed = force * (1.0 + drag.boundary_share() * (boundary - 1.0));
+        let breakaway = drag.breakaway_force * below_stick_speed;
+        drag.breakaway_force = finite("drag at this temperature", breakaway)?;
+        if let Some(mixed) = &mut drag.mixed {
+            mixed.viscosity /= speed;
+            mixed.law = mixed.law.with_forces(force, boundary);
+            drag.knots = vec![mixed.knot()?];
+            below("stick_speed", drag.stick_speed, drag.transition_speed())?;
+        }
         drag.rest = drag.rest.scaled(temperature_law.rest_factor(temperature)?);
         drag.check_rest()?;
+        drag.rising_from = drag.found_rising_from();
         Ok(drag)
     }
 
@@ -402,6 +450,13 @@ impl Drag {
     /// rest rises more than the contact falls; above it the last speed at which it falls.
     #[must_use]
     pub fn rising_from(&self) -> f64 {
+        self.rising_from
+    }
+
+    fn found_rising_from(&self) -> f64 {
+        if self.mixed.is_some() {
+            return self.mixed_rising_from();
+        }
         let mut from = self.stick_speed;
         for branch in self.branch(self.stick_speed)..self.exponents.len() {
             let (exponent, end) =
@@ -422,14 +477,29 @@ impl Drag {
         from
     }
 
+    fn mixed_rising_from(&self) -> f64 {
+        let transition = self.transition_speed();
+        if self.rest.damping == 0.0 {
+            return transition;
+        }
+        let falls = |v: f64| self.slope(v) < 0.0;
+        let mut low = transition;
+        while !falls(low) {
+            if low <= self.stick_speed {
+                return self.stick_speed;
+            }
+            low *= STRIDE;
+        }
+        halved(low.max(self.stick_speed), (low / STRIDE).min(transition), falls)
+    }
+
     /// Slope of the drag force in steady sliding at `speed`.
     #[must_use]
     pub fn slope(&self, speed: f64) -> f64 {
         let u = speed.abs();
         let (share, growth) = self.smoothed(u);
         let contact = if u >= self.stick_speed {
-            let branch = self.branch(u);
-            self.exponents[branch] * self.branch_force(branch, u) / u
+            self.branch_force_and_slope(self.branch(u), u, 1.0).1
         } else {
             self.force_and_slope_below(u).1
         };
@@ -448,6 +518,14 @@ impl Drag {
         self.breakaway_force * (-u / self.decay_speed).exp()
     }
 
+    /// Share of boundary friction in the drag at the stick speed, with which all below it varies.
+    pub(crate) fn boundary_share(&self) -> f64 {
+        self.mixed.map_or(0.0, |mixed| {
+            let state = mixed.law.at(mixed.viscosity * self.stick_speed);
+            state.boundary / state.force()
+        })
+    }
+
     /// Speed over which drag falls by a factor `e` below the stick speed.
     pub(crate) fn decay_speed(&self) -> f64 {
         self.decay_speed
@@ -463,13 +541,21 @@ impl Drag {
         if branch > self.transition { Mode::Ehl } else { Mode::Mixed }
     }
 
-    /// Exponent of force in speed on `branch`.
+    /// The law of mixed lubrication, if it is that.
+    pub(crate) fn mixed_contact(&self) -> Option<&MixedContact> {
+        self.mixed.as_ref()
+    }
+
+    /// Exponent of force in speed on `branch` of a chain of powers.
     pub(crate) fn branch_exponent(&self, branch: usize) -> f64 {
         self.exponents[branch]
     }
 
-    /// Drag on `branch` at `u`, exact at the knots on either side of it.
+    /// Drag of the contact on `branch` at `u`, exact at the knots on either side of it.
     pub(crate) fn branch_force(&self, branch: usize, u: f64) -> f64 {
+        if let Some(mixed) = &self.mixed {
+            return mixed.law.force(mixed.viscosity * u);
+        }
         if let Some((speed, force)) = self.knots.get(branch)
             && u.total_cmp(speed).is_eq()
         {
@@ -479,9 +565,26 @@ impl Drag {
         force * (u / speed).powf(self.exponents[branch])
     }
 
+    /// The same with its slope, boundary friction being `boundary` times as large.
+    pub(crate) fn branch_force_and_slope(
+        &self,
+        branch: usize,
+        u: f64,
+        boundary: f64,
+    ) -> (f64, f64) {
+        if let Some(mixed) = &self.mixed {
+            return mixed.force_and_slope(u, boundary);
+        }
+        let force = self.branch_force(branch, u);
+        (force, self.exponents[branch] * force / u)
+    }
+
     /// Exponents of the mixed and the EHL branch, if these are all there is.
     pub(crate) fn two_branches(&self) -> Option<(f64, f64)> {
-        if let [mixed, ehl] = self.exponents[..] { Some((mixed, ehl)) } else { None }
+        match self.exponents[..] {
+            [mixed, ehl] if self.mixed.is_none() => Some((mixed, ehl)),
+            _ => None,
+        }
     }
 
     /// Speed of the knot above `branch`.
@@ -500,6 +603,8 @@ impl Drag {
     }
 }
 
+/// Step in which a speed of least force is looked for, as a factor.
+const STRIDE: f64 = 0.97;
 /// Most that a speed is looked for beyond that of least force.
 const HIGHEST: f64 = 1e12;
 

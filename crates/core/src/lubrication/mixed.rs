@@ -218,6 +218,15 @@ impl MixedLaw {
         Ok(Self { sharing, dry })
     }
 
+    /// The same law with forces `factor` times as large, and boundary friction `boundary` times more.
+    #[must_use]
+    pub(crate) fn with_forces(mut self, factor: f64, boundary: f64) -> Self {
+        self.sharing.boundary *= factor * boundary;
+        self.sharing.shear *= factor;
+        self.sharing.rolling *= factor;
+        self
+    }
+
     /// The numbers.
     #[must_use]
     pub fn sharing(&self) -> Sharing {

@@ -6,7 +6,7 @@ use crate::error::{Error, above, at_least, at_most, finite};
 pub const GAS_CONSTANT: f64 = 8.314_462_618_153_24;
 
 /// One square millimetre per second (one centistokes), m^2/s.
-const CENTISTOKES: f64 = 1e-6;
+pub(crate) const CENTISTOKES: f64 = 1e-6;
 
 /// How viscosity falls as a lubricant warms.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -5,6 +5,8 @@
 //! | `schedule`    | drive speed, torque and temperature against time                          |
 //! | `system`      | drivetrain, drag, drive and temperature: the equation to solve            |
 //! | `polynomial`  | Taylor polynomials of fixed order; first root in an interval              |
+//! | `thermal`     | how the law of drag moves while the temperature does, as series           |
+//! | `sharing`     | series of the force of a contact whose load film and asperities share     |
 //! | `taylor`      | one slip step as a Taylor series with its own dense output                |
 //! | `runge_kutta` | steps for stiff motion (Radau IIA) and for the second opinion             |
 //! | `piece`       | a stretch of smooth motion: state, conditions and turning points along it |
@@ -33,10 +35,12 @@ mod piece;
 mod polynomial;
 mod runge_kutta;
 mod schedule;
+mod sharing;
 mod steps;
 mod surroundings;
 mod system;
 mod taylor;
+mod thermal;
 mod trajectory;
 
 pub use cycle::{CycleKind, Span, StickSlipCycle, settle, stick_slip};

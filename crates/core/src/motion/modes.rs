@@ -3,7 +3,7 @@
 use super::event::Guard;
 use super::hybrid::Motion;
 use super::piece::{Condition, Phase, Piece};
-use super::taylor::ThermalFactors;
+use super::thermal::ThermalFactors;
 use crate::drag::{Closure, Mode};
 
 impl Motion<'_> {

@@ -3,7 +3,8 @@
 use super::polynomial::{ORDER, Polynomial, derivative, first_crossing, subtracted_from, value};
 use super::runge_kutta::{Flow, Formula, State, horner};
 use super::schedule::Cubic;
-use super::taylor::{Series, ThermalFactors};
+use super::taylor::Series;
+use super::thermal::ThermalFactors;
 use crate::drag::Mode;
 
 /// A moment of the motion, mirrored so that `speed >= 0`.
@@ -270,9 +271,10 @@ impl Condition {
             Self::Faster(limit) => difference(&series.speed, &scaled(limit, |w| &w.speed)),
             Self::Slower(limit) => difference(&scaled(limit, |w| &w.speed), &series.speed),
             Self::Pulled(limit, rest) => {
-                let holding = scaled(limit, |w| &w.force);
+                // together as where the pull was set to them, so that a release starts from nil
+                let holding = scaled(limit, |w| &w.below);
                 let rest = scaled(rest, |w| &w.rest);
-                std::array::from_fn(|i| towards * series.pull[i] - holding[i] - rest[i])
+                std::array::from_fn(|i| towards * series.pull[i] - (holding[i] + rest[i]))
             }
             Self::GripsForward(grip) => subtracted_from(grip, &series.pull),
             Self::GripsBack(grip) => subtracted_from(grip, &series.pull.map(|c| -c)),
@@ -302,12 +304,12 @@ impl Condition {
     }
 
     fn value(self, flow: &Flow, t: f64, y: &State, towards: f64) -> f64 {
-        let (force, speed) = flow.factors(t);
+        let (_, speed) = flow.factors(t);
         match self {
             Self::Faster(limit) => y[1] - limit * speed,
             Self::Slower(limit) => limit * speed - y[1],
             Self::Pulled(limit, rest) => {
-                towards * y[0] - limit * force - rest * flow.rest_factor(t)
+                towards * y[0] - (limit * flow.below_factor(t) + rest * flow.rest_factor(t))
             }
             Self::GripsForward(grip) => grip - y[0],
             Self::GripsBack(grip) => grip + y[0],

@@ -30,15 +30,31 @@ impl Flow<'_> {
     /// Factors of forces and speeds at time `t`.
     pub(super) fn factors(&self, t: f64) -> (f64, f64) {
         self.temperature_law.map_or((1.0, 1.0), |(temperature, temperature_law)| {
-            let ratio = horner(&temperature, t) / temperature_law.reference;
-            (ratio.powf(temperature_law.force_exponent), ratio.powf(temperature_law.speed_exponent))
+            let temperature = horner(&temperature, t);
+            let speed = temperature_law.speed_factor(temperature).unwrap_or(f64::NAN);
+            (temperature_law.force_factor(temperature), speed)
         })
+    }
+
+    /// Factor of boundary friction at time `t`.
+    fn boundary_factor(&self, t: f64) -> f64 {
+        self.temperature_law.map_or(1.0, |(temperature, temperature_law)| {
+            temperature_law.boundary_factor(horner(&temperature, t)).unwrap_or(f64::NAN)
+        })
+    }
+
+    /// Factor of the forces of the contact below the stick speed at time `t`.
+    pub(super) fn below_factor(&self, t: f64) -> f64 {
+        if self.temperature_law.is_none() {
+            return 1.0;
+        }
+        self.factors(t).0 * (1.0 + self.drag.boundary_share() * (self.boundary_factor(t) - 1.0))
     }
 
     /// Factor of the rest of the drive at time `t`.
     pub(super) fn rest_factor(&self, t: f64) -> f64 {
         self.temperature_law.map_or(1.0, |(temperature, temperature_law)| {
-            1.0 + temperature_law.rest_slope * (horner(&temperature, t) - temperature_law.reference)
+            temperature_law.rest_factor(horner(&temperature, t)).unwrap_or(f64::NAN)
         })
     }
 
@@ -47,11 +63,11 @@ impl Flow<'_> {
         let (force, speed) = self.factors(t);
         let x = u / speed;
         let (f, slope) = if let Some(branch) = self.branch {
-            let f = self.drag.branch_force(branch, x);
-            (f, self.drag.branch_exponent(branch) * f / x)
+            self.drag.branch_force_and_slope(branch, x, self.boundary_factor(t))
         } else {
             self.drag.force_and_slope_below(x)
         };
+        let force = if self.branch.is_some() { force } else { self.below_factor(t) };
         (force * f, force * slope / speed)
     }
 

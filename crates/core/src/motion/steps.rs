@@ -5,6 +5,7 @@ use super::hybrid::Motion;
 use super::piece::{Path, Phase, Piece};
 use super::polynomial::first_crossing;
 use super::runge_kutta::{Flow, Formula, growth};
+use super::sharing::SharingStart;
 use super::system::Integrator;
 use super::taylor::{Recurrence, Series, Slip, SlipStart, creep_series, held_series};
 use crate::drag::{Closure, Mode};
@@ -131,9 +132,15 @@ impl<'a> Motion<'a> {
             return drag.closure() == Closure::Stribeck;
         }
         let horizon = longest.min(self.now.system.train.time_scale());
-        let exponent = drag.branch_exponent(self.phase.branch);
-        let force = self.phase.pull.max(drag.transition_force());
-        let slope = exponent * force / self.phase.speed + drag.rest().damping;
+        let rising = if drag.mixed_contact().is_some() {
+            let x = self.now.at_reference(self.phase.speed);
+            self.now.force(drag.branch_force_and_slope(self.phase.branch, x, 1.0).1) * x
+                / self.phase.speed
+        } else {
+            let force = self.phase.pull.max(drag.transition_force());
+            drag.branch_exponent(self.phase.branch) * force / self.phase.speed
+        };
+        let slope = rising + drag.rest().damping;
         slope / self.now.system.train.mass() * horizon > STIFF
     }
 
@@ -141,18 +148,26 @@ impl<'a> Motion<'a> {
         let Phase { mode, branch, pull, speed, .. } = self.phase;
         let drag = &self.now.system.drag;
         let x = self.now.at_reference(speed);
-        let (base, law) = match mode {
-            Mode::Ehl | Mode::Mixed => {
+        let on_branch = match mode {
+            Mode::Ehl | Mode::Mixed => Some(branch),
+            Mode::Stuck if self.now.held_fast(self.phase.speed) => Some(drag.branch(x)),
+            _ => None,
+        };
+        let contact = drag.mixed_contact().filter(|_| on_branch.is_some());
+        let sharing = contact.map(|contact| SharingStart::at(contact, x));
+        let (base, law) = match on_branch {
+            Some(branch) => {
                 (drag.branch_force(branch, x), Recurrence::power(drag.branch_exponent(branch), x))
             }
-            Mode::Stuck if self.now.held_fast(self.phase.speed) => {
-                let exponent = drag.branch_exponent(drag.branch(x));
-                (drag.contact_force(x), Recurrence::power(exponent, x))
-            }
-            _ => (drag.exponential(x), Recurrence::exponential(drag.decay_speed())),
+            None => (drag.exponential(x), Recurrence::exponential(drag.decay_speed())),
+        };
+        let drag_now = match on_branch {
+            Some(branch) if sharing.is_some() => self.now.branch_drag(branch, speed),
+            Some(_) => self.now.force(base),
+            None => self.now.force_below(base),
         };
         let released = self.phase.released;
-        let total = if released { pull } else { self.now.force(base) + self.now.rest(speed) };
+        let total = if released { pull } else { drag_now + self.now.rest(speed) };
         SlipStart {
             stiffness: self.stiffness(),
             mass: self.now.system.train.mass(),
@@ -162,8 +177,10 @@ impl<'a> Motion<'a> {
             force: base,
             total,
             law,
+            sharing,
             rest: drag.rest(),
             thermal: self.now.thermal.as_ref(),
+            below: on_branch.is_none(),
         }
     }
 

@@ -3,7 +3,7 @@
 use super::event::ROUNDING;
 use super::schedule::Cubic;
 use super::system::{Drive, System};
-use super::taylor::ThermalFactors;
+use super::thermal::{STEADY, ThermalFactors};
 use crate::drag::{Closure, TemperatureLaw};
 
 /// Drive and drag law at the time that the motion has reached.
@@ -89,24 +89,9 @@ impl<'a> Surroundings<'a> {
     /// Take the law as it is now.
     #[inline]
     pub(super) fn take_temperature(&mut self) {
-        self.thermal = self.temperature_law().map(|(temperature, temperature_law)| {
-            let ratio = temperature.map(|c| c / temperature_law.reference);
-            let mut thermal = ThermalFactors::new(
-                &ratio,
-                temperature_law.force_exponent,
-                temperature_law.speed_exponent,
-            );
-            let force = ratio[0].powf(temperature_law.force_exponent);
-            let speed = ratio[0].powf(temperature_law.speed_exponent);
-            thermal.force = thermal.force.map(|c| c * force);
-            thermal.speed = thermal.speed.map(|c| c * speed);
-            thermal.slowness = thermal.slowness.map(|c| c / speed);
-            let slope = temperature_law.rest_slope;
-            for (rest, c) in thermal.rest.iter_mut().zip(temperature) {
-                *rest = slope * c;
-            }
-            thermal.rest[0] += 1.0 - slope * temperature_law.reference;
-            thermal
+        self.thermal = self.temperature_law().map(|(temperature, law)| {
+            let share = self.system.drag.boundary_share();
+            ThermalFactors::new(&law, share, &temperature).unwrap_or(STEADY)
         });
     }
 
@@ -120,6 +105,12 @@ impl<'a> Surroundings<'a> {
     #[inline]
     pub(super) fn force(&self, base: f64) -> f64 {
         self.thermal.as_ref().map_or(base, |thermal| base * thermal.force[0])
+    }
+
+    /// The same of a force below the stick speed.
+    #[inline]
+    pub(super) fn force_below(&self, base: f64) -> f64 {
+        self.thermal.as_ref().map_or(base, |thermal| base * thermal.below[0])
     }
 
     /// A belt speed in the terms of the law as it was given.
@@ -138,18 +129,32 @@ impl<'a> Surroundings<'a> {
     /// What can hold a belt at `speed`; a law that moves may leave a held belt above the stick speed.
     pub(super) fn holding_force(&self, speed: f64) -> f64 {
         let (drag, x) = (&self.system.drag, self.at_reference(speed));
-        if x > drag.stick_speed() {
-            return self.force(drag.contact_force(x)) + self.rest(speed);
+        // a belt that has come down to the stick speed may lie above it by rounding
+        if x > drag.stick_speed() * (1.0 + ROUNDING) {
+            return self.contact_drag(speed) + self.rest(speed);
         }
         match drag.closure() {
-            Closure::Stiction => self.force(drag.breakaway_force()) + self.rest(0.0),
-            _ => self.force(drag.exponential(x)) + self.rest(speed),
+            Closure::Stiction => self.force_below(drag.breakaway_force()) + self.rest(0.0),
+            _ => self.force_below(drag.exponential(x)) + self.rest(speed),
         }
     }
 
     /// Drag of the contact in steady sliding at `speed > 0`, without the rest of the drive.
     pub(super) fn contact_drag(&self, speed: f64) -> f64 {
-        self.force(self.system.drag.contact_force(self.at_reference(speed)))
+        let drag = &self.system.drag;
+        let x = self.at_reference(speed);
+        if x >= drag.stick_speed() {
+            self.branch_drag(drag.branch(x), speed)
+        } else {
+            self.force_below(drag.contact_force(x))
+        }
+    }
+
+    /// Drag of the contact on `branch` at `speed > 0`.
+    pub(super) fn branch_drag(&self, branch: usize, speed: f64) -> f64 {
+        let (drag, x) = (&self.system.drag, self.at_reference(speed));
+        let boundary = self.thermal.as_ref().map_or(1.0, |thermal| thermal.boundary[0]);
+        self.force(drag.branch_force_and_slope(branch, x, boundary).0)
     }
 
     /// Drag in steady sliding at `speed >= 0`, which is at least the stick speed or of a closure that is not smooth.

@@ -7,6 +7,8 @@
 
 use super::polynomial::{INVERSE, ORDER, POWERS, Polynomial, fused};
 use super::schedule::Cubic;
+use super::sharing::{SharingSeries, SharingStart};
+use super::thermal::ThermalFactors;
 use crate::drag::Rest;
 
 /// How the drag term follows a series `q`: `n f_n = (weight sum i q_i f_{n-i} - back n sum q_i f_{n-i}) inverse`.
@@ -40,34 +42,6 @@ pub(super) struct Series {
     pub drag: Polynomial,
 }
 
-/// How forces and speeds of the law move during a step, relative to its start.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct ThermalFactors {
-    /// Factor of every force.
-    pub force: Polynomial,
-    /// Factor of every speed.
-    pub speed: Polynomial,
-    /// Inverse of the factor of every speed.
-    pub slowness: Polynomial,
-    /// Factor of the rest of the drive.
-    pub rest: Polynomial,
-}
-
-impl ThermalFactors {
-    /// From the course of the temperature and the exponents of force and speed.
-    pub(super) fn new(temperature: &Cubic, force_exponent: f64, speed_exponent: f64) -> Self {
-        let mut t = [0.0; ORDER + 1];
-        t[..4].copy_from_slice(temperature);
-        let power = |exponent: f64| composed(Recurrence::power(exponent, t[0]), &t, 1.0);
-        Self {
-            force: power(force_exponent),
-            speed: power(speed_exponent),
-            slowness: power(-speed_exponent),
-            rest: UNCHANGED,
-        }
-    }
-}
-
 /// The factor of what does not move.
 pub(super) const UNCHANGED: Polynomial = {
     let mut c = [0.0; ORDER + 1];
@@ -89,8 +63,19 @@ pub(super) struct SlipStart<'a> {
     /// Drag at the start, all of it.
     pub total: f64,
     pub law: Recurrence,
+    /// What stands in for `law` where film and asperities share the load.
+    pub sharing: Option<SharingStart>,
     pub rest: Rest,
     pub thermal: Option<&'a ThermalFactors>,
+    /// Whether the law is that below the stick speed.
+    pub below: bool,
+}
+
+impl SlipStart<'_> {
+    /// Factor of the forces of the contact.
+    fn factor(&self) -> Option<&Polynomial> {
+        self.thermal.map(|thermal| if self.below { &thermal.below } else { &thermal.force })
+    }
 }
 
 /// A slip series, as work for the best instruction set.
@@ -111,7 +96,7 @@ impl pulp::WithSimd for Slip<'_> {
 #[allow(clippy::inline_always)] // so that it is compiled for the instruction set it is dispatched to
 fn slip_series(start: &SlipStart) -> Series {
     match start.thermal {
-        None if start.rest.is_none() => plain_series(start),
+        None if start.rest.is_none() && start.sharing.is_none() => plain_series(start),
         thermal => full_series(start, thermal),
     }
 }
@@ -156,14 +141,20 @@ fn full_series(start: &SlipStart, thermal: Option<&ThermalFactors>) -> Series {
     let (mut q, mut rate, mut g) = ([0.0; ORDER + 1], [0.0; ORDER + 1], [0.0; ORDER + 1]);
     (p[0], u[0], f[0]) = (start.pull, start.speed, start.total);
     (q[0], g[0]) = (start.speed * thermal.map_or(1.0, |t| t.slowness[0]), start.force);
+    let boundary = thermal.map_or(&UNCHANGED, |t| &t.boundary);
+    let mut sharing = start.sharing.map(|sharing| SharingSeries::starting(sharing, q[0]));
     for n in 1..=ORDER {
         u[n] = (p[n - 1] - f[n - 1]) / start.mass * INVERSE[n];
         let driven = if n < 5 { start.rate[n - 1] } else { 0.0 };
         p[n] = (driven - start.stiffness * u[n - 1]) * INVERSE[n];
         q[n] = thermal.map_or(u[n], |t| product(&u, &t.slowness, n));
         rate[n] = POWERS[n] * q[n];
-        g[n] = drag_term(start.law, n, &q, &rate, &g);
-        f[n] = thermal.map_or(g[n], |t| product(&g, &t.force, n)) + rest_term(start, &u, n);
+        g[n] = match &mut sharing {
+            Some(sharing) => sharing.force(n, &q, boundary),
+            None => drag_term(start.law, n, &q, &rate, &g),
+        };
+        f[n] =
+            start.factor().map_or(g[n], |factor| product(&g, factor, n)) + rest_term(start, &u, n);
     }
     Series { pull: p, speed: u, drag: f }
 }
@@ -186,7 +177,7 @@ fn drag_term(law: Recurrence, n: usize, q: &Polynomial, rate: &Polynomial, f: &P
 }
 
 /// Coefficient `n` of the product of two series.
-fn product(a: &Polynomial, b: &Polynomial, n: usize) -> f64 {
+pub(super) fn product(a: &Polynomial, b: &Polynomial, n: usize) -> f64 {
     (0..=n).map(|i| a[i] * b[n - i]).sum()
 }
 
@@ -211,9 +202,21 @@ pub(super) fn held_series(start: &SlipStart) -> Series {
     }
     if let Some(thermal) = start.thermal {
         let q = thermal.slowness.map(|c| start.speed * c);
-        let holding = composed(start.law, &q, start.force);
+        let holding = match start.sharing {
+            Some(sharing) => {
+                let mut series = SharingSeries::starting(sharing, q[0]);
+                let mut force = [0.0; ORDER + 1];
+                force[0] = start.force;
+                for n in 1..=ORDER {
+                    force[n] = series.force(n, &q, &thermal.boundary);
+                }
+                force
+            }
+            None => composed(start.law, &q, start.force),
+        };
         for (n, c) in f.iter_mut().enumerate().skip(1) {
-            *c = product(&holding, &thermal.force, n) + rest_term(start, &u, n);
+            let factor = start.factor().unwrap_or(&UNCHANGED);
+            *c = product(&holding, factor, n) + rest_term(start, &u, n);
         }
     }
     Series { pull: p, speed: u, drag: f }
@@ -234,7 +237,7 @@ pub(super) fn creep_series(start: &SlipStart, decay_speed: f64) -> Series {
     (p[0], u[0]) = (start.pull, start.speed);
     y[0] = -p[0] - rest[0] * (force + damping * u[0]);
     x[0] = start.speed / decay_speed * start.thermal.map_or(1.0, |thermal| thermal.slowness[0]);
-    let growth = start.thermal.map_or([0.0; ORDER + 1], |thermal| logarithm(&thermal.force));
+    let growth = start.thermal.map_or([0.0; ORDER + 1], |thermal| logarithm(&thermal.below));
     // y_n and ln y hold a share of u_n each, which is brought to the other side
     let share = 1.0 - decay_speed * scale[0] * rest[0] * damping / y[0];
     for j in 0..ORDER {
@@ -255,7 +258,7 @@ pub(super) fn creep_series(start: &SlipStart, decay_speed: f64) -> Series {
     Series { pull: p, speed: u, drag: p.map(|c| -c) }
 }
 
-fn logarithm(c: &Polynomial) -> Polynomial {
+pub(super) fn logarithm(c: &Polynomial) -> Polynomial {
     let mut log = [0.0; ORDER + 1];
     log[0] = c[0].ln();
     for n in 1..=ORDER {
