@@ -368,6 +368,13 @@ def mixed_contact(
     exponent = _core.FILM_SPEED_EXPONENTS[index]
     product = float(film.viscosity) * 2.0 * float(film.entrainment_speed)
     reference = product * (contact.roughness / central) ** (1.0 / exponent)
+    most = asperities.pressure * float(_core.asperity_integral(np.zeros(())))
+    if most <= film.nip.pressure_mean:
+        raise ParameterError(
+            f"the asperities carry at most {1e-6 * most:.3g} MPa before the mean planes meet, and the nip "
+            f"presses with {1e-6 * film.nip.pressure_mean:.3g} MPa: state stiffer or denser summits, or a "
+            "softer nip"
+        )
     power = exponent if rolling_exponent is None else rolling_exponent
     mixed = MixedContact(
         contact=contact,
