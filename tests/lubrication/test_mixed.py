@@ -15,13 +15,7 @@ import hersey
 from hersey import _core
 from hersey.errors import ParameterError
 from hersey.lubrication.lubricant import EXAMPLES
-from hersey.lubrication.mixed import (
-    Asperities,
-    BoundaryFriction,
-    MixedContact,
-    mixed_contact,
-    mixed_torque,
-)
+from hersey.lubrication.mixed import Asperities, BoundaryFriction, MixedContact, mixed_contact, mixed_torque
 
 ROLL = hersey.Contact(
     roll_radius=15e-3,
