@@ -96,8 +96,8 @@ def test_drive_1_follows_the_law_of_mixed_lubrication(rotation: str, least: floa
     """The measured Stribeck curve within the errors of its 15 dwells: it falls, bends and rises as the law.
 
     Given: speed and torque. Fitted: reference, boundary and shear torque, and a constant for the rest of the
-    drive. Chosen among four values, after a look: asperities that press 20 times as hard as the mean; the faces
-    were not measured. The exponents are those of a soft film. Published: Stribeck speed 61 rpm.
+    drive. Chosen among four values, after a look: asperities that press 20 times as hard as the mean (the
+    faces were not measured). The exponents are those of a soft film. Published: Stribeck speed 61 rpm.
     """
     points = hersey.read(files(1), units=UNITS, isothermal=True).steady(rotation=rotation)
     speed, torque, error = (np.abs(points.column(name)) for name in ("speed", "torque", "torque_error"))
