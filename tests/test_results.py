@@ -27,6 +27,7 @@ from hersey.document.parts import (
     LogPart,
     MapPart,
     MeasuredFilmPart,
+    MixedPart,
     ModelsPart,
     Part,
     PlanPart,
@@ -95,6 +96,16 @@ def film() -> hersey.Film:
     return hersey.film_thickness(contact, lubricant, speed=[2.0, 8.0], temperature=400.0)
 
 
+def mixed() -> hersey.MixedFilm:
+    contact, lubricant = machine().contact, machine().lubricant
+    assert contact is not None
+    assert lubricant is not None
+    law = hersey.mixed_contact(
+        contact, lubricant, hersey.Asperities(modulus=5e10), 0.1, speed=8.0, temperature=400.0
+    )
+    return law.at(speed=[2.0, 80.0], temperature=400.0)
+
+
 def map_() -> hersey.OperatingMap:
     m = machine()
     return hersey.operating_map(
@@ -128,6 +139,7 @@ RESULTS: dict[str, tuple[Callable[[], Any], type[Part]]] = {
     "DampingSurface": (surface, FitPart),
     "Regime": (lambda: hersey.regime(points(), surface()), RegimePart),
     "Film": (film, FilmPart),
+    "MixedFilm": (mixed, MixedPart),
     "MeasuredFilm": (measured, MeasuredFilmPart),
     "Verdict": (judged, VerdictPart),
     "Trajectory": (run, TrajectoryPart),

@@ -54,6 +54,14 @@ if TYPE_CHECKING:
     from hersey.lubrication.contact import Contact, nip_width
     from hersey.lubrication.film import Film, drag_torque, film_thickness
     from hersey.lubrication.lubricant import Lubricant, ShearThinning
+    from hersey.lubrication.mixed import (
+        Asperities,
+        BoundaryFriction,
+        MixedContact,
+        MixedFilm,
+        mixed_contact,
+        mixed_torque,
+    )
     from hersey.lubrication.reynolds import LineContactSolution, solve_line_contact
     from hersey.machine import (
         Limits,
@@ -101,6 +109,7 @@ _HOMES = {
     "lubrication.lubricant": "Lubricant ShearThinning",
     "lubrication.contact": "Contact nip_width",
     "lubrication.film": "Film drag_torque film_thickness",
+    "lubrication.mixed": "Asperities BoundaryFriction MixedContact MixedFilm mixed_contact mixed_torque",
     "lubrication.reynolds": "LineContactSolution solve_line_contact",
     "machine": "Limits Machine OperatingPoint Uncertainty read_machine read_temperature_profile",
     "verdict.regime": "Regime regime",
@@ -116,6 +125,8 @@ _HOMES = {
 _HOME_OF = {name: module for module, names in _HOMES.items() for name in names.split()}
 
 __all__ = [
+    "Asperities",
+    "BoundaryFriction",
     "Contact",
     "CycleRecord",
     "CyclesWithoutSticking",
@@ -136,6 +147,8 @@ __all__ = [
     "Lubricant",
     "Machine",
     "MeasuredFilm",
+    "MixedContact",
+    "MixedFilm",
     "ModelComparison",
     "OperatingMap",
     "OperatingPoint",
@@ -168,6 +181,8 @@ __all__ = [
     "inspect",
     "measured_film",
     "memory_limit",
+    "mixed_contact",
+    "mixed_torque",
     "nip_width",
     "operating_map",
     "plan_profile",

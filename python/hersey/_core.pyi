@@ -10,14 +10,17 @@ from hersey.errors import ParameterError, UnfinishedError
 
 __all__ = [
     "FILM_CONSTANTS",
+    "FILM_LOAD_EXPONENTS",
     "FILM_SPEED_EXPONENTS",
     "GAS_CONSTANT",
+    "GREENWOOD_TRIPP",
     "KINDS",
     "MODES",
     "MOST_STEPS",
     "NIP_RATIO_RANGE",
     "NUDGE",
     "REGIMES",
+    "SHARING",
     "VERSION",
     "Band",
     "Bands",
@@ -33,6 +36,8 @@ __all__ = [
     "LayerNip",
     "LineContact",
     "LineFilm",
+    "Mixed",
+    "MixedTransition",
     "Pair",
     "ShearHeating",
     "State",
@@ -41,6 +46,7 @@ __all__ = [
     "Trajectory",
     "Viscosity",
     "ViscosityLaw",
+    "asperity_integral",
     "band",
     "bands",
     "carreau",
@@ -54,6 +60,8 @@ __all__ = [
     "layer_factor",
     "line_contact",
     "line_film",
+    "mixed_contact",
+    "mixed_transition",
     "paper",
     "reduced_radius",
     "shear_heating",
@@ -68,14 +76,17 @@ __all__ = [
 ]
 
 FILM_CONSTANTS: list[tuple[float, float]]
+FILM_LOAD_EXPONENTS: list[float]
 FILM_SPEED_EXPONENTS: list[float]
 GAS_CONSTANT: float
+GREENWOOD_TRIPP: float
 KINDS: list[str]
 MODES: list[str]
 MOST_STEPS: int
 NIP_RATIO_RANGE: tuple[float, float]
 NUDGE: float
 REGIMES: list[str]
+SHARING: list[str]
 VERSION: str
 
 _Floats: TypeAlias = NDArray[np.float64]
@@ -357,6 +368,32 @@ class LineFilm:
     def regime(self) -> NDArray[np.uint8]: ...
 
 @final
+class Mixed:
+    @property
+    def lambda_ratio(self) -> _Floats: ...
+    @property
+    def share(self) -> _Floats: ...
+    @property
+    def boundary(self) -> _Floats: ...
+    @property
+    def shear(self) -> _Floats: ...
+    @property
+    def rolling(self) -> _Floats: ...
+    @property
+    def slope(self) -> _Floats: ...
+
+@final
+class MixedTransition:
+    @property
+    def product(self) -> _Floats: ...
+    @property
+    def lambda_ratio(self) -> _Floats: ...
+    @property
+    def force(self) -> _Floats: ...
+    @property
+    def sensitivity(self) -> dict[str, _Floats]: ...
+
+@final
 class EllipticFilm:
     @property
     def hard_minimum(self) -> _Floats: ...
@@ -426,6 +463,7 @@ class LineContact:
     @property
     def stations(self) -> int: ...
 
+def asperity_integral(lambda_ratio: _Floats) -> _Floats: ...
 def carreau(columns: Sequence[_Floats]) -> _Floats: ...
 def effective_modulus(one: tuple[float, float], other: tuple[float, float]) -> float: ...
 def elliptic_film(columns: Sequence[_Floats]) -> EllipticFilm: ...
@@ -436,6 +474,8 @@ def inlet_length(columns: Sequence[_Floats]) -> _Floats: ...
 def layer(columns: Sequence[_Floats]) -> LayerNip: ...
 def layer_factor(edge: float, width: float) -> float: ...
 def line_film(columns: Sequence[_Floats]) -> LineFilm: ...
+def mixed_contact(columns: Sequence[_Floats]) -> Mixed: ...
+def mixed_transition(columns: Sequence[_Floats]) -> MixedTransition: ...
 def paper(equation: int, columns: Sequence[_Floats]) -> _Floats: ...
 def reduced_radius(one: float, other: float) -> float: ...
 def shear_heating(columns: Sequence[_Floats]) -> ShearHeating: ...

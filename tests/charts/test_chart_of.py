@@ -79,6 +79,18 @@ def film() -> hersey.Film:
     )
 
 
+def mixed() -> hersey.MixedFilm:
+    law = hersey.mixed_contact(
+        machine().contact,
+        machine().lubricant,
+        hersey.Asperities(modulus=5e10),
+        0.1,
+        speed=8.0,
+        temperature=420.0,
+    )
+    return law.at(speed=[[0.0], [2.0], [80.0]], temperature=[400.0, 420.0])
+
+
 def plan() -> hersey.Plan:
     drag = surface().drag(
         roll_radius=machine().roll_radius, stick_speed=machine().stick_speed, temperature=423.15
@@ -122,6 +134,7 @@ MADE: dict[str, Callable[[], Any]] = {
     "TestDesign": lambda: hersey.design(models(), count=4, quantity="transition speed"),
     "Regime": lambda: hersey.regime(points(), surface()),
     "Film": film,
+    "MixedFilm": mixed,
     "MeasuredFilm": measured,
     "Trajectory": lambda: hersey.simulate(*belt(), drive_speed=1.0, duration=5.0, samples=301),
     "StickSlipCycle": lambda: hersey.stick_slip(*belt(), drive_speed=0.8),
@@ -235,6 +248,17 @@ def test_a_surface_with_its_limits() -> None:
     bends = [surface().transition_speed(t) for t in kelvin.tolist()]
     low, high = surface().speed_range
     assert [row["speed"] * RPM for row in corners] == pytest.approx([v for v in bends if low < v < high])
+
+
+def test_a_mixed_contact_and_where_it_turns() -> None:
+    part, whole, corners, marks = layers("MixedFilm")
+    assert part[0]["torque"] < 0.1 * whole[0]["torque"]
+    assert part[-1]["torque"] == pytest.approx(whole[-1]["torque"])
+    turns = result_of("MixedFilm").transition
+    assert [row["speed"] * RPM for row in corners] == pytest.approx(turns.speed[0])
+    shown = result_of("MixedFilm").torque[1:].ravel()  # rest has no place on a logarithmic axis
+    unit = marks[0]["torque"] / shown[0]
+    assert [row["torque"] for row in marks] == pytest.approx(unit * shown)
 
 
 def test_candidates_by_how_much_worse_they_are() -> None:

@@ -7,6 +7,7 @@ mod ensemble;
 mod errors;
 mod interrupt;
 mod lubrication;
+mod mixed;
 mod motion;
 mod reynolds;
 mod stability;
@@ -27,6 +28,10 @@ mod _core {
         carreau, effective_modulus, elliptic_film, ellipticity, hertz, inlet_heating, inlet_length,
         layer, layer_factor, line_film, paper, reduced_radius, shear_heating, shear_thinning,
         shore_a_modulus, starvation,
+    };
+    #[pymodule_export]
+    use super::mixed::{
+        Mixed, MixedTransition, asperity_integral, mixed_contact, mixed_transition,
     };
     #[pymodule_export]
     use super::motion::{
@@ -52,6 +57,9 @@ mod _core {
         module.add("REGIMES", super::lubrication::REGIMES)?;
         module.add("FILM_CONSTANTS", super::lubrication::FILM_CONSTANTS)?;
         module.add("FILM_SPEED_EXPONENTS", super::lubrication::speed_exponents())?;
+        module.add("FILM_LOAD_EXPONENTS", super::lubrication::load_exponents())?;
+        module.add("SHARING", hersey_core::lubrication::mixed::Sharing::NAMES)?;
+        module.add("GREENWOOD_TRIPP", hersey_core::lubrication::mixed::GREENWOOD_TRIPP)?;
         module.add("GAS_CONSTANT", hersey_core::lubrication::viscosity::GAS_CONSTANT)?;
         module.add("MOST_STEPS", hersey_core::work::MOST_STEPS)?;
         module.add("NUDGE", hersey_core::motion::NUDGE)?;

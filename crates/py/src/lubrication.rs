@@ -15,22 +15,22 @@ use crate::errors::{raised, raised_at, refused};
 use crate::interrupt::{copied, interruptible};
 
 /// Arrays of one shape, one for each quantity.
-type Columns<'py, const N: usize> = [PyReadonlyArrayDyn<'py, f64>; N];
+pub type Columns<'py, const N: usize> = [PyReadonlyArrayDyn<'py, f64>; N];
 /// An array of that shape.
-type Array = Py<PyArrayDyn<f64>>;
+pub type Array = Py<PyArrayDyn<f64>>;
 
 /// What a rule costs at a point, in steps of work: the dearest solves a contact anew.
 const POINT: u64 = 16;
 
 /// What a rule makes of the points of some arrays.
-struct Mapped<R> {
+pub struct Mapped<R> {
     shape: Vec<usize>,
     results: Vec<R>,
 }
 
 impl<R> Mapped<R> {
     /// One number of each point, in the shape of the arrays.
-    fn of<T: numpy::Element>(
+    pub fn of<T: numpy::Element>(
         &self,
         py: Python<'_>,
         of: impl Fn(&R) -> T,
@@ -42,7 +42,7 @@ impl<R> Mapped<R> {
 }
 
 /// What a rule makes of each point; the message names the point if there are several.
-fn mapped<const IN: usize, R: Send>(
+pub fn mapped<const IN: usize, R: Send>(
     py: Python<'_>,
     columns: &Columns<'_, IN>,
     mut rule: impl FnMut([f64; IN]) -> Result<R, Error> + Send,
@@ -373,6 +373,11 @@ pub const REGIMES: [&str; 4] =
 /// Exponent of film thickness in speed of each regime.
 pub fn speed_exponents() -> [f64; 4] {
     Regime::ALL.map(Regime::speed_exponent)
+}
+
+/// Exponent by which film thickness falls with load in each regime.
+pub fn load_exponents() -> [f64; 4] {
+    Regime::ALL.map(Regime::load_exponent)
 }
 
 /// (minimum, centre) constant of each regime; that of the hard centre belongs to a law of its own.

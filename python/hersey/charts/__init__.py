@@ -13,6 +13,7 @@ inspection     the channels of a log, and their faults
 damping        dwells, surface, candidates, two logs, the next dwells
 regime         exponents against what each regime predicts
 film           the regime chart and the Stribeck curve
+mixed          torque of film and asperities against speed
 motion         a trajectory, and the lap to which it settles
 cycles         trace, cycles and fitted motion
 hysteresis     what the belt does at which drive speed
@@ -46,6 +47,7 @@ CHARTS = {
     "Regime": ("regime", "regime_chart"),
     "Film": ("film", "film_chart"),
     "MeasuredFilm": ("film", "measured_chart"),
+    "MixedFilm": ("mixed", "mixed_chart"),
     "Trajectory": ("motion", "trajectory_chart"),
     "StickSlipCycle": ("motion", "cycle_chart"),
     "CycleRecord": ("cycles", "trace_chart"),

@@ -5,6 +5,7 @@ lubricant  viscosity against temperature, pressure and shear rate
 paper      Eqs. 5-10 of the paper
 contact    the nip: moduli, width, pressure
 film       film thickness and drag by every law, and which holds
+mixed      film and asperities share the load: torque, share, transition
 reynolds   the line contact solved numerically
 =========  ======================================================
 """

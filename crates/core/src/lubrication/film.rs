@@ -59,6 +59,17 @@ impl Regime {
             Self::PiezoviscousElastic => 0.7,
         }
     }
+
+    /// Film thickness goes as load to the power of minus this.
+    #[must_use]
+    pub fn load_exponent(self) -> f64 {
+        match self {
+            Self::IsoviscousRigid => 1.0,
+            Self::PiezoviscousRigid => 0.0,
+            Self::IsoviscousElastic => 0.2,
+            Self::PiezoviscousElastic => 0.13,
+        }
+    }
 }
 
 /// A line contact under way, SI.

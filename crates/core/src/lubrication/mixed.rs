@@ -33,6 +33,11 @@ const STIFFEST: f64 = 1e30;
 /// `X` beyond which the laws of the film have long ended, and its inverse, which is rest: every term stays finite.
 const LARGEST: f64 = 1e100;
 
+/// Mean pressure of two rough faces over `(sigma beta D)^2 sqrt(sigma/beta) E* F(lambda)`, `16 sqrt(2) pi/15`: D summits
+/// per area and of radius beta on each, E* the contact modulus of the faces. Two summits meet as spheres of radius
+/// beta/2, aside by any distance.
+pub const GREENWOOD_TRIPP: f64 = 16.0 * std::f64::consts::SQRT_2 * PI / 15.0;
+
 /// (t^2, weight) of each node but that at 0, where the integrand is nil.
 static RULE: LazyLock<[(f64, f64); NODES]> = LazyLock::new(|| {
     let front = 2.0 * (SQUARE / (2.0 * PI)).sqrt();

@@ -5,6 +5,7 @@ part        what every part is
 log         logs and dwells
 fit         the damping surface and the regime
 film        the film of a nip
+mixed       film and asperities that share its load
 motion      trajectories, cycles, sweeps
 stability   bands, maps, plans
 models      candidates, comparisons of logs, designs
@@ -43,6 +44,7 @@ from hersey.document.parts.log import (
     Series,
     Timeline,
 )
+from hersey.document.parts.mixed import MixedPart
 from hersey.document.parts.models import ComparisonPart, DesignPart, ModelsPart
 from hersey.document.parts.motion import SimulationPart, StickSlipPart, SweepPart, TrajectoryPart
 from hersey.document.parts.part import SCHEMA_VERSION, Interval, OpenInterval, Part
@@ -94,6 +96,7 @@ __all__ = [
     "LogPart",
     "MapPart",
     "MeasuredFilmPart",
+    "MixedPart",
     "ModelsPart",
     "OpenInterval",
     "Part",

@@ -1,0 +1,93 @@
+//! Mixed lubrication, over arrays.
+
+use hersey_core::lubrication::mixed::{self, MixedLaw, Sharing};
+use numpy::PyReadonlyArrayDyn;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::lubrication::{Array, Columns, mapped};
+
+/// A contact whose load film and asperities share: lambda, share, forces (N) and slope of the force, N/(Pa m).
+#[pyclass(frozen, get_all, module = "hersey._core")]
+pub struct Mixed {
+    lambda_ratio: Array,
+    share: Array,
+    boundary: Array,
+    shear: Array,
+    rolling: Array,
+    slope: Array,
+}
+
+/// Where the force is least; not a number where it falls nowhere.
+#[pyclass(frozen, get_all, module = "hersey._core")]
+pub struct MixedTransition {
+    product: Array,
+    lambda_ratio: Array,
+    force: Array,
+    sensitivity: Py<PyDict>,
+}
+
+fn law([reference, film_exponent, load_exponent, stiffness, forces @ ..]: [f64; 8]) -> Sharing {
+    let [boundary, shear, rolling, rolling_exponent] = forces;
+    Sharing {
+        reference,
+        film_exponent,
+        load_exponent,
+        stiffness,
+        boundary,
+        shear,
+        rolling,
+        rolling_exponent,
+    }
+}
+
+/// Greenwood and Tripp's integral.
+#[pyfunction]
+pub fn asperity_integral(
+    py: Python<'_>,
+    lambda_ratio: PyReadonlyArrayDyn<'_, f64>,
+) -> PyResult<Array> {
+    mapped(py, &[lambda_ratio], |[lambda]| Ok(mixed::asperity_integral(lambda).0))?
+        .of(py, |value| *value)
+}
+
+/// A mixed contact, from the product of viscosity and speed and the numbers of the law in the order of `SHARING`.
+#[pyfunction]
+pub fn mixed_contact(py: Python<'_>, columns: Columns<'_, 9>) -> PyResult<Mixed> {
+    let mut last: Option<([u64; 8], MixedLaw)> = None;
+    let found = mapped(py, &columns, |[product, numbers @ ..]| {
+        let bits = numbers.map(f64::to_bits);
+        let same = last.filter(|(same, _)| *same == bits);
+        let law = same.map_or_else(|| MixedLaw::new(law(numbers)), |(_, law)| Ok(law))?;
+        last = Some((bits, law));
+        Ok(law.at(product))
+    })?;
+    Ok(Mixed {
+        lambda_ratio: found.of(py, |state| state.lambda)?,
+        share: found.of(py, |state| state.share)?,
+        boundary: found.of(py, |state| state.boundary)?,
+        shear: found.of(py, |state| state.shear)?,
+        rolling: found.of(py, |state| state.rolling)?,
+        slope: found.of(py, |state| state.slope)?,
+    })
+}
+
+/// The transition of a mixed contact, from the numbers of the law in the order of `SHARING`.
+#[pyfunction]
+pub fn mixed_transition(py: Python<'_>, columns: Columns<'_, 8>) -> PyResult<MixedTransition> {
+    let found = mapped(py, &columns, |numbers| Ok(MixedLaw::new(law(numbers))?.transition()))?;
+    let array = |of: fn(&mixed::Transition) -> f64| {
+        found.of(py, |transition| transition.as_ref().map_or(f64::NAN, of))
+    };
+    let sensitivity = PyDict::new(py);
+    for (i, name) in Sharing::NAMES.iter().enumerate() {
+        let shift = found.of(py, |each| each.map_or(f64::NAN, |each| each.sensitivity[i]))?;
+        sensitivity.set_item(name, shift)?;
+    }
+    Ok(MixedTransition {
+        product: array(|each| each.product)?,
+        lambda_ratio: array(|each| each.lambda)?,
+        force: array(|each| each.force)?,
+        sensitivity: sensitivity.unbind(),
+    })
+}

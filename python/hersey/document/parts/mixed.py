@@ -1,0 +1,71 @@
+"""The part of a mixed contact: who carries the load, and where drag is least."""
+
+from __future__ import annotations
+
+from pydantic import Field
+
+from hersey.document.parts.part import Holed, Numbers, Part
+
+
+class AsperitiesPart(Part):
+    """Summits of the two faces, as Greenwood and Tripp have them."""
+
+    modulus: float = Field(description="contact modulus of the faces, Pa")
+    sigma_beta_density: float
+    sigma_over_beta: float
+
+
+class BoundaryFrictionPart(Part):
+    """Friction where asperities carry all."""
+
+    coefficient: float
+    slope: float = Field(description="1/K")
+    temperature: float | None = Field(description="of the coefficient, K")
+
+
+class MixedLawPart(Part):
+    """The law by which film and asperities share the load."""
+
+    regime: str
+    reference: float = Field(description="eta U at which the film alone is as thick as the roughness, Pa m")
+    film_exponent: float
+    load_exponent: float
+    stiffness: float
+    shear: float = Field(description="N")
+    rolling: float = Field(description="N")
+    rolling_exponent: float
+    asperities: AsperitiesPart
+    friction: BoundaryFrictionPart
+
+
+class MixedPointsPart(Part):
+    """Film and asperities at operating points."""
+
+    speed: Numbers = Field(description="rad/s")
+    temperature: Numbers = Field(description="K")
+    viscosity: Numbers = Field(description="Pa s")
+    lambda_ratio: Numbers
+    share: Numbers = Field(description="of the load that asperities carry")
+    boundary_torque: Numbers = Field(description="N m")
+    shear_torque: Numbers = Field(description="N m")
+    rolling_torque: Numbers = Field(description="N m")
+    torque: Numbers = Field(description="N m")
+
+
+class MixedTransitionPart(Part):
+    """Where drag is least at the temperature of each point; null where it never falls."""
+
+    speed: Holed = Field(description="rad/s")
+    belt_speed: Holed = Field(description="m/s")
+    product: Holed = Field(description="eta U, Pa m")
+    lambda_ratio: Holed
+    torque: Holed = Field(description="N m")
+    sensitivity: dict[str, Holed] = Field(description="d ln eta U by the logarithm of each number of the law")
+
+
+class MixedPart(Part):
+    """A contact whose load film and asperities share."""
+
+    law: MixedLawPart
+    points: MixedPointsPart
+    transition: MixedTransitionPart

@@ -1,0 +1,412 @@
+"""Mixed lubrication: what the film carries, what the contact, and the torque that both make.
+
+Film and asperities share the load; the force hangs on x = eta U alone where boundary friction is constant, U
+the sliding speed (belt speed). lambda is the central film over the composite rms roughness. The formulas
+stand in the core and, with their sources and limits, in ``docs/mixed.md``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from hersey import _core
+from hersey.arrays import FloatArray, pointwise
+from hersey.errors import ParameterError
+from hersey.lubrication.contact import Contact
+from hersey.lubrication.film import REGIMES, film_thickness
+from hersey.lubrication.lubricant import Lubricant
+from hersey.result import Result, json_record
+from hersey.units import celsius, fields_in_si, takes_si
+
+if TYPE_CHECKING:
+    import polars as pl
+
+#: The core takes no film whose thickness hangs on load less than so.
+_LEAST_LOAD_EXPONENT = 0.01
+
+
+@dataclass(frozen=True)
+class Asperities:
+    """The summits of two hard faces as Greenwood and Tripp (1970) have them.
+
+    Parameters
+    ----------
+    modulus
+        Contact modulus E* of the two faces that touch, Pa: 1/E* = (1-nu1^2)/E1 + (1-nu2^2)/E2. That of the
+        faces of belt and heater, not of the rubber behind them.
+    sigma_beta_density
+        Roughness times radius times number of the summits per area.
+    sigma_over_beta
+        Roughness over radius of the summits.
+
+    Raises
+    ------
+    ParameterError
+        If a value is not positive.
+    """
+
+    modulus: float
+    sigma_beta_density: float = 0.05
+    sigma_over_beta: float = 0.01
+
+    def __post_init__(self) -> None:
+        """Bring the modulus to SI if it comes with a unit, and check the values."""
+        fields_in_si(self, {"modulus": "pressure"})
+        for name, value in vars(self).items():
+            if not 0 < value < np.inf:
+                raise ParameterError(f"{name} is {value:g}: it must be greater than 0")
+
+    @property
+    def pressure(self) -> float:
+        """Mean pressure of the asperities over F(lambda), Pa."""
+        slope: float = self.sigma_beta_density**2 * self.sigma_over_beta**0.5
+        return _core.GREENWOOD_TRIPP * slope * self.modulus
+
+
+@dataclass(frozen=True)
+class BoundaryFriction:
+    """Friction where asperities carry all: coefficient + slope (T - temperature).
+
+    ``coefficient`` has no unit, ``slope`` is in 1/K, ``temperature`` (K) is that of the coefficient, needed
+    where the slope is not 0.
+    """
+
+    coefficient: float
+    slope: float = 0.0
+    temperature: float | None = None
+
+    def __post_init__(self) -> None:
+        """Bring the temperature to K if it comes with a unit, and check the values."""
+        fields_in_si(self, {"temperature": "temperature"})
+        if not 0 < self.coefficient < np.inf:
+            raise ParameterError(f"boundary friction is {self.coefficient:g}: it must be greater than 0")
+        if self.slope and self.temperature is None:
+            raise ParameterError("boundary friction has a slope: give the temperature of its coefficient")
+
+    @takes_si(temperature="temperature")
+    def at(self, temperature: ArrayLike) -> FloatArray:
+        """Return the coefficient at temperatures (K).
+
+        Raises
+        ------
+        ParameterError
+            If it falls to 0 or below.
+        """
+        kelvin = np.asarray(temperature, dtype=float)
+        rise = np.zeros_like(kelvin) if self.temperature is None else kelvin - self.temperature
+        coefficient = np.asarray(self.coefficient + self.slope * rise)
+        if not np.all(coefficient > 0):
+            worst = float(kelvin.ravel()[np.argmin(coefficient)])
+            raise ParameterError(
+                f"boundary friction is {np.min(coefficient):.3g} at {celsius(worst):.1f} degC: its slope of "
+                f"{self.slope:g} per K does not hold so far"
+            )
+        return coefficient
+
+
+@dataclass(frozen=True)
+class MixedTransition:
+    """Where the drag, falling with speed, begins to rise; arrays, not a number where it never falls.
+
+    ``temperature`` (K), ``product`` of viscosity and belt speed (Pa m), ``speed`` of the roll (rad/s),
+    ``belt_speed`` (m/s), ``lambda_ratio``, the least ``torque`` (N m), and ``sensitivity``: d ln product by
+    the logarithm of each number of the law, by name.
+    """
+
+    temperature: FloatArray
+    product: FloatArray
+    speed: FloatArray
+    belt_speed: FloatArray
+    lambda_ratio: FloatArray
+    torque: FloatArray
+    sensitivity: Mapping[str, FloatArray]
+
+
+@dataclass(frozen=True)
+class MixedContact:
+    """A contact whose load film and asperities share; made by `mixed_contact`.
+
+    ``regime`` is the law of the film, ``reference`` (Pa m) the product of viscosity and belt speed at which
+    the film alone is as thick as the roughness, ``stiffness`` the pressure of the asperities over F(lambda)
+    and over the mean pressure of the nip, ``shear`` and ``rolling`` (N) the forces of a film of lambda = 1
+    there.
+    """
+
+    contact: Contact
+    lubricant: Lubricant
+    asperities: Asperities
+    friction: BoundaryFriction
+    regime: str
+    reference: float
+    film_exponent: float
+    load_exponent: float
+    stiffness: float
+    shear: float
+    rolling: float
+    rolling_exponent: float
+
+    def numbers(self, temperature: FloatArray) -> list[Any]:
+        """Return the numbers of the law, in the order of the core, at temperatures (K)."""
+        boundary = self.contact.load * self.friction.at(temperature)
+        own = vars(self) | {"boundary": boundary}
+        return [own[name] for name in _core.SHARING]
+
+    @takes_si(speed="speed", temperature="temperature")
+    def at(self, *, speed: ArrayLike, temperature: ArrayLike) -> MixedFilm:
+        """Return who carries what at speeds of the roll (rad/s; 0: asperities alone) and temperatures (K).
+
+        Raises
+        ------
+        ParameterError
+            If a value is impossible.
+        """
+        speeds, kelvin = np.broadcast_arrays(
+            np.abs(np.asarray(speed, dtype=float)), np.asarray(temperature, dtype=float)
+        )
+        if not np.all(np.isfinite(speeds)):
+            raise ParameterError("speed is not a finite number")
+        radius = self.contact.roll_radius
+        viscosity = self.lubricant.viscosity(kelvin)
+        state = pointwise(_core.mixed_contact, viscosity * speeds * radius, *self.numbers(kelvin))
+        return MixedFilm(
+            speed=speeds,
+            temperature=kelvin,
+            viscosity=viscosity,
+            lambda_ratio=state.lambda_ratio,
+            share=state.share,
+            boundary_torque=state.boundary * radius,
+            shear_torque=state.shear * radius,
+            rolling_torque=state.rolling * radius,
+            mixed=self,
+        )
+
+    @takes_si(temperature="temperature")
+    def transition(self, temperature: ArrayLike) -> MixedTransition:
+        """Return the transition at temperatures (K)."""
+        kelvin = np.asarray(temperature, dtype=float)
+        found = pointwise(_core.mixed_transition, *self.numbers(kelvin))
+        belt_speed = found.product / self.lubricant.viscosity(kelvin)
+        radius = self.contact.roll_radius
+        return MixedTransition(
+            temperature=kelvin,
+            product=found.product,
+            speed=belt_speed / radius,
+            belt_speed=belt_speed,
+            lambda_ratio=found.lambda_ratio,
+            torque=found.force * radius,
+            sensitivity=found.sensitivity,
+        )
+
+
+@dataclass(frozen=True, repr=False)
+class MixedFilm(Result):
+    """Film and asperities at operating points; arrays of one shape.
+
+    ``speed`` of the roll (rad/s), ``temperature`` (K), ``viscosity`` (Pa s), ``lambda_ratio``, ``share`` of
+    the load that asperities carry, and the torques (N m) of the asperities, of the sheared film and of its
+    rolling part.
+    """
+
+    speed: FloatArray
+    temperature: FloatArray
+    viscosity: FloatArray
+    lambda_ratio: FloatArray
+    share: FloatArray
+    boundary_torque: FloatArray
+    shear_torque: FloatArray
+    rolling_torque: FloatArray
+    mixed: MixedContact = field(compare=False)
+
+    @property
+    def torque(self) -> FloatArray:
+        """Torque on the roll, N m."""
+        return np.asarray(self.boundary_torque + self.shear_torque + self.rolling_torque)
+
+    @cached_property
+    def transition(self) -> MixedTransition:
+        """The transition at the temperature of each point."""
+        return self.mixed.transition(self.temperature)
+
+    def headline(self) -> str:
+        """Return how many points, and the range of film and share."""
+        film, share = np.ravel(self.lambda_ratio), 100.0 * np.ravel(self.share)
+        return (
+            f"{film.size} points, lambda {film.min():.3g} to {film.max():.3g}, "
+            f"asperities carry {share.min():.2g} to {share.max():.3g} %"
+        )
+
+    def summary(self) -> str:
+        """Return the points and the transition as text."""
+        mixed, asperities = self.mixed, self.mixed.asperities
+        lines = [
+            self.headline(),
+            f"  film as that of {mixed.regime}: as speed to {mixed.film_exponent:g}, as load to "
+            f"-{mixed.load_exponent:g}; lambda = 1 at eta U = {mixed.reference:.3g} Pa m if alone",
+            f"  asperities: sigma beta D = {asperities.sigma_beta_density:g}, sigma/beta = "
+            f"{asperities.sigma_over_beta:g}, E* = {1e-9 * asperities.modulus:.3g} GPa",
+            f"  {'degC':>6s} {'rad/s':>9s} {'lambda':>7s} {'share %':>8s} {'torque N m':>11s} "
+            f"{'least at rad/s':>15s}",
+        ]
+        columns = (self.temperature, self.speed, self.lambda_ratio, self.share, self.torque)
+        for kelvin, speed, ratio, share, torque, least in zip(
+            *(np.ravel(each) for each in (*columns, self.transition.speed)), strict=True
+        ):
+            turn = "nowhere" if np.isnan(least) else f"{least:.3g}"
+            lines.append(
+                f"  {celsius(kelvin):6.1f} {speed:9.3g} {ratio:7.3g} {100 * share:8.3g} {torque:11.3g} "
+                f"{turn:>15s}"
+            )
+        return "\n".join(lines)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the law and the points, in SI; arrays of shape (points,)."""
+        hidden = ("contact", "lubricant", "asperities", "friction")
+        law = {name: value for name, value in vars(self.mixed).items() if name not in hidden}
+        points = {
+            name: np.ravel(value) for name, value in vars(self).items() if isinstance(value, np.ndarray)
+        }
+        turn = self.transition
+        shifts = {name: np.ravel(shift) for name, shift in turn.sensitivity.items()}
+        return json_record(
+            {
+                "law": law
+                | {"asperities": vars(self.mixed.asperities), "friction": vars(self.mixed.friction)},
+                "points": points | {"torque": np.ravel(self.torque)},
+                "transition": {
+                    "speed": np.ravel(turn.speed),
+                    "belt_speed": np.ravel(turn.belt_speed),
+                    "product": np.ravel(turn.product),
+                    "lambda_ratio": np.ravel(turn.lambda_ratio),
+                    "torque": np.ravel(turn.torque),
+                    "sensitivity": shifts,
+                },
+            }
+        )
+
+    def to_frame(self) -> pl.DataFrame:
+        """Return one row per point."""
+        import polars as pl
+
+        columns = {
+            "speed (rad/s)": self.speed,
+            "temperature (K)": self.temperature,
+            "viscosity (Pa s)": self.viscosity,
+            "lambda (1)": self.lambda_ratio,
+            "share of asperities (1)": self.share,
+            "boundary torque (N m)": self.boundary_torque,
+            "shear torque (N m)": self.shear_torque,
+            "rolling torque (N m)": self.rolling_torque,
+            "torque (N m)": self.torque,
+            "transition speed (rad/s)": self.transition.speed,
+        }
+        return pl.DataFrame({name: np.ravel(values) for name, values in columns.items()})
+
+
+@takes_si(speed="speed", temperature="temperature", rolling="force")
+def mixed_contact(
+    contact: Contact,
+    lubricant: Lubricant,
+    asperities: Asperities,
+    friction: BoundaryFriction | float,
+    *,
+    speed: float,
+    temperature: float,
+    regime: str = "governing",
+    rolling: float = 0.0,
+    rolling_exponent: float | None = None,
+) -> MixedContact:
+    """Return the law by which film and asperities share the load of a nip.
+
+    Parameters
+    ----------
+    contact, lubricant
+        The nip, with its roughness, and what is in it.
+    asperities, friction
+        Of the two faces that slide; a number for a friction that is the same at every temperature.
+    speed, temperature
+        A point (rad/s, K) whose film the law goes through; with the soft film, the law is the same from any.
+    regime
+        Law of the film: ``governing``, that which holds at the point, or the name of one.
+    rolling
+        Force of the rolling (Poiseuille) part at the point where the film carries all, N.
+    rolling_exponent
+        Of that force in viscosity times speed; that of the film if not given.
+
+    Raises
+    ------
+    ParameterError
+        If the contact has no roughness, the regime is not known or needs a pressure-viscosity coefficient, or
+        a value is impossible.
+
+    Examples
+    --------
+    >>> from hersey.lubrication.lubricant import EXAMPLES
+    >>> roll = Contact(roll_radius=15e-3, rubber_thickness=3.5e-3, modulus=0.6e6, poisson_ratio=0.48,
+    ...                length=0.22, load=300.0, roughness=0.4e-6)
+    >>> mixed = mixed_contact(roll, EXAMPLES["cylinder oil"], Asperities(modulus=50e9), 0.1,
+    ...                       speed=4.0, temperature=373.15)
+    >>> turn = mixed.transition([373.15, 393.15])
+    >>> print(f"least drag at {turn.speed[0]:.2f} rad/s, at 20 K more at {turn.speed[1]:.2f} rad/s")
+    least drag at 1.88 rad/s, at 20 K more at 3.44 rad/s
+    """
+    if contact.roughness is None:
+        raise ParameterError("the contact has no roughness: state that of both faces together, rms")
+    if regime not in ("governing", *REGIMES):
+        raise ParameterError(f"regime '{regime}' is not known: governing, {', '.join(REGIMES)}")
+    film = film_thickness(contact, lubricant, speed=speed, temperature=temperature)
+    name = film.regime_names()[0] if regime == "governing" else regime
+    central = float(film.centres[name])
+    if not central > 0:
+        raise ParameterError(f"regime '{name}' needs the pressure-viscosity coefficient of {lubricant.name}")
+    index = REGIMES.index(name)
+    exponent = _core.FILM_SPEED_EXPONENTS[index]
+    product = float(film.viscosity) * 2.0 * float(film.entrainment_speed)
+    reference = product * (contact.roughness / central) ** (1.0 / exponent)
+    most = asperities.pressure * float(_core.asperity_integral(np.zeros(())))
+    if most <= film.nip.pressure_mean:
+        raise ParameterError(
+            f"the asperities carry at most {1e-6 * most:.3g} MPa before the mean planes meet, and the nip "
+            f"presses with {1e-6 * film.nip.pressure_mean:.3g} MPa: state stiffer or denser summits, or a "
+            "softer nip"
+        )
+    power = exponent if rolling_exponent is None else rolling_exponent
+    mixed = MixedContact(
+        contact=contact,
+        lubricant=lubricant,
+        asperities=asperities,
+        friction=friction if isinstance(friction, BoundaryFriction) else BoundaryFriction(friction),
+        regime=name,
+        reference=reference,
+        film_exponent=exponent,
+        load_exponent=max(_core.FILM_LOAD_EXPONENTS[index], _LEAST_LOAD_EXPONENT),
+        stiffness=asperities.pressure / film.nip.pressure_mean,
+        shear=reference / contact.roughness * film.nip.width * contact.length,
+        rolling=rolling * (reference / product) ** power,
+        rolling_exponent=power,
+    )
+    mixed.transition(temperature)
+    return mixed
+
+
+@takes_si(speed="speed", temperature="temperature")
+def mixed_torque(mixed: MixedContact, *, speed: ArrayLike, temperature: ArrayLike) -> FloatArray:
+    """Return the torque (N m) on the roll at speeds (rad/s) and temperatures (K), film and asperities.
+
+    Examples
+    --------
+    >>> from hersey.lubrication.lubricant import EXAMPLES
+    >>> roll = Contact(roll_radius=15e-3, rubber_thickness=3.5e-3, modulus=0.6e6, poisson_ratio=0.48,
+    ...                length=0.22, load=300.0, roughness=0.4e-6)
+    >>> mixed = mixed_contact(roll, EXAMPLES["cylinder oil"], Asperities(modulus=50e9), 0.1,
+    ...                       speed=4.0, temperature=373.15)
+    >>> torque = mixed_torque(mixed, speed=[0.0, 0.5, 2.0, 8.0], temperature=373.15)
+    >>> print(" ".join(f"{value:.3f}" for value in torque))
+    0.450 0.330 0.013 0.023
+    """
+    return mixed.at(speed=speed, temperature=temperature).torque

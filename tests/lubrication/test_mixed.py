@@ -1,0 +1,188 @@
+"""Mixed lubrication of a nip: limits, an independent solution, the shift with temperature, and bad input."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.optimize import brentq
+
+import hersey
+from hersey import _core
+from hersey.errors import ParameterError
+from hersey.lubrication.lubricant import EXAMPLES
+from hersey.lubrication.mixed import Asperities, BoundaryFriction, MixedContact, mixed_contact, mixed_torque
+
+ROLL = hersey.Contact(
+    roll_radius=15e-3,
+    rubber_thickness=3.5e-3,
+    modulus=0.6e6,
+    poisson_ratio=0.48,
+    length=0.22,
+    load=300.0,
+    roughness=0.4e-6,
+)
+OIL = EXAMPLES["cylinder oil"]
+WARM = 373.15
+
+
+def mixed(friction: Any = 0.1, **changed: Any) -> MixedContact:
+    return mixed_contact(
+        ROLL, OIL, Asperities(modulus="50 GPa"), friction, **{"speed": 4.0, "temperature": WARM, **changed}
+    )
+
+
+def test_a_thick_film_carries_all() -> None:
+    film = mixed().at(speed=[5.0, 20.0], temperature=WARM)
+    assert np.all(film.lambda_ratio > 5)
+    alone = hersey.drag_torque(ROLL, OIL, speed=[5.0, 20.0], temperature=WARM)
+    assert film.torque == pytest.approx(alone, rel=5e-3)
+    assert film.share == pytest.approx(0.0, abs=1e-5)
+
+
+def test_near_rest_asperities_carry_all() -> None:
+    film = mixed().at(speed=[0.0, 1e-3], temperature=WARM)
+    assert film.torque == pytest.approx(0.1 * 300.0 * 15e-3, rel=5e-3)
+    assert film.share == pytest.approx(1.0, abs=5e-3)
+
+
+def test_two_rough_faces_press_as_their_summits_do() -> None:
+    """Summits of radius beta meet, aside by r, as spheres of beta/2: Hertz's force over all r."""
+
+    def by_radius(r: float) -> float:
+        return 2 * np.pi * r * 4 / 3 * 0.5**0.5 * (1.0 - r * r / 4) ** 1.5
+
+    force, _ = quad(by_radius, 0.0, 2.0)
+    assert pytest.approx(force, rel=1e-9) == _core.GREENWOOD_TRIPP
+
+
+@pytest.mark.parametrize("speed", [0.3, 0.6, 1.2, 2.5])
+def test_torque_by_an_independent_solution(speed: float) -> None:
+    """From the law as it is written in ``docs/mixed.md``, with adaptive quadrature and a bracket."""
+
+    def integral(ratio: float) -> float:
+        def of(z: float) -> float:
+            return (z - ratio) ** 2.5 * np.exp(-z * z / 2) / np.sqrt(2 * np.pi)
+
+        return quad(of, ratio, ratio + 12, epsabs=0, epsrel=1e-11, limit=200)[0]
+
+    film = hersey.film_thickness(ROLL, OIL, speed=speed, temperature=WARM)
+    pressure = 16 * np.sqrt(2) * np.pi / 15 * 0.05**2 * 0.1 * 50e9
+    stiffness = pressure / film.nip.pressure_mean
+    free = float(film.central) / 0.4e-6
+
+    def excess(ratio: float) -> float:
+        return stiffness * integral(ratio) + (free / ratio) ** 5 - 1
+
+    ratio = brentq(excess, free, 20.0, xtol=1e-14, rtol=1e-14)
+    share = stiffness * integral(ratio)
+    sheared = float(film.viscosity) * speed * 15e-3 / (ratio * 0.4e-6) * film.nip.width * 0.22
+    expected = 15e-3 * (30.0 * share + sheared)
+    assert mixed_torque(mixed(), speed=speed, temperature=WARM) == pytest.approx(expected, rel=1e-8)
+
+
+def test_the_law_is_the_same_from_every_point() -> None:
+    one, other = mixed(), mixed(speed=0.2, temperature=400.0)
+    assert one.regime == "isoviscous-elastic"
+    assert one.reference == pytest.approx(other.reference, rel=1e-12)
+    assert one.shear == pytest.approx(other.shear, rel=1e-12)
+
+
+def test_the_transition_is_where_torque_is_least() -> None:
+    law = mixed(rolling="0.2 N")
+    turn = law.transition(WARM)
+    speeds = float(turn.speed) * np.array([0.97, 0.99, 1.0, 1.01, 1.03])
+    torque = law.at(speed=speeds, temperature=WARM).torque
+    assert np.argmin(torque) == 2
+    assert torque[2] == pytest.approx(float(turn.torque), rel=1e-12)
+    # the rolling part was stated at 4 rad/s
+    assert law.at(speed=4.0, temperature=WARM).rolling_torque == pytest.approx(0.2 * 15e-3, rel=1e-6)
+
+
+def test_the_transition_moves_as_viscosity_does() -> None:
+    turn = mixed().transition([350.0, 373.15, 400.0])
+    viscosity = OIL.viscosity([350.0, 373.15, 400.0])
+    assert turn.product == pytest.approx(float(turn.product[0]), rel=1e-12)
+    assert turn.belt_speed * viscosity == pytest.approx(turn.product, rel=1e-14)
+    assert turn.speed * 15e-3 == pytest.approx(turn.belt_speed, rel=1e-14)
+
+
+def test_boundary_friction_may_change_with_temperature() -> None:
+    falling = BoundaryFriction(0.1, slope=-5e-6, temperature="100 degC")
+    turn = mixed(falling).transition([WARM, WARM + 20.0])
+    shift = np.log(turn.product[1] / turn.product[0]) / np.log(0.0999 / 0.1)
+    assert shift == pytest.approx(float(turn.sensitivity["boundary"][0]), rel=1e-3)
+    rest = mixed(falling).at(speed=0.0, temperature=WARM + 20.0)
+    assert rest.torque == pytest.approx(0.0999 * 300 * 15e-3, rel=1e-9)
+
+
+def test_a_drag_that_never_falls_says_so() -> None:
+    law = mixed(1e-4)
+    assert np.isnan(law.transition(WARM).speed)
+    assert "nowhere" in law.at(speed=1.0, temperature=WARM).summary()
+
+
+def test_the_result_answers() -> None:
+    film = mixed().at(speed=["1 rad/s", "4 rad/s"], temperature="100 degC")
+    assert "asperities" in film.headline()
+    assert "isoviscous-elastic" in film.summary()
+    plain = film.to_dict()
+    assert json.loads(json.dumps(plain, allow_nan=False)) == plain
+    assert plain["points"]["torque"] == pytest.approx(film.torque)
+    frame = film.to_frame()
+    parts = [f"{name} torque (N m)" for name in ("boundary", "shear", "rolling")]
+    assert sum(frame[name].to_numpy() for name in parts) == pytest.approx(film.torque)
+    assert frame["transition speed (rad/s)"].to_list() == pytest.approx(film.transition.speed.tolist())
+
+
+def test_hard_nips_take_the_law_of_the_hard_film() -> None:
+    law = mixed(regime="piezoviscous-elastic")
+    assert (law.film_exponent, law.load_exponent) == (0.7, 0.13)
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (
+            lambda: mixed_contact(replace(ROLL, roughness=None), OIL, STEEL, 0.1, speed=1, temperature=WARM),
+            "roughness",
+        ),
+        (lambda: mixed(regime="soft"), "isoviscous-elastic"),
+        (
+            lambda: mixed_contact(
+                ROLL,
+                replace(OIL, pressure_viscosity=()),
+                STEEL,
+                0.1,
+                speed=1,
+                temperature=WARM,
+                regime="piezoviscous-elastic",
+            ),
+            "pressure-viscosity",
+        ),
+        (
+            lambda: mixed_contact(ROLL, OIL, Asperities(modulus=1e6), 0.1, speed=1, temperature=WARM),
+            "softer nip",
+        ),
+        (lambda: mixed(0.0), "boundary friction"),
+        (lambda: mixed(float("nan")), "boundary friction"),
+        (lambda: mixed(rolling=-1.0), "rolling"),
+        (lambda: mixed(speed=0.0), "entrainment speed"),
+        (lambda: BoundaryFriction(0.1, slope=-1e-3), "temperature"),
+        (lambda: BoundaryFriction(0.1, slope=-1e-3, temperature=WARM).at(500.0), "226.9 degC"),
+        (lambda: Asperities(modulus=0.0), "modulus"),
+        (lambda: Asperities(modulus=5e10, sigma_over_beta=float("inf")), "sigma_over_beta"),
+        (lambda: mixed().at(speed=float("inf"), temperature=WARM), "speed"),
+        (lambda: mixed().at(speed=1.0, temperature=-1.0), "temperature"),
+    ],
+)
+def test_what_cannot_be_is_refused(make: Any, words: str) -> None:
+    with pytest.raises(ParameterError, match=words):
+        make()
+
+
+STEEL = Asperities(modulus=1e11)
