@@ -158,18 +158,9 @@ def _drag(
         )
     if surface.b is None and (kelvin is not None or varies):
         raise ParameterError("the log is isothermal: leave out --at and --temperature-profile")
-    # One stick speed is known, at the law's reference temperature: it goes with the transition speed.
-    drag = surface.drag(roll_radius=machine.roll_radius, stick_speed=machine.stick_speed)
-    if kelvin is not None:
-        drag = drag.at(kelvin)
+    drag = surface.drag(**machine.belt, temperature=kelvin)
     at = drag.reference_temperature if varies else kelvin
     with warnings.catch_warnings():  # the fit's own command says how many draws have no falling branch
         warnings.simplefilter("ignore")
-        samples = surface.drag_samples(
-            _DRAWS,
-            seed,
-            roll_radius=machine.roll_radius,
-            stick_speed=drag.stick_speed,
-            temperature=at,
-        )
+        samples = surface.drag_samples(_DRAWS, seed, **machine.belt, temperature=at)
     return drag, samples

@@ -41,6 +41,9 @@ def cautions(points: SteadyPoints, surface: DampingSurface) -> list[str]:
     out += doubtful_units(log)
     out += _tare_warning(points)
     out += points.notes
+    if points.rest is not None:
+        out.append(f"Taken off, so that torque is that of the film: {points.rest}.")
+        out += [f"Of the rest of the drive: {note}." for note in points.rest.notes]
     if loads := points.varying_load:
         low, high = loads
         out.append(

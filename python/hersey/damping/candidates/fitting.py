@@ -19,6 +19,7 @@ from hersey.damping.candidates.branched import LEAST_POWER, Law
 from hersey.damping.candidates.constant_plus import ConstantPlusLaw
 from hersey.damping.candidates.likelihood import HUBER, Minimum, aicc, bic, deviance, minimise, scatter_beyond
 from hersey.damping.candidates.observations import Observations
+from hersey.damping.candidates.rest_law import RestLaw
 from hersey.damping.candidates.shared_errors import (
     Freedom,
     Grouping,
@@ -31,7 +32,7 @@ from hersey.damping.candidates.shared_errors import (
 from hersey.damping.candidates.stribeck import StribeckLaw
 from hersey.damping.estimate import Estimate, estimate
 
-AnyLaw = Law | StribeckLaw | ConstantPlusLaw
+AnyLaw = Law | StribeckLaw | ConstantPlusLaw | RestLaw
 
 #: Rounds in which scatter and effective variance settle.
 _ROUNDS = 8
@@ -380,6 +381,8 @@ def not_identified(fit: LawFit, data: Observations) -> dict[str, str]:
         return out
     if isinstance(law, ConstantPlusLaw):
         return out | _parts_shown(fit, norms)
+    if isinstance(law, RestLaw):
+        return out
     if law.broken:
         out |= _branches_shown(fit, data)
     if "q" in law.names:
