@@ -59,7 +59,7 @@ class RestTable(Table):
             return self._of_log(path)
         if self.tare is not None:
             raise ParameterError("has a tare without a log: it is how the zero of the log is taken off")
-        if self.torque is None and self.damping is None:
+        if not self.torque and not self.damping:
             raise ParameterError('lacks torque, damping or log: write torque = "20 mN*m"')
         if self.temperature_slope is not None and self.at is None:
             raise ParameterError(
