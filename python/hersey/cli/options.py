@@ -266,6 +266,11 @@ class Reading:
                 raise ParameterError(
                     "--fit holds a finished fit: leave out the options that say how to read a log"
                 )
+            if machine is not None and machine.sensors.stated:
+                say(
+                    "errors of the sensors: those of the fit are used, not those of the machine's file",
+                    file=sys.stderr,
+                )
             surface = read_fit(fit_file)
             if machine is not None and machine.rest is not None and surface.rest is None:
                 raise ParameterError(
@@ -275,11 +280,6 @@ class Reading:
             if machine is not None and machine.rest is not None:
                 say(
                     "rest of the drive: that of the fit is used, not that of the machine's file",
-                    file=sys.stderr,
-                )
-            if machine is not None and machine.sensors.stated:
-                say(
-                    "errors of the sensors: those of the fit are used, not those of the machine's file",
                     file=sys.stderr,
                 )
             return surface

@@ -152,14 +152,14 @@ class RestOfDrive(Result):
     def at_the_belt(self, roll_radius: float, temperature: float | None = None) -> dict[str, float]:
         """Return it at the surface of a roll of a radius (m), as a drag law takes it at a temperature (K).
 
-        ``rest_force`` in N, ``rest_damping`` in N s/m, and ``rest_temperature_slope``, their relative change
-        from that temperature on, in 1/K.
+        A part fitted below nothing counts as nothing. ``rest_force`` in N, ``rest_damping`` in N s/m, and
+        ``rest_temperature_slope``, their relative change from that temperature on, in 1/K.
         """
         warmth = float(self._warmth(temperature))
         return {
             "rest_temperature_slope": self.temperature_slope.value / warmth if warmth > 0 else 0.0,
-            "rest_force": self.constant.value / roll_radius * warmth,
-            "rest_damping": self.per_speed.value / roll_radius**2 * warmth,
+            "rest_force": max(self.constant.value, 0.0) / roll_radius * warmth,
+            "rest_damping": max(self.per_speed.value, 0.0) / roll_radius**2 * warmth,
         }
 
     def _warmth(self, temperature: ArrayLike | None) -> FloatArray:

@@ -400,12 +400,15 @@ def not_identified(fit: LawFit, data: Observations) -> dict[str, str]:
 
 
 def _parts_shown(fit: LawFit, norms: FloatArray) -> dict[str, str]:
-    """Which part, the constant or the film, hardly shows: a factor e of it is within the errors."""
-    part = fit.law.index("rest")
-    if norms[part] >= 2.0 and fit.covariance[part, part] <= 1.0:
-        return {}
-    why = "the constant torque hardly shows beside the film, or the film beside it: record a wider range"
-    return {name: why for name in ("rest", "r") if name in fit.law.names}
+    """Which part beside the film, or the film, hardly shows: a factor e of it is within the errors."""
+    out: dict[str, str] = {}
+    for name, what in (("rest", "constant"), ("viscous", "viscous")):
+        part = fit.law.index(name) if name in fit.law.names else None
+        if part is None or (norms[part] >= 2.0 and fit.covariance[part, part] <= 1.0):
+            continue
+        why = f"the {what} torque hardly shows beside the film, or the film beside it: record a wider range"
+        out |= {lost: why for lost in (name, "r") if lost in fit.law.names}
+    return out
 
 
 def _branches_shown(fit: LawFit, data: Observations) -> dict[str, str]:
