@@ -243,14 +243,25 @@ def test_at_the_belt_it_acts_at_the_radius_of_the_roll() -> None:
     assert at["rest_temperature_slope"] == pytest.approx(SLOPE / 0.9)
 
 
-def test_a_drag_law_that_can_hold_the_rest_holds_it() -> None:
-    if "rest_force" not in {field.name for field in fields(hersey.Drag)}:
-        pytest.skip("the drag law holds no rest of the drive yet")
+@pytest.mark.skipif(
+    "rest_force" not in {field.name for field in fields(hersey.Drag)},
+    reason="the drag law holds no rest of the drive yet",
+)
+def test_motion_map_and_limits_count_film_and_rest() -> None:
     w, t = grid(np.geomspace(0.1, 15, 10), TEMPERATURES)
     corner = (t / 150.0) ** 3.0
-    torque = 0.68 * t**0.0 * (w / corner) ** np.where(w >= corner, 0.3, -0.2) + rest_torque(w, t)
+    torque = 0.68 * (w / corner) ** np.where(w >= corner, 0.3, -0.2) + rest_torque(w, t)
     surface = hersey.fit(points_of(w, torque, t, error=1e-3).without(stated()))
+    belt = {"roll_radius": 0.015, "stick_speed": 3e-4}
     for kelvin in (400.0, AT):
-        drag = surface.drag(roll_radius=0.015, stick_speed=3e-4, temperature=kelvin)
-        for v in (0.01, 0.1):
-            assert drag.force(v) * 0.015 == pytest.approx(surface.total_torque(v / 0.015, kelvin), rel=1e-9)
+        for drag in (surface.drag(**belt, temperature=kelvin), surface.drag(**belt).at(kelvin)):
+            for v in (0.005, 0.1):
+                total = surface.total_torque(v / 0.015, kelvin)
+                assert drag.force(v) * 0.015 == pytest.approx(total, rel=1e-9)
+    hot, limits = [400.0, AT], hersey.Limits(motor_torque=1.2)
+    map_ = hersey.operating_map(
+        surface, hersey.Drivetrain(11e3, 11.0), **belt, limits=limits, temperatures=hot, draws=2
+    )
+    assert map_.state_at(AT, 0.1).torque == pytest.approx(surface.total_torque(0.1 / 0.015, AT), rel=1e-9)
+    for kelvin, speed in zip(hot, map_.stall_above, strict=True):
+        assert surface.total_torque(speed / 0.015, kelvin) == pytest.approx(1.2, rel=1e-9)
