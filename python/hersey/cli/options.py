@@ -358,7 +358,22 @@ class Belt:
         )
         of_belt: dict[str, Any] = {name: numbers.values[name] for name in texts}
         train = Drivetrain(of_belt.pop("stiffness"), of_belt.pop("mass"))
-        return train, Drag(**of_belt, **plain), numbers
+        drag = Drag(**of_belt, **plain)
+        return (train, *self._with_rest(drag, numbers))
+
+    def _with_rest(self, film: Drag, numbers: Amounts) -> tuple[Drag, Amounts]:
+        """The drag given and, beside it, what the machine says of the rest of the drive."""
+        if self.machine is None:
+            return film, numbers
+        from hersey.damping.rest import with_rest
+        from hersey.machine.machine import read_machine
+
+        machine = read_machine(self.machine)
+        if machine.rest is None:
+            return film, numbers
+        drag = with_rest(film, machine.rest, machine.roll_radius, None)
+        told = [numbers.filled, f"the rest of the drive acts beside the drag given: {machine.rest}"]
+        return drag, numbers if drag == film else replace(numbers, filled="; ".join(filter(None, told)))
 
 
 def temperature_of(text: str) -> float | None:
