@@ -23,6 +23,7 @@ from hersey.document.saved_fit import read_fit
 from hersey.errors import InsufficientDataError, ParameterError, WrongKindError
 from hersey.log.torque_log import Correction
 from hersey.testbench.truth import Truth
+from hersey.verdict.cautions import _rest_warnings
 from tests.damping.test_surface import grid, points_of
 
 CONSTANT, PER_SPEED, SLOPE, AT = 0.020, 0.001, -0.002, 150.0 + 273.15
@@ -166,6 +167,22 @@ def test_what_was_taken_off_is_said() -> None:
     assert (
         "of the film alone, the rest of the drive taken off: 20 mN m"
         in hersey.regime(points, surface).verdict
+    )
+
+
+def test_a_rest_of_other_temperatures_is_said_to_be_extrapolated() -> None:
+    cold = hersey.rest_of_drive(
+        points_of(SPEEDS, rest_torque(SPEEDS, np.full(8, 25.0)), np.full(8, 25.0), error=0.01)
+    )
+    w, t = grid(SPEEDS, TEMPERATURES)
+    whole = film(w, t) + rest_torque(w, t)
+    points = points_of(w, whole, t, error=1e-3).without(cold)
+    said = " ".join(_rest_warnings(points))
+    assert "holds one temperature, 25 degC" in said
+    assert "at 25 to 25 degC, and the dwells lie at 100 to 175 degC: it is extrapolated" in said
+    blind = points_of(w, whole, error=1e-3).without(stated())
+    assert "The log holds no temperatures: the rest of the drive is that at 150 degC." in _rest_warnings(
+        blind
     )
 
 

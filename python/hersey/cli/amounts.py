@@ -59,7 +59,7 @@ _FROM = {
 
 @dataclass(frozen=True)
 class Amounts:
-    """Numbers by name, and whether they are in SI; ``filled`` says in words what was not given, or is the machine's."""
+    """Numbers by name, and whether they are in SI; ``filled`` says where the others are from."""
 
     values: Mapping[str, float | None]
     in_si: bool

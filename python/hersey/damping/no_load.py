@@ -10,12 +10,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from hersey.arrays import FloatArray
 from hersey.damping.candidates.fitting import LawFit, fit_law
 from hersey.damping.candidates.lack_of_fit import DOES_NOT_HOLD, lack_of_fit
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.candidates.rest_law import KELVIN, RestLaw
-from hersey.damping.dwells import SteadyPoints, distinct_speeds, groups_of_temperature
+from hersey.damping.dwells import SteadyPoints, distinct_speeds
 from hersey.damping.rest import RestOfDrive, estimates_of
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.log.sensors import SHARE_OF_LARGEST, Sensors
@@ -27,8 +26,6 @@ _SPARE = 2
 _LITTLE = 0.1
 #: Deviation from the line, as a share of the torque, from which a bend is spoken of.
 _SEEN = 1e-3
-#: The numbers of the rest of the drive.
-_NAMES = ("constant", "per_speed", "temperature_slope")
 
 
 def rest_of_drive(points: SteadyPoints) -> RestOfDrive:
@@ -62,29 +59,10 @@ def rest_of_drive(points: SteadyPoints) -> RestOfDrive:
             f"{name}: the mapping takes a no-load torque off this log too, so that nothing is left: leave "
             "out no_load of the mapping"
         )
-    speed, signed = points.column("speed"), points.column("torque") * np.sign(points.column("speed"))
-    data, scale = _observations(points, signed)
-    levels = distinct_speeds(np.abs(speed))
-    kelvin = data.inputs.kelvin
-    warm = 0 if kelvin is None else sum(1 for _ in groups_of_temperature(kelvin))
-    law = RestLaw(levels > 1, float(np.mean(kelvin)) if kelvin is not None and warm > 1 else None)
-    if len(points) < len(law.names) + _SPARE:
-        raise InsufficientDataError(
-            f"{name}: {len(points)} steady points cannot tell the rest of the drive with its error: "
-            f"at least {len(law.names) + _SPARE} are needed"
-        )
+    speed = np.abs(points.column("speed"))
+    data, scale = _observations(points)
+    law = _law(name, data)
     fit = fit_law(law, data)
-    values, by = np.zeros(3), np.zeros((3, len(law.names)))
-    units = {"constant": scale, "per_speed": scale / data.reference_speed, "temperature_slope": 1.0 / KELVIN}
-    for i, parameter in enumerate(law.names):
-        by[_NAMES.index(parameter), i] = units[parameter]
-    values = by @ fit.values
-    freedoms = np.array([fit.freedom_of(n) if n in law.names else np.inf for n in _NAMES])
-    covariance = by @ fit.covariance @ by.T
-    told = tuple(n for n in law.names if n != "temperature_slope" or not _of_visits(fit))
-    constant, per_speed, slope = estimates_of(values, covariance, freedoms, told)
-    sensors, largest = points.log.sensors, float(np.max(np.abs(signed)))
-    zero = SHARE_OF_LARGEST * largest if sensors.torque_zero is None else sensors.torque_zero
     least = float(np.min(law.predict(fit.values, data.inputs))) * scale
     if not least > 0:
         raise InsufficientDataError(
@@ -92,32 +70,56 @@ def rest_of_drive(points: SteadyPoints) -> RestOfDrive:
             "drive takes is greater than nothing: subtract the zero of the sensor (--tare standing), or turn "
             "a sign with --torque-sign -1"
         )
+    units = {"constant": scale, "per_speed": scale / data.reference_speed, "temperature_slope": 1.0 / KELVIN}
+    by = np.array([[units[n] if n == fitted else 0.0 for fitted in law.names] for n in units])
+    covariance = by @ fit.covariance @ by.T
+    freedoms = np.array([fit.freedom_of(n) if n in law.names else np.inf for n in units])
+    told = tuple(n for n in law.names if n != "temperature_slope" or not _of_visits(fit))
+    constant, per_speed, slope = estimates_of(by @ fit.values, covariance, freedoms, told)
+    kelvin, sensors = data.inputs.kelvin, points.log.sensors
+    zero = sensors.torque_zero
+    if zero is None:
+        zero = SHARE_OF_LARGEST * scale * float(np.max(np.abs(data.log_torque)))
+    by_speed = abs(per_speed.value) * float(np.hypot(sensors.torque_gain, sensors.speed_gain))
     return RestOfDrive(
         constant=constant.with_systematic(float(np.hypot(sensors.torque_gain * constant.value, zero))),
-        per_speed=per_speed.with_systematic(
-            abs(per_speed.value) * float(np.hypot(sensors.torque_gain, sensors.speed_gain))
-        ),
+        per_speed=per_speed.with_systematic(by_speed),
         temperature_slope=slope,
         reference_temperature=law.reference,
         covariance=covariance,
         freedom=float(np.min(freedoms)),
         source=name,
         sha256=tuple(file.sha256 for file in points.log.files),
-        speed_range=(float(np.min(np.abs(speed))), float(np.max(np.abs(speed)))),
+        speed_range=(float(speed.min()), float(speed.max())),
         temperature_range=None if kelvin is None else (float(kelvin.min()), float(kelvin.max())),
-        notes=_notes(levels, kelvin, law, fit, data),
+        notes=_notes(law, fit, data),
     )
 
 
-def _observations(points: SteadyPoints, signed: FloatArray) -> tuple[Observations, float]:
-    """Torque over its median size in place of ln torque; nothing is sheared, so that nothing heats a film."""
+def _law(name: str, data: Observations) -> RestLaw:
+    """The parts that speeds and temperatures can tell, if there are dwells enough for them."""
+    kelvin, several = data.inputs.kelvin, data.temperatures.size > 1
+    law = RestLaw(
+        distinct_speeds(data.speed) > 1, float(np.mean(kelvin)) if kelvin is not None and several else None
+    )
+    if len(data) < len(law.names) + _SPARE:
+        raise InsufficientDataError(
+            f"{name}: {len(data)} steady points cannot tell the rest of the drive with its error: "
+            f"at least {len(law.names) + _SPARE} are needed"
+        )
+    return law
+
+
+def _observations(points: SteadyPoints) -> tuple[Observations, float]:
+    """Torque over its median size in place of ln torque, and that size; no film is there to be heated."""
     plain = replace(points, log=replace(points.log, sensors=Sensors()))
     with np.errstate(
         divide="ignore", invalid="ignore"
     ):  # a torque of nothing has no logarithm and needs none
         data = Observations.of(plain, fewest_speeds=1)
-    scale = float(np.median(np.abs(signed))) or 1.0
     sign = np.sign(points.column("speed"))
+    signed = points.column("torque") * sign
+    scale = float(np.median(np.abs(signed))) or 1.0
     return (
         replace(
             data,
@@ -135,12 +137,11 @@ def _of_visits(fit: LawFit) -> bool:
     return bool(moved.size and moved[fit.law.index("temperature_slope")] >= _LITTLE)
 
 
-def _notes(
-    levels: int, kelvin: FloatArray | None, law: RestLaw, fit: LawFit, data: Observations
-) -> tuple[str, ...]:
+def _notes(law: RestLaw, fit: LawFit, data: Observations) -> tuple[str, ...]:
     """What the log does not tell, in sentences."""
+    kelvin = data.inputs.kelvin
     notes = []
-    if levels == 1:
+    if not law.with_speed:
         at = rpm(float(np.mean(data.speed)))
         notes.append(
             f"the no-load log holds one speed, {at:.3g} rpm: how torque rises with speed is not told and "
