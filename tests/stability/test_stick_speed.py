@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
 import hersey
-from hersey.cli.plan import _drag
+from hersey.cli.plan import _drag, _uncertainty
 from hersey.damping.surface import FIXED, WITH_TRANSITION
 from hersey.document.assembly import _simulation
 from hersey.errors import ParameterError
@@ -85,6 +86,28 @@ def test_a_fixed_stick_speed_needs_one_temperature(fitted: hersey.DampingSurface
         fitted.drag(**machine(FIXED).belt)
     with pytest.raises(ParameterError, match="give one temperature"):
         _drag(fitted, machine(FIXED), None, 1, varies=True)
+
+
+def test_a_range_of_the_stick_speed_moves_with_it(fitted: hersey.DampingSurface) -> None:
+    """Map and plan draw from the range as it is at their temperature; a share stays one."""
+    known = hersey.Uncertainty(limits=(1e-4, 1e-3))
+    m = replace(machine(at=420.0), uncertainty={"stick_speed": known})
+    drag = fitted.drag(**m.belt, temperature=HOT)
+    ratio = drag.stick_speed / 3e-4
+    assert _uncertainty(m, drag)["stick_speed"].limits == pytest.approx(
+        (1e-4 * ratio, 1e-3 * ratio), rel=1e-12
+    )
+    share = {"stick_speed": hersey.Uncertainty(share=0.3)}
+    assert _uncertainty(replace(m, uncertainty=share), drag) == share
+    given: dict[str, Any] = {"temperatures": [420.0, HOT], "draws": 4, "seed": 3}
+    sticking = {name: value for name, value in m.belt.items() if name != "roll_radius"}
+    first = fitted.stick_speed_at(fitted.reference_temperature, **sticking)
+    stated = hersey.operating_map(fitted, m.train, **m.belt, uncertainty=m.uncertainty, **given)
+    moved = {"stick_speed": known.times(first / 3e-4)}
+    at_reference = hersey.operating_map(
+        fitted, m.train, roll_radius=m.roll_radius, stick_speed=first, uncertainty=moved, **given
+    )
+    assert stated.upper_interval == pytest.approx(at_reference.upper_interval, rel=1e-9)
 
 
 def test_map_and_plan_say_which_stick_speed_they_took(fitted: hersey.DampingSurface) -> None:

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from hersey.arrays import FloatArray
     from hersey.damping.surface import DampingSurface
     from hersey.machine.machine import Machine
+    from hersey.machine.uncertainty import Uncertainty
     from hersey.motion.drag import Drag
 
 
@@ -106,7 +107,7 @@ def plan(
             temperature=profile,
             limits=machine.limits,
             roll_radius=machine.roll_radius,
-            uncertainty=machine.uncertainty,
+            uncertainty=_uncertainty(machine, drag),
             samples=samples,
             confidence=confidence,
             seed=seed,
@@ -144,6 +145,14 @@ def _target(text: str, machine: Machine) -> float:
     if not target > 0:
         raise ParameterError(f"--target is {text}: it must be greater than 0")
     return target
+
+
+def _uncertainty(machine: Machine, drag: Drag) -> dict[str, Uncertainty]:
+    """How far parameters are known; a range of the stick speed moves with it from where it was stated."""
+    known = dict(machine.uncertainty)
+    if "stick_speed" in known:
+        known["stick_speed"] = known["stick_speed"].times(drag.stick_speed / machine.stick_speed)
+    return known
 
 
 def _drag(

@@ -108,6 +108,9 @@ def operating_map(
         stick_speed_rule=stick_speed_rule,
     )
     drag = surface.drag(roll_radius=roll_radius, stick_speed=first)
+    known = dict(uncertainty or {})
+    if "stick_speed" in known:  # stated with the stick speed, so at its temperature
+        known["stick_speed"] = known["stick_speed"].times(first / stick_speed)
     reach = surface.speed_range[0] * roll_radius, surface.speed_range[1] * roll_radius
     kelvin = shown_temperatures(surface, drag, points, temperatures)
     edges = edges_at(train, drag, kelvin, stick_speed_rule)
@@ -122,7 +125,7 @@ def operating_map(
             train,
             drag,
             kelvin,
-            uncertainty or {},
+            known,
             roll_radius,
             stick_speed_rule,
             seed,
