@@ -45,6 +45,8 @@ if TYPE_CHECKING:
     from hersey.damping.dwells import SteadyPoints
     from hersey.damping.estimate import Estimate
     from hersey.damping.fit import fit
+    from hersey.damping.no_load import rest_of_drive
+    from hersey.damping.rest import RestOfDrive
     from hersey.damping.surface import DampingSurface
     from hersey.errors import HerseyError
     from hersey.identification import CycleRecord, IdentifiedDrive, cycles, identify
@@ -102,6 +104,8 @@ _HOMES = {
     "damping.branches": "Transition",
     "damping.fit": "fit",
     "damping.surface": "DampingSurface",
+    "damping.rest": "RestOfDrive",
+    "damping.no_load": "rest_of_drive",
     "damping.candidates": "ModelComparison compare_models hersey_collapse viscosity_laws",
     "damping.compare": "LogComparison compare",
     "damping.design": "TestDesign design",
@@ -154,6 +158,7 @@ __all__ = [
     "OperatingPoint",
     "Plan",
     "Regime",
+    "RestOfDrive",
     "SafeStep",
     "Schedule",
     "ShearThinning",
@@ -191,6 +196,7 @@ __all__ = [
     "read_temperature_profile",
     "read_with_mapping",
     "regime",
+    "rest_of_drive",
     "safe_step",
     "simulate",
     "solve_line_contact",

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import shutil
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -98,10 +97,12 @@ def test_the_stick_speed_moves_with_the_temperature_asked_for(points: hersey.Ste
     whole = surface.drag(roll_radius=0.015, stick_speed=machine.stick_speed)
     for kelvin in (373.15, 453.15):
         drag, samples = _drag(surface, machine, kelvin, 3, varies=False)
-        assert drag == whole.at(kelvin)
+        at = whole.at(kelvin)
+        for name in ("transition_force", "transition_speed", "stick_speed"):
+            assert getattr(drag, name) == pytest.approx(getattr(at, name), rel=1e-12)
         assert drag.stick_speed != machine.stick_speed
         expected = surface.drag_samples(
-            4000, 3, roll_radius=0.015, stick_speed=whole.at(kelvin).stick_speed, temperature=kelvin
+            4000, 3, roll_radius=0.015, stick_speed=machine.stick_speed, temperature=kelvin
         )
         for name, values in expected.items():
             assert samples[name].tolist() == values.tolist()
@@ -115,23 +116,19 @@ def test_the_stick_speed_moves_with_the_temperature_asked_for(points: hersey.Ste
     assert samples["transition_speed"].tolist() == at_reference["transition_speed"].tolist()
 
 
-def test_draws_are_asked_for_at_the_stick_speed_of_their_temperature(
-    points: hersey.SteadyPoints, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """It decides which draws are refused for having no falling branch."""
+def test_draws_are_refused_at_the_stick_speed_of_their_temperature(points: hersey.SteadyPoints) -> None:
+    """It decides which draws have no falling branch: one stated so high that some have none when hot."""
     surface = hersey.fit(points)
-    machine = read_machine(ROOT / "examples" / "machine.toml")
-    asked: list[float] = []
-    draw = type(surface).drag_samples
-
-    def watched(self: Any, *given: int, **named: Any) -> Any:
-        asked.append(named["stick_speed"])
-        return draw(self, *given, **named)
-
-    monkeypatch.setattr(type(surface), "drag_samples", watched)
-    _drag(surface, machine, 453.15, 3, varies=False)
-    whole = surface.drag(roll_radius=0.015, stick_speed=machine.stick_speed)
-    assert asked == [whole.at(453.15).stick_speed]
+    at = surface.transition_speed(453.15) / surface.transition_speed()
+    stick = 0.9 * 0.015 * surface.transition_speed()
+    counts = []
+    for rule, speed in (("with transition", stick), ("fixed", stick * at)):
+        with pytest.warns(UserWarning, match="no falling branch") as caught:
+            surface.drag_samples(
+                4000, 3, roll_radius=0.015, stick_speed=speed, temperature=453.15, stick_speed_rule=rule
+            )
+        counts.append(str(caught[0].message))
+    assert counts[0] == counts[1]
 
 
 def test_a_plan_for_a_hot_machine_says_its_speeds(

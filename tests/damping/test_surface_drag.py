@@ -97,7 +97,8 @@ def test_drag_at_one_temperature(surface: DampingSurface) -> None:
     assert drag.ehl_exponent == surface.c.value
     assert surface.transition is not None
     assert drag.mixed_exponent == surface.transition.mixed_exponent.value
-    assert drag.stick_speed == STICK
+    ratio = surface.transition_speed(373.15) / surface.transition_speed()
+    assert drag.stick_speed == pytest.approx(STICK * ratio, rel=1e-12)
     assert not drag.varies_with_temperature
 
 
@@ -125,6 +126,7 @@ def test_drag_that_varies_with_temperature_is_the_drag_at_each(scale: str) -> No
         assert surface.transition is not None
         stick = STICK * share**surface.transition.temperature_exponent
         assert found.stick_speed == pytest.approx(stick, rel=1e-9)
+        assert by_itself.stick_speed == pytest.approx(stick, rel=1e-9)
 
 
 def test_drag_of_an_isothermal_law() -> None:

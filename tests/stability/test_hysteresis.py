@@ -264,7 +264,7 @@ def test_the_interval_of_a_fit_reaches_the_band(points: hersey.SteadyPoints) -> 
     """Draws of the fit's covariance widen V*; those of the stick speed widen it further."""
     surface = hersey.fit(points)
     drag = surface.drag(roll_radius=0.015, stick_speed=3e-4).at(453.15)
-    draws = surface.drag_samples(400, 1, roll_radius=0.015, stick_speed=drag.stick_speed, temperature=453.15)
+    draws = surface.drag_samples(400, 1, roll_radius=0.015, stick_speed=3e-4, temperature=453.15)
     train = hersey.Drivetrain(11e3, 11.0)
     fitted = hersey.hysteresis(train, drag, samples=draws)
     assert fitted.interval is not None

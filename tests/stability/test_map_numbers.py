@@ -89,11 +89,11 @@ def test_intervals_are_those_of_the_draws(
     stick = Uncertainty(limits=(1e-4, 1e-3)).draw(rng, 3e-4, 20)
     for i, t in enumerate(KELVIN):
         law = drag.at(t)
-        many = surface.drag_samples(1000, 5, roll_radius=0.015, stick_speed=law.stick_speed, temperature=t)
+        many = surface.drag_samples(1000, 5, **AT, temperature=t)
         assert few.transition_interval[:, i].tolist() == pytest.approx(
             middle(many["transition_speed"]), rel=1e-12
         )
-        some = surface.drag_samples(20, 5, roll_radius=0.015, stick_speed=law.stick_speed, temperature=t)
+        some = surface.drag_samples(20, 5, **AT, temperature=t)
         moved = np.minimum(stick * law.stick_speed / drag.stick_speed, 0.999 * some["transition_speed"])
         folds = hysteresis_sweep(
             machine.train,
@@ -227,9 +227,10 @@ def test_every_sentence_of_a_map(few: OperatingMap, surface: DampingSurface) -> 
     assert hot is not None
     low, high = (np.interp(453.15, KELVIN, edge) for edge in few.upper_interval)
     assert low < 0.045 < high
+    cold_stick, hot_stick = (1e3 * few.drag.at(t).stick_speed for t in (KELVIN[0], KELVIN[-1]))
     assert few.warnings == (
-        f"V* depends on the stick speed, 0.3 mm/s at {hot - 273.15:.0f} degC here, which nobody "
-        f"measures; its "
+        f"V* depends on the stick speed, 0.3 mm/s at {hot - 273.15:.0f} degC here (with the transition speed "
+        f"it moves from {cold_stick:.3g} to {hot_stick:.3g} mm/s), which nobody measures; its "
         "interval counts the fit and stiffness and stick speed",
         "stall counts steady sliding beyond 2.7 N m (roll friction); a belt at rest can bear "
         f"{rest:.3g} N m before it starts",

@@ -41,6 +41,7 @@ CHARTS = {
     "Inspection": ("inspection", "channels_chart"),
     "SteadyPoints": ("damping", "steady_chart"),
     "DampingSurface": ("damping", "surface_chart"),
+    "RestOfDrive": ("damping", "rest_chart"),
     "ModelComparison": ("damping", "models_chart"),
     "LogComparison": ("damping", "logs_chart"),
     "TestDesign": ("damping", "design_chart"),

@@ -30,11 +30,14 @@ from hersey.damping.candidates.intervals import Band
 from hersey.damping.compare import LogComparison
 from hersey.damping.design import TestDesign
 from hersey.damping.dwells import SteadyPoints, groups_of_temperature
+from hersey.damping.rest import RestOfDrive
 from hersey.damping.surface import DampingSurface
 from hersey.units import celsius, rpm
 
 #: Speeds at which a law is drawn, temperatures at which a surface is, and candidates that are listed.
 _SPEEDS, _TEMPERATURES, _LISTED = 60, 4, 10
+#: Speeds (rad/s) of a rest of the drive that is stated.
+_STATED = (0.1, 30.0)
 #: Share of the speed by which marks of two temperatures stand apart.
 _APART = 0.045
 _SPEED = "Drive speed (rpm)"
@@ -85,6 +88,29 @@ def surface_chart(surface: DampingSurface) -> Chart:
     )
     layers = [*_lines(rows, color, unit), diamonds.encode(x=x, y=y, color=color)]
     return alt.layer(*layers, title=title, width=WIDTH, height=HEIGHT)
+
+
+def rest_chart(rest: RestOfDrive) -> Chart:
+    """Return what the drive takes without the film: torque against speed at temperatures, with its limits."""
+    speed = np.geomspace(*(rest.speed_range or _STATED), _SPEEDS)
+    hot: list[float | None] = [rest.reference_temperature]
+    if rest.temperature_range is not None and rest.reference_temperature is not None:
+        hot = list(np.linspace(*rest.temperature_range, _TEMPERATURES))
+    factor, unit = torque_unit(float(rest.torque(speed[-1:], hot[0]).max()))
+    rows: list[Row] = []
+    for t in hot:
+        torque = rest.torque(speed, t)
+        reach = 2.0 * np.linalg.norm(rest.errors(speed, t), axis=1)
+        rows += rows_of(
+            speed=rpm(speed),
+            torque=factor * torque,
+            low=factor * np.maximum(torque - reach, 1e-2 * torque),  # a logarithm has no place for nothing
+            high=factor * (torque + reach),
+            level=[temperature_name(t)] * speed.size,
+        )
+    color, _ = temperature_channels(hot, legend=len(hot) > 1)
+    title = alt.Title("Rest of the drive", subtitle="lines: the law; shaded: two standard errors")
+    return alt.layer(*_lines(rows, color, unit), title=title, width=WIDTH, height=HEIGHT)
 
 
 def models_chart(comparison: ModelComparison) -> Chart:

@@ -59,7 +59,7 @@ _FROM = {
 
 @dataclass(frozen=True)
 class Amounts:
-    """Numbers by name, and whether they are in SI; ``filled`` says in words what was not given."""
+    """Numbers by name, and whether they are in SI; ``filled`` says where the others are from."""
 
     values: Mapping[str, float | None]
     in_si: bool
@@ -180,7 +180,11 @@ def _with_machine(
         if name == "drive_speed" and machine.points:
             example = f"{1e3 * machine.points[0].speed:.4g} mm/s"
         raise ParameterError(f"{file} does not state the {_words(name)}: add {_flag(name)} '{example}'")
-    return Amounts({**values, **stated}, in_si=True)
+    told = ""
+    if "stick_speed" in stated:
+        speed = f"{1e3 * machine.stick_speed:.4g} mm/s"
+        told = f"stick speed {speed} as {file} has it: taken for that at the temperature of the drag given"
+    return Amounts({**values, **stated}, in_si=True, filled=told)
 
 
 def _words(name: str) -> str:

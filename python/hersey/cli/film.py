@@ -89,7 +89,7 @@ def film(
     if log:
         from hersey.damping.fit import fit
 
-        points = reading.points(reading.log(log, machine))
+        points = reading.points(reading.log(log, machine), machine)
         with working("fitting the surface"):
             surface = fit(points, temperature_scale=reading.temperature_scale)
         measured = measured_film(

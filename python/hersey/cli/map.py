@@ -57,8 +57,7 @@ def map_(
         map_of_belt = operating_map(
             surface,
             machine.train,
-            roll_radius=machine.roll_radius,
-            stick_speed=machine.stick_speed,
+            **machine.belt,
             limits=machine.limits,
             points=machine.points,
             uncertainty=machine.uncertainty,

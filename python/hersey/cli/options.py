@@ -19,6 +19,7 @@ from hersey.cli.terminal import say
 if TYPE_CHECKING:
     from hersey.cli.amounts import Amounts
     from hersey.damping.dwells import SteadyPoints
+    from hersey.damping.rest import RestOfDrive
     from hersey.damping.surface import DampingSurface
     from hersey.log import TorqueLog
     from hersey.log.means import MeansTable
@@ -103,10 +104,18 @@ class Reading:
     )
     rotation: Annotated[str, typer.Option(help="both, forward or reverse: dwells to use.")] = "both"
     temperature_scale: Annotated[str, typer.Option(help="degC or K: scale of T in B = a T^b w^c.")] = "degC"
+    no_load: Annotated[
+        str,
+        typer.Option(
+            "--no-load",
+            metavar="LOG",
+            help="Log of the drive without the film, read alike: what it takes is taken off the torque.",
+        ),
+    ] = ""
 
     def inputs(self, *given: Path | list[Path] | None) -> list[Path]:
         """Return the files that a command reads: those given, and the mapping; none may be an output."""
-        named = [Path(self.mapping)] if self.mapping else []
+        named = [Path(path) for path in (self.mapping, self.no_load) if path]
         for paths in given:
             named += [paths] if isinstance(paths, Path) else paths or []
         return named
@@ -201,8 +210,32 @@ class Reading:
             **{name: amount for name, amount in stated.items() if amount},
         }
 
-    def points(self, log: TorqueLog | MeansTable) -> SteadyPoints:
-        """Reduce the log to dwells, or take those that a table of means states."""
+    def points(self, log: TorqueLog | MeansTable, machine: Machine | None = None) -> SteadyPoints:
+        """Reduce the log to dwells, or take those that a table of means states; torque is that of the film.
+
+        What the drive takes besides is that of ``--no-load``, or that of the machine.
+        """
+        rest = None if machine is None else machine.rest
+        if self.no_load:
+            rest = self._rest(rest)
+        points = self._dwells(log)
+        return points if rest is None else points.without(rest)
+
+    def _rest(self, stated: RestOfDrive | None) -> RestOfDrive:
+        """What the log without the film says."""
+        from hersey.damping.no_load import rest_of_drive
+        from hersey.errors import ParameterError
+
+        if stated is not None:
+            raise ParameterError(
+                f"--no-load and {stated.source} both say what the drive takes without the film: leave one out"
+            )
+        alone = replace(self, no_load="", load="", load_unit="")
+        rest = rest_of_drive(alone._dwells(alone._read([Path(self.no_load)])))
+        say(f"{rest.headline()}", *(f"- {note}" for note in rest.notes), file=sys.stderr)
+        return rest
+
+    def _dwells(self, log: TorqueLog | MeansTable) -> SteadyPoints:
         from hersey.damping.dwells import SteadyPoints
         from hersey.errors import ParameterError
         from hersey.log.means import MeansTable
@@ -238,10 +271,21 @@ class Reading:
                     "errors of the sensors: those of the fit are used, not those of the machine's file",
                     file=sys.stderr,
                 )
-            return read_fit(fit_file)
+            surface = read_fit(fit_file)
+            if machine is not None and machine.rest is not None and surface.rest is None:
+                raise ParameterError(
+                    f"{fit_file.name} is fitted to the whole torque, and {machine.rest.source} says what the "
+                    "drive takes besides the film: give the LOG in place of --fit, or leave [rest] out"
+                )
+            if machine is not None and machine.rest is not None:
+                say(
+                    "rest of the drive: that of the fit is used, not that of the machine's file",
+                    file=sys.stderr,
+                )
+            return surface
         log = self.log(paths or [], machine)
         with working("fitting the surface"):
-            return fit(self.points(log), temperature_scale=self.temperature_scale)
+            return fit(self.points(log, machine), temperature_scale=self.temperature_scale)
 
 
 def _amounts(text: str) -> str | list[str] | None:
@@ -314,7 +358,22 @@ class Belt:
         )
         of_belt: dict[str, Any] = {name: numbers.values[name] for name in texts}
         train = Drivetrain(of_belt.pop("stiffness"), of_belt.pop("mass"))
-        return train, Drag(**of_belt, **plain), numbers
+        drag = Drag(**of_belt, **plain)
+        return (train, *self._with_rest(drag, numbers))
+
+    def _with_rest(self, film: Drag, numbers: Amounts) -> tuple[Drag, Amounts]:
+        """The drag given and, beside it, what the machine says of the rest of the drive."""
+        if self.machine is None:
+            return film, numbers
+        from hersey.damping.rest import with_rest
+        from hersey.machine.machine import read_machine
+
+        machine = read_machine(self.machine)
+        if machine.rest is None:
+            return film, numbers
+        drag = with_rest(film, machine.rest, machine.roll_radius, None)
+        told = [numbers.filled, f"the rest of the drive acts beside the drag given: {machine.rest}"]
+        return drag, numbers if drag == film else replace(numbers, filled="; ".join(filter(None, told)))
 
 
 def temperature_of(text: str) -> float | None:

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from hersey.arrays import FloatArray
     from hersey.damping.surface import DampingSurface
     from hersey.machine.machine import Machine
+    from hersey.machine.uncertainty import Uncertainty
     from hersey.motion.drag import Drag
 
 
@@ -106,7 +107,7 @@ def plan(
             temperature=profile,
             limits=machine.limits,
             roll_radius=machine.roll_radius,
-            uncertainty=machine.uncertainty,
+            uncertainty=_uncertainty(machine, drag),
             samples=samples,
             confidence=confidence,
             seed=seed,
@@ -146,6 +147,14 @@ def _target(text: str, machine: Machine) -> float:
     return target
 
 
+def _uncertainty(machine: Machine, drag: Drag) -> dict[str, Uncertainty]:
+    """How far parameters are known; a range of the stick speed moves with it from where it was stated."""
+    known = dict(machine.uncertainty)
+    if "stick_speed" in known:
+        known["stick_speed"] = known["stick_speed"].times(drag.stick_speed / machine.stick_speed)
+    return known
+
+
 def _drag(
     surface: DampingSurface, machine: Machine, kelvin: float | None, seed: int, *, varies: bool
 ) -> tuple[Drag, dict[str, FloatArray]]:
@@ -158,18 +167,9 @@ def _drag(
         )
     if surface.b is None and (kelvin is not None or varies):
         raise ParameterError("the log is isothermal: leave out --at and --temperature-profile")
-    # One stick speed is known, at the law's reference temperature: it goes with the transition speed.
-    drag = surface.drag(roll_radius=machine.roll_radius, stick_speed=machine.stick_speed)
-    if kelvin is not None:
-        drag = drag.at(kelvin)
+    drag = surface.drag(**machine.belt, temperature=kelvin)
     at = drag.reference_temperature if varies else kelvin
     with warnings.catch_warnings():  # the fit's own command says how many draws have no falling branch
         warnings.simplefilter("ignore")
-        samples = surface.drag_samples(
-            _DRAWS,
-            seed,
-            roll_radius=machine.roll_radius,
-            stick_speed=drag.stick_speed,
-            temperature=at,
-        )
+        samples = surface.drag_samples(_DRAWS, seed, **machine.belt, temperature=at)
     return drag, samples

@@ -55,7 +55,7 @@ def report(
     machine = None if machine_file is None else read_machine(machine_file)
     log = reading.log(logs, machine)
     with working("fitting the surface"):
-        points = reading.points(log)
+        points = reading.points(log, machine)
         document = analyse(
             log, points, command=command(), temperature_scale=reading.temperature_scale, machine=machine
         )

@@ -3,6 +3,7 @@
 ==========  =========================================================
 dwells      dwells, reduced to steady points with honest errors
 estimate    a number with its uncertainty
+rest        the rest of the drive: what it takes besides the film
 smoothing   a smooth curve through dwells, and where it is least
 scaled      dwells of all temperatures on one curve
 gradual     a gradual bend: its minimum, and what motion is given of it
@@ -11,6 +12,7 @@ shown       whether the dwells show a transition, in each direction
 surface     the damping surface, and what can be asked of it
 fit         fitting it: the paper's candidate among all
 candidates  every law fitted to the same dwells, one chosen
+no_load     the rest of the drive from a log without the film
 rising      the rising branch by itself: whether one exponent holds
 systematic  what errors of the sensors do to a fit
 compare     two logs against each other

@@ -134,6 +134,7 @@ def _surface(
         rejected_transition=refused,
         data_sha256=tuple(file.sha256 for file in points.log.files),
         sensors=str(points.log.sensors),
+        rest=points.rest,
     )
 
 

@@ -29,6 +29,7 @@ from hersey.damping.candidates.observations import Inputs
 from hersey.damping.candidates.shared_errors import Freedom, SharedScatter
 from hersey.damping.candidates.thermal import CELSIUS, KELVIN, Thermal, scaled_temperature
 from hersey.damping.estimate import Estimate
+from hersey.damping.rest import RestOfDrive, with_rest
 from hersey.errors import ExtrapolationWarning, InsufficientDataError, ParameterError, UntoldWarning
 from hersey.motion.drag import Drag
 from hersey.result import Result, json_record
@@ -37,6 +38,8 @@ from hersey.units import ZERO_CELSIUS, celsius, takes_si
 if TYPE_CHECKING:
     import polars as pl
 
+#: How a stick speed goes with temperature: as the transition speed does, or not at all.
+WITH_TRANSITION, FIXED = "with transition", "fixed"
 #: Law of temperature by the scale of T in T^b.
 SCALES = {"degC": CELSIUS, "K": KELVIN}
 
@@ -63,7 +66,8 @@ class DampingSurface(Result):
 
     ``b`` is None for isothermal data. ``covariance`` is that of ``variables``, the numbers fitted, about
     ``reference_speed`` (rad/s) and ``reference_temperature`` (K). ``torque_space`` holds a, b, c
-    of the fit to torque. ``speed_range`` and ``temperature_range`` (SI) bound the data.
+    of the fit to torque. ``speed_range`` and ``temperature_range`` (SI) bound the data. Where a ``rest`` of
+    the drive was taken off, all of this is of the film alone; `total_torque` is what the log shows.
     """
 
     a: Estimate
@@ -85,6 +89,7 @@ class DampingSurface(Result):
     rejected_transition: str  #: why a second branch is not announced, empty if it is
     data_sha256: tuple[str, ...]
     sensors: str = ""  #: their errors in words, which the systematic parts stand for
+    rest: RestOfDrive | None = None  #: taken off the torque before the fit
     version: str = field(default=_core.VERSION)
 
     @takes_si(speed="speed", temperature="temperature")
@@ -140,6 +145,12 @@ class DampingSurface(Result):
         """Return drag torque in N m, with the sign of the speed (rad/s); temperature in K."""
         return np.asarray(self.damping(speed, temperature) * np.asarray(speed, dtype=float))
 
+    @takes_si(speed="speed", temperature="temperature")
+    def total_torque(self, speed: ArrayLike, temperature: ArrayLike | None = None) -> FloatArray:
+        """Return the torque of the log in N m: that of the film and, if one was taken off, of the rest."""
+        film = self.torque(speed, temperature)
+        return film if self.rest is None else film + self.rest.torque(speed, temperature)
+
     @takes_si(temperature="temperature")
     def transition_speed(self, temperature: float | None = None) -> float:
         """Return the transition speed in rad/s at a temperature (K); NaN where the data show none.
@@ -168,8 +179,49 @@ class DampingSurface(Result):
         )
         return float(np.exp(self._law.predict(self._with_torque(values), inputs))[0])
 
-    @takes_si(roll_radius="length", stick_speed="belt speed", temperature="temperature")
-    def drag(self, *, roll_radius: float, stick_speed: float, temperature: float | None = None) -> Drag:
+    @takes_si(temperature="temperature", stick_speed_temperature="temperature", stick_speed="belt speed")
+    def stick_speed_at(
+        self,
+        temperature: float | None,
+        *,
+        stick_speed: float,
+        stick_speed_temperature: float | None = None,
+        stick_speed_rule: str = WITH_TRANSITION,
+    ) -> float:
+        """Return the stick speed (m/s) at a temperature (K) of one stated at another: the one rule for it.
+
+        It moves with the transition speed, or is fixed. Without ``stick_speed_temperature`` it is stated at
+        the reference temperature of the fit; an isothermal fit has one temperature.
+
+        Raises
+        ------
+        ParameterError
+            If the rule is not known, or a temperature not one that the law allows.
+        """
+        if stick_speed_rule not in (WITH_TRANSITION, FIXED):
+            raise ParameterError(
+                f"stick_speed_rule '{stick_speed_rule}' is not known: '{WITH_TRANSITION}' or '{FIXED}'"
+            )
+        if stick_speed_rule == FIXED or self.b is None or self.transition is None:
+            return stick_speed
+        stated = self.transition_speed(stick_speed_temperature)
+        return float(stick_speed * self.transition_speed(temperature) / stated)
+
+    @takes_si(
+        roll_radius="length",
+        stick_speed="belt speed",
+        temperature="temperature",
+        stick_speed_temperature="temperature",
+    )
+    def drag(
+        self,
+        *,
+        roll_radius: float,
+        stick_speed: float,
+        temperature: float | None = None,
+        stick_speed_temperature: float | None = None,
+        stick_speed_rule: str = WITH_TRANSITION,
+    ) -> Drag:
         """Return the drag on the belt surface, at one temperature or varying with it.
 
         Both branches start from the torque at the transition, where it is least, with their exponents.
@@ -183,6 +235,9 @@ class DampingSurface(Result):
         temperature
             K; without it the drag of a thermal law keeps its dependence on temperature: forces vary as
             T^(b + (1 + c) d) and speeds, the stick speed among them, as T^d, which is the fitted law.
+        stick_speed_temperature, stick_speed_rule
+            At which the stick speed holds (K; by default the reference temperature of the fit), and how it
+            goes with temperature: ``with transition``, or ``fixed``, which needs a temperature.
 
         Raises
         ------
@@ -194,10 +249,20 @@ class DampingSurface(Result):
                 f"the data show no falling branch ({self.rejected_transition}); "
                 "record slower dwells, until torque rises as the drive slows"
             )
+        sticking: dict[str, Any] = {
+            "stick_speed": stick_speed,
+            "stick_speed_temperature": stick_speed_temperature,
+            "stick_speed_rule": stick_speed_rule,
+        }
         if temperature is None and self.b is not None and self.reference_temperature is not None:
+            if stick_speed_rule == FIXED:
+                raise ParameterError(
+                    f"a stick speed that is '{FIXED}' at all temperatures cannot be followed while it "
+                    f"varies: give one temperature, or stick_speed_rule '{WITH_TRANSITION}'"
+                )
             zero = 0.0 if self.temperature_scale == "K" else ZERO_CELSIUS
             reference = self.reference_temperature
-            at_reference = self.drag(roll_radius=roll_radius, stick_speed=stick_speed, temperature=reference)
+            at_reference = self.drag(roll_radius=roll_radius, temperature=reference, **sticking)
             exponent = self.transition.temperature_exponent
             return replace(
                 at_reference,
@@ -206,15 +271,21 @@ class DampingSurface(Result):
                 speed_temperature_exponent=exponent,
                 temperature_zero=zero,
             )
-        return Drag(
+        film = Drag(
             transition_force=self.transition_torque(temperature) / roll_radius,
             transition_speed=self.transition_speed(temperature) * roll_radius,
             ehl_exponent=self.c.value,
             mixed_exponent=self.transition.mixed_exponent.value,
-            stick_speed=stick_speed,
+            stick_speed=self.stick_speed_at(temperature, **sticking),
         )
+        return film if self.rest is None else with_rest(film, self.rest, roll_radius, temperature)
 
-    @takes_si(roll_radius="length", stick_speed="belt speed", temperature="temperature")
+    @takes_si(
+        roll_radius="length",
+        stick_speed="belt speed",
+        temperature="temperature",
+        stick_speed_temperature="temperature",
+    )
     def drag_samples(
         self,
         count: int,
@@ -223,6 +294,8 @@ class DampingSurface(Result):
         roll_radius: float,
         stick_speed: float,
         temperature: float | None = None,
+        stick_speed_temperature: float | None = None,
+        stick_speed_rule: str = WITH_TRANSITION,
     ) -> dict[str, FloatArray]:
         """Return draws of the drag that the fit's covariance allows, for `hysteresis` and the like.
 
@@ -238,8 +311,8 @@ class DampingSurface(Result):
             Of the random draws, at least 0.
         roll_radius
             m, as in `drag`.
-        stick_speed
-            m/s at this temperature; a transition speed below it leaves no falling branch.
+        stick_speed, stick_speed_temperature, stick_speed_rule
+            As in `drag`; a transition speed below the stick speed leaves no falling branch.
         temperature
             K; needed if the law depends on it.
 
@@ -269,11 +342,17 @@ class DampingSurface(Result):
             reason = "this law depends on temperature: give it one, in K"
             other = "temperature is given, but this law does not depend on it"
             raise ParameterError(reason if self.b is not None else other)
-        self.drag(roll_radius=roll_radius, stick_speed=stick_speed, temperature=temperature)
+        at = self.drag(
+            roll_radius=roll_radius,
+            stick_speed=stick_speed,
+            temperature=temperature,
+            stick_speed_temperature=stick_speed_temperature,
+            stick_speed_rule=stick_speed_rule,
+        )
         x = 0.0
         if temperature is not None and self.reference_temperature is not None:
             x = self._checked_temperature(temperature)
-        slowest = np.log(stick_speed / roll_radius / self.reference_speed)
+        slowest = np.log(at.stick_speed / roll_radius / self.reference_speed)
         self._warn_untold()
         kept, total, failed = self._draws(count, seed, x, slowest)
         if failed:
@@ -282,8 +361,8 @@ class DampingSurface(Result):
                 "the intervals hold for fits that have one",
                 stacklevel=3,
             )
-        level, b, c, mixed, at = kept.T
-        z = at + _transition_exponents(b, c) * x
+        level, b, c, mixed, corner = kept.T
+        z = corner + _transition_exponents(b, c) * x
         speed = self.reference_speed * np.exp(z)
         torque = np.exp(level + b * x + c * z) * speed
         return {
@@ -403,6 +482,7 @@ class DampingSurface(Result):
                 "speed_range": self.speed_range,
                 "temperature_range": self.temperature_range,
                 "sensors": self.sensors,
+                "rest": self.rest,
                 "summary": self.summary(),
             }
         )
@@ -461,6 +541,7 @@ def _summary(s: DampingSurface) -> str:
         f"    # scatter added    = {st.scatter:.3%} between dwells, beyond the errors of their means",
         *(f"    # scatter shared   = {_shared_text(shared)}" for shared in st.shared),
         *_sensors_text(s.sensors),
+        *_rest_text(s.rest),
         f"    # data points      = {st.points}",
         f"    # variables        = {st.variables}",
         f"    chi-square         = {st.chi_square:.6g}  (against the errors of the dwells alone)",
@@ -510,6 +591,14 @@ def _sensors_text(sensors: str) -> list[str]:
         if sensors
         else []
     )
+
+
+def _rest_text(rest: RestOfDrive | None) -> list[str]:
+    """What was taken off before the fit, in lines that a page holds."""
+    if rest is None:
+        return []
+    told = f"    # torque of film   = measured less the rest of the drive: {rest}"
+    return textwrap.wrap(told, 96, subsequent_indent=25 * " ")
 
 
 def _shared_text(shared: SharedScatter) -> str:

@@ -232,11 +232,12 @@ def _simulation(surface: DampingSurface, machine: Machine | None) -> SimulationP
         title = "The paper's baseline: k = 1000, B0 = 50, m = 1, drive speed 1 (inches, ounces, seconds)"
         return _simulated(train, drag, speed, title, "paper", "in/s", "ozf")
     kelvin = surface.temperature_range[1] if surface.temperature_range else None
-    drag = surface.drag(roll_radius=machine.roll_radius, stick_speed=machine.stick_speed, temperature=kelvin)
+    drag = surface.drag(**machine.belt, temperature=kelvin)
     at = "" if kelvin is None else f" at {celsius(kelvin):.0f} °C"
     slow = SIMULATED_SPEED * surface.transition_speed(kelvin)
     share = f"{100 * SIMULATED_SPEED:.0f} % of its transition speed"
-    title = f"This machine{at}, driven at {rpm(slow):.3g} rpm, {share}"
+    sticks = f"; stick speed {1e3 * drag.stick_speed:.3g} mm/s there"
+    title = f"This machine{at}, driven at {rpm(slow):.3g} rpm, {share}{sticks}"
     return _simulated(machine.train, drag, slow * machine.roll_radius, title, "fit", "m/s", "N")
 
 

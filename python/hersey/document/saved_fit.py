@@ -13,8 +13,9 @@ from hersey.damping.candidates.branched import transition_exponent
 from hersey.damping.candidates.shared_errors import Freedom, SharedScatter
 from hersey.damping.estimate import Estimate
 from hersey.damping.gradual import Closure
+from hersey.damping.rest import RestOfDrive
 from hersey.damping.surface import DampingSurface, FitStatistics
-from hersey.document.parts import ClosurePart, FitPart, InputFile, Interval, Point, TransitionPart
+from hersey.document.parts import ClosurePart, FitPart, InputFile, Interval, Point, RestPart, TransitionPart
 from hersey.errors import ParameterError
 from hersey.files.text import read_text
 
@@ -112,6 +113,8 @@ def _check(path: Path, document: _FitFile) -> None:
         raise _broken(path, "fit.covariance", "it is not symmetric with no negative variance")
     if fit.transition is not None and fit.transition.closure is not None:
         _check_closure(path, fit.transition.closure, size)
+    if fit.rest is not None:
+        _check_rest(path, fit.rest)
     for field, value, expected in _derived(fit):
         if not np.isclose(value, expected, rtol=_ROUNDING):
             raise _broken(path, f"fit.{field}", "it differs from fit.values, so one of them was changed")
@@ -123,6 +126,35 @@ def _check_closure(path: Path, closure: ClosurePart, size: int) -> None:
         raise _broken(path, "fit.transition.closure", f"not {size} values and {size} rows of {size} numbers")
     if not _is_covariance(np.array(closure.covariance)):
         raise _broken(path, "fit.transition.closure", "it is not symmetric with no negative variance")
+
+
+def _check_rest(path: Path, rest: RestPart) -> None:
+    shape = [len(row) for row in rest.covariance]
+    if shape != [3, 3, 3] or not _is_covariance(np.array(rest.covariance)):
+        raise _broken(path, "fit.rest.covariance", "it is no covariance of three numbers")
+    for name in ("speed_range", "temperature_range"):
+        ends = getattr(rest, name)
+        if ends is not None and not 0 < ends[0] <= ends[1]:
+            raise _broken(path, f"fit.rest.{name}", "it must be ascending, greater than 0")
+
+
+def _rest(part: RestPart | None) -> RestOfDrive | None:
+    if part is None:
+        return None
+    numbers = {
+        name: _estimate(getattr(part, name)) for name in ("constant", "per_speed", "temperature_slope")
+    }
+    return RestOfDrive(
+        **numbers,
+        reference_temperature=part.reference_temperature,
+        covariance=np.array(part.covariance),
+        freedom=np.inf if part.freedom is None else part.freedom,
+        source=part.source,
+        sha256=tuple(part.sha256),
+        speed_range=part.speed_range,
+        temperature_range=part.temperature_range,
+        notes=tuple(part.notes),
+    )
 
 
 def _derived(fit: FitPart) -> list[tuple[str, float, float]]:
@@ -219,5 +251,6 @@ def _surface(document: _FitFile) -> DampingSurface:
         rejected_transition=fit.no_transition,
         data_sha256=tuple(file.sha256 for file in document.files),
         sensors=fit.sensors,
+        rest=_rest(fit.rest),
         version=document.hersey_version,
     )

@@ -6,11 +6,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass as plain_dataclass
 from dataclasses import field
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator
 from pydantic.dataclasses import dataclass
 
+from hersey.damping.rest import RestOfDrive
+from hersey.damping.surface import WITH_TRANSITION
 from hersey.errors import ParameterError
 from hersey.files.toml import Quantity, Table, naming, read_tables, read_toml
 from hersey.log.sensor_tables import SensorTables, sensors_of
@@ -19,6 +21,7 @@ from hersey.lubrication.contact import Contact
 from hersey.lubrication.lubricant import Lubricant
 from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.nip import ContactTable, LubricantTable
+from hersey.machine.rest import RestTable
 from hersey.machine.uncertainty import Uncertainty, read_uncertainty
 from hersey.motion.simulation import Drivetrain
 from hersey.spelling import printable
@@ -29,26 +32,37 @@ class Machine:
     """The machine, in SI.
 
     ``stiffness`` (N/m) and ``mass`` (kg) at the belt, ``roll_radius`` (m) at which torque acts on it, and
-    ``stick_speed`` (m/s) below which the belt sticks. ``uncertainty`` says how far parameters are known.
-    ``contact`` and ``lubricant`` make the film, if they are stated. ``sensors`` are those of its logs, so
-    far as a log's own mapping states no errors of them.
+    ``stick_speed`` (m/s) below which the belt sticks: at ``stick_speed_temperature`` (K; None: the reference
+    of the fit), at others by ``stick_speed_rule`` (see `DampingSurface.stick_speed_at`). ``uncertainty``
+    says how far parameters are known. ``contact`` and ``lubricant`` make the film, if they are stated.
+    ``sensors`` are those of its logs, so far as a log's own mapping states no errors of them. ``rest`` is
+    what the drive takes besides the film.
     """
 
     stiffness: float
     mass: float
     roll_radius: float
     stick_speed: float
+    stick_speed_temperature: float | None = None
+    stick_speed_rule: str = WITH_TRANSITION
     limits: Limits = field(default_factory=Limits)
     points: tuple[OperatingPoint, ...] = ()
     uncertainty: Mapping[str, Uncertainty] = field(default_factory=dict)
     contact: Contact | None = None
     lubricant: Lubricant | None = None
     sensors: Sensors = field(default_factory=Sensors)
+    rest: RestOfDrive | None = None
 
     @property
     def train(self) -> Drivetrain:
         """The drivetrain of the motion."""
         return Drivetrain(self.stiffness, self.mass)
+
+    @property
+    def belt(self) -> dict[str, Any]:
+        """What a fitted surface needs to be the drag of a belt, as `DampingSurface.drag` and maps take it."""
+        names = ("roll_radius", "stick_speed", "stick_speed_temperature", "stick_speed_rule")
+        return {name: getattr(self, name) for name in names}
 
 
 @dataclass(frozen=True)
@@ -57,6 +71,10 @@ class _DrivetrainTable(Table):
     mass: Annotated[float, Quantity("mass", 1e-6, 1e6)]
     roll_radius: Annotated[float, Quantity("length", 1e-5, 100.0)]
     stick_speed: Annotated[float, Quantity("belt speed", 1e-9, 10.0)]
+    stick_speed_temperature: Annotated[float, Quantity("temperature", 150.0, 1000.0, "150 degC")] | None = (
+        None
+    )
+    stick_speed_rule: Literal["with transition", "fixed"] = "with transition"
 
 
 def _named(rows: object) -> object:
@@ -75,13 +93,15 @@ class _MachineFile(Table):
     points: Annotated[tuple[OperatingPoint, ...], BeforeValidator(_named)] = ()
     uncertainty: dict[str, Any] = field(default_factory=dict)
     sensors: SensorTables = field(default_factory=SensorTables)
+    rest: RestTable | None = None
 
 
 def read_machine(path: str | Path) -> Machine:
     """Read ``[drivetrain]``, and the other tables if they are there.
 
     These are ``[limits]``, ``[contact]``, ``[lubricant]``, ``[[points]]``, ``[uncertainty]``, and
-    ``[sensors.torque]``, ``[sensors.speed]`` and ``[sensors.temperature]`` with the errors of a mapping.
+    ``[sensors.torque]``, ``[sensors.speed]`` and ``[sensors.temperature]`` with the errors of a mapping, and
+    ``[rest]``, numbers or a log beside the file.
 
     Every value is a string such as ``"11 N/mm"``; an uncertainty is ``"10 %"`` or ``"0.1 mm/s to 1 mm/s"``
     (see `Uncertainty`).
@@ -99,7 +119,7 @@ def read_machine(path: str | Path) -> Machine:
             f"machine's file: give it as --mapping '{printable(str(path))}'"
         )
     tables = read_tables(path, _MachineFile)
-    uncertainty, contact, lubricant = {}, None, None
+    uncertainty, contact, lubricant, rest = {}, None, None, None
     for parameter, text in tables.uncertainty.items():
         with naming(f"{path.name}: uncertainty.{parameter}"):
             uncertainty[parameter] = read_uncertainty(parameter, text)
@@ -109,6 +129,9 @@ def read_machine(path: str | Path) -> Machine:
     if tables.lubricant is not None:
         with naming(f"{path.name}: [lubricant]"):
             lubricant = tables.lubricant.lubricant()
+    if tables.rest is not None:
+        with naming(f"{path.name}: [rest]"):
+            rest = tables.rest.rest(path)
     return Machine(
         **vars(tables.drivetrain),
         limits=tables.limits,
@@ -117,4 +140,5 @@ def read_machine(path: str | Path) -> Machine:
         contact=contact,
         lubricant=lubricant,
         sensors=sensors_of(**vars(tables.sensors)),
+        rest=rest,
     )

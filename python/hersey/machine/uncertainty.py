@@ -40,6 +40,12 @@ class Uncertainty:
                     f"range {low:g} to {high:g}: the ends must ascend, both on one side of 0"
                 )
 
+    def times(self, factor: float) -> Uncertainty:
+        """Return that of a value so many times as large, as a speed is that moves with temperature."""
+        if self.limits is None:
+            return self
+        return Uncertainty(limits=(self.limits[0] * factor, self.limits[1] * factor))
+
     def draw(self, rng: np.random.Generator, nominal: float, count: int) -> FloatArray:
         """Return ``count`` values of a parameter whose nominal value is given (not used with ``limits``)."""
         if self.share is not None:

@@ -56,7 +56,7 @@ class Stand:
     roll_radius: float = 0.015  #: m
     stiffness: float = 11_000.0  #: N/m, of the drivetrain at the belt
     mass: float = 1.0  #: kg
-    stick_speed: float = 0.0003  #: m/s
+    stick_speed: float = 0.0003  #: m/s, at the temperature of its stick-slip
 
 
 @dataclass(frozen=True)

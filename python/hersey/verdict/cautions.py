@@ -17,6 +17,8 @@ from hersey.units import celsius
 NOTABLE_DIFFERENCE, SIGNIFICANT = 0.02, 3.0
 #: A tare beyond this share of the least torque is asked about.
 LARGE_TARE = 0.1
+#: Temperature beyond those of a no-load log, K, from which it is said to be extrapolated.
+FAR = 10.0
 #: Rank correlation with time beyond which a quantity goes together with it, for so many dwells at least.
 IN_ORDER, FEWEST_IN_ORDER = 0.9, 5
 #: p-value of chance below which a scatter of whole visits is spoken of.
@@ -41,6 +43,7 @@ def cautions(points: SteadyPoints, surface: DampingSurface) -> list[str]:
     out += doubtful_units(log)
     out += _tare_warning(points)
     out += points.notes
+    out += _rest_warnings(points)
     if loads := points.varying_load:
         low, high = loads
         out.append(
@@ -56,6 +59,28 @@ def cautions(points: SteadyPoints, surface: DampingSurface) -> list[str]:
     out += _direction_warnings(points, surface)
     out += _order_warnings(points, surface)
     out += _fit_warnings(surface)
+    return out
+
+
+def _rest_warnings(points: SteadyPoints) -> list[str]:
+    """What was taken off for the rest of the drive, and what is not known of it."""
+    rest = points.rest
+    if rest is None:
+        return []
+    out = [f"Taken off, so that torque is that of the film: {rest}."]
+    out += [f"Of the rest of the drive: {note}." for note in rest.notes]
+    if not points.log.has_temperature:
+        if rest.reference_temperature is not None:
+            at = f"{celsius(rest.reference_temperature):.0f} degC"
+            out.append(f"The log holds no temperatures: the rest of the drive is that at {at}.")
+    elif rest.temperature_range is not None:
+        kelvin, (cold, hot) = points.column("temperature"), rest.temperature_range
+        if float(kelvin.min()) < cold - FAR or float(kelvin.max()) > hot + FAR:
+            out.append(
+                f"{rest.source} holds the rest of the drive at {celsius(cold):.0f} to {celsius(hot):.0f} "
+                f"degC, and the dwells lie at {celsius(float(kelvin.min())):.0f} to "
+                f"{celsius(float(kelvin.max())):.0f} degC: it is extrapolated."
+            )
     return out
 
 

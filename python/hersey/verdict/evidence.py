@@ -134,7 +134,7 @@ def measured_film(
     load, width = _loaded(points, contact, nip.width)
     thickness = film.viscosity * width * contact.length * speed * radius**2 / torque
     variance = (points.column("torque_error") / torque) ** 2 + surface.statistics.scatter**2
-    variance += np.sum(points.tare_errors**2, axis=1) / torque**2
+    variance += np.sum(points.zero_errors**2, axis=1) / torque**2
     variance += shared_variance(surface.statistics.shared)
     relative = quantile(surface.freedom) * np.sqrt(variance)
     shares = [share for share in (lubricant.uncertainty, contact.nip_uncertainty) if share is not None]

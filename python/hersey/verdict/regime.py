@@ -106,7 +106,16 @@ def regime(points: SteadyPoints, surface: DampingSurface) -> Regime:
         by.named,
         by.why_unnamed,
         by.lack_of_fit,
-        " ".join(filter(None, (_verdict(surface, by), points.dropped()))),
+        " ".join(filter(None, (_verdict(surface, by), _taken_off(points), points.dropped()))),
+    )
+
+
+def _taken_off(points: SteadyPoints) -> str:
+    """What was taken off before any of this was judged; empty if nothing was."""
+    return (
+        ""
+        if points.rest is None
+        else f"This is of the film alone, the rest of the drive taken off: {points.rest}."
     )
 
 

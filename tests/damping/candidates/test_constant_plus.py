@@ -7,13 +7,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hersey.damping.candidates.branched import ONE, Law
+from hersey.damping.candidates.branched import CONSTANT_PLUS, ONE, REST_PLUS, Law
+from hersey.damping.candidates.candidate import Candidate
+from hersey.damping.candidates.comparison import compare_models
 from hersey.damping.candidates.constant_plus import ConstantPlusLaw
 from hersey.damping.candidates.fitting import fit_law, not_identified
 from hersey.damping.candidates.intervals import quantities
 from hersey.damping.candidates.thermal import ARRHENIUS, CELSIUS, KELVIN, VFT, Thermal
 from tests.damping.candidates.cases import hand_fit, inputs
 from tests.damping.candidates.test_comparison import REFERENCE, dwells
+from tests.damping.test_surface import points_of
 
 CASES: dict[str, tuple[ConstantPlusLaw, list[float]]] = {
     "isothermal": (ConstantPlusLaw(None), [0.1, -0.6, -0.8]),
@@ -22,6 +25,11 @@ CASES: dict[str, tuple[ConstantPlusLaw, list[float]]] = {
     "free": (ConstantPlusLaw(Thermal(CELSIUS, REFERENCE)), [0.1, -0.9, -0.5, -0.8]),
     "arrhenius": (ConstantPlusLaw(Thermal(ARRHENIUS, REFERENCE), 0.0), [0.1, 2.8, 0.4]),
     "warm rest": (ConstantPlusLaw(Thermal(KELVIN, REFERENCE), None, True), [0.1, -4.0, -0.5, -0.8, 1.3]),
+    "rest": (ConstantPlusLaw(None, viscous=True), [0.1, -0.6, -0.8, -1.2]),
+    "warm viscous": (
+        ConstantPlusLaw(Thermal(KELVIN, REFERENCE), -0.6, True, True),
+        [0.1, -4.0, -0.8, -1.2, 1.3],
+    ),
     "vft": (ConstantPlusLaw(Thermal(VFT, REFERENCE), -0.6, True), [0.1, 2.8, 1 / 200.0, -0.8, 1.3]),
 }
 
@@ -29,10 +37,13 @@ CASES: dict[str, tuple[ConstantPlusLaw, list[float]]] = {
 def torque(
     law: ConstantPlusLaw, values: list[float], z: np.ndarray, s: np.ndarray | float = 0.0
 ) -> np.ndarray:
-    """F (exp(e s) (w/w_ref)^(1 + c) + exp(rest + r s)), as the law is defined."""
-    named = {"e": 0.0, "r": 0.0, "c": law.exponent or 0.0} | dict(zip(law.names, values, strict=True))
+    """F (exp(e s) (w/w_ref)^(1 + c) + (exp(rest) + exp(viscous) w/w_ref) exp(r s)), as the law is defined."""
+    named = {"e": 0.0, "r": 0.0, "viscous": -np.inf, "c": law.exponent or 0.0} | dict(
+        zip(law.names, values, strict=True)
+    )
     film = np.exp(named["e"] * s) * np.exp(z) ** (1.0 + named["c"])
-    return np.asarray(np.exp(named["level"]) * (film + np.exp(named["rest"] + named["r"] * s)))
+    rest = (np.exp(named["rest"]) + np.exp(named["viscous"]) * np.exp(z)) * np.exp(named["r"] * s)
+    return np.asarray(np.exp(named["level"]) * (film + rest))
 
 
 @pytest.mark.parametrize("key", CASES)
@@ -54,7 +65,9 @@ def test_derivatives_are_those_of_the_law(key: str) -> None:
     assert by_heat == pytest.approx(change / 2e-3, rel=1e-4, abs=1e-8)
 
 
-@pytest.mark.parametrize("key", ["isothermal", "coulomb-viscous", "soft", "free", "warm rest"])
+@pytest.mark.parametrize(
+    "key", ["isothermal", "coulomb-viscous", "soft", "free", "warm rest", "rest", "warm viscous"]
+)
 def test_the_law_is_the_sum_of_a_film_and_a_rest(key: str) -> None:
     law, values = CASES[key]
     z, hot = np.linspace(-1.5, 1.5, 7), np.linspace(360.0, 450.0, 7)
@@ -67,6 +80,7 @@ def test_the_law_is_the_sum_of_a_film_and_a_rest(key: str) -> None:
     assert np.exp(law.predict(np.array(values), at)) == pytest.approx(total, rel=1e-12)
     named = {"r": 0.0} | dict(zip(law.names, values, strict=True))
     rest = np.exp(named["level"] + named["rest"] + named["r"] * s)
+    rest = rest + np.exp(named["level"] + named.get("viscous", -np.inf) + named["r"] * s + z)
     assert law.film_share(np.array(values), at) == pytest.approx(1.0 - rest / total, rel=1e-12)
 
 
@@ -141,3 +155,14 @@ def test_quantities_are_named_as_those_of_the_film() -> None:
         "b of the film": -0.9,
         "c of the film": -0.5,
     }
+
+
+def test_a_part_that_rises_with_speed_is_told_where_the_speeds_tell() -> None:
+    """Over a factor of 300 in speed all three parts show; over 20 and noisier a simpler law is taken."""
+    candidates = tuple(Candidate(None, kind) for kind in (ONE, CONSTANT_PLUS, REST_PLUS))
+    for reach, noise in ((300.0, 1e-3), (20.0, 1e-2)):
+        w = np.geomspace(0.1, 0.1 * reach, 16)
+        off = 1.0 + noise * np.random.default_rng(2).standard_normal(w.size)
+        points = points_of(w, (0.02 + 0.002 * w + 0.03 * w**0.3) * off, error=noise)
+        found = compare_models(points, candidates=candidates, bootstrap=0, cross_validate=False)
+        assert (found.chosen.candidate.branches == REST_PLUS) == (noise < 5e-3)

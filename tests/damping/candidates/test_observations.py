@@ -42,7 +42,7 @@ def points(
     )
     return SimpleNamespace(  # type: ignore[return-value]
         table=table,
-        tare_errors=0.002 * np.column_stack([np.ones(9), np.linspace(-1.0, 1.0, 9)]),
+        zero_errors=0.002 * np.column_stack([np.ones(9), np.linspace(-1.0, 1.0, 9)]),
         log=SimpleNamespace(has_temperature=temperature, sensors=Sensors(film_heating=heating)),
         column=lambda name: table[name].to_numpy(),
     )

@@ -5,7 +5,16 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from hersey.damping.candidates.branched import CONSTANT_PLUS, COULOMB_VISCOUS, FREE, HELD, NO_SPEED, ONE, Law
+from hersey.damping.candidates.branched import (
+    CONSTANT_PLUS,
+    COULOMB_VISCOUS,
+    FREE,
+    HELD,
+    NO_SPEED,
+    ONE,
+    REST_PLUS,
+    Law,
+)
 from hersey.damping.candidates.candidate import Candidate, all_candidates, viscosity_candidates
 from hersey.damping.candidates.constant_plus import ConstantPlusLaw
 from hersey.damping.candidates.observations import Observations
@@ -23,6 +32,7 @@ ALL = {
     "vft/one": ("VFT x power of speed, one branch", 4),
     "isothermal/coulomb-viscous": ("Coulomb plus viscous, no temperature", 2),
     "isothermal/constant-plus-power": ("constant torque plus power of speed, no temperature", 3),
+    "isothermal/rest-plus-power": ("constant and viscous torque plus power of speed, no temperature", 4),
     "isothermal/two-free": ("no temperature x power of speed, two branches, free", 4),
     "isothermal/stribeck": ("Stribeck curve, no temperature", 4),
     "power-degC/coulomb-viscous": ("Coulomb plus viscous, film by power law in degC", 3),
@@ -33,6 +43,10 @@ ALL = {
     "arrhenius/constant-plus-power": ("constant torque plus power of speed, film by Arrhenius", 4),
     "vft/coulomb-viscous": ("Coulomb plus viscous, film by VFT", 4),
     "vft/constant-plus-power": ("constant torque plus power of speed, film by VFT", 5),
+    "arrhenius/rest-plus-power": (
+        "constant and viscous torque plus power of speed, film by Arrhenius",
+        5,
+    ),
     "power-degC/two-hersey": ("power law in degC x power of speed, two branches, one Hersey number", 5),
     "power-K/two-hersey": ("power law in K x power of speed, two branches, one Hersey number", 5),
     "arrhenius/two-hersey": ("Arrhenius x power of speed, two branches, one Hersey number", 5),
@@ -124,6 +138,7 @@ def with_(temperatures: list[float] | None, keep: list[int] | None = None, twice
         (Candidate(None, ONE, stribeck=True), with_(None, [0, 2, 4, 6, 8]), ""),
         (Candidate(None, CONSTANT_PLUS), with_(None, [0, 4, 8]), "needs 4 speeds, the log has 3"),
         (Candidate(None, CONSTANT_PLUS), with_(None, [0, 2, 4, 6]), ""),
+        (Candidate(None, REST_PLUS), with_(None, [0, 2, 4, 6]), "needs 5 speeds, the log has 4"),
         (Candidate(None, COULOMB_VISCOUS), with_(None, [0, 4, 8]), "needs 4 speeds, the log has 3"),
         (Candidate(None, COULOMB_VISCOUS), with_(None, [0, 2, 4, 6]), ""),
         (Candidate(None, ONE), with_(None, [0, 4], 3), ""),

@@ -5,6 +5,7 @@ observations          dwells in logarithms, with the errors of torque, speed and
 thermal               laws of temperature: power, Arrhenius, VFT
 branched              laws of speed and temperature with one or two branches
 stribeck              the Stribeck curve
+rest_law              torque without a film
 constant_plus         a constant torque beside a film or a viscous part
 candidate             which laws there are, and which the data cannot carry
 shared_errors         errors that dwells share: of the zero, of visits and runs

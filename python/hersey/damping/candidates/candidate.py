@@ -13,6 +13,7 @@ from hersey.damping.candidates.branched import (
     HELD,
     NO_SPEED,
     ONE,
+    REST_PLUS,
     Law,
 )
 from hersey.damping.candidates.constant_plus import ConstantPlusLaw
@@ -34,7 +35,9 @@ _BRANCH_WORDS = {
     FREE: "two-free",
     CONSTANT_PLUS: "constant-plus-power",
     COULOMB_VISCOUS: "coulomb-viscous",
+    REST_PLUS: "rest-plus-power",
 }
+_BESIDE = (CONSTANT_PLUS, COULOMB_VISCOUS, REST_PLUS)
 
 
 @dataclass(frozen=True)
@@ -62,7 +65,7 @@ class Candidate:
             return f"Stribeck curve, {heat} viscosity" if self.thermal else "Stribeck curve, no temperature"
         if self.branches == NO_SPEED:
             return heat
-        if self.branches in (CONSTANT_PLUS, COULOMB_VISCOUS):
+        if self.branches in _BESIDE:
             return f"{self.branches}, film by {heat}" if self.thermal else f"{self.branches}, {heat}"
         each = ", exponents per temperature" if self.per_temperature else ""
         return f"{heat} x power of speed, {self.branches}{each}"
@@ -74,8 +77,9 @@ class Candidate:
             thermal = Thermal(self.thermal, data.reference_kelvin)
         if self.stribeck:
             return StribeckLaw(thermal)
-        if self.branches in (CONSTANT_PLUS, COULOMB_VISCOUS):
-            return ConstantPlusLaw(thermal, 0.0 if self.branches == COULOMB_VISCOUS else None)
+        if self.branches in _BESIDE:
+            exponent = 0.0 if self.branches == COULOMB_VISCOUS else None
+            return ConstantPlusLaw(thermal, exponent, viscous=self.branches == REST_PLUS)
         return Law(thermal, self.branches, data.temperatures.size if self.per_temperature else 1)
 
     def refused(self, data: Observations) -> str:
@@ -97,6 +101,7 @@ class Candidate:
                     return f"needs {SPEEDS_OF_ONE} speeds at each temperature; {at:.0f} degC has {speeds}"
         needed = SPEEDS_OF_TWO if self.branches in (HELD, FREE) or self.stribeck else 0
         needed = SPEEDS_OF_CURVE if self.branches in (CONSTANT_PLUS, COULOMB_VISCOUS) else needed
+        needed = SPEEDS_OF_TWO if self.branches == REST_PLUS else needed
         speeds = distinct_speeds(data.speed) if needed else 0
         if speeds < needed:
             return f"needs {needed} speeds, the log has {speeds}"
@@ -117,7 +122,9 @@ def all_candidates() -> tuple[Candidate, ...]:
     each = [Candidate(heat, kind, per_temperature=True) for heat in heats[1:] for kind in (ONE, FREE)]
     curves = [Candidate(None, ONE, stribeck=True), Candidate(ARRHENIUS, ONE, stribeck=True)]
     constant = [Candidate(heat, kind) for heat in heats for kind in (COULOMB_VISCOUS, CONSTANT_PLUS)]
-    return (*one, *constant[:2], *free[:1], *curves[:1], *constant[2:], *held, *free[1:], *each, *curves[1:])
+    rest = [Candidate(heat, REST_PLUS) for heat in (None, ARRHENIUS)]  # the others take time and tell no more
+    flat = (*constant[:2], *rest[:1], *free[:1], *curves[:1])
+    return (*one, *flat, *constant[2:], *rest[1:], *held, *free[1:], *each, *curves[1:])
 
 
 def viscosity_candidates() -> tuple[Candidate, ...]:

@@ -1,9 +1,10 @@
 """A constant torque beside the film: what the rest of the drive takes, and a power law or a viscous part.
 
-    torque = F (exp(e s(T)) (w/w_ref)^(1 + c) + exp(rest + r s(T)))
+    torque = F (exp(e s(T)) (w/w_ref)^(1 + c) + (exp(rest) + exp(viscous) w/w_ref) exp(r s(T)))
 
-With c held at 0 it is Coulomb friction and a viscous part, T_0 + k w. The constant part does not vary with
-temperature unless ``rest_thermal`` lets it, by the same shape s(T).
+With c held at 0 it is Coulomb friction and a viscous part, T_0 + k w. What rises with speed beside a film of
+another exponent is there if ``viscous``. The rest does not vary with temperature unless ``rest_thermal`` lets
+it, by the same shape s(T).
 """
 
 from __future__ import annotations
@@ -36,6 +37,7 @@ class ConstantPlusLaw:
     thermal: Thermal | None
     exponent: float | None = None
     rest_thermal: bool = False
+    viscous: bool = False
 
     @cached_property
     def names(self) -> tuple[str, ...]:
@@ -45,6 +47,7 @@ class ConstantPlusLaw:
             *(self.thermal.names if self.thermal else ()),
             *(("c",) if self.exponent is None else ()),
             "rest",
+            *(("viscous",) if self.viscous else ()),
             *(("r",) if self.rest_thermal and self.thermal else ()),
         )
 
@@ -59,12 +62,11 @@ class ConstantPlusLaw:
 
     def predict(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """Return ln torque."""
-        film, rest = self._logarithms(values, inputs)
-        return np.asarray(values[0] + np.logaddexp(film, rest))
+        return np.asarray(values[0] + np.logaddexp.reduce(self._logarithms(values, inputs)))
 
     def jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """Return its derivatives with respect to the parameters, shape (points, parameters)."""
-        share = self.film_share(values, inputs)
+        share, constant, viscous = self._shares(values, inputs)
         s, _, by_q = self._shape(values, inputs)
         e, r = self._value(values, "e"), self._value(values, "r")
         columns = {
@@ -72,22 +74,22 @@ class ConstantPlusLaw:
             "e": share * s,
             "q": (share * e + (1.0 - share) * r) * by_q,
             "c": share * inputs.log_speed,
-            "rest": 1.0 - share,
+            "rest": constant,
+            "viscous": viscous,
             "r": (1.0 - share) * s,
         }
         return np.column_stack([columns[name] for name in self.names])
 
     def slopes(self, values: FloatArray, inputs: Inputs) -> tuple[FloatArray, FloatArray]:
         """Return its derivatives with respect to ln w and to T (1/K)."""
-        share = self.film_share(values, inputs)
+        share, _, viscous = self._shares(values, inputs)
         _, by_heat, _ = self._shape(values, inputs)
         e, r = self._value(values, "e"), self._value(values, "r")
-        return share * (1.0 + self._exponent(values)), (share * e + (1.0 - share) * r) * by_heat
+        return share * (1.0 + self._exponent(values)) + viscous, (share * e + (1.0 - share) * r) * by_heat
 
     def film_share(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """Return the share of the film in the torque."""
-        film, rest = self._logarithms(values, inputs)
-        return np.exp(film - np.logaddexp(film, rest))
+        return np.asarray(self._shares(values, inputs)[0])
 
     def starts(self, inputs: Inputs, log_torque: FloatArray, weights: FloatArray) -> list[FloatArray]:
         """Return where to search from: non-negative parts at fixed exponents, the likeliest first."""
@@ -102,12 +104,15 @@ class ConstantPlusLaw:
         for c in _EXPONENTS if self.exponent is None else (self.exponent,):
             for steeper in _STEEPER if self.thermal else (1.0,):
                 e = steeper * float(one[1])
-                shapes = np.column_stack([np.exp(e * s + (1.0 + c) * z), np.ones_like(z)])
+                film = np.exp(e * s + (1.0 + c) * z)
+                beside = (np.ones_like(z), np.exp(z)) if self.viscous else (np.ones_like(z),)
+                shapes = np.column_stack([film, *beside])
                 relative = shapes * (root / np.exp(log_torque))[:, None]
                 parts, missed = optimize.nnls(relative, root)
                 parts = np.maximum(parts, 1e-3 * float(np.max(parts)))
                 named = {"level": float(np.log(parts[0])), "e": e, "q": q[0] if q else 0.0, "c": c, "r": 0.0}
-                named["rest"] = float(np.log(parts[1] / parts[0]))
+                for name, part in zip(("rest", "viscous"), parts[1:], strict=False):
+                    named[name] = float(np.log(part / parts[0]))
                 ranked.append((float(missed), np.array([named[name] for name in self.names])))
         ranked.sort(key=lambda f: f[0])
         return [values for _, values in ranked[:3]]
@@ -124,9 +129,18 @@ class ConstantPlusLaw:
             return nothing, nothing, nothing
         return self.thermal.shape(inputs.kelvin, self._value(values, "q"))
 
-    def _logarithms(self, values: FloatArray, inputs: Inputs) -> tuple[FloatArray, FloatArray]:
-        """Logarithms of the film and of the rest over F."""
-        s = self._shape(values, inputs)[0]
-        film = self._value(values, "e") * s + (1.0 + self._exponent(values)) * inputs.log_speed
-        rest = np.clip(self._value(values, "rest"), -_LOG_BOUND, _LOG_BOUND) + self._value(values, "r") * s
-        return film, np.asarray(rest + np.zeros_like(film))
+    def _shares(self, values: FloatArray, inputs: Inputs) -> FloatArray:
+        """Shares of film, constant and viscous part in the torque, shape (3, points)."""
+        parts = self._logarithms(values, inputs)
+        return np.asarray(np.exp(parts - np.logaddexp.reduce(parts)))
+
+    def _logarithms(self, values: FloatArray, inputs: Inputs) -> FloatArray:
+        """Logarithms of film, constant and viscous part over F, shape (3, points)."""
+        s, z = self._shape(values, inputs)[0], inputs.log_speed
+        film = self._value(values, "e") * s + (1.0 + self._exponent(values)) * z
+        warmth = self._value(values, "r") * s
+        rest = np.clip(self._value(values, "rest"), -_LOG_BOUND, _LOG_BOUND) + warmth + np.zeros_like(z)
+        viscous = np.full_like(z, -np.inf)
+        if self.viscous:
+            viscous = np.clip(self._value(values, "viscous"), -_LOG_BOUND, _LOG_BOUND) + warmth + z
+        return np.array([film, rest, viscous])

@@ -19,6 +19,7 @@ from hersey.damping.candidates.branched import LEAST_POWER, Law
 from hersey.damping.candidates.constant_plus import ConstantPlusLaw
 from hersey.damping.candidates.likelihood import HUBER, Minimum, aicc, bic, deviance, minimise, scatter_beyond
 from hersey.damping.candidates.observations import Observations
+from hersey.damping.candidates.rest_law import RestLaw
 from hersey.damping.candidates.shared_errors import (
     Freedom,
     Grouping,
@@ -31,7 +32,7 @@ from hersey.damping.candidates.shared_errors import (
 from hersey.damping.candidates.stribeck import StribeckLaw
 from hersey.damping.estimate import Estimate, estimate
 
-AnyLaw = Law | StribeckLaw | ConstantPlusLaw
+AnyLaw = Law | StribeckLaw | ConstantPlusLaw | RestLaw
 
 #: Rounds in which scatter and effective variance settle.
 _ROUNDS = 8
@@ -380,6 +381,8 @@ def not_identified(fit: LawFit, data: Observations) -> dict[str, str]:
         return out
     if isinstance(law, ConstantPlusLaw):
         return out | _parts_shown(fit, norms)
+    if isinstance(law, RestLaw):
+        return out
     if law.broken:
         out |= _branches_shown(fit, data)
     if "q" in law.names:
@@ -397,12 +400,15 @@ def not_identified(fit: LawFit, data: Observations) -> dict[str, str]:
 
 
 def _parts_shown(fit: LawFit, norms: FloatArray) -> dict[str, str]:
-    """Which part, the constant or the film, hardly shows: a factor e of it is within the errors."""
-    part = fit.law.index("rest")
-    if norms[part] >= 2.0 and fit.covariance[part, part] <= 1.0:
-        return {}
-    why = "the constant torque hardly shows beside the film, or the film beside it: record a wider range"
-    return {name: why for name in ("rest", "r") if name in fit.law.names}
+    """Which part beside the film, or the film, hardly shows: a factor e of it is within the errors."""
+    out: dict[str, str] = {}
+    for name, what in (("rest", "constant"), ("viscous", "viscous")):
+        part = fit.law.index(name) if name in fit.law.names else None
+        if part is None or (norms[part] >= 2.0 and fit.covariance[part, part] <= 1.0):
+            continue
+        why = f"the {what} torque hardly shows beside the film, or the film beside it: record a wider range"
+        out |= {lost: why for lost in (name, "r") if lost in fit.law.names}
+    return out
 
 
 def _branches_shown(fit: LawFit, data: Observations) -> dict[str, str]:

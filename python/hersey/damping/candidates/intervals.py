@@ -96,6 +96,7 @@ def quantities(law_fit: LawFit, data: Observations) -> tuple[Quantity, ...]:
     elif isinstance(law, ConstantPlusLaw):
         add("level", "torque of the film at reference", "N m", _exp)
         add("rest", "constant torque over that of the film at reference", "", _exp)
+        add("viscous", "viscous torque over that of the film at reference", "", _exp)
     else:
         add("level", "damping at reference", "N m s/rad", lambda v: _exp(v) / w)
     if law.thermal and kelvin is not None:
@@ -111,7 +112,8 @@ def quantities(law_fit: LawFit, data: Observations) -> tuple[Quantity, ...]:
         add(f"c{i + 1}", f"c at {convert(float(hot), 'K', 'degC'):.0f} degC", "", float)
     add("c_mixed", "c below the transition", "", float)
     add("stick", "ln(Stribeck peak / Coulomb)", "", float)
-    add("viscous", "ln(viscous torque at the Stribeck speed / Coulomb)", "", float)
+    if isinstance(law, StribeckLaw):
+        add("viscous", "ln(viscous torque at the Stribeck speed / Coulomb)", "", float)
     speed = "Stribeck speed" if isinstance(law, StribeckLaw) else "transition speed"
     add("at", speed, "rad/s", lambda v: w * _exp(v))
     if law.thermal and kelvin is not None and isinstance(law, Law) and law.branches == FREE:

@@ -41,7 +41,9 @@ class Observations:
     torque_error: FloatArray  #: relative
     speed_error: FloatArray  #: relative
     temperature_error: FloatArray  #: K
-    tare: FloatArray  #: of ``log_torque`` by one standard error of each error of the zero: (points, errors)
+    tare: (
+        FloatArray  #: of ``log_torque`` by a standard error of each error of zero and rest: (points, errors)
+    )
     visit: IntArray  #: which stay at a temperature a dwell belongs to, shape (points,)
     run: IntArray
     cluster: IntArray  #: points that share it are left out and resampled together
@@ -53,10 +55,10 @@ class Observations:
     heating: FloatArray = field(default_factory=lambda: np.empty(0))
 
     @classmethod
-    def of(cls, points: SteadyPoints) -> Observations:
-        """Return the observations that steady points are."""
+    def of(cls, points: SteadyPoints, *, fewest_speeds: int = 3) -> Observations:
+        """Return the observations that steady points are, if they have so many speeds."""
         speed, torque = np.abs(points.column("speed")), np.abs(points.column("torque"))
-        if distinct_speeds(speed) < 3:
+        if distinct_speeds(speed) < fewest_speeds:
             held = " and ".join(f"{v} rpm" for v in sorted({f"{rpm(w):.3g}" for w in speed}, key=float)[:2])
             raise InsufficientDataError(
                 f"the steady points are all at {held}: no law of speed can be fitted or compared; "
@@ -80,7 +82,7 @@ class Observations:
             torque_error=points.column("torque_error") / torque,
             speed_error=points.column("speed_error") / speed,
             temperature_error=zero if kelvin is None else points.column("temperature_error"),
-            tare=points.tare_errors / points.column("torque")[:, None],
+            tare=points.zero_errors / points.column("torque")[:, None],
             visit=visit,
             run=run,
             cluster=run if by_run else _levels(run, group, speed),

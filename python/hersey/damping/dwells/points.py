@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 import polars as pl
 
 from hersey.arrays import FloatArray
-from hersey.errors import InsufficientDataError
+from hersey.damping.rest import RestOfDrive
+from hersey.errors import InsufficientDataError, ParameterError
 from hersey.log.means import MeanRow, MeansTable, read_means
 from hersey.log.torque_log import TorqueLog
 from hersey.result import Result, json_record
@@ -19,6 +20,8 @@ from hersey.units import rpm
 
 #: Loads closer than this share count as the same.
 SAME_LOAD = 0.03
+#: Standard errors by which a torque must exceed the rest of the drive, so that a film is left.
+_BEYOND = 2.0
 #: Reasons of stretches that nobody meant as a dwell.
 _NO_DWELL = ("drive standing", "speed changing", "rotation not")
 
@@ -66,6 +69,11 @@ class SteadyPoints(Result):
         Mean torque while the drive stood, N m, or None if it never did.
     log
         What was reduced, or the table that states them.
+    rest
+        The rest of the drive, taken off so that torque is that of the film (see `without`); None if none is.
+    rest_errors
+        What one standard error of each independent error of it does to the torque of each dwell, N m, shape
+        (points, errors).
     """
 
     table: pl.DataFrame
@@ -75,11 +83,19 @@ class SteadyPoints(Result):
     log: TorqueLog | MeansTable
     tare_errors: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
     notes: tuple[str, ...] = ()
+    rest: RestOfDrive | None = None
+    rest_errors: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
 
     def __post_init__(self) -> None:
-        """Give what has no tare no disturbances of it."""
-        if not self.tare_errors.size:
-            object.__setattr__(self, "tare_errors", np.empty((self.table.height, 0)))
+        """Give what has no tare, or no rest taken off, no disturbances of it."""
+        for name in ("tare_errors", "rest_errors"):
+            if not getattr(self, name).size:
+                object.__setattr__(self, name, np.empty((self.table.height, 0)))
+
+    @property
+    def zero_errors(self) -> FloatArray:
+        """What each independent error of tare and rest of the drive does to each dwell's torque, N m."""
+        return np.hstack([self.tare_errors, self.rest_errors])
 
     @property
     def tare_error(self) -> float:
@@ -138,6 +154,51 @@ class SteadyPoints(Result):
         frame = pl.DataFrame(dwells, schema_overrides=kinds)
         return cls(frame, tuple(rejected), 0.0, None, table, notes=_notes_of_means(table))
 
+    def without(self, rest: RestOfDrive) -> SteadyPoints:
+        """Return the same dwells with the torque of the film alone, that of the rest of the drive taken off.
+
+        Its errors are errors that the dwells share, as those of the tare.
+
+        Raises
+        ------
+        InsufficientDataError
+            If a no-load log does not cover the speeds, or nothing beyond the errors is left for the film.
+        ParameterError
+            If something was taken off already.
+
+        Examples
+        --------
+        >>> from hersey import RestOfDrive
+        >>> table = {"speed [rpm]": [10, 20, 40], "torque [mN*m]": [25.0, 25.6, 26.3]}
+        >>> rest = RestOfDrive.stated(constant=0.020, uncertainty=0.05)
+        >>> SteadyPoints.from_table(table).without(rest).column("torque").round(4).tolist()
+        [0.005, 0.0056, 0.0063]
+        """
+        name = self.log.files[0].name
+        if self.rest is not None or any(c.name.startswith("no-load") for c in self.log.corrections):
+            raise ParameterError(
+                f"{name}: what the drive takes without the film is taken off already: leave out no_load of "
+                "the mapping, or the rest of the drive"
+            )
+        speed, torque, error = (self.column(n) for n in ("speed", "torque", "torque_error"))
+        kelvin = None
+        if self.log.has_temperature and rest.reference_temperature is not None:
+            kelvin = self.column("temperature")
+        rest.refuse_beyond(speed, name)
+        taken, errors = rest.torque(speed, kelvin), rest.errors(speed, kelvin)
+        film = torque - taken
+        unsure = np.sqrt(error**2 + np.sum(self.tare_errors**2, axis=1) + np.sum(errors**2, axis=1))
+        worst = int(np.argmin(np.sign(speed) * film - _BEYOND * unsure))
+        if not np.sign(speed[worst]) * film[worst] > _BEYOND * unsure[worst]:
+            raise InsufficientDataError(
+                f"{name}: at {rpm(abs(float(speed[worst]))):.3g} rpm torque is "
+                f"{1e3 * abs(float(torque[worst])):.3g} mN m, and the rest of the drive takes "
+                f"{1e3 * abs(float(taken[worst])):.3g} mN m of it ({rest.source}): nothing beyond the errors "
+                "is left for the film; was it stated in another unit, or recorded with the film?"
+            )
+        table = self.table.with_columns(torque=film)
+        return replace(self, table=table, rest=rest, rest_errors=errors)
+
     def __len__(self) -> int:
         """Return how many steady points there are."""
         return self.table.height
@@ -152,6 +213,8 @@ class SteadyPoints(Result):
         lines = [f"{self.headline()}; {rows}", f"tare {self.tare:.4g} N m"]
         if self.standing_torque is not None:
             lines[-1] += f", standing torque {self.standing_torque:.4g} N m"
+        if self.rest is not None:
+            lines.append(f"taken off, so that torque is that of the film: {self.rest}")
         lines += [f"  not used: {rows} rows, {why}" for why, rows in self._unused().items()]
         return "\n".join([*lines, *self.notes, *([dropped] if (dropped := self.dropped()) else [])])
 
@@ -200,6 +263,8 @@ class SteadyPoints(Result):
                 "tare_errors": self.tare_errors,
                 "notes": self.notes,
                 "standing_torque": self.standing_torque,
+                "rest": self.rest,
+                "rest_errors": self.rest_errors,
             }
         )
 

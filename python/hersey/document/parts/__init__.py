@@ -2,6 +2,7 @@
 
 ==========  ==================================================
 part        what every part is
+rest        the rest of the drive
 log         logs and dwells
 fit         the damping surface and the regime
 film        the film of a nip
@@ -48,6 +49,7 @@ from hersey.document.parts.mixed import MixedPart
 from hersey.document.parts.models import ComparisonPart, DesignPart, ModelsPart
 from hersey.document.parts.motion import SimulationPart, StickSlipPart, SweepPart, TrajectoryPart
 from hersey.document.parts.part import SCHEMA_VERSION, Interval, OpenInterval, Part
+from hersey.document.parts.rest import RestPart
 from hersey.document.parts.stability import BandPart, DisturbancePart, MapPart, PlanPart, StepPart
 
 #: What each command prints with ``--json``, beside version and command.
@@ -106,6 +108,7 @@ __all__ = [
     "Quality",
     "RegimePart",
     "RejectedStretch",
+    "RestPart",
     "Series",
     "SimulationPart",
     "StepPart",

@@ -8,6 +8,7 @@ from pydantic import Field
 
 from hersey.document.parts.log import InputFile, Point
 from hersey.document.parts.part import Interval, Part
+from hersey.document.parts.rest import RestPart
 
 
 class ClosurePart(Part):
@@ -96,6 +97,9 @@ class FitPart(Part):
     speed_range: tuple[float, float] = Field(description="rad/s")
     temperature_range: tuple[float, float] | None = Field(description="K")
     sensors: str = Field(default="", description="errors that the systematic parts stand for, in words")
+    rest: RestPart | None = Field(
+        default=None, description="taken off the torque before the fit, which is that of the film"
+    )
     summary: str
     curves: list[Curve] = Field(default=[], description="the law at the temperatures measured")
     cells: list[Cell] = Field(default=[], description="the law over the range measured")

@@ -7,6 +7,7 @@ from typing import Literal
 from pydantic import Field
 
 from hersey.document.parts.part import Part
+from hersey.document.parts.rest import RestPart
 
 
 class ChannelUse(Part):
@@ -94,6 +95,8 @@ class PointsPart(Part):
     tare_errors: list[list[float]] = Field(description="N m, shape (points, disturbances)")
     notes: list[str]
     standing_torque: float | None
+    rest: RestPart | None = Field(default=None, description="taken off, so that torque is that of the film")
+    rest_errors: list[list[float]] = Field(default=[], description="N m, shape (points, errors)")
 
 
 class LogFilePart(Part):

@@ -60,6 +60,7 @@ class StatePart(Part):
     lower: float | None
     transition: float
     upper: float | None
+    stick_speed: float = Field(description="at this temperature")
     extrapolated: bool
 
 
@@ -96,6 +97,7 @@ class MapPart(Part):
     roll_radius: float = Field(description="m")
     train: TrainPart
     drag: DragPart
+    stick_speed_rule: Literal["with transition", "fixed"]
 
 
 class RowPart(Part):
@@ -146,6 +148,7 @@ class PlanPart(Part):
     obstacles: list[ObstaclePart]
     fold_speed: float | None
     transition_speed: float
+    stick_speed: float
     temperature: float | None = Field(description="K")
     greatest_speed: float | None
     peak_force: float | None

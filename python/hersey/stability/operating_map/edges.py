@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from hersey.arrays import FloatArray
+from hersey.damping.surface import FIXED, WITH_TRANSITION
 from hersey.errors import ParameterError
 from hersey.motion.drag import Drag
 from hersey.motion.simulation import Drivetrain
-from hersey.stability.hysteresis import hysteresis_sweep
+from hersey.stability.hysteresis import hysteresis, hysteresis_sweep
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -27,11 +29,18 @@ def check_temperatures(kelvin: FloatArray, drag: Drag) -> None:
         )
 
 
-def edges_at(train: Drivetrain, drag: Drag, kelvin: FloatArray | None) -> dict[str, FloatArray]:
+def edges_at(
+    train: Drivetrain, drag: Drag, kelvin: FloatArray | None, rule: str = WITH_TRANSITION
+) -> dict[str, FloatArray]:
     """The bands at each temperature; an isothermal drag has one."""
-    band = hysteresis_sweep(train, drag, temperature=kelvin)
-    require_all(band)
-    edges = {name: np.atleast_1d(band[name].values) for name in ("lower", "transition", "upper")}
+    names = ("lower", "transition", "upper")
+    if kelvin is not None and rule == FIXED:
+        bands = [hysteresis(train, law, sensitivity=False) for law in laws_at(drag, kelvin, rule)]
+        edges = {name: np.array([getattr(band, name) for band in bands]) for name in names}
+    else:
+        band = hysteresis_sweep(train, drag, temperature=kelvin)
+        require_all(band)
+        edges = {name: np.atleast_1d(band[name].values) for name in names}
     # Without a band the three speeds are one, up to the last digit.
     edges["lower"] = np.minimum(edges["lower"], edges["transition"])
     edges["upper"] = np.maximum(edges["upper"], edges["transition"])
@@ -44,9 +53,15 @@ def require_all(band: xr.Dataset) -> None:
         raise ParameterError(f"the bands cannot be computed: {band.attrs['failures'][0]}")
 
 
-def laws_at(drag: Drag, kelvin: FloatArray | None) -> list[Drag]:
+def law_at(drag: Drag, kelvin: float | None, rule: str) -> Drag:
+    """Return the drag at a temperature (K; None if it does not vary), its stick speed by the rule."""
+    law = drag.at(kelvin)
+    return replace(law, stick_speed=drag.stick_speed) if rule == FIXED else law
+
+
+def laws_at(drag: Drag, kelvin: FloatArray | None, rule: str = WITH_TRANSITION) -> list[Drag]:
     """Return the drag at each temperature (K), or the one that does not vary."""
-    return [drag] if kelvin is None else [drag.at(t) for t in kelvin.tolist()]
+    return [drag] if kelvin is None else [law_at(drag, t, rule) for t in kelvin.tolist()]
 
 
 def contour(laws: Sequence[Drag], force: float) -> tuple[FloatArray, FloatArray]:

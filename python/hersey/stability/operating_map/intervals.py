@@ -14,7 +14,7 @@ from hersey.machine.uncertainty import Uncertainty
 from hersey.motion.drag import Drag
 from hersey.motion.simulation import Drivetrain
 from hersey.stability.hysteresis import hysteresis_sweep
-from hersey.stability.operating_map.edges import laws_at, require_all
+from hersey.stability.operating_map.edges import law_at, laws_at, require_all
 
 if TYPE_CHECKING:
     pass
@@ -38,6 +38,7 @@ def intervals(
     kelvin: FloatArray | None,
     uncertainty: Mapping[str, Uncertainty],
     roll_radius: float,
+    rule: str,
     seed: int,
     draws: int,
     threads: int,
@@ -46,7 +47,12 @@ def intervals(
 
     def samples(t: float | None, count: int) -> dict[str, FloatArray]:
         return surface.drag_samples(
-            count, seed, roll_radius=roll_radius, stick_speed=drag.at(t).stick_speed, temperature=t
+            count,
+            seed,
+            roll_radius=roll_radius,
+            stick_speed=drag.stick_speed,
+            temperature=t,
+            stick_speed_rule=rule,
         )
 
     levels: list[float | None] = [None] if kelvin is None else kelvin.tolist()
@@ -61,7 +67,7 @@ def intervals(
         few = np.linspace(kelvin[0], kelvin[-1], FOLD_TEMPERATURES).tolist()
     ratios = []
     for t in few:
-        law, map_ = drag.at(t), samples(t, draws)
+        law, map_ = law_at(drag, t, rule), samples(t, draws)
         stick = (
             uncertainties.get("stick_speed", np.array(drag.stick_speed)) * law.stick_speed / drag.stick_speed
         )
@@ -88,7 +94,7 @@ def intervals(
         upper = np.array(
             [np.exp(np.interp(kelvin, np.array(few, dtype=float), np.log(edge))) for edge in upper]
         )
-    bend = np.array([law.transition_speed for law in laws_at(drag, kelvin)])
+    bend = np.array([law.transition_speed for law in laws_at(drag, kelvin, rule)])
     return transition, upper * bend, tuple(uncertainties)
 
 

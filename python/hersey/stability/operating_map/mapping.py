@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from hersey.damping.surface import DampingSurface
+from hersey.damping.surface import FIXED, WITH_TRANSITION, DampingSurface
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.uncertainty import Uncertainty
@@ -26,13 +26,21 @@ if TYPE_CHECKING:
     pass
 
 
-@takes_si(roll_radius="length", stick_speed="belt speed", temperatures="temperature", speeds="belt speed")
+@takes_si(
+    roll_radius="length",
+    stick_speed="belt speed",
+    stick_speed_temperature="temperature",
+    temperatures="temperature",
+    speeds="belt speed",
+)
 def operating_map(
     surface: DampingSurface,
     train: Drivetrain,
     *,
     roll_radius: float,
     stick_speed: float,
+    stick_speed_temperature: float | None = None,
+    stick_speed_rule: str = WITH_TRANSITION,
     limits: Limits | None = None,
     points: Sequence[OperatingPoint] = (),
     uncertainty: Mapping[str, Uncertainty] | None = None,
@@ -50,9 +58,9 @@ def operating_map(
         The fitted surface; it must have a transition.
     train
         Stiffness (N/m) and mass (kg) at the belt.
-    roll_radius, stick_speed
-        m and m/s, as in `DampingSurface.drag`; the stick speed is that at the fit's reference temperature
-        and moves with temperature as the transition speed does.
+    roll_radius, stick_speed, stick_speed_temperature, stick_speed_rule
+        As in `DampingSurface.drag`; by default the stick speed is that at the fit's reference temperature and
+        moves with temperature as the transition speed does.
     limits
         What the drive can bear: ``motor_torque``, or ``roll_friction`` with ``nip_load``, gives the stall.
     points
@@ -92,18 +100,37 @@ def operating_map(
             f"no operating map: the data show no falling branch ({surface.rejected_transition}); "
             "record slower dwells, until torque rises as the drive slows"
         )
-    drag = surface.drag(roll_radius=roll_radius, stick_speed=stick_speed)
+    at = surface.reference_temperature
+    first = surface.stick_speed_at(
+        at,
+        stick_speed=stick_speed,
+        stick_speed_temperature=stick_speed_temperature,
+        stick_speed_rule=stick_speed_rule,
+    )
+    drag = surface.drag(roll_radius=roll_radius, stick_speed=first)
+    known = dict(uncertainty or {})
+    if "stick_speed" in known:  # stated with the stick speed, so at its temperature
+        known["stick_speed"] = known["stick_speed"].times(first / stick_speed)
     reach = surface.speed_range[0] * roll_radius, surface.speed_range[1] * roll_radius
     kelvin = shown_temperatures(surface, drag, points, temperatures)
-    edges = edges_at(train, drag, kelvin)
+    edges = edges_at(train, drag, kelvin, stick_speed_rule)
     speed_grid = shown_speeds(edges, reach, points, limits.speed, speeds)
-    laws = laws_at(drag, kelvin)
+    laws = laws_at(drag, kelvin, stick_speed_rule)
     limit, limited_by = torque_limit(limits, roll_radius)
     below, above = contour(laws, np.inf if limit is None else limit / roll_radius)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         transition_interval, upper_interval, uncertain = intervals(
-            surface, train, drag, kelvin, uncertainty or {}, roll_radius, seed, draws, threads
+            surface,
+            train,
+            drag,
+            kelvin,
+            known,
+            roll_radius,
+            stick_speed_rule,
+            seed,
+            draws,
+            threads,
         )
     map_ = OperatingMap(
         temperature=kelvin,
@@ -125,10 +152,11 @@ def operating_map(
         roll_radius=float(roll_radius),
         train=train,
         drag=drag,
+        stick_speed_rule=stick_speed_rule,
     )
     placed = tuple(_placed(map_, point) for point in points)
     said = list(dict.fromkeys(str(w.message) for w in caught))
-    said += _remarks(map_, placed, stick_speed)
+    said += _remarks(map_, placed)
     return replace(map_, points=placed, warnings=tuple(said))
 
 
@@ -147,13 +175,20 @@ def _placed(map_: OperatingMap, point: OperatingPoint) -> PlacedPoint:
     return PlacedPoint(point.name, point.speed, point.temperature, map_.state_at(temperature, point.speed))
 
 
-def _remarks(map_: OperatingMap, points: Sequence[PlacedPoint], stick_speed: float) -> list[str]:
+def _remarks(map_: OperatingMap, points: Sequence[PlacedPoint]) -> list[str]:
     """What a reader of the map must know, one sentence each."""
-    hot = map_.drag.reference_temperature
+    laws = laws_at(map_.drag, map_.temperature, map_.stick_speed_rule)
+    hot, moved = map_.drag.reference_temperature, ""
     where = "" if hot is None else f" at {convert(hot, 'K', 'degC'):.0f} degC"
+    if hot is not None and map_.stick_speed_rule == FIXED:
+        where = " at all temperatures"
+    elif hot is not None:
+        ends = [1e3 * law.stick_speed for law in (laws[0], laws[-1])]
+        moved = f" (with the transition speed it moves from {ends[0]:.3g} to {ends[1]:.3g} mm/s)"
     counted = " and ".join(["the fit", *(name.replace("_", " ") for name in map_.uncertain)])
+    stick = f"{1e3 * map_.drag.stick_speed:.3g} mm/s"
     said = [
-        f"V* depends on the stick speed, {1e3 * stick_speed:.3g} mm/s{where} here, which nobody measures; "
+        f"V* depends on the stick speed, {stick}{where} here{moved}, which nobody measures; "
         f"its interval counts {counted}"
         + ("" if "stick_speed" in map_.uncertain else ": state how far stick_speed is known")
     ]
@@ -162,7 +197,7 @@ def _remarks(map_: OperatingMap, points: Sequence[PlacedPoint], stick_speed: flo
     if map_.torque_limit is None:
         said.append("no stall is shown: state motor_torque, or roll_friction and nip_load, among the limits")
     else:
-        rest = max(law.breakaway_force for law in laws_at(map_.drag, map_.temperature)) * map_.roll_radius
+        rest = max(law.breakaway_force for law in laws) * map_.roll_radius
         said.append(
             f"stall counts steady sliding beyond {map_.torque_limit:.3g} N m ({map_.limited_by}); "
             f"a belt at rest can bear {rest:.3g} N m before it starts"

@@ -34,7 +34,7 @@ class OperatingMap(Result):
     fit and the parameters in ``uncertain``. Drag exceeds ``torque_limit`` (N m, set by ``limited_by``) from
     ``stall_above`` up (infinite if never) and, on the falling branch, up to ``stall_below`` (0 if never).
     ``torque`` in N m, shape (n, m), is that of steady sliding at ``speed``, shape (m,). The measured ranges
-    bound the dwells.
+    bound the dwells. ``stick_speed_rule`` says how the stick speed goes with temperature.
     """
 
     temperature: FloatArray | None
@@ -58,6 +58,7 @@ class OperatingMap(Result):
     roll_radius: float
     train: Drivetrain
     drag: Drag
+    stick_speed_rule: str
 
     @takes_si(temperature="temperature", speed="belt speed")
     def state_at(self, temperature: float | None, speed: float) -> MapState:
@@ -88,7 +89,7 @@ class OperatingMap(Result):
         0 on the falling branch where torque stays below it down to the stick speed; both the transition
         speed where torque is never so small.
         """
-        return contour(laws_at(self.drag, self.temperature), torque / self.roll_radius)
+        return contour(self._laws(self.temperature), torque / self.roll_radius)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the whole map in SI; None stands for a speed beyond all that was searched."""
@@ -144,10 +145,14 @@ class OperatingMap(Result):
         levels, place = np.unique(kelvin, return_inverse=True)
         if temperature is not None:
             check_temperatures(levels, self.drag)
-        edges = edges_at(self.train, self.drag, None if temperature is None else levels)
-        laws = laws_at(self.drag, None if temperature is None else levels)
+        at = None if temperature is None else levels
+        edges = edges_at(self.train, self.drag, at, self.stick_speed_rule)
+        laws = self._laws(at)
         rows = zip(speeds.tolist(), kelvin.tolist(), place.ravel().tolist(), strict=True)
         return [self._state(laws[i], {k: float(v[i]) for k, v in edges.items()}, t, v) for v, t, i in rows]
+
+    def _laws(self, kelvin: FloatArray | None) -> list[Drag]:
+        return laws_at(self.drag, kelvin, self.stick_speed_rule)
 
     def _state(self, law: Drag, edges: Mapping[str, float], kelvin: float, speed: float) -> MapState:
         torque = float(law.force(speed)) * self.roll_radius
@@ -162,7 +167,7 @@ class OperatingMap(Result):
         low, high = self.measured_speed
         cold, hot = self.measured_temperature or (-np.inf, np.inf)
         outside = not (low <= speed <= high and cold <= kelvin <= hot)
-        return MapState(state, torque, **edges, extrapolated=outside)
+        return MapState(state, torque, **edges, stick_speed=law.stick_speed, extrapolated=outside)
 
 
 def _summary(map_: OperatingMap) -> str:

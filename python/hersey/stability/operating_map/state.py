@@ -24,7 +24,8 @@ class MapState:
     """What the belt does at one temperature and drive speed; speeds in m/s, torque in N m.
 
     ``state`` is one of `STATES`. ``torque`` is that of steady sliding, with which the drive must cope.
-    ``extrapolated`` says that no dwell of the fit lies that far out.
+    ``stick_speed`` is that at this temperature. ``extrapolated`` says that no dwell of the
+    fit lies that far out.
     """
 
     state: str
@@ -32,6 +33,7 @@ class MapState:
     lower: float
     transition: float
     upper: float
+    stick_speed: float
     extrapolated: bool
 
     def verdict(self) -> str:

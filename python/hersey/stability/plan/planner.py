@@ -130,6 +130,7 @@ def plan_profile(
         "seed": seed,
         "fold_speed": band.upper,
         "transition_speed": band.transition,
+        "stick_speed": drag.law_at(thermal.at(thermal.end)).stick_speed,
         "temperature": thermal.at(thermal.end),
         "greatest_speed": greatest,
     }

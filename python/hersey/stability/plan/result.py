@@ -37,9 +37,10 @@ class Plan(Result):
     ``share`` of ``draws`` fresh draws are smooth from there on and keep all limits, ``failures`` counts what
     went wrong with the others; ``share_low`` is the bound that the true share exceeds with 95 %.
     ``peak_force`` (N) is the spring force that a share ``confidence`` of them keeps below. ``response`` is
-    the motion at the nominal parameters, its time counted from the end of the wait. ``fold_speed`` and
-    ``transition_speed`` (m/s) are nominal, at ``temperature`` (K), that of the end. Peak speeds up to
-    ``greatest_speed`` were sought, ``tried`` profiles tried. ``warnings`` names what the model leaves out.
+    the motion at the nominal parameters, its time counted from the end of the wait. ``fold_speed``,
+    ``transition_speed`` and ``stick_speed`` (m/s) are nominal, at ``temperature`` (K), that of the end. Peak
+    speeds up to ``greatest_speed`` were sought, ``tried`` profiles tried. ``warnings`` names
+    what the model leaves out.
     """
 
     kind: str
@@ -62,6 +63,7 @@ class Plan(Result):
     obstacles: tuple[Obstacle, ...]
     fold_speed: float
     transition_speed: float
+    stick_speed: float
     temperature: float | None
     greatest_speed: float
     peak_force: float
@@ -120,8 +122,9 @@ class Plan(Result):
             lines += [f"{use.name.replace('_', ' ')}: {use.used:.4g} of {use.limit:.4g}" for use in self.uses]
             lines += [f"- {warning}" for warning in self.warnings]
             lines += [f"- {number} of {self.draws} draws: {why}" for why, number in self.failures.items()]
-        fold = f"{1e3 * self.fold_speed:.4g}"
-        lines.append(f"nominal transition speed {1e3 * self.transition_speed:.4g} mm/s, V* {fold} mm/s")
+        speeds = (self.transition_speed, self.fold_speed, self.stick_speed)
+        bend, fold, stick = (f"{1e3 * speed:.4g} mm/s" for speed in speeds)
+        lines.append(f"nominal transition speed {bend}, V* {fold}, stick speed {stick}")
         return "\n".join([*lines, f"seed {self.seed}"])
 
     def headline(self) -> str:

@@ -1,0 +1,80 @@
+"""The rest of the drive by itself: torque without a film, which may be nothing or have either sign.
+
+    torque = (k + p w/w_ref) (1 + s (T - T_ref)/100 K)
+
+Torque itself, not its logarithm, over a torque of reference: errors of a small torque are absolute.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hersey.arrays import FloatArray
+from hersey.damping.candidates.observations import Inputs
+
+#: Unit of temperature, K, in which the slope is of the size of the others.
+KELVIN = 100.0
+
+
+@dataclass(frozen=True)
+class RestLaw:
+    """The parts that a log can tell: one that rises with speed, one that varies about ``reference`` (K)."""
+
+    with_speed: bool
+    reference: float | None
+    thermal = None
+    broken = False
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the parameters, in order."""
+        speed = ("per_speed",) if self.with_speed else ()
+        return ("constant", *speed, *(("temperature_slope",) if self.reference is not None else ()))
+
+    def index(self, name: str) -> int:
+        """Return where a parameter stands."""
+        return self.names.index(name)
+
+    def predict(self, values: FloatArray, inputs: Inputs) -> FloatArray:
+        """Return torque over that of reference."""
+        return np.asarray(self._level(values, inputs) * self._warmth(values, inputs))
+
+    def jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
+        """Return its derivatives with respect to the parameters, shape (points, parameters)."""
+        warmth = self._warmth(values, inputs)
+        columns = {
+            "constant": warmth,
+            "per_speed": np.exp(inputs.log_speed) * warmth,
+            "temperature_slope": self._level(values, inputs) * self._away(inputs),
+        }
+        return np.column_stack([columns[name] for name in self.names])
+
+    def slopes(self, values: FloatArray, inputs: Inputs) -> tuple[FloatArray, FloatArray]:
+        """Return its derivatives with respect to ln w and to T (1/K)."""
+        by_speed = self._value(values, "per_speed") * np.exp(inputs.log_speed) * self._warmth(values, inputs)
+        by_heat = self._level(values, inputs) * self._value(values, "temperature_slope") / KELVIN
+        return by_speed, by_heat
+
+    def starts(self, inputs: Inputs, torque: FloatArray, weights: FloatArray) -> list[FloatArray]:
+        """Return where to search from: a line through torque, without temperature."""
+        start, root = np.zeros(len(self.names)), np.sqrt(weights)
+        columns = self.jacobian(start, inputs)[:, : 1 + self.with_speed]
+        line, *_ = np.linalg.lstsq(columns * root[:, None], torque * root, rcond=None)
+        start[: line.size] = line
+        return [start]
+
+    def _level(self, values: FloatArray, inputs: Inputs) -> FloatArray:
+        return np.asarray(values[0] + self._value(values, "per_speed") * np.exp(inputs.log_speed))
+
+    def _warmth(self, values: FloatArray, inputs: Inputs) -> FloatArray:
+        return np.asarray(1.0 + self._value(values, "temperature_slope") * self._away(inputs))
+
+    def _away(self, inputs: Inputs) -> FloatArray:
+        if self.reference is None or inputs.kelvin is None:
+            return np.zeros_like(inputs.log_speed)
+        return np.asarray((inputs.kelvin - self.reference) / KELVIN)
+
+    def _value(self, values: FloatArray, name: str) -> float:
+        return float(values[self.index(name)]) if name in self.names else 0.0

@@ -1,0 +1,163 @@
+"""The rest of the drive from a log recorded without the film: roll lifted, or belt taken off.
+
+Fitted in the likelihood of the candidate laws, to torque itself: dwells with their errors, a scatter between
+them, and what they share (the zero of torque, visits to a temperature, runs).
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from hersey.damping.candidates.fitting import LawFit, fit_law
+from hersey.damping.candidates.lack_of_fit import DOES_NOT_HOLD, lack_of_fit
+from hersey.damping.candidates.observations import Observations
+from hersey.damping.candidates.rest_law import KELVIN, RestLaw
+from hersey.damping.dwells import SteadyPoints, distinct_speeds
+from hersey.damping.rest import RestOfDrive, estimates_of
+from hersey.errors import InsufficientDataError, ParameterError
+from hersey.log.sensors import SHARE_OF_LARGEST, Sensors
+from hersey.units import celsius, rpm
+
+#: Dwells beyond the numbers fitted.
+_SPARE = 2
+#: Variance of the slope by a scatter of visits that is not told, over that by as much of dwells: a little.
+_LITTLE = 0.1
+#: Deviation from the line, as a share of the torque, from which a bend is spoken of.
+_SEEN = 1e-3
+
+
+def rest_of_drive(points: SteadyPoints) -> RestOfDrive:
+    """Fit what the drive takes without the film: constant plus speed-proportional, and its warmth.
+
+    Parameters
+    ----------
+    points
+        Steady points of a log recorded without the film: the roll lifted, or the belt taken off.
+
+    Returns
+    -------
+    RestOfDrive
+        What the log cannot tell is taken as nothing, with an unbounded interval and a note: with one speed
+        the part that rises with speed, with one temperature the slope in temperature.
+
+    Raises
+    ------
+    InsufficientDataError
+        If there are too few dwells, or torque is not against the rotation.
+
+    Examples
+    --------
+    >>> table = {"speed [rpm]": [10, 20, 40, 80, 160], "torque [mN*m]": [21.1, 21.9, 24.3, 28.3, 36.8]}
+    >>> print(rest_of_drive(SteadyPoints.from_table(table)))
+    20 mN m + 1 mN m s/rad times speed (table)
+    """
+    name = points.log.files[0].name
+    if any(c.name.startswith("no-load") for c in points.log.corrections):
+        raise ParameterError(
+            f"{name}: the mapping takes a no-load torque off this log too, so that nothing is left: leave "
+            "out no_load of the mapping"
+        )
+    speed = np.abs(points.column("speed"))
+    data, scale = _observations(points)
+    law = _law(name, data)
+    fit = fit_law(law, data)
+    least = float(np.min(law.predict(fit.values, data.inputs))) * scale
+    if not least > 0:
+        raise InsufficientDataError(
+            f"{name}: without the film torque is fitted as {1e3 * least:.3g} mN m at its least, and what a "
+            "drive takes is greater than nothing: subtract the zero of the sensor (--tare standing), or turn "
+            "a sign with --torque-sign -1"
+        )
+    units = {"constant": scale, "per_speed": scale / data.reference_speed, "temperature_slope": 1.0 / KELVIN}
+    by = np.array([[units[n] if n == fitted else 0.0 for fitted in law.names] for n in units])
+    covariance = by @ fit.covariance @ by.T
+    freedoms = np.array([fit.freedom_of(n) if n in law.names else np.inf for n in units])
+    told = tuple(n for n in law.names if n != "temperature_slope" or not _of_visits(fit))
+    constant, per_speed, slope = estimates_of(by @ fit.values, covariance, freedoms, told)
+    kelvin, sensors = data.inputs.kelvin, points.log.sensors
+    zero = sensors.torque_zero
+    if zero is None:
+        zero = SHARE_OF_LARGEST * scale * float(np.max(np.abs(data.log_torque)))
+    by_speed = abs(per_speed.value) * float(np.hypot(sensors.torque_gain, sensors.speed_gain))
+    return RestOfDrive(
+        constant=constant.with_systematic(float(np.hypot(sensors.torque_gain * constant.value, zero))),
+        per_speed=per_speed.with_systematic(by_speed),
+        temperature_slope=slope,
+        reference_temperature=law.reference,
+        covariance=covariance,
+        freedom=float(np.min(freedoms)),
+        source=name,
+        sha256=tuple(file.sha256 for file in points.log.files),
+        speed_range=(float(speed.min()), float(speed.max())),
+        temperature_range=None if kelvin is None else (float(kelvin.min()), float(kelvin.max())),
+        notes=_notes(law, fit, data),
+    )
+
+
+def _law(name: str, data: Observations) -> RestLaw:
+    """The parts that speeds and temperatures can tell, if there are dwells enough for them."""
+    kelvin, several = data.inputs.kelvin, data.temperatures.size > 1
+    law = RestLaw(
+        distinct_speeds(data.speed) > 1, float(np.mean(kelvin)) if kelvin is not None and several else None
+    )
+    if len(data) < len(law.names) + _SPARE:
+        raise InsufficientDataError(
+            f"{name}: {len(data)} steady points cannot tell the rest of the drive with its error: "
+            f"at least {len(law.names) + _SPARE} are needed"
+        )
+    return law
+
+
+def _observations(points: SteadyPoints) -> tuple[Observations, float]:
+    """Torque over its median size in place of ln torque, and that size; no film is there to be heated."""
+    plain = replace(points, log=replace(points.log, sensors=Sensors()))
+    with np.errstate(
+        divide="ignore", invalid="ignore"
+    ):  # a torque of nothing has no logarithm and needs none
+        data = Observations.of(plain, fewest_speeds=1)
+    sign = np.sign(points.column("speed"))
+    signed = points.column("torque") * sign
+    scale = float(np.median(np.abs(signed))) or 1.0
+    return (
+        replace(
+            data,
+            log_torque=signed / scale,
+            torque_error=points.column("torque_error") / scale,
+            tare=points.tare_errors * sign[:, None] / scale,
+        ),
+        scale,
+    )
+
+
+def _of_visits(fit: LawFit) -> bool:
+    """Whether the slope in temperature hangs on a scatter of visits that is not told."""
+    moved = fit.freedoms.moved_by_untold
+    return bool(moved.size and moved[fit.law.index("temperature_slope")] >= _LITTLE)
+
+
+def _notes(law: RestLaw, fit: LawFit, data: Observations) -> tuple[str, ...]:
+    """What the log does not tell, in sentences."""
+    kelvin = data.inputs.kelvin
+    notes = []
+    if not law.with_speed:
+        at = rpm(float(np.mean(data.speed)))
+        notes.append(
+            f"the no-load log holds one speed, {at:.3g} rpm: how torque rises with speed is not told and "
+            "taken as nothing; record other speeds"
+        )
+    if kelvin is not None and law.reference is None:
+        notes.append(
+            f"the no-load log holds one temperature, {celsius(float(np.mean(kelvin))):.0f} degC: how torque "
+            "varies with it is not told and taken as nothing; record another"
+        )
+    if law.reference is not None and _of_visits(fit):
+        notes.append(
+            "the no-load log visits each temperature once: the interval of the temperature slope is not "
+            "told; visit one again"
+        )
+    lack = lack_of_fit(fit, data)
+    if lack.curvature is not None and lack.curvature < DOES_NOT_HOLD and np.std(fit.residuals) > _SEEN:
+        notes.append(f"without the film torque bends with speed as no line does (p = {lack.curvature:.1g})")
+    return tuple(notes)

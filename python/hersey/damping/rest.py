@@ -1,0 +1,248 @@
+"""The rest of the drive: what turning the roll takes besides the film (bearings, gears, the rubber).
+
+    torque = (constant + per_speed w) (1 + temperature_slope (T - T_ref))
+
+at the roll, against the rotation. It is stated, or fitted to a log that was recorded without the film
+(`no_load`); what remains of a measured torque is that of the film.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from hersey.arrays import FloatArray
+from hersey.damping.estimate import Estimate, estimate, quantile
+from hersey.errors import InsufficientDataError, ParameterError
+from hersey.motion.drag import Drag
+from hersey.result import Result, json_record, table_of
+from hersey.units import celsius, rpm, takes_si
+
+if TYPE_CHECKING:
+    import polars as pl
+
+#: Factors beyond the speeds of a no-load log up to which its line is drawn on: where it tells the slope in
+#: speed, and where it does not.
+REACH, REACH_OF_ONE = 2.0, 1.1
+#: Standard deviations that enclose 95 % of a normal distribution on either side.
+_DEVIATIONS = quantile(np.inf)
+
+
+@dataclass(frozen=True, repr=False)
+class RestOfDrive(Result):
+    """Torque beside the film, at the roll: ``(constant + per_speed w) (1 + temperature_slope (T - T_ref))``.
+
+    ``constant`` is in N m, ``per_speed`` in N m s/rad, ``temperature_slope`` in 1/K about
+    ``reference_temperature`` (K; None if it does not vary). An interval that is not told (unbounded) stands
+    for a part taken as nothing. ``covariance`` is that of the three numbers, ``freedom`` its degrees of
+    freedom. ``speed_range`` (rad/s) and ``temperature_range`` (K) bound the log it is from; None if stated.
+    ``source`` names file and key, ``sha256`` the files, and ``notes`` what they do not tell.
+    """
+
+    constant: Estimate
+    per_speed: Estimate
+    temperature_slope: Estimate
+    reference_temperature: float | None
+    covariance: FloatArray
+    freedom: float
+    source: str
+    sha256: tuple[str, ...] = ()
+    speed_range: tuple[float, float] | None = None
+    temperature_range: tuple[float, float] | None = None
+    notes: tuple[str, ...] = ()
+
+    @classmethod
+    @takes_si(constant="torque", per_speed="rotational damping", reference_temperature="temperature")
+    def stated(
+        cls,
+        *,
+        constant: float = 0.0,
+        per_speed: float = 0.0,
+        temperature_slope: float = 0.0,
+        reference_temperature: float | None = None,
+        uncertainty: float = 0.0,
+        source: str = "stated",
+    ) -> RestOfDrive:
+        """Return the rest of the drive as stated.
+
+        Parameters
+        ----------
+        constant, per_speed
+            N m, and N m s/rad; not negative, and one of them positive.
+        temperature_slope
+            Change of the whole as a share of it, 1/K, from ``reference_temperature`` (K).
+        uncertainty
+            Share by which the whole torque may be off, at 95 %.
+
+        Raises
+        ------
+        ParameterError
+            If a value is out of range, or a slope lacks its temperature.
+
+        Examples
+        --------
+        >>> rest = RestOfDrive.stated(constant="20 mN*m", per_speed="1 mN*m*s/rad", uncertainty=0.1)
+        >>> float(rest.torque(10.0).round(6))
+        0.03
+        """
+        for name, value in (("constant", constant), ("per_speed", per_speed), ("uncertainty", uncertainty)):
+            if not (np.isfinite(value) and value >= 0):
+                raise ParameterError(f"{name} is {value:g}: it must not be negative")
+        if constant == 0 and per_speed == 0:
+            raise ParameterError(
+                "the rest of the drive is nothing: give constant or per_speed, or leave it out"
+            )
+        if not np.isfinite(temperature_slope):
+            raise ParameterError(f"temperature_slope is {temperature_slope}: it must be finite")
+        if temperature_slope and reference_temperature is None:
+            raise ParameterError(
+                "a temperature_slope needs the reference_temperature at which the torque holds"
+            )
+        values = np.array([constant, per_speed, temperature_slope], dtype=float)
+        error = np.log1p(uncertainty) / _DEVIATIONS * np.array([constant, per_speed, 0.0])
+        told = ("constant", "per_speed", "temperature_slope")
+        covariance = np.outer(error, error)
+        notes = () if uncertainty else ("its uncertainty is not stated, so that it counts as exact",)
+        level, by_speed, slope = estimates_of(values, covariance, np.full(3, np.inf), told)
+        return cls(
+            constant=level,
+            per_speed=by_speed,
+            temperature_slope=slope,
+            reference_temperature=reference_temperature,
+            covariance=covariance,
+            freedom=np.inf,
+            source=source,
+            notes=notes,
+        )
+
+    @takes_si(speed="speed", temperature="temperature")
+    def torque(self, speed: ArrayLike, temperature: ArrayLike | None = None) -> FloatArray:
+        """Return the torque in N m at speeds (rad/s), with their sign; temperature in K.
+
+        Without a temperature it is that at the reference temperature.
+        """
+        speeds = np.asarray(speed, dtype=float)
+        at_reference = self.constant.value + self.per_speed.value * np.abs(speeds)
+        return np.asarray(np.sign(speeds) * at_reference * self._warmth(temperature))
+
+    @takes_si(speed="speed", temperature="temperature")
+    def errors(self, speed: ArrayLike, temperature: ArrayLike | None = None) -> FloatArray:
+        """Return what one standard error of each independent error does to the torque, N m.
+
+        Shape (speeds, errors); wider than the covariance has it where few degrees of freedom stand behind it.
+        """
+        speeds = np.atleast_1d(np.asarray(speed, dtype=float))
+        sign, warmth = np.sign(speeds), self._warmth(temperature) * np.ones_like(speeds)
+        away = np.zeros_like(speeds)
+        if temperature is not None and self.reference_temperature is not None:
+            away = away + (np.asarray(temperature, dtype=float) - self.reference_temperature)
+        level = self.constant.value + self.per_speed.value * np.abs(speeds)
+        slopes = np.column_stack([sign * warmth, speeds * warmth, sign * level * away])
+        size = np.sqrt(np.diag(self.covariance))
+        scale = np.where(size > 0, size, 1.0)  # the three numbers differ by orders of magnitude
+        spread, axes = np.linalg.eigh(self.covariance / np.outer(scale, scale))
+        seen = spread > 1e-12
+        root = scale[:, None] * axes[:, seen] * np.sqrt(spread[seen])
+        return np.asarray(slopes @ root * (quantile(self.freedom) / _DEVIATIONS))
+
+    @takes_si(roll_radius="length", temperature="temperature")
+    def at_the_belt(self, roll_radius: float, temperature: float | None = None) -> dict[str, float]:
+        """Return it at the surface of a roll of a radius (m), as a drag law takes it at a temperature (K).
+
+        A part fitted below nothing counts as nothing. ``rest_force`` in N, ``rest_damping`` in N s/m, and
+        ``rest_temperature_slope``, their relative change from that temperature on, in 1/K.
+        """
+        warmth = float(self._warmth(temperature))
+        return {
+            "rest_temperature_slope": self.temperature_slope.value / warmth if warmth > 0 else 0.0,
+            "rest_force": max(self.constant.value, 0.0) / roll_radius * warmth,
+            "rest_damping": max(self.per_speed.value, 0.0) / roll_radius**2 * warmth,
+        }
+
+    def _warmth(self, temperature: ArrayLike | None) -> FloatArray:
+        """By how much the torque is that of the reference temperature; it never turns negative."""
+        if temperature is None or self.reference_temperature is None:
+            return np.ones(())
+        away = np.asarray(temperature, dtype=float) - self.reference_temperature
+        return np.maximum(1.0 + self.temperature_slope.value * away, 0.0)
+
+    def refuse_beyond(self, speed: FloatArray, what: str) -> None:
+        """Refuse speeds (rad/s) that the no-load log does not cover; ``what`` names the log they are of."""
+        if self.speed_range is None:
+            return
+        low, high = self.speed_range
+        reach = REACH if self.per_speed.told else REACH_OF_ONE
+        slow, fast = float(np.min(np.abs(speed))), float(np.max(np.abs(speed)))
+        if slow < low / reach or fast > high * reach:
+            covered = (
+                f"{rpm(low):.3g} to {rpm(high):.3g} rpm" if self.per_speed.told else f"{rpm(low):.3g} rpm"
+            )
+            raise InsufficientDataError(
+                f"{self.source} holds the rest of the drive at {covered}, and {what} goes from "
+                f"{rpm(slow):.3g} to {rpm(fast):.3g} rpm: record the drive without the film there too"
+            )
+
+    def summary(self) -> str:
+        """Return the three numbers with their intervals, where they are from, and what is not told."""
+        rows = [("constant", self.constant, "N m"), ("per speed", self.per_speed, "N m s/rad")]
+        if self.reference_temperature is not None:
+            about = f"1/K about {celsius(self.reference_temperature):.4g} degC"
+            rows.append(("temperature slope", self.temperature_slope, about))
+        lines = [self.headline()]
+        lines += [f"  {name:18s}{value} {unit}{_sensors(value)}" for name, value, unit in rows]
+        return "\n".join([*lines, *(f"- {note}" for note in self.notes)])
+
+    def headline(self) -> str:
+        """Return the law in numbers, and its source."""
+        return f"rest of the drive, {self}"
+
+    def __str__(self) -> str:
+        """Return the law in numbers, and its source, for a sentence."""
+        parts = [f"{1e3 * self.constant.value:.3g} mN m"] if self.constant.value else []
+        if self.per_speed.value:
+            parts.append(f"{1e3 * self.per_speed.value:.3g} mN m s/rad times speed")
+        text = " + ".join(parts)
+        if self.reference_temperature is not None and self.temperature_slope.value:
+            slope = 100.0 * self.temperature_slope.value
+            text += f", {slope:+.2g} %/K from {celsius(self.reference_temperature):.0f} degC"
+        return f"{text} ({self.source})"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return numbers, covariance, source and notes, in SI."""
+        return json_record(vars(self))
+
+    def to_frame(self) -> pl.DataFrame:
+        """Return the three numbers with their units."""
+        return table_of(
+            [
+                ("constant", self.constant.value, "N m"),
+                ("per speed", self.per_speed.value, "N m s/rad"),
+                ("temperature slope", self.temperature_slope.value, "1/K"),
+            ]
+        )
+
+
+def with_rest(film: Drag, rest: RestOfDrive, roll_radius: float, temperature: float | None) -> Drag:
+    """Return the drag of film and rest together, so far as a drag law holds the rest."""
+    held = {field.name for field in fields(film)}
+    at_the_belt: dict[str, Any] = rest.at_the_belt(roll_radius, temperature)
+    return replace(film, **{name: value for name, value in at_the_belt.items() if name in held})
+
+
+def estimates_of(
+    values: FloatArray, covariance: FloatArray, freedoms: FloatArray, told: tuple[str, ...]
+) -> list[Estimate]:
+    """Return constant, speed and temperature part with their intervals, unbounded for one not in ``told``."""
+    out = []
+    for i, name in enumerate(("constant", "per_speed", "temperature_slope")):
+        error = float(np.sqrt(covariance[i, i]))
+        one = estimate(float(values[i]), error, float(freedoms[i]))
+        out.append(one if name in told else Estimate(one.value, error, -np.inf, np.inf, one.freedom))
+    return out
+
+
+def _sensors(value: Estimate) -> str:
+    return f", sensors +/- {value.systematic:.2g}" if value.systematic else ""

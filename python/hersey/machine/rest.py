@@ -1,0 +1,85 @@
+"""The table [rest] of the machine's file: what the drive takes without the film."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import BeforeValidator, ValidationInfo
+from pydantic.dataclasses import dataclass
+
+from hersey.damping.dwells import SteadyPoints
+from hersey.damping.no_load import rest_of_drive
+from hersey.damping.rest import RestOfDrive
+from hersey.errors import MissingFileError, ParameterError
+from hersey.files.text import shown
+from hersey.files.toml import Quantity, Share, Table, Text
+from hersey.log.mapping import read_with_mapping
+from hersey.log.means import is_means_table
+
+_SLOPE = re.compile(r"([-+]?[0-9]+(?:\.[0-9]*)?)\s*%\s*/\s*(?:K|kelvin|degC|°C)")
+#: No drive changes so much in a kelvin.
+_STEEPEST = 0.2
+
+
+def _slope(given: Any, info: ValidationInfo[Any]) -> Any:
+    """A share per kelvin, 1/K."""
+    if info.context is None:
+        return given
+    match = _SLOPE.fullmatch(given.strip()) if isinstance(given, str) and len(given) < 60 else None
+    if match is None:
+        raise ParameterError(f"is {shown(given)}: write a share for each kelvin, such as '-0.2 %/K'")
+    if abs(float(match[1])) / 100 > _STEEPEST:
+        raise ParameterError(f"is {shown(given)}: up to {100 * _STEEPEST:g} %/K is believed")
+    return float(match[1]) / 100
+
+
+@dataclass(frozen=True)
+class RestTable(Table):
+    """Either the numbers, or a ``log`` recorded without the film, beside the machine's file."""
+
+    torque: Annotated[float, Quantity("torque", 0.0, 1e6, "20 mN*m")] | None = None
+    damping: Annotated[float, Quantity("rotational damping", 0.0, 1e6, "1 mN*m*s/rad")] | None = None
+    temperature_slope: Annotated[float, BeforeValidator(_slope)] | None = None
+    at: Annotated[float, Quantity("temperature", 150.0, 1000.0, "180 degC")] | None = None
+    uncertainty: Share | None = None
+    log: Text | None = None
+    tare: Text | None = None
+
+    def rest(self, path: Path) -> RestOfDrive:
+        """Return the rest of the drive; ``path`` is that of the machine's file."""
+        numbers = ("torque", "damping", "temperature_slope", "at", "uncertainty")
+        stated = [name for name in numbers if getattr(self, name) is not None]
+        if self.log is not None:
+            if stated:
+                raise ParameterError(
+                    f"has both log and {stated[0]}: state the numbers, or the log they are in"
+                )
+            return self._of_log(path)
+        if self.tare is not None:
+            raise ParameterError("has a tare without a log: it is how the zero of the log is taken off")
+        if not self.torque and not self.damping:
+            raise ParameterError('lacks torque, damping or log: write torque = "20 mN*m"')
+        if self.temperature_slope is not None and self.at is None:
+            raise ParameterError(
+                'has a temperature_slope and no temperature from which it counts: add at = "180 degC"'
+            )
+        return RestOfDrive.stated(
+            constant=self.torque or 0.0,
+            per_speed=self.damping or 0.0,
+            temperature_slope=self.temperature_slope or 0.0,
+            reference_temperature=self.at if self.temperature_slope else None,
+            uncertainty=self.uncertainty or 0.0,
+            source=f"[rest] of {path.name}",
+        )
+
+    def _of_log(self, path: Path) -> RestOfDrive:
+        named = path.parent / str(self.log)
+        if not named.is_file():
+            raise MissingFileError(
+                f"{path.name}: [rest] names the log {self.log}, and there is no such file beside it"
+            )
+        if is_means_table(named, {}, {}):
+            return rest_of_drive(SteadyPoints.from_table(named))
+        return rest_of_drive(read_with_mapping([named]).log.steady(tare=self.tare or "none"))

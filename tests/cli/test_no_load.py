@@ -1,0 +1,103 @@
+"""What the drive takes without the film: by ``--no-load``, or from the machine's file; never by both."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from hersey.machine import read_machine
+from tests.cli.command import run
+from tests.conftest import ROOT
+
+MACHINE = (ROOT / "examples" / "machine.toml").read_text()
+STATED = '\n[rest]\ntorque = "20 mN*m"\ndamping = "1 mN*m*s/rad"\n'
+RPM = np.array([8.0, 12, 20, 30, 45, 70, 100, 140])
+
+
+def table(torque: np.ndarray, celsius: np.ndarray) -> str:
+    """A table of means at two temperatures; torque in N m, shape (temperatures, speeds)."""
+    rows = [
+        f"{n:g},{1e3 * t:.9g},{c:g}"
+        for c, at in zip(celsius, torque, strict=True)
+        for n, t in zip(RPM, at, strict=True)
+    ]
+    return "\n".join(["speed [rpm],torque [mN*m],temp [degC]", *rows]) + "\n"
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A log of a film of exponent -0.6 beside 20 mN m + 1 mN m s/rad, one without it, a machine's file."""
+    w, t = RPM * 2 * np.pi / 60, np.array([[100.0], [130.0], [160.0]])
+    rest = (0.02 + 0.001 * w) * np.ones_like(t)
+    film = 0.1 * (t / 150.0) ** -0.9 * w**0.4
+    (tmp_path / "log.csv").write_text(table(film + rest, t.ravel()))
+    (tmp_path / "free.csv").write_text(table(rest, t.ravel()))
+    (tmp_path / "slow.csv").write_text("\n".join((tmp_path / "free.csv").read_text().splitlines()[:6]))
+    (tmp_path / "machine.toml").write_text(MACHINE + STATED)
+    (tmp_path / "with-log.toml").write_text(MACHINE + '\n[rest]\nlog = "free.csv"\n')
+    return tmp_path
+
+
+def exponent(printed: str) -> float:
+    return float(json.loads(printed)["fit"]["coefficients"]["c"]["value"])
+
+
+def test_a_no_load_log_is_taken_off(folder: Path) -> None:
+    done = run("fit", "log.csv", "--no-load", "free.csv", "--json", cwd=folder)
+    assert done.returncode == 0, done.stderr
+    assert exponent(done.stdout) == pytest.approx(-0.6, abs=1e-6)
+    assert "rest of the drive, 20 mN m + 1 mN m s/rad times speed" in done.stderr
+    (folder / "fit.json").write_text(done.stdout)
+    assert json.loads(done.stdout)["fit"]["rest"]["source"] == "free.csv"
+    assert exponent(run("fit", "log.csv", "--json", cwd=folder).stdout) < -0.61
+
+
+@pytest.mark.parametrize("file", ["machine.toml", "with-log.toml"])
+def test_the_rest_of_the_machine_is_taken_off(folder: Path, file: str) -> None:
+    printed = run("report", "log.csv", "--machine", file, "--json", cwd=folder)
+    assert printed.returncode == 0, printed.stderr
+    assert exponent(printed.stdout) == pytest.approx(-0.6, abs=1e-6)
+    document = json.loads(printed.stdout)
+    assert "of the film alone, the rest of the drive taken off: 20 mN m" in " ".join(document["verdict"])
+    film = run("film", file, "--log", "log.csv", "--json", cwd=folder)
+    torque = json.loads(film.stdout)["measured"]["torque"]
+    assert torque[0] == pytest.approx(0.1 * (100 / 150.0) ** -0.9 * (8 * 2 * np.pi / 60) ** 0.4, rel=1e-5)
+
+
+def test_a_log_of_the_machine_is_found_beside_it(folder: Path) -> None:
+    rest = read_machine(folder / "with-log.toml").rest
+    assert rest is not None
+    assert rest.constant.value == pytest.approx(0.02, rel=1e-6)
+    stated = read_machine(folder / "machine.toml").rest
+    assert stated is not None
+    assert stated.source == "[rest] of machine.toml"
+    assert "its uncertainty is not stated" in stated.notes[0]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (
+            ("report", "log.csv", "--machine", "machine.toml", "--no-load", "free.csv"),
+            "--no-load and [rest] of machine.toml both say what the drive takes without the film: leave",
+        ),
+        (("fit", "log.csv", "--no-load", "slow.csv"), "record the drive without the film there too"),
+        (("fit", "free.csv", "--no-load", "log.csv"), "nothing beyond the errors is left for the film"),
+        (("fit", "log.csv", "--no-load", "none.csv"), "none.csv"),
+        (
+            ("map", "machine.toml", "--fit", "whole.json"),
+            "whole.json is fitted to the whole torque, and [rest] of machine.toml says what the drive takes",
+        ),
+    ],
+)
+def test_mistakes_end_in_one_line(folder: Path, arguments: tuple[str, ...], message: str) -> None:
+    if "whole.json" in arguments:
+        (folder / "whole.json").write_text(run("fit", "log.csv", "--json", cwd=folder).stdout)
+    done = run(*arguments, cwd=folder)
+    assert done.returncode == 2
+    line = done.stderr.strip().splitlines()[-1]
+    assert message in line
+    assert "Traceback" not in done.stderr

@@ -1,0 +1,284 @@
+"""The rest of the drive: found again in logs without the film, taken off with its errors, or refused."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import hersey
+from hersey import RestOfDrive, testbench
+from hersey.damping.candidates.branched import ONE
+from hersey.damping.candidates.candidate import Candidate
+from hersey.damping.candidates.fitting import fit_law
+from hersey.damping.candidates.observations import Observations
+from hersey.damping.dwells import SteadyPoints
+from hersey.damping.estimate import quantile
+from hersey.document.assembly import fit_document
+from hersey.document.saved_fit import read_fit
+from hersey.errors import InsufficientDataError, ParameterError, WrongKindError
+from hersey.log.torque_log import Correction
+from hersey.testbench.truth import Truth
+from hersey.verdict.cautions import _rest_warnings
+from tests.damping.test_surface import grid, points_of
+
+CONSTANT, PER_SPEED, SLOPE, AT = 0.020, 0.001, -0.002, 150.0 + 273.15
+SPEEDS, TEMPERATURES = np.geomspace(0.5, 15, 8), np.array([100.0, 125.0, 150.0, 175.0])
+
+
+def rest_torque(speed: np.ndarray, celsius: np.ndarray) -> np.ndarray:
+    """What the drive takes, N m, with the sign of the speed."""
+    warm = 1.0 + SLOPE * (celsius + 273.15 - AT)
+    return np.asarray(np.sign(speed) * (CONSTANT + PER_SPEED * np.abs(speed)) * warm)
+
+
+def no_load(seed: int | None = None, *, noise: float = 3e-4, tare: float = 0.0) -> SteadyPoints:
+    """Dwells without the film, each temperature visited twice; noise in N m, exact without a seed."""
+    w, t = grid(SPEEDS, np.tile(TEMPERATURES, 2))
+    torque = rest_torque(w, t)
+    random = np.random.default_rng(seed)
+    if seed is not None:
+        torque = torque + noise * random.standard_normal(w.size) + tare * random.standard_normal()
+    error = (noise if seed is not None else 0.0) / torque
+    return points_of(w, torque, t, error=error, tare_error=tare)
+
+
+def film(w: np.ndarray, t: np.ndarray) -> np.ndarray:
+    return np.asarray(62.0 * t**-0.9 * w**0.4 / 10.0)
+
+
+def stated(uncertainty: float = 0.0) -> RestOfDrive:
+    return RestOfDrive.stated(
+        constant=CONSTANT,
+        per_speed=PER_SPEED,
+        temperature_slope=SLOPE,
+        reference_temperature=AT,
+        uncertainty=uncertainty,
+    )
+
+
+def test_an_exact_rest_is_found_exactly() -> None:
+    rest = hersey.rest_of_drive(no_load())
+    w, t = np.array([0.7, 3.0, -9.0]), np.array([110.0, 150.0, 170.0])
+    assert rest.torque(w, t + 273.15) == pytest.approx(rest_torque(w, t), rel=1e-9)
+    assert rest.sha256 == ("0",)
+    assert rest.speed_range == pytest.approx((0.5, 15.0))
+    assert not rest.notes
+
+
+def test_intervals_hold_the_truth() -> None:
+    """Of 40 logs with a zero that all dwells share some 95 % hold each number."""
+    held = np.zeros(3)
+    logs = 40
+    for seed in range(logs):
+        rest = hersey.rest_of_drive(no_load(seed, tare=1e-3))
+        assert rest.reference_temperature is not None
+        warm = 1.0 + SLOPE * (rest.reference_temperature - AT)
+        truth = CONSTANT * warm, PER_SPEED * warm, SLOPE / warm
+        numbers = rest.constant, rest.per_speed, rest.temperature_slope
+        held += [e.low <= x <= e.high for e, x in zip(numbers, truth, strict=True)]
+    assert np.all(held >= 0.85 * logs), held
+    assert rest.constant.error > 0.9e-3  # the zero is in it
+
+
+@dataclass(frozen=True)
+class Lifted(Truth):
+    """A drive whose roll is lifted."""
+
+    def torque(self, speed: np.ndarray, temperature: np.ndarray) -> np.ndarray:
+        return rest_torque(speed, temperature)
+
+
+def test_a_log_without_the_film_tells_the_rest() -> None:
+    stand = testbench.Stand(
+        speeds_rpm=(5.0, 20.0, 60.0, 120.0),
+        temperatures_degC=(120.0, 150.0, 180.0),
+        stick_slip=False,
+        torque_noise=0.3,
+    )
+    table = testbench.run(seed=4, truth=Lifted(), stand=stand).table
+    rest = hersey.rest_of_drive(hersey.read(table).steady(tare="standing"))
+    w = np.array([1.0, 6.0, 12.0])
+    found, true = rest.torque(w, AT), rest_torque(w, np.full(3, 150.0))
+    assert np.all(np.abs(found - true) < 3.0 * np.linalg.norm(rest.errors(w, np.full(3, AT)), axis=1))
+    assert found == pytest.approx(true, rel=0.05)
+    assert 0.0 < rest.constant.error < 0.1 * CONSTANT
+    assert rest.source == "frame"
+
+
+def test_what_one_speed_or_one_temperature_does_not_tell_is_said() -> None:
+    noise = np.array([1.0, -1.0, 0.5, -0.5, 0.0]) * 1e-4
+    slow = hersey.rest_of_drive(points_of(np.full(5, 2.0), 0.02 + noise))
+    assert (slow.constant.told, slow.per_speed.told, slow.per_speed.value) == (True, False, 0.0)
+    assert "holds one speed, 19.1 rpm: how torque rises with speed is not told" in slow.summary()
+    one = hersey.rest_of_drive(points_of(SPEEDS[:5], 0.02 + 0.001 * SPEEDS[:5] + noise, np.full(5, 150.0)))
+    assert (one.per_speed.told, one.temperature_slope.told, one.reference_temperature) == (True, False, None)
+    assert "holds one temperature, 150 degC" in one.notes[0]
+    w, t = grid(SPEEDS, TEMPERATURES[:2])
+    each_once = hersey.rest_of_drive(points_of(w, rest_torque(w, t), t, error=0.01))
+    assert not each_once.temperature_slope.told
+    assert "visit one again" in each_once.notes[0]
+
+
+def test_no_load_logs_that_tell_nothing_are_refused() -> None:
+    with pytest.raises(InsufficientDataError, match="run: 3 steady points cannot tell the rest"):
+        hersey.rest_of_drive(points_of(SPEEDS[:3], 0.02 + 0.001 * SPEEDS[:3]))
+    with pytest.raises(InsufficientDataError, match=r"fitted as -35 mN m at its least.*--torque-sign -1"):
+        hersey.rest_of_drive(points_of(SPEEDS, -0.02 - 0.001 * SPEEDS))
+    points = no_load()
+    twice = replace(points.log, corrections=(Correction("no-load torque", (), ()),))
+    with pytest.raises(ParameterError, match="leave out no_load of the mapping"):
+        hersey.rest_of_drive(replace(points, log=twice))
+
+
+def test_a_torque_that_bends_is_said_to() -> None:
+    bent = hersey.rest_of_drive(points_of(SPEEDS, 0.02 * SPEEDS**0.3, error=0.002))
+    assert "bends with speed as no line does" in bent.notes[0]
+
+
+def test_the_film_is_what_is_left() -> None:
+    """A film beside the rest is fitted as if there were none, and the whole is the torque of the log."""
+    w, t = grid(SPEEDS, TEMPERATURES)
+    whole = film(w, t) + rest_torque(w, t)
+    points = points_of(w, whole, t, error=1e-4)
+    surface = hersey.fit(points.without(stated()))
+    assert surface.b is not None
+    assert surface.c.value == pytest.approx(-0.6, abs=1e-9)
+    assert surface.b.value == pytest.approx(-0.9, abs=1e-9)
+    assert surface.torque(w, t + 273.15) == pytest.approx(film(w, t), rel=1e-9)
+    assert surface.total_torque(w, t + 273.15) == pytest.approx(whole, rel=1e-9)
+    assert abs(hersey.fit(points).c.value + 0.6) > 0.003  # the whole torque passes for another film
+    backwards = points_of(-w, -whole, t).without(stated())
+    assert backwards.column("torque") == pytest.approx(-film(w, t), rel=1e-9)
+
+
+def test_what_was_taken_off_is_said() -> None:
+    w, t = grid(SPEEDS, TEMPERATURES)
+    points = points_of(w, film(w, t) + rest_torque(w, t), t, error=1e-3)
+    with_approach = points.table.with_columns(approach=np.full(w.size, "start"), rows=np.ones(w.size))
+    points = replace(points, table=with_approach).without(stated())
+    surface = hersey.fit(points)
+    assert "20 mN m + 1 mN m s/rad times speed, -0.2 %/K from 150 degC (stated)" in points.summary()
+    assert "measured less the rest of the drive: 20 mN m" in surface.summary()
+    assert (
+        "of the film alone, the rest of the drive taken off: 20 mN m"
+        in hersey.regime(points, surface).verdict
+    )
+
+
+def test_a_rest_of_other_temperatures_is_said_to_be_extrapolated() -> None:
+    cold = hersey.rest_of_drive(
+        points_of(SPEEDS, rest_torque(SPEEDS, np.full(8, 25.0)), np.full(8, 25.0), error=0.01)
+    )
+    w, t = grid(SPEEDS, TEMPERATURES)
+    whole = film(w, t) + rest_torque(w, t)
+    points = points_of(w, whole, t, error=1e-3).without(cold)
+    said = " ".join(_rest_warnings(points))
+    assert "holds one temperature, 25 degC" in said
+    assert "at 25 to 25 degC, and the dwells lie at 100 to 175 degC: it is extrapolated" in said
+    blind = points_of(w, whole, error=1e-3).without(stated())
+    assert "The log holds no temperatures: the rest of the drive is that at 150 degC." in _rest_warnings(
+        blind
+    )
+
+
+def test_errors_of_the_rest_widen_the_intervals() -> None:
+    """Of 60 logs whose rest is off as often as its stated 10 % allow, some 95 % hold the exponent."""
+    w = np.geomspace(0.5, 15, 10)
+    held, narrow = 0, 0
+    for seed in range(60):
+        random = np.random.default_rng(seed)
+        off = float(np.exp(np.log(1.1) / 1.96 * random.standard_normal()))
+        whole = film(w, np.full(10, 150.0)) / 3 + off * (CONSTANT + PER_SPEED * w)
+        points = points_of(w, whole * (1.0 + 5e-4 * random.standard_normal(w.size)), error=5e-4)
+        held += holds_exponent(points.without(stated(0.1)))
+        narrow += holds_exponent(points.without(stated()))
+    assert held >= 0.88 * 60
+    assert narrow < 0.5 * 60
+
+
+def holds_exponent(points: SteadyPoints) -> bool:
+    """Whether the interval of the one exponent holds that of the film."""
+    data = Observations.of(points)
+    fit = fit_law(Candidate(None, ONE).law(data), data)
+    c = fit.law.index("c")
+    return bool(abs(fit.values[c] + 0.6) <= quantile(fit.freedom_of("c")) * fit.error("c"))
+
+
+def test_what_cannot_be_taken_off_is_refused() -> None:
+    w, t = grid(SPEEDS, TEMPERATURES)
+    points = points_of(w, film(w, t) + rest_torque(w, t), t)
+    heavy = RestOfDrive.stated(constant="0.3 N*m")
+    with pytest.raises(
+        InsufficientDataError, match=r"at 4.77 rpm torque is .* takes 300 mN m of it \(stated\)"
+    ):
+        points.without(heavy)
+    slow = hersey.rest_of_drive(points_of(SPEEDS[:4], 0.02 + 0.001 * SPEEDS[:4], error=0.01))
+    with pytest.raises(
+        InsufficientDataError, match=r"run holds the rest of the drive at 4.77 to 20.5 rpm.*143 rpm"
+    ):
+        points.without(slow)
+    with pytest.raises(ParameterError, match="taken off already"):
+        points.without(stated()).without(stated())
+    with pytest.raises(WrongKindError, match="unit 'N' is not a unit of torque"):
+        RestOfDrive.stated(constant="20 N")
+    with pytest.raises(ParameterError, match="rest of the drive is nothing"):
+        RestOfDrive.stated()
+    with pytest.raises(ParameterError, match="constant is -1: it must not be negative"):
+        RestOfDrive.stated(constant=-1.0)
+    with pytest.raises(ParameterError, match="needs the reference_temperature"):
+        RestOfDrive.stated(constant=0.02, temperature_slope=-0.002)
+
+
+def test_a_saved_fit_carries_the_rest(tmp_path: Path) -> None:
+    points = hersey.read("examples/bench.csv").steady(tare="standing").without(stated(0.1))
+    surface = hersey.fit(points)
+    path = tmp_path / "fit.json"
+    printed = {"hersey_version": "0", **fit_document(points.log, points, surface).model_dump(mode="json")}
+    path.write_text(json.dumps(printed))
+    again = read_fit(path)
+    assert again.rest is not None
+    assert surface.rest is not None
+    assert again.rest.to_dict() == surface.rest.to_dict()
+    assert again.total_torque(5.0, 420.0) == surface.total_torque(5.0, 420.0)
+    assert again.total_torque(5.0, 420.0) > surface.torque(5.0, 420.0) + 0.02
+    broken: dict[str, Any] = json.loads(path.read_text())
+    broken["fit"]["rest"]["covariance"] = [[1.0]]
+    path.write_text(json.dumps(broken))
+    with pytest.raises(ParameterError, match=r"fit.rest.covariance: it is no covariance of three numbers"):
+        read_fit(path)
+
+
+def test_at_the_belt_it_acts_at_the_radius_of_the_roll() -> None:
+    at = stated().at_the_belt(0.015, AT + 50.0)
+    assert at["rest_force"] == pytest.approx(0.9 * CONSTANT / 0.015)
+    assert at["rest_damping"] == pytest.approx(0.9 * PER_SPEED / 0.015**2)
+    assert at["rest_temperature_slope"] == pytest.approx(SLOPE / 0.9)
+
+
+@pytest.mark.skipif(
+    "rest_force" not in {field.name for field in fields(hersey.Drag)},
+    reason="the drag law holds no rest of the drive yet",
+)
+def test_motion_map_and_limits_count_film_and_rest() -> None:
+    w, t = grid(np.geomspace(0.1, 15, 10), TEMPERATURES)
+    corner = (t / 150.0) ** 3.0
+    torque = 0.68 * (w / corner) ** np.where(w >= corner, 0.3, -0.2) + rest_torque(w, t)
+    surface = hersey.fit(points_of(w, torque, t, error=1e-3).without(stated()))
+    belt = {"roll_radius": 0.015, "stick_speed": 3e-4}
+    for kelvin in (400.0, AT):
+        for drag in (surface.drag(**belt, temperature=kelvin), surface.drag(**belt).at(kelvin)):
+            for v in (0.005, 0.1):
+                total = surface.total_torque(v / 0.015, kelvin)
+                assert drag.force(v) * 0.015 == pytest.approx(total, rel=1e-9)
+    hot, limits = [400.0, AT], hersey.Limits(motor_torque=1.2)
+    map_ = hersey.operating_map(
+        surface, hersey.Drivetrain(11e3, 11.0), **belt, limits=limits, temperatures=hot, draws=2
+    )
+    assert map_.state_at(AT, 0.1).torque == pytest.approx(surface.total_torque(0.1 / 0.015, AT), rel=1e-9)
+    for kelvin, speed in zip(hot, map_.stall_above, strict=True):
+        assert surface.total_torque(speed / 0.015, kelvin) == pytest.approx(1.2, rel=1e-9)
