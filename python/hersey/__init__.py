@@ -64,6 +64,7 @@ if TYPE_CHECKING:
         mixed_contact,
         mixed_torque,
     )
+    from hersey.lubrication.mixed_drag import MixedDrag
     from hersey.lubrication.reynolds import LineContactSolution, solve_line_contact
     from hersey.machine import (
         Limits,
@@ -114,6 +115,7 @@ _HOMES = {
     "lubrication.contact": "Contact nip_width",
     "lubrication.film": "Film drag_torque film_thickness",
     "lubrication.mixed": "Asperities BoundaryFriction MixedContact MixedFilm mixed_contact mixed_torque",
+    "lubrication.mixed_drag": "MixedDrag",
     "lubrication.reynolds": "LineContactSolution solve_line_contact",
     "machine": "Limits Machine OperatingPoint Uncertainty read_machine read_temperature_profile",
     "verdict.regime": "Regime regime",
@@ -152,6 +154,7 @@ __all__ = [
     "Machine",
     "MeasuredFilm",
     "MixedContact",
+    "MixedDrag",
     "MixedFilm",
     "ModelComparison",
     "OperatingMap",

@@ -118,6 +118,11 @@ class Lubricant:
         except ParameterError as error:
             raise error.within(f"viscosities of {self.name}") from None
 
+    @property
+    def law(self) -> _core.ViscosityLaw:
+        """The law of viscosity at rest, as the core holds it."""
+        return self._law
+
     @takes_si(temperature="temperature")
     def viscosity(self, temperature: ArrayLike, shear_rate: ArrayLike = 0.0) -> FloatArray:
         """Return dynamic viscosity, Pa s, at temperatures (K) and shear rates (1/s)."""

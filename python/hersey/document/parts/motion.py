@@ -58,6 +58,7 @@ class EnergyPart(Part):
 
     work: float
     dissipated: float
+    slipped: float
     stored: float
     residual: float
 
@@ -91,6 +92,7 @@ class TrajectoryPart(Part):
     stretch: Numbers = Field(description="m")
     spring_force: Numbers = Field(description="N")
     mode: list[str]
+    slipping: list[bool]
     events: list[EventPart]
     energy: EnergyPart
     steps: int
@@ -100,7 +102,7 @@ class TrajectoryPart(Part):
 class StickSlipPart(Part):
     """What a motion settles to, with the energies of a run from the start if one was asked for."""
 
-    kind: Literal["steady_sliding", "oscillation", "stick_slip", "unsettled"]
+    kind: Literal["steady_sliding", "oscillation", "stick_slip", "unsettled", "stalled", "grip_slip"]
     frequency: float = Field(description="laps per unit of time, Hz")
     slip_duration: float = Field(description="s")
     stick_duration: float = Field(description="s")
@@ -109,7 +111,9 @@ class StickSlipPart(Part):
     speed_max: float = Field(description="m/s")
     stretch_min: float = Field(description="m")
     stretch_max: float = Field(description="m")
+    grip_slip_duration: float = Field(description="s, a lap")
     drag_work: float = Field(description="a lap, J")
+    laps_per_period: int
     laps: int
     energy: EnergyPart | None = None
     check: CheckPart | None = None
