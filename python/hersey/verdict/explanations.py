@@ -24,7 +24,7 @@ from hersey.damping.candidates.thermal import ARRHENIUS, VFT, Thermal
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.rising import Rising, rising
 from hersey.damping.surface import DampingSurface
-from hersey.verdict.regimes import COULOMB, FALLING, REGIMES, Hypothesis
+from hersey.verdict.regimes import COULOMB, FALLING, Hypothesis
 
 #: Share of the torque from which a constant part, or the film beside it, counts.
 LEAST_SHARE = 0.02
@@ -83,7 +83,7 @@ def explained(points: SteadyPoints, surface: DampingSurface, hypotheses: tuple[H
         return Explained(None, _alone(films), None, branch.why_not)
     lack, bent = branch.lack_of_fit, branch.bent
     single = () if bent else _alone(films)
-    beside = _beside_constant(branch, {h.name for h in films})
+    beside = _beside_constant(branch, hypotheses, {h.name for h in films})
     too_few = len(branch.data) < len(branch.fit.law.names) + 1 + LEAST_FREEDOM
     listed = [*single, *beside]
     if not bent and surface.c.low > -1.0 and surface.c.high < -LEVEL:
@@ -117,19 +117,21 @@ def _sole(films: list[Hypothesis], surface: DampingSurface) -> str | None:
     return names[0] if len(names) == 1 else None
 
 
-def _beside_constant(branch: Rising, alone: set[str]) -> list[Explanation]:
+def _beside_constant(
+    branch: Rising, hypotheses: tuple[Hypothesis, ...], alone: set[str]
+) -> list[Explanation]:
     """Films beside a constant torque, and a Stribeck curve, that no other law excludes."""
     assert branch.fit is not None
     data, bent = branch.data, branch.bent
     thermal = _thermal_of_film(data, branch.thermal)
     least = [] if bent else [branch.fit.aicc]
     tried: list[tuple[Explanation, LawFit]] = []
-    for row in REGIMES:
+    for row in hypotheses:
         if row.name in (COULOMB, FALLING) or (row.name in alone and not bent):
             continue
         found = [
             fit
-            for exponent in sorted({row.low, row.high})
+            for exponent in _tried(row)
             for varying in ((False, True) if thermal else (False,))
             if (fit := _fitted(ConstantPlusLaw(thermal, exponent, varying), data)) is not None
         ]
@@ -148,6 +150,12 @@ def _beside_constant(branch: Rising, alone: set[str]) -> list[Explanation]:
     return [
         e for e, _ in near if e.constant_share is None or LEAST_SHARE <= e.constant_share <= 1.0 - LEAST_SHARE
     ]
+
+
+def _tried(row: Hypothesis) -> list[float]:
+    """Exponents that stand for a band: its ends, and its middle where it is wide."""
+    middle = {0.5 * (row.low + row.high)} if row.high - row.low > LEVEL else set()
+    return sorted({row.low, row.high} | middle)
 
 
 def _stribeck(data: Observations, thermal: Thermal | None) -> LawFit | None:
