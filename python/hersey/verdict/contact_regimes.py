@@ -19,6 +19,7 @@ from hersey.lubrication.film import REGIMES as FILMS
 from hersey.lubrication.film import film_thickness
 from hersey.lubrication.film_temperature import film_temperature
 from hersey.lubrication.lubricant import Lubricant
+from hersey.verdict.explanations import FilmLaw
 from hersey.verdict.regimes import REGIMES, SOFT, STARVED, RegimeRow
 
 #: The film of theory that the band belongs to.
@@ -89,6 +90,22 @@ def log_regimes(
     if rises.any():
         speed, kelvin = speed[rises], kelvin[rises]
     return contact_regimes(contact, lubricant, speed=speed, temperature=kelvin)
+
+
+def film_law(
+    contact: Contact, lubricant: Lubricant, table: tuple[RegimeRow, ...], temperature: float | None = None
+) -> FilmLaw | None:
+    """Return the law of the soft film of a contact, None where its table has no band of its own."""
+    names = [row.name for row in table]
+    if table == REGIMES:
+        return None
+
+    def torque(speed: FloatArray, kelvin: FloatArray | None) -> FloatArray:
+        read = np.full(speed.shape, temperature) if kelvin is None else kelvin
+        inside = film_temperature(contact, lubricant, speed=speed, temperature=read)
+        return film_thickness(contact, lubricant, speed=speed, temperature=inside).torque
+
+    return FilmLaw(STARVED if STARVED in names else SOFT, torque)
 
 
 def on_rising_branch(surface: DampingSurface, speed: FloatArray, temperature: FloatArray) -> FloatArray:

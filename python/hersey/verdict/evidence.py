@@ -45,7 +45,8 @@ class MeasuredFilm(Result):
 
     ``temperature`` is the one read; that of the film, to which viscosity belongs, is
     ``predicted.temperature``. ``low`` and ``high`` enclose ``thickness`` at 95 %: errors of torque and
-    scatter between dwells, and what is stated of viscosity and nip (``systematic``, a factor common to all dwells, 1 if nothing is stated).
+    scatter between dwells, and what is stated of viscosity and nip (``systematic``, a factor common to all
+    dwells, 1 if nothing is stated).
     ``grip`` is the friction at which the belt slips on the roll, if known.
     """
 

@@ -16,7 +16,7 @@ from hersey.lubrication.contact import Contact
 from hersey.lubrication.lubricant import Lubricant
 from hersey.result import Result, json_record
 from hersey.units import celsius, rpm
-from hersey.verdict.contact_regimes import log_regimes
+from hersey.verdict.contact_regimes import film_law, log_regimes
 from hersey.verdict.explanations import Explained, Explanation, explained
 from hersey.verdict.regimes import REGIMES, Hypothesis, RegimeRow, judged, listed
 
@@ -115,11 +115,12 @@ def regime(
     temperature
         K, of a log that holds none.
     """
-    table = REGIMES
+    table, law = REGIMES, None
     if contact is not None and lubricant is not None:
         table = log_regimes(points, surface, contact, lubricant, temperature)
+        law = film_law(contact, lubricant, table, temperature)
     hypotheses = judged(surface.c, table=table)
-    by = explained(points, surface, hypotheses)
+    by = explained(points, surface, hypotheses, law)
     return Regime(
         _exponents(points, surface),
         hypotheses,
