@@ -129,7 +129,9 @@ def test_what_the_film_made_is_found_again(points: hersey.SteadyPoints, machine:
     plain = film.shear / film.shear_factor
     assert measured.thickness == pytest.approx(film.central * film.factor * plain / film.torque)
     says = verdict(measured, refit, machine.contact, machine.lubricant, hersey.regime(synthetic, refit))
-    assert says.exponent.value == pytest.approx(says.expected, abs=0.01)
+    (soft,) = (p for p in says.predictions if p.name == "soft EHL")
+    assert soft.low < says.exponent.value < soft.high
+    assert soft.low < says.expected < soft.high
     kept = [p.name for p in says.predictions if p.consistent]
     assert "soft EHL" in kept
     assert not {"constant film", "dry Coulomb friction or a rigid film", "falling branch"} & set(kept)
