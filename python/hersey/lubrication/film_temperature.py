@@ -17,7 +17,7 @@ from hersey.errors import ParameterError
 from hersey.lubrication.contact import Contact
 from hersey.lubrication.film import film_thickness, shear_heating
 from hersey.lubrication.lubricant import Lubricant
-from hersey.units import takes_si
+from hersey.units import celsius, takes_si
 
 #: Mean of a parabola over its top.
 _MEAN = 2.0 / 3.0
@@ -85,7 +85,9 @@ def film_temperature(
             return kelvin
         if np.any(kelvin < 0.5 * read) or np.any(kelvin > 2.0 * read):
             break
+    worst = int(np.argmax(np.abs(step)))
+    w, heat = float(np.ravel(speeds)[worst]), celsius(float(np.ravel(read)[worst]))
     raise ParameterError(
-        f"heat_flow is {contact.heat_flow:g} W: with it and its shear the film finds no temperature near the "
-        "one read; check heat_flow, conductivity and viscosity"
+        f"heat_flow is {contact.heat_flow:g} W: at {w:.3g} rad/s and {heat:.4g} degC the film finds no "
+        "temperature near the one read; state the heat that flows there, and check conductivity and viscosity"
     )
