@@ -43,6 +43,7 @@ __all__ = [
     "State",
     "Sweep",
     "Swings",
+    "Traction",
     "Trajectory",
     "Viscosity",
     "ViscosityLaw",
@@ -68,6 +69,7 @@ __all__ = [
     "shear_thinning",
     "shore_a_modulus",
     "simulate",
+    "soft_traction",
     "starvation",
     "steady_start",
     "stick_slip",
@@ -352,7 +354,16 @@ class LayerNip:
     @property
     def edge(self) -> _Floats: ...
     @property
+    def curvature(self) -> _Floats: ...
+    @property
     def width_over_hertz(self) -> _Floats: ...
+
+@final
+class Traction:
+    @property
+    def shear_factor(self) -> _Floats: ...
+    @property
+    def rolling(self) -> _Floats: ...
 
 @final
 class LineFilm:
@@ -481,6 +492,7 @@ def reduced_radius(one: float, other: float) -> float: ...
 def shear_heating(columns: Sequence[_Floats]) -> ShearHeating: ...
 def shear_thinning(columns: Sequence[_Floats]) -> Correction: ...
 def shore_a_modulus(hardness: float) -> float: ...
+def soft_traction(columns: Sequence[_Floats]) -> Traction: ...
 def starvation(columns: Sequence[_Floats]) -> Correction: ...
 def simulate(
     train: _Train,

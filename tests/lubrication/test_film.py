@@ -125,14 +125,19 @@ def test_what_the_film_made_is_found_again(points: hersey.SteadyPoints, machine:
     measured = measured_film(synthetic, refit, machine.contact, machine.lubricant)
     assert measured.calibration.value == pytest.approx(1.0, rel=1e-9)
     film = measured.predicted
-    assert measured.thickness == pytest.approx(film.central * film.factor)
+    # eta A/B takes all of the drag for plain shear
+    plain = film.shear / film.shear_factor
+    assert measured.thickness == pytest.approx(film.central * film.factor * plain / film.torque)
     says = verdict(measured, refit, machine.contact, machine.lubricant, hersey.regime(synthetic, refit))
-    assert says.exponent.value == pytest.approx(-0.6, abs=0.01)
+    (soft,) = (p for p in says.predictions if p.name == "soft EHL")
+    assert soft.low < says.exponent.value < soft.high
+    assert soft.low < says.expected < soft.high
     kept = [p.name for p in says.predictions if p.consistent]
     assert "soft EHL" in kept
     assert not {"constant film", "dry Coulomb friction or a rigid film", "falling branch"} & set(kept)
     assert "contradict" not in says.text
-    assert says.expected == pytest.approx(-0.6, abs=1e-3)
+    assert says.solved is not None
+    assert says.expected == pytest.approx(says.solved, abs=0.01)
 
 
 def test_the_verdict_on_the_bench(

@@ -11,6 +11,7 @@ from hersey.errors import ParameterError
 from hersey.lubrication.contact import Contact, nip_width, shore_a_modulus
 from hersey.lubrication.film import drag_torque, film_thickness, shear_heating
 from hersey.lubrication.lubricant import EXAMPLES, Lubricant, ShearThinning
+from hersey.lubrication.reynolds import exponent, solve_line_contact
 
 ROLL = Contact(
     roll_radius=15e-3,
@@ -190,7 +191,7 @@ def test_a_blunter_corner_starves_more() -> None:
     assert float(usual.factor) == pytest.approx(share / (1 + share**3) ** (1 / 3), rel=1e-9)
 
 
-def test_torque_is_stress_times_nip_times_arm() -> None:
+def test_torque_is_stress_times_nip_times_arm_and_a_rolling_part() -> None:
     thinning = ShearThinning(relaxation_time=2e-6, exponent=0.6)
     oil = replace(OIL, thinning=thinning, conductivity=0.13)
     speed, belt, width = 40.0, 40.0 * 15e-3, ROLL.nip.width
@@ -199,12 +200,74 @@ def test_torque_is_stress_times_nip_times_arm() -> None:
     rate = belt / thickness
     eta = 26.8e-3 * (1 + (2e-6 * rate) ** 2) ** -0.2
     torque = drag_torque(ROLL, oil, speed=speed, temperature=373.15, supply=3e-6)
-    assert float(torque) == pytest.approx(eta * rate * width * 0.22 * 15e-3, rel=1e-9)
+    flooded = film_thickness(ROLL, OIL, speed=speed, temperature=373.15)
+    starved, others = (
+        np.prod([float(c.factor) for name, c in film.corrections.items() if (name == "starvation") == one])
+        for one in (True, False)
+    )
+    shear = eta * rate * width * 0.22 * 15e-3 * float(flooded.shear_factor)
+    rolling = float(flooded.rolling) * starved**3 * others ** (4 / 3)
+    assert float(film.shear) == pytest.approx(shear, rel=1e-9)
+    assert float(film.rolling) == pytest.approx(rolling, rel=1e-9)
+    assert float(torque) == pytest.approx(shear + rolling, rel=1e-9)
     # one regime alone: its film, uncorrected and unsheared
     for law in ("isoviscous-elastic", "piezoviscous-elastic"):
         alone = drag_torque(ROLL, oil, speed=speed, temperature=373.15, supply=3e-6, law=law)
         by_hand = 26.8e-3 * belt / float(film.centres[law]) * width * 0.22 * 15e-3
         assert float(alone) == pytest.approx(by_hand, rel=1e-9)
+
+
+#: eta (Pa s), belt speed (m/s), load (N), E (Pa), R (m), rubber (m), nu: corners and middle of fusers.
+FUSERS = [
+    (0.017, 0.05, 300.0, 1e6, 15e-3, 3.5e-3, 0.48),
+    (0.017, 0.4, 150.0, 0.5e6, 10e-3, 2e-3, 0.45),
+    (0.017, 0.4, 400.0, 2e6, 20e-3, 5e-3, 0.5),
+    (0.05, 0.1, 200.0, 0.7e6, 12e-3, 4e-3, 0.49),
+    (0.1, 0.02, 250.0, 1e6, 15e-3, 3.5e-3, 0.48),
+    (0.1, 0.2, 400.0, 0.5e6, 15e-3, 2e-3, 0.49),
+    (0.3, 0.3, 300.0, 1e6, 15e-3, 3.5e-3, 0.48),
+    (0.3, 0.05, 150.0, 2e6, 20e-3, 5e-3, 0.45),
+    (1.0, 0.1, 350.0, 1.5e6, 18e-3, 2.5e-3, 0.5),
+    (1.0, 0.4, 200.0, 0.6e6, 10e-3, 3e-3, 0.47),
+    (3.0, 0.02, 300.0, 1e6, 15e-3, 3.5e-3, 0.48),
+    (3.0, 0.4, 400.0, 0.5e6, 20e-3, 5e-3, 0.5),
+]
+
+
+@pytest.mark.parametrize("case", FUSERS)
+def test_torque_is_the_integral_of_the_numerical_solution(case: tuple[float, ...]) -> None:
+    eta, belt, load, modulus, radius, rubber, nu = case
+    roll = Contact(
+        roll_radius=radius, rubber_thickness=rubber, modulus=modulus, poisson_ratio=nu, length=0.22, load=load
+    )
+    oil = Lubricant("arrhenius", ((399.0, 1.001 * eta), (400.0, eta)), name="oil")
+    near = film_thickness(roll, oil, speed=belt / radius * np.array([1.0, 1.01]), temperature=400.0)
+    solved = solve_line_contact(
+        radius,
+        load / 0.22,
+        0.5 * belt,
+        eta,
+        effective_modulus=roll.effective_modulus,
+        thickness=rubber,
+        poisson=nu,
+    )
+    arm = 0.22 * radius
+    # 201 nodes leave the solver's own shear up to 1 % off where the film is thinnest
+    off = 0.01 + 0.3 * solved.grid_error
+    assert near.torque[0] == pytest.approx(-solved.roll_traction * arm, rel=off)
+    assert near.rolling[0] == pytest.approx(solved.poiseuille * arm, rel=0.03)
+    slope = np.log(near.torque[1] / near.torque[0]) / np.log(1.01)
+    assert slope == pytest.approx(exponent("torque", solved), abs=0.01)
+    assert near.inlet_short.all()
+
+
+def test_other_regimes_are_sheared_only() -> None:
+    hard = replace(ROLL, modulus=2e11, poisson_ratio=0.3)
+    film = film_thickness(hard, OIL, speed=8.0, temperature=373.15)
+    assert film.regime_names() != ["isoviscous-elastic"]
+    assert float(film.rolling) == 0.0
+    by_hand = 26.8e-3 * 8.0 * 15e-3 / float(film.central) * hard.nip.width * 0.22 * 15e-3
+    assert float(film.torque) == pytest.approx(by_hand, rel=1e-9)
 
 
 def test_torque_by_the_paper() -> None:

@@ -273,7 +273,6 @@ def test_exponents_of_drag_in_each_law() -> None:
     )
     oil = EXAMPLES["heavy machine oil"]
     for law, exponent in [
-        ("governing", 0.4),
         ("isoviscous-elastic", 0.4),
         ("paper", 0.3),
         ("isoviscous-rigid", 0.0),

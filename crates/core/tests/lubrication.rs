@@ -10,6 +10,7 @@ use hersey_core::lubrication::correction::{inlet_heating, shear_thinning, starva
 use hersey_core::lubrication::film::{LineContact, Regime, layer_factor};
 use hersey_core::lubrication::layer::{HALF_WIDTH_MAX, LayerContact, nip};
 use hersey_core::lubrication::paper::Nip;
+use hersey_core::lubrication::traction::{Edge, soft_traction};
 use hersey_core::lubrication::viscosity::{Carreau, TemperatureLaw, at_pressure};
 use proptest::prelude::*;
 
@@ -379,4 +380,36 @@ proptest! {
             let _ = law.viscosity(x);
         }
     }
+}
+
+#[test]
+fn a_soft_film_takes_shear_and_rolling() {
+    let contact = |viscosity| LineContact {
+        pressure_viscosity: 0.0,
+        viscosity,
+        speed: 0.1,
+        load: 1000.0,
+        radius: 0.015,
+        modulus: 2e6,
+    };
+    let edge = Edge { slope: 1.0, curvature: -0.25, half_width: 3e-3, thickness: 1.0 };
+    let at = |viscosity| soft_traction(&contact(viscosity), edge).unwrap();
+    // A short inlet leaves eta U 2a/h_c, and a logarithm of its length with the factor that the film gives.
+    assert!((at(1e-9).shear_factor - 1.0).abs() < 1e-4);
+    let scaled = |viscosity: f64| at(viscosity).rolling / viscosity.powf(0.8);
+    let film = 3.78 / (4.0 * PI).powf(0.2);
+    let scale = 0.1_f64.powf(0.8) * 1e6_f64.powf(0.6);
+    let k = 0.5 * 1e6 / 0.015 * 6e-3_f64.sqrt();
+    let step = (scaled(1e-14) - scaled(1e-13)) / (scale * k.powf(-0.4)) / (0.4 * 10.0_f64.ln());
+    close(step, film.powi(3) / 48.0, 1e-3);
+    // Wider than any layer that was solved, and longer than any inlet: finite and positive.
+    for curvature in [-0.25, 2.0, 50.0] {
+        for viscosity in [1e-12, 1e-3, 1e6] {
+            let thin = Edge { curvature, thickness: 1e-4, ..edge };
+            let force = soft_traction(&contact(viscosity), thin).unwrap();
+            assert!(force.shear_factor >= 1.0 && force.rolling > 0.0);
+        }
+    }
+    assert!(soft_traction(&contact(0.0), edge).is_err());
+    assert!(soft_traction(&contact(0.1), Edge { slope: f64::NAN, ..edge }).is_err());
 }

@@ -24,10 +24,10 @@ mod _core {
     use super::errors::Failure;
     #[pymodule_export]
     use super::lubrication::{
-        Correction, EllipticFilm, Hertz, LayerNip, LineFilm, ShearHeating, Viscosity, ViscosityLaw,
-        carreau, effective_modulus, elliptic_film, ellipticity, hertz, inlet_heating, inlet_length,
-        layer, layer_factor, line_film, paper, reduced_radius, shear_heating, shear_thinning,
-        shore_a_modulus, starvation,
+        Correction, EllipticFilm, Hertz, LayerNip, LineFilm, ShearHeating, Traction, Viscosity,
+        ViscosityLaw, carreau, effective_modulus, elliptic_film, ellipticity, hertz, inlet_heating,
+        inlet_length, layer, layer_factor, line_film, paper, reduced_radius, shear_heating,
+        shear_thinning, shore_a_modulus, soft_traction, starvation,
     };
     #[pymodule_export]
     use super::mixed::{

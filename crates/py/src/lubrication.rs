@@ -6,6 +6,7 @@ use hersey_core::lubrication::correction;
 use hersey_core::lubrication::film::{self, EllipticContact, LineContact, Regime};
 use hersey_core::lubrication::layer as bonded;
 use hersey_core::lubrication::paper::Nip;
+use hersey_core::lubrication::traction::{self, Edge};
 use hersey_core::lubrication::viscosity::{Carreau, Point, TemperatureLaw};
 use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
@@ -104,7 +105,15 @@ pub struct LayerNip {
     width: Array,
     pressure_max: Array,
     edge: Array,
+    curvature: Array,
     width_over_hertz: Array,
+}
+
+/// Force of a soft film on the belt: factor on the shear of the central film, and rolling part (N/m).
+#[pyclass(frozen, get_all, module = "hersey._core")]
+pub struct Traction {
+    shear_factor: Array,
+    rolling: Array,
 }
 
 /// Films of a line contact by each law, by the names of the regimes, and the index of the one that holds.
@@ -241,6 +250,7 @@ pub fn layer(py: Python<'_>, columns: Columns<'_, 5>) -> PyResult<LayerNip> {
         width: found.of(py, |nip| nip.width)?,
         pressure_max: found.of(py, |nip| nip.pressure_max)?,
         edge: found.of(py, |nip| nip.edge)?,
+        curvature: found.of(py, |nip| nip.curvature)?,
         width_over_hertz: found.of(py, |nip| nip.width_over_hertz)?,
     })
 }
@@ -307,6 +317,22 @@ pub fn inlet_length(py: Python<'_>, columns: Columns<'_, 6>) -> PyResult<Array> 
         Ok(film::inlet_length(&contact, edge, half_width))
     })?
     .of(py, |length| *length)
+}
+
+/// Force of a soft film on the belt, from eta, mean speed, radius, effective modulus, slope and curvature of pressure at
+/// the edge, half-width and thickness of the layer.
+#[pyfunction]
+pub fn soft_traction(py: Python<'_>, columns: Columns<'_, 8>) -> PyResult<Traction> {
+    let found = mapped(py, &columns, |column| {
+        let [viscosity, speed, radius, modulus, slope, curvature, half_width, thickness] = column;
+        let contact =
+            LineContact { pressure_viscosity: 0.0, viscosity, speed, load: 0.0, radius, modulus };
+        traction::soft_traction(&contact, Edge { slope, curvature, half_width, thickness })
+    })?;
+    Ok(Traction {
+        shear_factor: found.of(py, |force| force.shear_factor)?,
+        rolling: found.of(py, |force| force.rolling)?,
+    })
 }
 
 /// Ellipticity from the reduced radii along and across the motion.

@@ -100,7 +100,10 @@ def film(
             temperature=kelvin,
             grip=machine.limits.roll_friction,
         )
-        says = verdict(measured, surface, machine.contact, machine.lubricant, regime(points, surface))
+        seen = regime(
+            points, surface, contact=machine.contact, lubricant=machine.lubricant, temperature=kelvin
+        )
+        says = verdict(measured, surface, machine.contact, machine.lubricant, seen)
     predicted, names = _predicted(machine, measured, kelvin, belt_speed)
     notes = check_film(machine, predicted, measured)
     if figure is not None:
@@ -124,6 +127,7 @@ def _predicted(
 ) -> tuple[Film, list[str]]:
     """The film at the points of interest, and their names."""
     from hersey.lubrication.film import film_thickness
+    from hersey.lubrication.film_temperature import film_temperature
     from hersey.units import parse
 
     assert machine.contact is not None
@@ -140,12 +144,11 @@ def _predicted(
         return measured.predicted, [f"dwell {i + 1}" for i in range(measured.speed.size)]
     else:
         raise ParameterError("say where: [[points]] in the file, --log, or --belt-speed with --at")
-    film = film_thickness(
-        machine.contact,
-        machine.lubricant,
-        speed=[speed / machine.contact.roll_radius for _, speed, _ in states],
-        temperature=[temperature for _, _, temperature in states],
+    speeds = [speed / machine.contact.roll_radius for _, speed, _ in states]
+    inside = film_temperature(
+        machine.contact, machine.lubricant, speed=speeds, temperature=[heat for _, _, heat in states]
     )
+    film = film_thickness(machine.contact, machine.lubricant, speed=speeds, temperature=inside)
     return film, [name for name, _, _ in states]
 
 

@@ -64,7 +64,8 @@ def analyse(
         If the points cannot determine the surface.
     """
     surface = fit(points, temperature_scale=temperature_scale)
-    seen = regime(points, surface)
+    nip = (machine.contact, machine.lubricant) if machine is not None else (None, None)
+    seen = regime(points, surface, contact=nip[0], lubricant=nip[1])
     film = film_part(points, surface, machine, seen)
     return Analysis(
         hersey_version=_core.VERSION,

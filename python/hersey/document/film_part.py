@@ -8,6 +8,7 @@ from hersey.damping.dwells import SteadyPoints
 from hersey.damping.surface import DampingSurface
 from hersey.document.parts import FilmPart, FilmPoint
 from hersey.lubrication.film import REGIMES, Film, film_thickness
+from hersey.lubrication.film_temperature import film_temperature
 from hersey.machine.machine import Machine
 from hersey.verdict.checks import check_film
 from hersey.verdict.evidence import MeasuredFilm, Verdict, measured_film, verdict
@@ -27,12 +28,10 @@ def film_part(
     measured = measured_film(points, surface, contact, lubricant, grip=machine.limits.roll_friction)
     film = measured.predicted
     if machine.points:
-        film = film_thickness(
-            contact,
-            lubricant,
-            speed=[point.speed / contact.roll_radius for point in machine.points],
-            temperature=[point.temperature for point in machine.points],
-        )
+        speed = [point.speed / contact.roll_radius for point in machine.points]
+        read = [point.temperature for point in machine.points]
+        inside = film_temperature(contact, lubricant, speed=speed, temperature=read)
+        film = film_thickness(contact, lubricant, speed=speed, temperature=inside)
     return film_document(
         film,
         [point.name for point in machine.points],

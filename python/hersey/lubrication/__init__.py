@@ -1,12 +1,13 @@
 """The film between belt and roll, as theory has it.
 
-==========  ======================================================
-lubricant   viscosity against temperature, pressure and shear rate
-paper       Eqs. 5-10 of the paper
-contact     the nip: moduli, width, pressure
-film        film thickness and drag by every law, and which holds
-mixed       film and asperities share the load: torque, share, transition
-mixed_drag  the drag of such a contact, for the motion of the belt
-reynolds    the line contact solved numerically
-==========  ======================================================
+================  =================================================================
+lubricant         viscosity against temperature, pressure and shear rate
+paper             Eqs. 5-10 of the paper
+contact           the nip: moduli, width, pressure
+film              film thickness and drag by every law, and which holds
+film_temperature  of a film that heat flows through and shear warms
+mixed             film and asperities share the load: torque, share, transition
+mixed_drag        the drag of such a contact, for the motion of the belt
+reynolds          the line contact solved numerically
+================  =================================================================
 """

@@ -17,11 +17,16 @@ from hersey.units import fields_in_si, takes_si
 
 #: Rules for the width of a nip.
 RULES = ("layer", "hertz", "paper")
+#: Walls of the film.
+SIDES = ("heater", "roll")
 #: Kinds of what describes a contact.
 _KINDS = {
-    **dict.fromkeys(("roll_radius", "rubber_thickness", "length", "heater_radius", "roughness"), "length"),
+    **dict.fromkeys(
+        ("roll_radius", "rubber_thickness", "length", "heater_radius", "roughness", "supply"), "length"
+    ),
     "modulus": "pressure",
     "load": "force",
+    "heat_flow": "power",
 }
 #: Poisson's ratio of a rigid body does not matter.
 _RIGID = (math.inf, 0.5)
@@ -35,6 +40,7 @@ class Nip:
     pressure_mean: float  #: Pa, load over width and length
     pressure_max: float  #: Pa, at the centre
     edge: float  #: slope of pressure at the edge over that of a half-space contact of the same width
+    curvature: float  #: c in the pressure K sqrt(x) (1 + c x/a) at the edge; -1/4 on a half-space
     width_over_hertz: float  #: width over that of the half-space contact of the same load
     paper_width: float  #: m, Eq. 8 of the paper
     paper_in_range: bool  #: whether Eq. 8 holds here
@@ -69,6 +75,14 @@ class Contact:
         Of the sliding pair together, rms: sqrt(Rq1^2 + Rq2^2), m.
     nip_uncertainty
         Share by which the width of the nip may be off, as 0.1.
+    supply
+        Thickness of the lubricant's layer on the inlet side, m; a flooded inlet if not given.
+    heat_flow
+        Heat that flows from the heater through the film to the roll, W, over the whole nip. If given, the
+        film has a temperature of its own (`hersey.lubrication.film_temperature`).
+    sensor_side
+        Which wall of the film the recorded temperature is that of: ``heater`` or ``roll``. Needed with
+        ``heat_flow``.
 
     Raises
     ------
@@ -85,15 +99,25 @@ class Contact:
     heater_radius: float = math.inf
     roughness: float | None = None
     nip_uncertainty: float | None = None
+    supply: float | None = None
+    heat_flow: float | None = None
+    sensor_side: str | None = None
 
     def __post_init__(self) -> None:
         """Bring the values to SI if they come with units, and check them."""
         fields_in_si(self, _KINDS)
-        positive = ("roll_radius", "rubber_thickness", "modulus", "length", "load", "roughness")
+        positive = ("roll_radius", "rubber_thickness", "modulus", "length", "load", "roughness", "supply")
         for name in (*positive, "nip_uncertainty"):
             value = getattr(self, name)
             if value is not None and not 0 < value < math.inf:
                 raise ParameterError(f"{name} is {value:g}: it must be greater than 0")
+        if self.heat_flow is not None and not 0 <= self.heat_flow < math.inf:
+            raise ParameterError(f"heat_flow is {self.heat_flow:g}: it must be 0 or more")
+        if (self.heat_flow is None) != (self.sensor_side is None):
+            missing = "heat_flow" if self.heat_flow is None else "sensor_side"
+            raise ParameterError(f"{missing} is not given: heat_flow and sensor_side belong together")
+        if self.sensor_side not in (None, *SIDES):
+            raise ParameterError(f"sensor_side is '{self.sensor_side}': {' or '.join(SIDES)} is known")
         if self.rubber_thickness >= self.roll_radius:
             raise ParameterError(
                 f"rubber_thickness is {self.rubber_thickness:g} m: it must be less than roll_radius, "
@@ -135,6 +159,7 @@ class Contact:
             pressure_mean=load / width,
             pressure_max=float(nip.pressure_max),
             edge=float(nip.edge),
+            curvature=float(nip.curvature),
             width_over_hertz=float(nip.width_over_hertz),
             paper_width=by_paper,
             paper_in_range=low <= by_paper / self.rubber_thickness <= high,

@@ -31,6 +31,9 @@ REGIMES = tuple(_core.REGIMES)
 LAWS = ("governing", *REGIMES, "paper")
 #: Both walls slide past each other at U while the mean speed is U/2: slide-to-roll ratio of a heater at rest.
 SLIDE_TO_ROLL = 2.0
+#: Index of the soft regime, whose drag has a rolling part.
+_SOFT = 2
+_STARVATION = "starvation"
 #: The inlet must be this much shorter than layer and half-width for the soft law of a layer.
 _SHORT = 0.25
 
@@ -88,7 +91,9 @@ class Film(Result):
     the regime chart), ``regime`` (index into `REGIMES`), ``minimum`` and ``central`` (m) by the governing
     law, flooded, isothermal and Newtonian, before ``corrections``; ``minima`` and ``centres`` hold them by
     each law (Eq. 5 under ``paper``, where alpha is known). ``inlet_short`` says whether the soft law of a
-    layer holds. ``contact`` and ``lubricant`` are those it was computed for.
+    layer holds. ``shear_factor`` (1) and ``rolling_force`` (N/m, flooded) are what inlet and pressure make
+    of a soft film's drag, 1 and 0 in other regimes. ``contact`` and ``lubricant`` are those it was computed
+    for.
     """
 
     speed: FloatArray
@@ -103,6 +108,8 @@ class Film(Result):
     minima: Mapping[str, FloatArray]
     centres: Mapping[str, FloatArray]
     inlet_short: NDArray[np.bool_]
+    shear_factor: FloatArray
+    rolling_force: FloatArray
     contact: Contact
     lubricant: Lubricant
     nip: Nip
@@ -125,9 +132,29 @@ class Film(Result):
         return [REGIMES[i] for i in self.regime.ravel()]
 
     @property
+    def shear(self) -> FloatArray:
+        """Torque on the roll by sliding, N m: eta U/h_c over the nip, times ``shear_factor``."""
+        thickness = self.central * self.factor
+        rate = 2.0 * self.entrainment_speed / thickness
+        viscosity = self.lubricant.viscosity(self.temperature, rate)
+        return np.asarray(_torque_of(self, thickness, viscosity) * self.shear_factor)
+
+    @property
+    def rolling(self) -> FloatArray:
+        """Torque on the roll by the gradient of pressure in the film, N m.
+
+        It goes as viscosity^0.8 where the film goes as viscosity^0.6, so what thins the film by a thinner
+        lubricant takes the power 4/3 of its factor; as h^3 where the film is starved.
+        """
+        contact, force = self.contact, self.rolling_force
+        for name, correction in self.corrections.items():
+            force = force * correction.factor ** (3.0 if name == _STARVATION else 4.0 / 3.0)
+        return np.asarray(force * contact.length * contact.roll_radius)
+
+    @property
     def torque(self) -> FloatArray:
-        """Torque on the roll that shears the film, N m: see `drag_torque`."""
-        return _governing_torque(self)
+        """Torque on the roll that the film takes, N m, ``shear`` and ``rolling``: see `drag_torque`."""
+        return np.asarray(self.shear + self.rolling)
 
     def summary(self, names: Sequence[str] = ()) -> str:
         """Return nip, film and laws as text; ``names`` of the points, numbered if not given."""
@@ -164,7 +191,8 @@ class Film(Result):
 
     def states(self) -> dict[str, Any]:
         """Return the states alone, in SI; arrays of shape (points,)."""
-        hidden = ("contact", "lubricant", "nip", "corrections", "regime", "minima", "centres")
+        others = ("contact", "lubricant", "nip", "corrections", "regime", "minima", "centres")
+        hidden = {*others, "shear_factor", "rolling_force"}
         arrays = {name: np.ravel(values) for name, values in vars(self).items() if name not in hidden}
         by_law = {
             name: {law: np.ravel(film) for law, film in getattr(self, name).items()}
@@ -174,8 +202,9 @@ class Film(Result):
             name: {"factor": np.ravel(c.factor), "valid": np.ravel(c.valid)}
             for name, c in self.corrections.items()
         }
-        regimes = {"regime": self.regime_names(), "torque": np.ravel(self.torque)}
-        return json_record({**arrays, **by_law, **regimes, "corrections": corrections})
+        torque = {name: np.ravel(getattr(self, name)) for name in ("shear", "rolling", "torque")}
+        regimes = {"regime": self.regime_names()}
+        return json_record({**arrays, **by_law, **regimes, **torque, "corrections": corrections})
 
     def to_frame(self) -> pl.DataFrame:
         """Return one row per point; films with all corrections."""
@@ -190,6 +219,8 @@ class Film(Result):
             "g_E (1)": self.g_e,
             "minimum film (m)": self.minimum * self.factor,
             "central film (m)": self.central * self.factor,
+            "shear (N m)": self.shear,
+            "rolling (N m)": self.rolling,
             "torque (N m)": self.torque,
         }
         table = pl.DataFrame({name: np.ravel(values) for name, values in columns.items()})
@@ -216,7 +247,8 @@ def film_thickness(
     speed, temperature
         Of the roll (rad/s) and of the film (K), broadcast together.
     supply
-        Thickness of the layer on the inlet side, m; a flooded inlet if not given.
+        Thickness of the layer on the inlet side, m; that of the contact if not given, a flooded inlet if it
+        has none.
     starvation_sharpness
         Rounds the corner between flooded and starved, 2 to 5.
 
@@ -273,6 +305,18 @@ def film_thickness(
         nip.half_width,
     )
     central = np.choose(regime, list(laws.central.values()))
+    force = pointwise(
+        _core.soft_traction,
+        viscosity,
+        entrainment,
+        contact.reduced_radius,
+        contact.effective_modulus,
+        nip.edge,
+        nip.curvature,
+        nip.half_width,
+        contact.rubber_thickness,
+    )
+    soft = regime == _SOFT
     film = Film(
         speed=speeds,
         temperature=temperatures,
@@ -286,11 +330,14 @@ def film_thickness(
         minima=minima,
         centres=centres,
         inlet_short=np.asarray(inlet < _SHORT * min(contact.rubber_thickness, nip.half_width)),
+        shear_factor=np.where(soft, force.shear_factor, 1.0),
+        rolling_force=np.where(soft, force.rolling, 0.0),
         contact=contact,
         lubricant=lubricant,
         nip=nip,
     )
-    corrections = _corrections(film, lubricant, supply, starvation_sharpness)
+    layer = contact.supply if supply is None else supply
+    corrections = _corrections(film, lubricant, layer, starvation_sharpness)
     return Film(**{**vars(film), "corrections": corrections})
 
 
@@ -323,7 +370,7 @@ def _corrections(
         )
         corrections["inlet heating"] = _correction(answer)
     if supply is not None:
-        corrections["starvation"] = _correction(pointwise(_core.starvation, supply, film.central, sharpness))
+        corrections[_STARVATION] = _correction(pointwise(_core.starvation, supply, film.central, sharpness))
     return corrections
 
 
@@ -341,7 +388,10 @@ def drag_torque(
     law: str = "governing",
     supply: float | None = None,
 ) -> FloatArray:
-    """Return the torque (N m) on the roll that shears the film: (eta U/h_c) nip L R, Eq. 7.
+    """Return the torque (N m) that the film takes: shear (eta U/h_c) nip L R, Eq. 7, and rolling.
+
+    A soft film's inlet, and the gradient of pressure in it, add up to half of the shear: see `Film.shear` and
+    `Film.rolling`, and docs/film.md for their range.
 
     Parameters
     ----------
@@ -349,7 +399,7 @@ def drag_torque(
         As in `film_thickness`.
     law
         ``governing``: the film of the regime that holds, on the nip of a bonded layer, with all corrections;
-        the name of a regime: its film on that nip; ``paper``: Eq. 9.
+        the name of a regime: its film on that nip, shear alone; ``paper``: Eq. 9.
 
     Raises
     ------
@@ -363,7 +413,7 @@ def drag_torque(
     ...                length=0.22, load=250.0)
     >>> torque = drag_torque(roll, EXAMPLES["cylinder oil"], speed=[4.0, 8.0], temperature=373.15)
     >>> print(f"torque grows as speed to the power {np.log2(torque[1] / torque[0]):.2f}")
-    torque grows as speed to the power 0.40
+    torque grows as speed to the power 0.42
     """
     if law not in LAWS:
         raise ParameterError(f"law '{law}' is not known: {', '.join(LAWS)}")
@@ -385,12 +435,6 @@ def drag_torque(
     if np.any(film.centres[law] <= 0):
         raise ParameterError(f"law '{law}' needs the pressure-viscosity coefficient of {lubricant.name}")
     return _torque_of(film, film.centres[law], film.viscosity)
-
-
-def _governing_torque(film: Film) -> FloatArray:
-    thickness = film.central * film.factor
-    rate = 2.0 * film.entrainment_speed / thickness
-    return _torque_of(film, thickness, film.lubricant.viscosity(film.temperature, rate))
 
 
 def _torque_of(film: Film, thickness: FloatArray, viscosity: FloatArray) -> FloatArray:
@@ -437,14 +481,15 @@ def _point_lines(film: Film, names: Sequence[str]) -> list[str]:
     table = film.to_frame()
     lines = [
         f"  {'point':16s} {'degC':>6s} {'eta mPa s':>10s} {'g_V':>9s} {'g_E':>9s} {'h_min um':>9s} "
-        f"{'h_c um':>9s} {'torque N m':>11s}  regime"
+        f"{'h_c um':>9s} {'torque N m':>11s} {'rolling':>8s}  regime"
     ]
     titles = names or [str(number) for number in range(1, table.height + 1)]
     for name, row in zip(titles, table.iter_rows(named=True), strict=True):
         lines.append(
             f"  {name[:16]:16s} {celsius(row['temperature (K)']):6.1f} {1e3 * row['viscosity (Pa s)']:10.4g} "
             f"{row['g_V (1)']:9.3g} {row['g_E (1)']:9.3g} {1e6 * row['minimum film (m)']:9.3g} "
-            f"{1e6 * row['central film (m)']:9.3g} {row['torque (N m)']:11.3g}  {row['regime']}"
+            f"{1e6 * row['central film (m)']:9.3g} {row['torque (N m)']:11.3g} "
+            f"{row['rolling (N m)']:8.3g}  {row['regime']}"
         )
     return lines
 

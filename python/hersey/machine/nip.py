@@ -31,6 +31,9 @@ class ContactTable(Table):
     heater_radius: Annotated[float, Quantity("length", 1e-4, 1e6)] | None = None
     roughness: Annotated[float, Quantity("length", 1e-10, 1e-3)] | None = None
     nip_uncertainty: Share | None = None
+    supply: Annotated[float, Quantity("length", 1e-9, 1e-2)] | None = None
+    heat_flow: Annotated[float, Quantity("power", 0.0, 1e6, "600 W")] | None = None
+    sensor_side: str | None = None
 
     def contact(self, roll_radius: float, load: float | None) -> Contact:
         """Return the contact; radius (m) and load (N) are those of the machine where the table has none.

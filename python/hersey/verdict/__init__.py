@@ -1,11 +1,12 @@
 """What the exponents and the film say together.
 
-========  ==============================================================
-regimes   the table: what each state of lubrication predicts
-explanations  everything that explains how torque varies with speed
-regime    exponents against named regimes, and a verdict in words
-evidence  the film that a log measures, and what its exponents speak for
-cautions  what must be known before a fit is trusted
-checks    what in the numbers of a nip cannot be
-========  ==============================================================
+===============  =======================================================================
+regimes          the table: what each state of lubrication predicts
+contact_regimes  the same for a contact that is known: its soft film over the dwells
+explanations     everything that explains how torque varies with speed
+regime           exponents against named regimes, and a verdict in words
+evidence         the film that a log measures, and what its exponents speak for
+cautions         what must be known before a fit is trusted
+checks           what in the numbers of a nip cannot be
+===============  =======================================================================
 """

@@ -20,11 +20,18 @@ from hersey.damping.estimate import Estimate, quantile
 from hersey.damping.surface import DampingSurface
 from hersey.errors import InsufficientDataError, ParameterError, UnfinishedError
 from hersey.lubrication.contact import Contact, nip_width
-from hersey.lubrication.film import REGIMES, Film, drag_torque, film_thickness
+from hersey.lubrication.film import REGIMES, Film, film_thickness
+from hersey.lubrication.film_temperature import film_temperature
 from hersey.lubrication.lubricant import Lubricant
 from hersey.lubrication.reynolds import exponent, solve_line_contact
 from hersey.result import Result, json_record, table_of
 from hersey.units import celsius, takes_si
+from hersey.verdict.contact_regimes import (
+    contact_regimes,
+    damping_exponent,
+    on_rising_branch,
+    thermal_exponent,
+)
 from hersey.verdict.regime import Regime
 from hersey.verdict.regimes import Hypothesis, judged, listed
 
@@ -36,8 +43,10 @@ if TYPE_CHECKING:
 class MeasuredFilm(Result):
     """What each dwell says of the film; arrays of shape (points,), SI.
 
-    ``low`` and ``high`` enclose ``thickness`` at 95 %: errors of torque and scatter between dwells, and what
-    is stated of viscosity and nip (``systematic``, a factor common to all dwells, 1 if nothing is stated).
+    ``temperature`` is the one read; that of the film, to which viscosity belongs, is
+    ``predicted.temperature``. ``low`` and ``high`` enclose ``thickness`` at 95 %: errors of torque and
+    scatter between dwells, and what is stated of viscosity and nip (``systematic``, a factor common to all
+    dwells, 1 if nothing is stated).
     ``grip`` is the friction at which the belt slips on the roll, if known.
     """
 
@@ -128,8 +137,9 @@ def measured_film(
                 "the log holds no temperatures: state that of the film, --at '180 degC'"
             )
         kelvin = np.full(speed.size, temperature)
-    film = film_thickness(contact, lubricant, speed=speed, temperature=kelvin)
-    expected = drag_torque(contact, lubricant, speed=speed, temperature=kelvin)
+    inside = film_temperature(contact, lubricant, speed=speed, temperature=kelvin)
+    film = film_thickness(contact, lubricant, speed=speed, temperature=inside)
+    expected = film.torque
     radius, nip = contact.roll_radius, film.nip
     load, width = _loaded(points, contact, nip.width)
     thickness = film.viscosity * width * contact.length * speed * radius**2 / torque
@@ -141,7 +151,7 @@ def measured_film(
     systematic = float(np.exp(np.sqrt(sum(np.log1p(share) ** 2 for share in shares))))
     reach = np.exp(np.hypot(relative, np.log(systematic)))
     sliding = speed * radius
-    rises = np.array([_rises(surface, w, t) for w, t in zip(speed, kelvin, strict=True)])
+    rises = on_rising_branch(surface, speed, kelvin)
     roughness = contact.roughness
     return MeasuredFilm(
         speed=speed,
@@ -172,11 +182,6 @@ def _loaded(points: SteadyPoints, contact: Contact, width: float) -> tuple[Float
         return np.full(len(points), contact.load), np.full(len(points), width)
     recorded = loads.to_numpy()
     return recorded, np.asarray(nip_width(contact, load=recorded))
-
-
-def _rises(surface: DampingSurface, speed: float, kelvin: float) -> bool:
-    at = surface.transition_speed(kelvin if surface.b is not None else None)
-    return bool(np.isnan(at) or speed >= at)
 
 
 def _mean_ratio(measured: FloatArray, expected: FloatArray) -> Estimate:
@@ -238,12 +243,18 @@ def verdict(
     """
     film = measured.predicted
     held = REGIMES[int(np.bincount(film.regime.ravel(), minlength=4).argmax())]
-    predictions = judged(surface.c, film=held)
+    branch = measured.on_film > 0.5 if (measured.on_film > 0.5).any() else slice(None)
+    table = contact_regimes(
+        contact, lubricant, speed=measured.speed[branch], temperature=measured.temperature[branch]
+    )
+    predictions = judged(surface.c, film=held, table=table)
     speed = float(np.exp(np.log(measured.speed).mean()))
     kelvin = float(measured.temperature.mean())
-    expected = _slope(contact, lubricant, speed, kelvin, in_speed=True) - 1.0
-    solved = solved_exponent(contact, lubricant, speed, kelvin)
-    thermal_expected = _slope(contact, lubricant, speed, kelvin, in_speed=False)
+    at = np.array(speed), np.array(kelvin)
+    expected = float(damping_exponent(contact, lubricant, *at))
+    inside = film_temperature(contact, lubricant, speed=speed, temperature=kelvin)
+    solved = solved_exponent(contact, lubricant, speed, float(inside))
+    thermal_expected = float(thermal_exponent(contact, lubricant, *at))
     thermal = _thermal(surface, kelvin)
     energy = None if thermal is None else -_core.GAS_CONSTANT * kelvin * thermal.value
     lubricant_energy = float(lubricant.activation_energy(kelvin))
@@ -280,14 +291,6 @@ def solved_exponent(contact: Contact, lubricant: Lubricant, speed: float, temper
     except (ParameterError, UnfinishedError):
         return None
     return exponent("damping", solution)
-
-
-def _slope(contact: Contact, lubricant: Lubricant, speed: float, kelvin: float, *, in_speed: bool) -> float:
-    """Local exponent of the predicted torque in speed or in temperature (K)."""
-    step = np.array([1.0 / 1.001, 1.001])
-    speeds, kelvins = (speed * step, kelvin) if in_speed else (speed, kelvin * step)
-    torque = drag_torque(contact, lubricant, speed=speeds, temperature=kelvins)
-    return float(np.log(torque[1] / torque[0]) / (2.0 * np.log(1.001)))
 
 
 def _thermal(surface: DampingSurface, kelvin: float) -> Estimate | None:

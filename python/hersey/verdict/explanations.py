@@ -8,9 +8,12 @@ sole film listed and one exponent holds over all the speeds.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
+from scipy import stats
 
 from hersey.arrays import FloatArray
 from hersey.damping.candidates.candidate import LEAST_FREEDOM
@@ -22,14 +25,17 @@ from hersey.damping.candidates.observations import Observations
 from hersey.damping.candidates.stribeck import StribeckLaw
 from hersey.damping.candidates.thermal import ARRHENIUS, VFT, Thermal
 from hersey.damping.dwells import SteadyPoints
+from hersey.damping.estimate import CONFIDENCE
 from hersey.damping.rising import Rising, rising
 from hersey.damping.surface import DampingSurface
-from hersey.verdict.regimes import COULOMB, FALLING, REGIMES, Hypothesis
+from hersey.verdict.regimes import COULOMB, FALLING, Hypothesis
 
 #: Share of the torque from which a constant part, or the film beside it, counts.
 LEAST_SHARE = 0.02
 #: Half width of the interval of c within which level torque is told from falling torque.
 LEVEL = 0.05
+#: By how much the exponent of the film's formula may be off.
+FORMULA = 0.01
 CONSTANT = " + constant torque"
 COULOMB_VISCOUS, STRIBECK = "Coulomb + viscous", "Stribeck curve"
 THINNING, HEATING, OTHER = "shear thinning", "shear heating", "other curvature"
@@ -67,7 +73,19 @@ class Explained:
     why_unnamed: str
 
 
-def explained(points: SteadyPoints, surface: DampingSurface, hypotheses: tuple[Hypothesis, ...]) -> Explained:
+class FilmLaw(NamedTuple):
+    """The torque (N m) that theory gives a film at speeds (rad/s) and temperatures (K), and its regime."""
+
+    regime: str
+    torque: Callable[[FloatArray, FloatArray | None], FloatArray]
+
+
+def explained(
+    points: SteadyPoints,
+    surface: DampingSurface,
+    hypotheses: tuple[Hypothesis, ...],
+    law: FilmLaw | None = None,
+) -> Explained:
     """Return what explains the dwells above the transition, or all where there is none.
 
     Parameters
@@ -76,6 +94,8 @@ def explained(points: SteadyPoints, surface: DampingSurface, hypotheses: tuple[H
         Of a log, and the surface fitted to it.
     hypotheses
         From `regimes.judged`, for the surface's exponent.
+    law
+        Of the film of this contact, if it is known: its exponent varies from dwell to dwell.
     """
     films = [h for h in hypotheses if h.consistent]
     branch = rising(points, surface)
@@ -83,7 +103,10 @@ def explained(points: SteadyPoints, surface: DampingSurface, hypotheses: tuple[H
         return Explained(None, _alone(films), None, branch.why_not)
     lack, bent = branch.lack_of_fit, branch.bent
     single = () if bent else _alone(films)
-    beside = _beside_constant(branch, {h.name for h in films})
+    own = None if law is None else _own_film(branch, surface, law, len(hypotheses))
+    if own is not None and own[0].key not in {e.key for e in single}:
+        single = (*single, own[0])
+    beside = _beside_constant(branch, hypotheses, {e.key for e in single}, None if own is None else own[1])
     too_few = len(branch.data) < len(branch.fit.law.names) + 1 + LEAST_FREEDOM
     listed = [*single, *beside]
     if not bent and surface.c.low > -1.0 and surface.c.high < -LEVEL:
@@ -93,7 +116,7 @@ def explained(points: SteadyPoints, surface: DampingSurface, hypotheses: tuple[H
         listed.append(Explanation(THINNING, words))
     if too_few and not beside:
         listed.append(Explanation(UNTRIED, _WORDS[UNTRIED]))
-    if (bent and lack.drift <= 0) or not listed:
+    if (bent and own is None and lack.drift <= 0) or not listed:
         listed += _bending(lack, bent, surface)
     named = None if bent else _sole(films, surface)
     why = "; ".join(lack.misses()) if bent else ""
@@ -117,19 +140,21 @@ def _sole(films: list[Hypothesis], surface: DampingSurface) -> str | None:
     return names[0] if len(names) == 1 else None
 
 
-def _beside_constant(branch: Rising, alone: set[str]) -> list[Explanation]:
+def _beside_constant(
+    branch: Rising, hypotheses: tuple[Hypothesis, ...], alone: set[str], own: LawFit | None
+) -> list[Explanation]:
     """Films beside a constant torque, and a Stribeck curve, that no other law excludes."""
     assert branch.fit is not None
     data, bent = branch.data, branch.bent
     thermal = _thermal_of_film(data, branch.thermal)
-    least = [] if bent else [branch.fit.aicc]
+    least = [fit.aicc for fit in (None if bent else branch.fit, own) if fit is not None]
     tried: list[tuple[Explanation, LawFit]] = []
-    for row in REGIMES:
+    for row in hypotheses:
         if row.name in (COULOMB, FALLING) or (row.name in alone and not bent):
             continue
         found = [
             fit
-            for exponent in sorted({row.low, row.high})
+            for exponent in _tried(row)
             for varying in ((False, True) if thermal else (False,))
             if (fit := _fitted(ConstantPlusLaw(thermal, exponent, varying), data)) is not None
         ]
@@ -148,6 +173,37 @@ def _beside_constant(branch: Rising, alone: set[str]) -> list[Explanation]:
     return [
         e for e, _ in near if e.constant_share is None or LEAST_SHARE <= e.constant_share <= 1.0 - LEAST_SHARE
     ]
+
+
+def _own_film(
+    branch: Rising, surface: DampingSurface, law: FilmLaw, tests: int
+) -> tuple[Explanation, LawFit] | None:
+    """The film of this contact alone, with the exponent of each dwell, unless the data exclude it.
+
+    What the film's law has beyond the best power law is taken off the dwells: if the film made them one
+    exponent holds for the rest, and it is that of the best power law.
+    """
+    assert branch.fit is not None
+    data, power = branch.data, branch.fit.law
+    # of damping: torque over speed
+    expected = np.log(law.torque(data.speed, data.inputs.kelvin)) - data.inputs.log_speed
+    design = power.jacobian(branch.fit.values, data.inputs)
+    best, *_ = np.linalg.lstsq(design, expected, rcond=None)
+    straight = replace(data, log_torque=data.log_torque - (expected - design @ best))
+    fit = fit_law(power, straight)
+    lack = lack_of_fit(fit, straight)
+    c = fit.estimate("c")
+    away = max(abs(c.value - best[power.names.index("c")]) - surface.c.systematic - FORMULA, 0.0)
+    p = min(1.0, tests * 2.0 * float(stats.t.sf(away / max(c.error, 1e-12), max(c.freedom, 1))))
+    if p <= 1.0 - CONFIDENCE or lack.bent_by(2.0 * surface.c.systematic):
+        return None
+    return Explanation(law.regime, f"{law.regime} as theory has it for this contact", None, p), fit
+
+
+def _tried(row: Hypothesis) -> list[float]:
+    """Exponents that stand for a band: its ends, and its middle where it is wide."""
+    middle = {0.5 * (row.low + row.high)} if row.high - row.low > LEVEL else set()
+    return sorted({row.low, row.high} | middle)
 
 
 def _stribeck(data: Observations, thermal: Thermal | None) -> LawFit | None:

@@ -12,10 +12,13 @@ from hersey.damping.candidates.lack_of_fit import LackOfFit
 from hersey.damping.dwells import SteadyPoints, distinct_speeds, groups_of_temperature
 from hersey.damping.estimate import Estimate, estimate
 from hersey.damping.surface import DampingSurface
+from hersey.lubrication.contact import Contact
+from hersey.lubrication.lubricant import Lubricant
 from hersey.result import Result, json_record
 from hersey.units import celsius, rpm
+from hersey.verdict.contact_regimes import film_law, log_regimes
 from hersey.verdict.explanations import Explained, Explanation, explained
-from hersey.verdict.regimes import REGIMES, Hypothesis, judged, listed
+from hersey.verdict.regimes import REGIMES, Hypothesis, RegimeRow, judged, listed
 
 if TYPE_CHECKING:
     import polars as pl
@@ -95,10 +98,29 @@ def _facts_of(e: BranchExponent) -> tuple[float | None, str, int, float, float]:
     return e.temperature, e.branch, e.points, e.speed_low, e.speed_high
 
 
-def regime(points: SteadyPoints, surface: DampingSurface) -> Regime:
-    """Return the evidence on the lubrication regime, from steady points and the surface fitted to them."""
-    hypotheses = judged(surface.c)
-    by = explained(points, surface, hypotheses)
+def regime(
+    points: SteadyPoints,
+    surface: DampingSurface,
+    *,
+    contact: Contact | None = None,
+    lubricant: Lubricant | None = None,
+    temperature: float | None = None,
+) -> Regime:
+    """Return the evidence on the lubrication regime, from steady points and the surface fitted to them.
+
+    Parameters
+    ----------
+    contact, lubricant
+        The nip and what is in it, if both are known: then the band of the soft film is the contact's own.
+    temperature
+        K, of a log that holds none.
+    """
+    table, law = REGIMES, None
+    if contact is not None and lubricant is not None:
+        table = log_regimes(points, surface, contact, lubricant, temperature)
+        law = film_law(contact, lubricant, table, temperature)
+    hypotheses = judged(surface.c, table=table)
+    by = explained(points, surface, hypotheses, law)
     return Regime(
         _exponents(points, surface),
         hypotheses,
@@ -106,7 +128,7 @@ def regime(points: SteadyPoints, surface: DampingSurface) -> Regime:
         by.named,
         by.why_unnamed,
         by.lack_of_fit,
-        " ".join(filter(None, (_verdict(surface, by), _taken_off(points), points.dropped()))),
+        " ".join(filter(None, (_verdict(surface, by, table), _taken_off(points), points.dropped()))),
     )
 
 
@@ -159,8 +181,8 @@ def _slope(speed: FloatArray, torque: FloatArray, error: FloatArray, surface: Da
     return estimate(slope, deviation, surface.c.freedom)
 
 
-def _verdict(surface: DampingSurface, by: Explained) -> str:
-    exponent = _exponent(surface, by)
+def _verdict(surface: DampingSurface, by: Explained, table: tuple[RegimeRow, ...]) -> str:
+    exponent = _exponent(surface, by, table)
     if surface.transition is None:
         return f"{exponent} {_no_transition(surface, by)}"
     t = surface.transition
@@ -178,26 +200,26 @@ def _verdict(surface: DampingSurface, by: Explained) -> str:
     )
 
 
-def _exponent(surface: DampingSurface, by: Explained) -> str:
+def _exponent(surface: DampingSurface, by: Explained, table: tuple[RegimeRow, ...]) -> str:
     """What the exponent of the (rising) branch says, and what else explains it."""
     c = _in_words(surface.c)
     others = [e.name for e in by.explanations]
-    if by.lack_of_fit is not None and by.why_unnamed and not _films(by):
+    if by.lack_of_fit is not None and by.why_unnamed and not _films(by, table):
         return f"No one exponent holds: {by.why_unnamed}. No regime is named; not excluded: {_or(others)}."
     said = f"Damping varies as speed to the power {c}"
     if by.named:
         return f"{said}, which has the exponent of {by.named}."
     if by.lack_of_fit is None:
-        kept = f"which does not exclude {_or(others)}" if others else _between(surface.c.value)
+        kept = f"which does not exclude {_or(others)}" if others else _between(surface.c.value, table)
         return f"{said}, {kept}; no regime is named, for {by.why_unnamed}."
-    if not _films(by):
-        return f"{said}, {_between(surface.c.value)}; not excluded: {_or(others)}."
+    if not _films(by, table):
+        return f"{said}, {_between(surface.c.value, table)}; not excluded: {_or(others)}."
     return f"{said}, which does not exclude {_or(others)}."
 
 
-def _films(by: Explained) -> list[Explanation]:
+def _films(by: Explained, table: tuple[RegimeRow, ...]) -> list[Explanation]:
     """Films of one regime, alone, that are not excluded."""
-    return [e for e in by.explanations if e.key in {row.name for row in REGIMES}]
+    return [e for e in by.explanations if e.key in {row.name for row in table}]
 
 
 def _no_transition(surface: DampingSurface, by: Explained) -> str:
@@ -230,9 +252,9 @@ def _degrees(kelvin: float, scale: str) -> str:
     return f"{kelvin:.0f} K" if scale == "K" else f"{celsius(kelvin):.0f} degC"
 
 
-def _between(c: float) -> str:
-    above = [row for row in REGIMES if row.low > c]
-    below = [row for row in REGIMES if row.high < c]
+def _between(c: float, table: tuple[RegimeRow, ...]) -> str:
+    above = [row for row in table if row.low > c]
+    below = [row for row in table if row.high < c]
     if above and below:
         return f"which is the exponent of no regime: it lies between {above[-1].name} and {below[0].name}"
     return "which is the exponent of no regime"

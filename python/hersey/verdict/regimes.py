@@ -23,6 +23,7 @@ class RegimeRow(NamedTuple):
 
 
 COULOMB, FALLING = "dry Coulomb friction or a rigid film", "falling branch"
+SOFT, STARVED = "soft EHL", "partly starved soft film"
 
 #: In the order of the exponents.
 REGIMES: tuple[RegimeRow, ...] = (
@@ -34,7 +35,7 @@ REGIMES: tuple[RegimeRow, ...] = (
         "a film of fixed thickness, as when starved: torque proportional to speed",
     ),
     RegimeRow(
-        "soft EHL",
+        SOFT,
         -0.60,
         -0.56,
         "isoviscous-elastic",
@@ -81,8 +82,10 @@ class Hypothesis:
         return json_record({**vars(self), "consistent": self.consistent})
 
 
-def judged(exponent: Estimate, *, film: str | None = None) -> tuple[Hypothesis, ...]:
-    """Return every regime of the table against a measured exponent of damping in speed.
+def judged(
+    exponent: Estimate, *, film: str | None = None, table: tuple[RegimeRow, ...] = REGIMES
+) -> tuple[Hypothesis, ...]:
+    """Return every regime of a table against a measured exponent of damping in speed.
 
     A deviation counts beyond what the sensors do not know (`Estimate.systematic`), and p-values are adjusted
     for all the regimes tested (Holm, Scand. J. Stat. 6 (1979) 65): a regime is excluded only if the measured
@@ -92,11 +95,13 @@ def judged(exponent: Estimate, *, film: str | None = None) -> tuple[Hypothesis, 
     ----------
     film
         The regime that film theory gives the contact, if one is known.
+    table
+        The general one, or that of a contact (`contact_regimes`).
     """
-    alone = [_p_value(exponent, row) for row in REGIMES]
+    alone = [_p_value(exponent, row) for row in table]
     return tuple(
         Hypothesis(*row, p, None if film is None else row.film == film)
-        for row, p in zip(REGIMES, _holm(alone), strict=True)
+        for row, p in zip(table, _holm(alone), strict=True)
     )
 
 

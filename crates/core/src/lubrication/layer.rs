@@ -44,6 +44,8 @@ pub struct LayerContact {
     /// Slope of pressure at the edge over that of a half-space contact of the same width: pressure goes there
     /// as `edge E* a/(2R) sqrt(2(1-|s|))`.
     pub edge: f64,
+    /// c of the pressure near the edge, `K sqrt(x) (1 + c x/a)`: -1/4 on a half-space.
+    pub curvature: f64,
     coefficients: Vec<f64>,
 }
 
@@ -115,6 +117,8 @@ pub struct LayerNip {
     pub pressure_max: f64,
     /// Slope of pressure at the edge over that of a half-space contact of the same width.
     pub edge: f64,
+    /// c of the pressure near the edge, `K sqrt(x) (1 + c x/a)`: -1/4 on a half-space.
+    pub curvature: f64,
     /// Width over that of the half-space contact of the same load.
     pub width_over_hertz: f64,
 }
@@ -135,6 +139,7 @@ pub fn nip(load: f64, radius: f64, thickness: f64, rubber: Solid) -> Result<Laye
         width: 2.0 * width,
         pressure_max: found.centre_pressure * star * width / (2.0 * radius),
         edge: found.edge,
+        curvature: found.curvature,
         width_over_hertz: width / half,
     })
 }
@@ -169,6 +174,7 @@ fn solve(half_width: f64, nu: f64, terms: usize) -> LayerContact {
             load,
             centre_pressure: 1.0,
             edge: 1.0,
+            curvature: -0.25,
             coefficients: vec![1.0],
         };
     }
@@ -210,11 +216,15 @@ fn solve(half_width: f64, nu: f64, terms: usize) -> LayerContact {
     let centre =
         right.iter().enumerate().map(|(n, b)| if n % 2 == 0 { *b } else { -b }).sum::<f64>();
     let edge = right.iter().enumerate().map(|(n, b)| (2 * n + 1) as f64 * b).sum::<f64>();
+    // sin((2n+1) theta) with theta^2 = 2 d + d^2/3 at the distance d of the edge, 1 - cos(theta)
+    let third =
+        right.iter().enumerate().map(|(n, b)| ((2 * n + 1) as f64).powi(3) * b).sum::<f64>();
     LayerContact {
         half_width,
         load: 0.5 * FRAC_PI_2 * half_width * half_width * right[0],
         centre_pressure: centre,
         edge,
+        curvature: 1.0 / 12.0 - third / (3.0 * edge),
         coefficients: right,
     }
 }
@@ -292,6 +302,7 @@ mod tests {
                 let many = solve(half_width, nu, terms(half_width) * 3 / 2);
                 assert!((few.load / many.load - 1.0).abs() < 1e-9, "{nu} {half_width}");
                 assert!((few.edge / many.edge - 1.0).abs() < 1e-6, "{nu} {half_width}");
+                assert!((few.curvature - many.curvature).abs() < 1e-4 * (1.0 + many.curvature));
             }
         }
     }

@@ -7,6 +7,7 @@
 //! | `layer`      | a rigid cylinder pressed into a bonded elastic layer: nip width and pressure     |
 //! | `paper`      | Eqs. 5-10 of the paper                                                           |
 //! | `film`       | the four regimes of a line contact, elliptic contacts                            |
+//! | `traction`   | shear and rolling part of the force that a soft film takes from the belt           |
 //! | `correction` | starvation, inlet heating and shear thinning as factors, each with its validity  |
 //! | `mixed`      | film and asperities share the load: force, lambda, transition                     |
 //! | `reynolds`   | the Reynolds equation and elasticity of a line contact, solved numerically        |
@@ -21,4 +22,5 @@ pub mod layer;
 pub mod mixed;
 pub mod paper;
 pub mod reynolds;
+pub mod traction;
 pub mod viscosity;

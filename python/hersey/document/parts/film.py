@@ -30,6 +30,9 @@ class ContactPart(Part):
     heater_radius: float | None = Field(description="m")
     roughness: float | None = Field(description="m, rms")
     nip_uncertainty: float | None
+    supply: float | None = Field(default=None, description="layer on the inlet side, m")
+    heat_flow: float | None = Field(default=None, description="through the film, W")
+    sensor_side: str | None = Field(default=None, description="wall of the film that the sensor reads")
     effective_modulus: float = Field(description="E' = 2 E/(1 - nu^2), Pa")
     reduced_radius: float = Field(description="m")
 
@@ -52,6 +55,7 @@ class NipPart(Part):
     pressure_mean: float = Field(description="Pa")
     pressure_max: float = Field(description="Pa")
     edge: float
+    curvature: float
     width_over_hertz: float
     paper_width: float = Field(description="m")
     paper_in_range: bool
@@ -94,7 +98,9 @@ class FilmStatesPart(Part):
     minima: dict[str, Numbers] = Field(description="by law, m")
     centres: dict[str, Numbers] = Field(description="by law, m")
     regime: list[str]
-    torque: Numbers = Field(description="N m")
+    shear: Numbers = Field(description="part of the torque by sliding, N m")
+    rolling: Numbers = Field(description="part of the torque by the gradient of pressure, N m")
+    torque: Numbers = Field(description="both, N m")
     corrections: dict[str, FilmCorrectionPart]
 
 
