@@ -75,6 +75,7 @@ if TYPE_CHECKING:
         read_temperature_profile,
     )
     from hersey.motion.drag import Drag, DragTable
+    from hersey.motion.heat import HeatBalance
     from hersey.motion.schedule import Schedule
     from hersey.motion.simulation import Drivetrain, StickSlipCycle, Trajectory, simulate, stick_slip
     from hersey.motion.sweep import sweep
@@ -98,6 +99,7 @@ _HOMES = {
     "log.mapping": "read_with_mapping",
     "motion.schedule": "Schedule",
     "motion.drag": "Drag DragTable",
+    "motion.heat": "HeatBalance",
     "motion.simulation": "Drivetrain StickSlipCycle Trajectory simulate stick_slip",
     "motion.sweep": "sweep",
     "damping.dwells": "SteadyPoints",
@@ -143,6 +145,7 @@ __all__ = [
     "Drivetrain",
     "Estimate",
     "Film",
+    "HeatBalance",
     "HerseyError",
     "HysteresisBand",
     "IdentifiedDrive",

@@ -95,6 +95,16 @@ _Floats: TypeAlias = NDArray[np.float64]
 _Closure: TypeAlias = tuple[str, float | None, float | None]
 _Train: TypeAlias = tuple[float, float, float | None]
 _Schedule: TypeAlias = tuple[list[float], list[float], list[list[float]] | None]
+Heat: TypeAlias = tuple[
+    tuple[float, float],
+    float,
+    tuple[float, float],
+    float,
+    tuple[_Schedule | None, tuple[float, float, float] | None],
+    tuple[_Schedule, _Schedule],
+    tuple[float, float],
+    float,
+]
 
 @final
 class Law:
@@ -201,6 +211,8 @@ class Trajectory:
     def mode_index(self) -> NDArray[np.uint8]: ...
     @property
     def slipping(self) -> NDArray[np.bool_]: ...
+    @property
+    def temperature(self) -> list[_Floats] | None: ...
     @property
     def events(self) -> Events: ...
     @property
@@ -505,6 +517,7 @@ def simulate(
     tolerance: float,
     integrator: str,
     most_steps: int,
+    heat: Heat | None = None,
 ) -> Trajectory: ...
 def steady_start(train: _Train, drag: Law, speed: float, nudged: bool) -> State: ...
 def stick_slip(

@@ -1,7 +1,9 @@
 //! One motion at a time.
 
 use hersey_core::drag::Mode;
-use hersey_core::motion::{self, Drive, Drivetrain, Integrator, Schedule, Span, Start, System};
+use hersey_core::motion::{
+    self, Drive, Drivetrain, HeatBalance, Heater, Integrator, Schedule, Span, Start, System,
+};
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 
@@ -55,6 +57,8 @@ pub struct Trajectory {
     stretch: Py<PyArray1<f64>>,
     mode_index: Py<PyArray1<u8>>,
     slipping: Py<PyArray1<bool>>,
+    /// Temperatures of film and roll, if they are states.
+    temperature: Option<[Py<PyArray1<f64>>; 2]>,
     events: Py<Events>,
     energy: Py<Energy>,
     steps: usize,
@@ -115,8 +119,43 @@ fn schedule_from(
     .map_err(raised)
 }
 
+/// Heat capacities, exchange, losses, surroundings, heater (its power, or temperature, most power and gain), what is taken
+/// from each body, temperatures at the start, and zero of the temperature scale of the drag law.
+type HeatArguments = (
+    [f64; 2],
+    f64,
+    [f64; 2],
+    f64,
+    (Option<ScheduleArguments>, Option<(f64, f64, f64)>),
+    (ScheduleArguments, ScheduleArguments),
+    [f64; 2],
+    f64,
+);
+
+fn heat_from(arguments: HeatArguments) -> PyResult<HeatBalance> {
+    let (capacity, exchange, loss, surroundings, heater, load, start, temperature_zero) = arguments;
+    let heater = match heater {
+        (Some(power), _) => Heater::Power(schedule_from("heater power", power)?),
+        (None, Some((setpoint, most, gain))) => Heater::Controlled { setpoint, most, gain },
+        (None, None) => Heater::Power(Schedule::constant(0.0)),
+    };
+    let load =
+        [schedule_from("load of the film", load.0)?, schedule_from("load of the roll", load.1)?];
+    Ok(HeatBalance {
+        capacity,
+        exchange,
+        loss,
+        surroundings,
+        heater,
+        load,
+        start,
+        temperature_zero,
+    })
+}
+
 /// Motion at equally spaced times.
 #[pyfunction]
+#[pyo3(signature = (train, drag, drive, temperature, start, duration, samples, tolerance, integrator, most_steps, heat=None))]
 #[allow(clippy::too_many_arguments)] // the Python layer names them all
 pub fn simulate(
     py: Python<'_>,
@@ -130,6 +169,7 @@ pub fn simulate(
     tolerance: f64,
     integrator: &str,
     most_steps: u64,
+    heat: Option<HeatArguments>,
 ) -> PyResult<Trajectory> {
     let train = drivetrain_from(train)?;
     let drive = match drive {
@@ -137,7 +177,11 @@ pub fn simulate(
         (_, schedule) => Drive::Force(schedule_from("drive_torque", schedule)?),
     };
     let temperature = temperature.map(|t| schedule_from("temperature", t)).transpose()?;
-    let system = System::new(train, &drag.0, drive, temperature).map_err(raised)?;
+    let system = match heat {
+        Some(heat) => System::with_heat(train, &drag.0, drive, heat_from(heat)?),
+        None => System::new(train, &drag.0, drive, temperature),
+    };
+    let system = system.map_err(raised)?;
     let start = Start { belt_speed: start.0, stretch: start.1 };
     let integrator = match integrator {
         "adaptive" => Integrator::Adaptive,
@@ -156,6 +200,9 @@ pub fn simulate(
         stretch: run.stretch.into_pyarray(py).unbind(),
         mode_index: modes.into_pyarray(py).unbind(),
         slipping: run.slipping.into_pyarray(py).unbind(),
+        temperature: (!run.temperature.is_empty()).then(|| {
+            [0, 1].map(|i| PyArray1::from_iter(py, run.temperature.iter().map(|t| t[i])).unbind())
+        }),
         events: Py::new(py, Events::from(run.events.as_slice()))?,
         energy: Py::new(py, Energy { work, dissipated, slipped, stored, residual })?,
         steps: run.steps,

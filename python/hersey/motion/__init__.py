@@ -3,6 +3,7 @@
 ==========  =====================================================
 schedule    drive speed, torque or temperature against time
 drag        drag laws: force against belt speed and temperature
+heat        temperature as a state: two bodies, a heater and friction
 simulation  stick-slip motion of the belt, and what it settles to
 parameters  names of the parameters, and the kinds of their units
 sweep       what thousands of belts settle to, in one call

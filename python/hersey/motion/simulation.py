@@ -20,10 +20,11 @@ from hersey import _core
 from hersey.arrays import FloatArray
 from hersey.errors import HerseyError, ParameterError
 from hersey.motion.drag import AnyDrag
+from hersey.motion.heat import HeatBalance
 from hersey.motion.parameters import MOST_STEPS, whole
 from hersey.motion.schedule import Schedule
 from hersey.result import Result, json_record, table_of
-from hersey.units import fields_in_si, takes_si
+from hersey.units import celsius, fields_in_si, takes_si
 
 if TYPE_CHECKING:
     import polars as pl
@@ -140,7 +141,7 @@ class Trajectory(Result):
 
     ``stretch`` is drive position minus belt position; with a torque drive, the position of the mass (zero
     without a spring). ``spring_force`` is stiffness times stretch; ``slipping`` tells where the roll slips
-    on the belt.
+    on the belt. ``film_temperature`` and ``roll_temperature`` (K) are there if they are states.
     """
 
     time: FloatArray
@@ -153,6 +154,8 @@ class Trajectory(Result):
     energy: Energy
     steps: int
     check: SelfCheck | None = None
+    film_temperature: FloatArray | None = None
+    roll_temperature: FloatArray | None = None
 
     @cached_property
     def mode(self) -> NDArray[np.str_]:
@@ -167,9 +170,18 @@ class Trajectory(Result):
             f"  belt speed      {self.belt_speed.min():.6f} to {self.belt_speed.max():.6f}",
             f"  stretch         {self.stretch.min():.6f} to {self.stretch.max():.6f}",
             f"  spring force    {self.spring_force.min():.6f} to {self.spring_force.max():.6f}",
+            *self._heating(),
             f"energy balance: {self.energy.residual:.1e} of the energy turned over is missing",
         ]
         return "\n".join([*lines, *([] if self.check is None else [str(self.check)])])
+
+    def _heating(self) -> list[str]:
+        bodies = (("film", self.film_temperature), ("roll", self.roll_temperature))
+        return [
+            f"  {name:15s} {celsius(t[0]):.2f} to {celsius(t[-1]):.2f} degC"
+            for name, t in bodies
+            if t is not None
+        ]
 
     def to_dict(self) -> dict[str, Any]:
         """Return samples, events, energies and check; in SI if the arguments were."""
@@ -181,6 +193,8 @@ class Trajectory(Result):
                 "energy": self.energy,
                 "steps": self.steps,
                 "check": self.check,
+                "film_temperature": self.film_temperature,
+                "roll_temperature": self.roll_temperature,
             }
         )
 
@@ -188,6 +202,8 @@ class Trajectory(Result):
         """Return one row per sample; the units named are SI, and stand for those given."""
         import polars as pl
 
+        bodies = {"film": self.film_temperature, "roll": self.roll_temperature}
+        temperatures = {f"{name} (K)": t for name, t in bodies.items() if t is not None}
         return pl.DataFrame(
             {
                 "time (s)": self.time,
@@ -196,6 +212,7 @@ class Trajectory(Result):
                 "spring force (N)": self.spring_force,
                 "mode": self.mode,
                 "roll slips": self.slipping,
+                **temperatures,
             }
         )
 
@@ -288,6 +305,7 @@ def simulate(
     drive_speed: float | Schedule | None = None,
     drive_torque: float | Schedule | None = None,
     temperature: float | Schedule | None = None,
+    heat: HeatBalance | None = None,
     duration: float,
     samples: int = 2001,
     start: str | tuple[float, float] = "rest",
@@ -306,6 +324,8 @@ def simulate(
         only here the stiffness may be zero.
     temperature
         K; needed if the drag varies with it.
+    heat
+        Instead of it: what makes the temperature, which is a state then, warmed by friction too.
     start
         ``rest`` (belt at rest, spring slack), ``steady`` (sliding with the drive as it is at time 0), or a
         pair of belt speed and stretch.
@@ -335,15 +355,21 @@ def simulate(
     count, steps = whole("samples", samples, 2), whole("most_steps", most_steps)
     if (drive_speed is None) == (drive_torque is None):
         raise ParameterError("give either drive_speed or drive_torque")
-    if drag.varies_with_temperature and temperature is None:
+    if heat is not None and temperature is not None:
+        raise ParameterError("give either temperature or heat, which makes it")
+    if drag.varies_with_temperature and temperature is None and heat is None:
         raise ParameterError("the drag varies with temperature: give temperature")
-    if temperature is not None and not drag.varies_with_temperature:
-        raise ParameterError("temperature is given, but the drag does not vary with it")
+    if (temperature is not None or heat is not None) and not drag.varies_with_temperature:
+        what = "temperature" if heat is None else "heat"
+        raise ParameterError(f"{what} is given, but the drag does not vary with temperature")
     given = drive_speed if drive_speed is not None else drive_torque
     drive = Schedule.of(given if given is not None else 0.0)
     course = None if temperature is None else Schedule.of(temperature).shifted(-drag.temperature_zero)
     law = drag.law()
-    state = _start(train, law, drive, course, start, is_torque=drive_speed is None)
+    at_start = course
+    if heat is not None:
+        at_start = Schedule.of(heat.film_temperature).shifted(-drag.temperature_zero)
+    state = _start(train, law, drive, at_start, start, is_torque=drive_speed is None)
 
     def run(integrator: str) -> _core.Trajectory:
         return _core.simulate(
@@ -357,6 +383,7 @@ def simulate(
             float(tolerance),
             integrator,
             steps,
+            None if heat is None else heat.arguments(drag.temperature_zero),
         )
 
     trajectory = run("adaptive")
@@ -368,6 +395,8 @@ def simulate(
         spring_force=train.stiffness * trajectory.stretch,
         mode_index=trajectory.mode_index,
         slipping=trajectory.slipping,
+        film_temperature=None if trajectory.temperature is None else trajectory.temperature[0],
+        roll_temperature=None if trajectory.temperature is None else trajectory.temperature[1],
         events=tuple(map(Event._make, zip(*_event_columns(trajectory.events), strict=True))),
         energy=Energy(energy.work, energy.dissipated, energy.slipped, energy.stored, energy.residual),
         steps=trajectory.steps,

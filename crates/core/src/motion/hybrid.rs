@@ -5,12 +5,18 @@
 
 use super::event::{Event, Guard};
 use super::piece::{Phase, Piece};
+use super::polynomial::value;
 use super::schedule::Cubic;
 use super::surroundings::Surroundings;
 use super::system::{Integrator, Start, System, checked_tolerance};
 use crate::drag::Mode;
-use crate::error::Error;
+use crate::error::{Error, above};
 use crate::work::Work;
+
+/// Rounds in which a piece and its temperature are made anew.
+const MAX_ROUNDS: usize = 40;
+/// Relative change of the temperatures between rounds, from which they are the same.
+const SAME_TEMPERATURE: f64 = 1e-14;
 
 /// Events without any time passing before the motion is given up as endless switching.
 const MAX_EVENTS_AT_ONCE: u32 = 32;
@@ -107,7 +113,12 @@ impl<'a> Motion<'a> {
             (self.phase.creeping, self.phase.mode) = (false, Mode::Stuck);
         }
         let until_change = self.now.next_change - self.now.time;
-        let mut piece = self.piece(longest.min(until_change))?;
+        let longest = longest.min(until_change);
+        let mut piece = if self.now.heat.is_some() {
+            self.warmed_piece(longest)?
+        } else {
+            self.piece(longest)?
+        };
         let Some((elapsed, guard)) = self.first_guard(&piece) else {
             self.go_on(&piece, until_change);
             return Ok((piece, None));
@@ -117,12 +128,51 @@ impl<'a> Motion<'a> {
         Ok((piece, event))
     }
 
+    /// The next piece at the temperature that its own friction makes: made anew until it is.
+    fn warmed_piece(&mut self, mut longest: f64) -> Result<Piece<'a>, Error> {
+        let (step, tolerance) = (self.next_step, self.tolerance);
+        for _ in 0..MAX_ROUNDS {
+            self.next_step = step;
+            let mut piece = self.piece(longest)?;
+            let heat_of_contact = piece.heat_of_contact();
+            let time = self.now.time;
+            let Some(heat) = &mut self.now.heat else { return Ok(piece) };
+            let (courses, good) = heat.foreseen(time, &heat_of_contact, tolerance);
+            if piece.duration > good {
+                (piece.duration, longest) = (good, good);
+            }
+            let moved = |i: usize| {
+                let (new, old) = (&courses[i], &heat.courses[i]);
+                (value(new, piece.duration) - value(old, piece.duration)).abs() / new[0]
+            };
+            let off = if piece.duration.is_finite() { moved(0).max(moved(1)) } else { 0.0 };
+            heat.courses = courses;
+            self.now.take_temperature();
+            if off <= SAME_TEMPERATURE && piece.duration <= good {
+                self.check_law(piece.duration)?;
+                piece.temperatures = Some(Box::new(courses));
+                return Ok(piece);
+            }
+        }
+        Err(Error::Stalled { time: self.now.time })
+    }
+
+    /// Refuse temperatures at which the law of drag has ended.
+    fn check_law(&self, elapsed: f64) -> Result<(), Error> {
+        let Some((course, law)) = self.now.temperature_law() else { return Ok(()) };
+        let elapsed = if elapsed.is_finite() { elapsed } else { 0.0 };
+        let temperature = above("temperature", value(&course, elapsed), 0.0)?;
+        above("stick speed at this temperature", law.speed_factor(temperature)?, 0.0)?;
+        law.boundary_factor(temperature)?;
+        law.rest_factor(temperature).map(|_| ())
+    }
+
     /// To the end of a piece that no guard ends, and into the next segment of the schedules if it reaches there.
     #[inline]
     fn go_on(&mut self, piece: &Piece, until_change: f64) {
         [self.phase.pull, self.phase.speed, self.phase.bristle] = piece.state(piece.duration);
         self.phase.released = false;
-        self.now.time += piece.duration;
+        self.now.pass(piece.duration);
         if piece.duration < until_change || until_change.is_infinite() {
             return;
         }
@@ -137,7 +187,7 @@ impl<'a> Motion<'a> {
     #[inline]
     fn meet(&mut self, guard: Guard, piece: &Piece) -> Result<Option<Event>, Error> {
         let before = self.now.time;
-        self.now.time += piece.duration;
+        self.now.pass(piece.duration);
         [self.phase.pull, self.phase.speed, self.phase.bristle] = piece.state(piece.duration);
         let from = self.phase.mode;
         self.now.take_temperature();

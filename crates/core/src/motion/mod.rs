@@ -6,6 +6,7 @@
 //! | `system`      | drivetrain, drag, drive and temperature: the equation to solve            |
 //! | `polynomial`  | Taylor polynomials of fixed order; first root in an interval              |
 //! | `thermal`     | how the law of drag moves while the temperature does, as series           |
+//! | `heat`        | temperature as a state: two bodies, a heater and friction                 |
 //! | `sharing`     | series of the force of a contact whose load film and asperities share     |
 //! | `taylor`      | one slip step as a Taylor series with its own dense output                |
 //! | `runge_kutta` | steps for stiff motion (Radau IIA) and for the second opinion             |
@@ -27,6 +28,7 @@
 mod cycle;
 mod ensemble;
 mod event;
+mod heat;
 mod hybrid;
 pub(crate) mod lanes;
 mod lap;
@@ -46,6 +48,7 @@ mod trajectory;
 pub use cycle::{CycleKind, Span, StickSlipCycle, settle, stick_slip};
 pub use ensemble::{Belt, Outcome, ensemble};
 pub use event::{Event, Guard};
+pub use heat::{HeatBalance, Heater};
 pub(crate) use hybrid::first_slide;
 pub use schedule::{Cubic, Schedule};
 pub(crate) use system::checked_tolerance;

@@ -50,6 +50,8 @@ pub(super) struct Piece<'a> {
     pub start: Phase,
     pub flow: Flow<'a>,
     pub path: Path,
+    /// Temperatures along the piece, if they are states.
+    pub temperatures: Option<Box<[Polynomial; 2]>>,
 }
 
 /// A quantity that is positive while the motion goes on.

@@ -5,6 +5,7 @@
 //! G. Wanner, "Solving Ordinary Differential Equations II" (1996), IV.5; Dormand and Prince, J. Comput.
 //! Appl. Math. 6 (1980).
 
+use super::polynomial::{Polynomial, value};
 use super::schedule::Cubic;
 use crate::drag::{Closure, Drag, TemperatureLaw};
 
@@ -20,7 +21,7 @@ pub(super) struct Flow<'a> {
     /// Branch of the law, or none below the stick speed.
     pub branch: Option<usize>,
     /// Temperature and how the law varies with it.
-    pub temperature_law: Option<(Cubic, TemperatureLaw)>,
+    pub temperature_law: Option<(Polynomial, TemperatureLaw)>,
     pub rate: Cubic,
     pub stiffness: f64,
     pub mass: f64,
@@ -30,7 +31,7 @@ impl Flow<'_> {
     /// Factors of forces and speeds at time `t`.
     pub(super) fn factors(&self, t: f64) -> (f64, f64) {
         self.temperature_law.map_or((1.0, 1.0), |(temperature, temperature_law)| {
-            let temperature = horner(&temperature, t);
+            let temperature = value(&temperature, t);
             let speed = temperature_law.speed_factor(temperature).unwrap_or(f64::NAN);
             (temperature_law.force_factor(temperature), speed)
         })
@@ -39,7 +40,7 @@ impl Flow<'_> {
     /// Factor of boundary friction at time `t`.
     fn boundary_factor(&self, t: f64) -> f64 {
         self.temperature_law.map_or(1.0, |(temperature, temperature_law)| {
-            temperature_law.boundary_factor(horner(&temperature, t)).unwrap_or(f64::NAN)
+            temperature_law.boundary_factor(value(&temperature, t)).unwrap_or(f64::NAN)
         })
     }
 
@@ -54,7 +55,7 @@ impl Flow<'_> {
     /// Factor of the rest of the drive at time `t`.
     pub(super) fn rest_factor(&self, t: f64) -> f64 {
         self.temperature_law.map_or(1.0, |(temperature, temperature_law)| {
-            temperature_law.rest_factor(horner(&temperature, t)).unwrap_or(f64::NAN)
+            temperature_law.rest_factor(value(&temperature, t)).unwrap_or(f64::NAN)
         })
     }
 

@@ -93,7 +93,14 @@ impl<'a> Motion<'a> {
     #[allow(clippy::large_types_passed_by_value)] // it moves into the piece
     fn along(&self, series: Series, duration: f64) -> Piece<'a> {
         let path = Path::Series(series);
-        Piece { time: self.now.time, duration, start: self.phase, flow: self.flow(), path }
+        Piece {
+            time: self.now.time,
+            duration,
+            start: self.phase,
+            flow: self.flow(),
+            path,
+            temperatures: None,
+        }
     }
 
     /// Whether the pull of a held belt grows, or falls, at the same rate for good.
@@ -252,6 +259,13 @@ impl<'a> Motion<'a> {
             }
         }
         let path = Path::Steps { formula, scales, tolerance };
-        Ok(Piece { time: self.now.time, duration, start: self.phase, flow, path })
+        Ok(Piece {
+            time: self.now.time,
+            duration,
+            start: self.phase,
+            flow,
+            path,
+            temperatures: None,
+        })
     }
 }

@@ -1,6 +1,8 @@
 //! What surrounds the belt as the motion goes on: the drive, the temperature, and the law of drag that it makes.
 
 use super::event::ROUNDING;
+use super::heat::Heat;
+use super::polynomial::{ORDER, Polynomial};
 use super::schedule::Cubic;
 use super::system::{Drive, System};
 use super::thermal::{STEADY, ThermalFactors};
@@ -17,6 +19,8 @@ pub(super) struct Surroundings<'a> {
     pub next_change: f64,
     /// How the law moves with the temperature, if it does.
     pub thermal: Option<ThermalFactors>,
+    /// What makes the temperature, if it is a state.
+    pub heat: Option<Heat<'a>>,
 }
 
 impl<'a> Surroundings<'a> {
@@ -29,6 +33,7 @@ impl<'a> Surroundings<'a> {
             temperature_segment: system.temperature.as_ref().map_or(0, |t| t.segment(0.0)),
             next_change: f64::INFINITY,
             thermal: None,
+            heat: system.heat.as_ref().map(Heat::at_start),
         };
         surroundings.find_next_change();
         surroundings.take_temperature();
@@ -56,7 +61,8 @@ impl<'a> Surroundings<'a> {
         let temperature = &self.system.temperature;
         let segment_end =
             temperature.as_ref().map_or(f64::INFINITY, |t| t.end(self.temperature_segment));
-        self.next_change = drive.min(segment_end);
+        let heat = self.heat.as_ref().map_or(f64::INFINITY, Heat::next_change);
+        self.next_change = drive.min(segment_end).min(heat);
     }
 
     /// Enter the next segment of the schedules; a jump of the driving force, which is one of the pull, is returned.
@@ -75,15 +81,32 @@ impl<'a> Surroundings<'a> {
         {
             self.temperature_segment += 1;
         }
+        if let Some(heat) = &mut self.heat {
+            heat.pass_change(self.time);
+        }
         self.find_next_change();
         jump
     }
 
     /// Course of the temperature from now on, and how the law varies with it.
-    pub(super) fn temperature_law(&self) -> Option<(Cubic, TemperatureLaw)> {
-        let temperature = self.system.temperature.as_ref()?;
-        let temperature_law = self.system.drag.temperature_law()?;
-        Some((temperature.about(self.temperature_segment, self.time), temperature_law))
+    pub(super) fn temperature_law(&self) -> Option<(Polynomial, TemperatureLaw)> {
+        let course = if let Some(heat) = &self.heat {
+            heat.course_of_law()
+        } else {
+            let temperature = self.system.temperature.as_ref()?;
+            let mut course = [0.0; ORDER + 1];
+            course[..4].copy_from_slice(&temperature.about(self.temperature_segment, self.time));
+            course
+        };
+        Some((course, self.system.drag.temperature_law()?))
+    }
+
+    /// Let time pass, and heat flow with it.
+    pub(super) fn pass(&mut self, elapsed: f64) {
+        self.time += elapsed;
+        if let Some(heat) = &mut self.heat {
+            heat.pass(elapsed);
+        }
     }
 
     /// Take the law as it is now.

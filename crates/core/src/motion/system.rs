@@ -1,5 +1,6 @@
 //! The equation to solve: drivetrain, drag, drive and temperature.
 
+use super::heat::HeatBalance;
 use super::schedule::Schedule;
 use crate::drag::{Closure, Drag};
 use crate::error::{Error, above, at_least, at_most, below, finite};
@@ -127,6 +128,8 @@ pub struct System {
     pub(super) drive: Drive,
     /// Temperature, if it moves and the drag with it.
     pub(super) temperature: Option<Schedule>,
+    /// What makes the temperature, if it is a state.
+    pub(super) heat: Option<HeatBalance>,
 }
 
 impl System {
@@ -145,7 +148,7 @@ impl System {
             above("stiffness", train.stiffness, 0.0)?;
         }
         let Some(schedule) = temperature else {
-            return Ok(Self { train, drag: drag.clone(), drive, temperature: None });
+            return Ok(Self { train, drag: drag.clone(), drive, temperature: None, heat: None });
         };
         let (low, high) = schedule.range();
         above("temperature", low, 0.0)?;
@@ -154,10 +157,35 @@ impl System {
             below("stick_speed", law.stick_speed(), law.transition_speed())?;
         }
         if let Some(temperature) = schedule.steady() {
-            return Ok(Self { train, drag: drag.at(temperature)?, drive, temperature: None });
+            return Ok(Self {
+                train,
+                drag: drag.at(temperature)?,
+                drive,
+                temperature: None,
+                heat: None,
+            });
         }
         let temperature = drag.temperature_law().map(|_| schedule);
-        Ok(Self { train, drag: drag.clone(), drive, temperature })
+        Ok(Self { train, drag: drag.clone(), drive, temperature, heat: None })
+    }
+
+    /// The equation of `train` and `drag` under `drive`, at the temperature that `heat` and friction make.
+    ///
+    /// # Errors
+    /// If a drive of given speed has no spring, a number of the balance is out of range, or the drag does not vary with
+    /// temperature.
+    pub fn with_heat(
+        train: Drivetrain,
+        drag: &Drag,
+        drive: Drive,
+        heat: HeatBalance,
+    ) -> Result<Self, Error> {
+        heat.check()?;
+        drag.temperature_law()
+            .ok_or(Error::TooFew { quantity: "temperature law of the drag", needed: 1 })?;
+        let cold = drag.at(heat.start[0] - heat.temperature_zero)?;
+        below("stick_speed", cold.stick_speed(), cold.transition_speed())?;
+        Ok(Self { heat: Some(heat), ..Self::new(train, drag, drive, None)? })
     }
 
     /// A belt at constant `drive_speed` and the temperature at which the law is given.

@@ -1,7 +1,6 @@
 //! How the law of drag moves while the temperature does: the factors of its forces and speeds as series.
 
 use super::polynomial::{INVERSE, ORDER, POWERS, Polynomial};
-use super::schedule::Cubic;
 use super::taylor::{Recurrence, UNCHANGED, composed, product};
 use crate::drag::{SpeedLaw, TemperatureLaw};
 use crate::lubrication::viscosity::{self, GAS_CONSTANT};
@@ -29,10 +28,9 @@ impl ThermalFactors {
     pub(super) fn new(
         law: &TemperatureLaw,
         boundary_share: f64,
-        temperature: &Cubic,
+        temperature: &Polynomial,
     ) -> Option<Self> {
-        let mut t = [0.0; ORDER + 1];
-        t[..4].copy_from_slice(temperature);
+        let t = *temperature;
         // from one number, the same to the last bit wherever the law is asked
         let first = law.speed_factor(t[0]).ok()?;
         let (speed, slowness) = match &law.speed {

@@ -3,7 +3,7 @@
 use super::event::Event;
 use super::hybrid::Motion;
 use super::piece::{GAUSS, Path, Piece};
-use super::polynomial::{ORDER, fused};
+use super::polynomial::{ORDER, fused, value};
 use super::schedule::Cubic;
 use super::system::{Drive, Integrator, Start, System};
 use super::taylor::Series;
@@ -24,6 +24,8 @@ pub struct Trajectory {
     pub mode: Vec<Mode>,
     /// Whether the roll slips on the belt at each sample.
     pub slipping: Vec<bool>,
+    /// Temperatures of film and roll at each sample, K, if they are states.
+    pub temperature: Vec<[f64; 2]>,
     /// Every change of mode.
     pub events: Vec<Event>,
     /// Where the work of the drive went.
@@ -86,6 +88,7 @@ pub fn simulate(
     let time = sample_times(duration, samples);
     let (mut speed, mut pull) = (vec![0.0; samples], vec![0.0; samples]);
     let (mut mode, mut slipping) = (Vec::with_capacity(samples), Vec::with_capacity(samples));
+    let mut temperature = Vec::new();
     let (mut events, mut elapsed) = (Vec::new(), Vec::new());
     let mut energy = Energy::default();
     // what was asked for is read, however much it is
@@ -109,6 +112,10 @@ pub fn simulate(
         }
         mode.resize(begin + count, piece.start.mode);
         slipping.resize(begin + count, piece.start.slipping);
+        if let Some(courses) = &piece.temperatures {
+            temperature
+                .extend(elapsed.iter().map(|t| [value(&courses[0], *t), value(&courses[1], *t)]));
+        }
         energy.add(&piece, system, arch);
         end_state = piece.at(piece.duration);
         if let Some(event) = event {
@@ -122,7 +129,8 @@ pub fn simulate(
     energy.turnover += energy.stored.abs();
     let stretch = time.iter().zip(&pull).map(|(t, p)| system.stretch(*p, *t)).collect();
     let steps = motion.steps;
-    Ok(Trajectory { time, belt_speed: speed, stretch, mode, slipping, events, energy, steps })
+    let belt_speed = speed;
+    Ok(Trajectory { time, belt_speed, stretch, mode, slipping, temperature, events, energy, steps })
 }
 
 /// Kinetic energy and energy of the spring.

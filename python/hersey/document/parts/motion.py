@@ -97,6 +97,8 @@ class TrajectoryPart(Part):
     energy: EnergyPart
     steps: int
     check: CheckPart | None
+    film_temperature: Numbers | None = Field(default=None, description="K, if it is a state")
+    roll_temperature: Numbers | None = Field(default=None, description="K, if it is a state")
 
 
 class StickSlipPart(Part):
