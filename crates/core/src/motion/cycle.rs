@@ -99,6 +99,8 @@ const MAX_PIECES_PER_LAP: usize = 1_000_000;
 const CLOSED: f64 = 1e-9;
 /// The same for smooth closures, in tolerances: their steps are of low order and leave more noise.
 const CLOSED_SMOOTH: f64 = 100.0;
+/// Time within which the belt overtakes the drive once, in units of `sqrt(m/k)`.
+const ONCE: f64 = 1e-6;
 /// Laps after which a motion with memory may repeat itself.
 const MAX_PERIOD: usize = 16;
 /// Swing of the belt speed, relative to the drive speed, below which it counts as steady.
@@ -179,6 +181,8 @@ struct Laps<'a> {
     /// Pieces since the last lap, and times that the belt overtook the drive.
     pieces: usize,
     overtakings: u32,
+    /// When it did last: where the roll slipped until then, or on a corner of the law, that may show twice.
+    overtaken: f64,
     count: usize,
 }
 
@@ -211,6 +215,7 @@ impl<'a> Laps<'a> {
             extrapolation: Extrapolation::default(),
             pieces: 0,
             overtakings: 0,
+            overtaken: f64::NEG_INFINITY,
             count: 0,
         })
     }
@@ -273,7 +278,11 @@ impl<'a> Laps<'a> {
         }
         let found = release(event, self.smooth, self.train)
             .or_else(|| self.overtaking(piece))
-            .or_else(|| gripping_again(event, self.train));
+            .or_else(|| gripping_again(event, self.train))
+            .filter(|s| s.stuck || s.time - self.overtaken > ONCE * self.train.time_scale());
+        if let Some(section) = found.filter(|s| !s.stuck) {
+            self.overtaken = section.time;
+        }
         let section = found.filter(|s| s.stuck || self.lap.stick_duration == 0.0)?;
         // every slip after a release overtakes the drive once; a second time means that it did not stick
         self.overtakings += u32::from(!section.stuck);

@@ -147,6 +147,10 @@ impl<'a> Motion<'a> {
             };
             let off = if piece.duration.is_finite() { moved(0).max(moved(1)) } else { 0.0 };
             heat.courses = courses;
+            // colder than the scale of the law begins, there is none
+            let end = if piece.duration.is_finite() { piece.duration } else { 0.0 };
+            let law = self.now.temperature_law();
+            above("temperature", law.map_or(1.0, |(course, _)| value(&course, end)), 0.0)?;
             self.now.take_temperature();
             if off <= SAME_TEMPERATURE && piece.duration <= good {
                 self.check_law(piece.duration)?;
