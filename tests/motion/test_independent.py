@@ -15,7 +15,9 @@ _REFERENCE = json.loads(Path(__file__).with_name("independent.json").read_text()
 _PLAIN = {case["setting"]["name"]: case for case in _REFERENCE["plain"]}
 _TRAIN = hersey.Drivetrain(1000, 1)
 #: The belt makes laps in these, and the independent solution followed them until they repeated themselves.
-_SETTLED = [name for name, case in _PLAIN.items() if "frequency_lap" in case["settled"] and "ramp" not in name]
+_SETTLED = [
+    name for name, case in _PLAIN.items() if "frequency_lap" in case["settled"] and "ramp" not in name
+]
 
 
 def _drag(**beside: Any) -> hersey.Drag:
