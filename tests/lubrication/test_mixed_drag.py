@@ -56,7 +56,7 @@ def _force(x: float) -> float:
 def force() -> CubicSpline:
     """Drag against the logarithm of belt speed at 100 degC, through the equations of the law."""
     eta = float(EXAMPLES["cylinder oil"].viscosity(373.15))
-    speeds = np.geomspace(2e-4, 0.6, 300)
+    speeds = np.geomspace(2e-4, 0.6, 400)
     return CubicSpline(np.log(speeds), [_force(eta * v) for v in speeds])
 
 
@@ -68,7 +68,7 @@ def test_the_force_is_that_of_the_equations(force: CubicSpline) -> None:
 def test_the_transition_is_the_least_force(force: CubicSpline) -> None:
     transition = _DRAG.transition_speed(373.15)
     assert float(force(np.log(transition), 1)) == pytest.approx(
-        0.0, abs=1e-5 * float(force(np.log(transition)))
+        0.0, abs=1e-4 * float(force(np.log(transition)))
     )
     assert transition == pytest.approx(float(_MIXED.transition(373.15).belt_speed), rel=1e-9)
 
@@ -90,7 +90,7 @@ def test_motion(force: CubicSpline, drive: float, static: float | None, rest: fl
 
     begin = (most + rest) / (11e3 * drive)
 
-    def up(t: float, y: np.ndarray) -> float:
+    def up(_: float, y: np.ndarray) -> float:
         return float(y[0] - 3e-4)
 
     up.terminal, up.direction = True, 1  # type: ignore[attr-defined]
@@ -99,7 +99,7 @@ def test_motion(force: CubicSpline, drive: float, static: float | None, rest: fl
     )
     first = out.t[-1]
 
-    def down(t: float, y: np.ndarray) -> float:
+    def down(_: float, y: np.ndarray) -> float:
         return float(y[0] - 3e-4)
 
     down.terminal, down.direction = True, -1  # type: ignore[attr-defined]
@@ -122,8 +122,10 @@ def test_a_course_of_temperature_keeps_the_energy_and_agrees_with_another_integr
     course = hersey.Schedule([0.0, 2.0], [373.15, 393.15])
     run = hersey.simulate(_TRAIN, drag, drive_speed=0.02, temperature=course, duration=2.0, check=True)
     assert abs(run.energy.residual) < 1e-8
-    assert run.check is not None and run.check.same_events
-    assert run.check.speed_difference is not None and run.check.speed_difference < 1e-6
+    assert run.check is not None
+    assert run.check.same_events
+    assert run.check.speed_difference is not None
+    assert run.check.speed_difference < 1e-6
 
 
 def test_a_drag_that_never_falls_is_refused() -> None:

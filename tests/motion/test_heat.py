@@ -54,7 +54,8 @@ def test_all_heat_is_accounted_for() -> None:
     """Friction, heater and losses make up what the two bodies hold more: closed, with no losses."""
     heat = replace(_HEAT, film_loss=0.0, roll_loss=0.0)
     run = hersey.simulate(_TRAIN, _DRAG, drive_speed=3.0, heat=heat, duration=20.0, samples=3, start="steady")
-    assert run.film_temperature is not None and run.roll_temperature is not None
+    assert run.film_temperature is not None
+    assert run.roll_temperature is not None
     gained = 20.0 * np.ptp(run.film_temperature[[0, -1]]) + 200.0 * np.ptp(run.roll_temperature[[0, -1]])
     assert gained == pytest.approx(100.0 * 20.0 + run.energy.dissipated, rel=1e-8)
 
@@ -63,7 +64,8 @@ def test_the_rest_of_the_drive_does_not_heat_the_film() -> None:
     heat = replace(_HEAT, film_loss=0.0, roll_loss=0.0)
     drag = replace(_DRAG, rest_force=10.0, rest_damping=2.0)
     run = hersey.simulate(_TRAIN, drag, drive_speed=3.0, heat=heat, duration=20.0, samples=3, start="steady")
-    assert run.film_temperature is not None and run.roll_temperature is not None
+    assert run.film_temperature is not None
+    assert run.roll_temperature is not None
     gained = 20.0 * np.ptp(run.film_temperature[[0, -1]]) + 200.0 * np.ptp(run.roll_temperature[[0, -1]])
     # at 3, 10 + 2 * 3 of the drag are the rest; the start of the swing moves the way by little
     assert gained == pytest.approx(2000.0 + run.energy.dissipated - 16.0 * 3.0 * 20.0, rel=1e-4)
@@ -73,7 +75,8 @@ def test_a_heater_holds_its_setpoint() -> None:
     heat = replace(_HEAT, setpoint=400.0, heater_power=2000.0, heater_gain=500.0)
     run = hersey.simulate(_TRAIN, _DRAG, drive_speed=0.0, heat=heat, duration=400.0, samples=401)
     film = run.film_temperature
-    assert film is not None and run.roll_temperature is not None
+    assert film is not None
+    assert run.roll_temperature is not None
     assert np.max(film) < 400.0
     # what is missing to the setpoint, times the gain, makes up what leaves the film's body
     leaving = 5.0 * (film[-1] - run.roll_temperature[-1]) + 0.3 * (film[-1] - 295.0)

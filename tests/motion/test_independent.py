@@ -134,7 +134,8 @@ def test_heat(case: dict[str, Any]) -> None:
         tolerance=1e-11,
     )
     at = np.rint(samples[:, 0] / case["duration"] * (count - 1)).astype(int)
-    assert run.film_temperature is not None and run.roll_temperature is not None
+    assert run.film_temperature is not None
+    assert run.roll_temperature is not None
     assert run.belt_speed[at] == pytest.approx(samples[:, 1], abs=1e-7)
     assert run.spring_force[at] == pytest.approx(samples[:, 2], abs=1e-7 * np.abs(samples[:, 2]).max())
     assert run.film_temperature[at] == pytest.approx(samples[:, 3], rel=1e-9)
