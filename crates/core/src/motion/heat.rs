@@ -134,6 +134,7 @@ impl<'a> Heat<'a> {
         }
     }
 
+    #[allow(clippy::float_cmp)] // a limit is reached by assigning it
     fn choose_heating(&mut self) {
         let Some((full, off)) = self.switches() else { return };
         let (now, rising) = (self.courses[0][0], self.courses[0][1] > 0.0);

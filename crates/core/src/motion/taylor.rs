@@ -205,12 +205,10 @@ pub(super) fn held_series(start: &SlipStart) -> Series {
         let holding = match start.sharing {
             Some(sharing) => {
                 let mut series = SharingSeries::starting(sharing, q[0]);
-                let mut force = [0.0; ORDER + 1];
-                force[0] = start.force;
-                for n in 1..=ORDER {
-                    force[n] = series.force(n, &q, &thermal.boundary);
-                }
-                force
+                std::array::from_fn(|n| match n {
+                    0 => start.force,
+                    _ => series.force(n, &q, &thermal.boundary),
+                })
             }
             None => composed(start.law, &q, start.force),
         };
