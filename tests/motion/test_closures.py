@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 import hersey
 from hersey.errors import ParameterError
@@ -119,3 +122,41 @@ def test_an_integrator_that_cannot_finish_says_so() -> None:
     assert run.check is not None
     assert run.check.speed_difference is None
     assert "steps" in run.check.note
+
+
+@pytest.mark.parametrize(("growth", "time", "drive_speed"), [(0.05, 1e-3, 0.5), (0.2, 0.1, 1.0)])
+def test_a_belt_that_stood_longer_is_harder_to_start(growth: float, time: float, drive_speed: float) -> None:
+    """Released when k w t = A (1 + g ln(1 + t/t_0)) - p_0, found here by a root of its own."""
+    plain = drag("stiction")
+    grown = replace(plain, static_growth=growth, static_growth_time=time)
+    run = hersey.simulate(TRAIN, grown, drive_speed=drive_speed, duration=6.0, check=True)
+    pairs = list(pairwise(run.events))
+    stops = [(a, b) for a, b in pairs if a.to_mode == "stuck" and b.guard == "holding_force"]
+    assert stops
+    for stop, release in stops:
+        held, pull = release.time - stop.time, 1000 * stop.stretch
+
+        def missing(t: float, pull: float = pull) -> float:
+            return pull + 1000 * drive_speed * t - grown.breakaway_force * (1 + growth * np.log1p(t / time))
+
+        assert held == pytest.approx(brentq(missing, 1e-9, 10.0, xtol=1e-14), rel=1e-9)
+        assert 1000 * release.stretch > grown.breakaway_force
+    assert abs(run.energy.residual) < 1e-8
+    assert run.check is not None
+    assert run.check.same_events
+    cycle = hersey.stick_slip(TRAIN, grown, drive_speed=drive_speed)
+    assert cycle.frequency < hersey.stick_slip(TRAIN, plain, drive_speed=drive_speed).frequency
+
+
+def test_a_static_force_must_exceed_the_drag_at_the_stick_speed() -> None:
+    plain = drag("retained")
+    sliding = float(plain.force(0.01))
+    with pytest.raises(ParameterError, match="breakaway_force is 125"):
+        replace(plain, static_force=sliding)
+    # as little as it may be above it, the belt is released where it was caught
+    for closure in ("retained", "stiction"):
+        near = replace(plain, static_force=1.0001 * sliding, closure=closure)
+        cycle = hersey.stick_slip(TRAIN, near, drive_speed=1.0)
+        assert cycle.stretch_max * 1000 < 1.2 * sliding
+    with pytest.raises(ParameterError, match="static_growth"):
+        replace(plain, static_growth=0.1)

@@ -1,7 +1,7 @@
 //! The drag law as an object that Python holds.
 
 use hersey_core::Error;
-use hersey_core::drag::{Closure, Drag, Rest, SpeedLaw, TemperatureLaw};
+use hersey_core::drag::{Closure, Drag, Rest, SpeedLaw, Strengthening, TemperatureLaw};
 use hersey_core::lubrication::mixed::{MixedLaw, Sharing};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
@@ -166,6 +166,12 @@ impl Law {
     /// The same law with another static force, unless there is none, and the rest of the drive beside it.
     fn with_common(&self, common: CommonArguments) -> PyResult<Self> {
         with_common(self.0.clone(), common).map(Self).map_err(raised)
+    }
+
+    /// The same law with a static force that grows with the time at rest.
+    fn with_strengthening(&self, growth: f64, time: f64) -> PyResult<Self> {
+        let strengthening = Strengthening { growth, time };
+        self.0.clone().with_strengthening(strengthening).map(Self).map_err(raised)
     }
 
     /// The law at one temperature.

@@ -94,6 +94,10 @@ class Drag(AnyDrag):
     ``rest_temperature_slope`` (relative, per K) with temperature; with ``lugre`` ``rest_damping`` is the
     viscous part beside the bristles.
 
+    While a belt stands its static force may grow, by ``static_growth`` (relative) per e-fold of the time
+    beyond ``static_growth_time`` (s): A (1 + growth ln(1 + t/time)), after Rabinowicz (1951) and Dieterich
+    (1972). Only with ``stiction`` does it stand.
+
     Raises
     ------
     ParameterError
@@ -116,12 +120,17 @@ class Drag(AnyDrag):
     rest_force: float = 0.0
     rest_damping: float = 0.0
     rest_temperature_slope: float = 0.0
+    static_growth: float = 0.0
+    static_growth_time: float | None = None
 
     def __post_init__(self) -> None:
         """Bring the values to SI if they come with units, and let the core check them."""
         temperatures = dict.fromkeys(("reference_temperature", "temperature_zero"), "temperature")
-        kinds = {"transition_force": "force", "transition_speed": "belt speed"}
+        kinds = {"transition_force": "force", "transition_speed": "belt speed", "static_growth_time": "time"}
         fields_in_si(self, {**kinds, **_KINDS, **temperatures})
+        if self.static_growth and (self.closure != "stiction" or self.static_growth_time is None):
+            needed = "static_growth_time" if self.closure == "stiction" else "closure 'stiction'"
+            raise ParameterError(f"static_growth is {self.static_growth:g}: it needs {needed}")
         self.law()
 
     @classmethod
@@ -172,6 +181,8 @@ class Drag(AnyDrag):
             float(self.stick_speed),
             (self.closure, self.bristle_stiffness, self.bristle_damping),
         ).with_common(_common(self))
+        if self.static_growth and self.static_growth_time is not None:
+            law = law.with_strengthening(float(self.static_growth), float(self.static_growth_time))
         if self.reference_temperature is None:
             return law
         reference = self.reference_temperature - self.temperature_zero
@@ -183,7 +194,15 @@ class Drag(AnyDrag):
         )
 
     def beside(self, sets: int) -> list[FloatArray] | None:
-        """Return `BESIDE`, each for so many sets; not a number where there is no static force."""
+        """Return `BESIDE`, each for so many sets; not a number where there is no static force.
+
+        Raises
+        ------
+        ParameterError
+            If the static force grows at rest, which sets of many have not.
+        """
+        if self.static_growth:
+            raise ParameterError("static_growth is of one belt: a sweep of many has no such parameter")
         if self.static_force is None and not self.rest_force and not self.rest_damping:
             return None
         force, rest, damping = _common(self)

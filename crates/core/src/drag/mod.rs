@@ -80,10 +80,30 @@ pub struct Drag {
     breakaway_force: f64,
     /// Speed over which drag falls by a factor `e` below the stick speed.
     decay_speed: f64,
+    strengthening: Option<Strengthening>,
     rest: Rest,
     /// Speed from which on all drag together rises.
     rising_from: f64,
     temperature_law: Option<TemperatureLaw>,
+}
+
+/// How the force that breaks a belt at rest away grows with the time at rest, with its logarithm.
+///
+/// E. Rabinowicz, J. Appl. Phys. 22 (1951) 1373; J. H. Dieterich, J. Geophys. Res. 77 (1972) 3690:
+/// `A (1 + growth ln(1 + t/time))`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Strengthening {
+    /// Relative growth per e-fold of time.
+    pub growth: f64,
+    /// Time from which on it grows.
+    pub time: f64,
+}
+
+impl Strengthening {
+    /// Factor of the static force after `rest` at rest.
+    pub(crate) fn at(&self, rest: f64) -> f64 {
+        1.0 + self.growth * (rest / self.time).ln_1p()
+    }
 }
 
 /// A contact whose load film and asperities share.
@@ -208,6 +228,7 @@ impl Drag {
             closure: Closure::Retained,
             breakaway_force: f64::NAN,
             decay_speed: f64::NAN,
+            strengthening: None,
             rest: Rest::default(),
             rising_from: f64::NAN,
             temperature_law: None,
@@ -237,6 +258,23 @@ impl Drag {
         self.breakaway_force = breakaway_force;
         self.check_rest()?;
         Ok(self)
+    }
+
+    /// The same law with a static force that grows while the belt stands; only `Stiction` lets it stand.
+    ///
+    /// # Errors
+    /// If growth is negative or time not positive.
+    pub fn with_strengthening(mut self, strengthening: Strengthening) -> Result<Self, Error> {
+        at_least("static_growth", strengthening.growth, 0.0)?;
+        above("static_growth_time", strengthening.time, 0.0)?;
+        self.strengthening = (strengthening.growth > 0.0).then_some(strengthening);
+        Ok(self)
+    }
+
+    /// How the static force grows at rest, if it does and a belt may rest.
+    #[must_use]
+    pub fn strengthening(&self) -> Option<Strengthening> {
+        self.strengthening.filter(|_| self.closure == Closure::Stiction)
     }
 
     /// The same law beside what else moves with the belt.
@@ -508,9 +546,24 @@ impl Drag {
 
     /// Drag of the contact below the stick speed and its slope, continued through zero speed.
     pub(crate) fn force_and_slope_below(&self, u: f64) -> (f64, f64) {
-        let exponential = self.exponential(u);
+        self.strengthened_below(u, 1.0)
+    }
+
+    /// The same after a rest that has made the static force `strength` times as large.
+    pub(crate) fn strengthened_below(&self, u: f64, strength: f64) -> (f64, f64) {
+        let decay_speed = self.strengthened_decay_speed(strength);
+        let exponential = strength * self.breakaway_force * (-u / decay_speed).exp();
         let (share, growth) = self.closure.smoothed(u / self.stick_speed);
-        (exponential * share, exponential * (growth / self.stick_speed - share / self.decay_speed))
+        (exponential * share, exponential * (growth / self.stick_speed - share / decay_speed))
+    }
+
+    /// Speed over which drag then falls by a factor `e`, to what it is at the stick speed in any case.
+    pub(crate) fn strengthened_decay_speed(&self, strength: f64) -> f64 {
+        if strength > 1.0 {
+            self.stick_speed / (self.stick_speed / self.decay_speed + strength.ln())
+        } else {
+            self.decay_speed
+        }
     }
 
     /// `A exp(-k u/v_s)` (Eq. 30, where k is 1).

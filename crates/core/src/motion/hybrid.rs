@@ -92,6 +92,7 @@ impl<'a> Motion<'a> {
         self.next_step = f64::INFINITY;
         self.bend_bristles();
         self.take_grip();
+        (self.phase.at_rest_since, self.phase.strength) = (time, 1.0);
         self.enter_mode_at_start();
     }
 
@@ -196,6 +197,9 @@ impl<'a> Motion<'a> {
         let from = self.phase.mode;
         self.now.take_temperature();
         self.cross(guard);
+        if self.phase.mode == Mode::Stuck && from != Mode::Stuck {
+            self.phase.at_rest_since = self.now.time;
+        }
         self.events_at_once = if self.now.time > before { 0 } else { self.events_at_once + 1 };
         if self.events_at_once > MAX_EVENTS_AT_ONCE {
             return Err(Error::Chattering { guard: guard.name(), time: self.now.time });
@@ -224,6 +228,17 @@ impl<'a> Motion<'a> {
         self.now.rate(self.phase.direction)
     }
 
+    /// Factor of the static force of a belt that has stood until now.
+    pub(super) fn strength_now(&self) -> f64 {
+        let at_rest = self.now.time - self.phase.at_rest_since;
+        self.now.system.drag.strengthening().map_or(1.0, |strengthening| strengthening.at(at_rest))
+    }
+
+    /// What can hold the stuck belt now.
+    pub(super) fn holding_force(&self) -> f64 {
+        self.now.strengthened_holding_force(self.phase.speed, self.strength_now())
+    }
+
     /// What the pull loses per length that the belt moves: the stiffness of the spring, nil while the roll slips.
     pub(super) fn stiffness(&self) -> f64 {
         if self.phase.slipping { 0.0 } else { self.now.system.train.stiffness() }
@@ -240,6 +255,8 @@ fn phase_at(start: Start, pull: f64) -> Phase {
         released: false,
         creeping: false,
         slipping: false,
+        at_rest_since: 0.0,
+        strength: 1.0,
         direction,
         pull: direction * pull,
         speed: direction * start.belt_speed,

@@ -108,6 +108,9 @@ impl Motion<'_> {
     pub(super) fn cross(&mut self, guard: Guard) {
         let crept = self.phase.creeping;
         (self.phase.released, self.phase.creeping) = (false, false);
+        if !matches!(guard, Guard::GripLost | Guard::GripRegained) {
+            self.phase.strength = 1.0;
+        }
         self.next_step = f64::INFINITY;
         self.phase.mode = match (guard, self.phase.mode) {
             (Guard::TransitionSpeed | Guard::TablePoint, _) => self.over_knot(),
@@ -175,7 +178,8 @@ impl Motion<'_> {
     /// Leave the stuck phase with the spring force exactly at the holding force.
     fn released(&mut self) -> Mode {
         let drag = &self.now.system.drag;
-        self.phase.pull = self.now.holding_force(self.phase.speed).copysign(self.phase.pull);
+        self.phase.strength = self.strength_now();
+        self.phase.pull = self.holding_force().copysign(self.phase.pull);
         let forward = self.phase.pull > 0.0;
         if self.phase.speed == 0.0 && !forward {
             self.mirror();

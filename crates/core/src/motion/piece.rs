@@ -19,6 +19,9 @@ pub(super) struct Phase {
     pub creeping: bool,
     /// The roll slips on the belt: the pull keeps at what the grip bears.
     pub slipping: bool,
+    /// When the belt came to rest, and by how much that has made the static force larger at the release.
+    pub at_rest_since: f64,
+    pub strength: f64,
     pub direction: f64,
     pub pull: f64,
     pub speed: f64,

@@ -25,6 +25,8 @@ pub(super) struct Flow<'a> {
     pub rate: Cubic,
     pub stiffness: f64,
     pub mass: f64,
+    /// Factor of the static force, of a belt that has been released after a rest.
+    pub strength: f64,
 }
 
 impl Flow<'_> {
@@ -66,7 +68,7 @@ impl Flow<'_> {
         let (f, slope) = if let Some(branch) = self.branch {
             self.drag.branch_force_and_slope(branch, x, self.boundary_factor(t))
         } else {
-            self.drag.force_and_slope_below(x)
+            self.drag.strengthened_below(x, self.strength)
         };
         let force = if self.branch.is_some() { force } else { self.below_factor(t) };
         (force * f, force * slope / speed)

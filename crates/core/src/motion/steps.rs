@@ -3,12 +3,14 @@
 use super::event::ROUNDING;
 use super::hybrid::Motion;
 use super::piece::{Path, Phase, Piece};
-use super::polynomial::first_crossing;
+use super::polynomial::{INVERSE, ORDER, Polynomial, first_crossing};
 use super::runge_kutta::{Flow, Formula, growth};
 use super::sharing::SharingStart;
 use super::system::Integrator;
-use super::taylor::{Recurrence, Series, Slip, SlipStart, creep_series, held_series};
-use crate::drag::{Closure, Mode};
+use super::taylor::{
+    Recurrence, Series, Slip, SlipStart, UNCHANGED, creep_series, held_series, product,
+};
+use crate::drag::{Closure, Mode, Strengthening};
 use crate::error::Error;
 
 /// Longest step in units of `sqrt(m/k)`, about half a period of the free oscillation.
@@ -64,6 +66,9 @@ impl<'a> Motion<'a> {
     /// The held belt keeps its speed while the pull grows.
     fn held_piece(&self, longest: f64) -> Piece<'a> {
         let series = held_series(&self.slip_start());
+        if let Some(strengthening) = self.now.system.drag.strengthening() {
+            return self.strengthening_piece(series, &strengthening, longest);
+        }
         let duration = match &self.now.thermal {
             // the guard is found inside the piece, of which it must not be too small a part
             None if self.is_driven_evenly() && longest > FAR * self.release_time() => {
@@ -86,6 +91,35 @@ impl<'a> Motion<'a> {
                 passing.unwrap_or(good)
             }
         };
+        self.along(series, duration)
+    }
+
+    /// The same while what holds the belt grows with the time that it has stood.
+    #[allow(clippy::large_types_passed_by_value)] // it moves into the piece
+    fn strengthening_piece(
+        &self,
+        mut series: Series,
+        strengthening: &Strengthening,
+        longest: f64,
+    ) -> Piece<'a> {
+        let strength = self.strength_now();
+        let age = strengthening.time + self.now.time - self.phase.at_rest_since;
+        // the rest of the drive does not grow
+        let mut rest = self.now.thermal.as_ref().map_or(UNCHANGED, |thermal| thermal.rest);
+        rest = rest.map(|c| c * self.now.system.drag.rest().force);
+        let contact: Polynomial = std::array::from_fn(|n| (series.drag[n] - rest[n]) / strength);
+        let mut growing = [0.0; ORDER + 1];
+        growing[0] = strength;
+        let mut power = -strengthening.growth;
+        for (c, per) in growing.iter_mut().zip(INVERSE).skip(1) {
+            power /= -age;
+            *c = power * per;
+        }
+        let first = series.drag[0];
+        series.drag = std::array::from_fn(|n| product(&contact, &growing, n) + rest[n]);
+        series.drag[0] = first;
+        let holding = Series { pull: series.drag, ..series };
+        let duration = holding.step_size(self.tolerance, first, 1.0).min(longest);
         self.along(series, duration)
     }
 
@@ -112,7 +146,7 @@ impl<'a> Motion<'a> {
     fn release_time(&self) -> f64 {
         let Phase { pull, speed, .. } = self.phase;
         let rate = self.rate()[0] - self.stiffness() * speed;
-        let limit = self.now.holding_force(speed);
+        let limit = self.holding_force();
         if rate == 0.0 { f64::INFINITY } else { ((limit.copysign(rate) - pull) / rate).max(0.0) }
     }
 
@@ -166,7 +200,15 @@ impl<'a> Motion<'a> {
             Some(branch) => {
                 (drag.branch_force(branch, x), Recurrence::power(drag.branch_exponent(branch), x))
             }
-            None => (drag.exponential(x), Recurrence::exponential(drag.decay_speed())),
+            None if mode == Mode::Stuck => {
+                let strength = self.strength_now();
+                (strength * drag.exponential(x), Recurrence::exponential(drag.decay_speed()))
+            }
+            None => {
+                let decay_speed = drag.strengthened_decay_speed(self.phase.strength);
+                let base = self.phase.strength * drag.breakaway_force() * (-x / decay_speed).exp();
+                (base, Recurrence::exponential(decay_speed))
+            }
         };
         let drag_now = match on_branch {
             Some(branch) if sharing.is_some() => self.now.branch_drag(branch, speed),
@@ -220,6 +262,7 @@ impl<'a> Motion<'a> {
             rate: self.rate(),
             stiffness: self.stiffness(),
             mass: self.now.system.train.mass(),
+            strength: self.phase.strength,
         }
     }
 

@@ -151,13 +151,20 @@ impl<'a> Surroundings<'a> {
 
     /// What can hold a belt at `speed`; a law that moves may leave a held belt above the stick speed.
     pub(super) fn holding_force(&self, speed: f64) -> f64 {
+        self.strengthened_holding_force(speed, 1.0)
+    }
+
+    /// The same after a rest that has made the static force `strength` times as large.
+    pub(super) fn strengthened_holding_force(&self, speed: f64, strength: f64) -> f64 {
         let (drag, x) = (&self.system.drag, self.at_reference(speed));
         // a belt that has come down to the stick speed may lie above it by rounding
         if x > drag.stick_speed() * (1.0 + ROUNDING) {
             return self.contact_drag(speed) + self.rest(speed);
         }
         match drag.closure() {
-            Closure::Stiction => self.force_below(drag.breakaway_force()) + self.rest(0.0),
+            Closure::Stiction => {
+                self.force_below(strength * drag.breakaway_force()) + self.rest(0.0)
+            }
             _ => self.force_below(drag.exponential(x)) + self.rest(speed),
         }
     }

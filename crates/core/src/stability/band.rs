@@ -179,7 +179,10 @@ fn half_lap_folds(
     tolerance: f64,
     work: &Work,
 ) -> Result<Vec<Option<Fold>>, Error> {
-    let sharp = |drag: &Drag| matches!(drag.closure(), Closure::Retained | Closure::Stiction);
+    let sharp = |drag: &Drag| {
+        matches!(drag.closure(), Closure::Retained | Closure::Stiction)
+            && drag.strengthening().is_none()
+    };
     let (places, known): (Vec<usize>, Vec<SlipLap>) = laps
         .iter()
         .enumerate()
