@@ -120,7 +120,13 @@ impl MixedContact {
         Ok((above("transition_speed", transition.product / self.viscosity, 0.0)?, transition.force))
     }
 
+    #[inline(never)]
+    fn force(&self, u: f64) -> f64 {
+        self.law.force(self.viscosity * u)
+    }
+
     /// Force and slope at `u`, boundary friction being `boundary` times as large.
+    #[inline(never)]
     fn force_and_slope(&self, u: f64, boundary: f64) -> (f64, f64) {
         let (force, slope) =
             self.law.with_forces(1.0, boundary).force_and_slope(self.viscosity * u);
@@ -351,8 +357,8 @@ impl Drag {
 
     /// How the law varies with temperature, if it does.
     #[must_use]
-    pub fn temperature_law(&self) -> Option<TemperatureLaw> {
-        self.temperature_law
+    pub fn temperature_law(&self) -> Option<&TemperatureLaw> {
+        self.temperature_law.as_ref()
     }
 
     /// Speed `v_t` where the mixed and the EHL branch meet.
@@ -550,6 +556,7 @@ impl Drag {
     }
 
     /// The same after a rest that has made the static force `strength` times as large.
+    #[inline]
     pub(crate) fn strengthened_below(&self, u: f64, strength: f64) -> (f64, f64) {
         let decay_speed = self.strengthened_decay_speed(strength);
         let exponential = strength * self.breakaway_force * (-u / decay_speed).exp();
@@ -558,6 +565,7 @@ impl Drag {
     }
 
     /// Speed over which drag then falls by a factor `e`, to what it is at the stick speed in any case.
+    #[inline]
     pub(crate) fn strengthened_decay_speed(&self, strength: f64) -> f64 {
         if strength > 1.0 {
             self.stick_speed / (self.stick_speed / self.decay_speed + strength.ln())
@@ -607,7 +615,7 @@ impl Drag {
     /// Drag of the contact on `branch` at `u`, exact at the knots on either side of it.
     pub(crate) fn branch_force(&self, branch: usize, u: f64) -> f64 {
         if let Some(mixed) = &self.mixed {
-            return mixed.law.force(mixed.viscosity * u);
+            return mixed.force(u);
         }
         if let Some((speed, force)) = self.knots.get(branch)
             && u.total_cmp(speed).is_eq()
@@ -619,6 +627,7 @@ impl Drag {
     }
 
     /// The same with its slope, boundary friction being `boundary` times as large.
+    #[inline]
     pub(crate) fn branch_force_and_slope(
         &self,
         branch: usize,

@@ -5,7 +5,7 @@
 
 use super::event::{Event, Guard};
 use super::piece::{Phase, Piece};
-use super::polynomial::value;
+use super::polynomial::{ORDER, Polynomial, value};
 use super::schedule::Cubic;
 use super::surroundings::Surroundings;
 use super::system::{Integrator, Start, System, checked_tolerance};
@@ -54,6 +54,8 @@ pub(super) struct Motion<'a> {
     pub work: &'a Work<'a>,
     /// Kinetic energy lost by stopping dead.
     pub stopped: f64,
+    /// Temperatures along the last piece, if they are states.
+    pub temperatures: [Polynomial; 2],
 }
 
 impl<'a> Motion<'a> {
@@ -75,6 +77,7 @@ impl<'a> Motion<'a> {
             steps: 0,
             work,
             stopped: 0.0,
+            temperatures: [[0.0; ORDER + 1]; 2],
         };
         motion.bend_bristles();
         motion.take_grip();
@@ -130,6 +133,7 @@ impl<'a> Motion<'a> {
     }
 
     /// The next piece at the temperature that its own friction makes: made anew until it is.
+    #[cold]
     fn warmed_piece(&mut self, mut longest: f64) -> Result<Piece<'a>, Error> {
         let (step, tolerance) = (self.next_step, self.tolerance);
         for _ in 0..MAX_ROUNDS {
@@ -155,7 +159,7 @@ impl<'a> Motion<'a> {
             self.now.take_temperature();
             if off <= SAME_TEMPERATURE && piece.duration <= good {
                 self.check_law(piece.duration)?;
-                piece.temperatures = Some(Box::new(courses));
+                self.temperatures = courses;
                 return Ok(piece);
             }
         }
@@ -219,11 +223,13 @@ impl<'a> Motion<'a> {
     }
 
     /// Rate of the pull if the belt stood still, about now, mirrored; nil while the roll slips.
+    #[inline]
     pub(super) fn rate(&self) -> Cubic {
         if self.phase.slipping { [0.0; 4] } else { self.drive_rate() }
     }
 
     /// The same if the roll gripped the belt.
+    #[inline]
     pub(super) fn drive_rate(&self) -> Cubic {
         self.now.rate(self.phase.direction)
     }
@@ -240,6 +246,7 @@ impl<'a> Motion<'a> {
     }
 
     /// What the pull loses per length that the belt moves: the stiffness of the spring, nil while the roll slips.
+    #[inline]
     pub(super) fn stiffness(&self) -> f64 {
         if self.phase.slipping { 0.0 } else { self.now.system.train.stiffness() }
     }

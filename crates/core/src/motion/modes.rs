@@ -31,6 +31,7 @@ impl Motion<'_> {
     }
 
     /// Lose or regain the roll's grip on the belt; the mode of the belt stays.
+    #[cold]
     fn change_grip(&mut self, lost: bool, crept: bool) -> Mode {
         let towards = self.phase.pull.signum();
         self.phase.pull = towards * self.now.system.train.grip();

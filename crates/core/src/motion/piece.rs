@@ -53,8 +53,8 @@ pub(super) struct Piece<'a> {
     pub start: Phase,
     pub flow: Flow<'a>,
     pub path: Path,
-    /// Temperatures along the piece, if they are states.
-    pub temperatures: Option<Box<[Polynomial; 2]>>,
+    /// Whether the temperature is a state, known to its series only.
+    pub heated: bool,
 }
 
 /// A quantity that is positive while the motion goes on.
@@ -100,9 +100,12 @@ impl Piece<'_> {
         (self.start.direction * speed, self.start.direction * pull)
     }
 
-    /// Drag at `elapsed` since the start, from the law itself; `pull` and `speed` are signed, as the result.
+    /// Drag at `elapsed` since the start, from the law itself, unless the temperature is a state; `pull` and `speed` are signed, as the result.
     pub(super) fn friction(&self, elapsed: f64, pull: f64, speed: f64) -> f64 {
         let d = self.start.direction;
+        if let (true, Path::Series(series)) = (self.heated, &self.path) {
+            return d * value(&series.drag, elapsed);
+        }
         let bristle = match self.path {
             Path::Series(_) => self.start.bristle,
             Path::Steps { .. } => self.state(elapsed)[2],

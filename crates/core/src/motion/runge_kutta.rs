@@ -5,7 +5,6 @@
 //! G. Wanner, "Solving Ordinary Differential Equations II" (1996), IV.5; Dormand and Prince, J. Comput.
 //! Appl. Math. 6 (1980).
 
-use super::polynomial::{Polynomial, value};
 use super::schedule::Cubic;
 use crate::drag::{Closure, Drag, TemperatureLaw};
 
@@ -21,7 +20,7 @@ pub(super) struct Flow<'a> {
     /// Branch of the law, or none below the stick speed.
     pub branch: Option<usize>,
     /// Temperature and how the law varies with it.
-    pub temperature_law: Option<(Polynomial, TemperatureLaw)>,
+    pub temperature_law: Option<(Cubic, &'a TemperatureLaw)>,
     pub rate: Cubic,
     pub stiffness: f64,
     pub mass: f64,
@@ -31,18 +30,20 @@ pub(super) struct Flow<'a> {
 
 impl Flow<'_> {
     /// Factors of forces and speeds at time `t`.
+    #[inline]
     pub(super) fn factors(&self, t: f64) -> (f64, f64) {
         self.temperature_law.map_or((1.0, 1.0), |(temperature, temperature_law)| {
-            let temperature = value(&temperature, t);
+            let temperature = horner(&temperature, t);
             let speed = temperature_law.speed_factor(temperature).unwrap_or(f64::NAN);
             (temperature_law.force_factor(temperature), speed)
         })
     }
 
     /// Factor of boundary friction at time `t`.
+    #[inline]
     fn boundary_factor(&self, t: f64) -> f64 {
         self.temperature_law.map_or(1.0, |(temperature, temperature_law)| {
-            temperature_law.boundary_factor(value(&temperature, t)).unwrap_or(f64::NAN)
+            temperature_law.boundary_factor(horner(&temperature, t)).unwrap_or(f64::NAN)
         })
     }
 
@@ -55,13 +56,15 @@ impl Flow<'_> {
     }
 
     /// Factor of the rest of the drive at time `t`.
+    #[inline]
     pub(super) fn rest_factor(&self, t: f64) -> f64 {
         self.temperature_law.map_or(1.0, |(temperature, temperature_law)| {
-            temperature_law.rest_factor(value(&temperature, t)).unwrap_or(f64::NAN)
+            temperature_law.rest_factor(horner(&temperature, t)).unwrap_or(f64::NAN)
         })
     }
 
     /// Steady drag of the contact at `u` and its slope.
+    #[inline]
     fn contact_drag(&self, t: f64, u: f64) -> (f64, f64) {
         let (force, speed) = self.factors(t);
         let x = u / speed;
@@ -79,6 +82,9 @@ impl Flow<'_> {
         let (contact, slope) = self.contact_drag(t, y[1]);
         let rest = self.drag.rest().scaled(self.rest_factor(t));
         let Closure::LuGre { bristle_stiffness, bristle_damping } = self.drag.closure() else {
+            if rest.is_none() {
+                return ([contact, slope, 0.0], [0.0; 3]);
+            }
             let (_, speed) = self.factors(t);
             let (share, growth) = if self.branch.is_some() {
                 (1.0, 0.0)

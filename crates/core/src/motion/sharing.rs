@@ -12,25 +12,24 @@ use crate::lubrication::mixed::{Sharing, asperity_integral};
 
 /// The contact at the start of a step.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct SharingStart {
-    law: Sharing,
-    /// `X` per speed of the law.
-    per_speed: f64,
+pub(super) struct SharingStart<'a> {
+    contact: &'a MixedContact,
     lambda: f64,
 }
 
-impl SharingStart {
+impl<'a> SharingStart<'a> {
     /// The contact at a speed of the law.
-    pub(super) fn at(contact: &MixedContact, speed: f64) -> Self {
-        let law = contact.law.sharing();
-        let lambda = contact.law.lambda(contact.viscosity * speed);
-        Self { law, per_speed: contact.viscosity / law.reference, lambda }
+    #[inline(never)]
+    pub(super) fn at(contact: &'a MixedContact, speed: f64) -> Self {
+        Self { contact, lambda: contact.law.lambda(contact.viscosity * speed) }
     }
 }
 
 /// The series, as far as they are known.
 pub(super) struct SharingSeries {
-    start: SharingStart,
+    law: Sharing,
+    /// `X` per speed of the law.
+    per_speed: f64,
     lambda: Polynomial,
     share: Polynomial,
     film: Polynomial,
@@ -48,7 +47,9 @@ pub(super) struct SharingSeries {
 
 impl SharingSeries {
     pub(super) fn starting(start: SharingStart, speed: f64) -> Self {
-        let SharingStart { law, lambda, per_speed } = start;
+        let SharingStart { contact, lambda } = start;
+        let law = contact.law.sharing();
+        let per_speed = contact.viscosity / law.reference;
         let (integral, slope) = asperity_integral(lambda);
         let of = |first: f64| {
             let mut c = [0.0; ORDER + 1];
@@ -60,7 +61,8 @@ impl SharingSeries {
         let film = (x.powf(law.film_exponent) / lambda).powf(1.0 / law.load_exponent);
         let zero = [0.0; ORDER + 1];
         Self {
-            start,
+            law,
+            per_speed,
             lambda: of(lambda),
             share: of(law.stiffness * integral),
             film: of(film),
@@ -76,7 +78,7 @@ impl SharingSeries {
     /// Coefficient `n > 0` of the force along the speed `q`, known up to there; `boundary` is the factor of boundary
     /// friction.
     pub(super) fn force(&mut self, n: usize, q: &Polynomial, boundary: &Polynomial) -> f64 {
-        let law = self.start.law;
+        let law = self.law;
         let j = n - 1;
         let rest: f64 = (0..j).map(|i| self.growth[i] * q[j - i]).sum();
         self.growth[j] = (POWERS[n] * q[n] - rest) / q[0];
@@ -96,12 +98,12 @@ impl SharingSeries {
         (self.share[n], self.film[n]) = (share, -share);
         let thin: f64 = (0..n).map(|i| self.thinness[i] * self.lambda[n - i]).sum();
         self.thinness[n] = (q[n] - thin) / self.lambda[0];
-        let shear = law.shear * self.start.per_speed * self.thinness[n];
+        let shear = law.shear * self.per_speed * self.thinness[n];
         law.boundary * product(&self.share, boundary, n) + shear + self.rolling(n)
     }
 
     fn rolling(&mut self, n: usize) -> f64 {
-        let law = self.start.law;
+        let law = self.law;
         if law.rolling == 0.0 {
             return 0.0;
         }

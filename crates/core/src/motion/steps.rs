@@ -5,12 +5,13 @@ use super::hybrid::Motion;
 use super::piece::{Path, Phase, Piece};
 use super::polynomial::{INVERSE, ORDER, Polynomial, first_crossing};
 use super::runge_kutta::{Flow, Formula, growth};
+use super::schedule::Cubic;
 use super::sharing::SharingStart;
 use super::system::Integrator;
 use super::taylor::{
     Recurrence, Series, Slip, SlipStart, UNCHANGED, creep_series, held_series, product,
 };
-use crate::drag::{Closure, Mode, Strengthening};
+use crate::drag::{Closure, Mode, Strengthening, TemperatureLaw};
 use crate::error::Error;
 
 /// Longest step in units of `sqrt(m/k)`, about half a period of the free oscillation.
@@ -96,6 +97,7 @@ impl<'a> Motion<'a> {
 
     /// The same while what holds the belt grows with the time that it has stood.
     #[allow(clippy::large_types_passed_by_value)] // it moves into the piece
+    #[cold]
     fn strengthening_piece(
         &self,
         mut series: Series,
@@ -133,7 +135,7 @@ impl<'a> Motion<'a> {
             start: self.phase,
             flow: self.flow(),
             path,
-            temperatures: None,
+            heated: self.now.heat.is_some(),
         }
     }
 
@@ -252,13 +254,19 @@ impl<'a> Motion<'a> {
         self.along(series, duration)
     }
 
+    /// Course of the temperature as far as steps follow it, and how the law varies with it.
+    fn cubic_law(&self) -> Option<(Cubic, &'a TemperatureLaw)> {
+        let (course, law) = self.now.temperature_law()?;
+        Some(([course[0], course[1], course[2], course[3]], law))
+    }
+
     /// The equation of motion from here.
     fn flow(&self) -> Flow<'a> {
         let sliding = matches!(self.phase.mode, Mode::Ehl | Mode::Mixed);
         Flow {
             drag: &self.now.system.drag,
             branch: sliding.then_some(self.phase.branch),
-            temperature_law: self.now.temperature_law(),
+            temperature_law: self.cubic_law(),
             rate: self.rate(),
             stiffness: self.stiffness(),
             mass: self.now.system.train.mass(),
@@ -308,7 +316,7 @@ impl<'a> Motion<'a> {
             start: self.phase,
             flow,
             path,
-            temperatures: None,
+            heated: self.now.heat.is_some(),
         })
     }
 }

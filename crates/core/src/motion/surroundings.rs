@@ -89,7 +89,7 @@ impl<'a> Surroundings<'a> {
     }
 
     /// Course of the temperature from now on, and how the law varies with it.
-    pub(super) fn temperature_law(&self) -> Option<(Polynomial, TemperatureLaw)> {
+    pub(super) fn temperature_law(&self) -> Option<(Polynomial, &'a TemperatureLaw)> {
         let course = if let Some(heat) = &self.heat {
             heat.course_of_law()
         } else {
@@ -112,9 +112,12 @@ impl<'a> Surroundings<'a> {
     /// Take the law as it is now.
     #[inline]
     pub(super) fn take_temperature(&mut self) {
+        if self.heat.is_none() && self.system.temperature.is_none() {
+            return; // nothing to take, and the factors are large
+        }
         self.thermal = self.temperature_law().map(|(temperature, law)| {
             let share = self.system.drag.boundary_share();
-            ThermalFactors::new(&law, share, &temperature).unwrap_or(STEADY)
+            ThermalFactors::new(law, share, &temperature).unwrap_or(STEADY)
         });
     }
 

@@ -64,7 +64,7 @@ pub(super) struct SlipStart<'a> {
     pub total: f64,
     pub law: Recurrence,
     /// What stands in for `law` where film and asperities share the load.
-    pub sharing: Option<SharingStart>,
+    pub sharing: Option<SharingStart<'a>>,
     pub rest: Rest,
     pub thermal: Option<&'a ThermalFactors>,
     /// Whether the law is that below the stick speed.
@@ -136,6 +136,7 @@ fn plain_series(start: &SlipStart) -> Series {
 
 /// The same with the rest of the drive, and a law that moves with temperature: its speeds enter as `q = u/v(T)`, its
 /// forces as a factor.
+#[inline(never)]
 fn full_series(start: &SlipStart, thermal: Option<&ThermalFactors>) -> Series {
     let (mut p, mut u, mut f) = ([0.0; ORDER + 1], [0.0; ORDER + 1], [0.0; ORDER + 1]);
     let (mut q, mut rate, mut g) = ([0.0; ORDER + 1], [0.0; ORDER + 1], [0.0; ORDER + 1]);

@@ -25,6 +25,7 @@ pub(super) struct ThermalFactors {
 impl ThermalFactors {
     /// From the course of the temperature, and the share of boundary friction in the drag at the stick speed; none where
     /// a viscosity ends.
+    #[inline(never)]
     pub(super) fn new(
         law: &TemperatureLaw,
         boundary_share: f64,

@@ -112,7 +112,8 @@ pub fn simulate(
         }
         mode.resize(begin + count, piece.start.mode);
         slipping.resize(begin + count, piece.start.slipping);
-        if let Some(courses) = &piece.temperatures {
+        if piece.heated {
+            let courses = &motion.temperatures;
             temperature
                 .extend(elapsed.iter().map(|t| [value(&courses[0], *t), value(&courses[1], *t)]));
         }
