@@ -256,7 +256,9 @@ impl<'a> Laps<'a> {
     fn end_without_lap(&self, piece: &Piece) -> Option<StickSlipCycle> {
         if piece.start.slipping && (piece.duration.is_infinite() || has_come_to_slip(piece)) {
             let (belt_speed, pull) = piece.at(0.0);
-            let (stretch, stuck) = (pull / self.train.stiffness(), piece.start.mode == Mode::Stuck);
+            let stretch = pull / self.train.stiffness();
+            let creeps = self.memory && piece.start.mode == Mode::Microslip;
+            let stuck = piece.start.mode == Mode::Stuck || creeps;
             return Some(StickSlipCycle::slipping(belt_speed, stuck, stretch, self.count));
         }
         let still = piece.duration.is_infinite()
@@ -402,6 +404,10 @@ fn is_steady(piece: &Piece, train: &Drivetrain, drag: &Drag, drive_speed: f64) -
 fn has_come_to_slip(piece: &Piece) -> bool {
     let Phase { pull, speed, mode, .. } = piece.start;
     let drag = piece.flow.drag;
+    if drag.closure().has_memory() && mode == Mode::Microslip {
+        // bristles bear what the grip does, and creep no more
+        return speed <= STEADY * drag.stick_speed();
+    }
     let slope = drag.slope(speed);
     mode != Mode::Stuck && slope > 0.0 && (pull - drag.force(speed)).abs() <= STEADY * slope * speed
 }

@@ -146,12 +146,13 @@ impl<'a> Heat<'a> {
         };
     }
 
-    /// Temperatures from `time` on under the heat of friction, and how long they are good for: to the precision asked
-    /// for, and until the heater changes its law.
+    /// Temperatures from `time` on under the heat of friction, and how long their first `terms` powers are good for: to the
+    /// precision asked for, and until the heater changes its law.
     pub(super) fn foreseen(
         &self,
         time: f64,
         friction: &Polynomial,
+        terms: usize,
         tolerance: f64,
     ) -> ([Polynomial; 2], f64) {
         let b = self.balance;
@@ -181,9 +182,11 @@ impl<'a> Heat<'a> {
         }
         let mut good = f64::INFINITY;
         for course in &t {
-            let last = (course[ORDER] / course[0]).abs();
-            if last > 0.0 {
-                good = good.min(rough_root(tolerance / last, ORDER as u64));
+            for power in [terms, ORDER] {
+                let last = (course[power] / course[0]).abs();
+                if last > 0.0 {
+                    good = good.min(rough_root(tolerance / last, power as u64));
+                }
             }
         }
         (t, good.min(self.until_switched(&t[0], good)))

@@ -4,7 +4,7 @@
 //! other quantity is mirrored with it, so that speed `u >= 0` here and one set of guards serves both.
 
 use super::event::{Event, Guard};
-use super::piece::{Phase, Piece};
+use super::piece::{Path, Phase, Piece};
 use super::polynomial::{ORDER, Polynomial, value};
 use super::schedule::Cubic;
 use super::surroundings::Surroundings;
@@ -142,7 +142,9 @@ impl<'a> Motion<'a> {
             let heat_of_contact = piece.heat_of_contact();
             let time = self.now.time;
             let Some(heat) = &mut self.now.heat else { return Ok(piece) };
-            let (courses, good) = heat.foreseen(time, &heat_of_contact, tolerance);
+            // steps follow a cubic
+            let terms = if matches!(piece.path, Path::Steps { .. }) { 4 } else { ORDER };
+            let (courses, good) = heat.foreseen(time, &heat_of_contact, terms, tolerance);
             if piece.duration > good {
                 (piece.duration, longest) = (good, good);
             }
@@ -164,6 +166,13 @@ impl<'a> Motion<'a> {
             }
         }
         Err(Error::Stalled { time: self.now.time })
+    }
+
+    /// The temperature that the law followed along the last piece, in its scale.
+    pub(super) fn law_temperature(&self) -> Polynomial {
+        let mut course = self.temperatures[0];
+        course[0] -= self.now.system.heat.as_ref().map_or(0.0, |heat| heat.temperature_zero);
+        course
     }
 
     /// Refuse temperatures at which the law of drag has ended.

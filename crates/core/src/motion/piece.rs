@@ -100,17 +100,26 @@ impl Piece<'_> {
         (self.start.direction * speed, self.start.direction * pull)
     }
 
-    /// Drag at `elapsed` since the start, from the law itself, unless the temperature is a state; `pull` and `speed` are signed, as the result.
+    /// Drag at `elapsed` since the start, from the law itself; `pull` and `speed` are signed, as the result.
     pub(super) fn friction(&self, elapsed: f64, pull: f64, speed: f64) -> f64 {
+        self.friction_of(&self.flow, elapsed, pull, speed)
+    }
+
+    /// The same at a temperature of the law, where that is a state.
+    pub(super) fn friction_at(&self, temperature: f64, elapsed: f64, pull: f64, speed: f64) -> f64 {
+        let mut flow = self.flow;
+        flow.temperature_law =
+            flow.temperature_law.map(|(_, law)| ([temperature, 0.0, 0.0, 0.0], law));
+        self.friction_of(&flow, elapsed, pull, speed)
+    }
+
+    fn friction_of(&self, flow: &Flow, elapsed: f64, pull: f64, speed: f64) -> f64 {
         let d = self.start.direction;
-        if let (true, Path::Series(series)) = (self.heated, &self.path) {
-            return d * value(&series.drag, elapsed);
-        }
         let bristle = match self.path {
             Path::Series(_) => self.start.bristle,
             Path::Steps { .. } => self.state(elapsed)[2],
         };
-        d * self.flow.force(elapsed, &[d * pull, d * speed, bristle])
+        d * flow.force(elapsed, &[d * pull, d * speed, bristle])
     }
 
     /// When `condition` ends first within the piece.

@@ -87,9 +87,10 @@ impl<'a> Motion<'a> {
                 let side = if self.now.held_fast(self.phase.speed) { -1.0 } else { 1.0 };
                 let mut gap = thermal.speed.map(|c| side * v_s * c);
                 gap[0] -= side * speed;
-                let apart = gap[0] > ROUNDING * speed;
-                let passing = if apart { first_crossing(&gap, good) } else { None };
-                passing.unwrap_or(good)
+                if gap[0] <= ROUNDING * speed {
+                    gap[0] = 0.0; // it leaves the belt now, and may come back
+                }
+                first_crossing(&gap, good).filter(|passing| *passing > 0.0).unwrap_or(good)
             }
         };
         self.along(series, duration)

@@ -3,7 +3,7 @@
 use super::event::Event;
 use super::hybrid::Motion;
 use super::piece::{GAUSS, Path, Piece};
-use super::polynomial::{ORDER, fused, value};
+use super::polynomial::{ORDER, Polynomial, fused, value};
 use super::schedule::Cubic;
 use super::system::{Drive, Integrator, Start, System};
 use super::taylor::Series;
@@ -117,7 +117,8 @@ pub fn simulate(
             temperature
                 .extend(elapsed.iter().map(|t| [value(&courses[0], *t), value(&courses[1], *t)]));
         }
-        energy.add(&piece, system, arch);
+        let course = piece.heated.then(|| motion.law_temperature());
+        energy.add(&piece, system, arch, course.as_ref());
         end_state = piece.at(piece.duration);
         if let Some(event) = event {
             events.push(event);
@@ -142,7 +143,13 @@ fn stored(system: &System, (speed, pull): (f64, f64), time: f64) -> (f64, f64) {
 }
 
 impl Energy {
-    fn add(&mut self, piece: &Piece, system: &System, arch: pulp::Arch) {
+    fn add(
+        &mut self,
+        piece: &Piece,
+        system: &System,
+        arch: pulp::Arch,
+        course: Option<&Polynomial>,
+    ) {
         let panels = match piece.path {
             _ if piece.start.mode == Mode::Stuck => 1.0,
             // nothing changes on the way
@@ -163,17 +170,19 @@ impl Energy {
         }
         let mut begin = 0.0;
         while begin < piece.duration * (1.0 - 1e-9) {
-            self.add_panel(piece, system, arch, &driven, begin, panel);
+            self.add_panel(piece, system, arch, &driven, course, begin, panel);
             begin += panel;
         }
     }
 
+    #[allow(clippy::too_many_arguments)] // one place calls it
     fn add_panel(
         &mut self,
         piece: &Piece,
         system: &System,
         arch: pulp::Arch,
         driven: &Cubic,
+        course: Option<&Polynomial>,
         begin: f64,
         panel: f64,
     ) {
@@ -184,7 +193,11 @@ impl Energy {
             let (speed, pull) = (speed[i], pull[i]);
             // a held belt is braked by just the pull, and a creeping one by that and its own slowing down
             let held = piece.start.mode == Mode::Stuck || piece.start.creeping;
-            let friction = if held { pull } else { piece.friction(t, pull, speed) };
+            let friction = match course {
+                _ if held => pull,
+                Some(course) => piece.friction_at(value(course, t), t, pull, speed),
+                None => piece.friction(t, pull, speed),
+            };
             let given = driven[0] + t * (driven[1] + t * (driven[2] + t * driven[3]));
             let power = match system.drive {
                 Drive::Speed(_) => pull * given,
