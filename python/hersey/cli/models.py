@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -21,6 +22,9 @@ from hersey.cli.terminal import say
 def models(
     logs: Logs,
     reading: Reading,
+    machine_file: Annotated[
+        Path | None, typer.Option("--machine", help="What shares the load there makes candidates of its own.")
+    ] = None,
     bootstrap: Annotated[
         int, typer.Option("--bootstrap", help="Resampled fits for that interval; 0 leaves it out.", min=0)
     ] = 300,
@@ -31,14 +35,18 @@ def models(
 
     Example: [bold]hersey models examples/bench.csv --tare standing[/bold]
     """
-    log = reading.log(logs)
-
     from hersey.damping.candidates import compare_models
+    from hersey.machine.machine import read_machine
 
+    machine = None if machine_file is None else read_machine(machine_file)
+    contact = None if machine is None else machine.mixed
+    log = reading.log(logs, machine)
     with working("reducing to dwells"):
-        points = reading.points(log)
+        points = reading.points(log, machine)
     with bar("fitting", unit="candidates") as progress:
-        comparison = compare_models(points, bootstrap=bootstrap, seed=seed, progress=progress)
+        comparison = compare_models(
+            points, contact=contact, bootstrap=bootstrap, seed=seed, progress=progress
+        )
     if as_json:
         print_json("models", comparison.to_dict())
         return

@@ -164,6 +164,26 @@ class MixedContact:
         own = vars(self) | {"boundary": boundary}
         return [own[name] for name in _core.SHARING]
 
+    @property
+    def stated(self) -> Mapping[str, float]:
+        """What a log can correct: ``viscosity`` (a factor), ``roughness`` (m), ``boundary`` friction."""
+        roughness = self.contact.roughness or 0.0
+        return {"viscosity": 1.0, "roughness": roughness, "boundary": self.friction.coefficient}
+
+    @property
+    def lever(self) -> float:
+        """Radius of the roll, at which the force acts, m."""
+        return self.contact.roll_radius
+
+    def product(self, speed: FloatArray, temperature: FloatArray) -> FloatArray:
+        """Return viscosity times belt speed, Pa m, at speeds of the roll (rad/s) and temperatures (K)."""
+        return np.asarray(self.lubricant.viscosity(temperature) * speed * self.contact.roll_radius)
+
+    def warming(self, temperature: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return d ln viscosity/dT and d ln boundary friction/dT, 1/K, at temperatures (K)."""
+        of_viscosity = self.lubricant.temperature_exponent(temperature) / temperature
+        return of_viscosity, np.asarray(self.friction.slope / self.friction.at(temperature))
+
     @takes_si(speed="speed", temperature="temperature")
     def at(self, *, speed: ArrayLike, temperature: ArrayLike) -> MixedFilm:
         """Return who carries what at speeds of the roll (rad/s; 0: asperities alone) and temperatures (K).
@@ -180,7 +200,7 @@ class MixedContact:
             raise ParameterError("speed is not a finite number")
         radius = self.contact.roll_radius
         viscosity = self.lubricant.viscosity(kelvin)
-        state = pointwise(_core.mixed_contact, viscosity * speeds * radius, *self.numbers(kelvin))
+        state = pointwise(_core.mixed_contact, self.product(speeds, kelvin), *self.numbers(kelvin))
         return MixedFilm(
             speed=speeds,
             temperature=kelvin,
