@@ -7,7 +7,7 @@ stand in the core and, with their sources and limits, in ``docs/mixed.md``.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -275,8 +275,8 @@ class MixedFilm(Result):
             f"asperities carry {share.min():.2g} to {share.max():.3g} %"
         )
 
-    def summary(self) -> str:
-        """Return the points and the transition as text."""
+    def summary(self, names: Sequence[str] = ()) -> str:
+        """Return the points and the transition as text; ``names`` of the points, numbered if not given."""
         mixed, asperities = self.mixed, self.mixed.asperities
         lines = [
             self.headline(),
@@ -284,17 +284,18 @@ class MixedFilm(Result):
             f"-{mixed.load_exponent:g}; lambda = 1 at eta U = {mixed.reference:.3g} Pa m if alone",
             f"  asperities: sigma beta D = {asperities.sigma_beta_density:g}, sigma/beta = "
             f"{asperities.sigma_over_beta:g}, E* = {1e-9 * asperities.modulus:.3g} GPa",
-            f"  {'degC':>6s} {'rad/s':>9s} {'lambda':>7s} {'share %':>8s} {'torque N m':>11s} "
+            f"  {'point':16s} {'degC':>6s} {'rad/s':>9s} {'lambda':>7s} {'share %':>8s} {'torque N m':>11s} "
             f"{'least at rad/s':>15s}",
         ]
         columns = (self.temperature, self.speed, self.lambda_ratio, self.share, self.torque)
-        for kelvin, speed, ratio, share, torque, least in zip(
-            *(np.ravel(each) for each in (*columns, self.transition.speed)), strict=True
+        titles = names or [str(number) for number in range(1, self.share.size + 1)]
+        for name, kelvin, speed, ratio, share, torque, least in zip(
+            titles, *(np.ravel(each) for each in (*columns, self.transition.speed)), strict=True
         ):
             turn = "nowhere" if np.isnan(least) else f"{least:.3g}"
             lines.append(
-                f"  {celsius(kelvin):6.1f} {speed:9.3g} {ratio:7.3g} {100 * share:8.3g} {torque:11.3g} "
-                f"{turn:>15s}"
+                f"  {name[:16]:16s} {celsius(kelvin):6.1f} {speed:9.3g} {ratio:7.3g} "
+                f"{100 * share:8.3g} {torque:11.3g} {turn:>15s}"
             )
         return "\n".join(lines)
 
