@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import hersey
+from hersey.charts import chart_of
 from hersey.charts.transition import transition_chart
 from hersey.document.film_part import film_document, shared_load
 from hersey.errors import InsufficientDataError
@@ -55,7 +56,7 @@ def test_the_interval_of_the_log_is_that_of_its_draws() -> None:
         at = found.transition_estimate(kelvin)
         draws = found.drag_samples(4000, 1, roll_radius=1.0, stick_speed=1e-3, temperature=kelvin)
         low, high = np.quantile(draws["transition_speed"], [0.025, 0.975])
-        assert np.log(at.high / at.low) == pytest.approx(np.log(high / low), rel=0.1)
+        assert np.log(at.high / at.low) == pytest.approx(np.log(high / low), rel=0.2)
         assert at.value == pytest.approx(found.transition_speed(kelvin))
         assert at.low < at.value < at.high
 
@@ -92,6 +93,7 @@ def test_the_film_part_holds_both() -> None:
     film = hersey.film_thickness(contact, lubricant, speed=[3.0, 8.0], temperature=453.15)
     shared = shared_load(machine(), film, None, surface())
     assert shared is not None
+    assert "Transition speed" in str(chart_of(film, transition=shared.transition).to_dict(validate=False))
     assert "asperities carry" in shared.notes(["slow", "fast"])[1]
     assert "slow" in shared.summary(["slow", "fast"])
     part = film_document(film, ["slow", "fast"], shared=shared)

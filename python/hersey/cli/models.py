@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -40,6 +41,9 @@ def models(
 
     machine = None if machine_file is None else read_machine(machine_file)
     contact = None if machine is None else machine.mixed
+    if machine is not None and contact is None:
+        stated = "[asperities] and [boundary]: see docs/mixed.md"
+        say(f"the machine's contact is no candidate: its file states no {stated}", file=sys.stderr)
     log = reading.log(logs, machine)
     with working("reducing to dwells"):
         points = reading.points(log, machine)
