@@ -1,4 +1,4 @@
-"""The commands models, compare and design."""
+"""The commands models, compare and design, and film where the load is shared."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from tests.cli.command import run
 from tests.conftest import ROOT
 
 BENCH = ["--tare", "standing"]
+STATED = '[asperities]\nmodulus = "3 GPa"\n[boundary]\nfriction = 0.1\n'
 
 
 def printed(*arguments: str | Path) -> str:
@@ -28,8 +29,13 @@ def test_models_of_a_log(bench_csv: Path) -> None:
     assert "collapse onto one" in text
 
 
-def test_models_as_json(bench_csv: Path) -> None:
-    plain = json.loads(printed("models", bench_csv, *BENCH, "--bootstrap", "0", "--isothermal", "--json"))
+def test_models_as_json(bench_csv: Path, tmp_path: Path) -> None:
+    machine = tmp_path / "machine.toml"
+    machine.write_text((ROOT / "examples" / "machine.toml").read_text() + STATED)
+    flags = ["--bootstrap", "0", "--isothermal", "--json", "--machine", machine]
+    plain = json.loads(printed("models", bench_csv, *BENCH, *flags))
+    contact = [law for law in plain["refused"] if law["name"].startswith("film and asperities")]
+    assert [law["reason"] for law in contact] == ["the log has no temperature"] * 2
     assert plain["chosen"].startswith("isothermal/")
     assert plain["bootstrap"] == {"draws": 0, "seed": 1}
     assert {"name", "reason"} == set(plain["refused"][0])
@@ -58,3 +64,12 @@ def test_compare_two_logs(bench_csv: Path, tmp_path: Path) -> None:
     plain = json.loads(printed("compare", bench_csv, other, *BENCH, "--json"))
     assert f"{other} drags more than {bench_csv} throughout the shared range" in plain["verdict"]
     assert plain["mean_ratio"]["low"] < 80.0 / 62.0 < plain["mean_ratio"]["high"]
+
+
+def test_film_says_who_shares_the_load(bench_csv: Path, tmp_path: Path) -> None:
+    machine = tmp_path / "machine.toml"
+    machine.write_text((ROOT / "examples" / "machine.toml").read_text() + STATED)
+    text = printed("film", machine, "--log", bench_csv, *BENCH)
+    assert "asperities carry 21 to 78.3 %" in text
+    row = next(line for line in text.splitlines() if line.startswith("   180.0 ") and "[" in line)
+    assert float(row.split()[1]) / float(row.split()[2]) == pytest.approx(float(row.split()[5]), rel=0.02)

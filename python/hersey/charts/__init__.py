@@ -14,6 +14,7 @@ damping        dwells, surface, candidates, two logs, the next dwells
 regime         exponents against what each regime predicts
 film           the regime chart and the Stribeck curve
 mixed          torque of film and asperities against speed
+transition     transition speed against temperature
 motion         a trajectory, and the lap to which it settles
 cycles         trace, cycles and fitted motion
 hysteresis     what the belt does at which drive speed

@@ -30,6 +30,7 @@ from hersey.charts.style import (
     unchecked,
     zoom,
 )
+from hersey.charts.transition import transition_chart
 from hersey.document.parts import Analysis, Point, Series
 from hersey.files.writing import write_all
 from hersey.units import celsius, rpm
@@ -49,6 +50,7 @@ def charts(document: Analysis) -> dict[str, Chart]:
         "residuals": residuals,
         "regime": regime,
         "film": film,
+        "transition": transition,
         "simulation_speed": simulation_speed,
         "simulation_force": simulation_force,
         "timeline_speed": timeline_speed,
@@ -181,6 +183,14 @@ def film(document: Analysis) -> Chart | None:
     """Which law of film thickness holds in the user's nip."""
     part = document.film
     return None if part is None else regime_chart(part.points, part.dwells, part.layer_factor)
+
+
+def transition(document: Analysis) -> Chart | None:
+    """Transition speed of the user's contact against temperature, and that of the log."""
+    part = None if document.film is None else document.film.transition
+    if part is None:
+        return None
+    return transition_chart(part.temperature, part.speed, part.measured, part.low, part.high)
 
 
 def simulation_speed(document: Analysis) -> Chart:

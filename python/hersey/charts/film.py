@@ -11,11 +11,13 @@ from hersey import _core
 from hersey.arrays import FloatArray, IntArray, pointwise
 from hersey.charts.labels import Labels
 from hersey.charts.style import HEIGHT, INK, WIDTH, Chart, Row, logarithmic, plot
+from hersey.charts.transition import transition_chart
 from hersey.document.film_part import film_points
 from hersey.document.parts import FilmPoint
 from hersey.lubrication.film import REGIMES, Film
 from hersey.units import celsius, rpm
 from hersey.verdict.evidence import MeasuredFilm
+from hersey.verdict.transition import ContactTransition
 
 #: Shades of the regimes that stay apart in grey.
 _SHADES = ("#f4f1de", "#e8b4a0", "#b7d3e9", "#8fae8b")
@@ -29,8 +31,15 @@ _LEAST = ((-2.0, 4.0), (-1.0, 3.0))
 _U = 1e-10
 
 
-def film_chart(film: Film, names: list[str] | None = None, measured: MeasuredFilm | None = None) -> Chart:
-    """Return the regime chart with the points of a film on it, over the Stribeck curve if there is a log.
+def film_chart(
+    film: Film,
+    names: list[str] | None = None,
+    measured: MeasuredFilm | None = None,
+    transition: ContactTransition | None = None,
+) -> Chart:
+    """Return the regime chart with the points of a film on it.
+
+    Over the Stribeck curve if there is a log, and over transition speeds if they are given.
 
     Points without ``names`` are called by their speed and temperature.
     """
@@ -38,12 +47,15 @@ def film_chart(film: Film, names: list[str] | None = None, measured: MeasuredFil
     dwells = []
     if measured is not None and measured.predicted is not film:
         dwells = film_points(measured.predicted, [""] * measured.speed.size)
-    chart = regime_chart(film_points(film, names), dwells, film.nip.layer_factor)
-    if measured is None:
-        return chart
-    stacked: Chart = alt.vconcat(chart, _stribeck(measured), spacing=24).resolve_scale(
-        color="independent", shape="independent"
-    )
+    charts: list[Chart] = [regime_chart(film_points(film, names), dwells, film.nip.layer_factor)]
+    if measured is not None:
+        charts.append(_stribeck(measured))
+    if transition is not None:
+        numbers = (getattr(transition, name) for name in ("temperature", "speed", "measured", "low", "high"))
+        charts.append(transition_chart(*(each.tolist() for each in numbers)))
+    if len(charts) == 1:
+        return charts[0]
+    stacked: Chart = alt.vconcat(*charts, spacing=24).resolve_scale(color="independent", shape="independent")
     return stacked
 
 

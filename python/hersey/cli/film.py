@@ -20,6 +20,7 @@ from hersey.cli.terminal import say
 from hersey.errors import ParameterError
 
 if TYPE_CHECKING:
+    from hersey.document.film_part import SharedLoad
     from hersey.lubrication.film import Film
     from hersey.machine.machine import Machine
     from hersey.verdict.evidence import MeasuredFilm, Verdict
@@ -68,7 +69,7 @@ def film(
     if figure is not None:
         may_draw(figure, force, inputs=reading.inputs(machine_file, log))
 
-    from hersey.document.film_part import film_document
+    from hersey.document.film_part import film_document, shared_load
     from hersey.files.writing import write_atomically
     from hersey.machine.machine import read_machine
     from hersey.verdict.checks import check_film
@@ -85,7 +86,7 @@ def film(
     kelvin = temperature_of(at)
     if not log and reading != Reading():
         raise ParameterError("options that say how to read a log need --log")
-    measured, says = None, None
+    measured, says, surface = None, None, None
     if log:
         from hersey.damping.fit import fit
 
@@ -106,18 +107,20 @@ def film(
         says = verdict(measured, surface, machine.contact, machine.lubricant, seen)
     predicted, names = _predicted(machine, measured, kelvin, belt_speed)
     notes = check_film(machine, predicted, measured)
+    shared = shared_load(machine, predicted, measured, surface)
     if figure is not None:
         from hersey.charts import chart_of
         from hersey.charts.render import picture
 
         with working("drawing"):
-            chart = chart_of(predicted, names=names, measured=measured)
+            turn = None if shared is None else shared.transition
+            chart = chart_of(predicted, names=names, measured=measured, transition=turn)
             content = picture(chart, figure.suffix)
         write_atomically(figure, content, overwrite=True)
     if as_json:
-        print_json("film", film_document(predicted, names, measured, says, notes))
+        print_json("film", film_document(predicted, names, measured, says, notes, shared))
         return
-    say(_text(predicted, names, measured, says, notes))
+    say(_text(predicted, names, measured, says, notes, shared))
     if figure is not None:
         say(f"figure: {figure}")
 
@@ -158,8 +161,11 @@ def _text(
     measured: MeasuredFilm | None,
     says: Verdict | None,
     notes: tuple[str, ...],
+    shared: SharedLoad | None,
 ) -> str:
     lines = [predicted.summary(names)]
+    if shared is not None:
+        lines += ["", shared.summary(names)]
     if measured is not None:
         lines += ["", measured.summary()]
     if says is not None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -21,6 +23,9 @@ from hersey.cli.terminal import say
 def models(
     logs: Logs,
     reading: Reading,
+    machine_file: Annotated[
+        Path | None, typer.Option("--machine", help="What shares the load there makes candidates of its own.")
+    ] = None,
     bootstrap: Annotated[
         int, typer.Option("--bootstrap", help="Resampled fits for that interval; 0 leaves it out.", min=0)
     ] = 300,
@@ -31,14 +36,21 @@ def models(
 
     Example: [bold]hersey models examples/bench.csv --tare standing[/bold]
     """
-    log = reading.log(logs)
-
     from hersey.damping.candidates import compare_models
+    from hersey.machine.machine import read_machine
 
+    machine = None if machine_file is None else read_machine(machine_file)
+    contact = None if machine is None else machine.mixed
+    if machine is not None and contact is None:
+        stated = "[asperities] and [boundary]: see docs/mixed.md"
+        say(f"the machine's contact is no candidate: its file states no {stated}", file=sys.stderr)
+    log = reading.log(logs, machine)
     with working("reducing to dwells"):
-        points = reading.points(log)
+        points = reading.points(log, machine)
     with bar("fitting", unit="candidates") as progress:
-        comparison = compare_models(points, bootstrap=bootstrap, seed=seed, progress=progress)
+        comparison = compare_models(
+            points, contact=contact, bootstrap=bootstrap, seed=seed, progress=progress
+        )
     if as_json:
         print_json("models", comparison.to_dict())
         return

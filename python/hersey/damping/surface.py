@@ -23,12 +23,12 @@ from scipy import stats
 from hersey import _core
 from hersey.arrays import FloatArray
 from hersey.damping.branches import Transition
-from hersey.damping.candidates.branched import HELD, ONE, Law, transition_exponent
+from hersey.damping.candidates.branched import HELD, LEAST_POWER, ONE, Law, transition_exponent
 from hersey.damping.candidates.intervals import Band, band_of, of_one_dwell
 from hersey.damping.candidates.observations import Inputs
 from hersey.damping.candidates.shared_errors import Freedom, SharedScatter
 from hersey.damping.candidates.thermal import CELSIUS, KELVIN, Thermal, scaled_temperature
-from hersey.damping.estimate import Estimate
+from hersey.damping.estimate import Estimate, quantile
 from hersey.damping.rest import RestOfDrive, with_rest
 from hersey.errors import ExtrapolationWarning, InsufficientDataError, ParameterError, UntoldWarning
 from hersey.motion.drag import Drag
@@ -163,6 +163,37 @@ class DampingSurface(Result):
             return self.transition.speed.value
         moved = self.transition.temperature_exponent * self._checked_temperature(temperature)
         return float(self.transition.speed.value * np.exp(moved))
+
+    @takes_si(temperature="temperature")
+    def transition_estimate(self, temperature: float | None = None) -> Estimate:
+        """Return the transition speed (rad/s) at a temperature (K) with its interval, unbounded if not told.
+
+        Raises
+        ------
+        InsufficientDataError
+            If the data show no transition.
+        """
+        if self.transition is None:
+            raise InsufficientDataError(f"the data show no falling branch ({self.rejected_transition})")
+        if temperature is None or self.b is None or self.reference_temperature is None:
+            return self.transition.speed
+        x = self._checked_temperature(temperature)
+        values, covariance = self._closure
+        covariance = covariance.copy()
+        covariance[-1, -1] = max(
+            covariance[-1, -1], (self.transition.speed.error / self.transition.speed.value) ** 2
+        )
+        _, b, c, *_ = values
+        away = np.zeros(values.size)
+        away[-1] = 1.0
+        away[1] = x * transition_exponent(1.0, c)
+        away[2] = x * b / (1.0 + c) ** 2 if 1.0 + c > LEAST_POWER else 0.0
+        error = float(np.sqrt(away @ covariance @ away))
+        speed, freedom = self.transition_speed(temperature), self.freedoms.of(away)
+        reach = np.exp(quantile(freedom) * error)
+        told = self.transition.speed.told and self.b.told
+        low, high = (speed / reach, speed * reach) if told else (-np.inf, np.inf)
+        return Estimate(speed, speed * error, low, high, freedom)
 
     @takes_si(temperature="temperature")
     def transition_torque(self, temperature: float | None = None) -> float:

@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
-from hersey.damping.dwells import SteadyPoints
+import numpy as np
+
+from hersey.damping.dwells import SteadyPoints, groups_of_temperature
 from hersey.damping.surface import DampingSurface
 from hersey.document.parts import FilmPart, FilmPoint
 from hersey.lubrication.film import REGIMES, Film, film_thickness
 from hersey.lubrication.film_temperature import film_temperature
+from hersey.lubrication.mixed import MixedFilm
 from hersey.machine.machine import Machine
 from hersey.verdict.checks import check_film
 from hersey.verdict.evidence import MeasuredFilm, Verdict, measured_film, verdict
 from hersey.verdict.regime import Regime
+from hersey.verdict.transition import ContactTransition, contact_transition
 
 
 def film_part(
@@ -32,12 +37,54 @@ def film_part(
         read = [point.temperature for point in machine.points]
         inside = film_temperature(contact, lubricant, speed=speed, temperature=read)
         film = film_thickness(contact, lubricant, speed=speed, temperature=inside)
+    names = [point.name for point in machine.points]
+    shared = shared_load(machine, film, measured, surface)
+    notes = [*check_film(machine, film, measured), *(() if shared is None else shared.notes(names))]
     return film_document(
-        film,
-        [point.name for point in machine.points],
-        measured,
-        verdict(measured, surface, contact, lubricant, seen),
-        check_film(machine, film, measured),
+        film, names, measured, verdict(measured, surface, contact, lubricant, seen), notes, shared
+    )
+
+
+@dataclass(frozen=True)
+class SharedLoad:
+    """Film and asperities at the points of interest, and where drag is least."""
+
+    film: MixedFilm
+    transition: ContactTransition
+
+    def summary(self, names: Sequence[str]) -> str:
+        """Return both as text; names of the points."""
+        return f"{self.film.summary(names)}\n{self.transition.summary()}"
+
+    def notes(self, names: Sequence[str]) -> list[str]:
+        """Return both in sentences; names of the points."""
+        columns = (self.film.lambda_ratio, self.film.share, self.film.torque)
+        points = [
+            f"{name}: the film is {ratio:.3g} of the roughness (lambda), asperities carry {share:.2%} of the "
+            f"load, and film and asperities take {1e3 * torque:.3g} mN m."
+            for name, ratio, share, torque in zip(names, *(np.ravel(each) for each in columns), strict=False)
+        ]
+        return [*points, *self.transition.notes()]
+
+
+def shared_load(
+    machine: Machine, film: Film, measured: MeasuredFilm | None, surface: DampingSurface | None = None
+) -> SharedLoad | None:
+    """Return who shares the load at the points of a film; None where the machine does not state it.
+
+    The transition is that of the temperatures of the log, or else of the points.
+    """
+    mixed = machine.mixed
+    if mixed is None:
+        return None
+    kelvin = np.unique(film.temperature)
+    if measured is not None:
+        groups = groups_of_temperature(measured.temperature)
+        kelvin = np.array([measured.temperature[group].mean() for group in groups])
+    elif machine.points and mixed.contact.heat_flow is not None:
+        kelvin = np.unique([point.temperature for point in machine.points])
+    return SharedLoad(
+        mixed.at(speed=film.speed, temperature=film.temperature), contact_transition(mixed, kelvin, surface)
     )
 
 
@@ -47,6 +94,7 @@ def film_document(
     measured: MeasuredFilm | None = None,
     says: Verdict | None = None,
     notes: Sequence[str] = (),
+    shared: SharedLoad | None = None,
 ) -> FilmPart:
     """Return a film at named points, and what a log says of it if there is one."""
     document = film.to_dict()
@@ -57,6 +105,8 @@ def film_document(
             "measured": None if measured is None else measured.to_dict(),
             "exponents": None if says is None else says.to_dict(),
             "verdict": "" if says is None else says.text,
+            "mixed": None if shared is None else shared.film.to_dict(),
+            "transition": None if shared is None else shared.transition.to_dict(),
             "notes": list(notes),
             "points": film_points(film, names),
             "dwells": [] if measured is None else film_points(measured.predicted, [""] * measured.speed.size),

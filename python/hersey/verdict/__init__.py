@@ -6,6 +6,7 @@ contact_regimes  the same for a contact that is known: its soft film over the dw
 explanations     everything that explains how torque varies with speed
 regime           exponents against named regimes, and a verdict in words
 evidence         the film that a log measures, and what its exponents speak for
+transition       where drag is least, by the contact and by a log
 cautions         what must be known before a fit is trusted
 checks           what in the numbers of a nip cannot be
 ===============  =======================================================================

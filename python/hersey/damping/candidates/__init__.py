@@ -7,6 +7,7 @@ branched              laws of speed and temperature with one or two branches
 stribeck              the Stribeck curve
 rest_law              torque without a film
 constant_plus         a constant torque beside a film or a viscous part
+shared_load           a known contact whose load film and asperities share
 candidate             which laws there are, and which the data cannot carry
 shared_errors         errors that dwells share: of the zero, of visits and runs
 likelihood            robust likelihood and its least-squares solution

@@ -26,6 +26,7 @@ LEAST_POWER = 0.05
 NO_SPEED, ONE, HELD, FREE = "no speed", "one branch", "two branches, one Hersey number", "two branches, free"
 CONSTANT_PLUS, COULOMB_VISCOUS = "constant torque plus power of speed", "Coulomb plus viscous"
 REST_PLUS = "constant and viscous torque plus power of speed"
+SHARED = "film and asperities plus constant torque"
 
 
 def transition_exponent(e: float, c: float) -> float:

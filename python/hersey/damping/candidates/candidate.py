@@ -14,13 +14,16 @@ from hersey.damping.candidates.branched import (
     NO_SPEED,
     ONE,
     REST_PLUS,
+    SHARED,
     Law,
 )
 from hersey.damping.candidates.constant_plus import ConstantPlusLaw
 from hersey.damping.candidates.observations import Observations
+from hersey.damping.candidates.shared_load import SharedLoad, SharedLoadLaw
 from hersey.damping.candidates.stribeck import StribeckLaw
 from hersey.damping.candidates.thermal import ARRHENIUS, CELSIUS, KELVIN, VFT, Thermal
 from hersey.damping.dwells import distinct_speeds
+from hersey.errors import ParameterError
 from hersey.units import convert
 
 #: Degrees of freedom that a fit must leave.
@@ -42,16 +45,20 @@ _BESIDE = (CONSTANT_PLUS, COULOMB_VISCOUS, REST_PLUS)
 
 @dataclass(frozen=True)
 class Candidate:
-    """One law, before it is fitted."""
+    """One law, before it is fitted; that of a ``contact`` may take its viscosity as known."""
 
     thermal: str | None
     branches: str
     per_temperature: bool = False
     stribeck: bool = False
+    contact: SharedLoad | None = None
+    viscosity_known: bool = False
 
     @property
     def key(self) -> str:
         """A short name, as ``arrhenius/two-hersey``."""
+        if self.contact is not None:
+            return "mixed/viscosity-known" if self.viscosity_known else "mixed"
         if self.stribeck:
             return "stribeck" if self.thermal else "isothermal/stribeck"
         each = "/each" if self.per_temperature else ""
@@ -60,6 +67,8 @@ class Candidate:
     @property
     def name(self) -> str:
         """The law in words."""
+        if self.contact is not None:
+            return f"{self.branches}, viscosity {'as stated' if self.viscosity_known else 'free'}"
         heat = self.thermal or "no temperature"
         if self.stribeck:
             return f"Stribeck curve, {heat} viscosity" if self.thermal else "Stribeck curve, no temperature"
@@ -70,8 +79,11 @@ class Candidate:
         each = ", exponents per temperature" if self.per_temperature else ""
         return f"{heat} x power of speed, {self.branches}{each}"
 
-    def law(self, data: Observations) -> Law | StribeckLaw | ConstantPlusLaw:
+    def law(self, data: Observations) -> Law | StribeckLaw | ConstantPlusLaw | SharedLoadLaw:
         """Return the law about the reference values of the data."""
+        if self.contact is not None:
+            torque = float(np.exp(np.mean(data.log_torque)))
+            return SharedLoadLaw(self.contact, data.reference_speed, torque, self.viscosity_known)
         thermal = None
         if self.thermal is not None and data.reference_kelvin is not None:
             thermal = Thermal(self.thermal, data.reference_kelvin)
@@ -85,6 +97,14 @@ class Candidate:
     def refused(self, data: Observations) -> str:
         """Return why the data cannot carry this candidate; empty if they can."""
         levels = data.temperatures.size
+        if self.contact is not None:
+            if data.inputs.kelvin is None:
+                return "the log has no temperature"
+            try:
+                self.contact.product(data.speed, data.inputs.kelvin)
+                self.contact.numbers(data.inputs.kelvin)
+            except ParameterError as error:
+                return str(error)
         if self.thermal is not None:
             needed = 3 if self.thermal == VFT else 2
             if data.inputs.kelvin is None:
@@ -101,7 +121,7 @@ class Candidate:
                     return f"needs {SPEEDS_OF_ONE} speeds at each temperature; {at:.0f} degC has {speeds}"
         needed = SPEEDS_OF_TWO if self.branches in (HELD, FREE) or self.stribeck else 0
         needed = SPEEDS_OF_CURVE if self.branches in (CONSTANT_PLUS, COULOMB_VISCOUS) else needed
-        needed = SPEEDS_OF_TWO if self.branches == REST_PLUS else needed
+        needed = SPEEDS_OF_TWO if self.branches in (REST_PLUS, SHARED) else needed
         speeds = distinct_speeds(data.speed) if needed else 0
         if speeds < needed:
             return f"needs {needed} speeds, the log has {speeds}"
@@ -125,6 +145,11 @@ def all_candidates() -> tuple[Candidate, ...]:
     rest = [Candidate(heat, REST_PLUS) for heat in (None, ARRHENIUS)]  # the others take time and tell no more
     flat = (*constant[:2], *rest[:1], *free[:1], *curves[:1])
     return (*one, *flat, *constant[2:], *rest[1:], *held, *free[1:], *each, *curves[1:])
+
+
+def contact_candidates(contact: SharedLoad) -> tuple[Candidate, ...]:
+    """Return the laws of a known contact, the simplest first."""
+    return tuple(Candidate(None, SHARED, contact=contact, viscosity_known=known) for known in (True, False))
 
 
 def viscosity_candidates() -> tuple[Candidate, ...]:

@@ -14,7 +14,7 @@ from collections.abc import Callable
 import numpy as np
 
 from hersey.damping.candidates.branched import Law
-from hersey.damping.candidates.candidate import Candidate, all_candidates
+from hersey.damping.candidates.candidate import Candidate, all_candidates, contact_candidates
 from hersey.damping.candidates.collapse import HerseyCollapse, temperature_collapse
 from hersey.damping.candidates.energy import ActivationEnergies, activation_energies, usable_for_transition
 from hersey.damping.candidates.errors_in_variables import orthogonal_fit
@@ -28,6 +28,7 @@ from hersey.damping.candidates.likelihood import EVIDENCE
 from hersey.damping.candidates.model_comparison import CandidateFit, ModelComparison
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.candidates.shared_errors import shared_variance
+from hersey.damping.candidates.shared_load import SharedLoad
 from hersey.damping.candidates.thermal import ARRHENIUS
 from hersey.damping.dwells import SteadyPoints
 from hersey.errors import InsufficientDataError, ParameterError
@@ -40,6 +41,7 @@ def compare_models(
     points: SteadyPoints | Observations,
     *,
     candidates: tuple[Candidate, ...] | None = None,
+    contact: SharedLoad | None = None,
     bootstrap: int = 300,
     seed: int = 1,
     cross_validate: bool = True,
@@ -53,6 +55,8 @@ def compare_models(
         From `TorqueLog.steady`.
     candidates
         Those to fit; all if not given.
+    contact
+        Film and asperities of the machine (`hersey.MixedContact`), whose laws are candidates then.
     bootstrap
         Resampled fits of the candidate chosen; 0 leaves that interval out.
     seed
@@ -80,6 +84,7 @@ def compare_models(
         raise ParameterError(f"{name} is {value}: it must be at least 0")
     data = points if isinstance(points, Observations) else Observations.of(points)
     candidates = candidates or all_candidates()
+    candidates += () if contact is None else contact_candidates(contact)
     refused = [(candidate.name, why) for candidate in candidates if (why := candidate.refused(data))]
     carried = [candidate for candidate in candidates if not candidate.refused(data)]
     if not carried:

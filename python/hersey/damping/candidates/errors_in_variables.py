@@ -15,6 +15,7 @@ import odrpack
 from hersey.arrays import FloatArray
 from hersey.damping.candidates.fitting import LawFit
 from hersey.damping.candidates.observations import Inputs, Observations
+from hersey.damping.candidates.shared_load import SharedLoadLaw
 
 #: Least relative error of an input: ODRPACK divides by it.
 _LEAST = 1e-9
@@ -49,7 +50,8 @@ class OrthogonalFit:
 
 def orthogonal_fit(fit: LawFit, data: Observations) -> OrthogonalFit:
     """Return the fit by orthogonal distance regression, from the values of another."""
-    hot = data.inputs.kelvin if fit.law.thermal is not None else None
+    varies = fit.law.thermal is not None or isinstance(fit.law, SharedLoadLaw)
+    hot = data.inputs.kelvin if varies else None
     given = [data.inputs.log_speed, *([hot] if hot is not None else [])]
     errors = [data.speed_error, *([data.temperature_error] if hot is not None else [])]
     least = [_LEAST, *([_LEAST * float(np.mean(hot))] if hot is not None else [])]

@@ -29,10 +29,11 @@ from hersey.damping.candidates.shared_errors import (
     groupings,
     shared_scatter,
 )
+from hersey.damping.candidates.shared_load import BOUND, SharedLoadLaw
 from hersey.damping.candidates.stribeck import StribeckLaw
 from hersey.damping.estimate import Estimate, estimate
 
-AnyLaw = Law | StribeckLaw | ConstantPlusLaw | RestLaw
+AnyLaw = Law | StribeckLaw | ConstantPlusLaw | RestLaw | SharedLoadLaw
 
 #: Rounds in which scatter and effective variance settle.
 _ROUNDS = 8
@@ -381,6 +382,8 @@ def not_identified(fit: LawFit, data: Observations) -> dict[str, str]:
         return out
     if isinstance(law, ConstantPlusLaw):
         return out | _parts_shown(fit, norms)
+    if isinstance(law, SharedLoadLaw):
+        return out | _contact_shown(fit)
     if isinstance(law, RestLaw):
         return out
     if law.broken:
@@ -409,6 +412,21 @@ def _parts_shown(fit: LawFit, norms: FloatArray) -> dict[str, str]:
         why = f"the {what} torque hardly shows beside the film, or the film beside it: record a wider range"
         out |= {lost: why for lost in (name, "r") if lost in fit.law.names}
     return out
+
+
+def _contact_shown(fit: LawFit) -> dict[str, str]:
+    """Which numbers of a contact the log hardly tells: a factor e of it is within the errors."""
+    more = {
+        "viscosity": "speeds at which the film carries all, and the rest of the drive by itself",
+        "roughness": "speeds on both sides of the transition",
+        "boundary": "slower speeds, at which asperities carry more",
+    }
+    return {
+        name: f"not told: a factor {np.e:.1f} of it is within the errors; record {what}"
+        for name, what in more.items()
+        if name in fit.law.names
+        and (fit.error(name) > 1.0 or abs(fit.values[fit.law.index(name)]) >= 0.99 * BOUND)
+    }
 
 
 def _branches_shown(fit: LawFit, data: Observations) -> dict[str, str]:

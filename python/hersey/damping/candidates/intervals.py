@@ -26,6 +26,7 @@ from hersey.damping.candidates.constant_plus import ConstantPlusLaw
 from hersey.damping.candidates.fitting import AnyLaw, LawFit, not_identified, resampled, search
 from hersey.damping.candidates.observations import Inputs, Observations
 from hersey.damping.candidates.shared_errors import Freedom, SharedScatter, shared_variance
+from hersey.damping.candidates.shared_load import SharedLoadLaw
 from hersey.damping.candidates.stribeck import StribeckLaw
 from hersey.damping.candidates.thermal import ARRHENIUS, VFT
 from hersey.damping.estimate import CONFIDENCE, quantile
@@ -97,6 +98,12 @@ def quantities(law_fit: LawFit, data: Observations) -> tuple[Quantity, ...]:
         add("level", "torque of the film at reference", "N m", _exp)
         add("rest", "constant torque over that of the film at reference", "", _exp)
         add("viscous", "viscous torque over that of the film at reference", "", _exp)
+    elif isinstance(law, SharedLoadLaw):
+        stated, torque = law.contact.stated, law.torque
+        add("viscosity", "viscosity over that stated", "", _exp)
+        add("roughness", "roughness of both faces, rms", "m", lambda v: stated["roughness"] * _exp(v))
+        add("boundary", "boundary friction", "", lambda v: stated["boundary"] * _exp(v))
+        add("rest", "constant torque", "N m", lambda v: torque * v)
     else:
         add("level", "damping at reference", "N m s/rad", lambda v: _exp(v) / w)
     if law.thermal and kelvin is not None:

@@ -18,6 +18,7 @@ from hersey.damping.candidates.fitting import LawFit
 from hersey.damping.candidates.intervals import METHODS, Band, Ends, ParameterEstimate, band
 from hersey.damping.candidates.lack_of_fit import LackOfFit
 from hersey.damping.candidates.observations import Observations
+from hersey.damping.candidates.shared_load import SharedLoadLaw
 from hersey.damping.estimate import Estimate
 from hersey.errors import ParameterError, UntoldWarning
 from hersey.result import Result, json_record
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
     import polars as pl
 
 #: Units in which people read a quantity, by the unit it is kept in.
-_SHOWN = {"rad/s": "rpm"}
+_SHOWN = {"rad/s": "rpm", "m": "um"}
 #: Candidates listed beside the one chosen.
 RUNNERS_UP = 3
 
@@ -81,7 +82,8 @@ class ModelComparison(Result):
     def predict(self, speed: FloatArray | float, temperature: FloatArray | float | None = None) -> Band:
         """Return torque (N m) with its bands at speeds (rad/s) and temperatures (K), broadcast together."""
         speeds = np.atleast_1d(np.asarray(speed, dtype=np.float64))
-        if self.chosen.fit.law.thermal is not None and temperature is None:
+        law = self.chosen.fit.law
+        if (law.thermal is not None or isinstance(law, SharedLoadLaw)) and temperature is None:
             raise ParameterError("this law depends on temperature: give it one, in K")
         hot = None
         if temperature is not None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pydantic import Field
 
 from hersey.document.parts.fit import HypothesisPart
+from hersey.document.parts.mixed import MixedPart
 from hersey.document.parts.part import Holed, Numbers, OpenInterval, Part
 
 
@@ -139,6 +140,19 @@ class VerdictPart(Part):
     text: str
 
 
+class ContactTransitionPart(Part):
+    """Transition speed by film and asperities beside the log's, arrays of shape (temperatures,)."""
+
+    temperature: Numbers = Field(description="as read, K")
+    speed: Holed = Field(description="by the contact, rad/s; null where drag falls nowhere")
+    measured: Holed = Field(description="of the fitted surface, rad/s; null where it shows none")
+    low: Holed = Field(description="of measured, rad/s, 95 %")
+    high: Holed = Field(description="of measured, rad/s, 95 %")
+    ratio: Holed = Field(description="speed over measured")
+    by_roughness: Holed = Field(description="d ln speed/d ln roughness")
+    by_boundary: Holed = Field(description="d ln speed/d ln boundary friction; by viscosity it is -1")
+
+
 class FilmPart(Part):
     """The film that theory gives this nip, and what a log says of it if there is one."""
 
@@ -150,6 +164,8 @@ class FilmPart(Part):
     measured: MeasuredFilmPart | None = None
     exponents: VerdictPart | None = None
     verdict: str = ""
+    mixed: MixedPart | None = Field(default=None, description="who carries what, at the points")
+    transition: ContactTransitionPart | None = Field(default=None, description="where drag is least")
     notes: list[str] = Field(default=[], description="what in the numbers cannot be")
     points: list[FilmPoint] = Field(default=[], description="points of interest on the regime chart")
     dwells: list[FilmPoint] = Field(default=[], description="dwells on the regime chart")

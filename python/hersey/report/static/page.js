@@ -164,6 +164,7 @@ async function film() {
   if (!data.film) return;
   add(report, "h2", "What film theory says of this nip");
   await chart(report, "film");
+  await chart(report, "transition");
   const notes = add(report, "ul");
   data.film.notes.forEach((text) => add(notes, "li", text));
 }

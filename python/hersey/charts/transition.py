@@ -1,0 +1,48 @@
+"""Transition speed against temperature: the line of the contact, and what the log shows."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import altair as alt
+import numpy as np
+
+from hersey.charts.style import BLUE, INK, WIDTH, Chart, logarithmic, plot, rows_of, tip
+from hersey.units import celsius, rpm
+
+
+def transition_chart(
+    temperature: Sequence[float],
+    speed: Sequence[float | None],
+    measured: Sequence[float | None],
+    low: Sequence[float | None],
+    high: Sequence[float | None],
+) -> Chart:
+    """Return speeds (rad/s) of the contact and of the log with its interval, at temperatures (K)."""
+    hot = [celsius(kelvin) for kelvin in temperature]
+    model, seen, below, above = (_rpm(values) for values in (speed, measured, low, high))
+    x = alt.X("hot:Q", title="Temperature (°C)", scale=alt.Scale(zero=False, padding=12))
+    y = alt.Y("speed:Q", title="Transition speed (rpm)", scale=logarithmic())
+    line = [row for row in rows_of(hot=hot, speed=model) if np.isfinite(row["speed"])]
+    dots = [row for row in rows_of(hot=hot, speed=seen) if np.isfinite(row["speed"])]
+    bars = [
+        row
+        for row in rows_of(hot=hot, speed=below, top=above)
+        if np.isfinite(row["speed"]) and np.isfinite(row["top"])
+    ]
+    tips = [tip("hot", "°C"), tip("speed", "rpm")]
+    layers = [
+        plot(line).mark_line(color=INK, point=len(line) == 1).encode(x=x, y=y, tooltip=tips),
+        plot(bars).mark_rule(color=BLUE, strokeWidth=1.5).encode(x=x, y=y, y2="top:Q"),
+        plot(dots).mark_point(filled=True, color=BLUE, size=55, opacity=1).encode(x=x, y=y, tooltip=tips),
+    ]
+    title = alt.Title(
+        "Transition speed",
+        subtitle="line: film and asperities of the contact as stated"
+        + ("; dots: the fitted surface, with 95 %" if dots else ""),
+    )
+    return alt.layer(*layers, title=title, width=WIDTH, height=240)
+
+
+def _rpm(values: Sequence[float | None]) -> list[float]:
+    return [float("nan") if value is None else float(rpm(value)) for value in values]

@@ -1,0 +1,117 @@
+"""Where drag is least: by the contact whose load film and asperities share, beside what a log shows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from hersey.arrays import FloatArray
+from hersey.damping.surface import DampingSurface
+from hersey.lubrication.film_temperature import film_temperature
+from hersey.lubrication.mixed import MixedContact
+from hersey.result import json_record
+from hersey.units import celsius
+
+
+@dataclass(frozen=True)
+class ContactTransition:
+    """Transition speed against temperature; arrays of shape (temperatures,), NaN where there is none.
+
+    ``temperature`` (K) is the one read, ``speed`` (rad/s) that of the contact, ``measured`` (rad/s) that of
+    the fitted surface with its 95 % limits ``low`` and ``high`` (unbounded where not told). ``by_roughness``
+    and ``by_boundary`` are d ln speed by the logarithms of roughness and boundary friction; by that of
+    viscosity it is -1.
+    """
+
+    temperature: FloatArray
+    speed: FloatArray
+    measured: FloatArray
+    low: FloatArray
+    high: FloatArray
+    by_roughness: FloatArray
+    by_boundary: FloatArray
+
+    @property
+    def ratio(self) -> FloatArray:
+        """Speed by the contact over that measured."""
+        return np.asarray(self.speed / self.measured)
+
+    def summary(self) -> str:
+        """Return a row for each temperature."""
+        lines = [
+            "transition speed (least torque), rad/s, and d ln speed/d ln of what is stated (viscosity: -1)",
+            f"  {'degC':>6s} {'contact':>9s} {'measured':>26s} {'ratio':>7s} {'roughness':>10s} "
+            f"{'boundary friction':>18s}",
+        ]
+        for i, kelvin in enumerate(self.temperature.tolist()):
+            speed = "nowhere" if np.isnan(self.speed[i]) else f"{self.speed[i]:.3g}"
+            seen, ratio = self._seen(i), self.ratio[i]
+            shown = "" if np.isnan(ratio) else f"{ratio:.3g}"
+            shifts = (self.by_roughness[i], self.by_boundary[i])
+            roughness, boundary = ("" if np.isnan(shift) else f"{shift:.2f}" for shift in shifts)
+            lines.append(
+                f"  {celsius(kelvin):6.1f} {speed:>9s} {seen:>26s} {shown:>7s} {roughness:>10s} "
+                f"{boundary:>18s}"
+            )
+        return "\n".join(line.rstrip() for line in lines)
+
+    def notes(self) -> list[str]:
+        """Return the same in sentences, for a page: the coldest and the hottest temperature."""
+        out = []
+        for i in sorted({int(np.argmin(self.temperature)), int(np.argmax(self.temperature))}):
+            at = f"at {celsius(float(self.temperature[i])):.0f} degC"
+            if np.isnan(self.speed[i]):
+                out.append(f"By the contact as stated drag falls nowhere {at}: there is no transition.")
+                continue
+            text = f"By the contact as stated drag is least {at} at {self.speed[i]:.3g} rad/s"
+            if not np.isnan(self.measured[i]):
+                text += f", the log has it at {self._seen(i)}: {self.ratio[i]:.2g} of it"
+            out.append(
+                f"{text}. It goes as roughness to the power {self.by_roughness[i]:.2f}, as boundary friction "
+                f"to {self.by_boundary[i]:.2f}, as the inverse of viscosity."
+            )
+        return out
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the numbers, in SI."""
+        return json_record({**vars(self), "ratio": self.ratio})
+
+    def _seen(self, i: int) -> str:
+        if np.isnan(self.measured[i]):
+            return "none shown"
+        told = np.isfinite(self.low[i]) and np.isfinite(self.high[i])
+        return f"{self.measured[i]:.3g}" + (
+            f" [{self.low[i]:.3g}, {self.high[i]:.3g}]" if told else " (not told)"
+        )
+
+
+def contact_transition(
+    mixed: MixedContact, temperature: FloatArray, surface: DampingSurface | None = None
+) -> ContactTransition:
+    """Return the transition speed at temperatures (K, as read), beside that of a fitted surface.
+
+    Heat that flows through the film counts as `film_temperature` has it, at the transition.
+    """
+    kelvin = np.atleast_1d(np.asarray(temperature, dtype=float))
+    turn = mixed.transition(kelvin)
+    if mixed.contact.heat_flow is not None:
+        speed = np.where(np.isnan(turn.speed), 1.0, turn.speed)
+        turn = mixed.transition(
+            film_temperature(mixed.contact, mixed.lubricant, speed=speed, temperature=kelvin)
+        )
+    seen = np.full((3, kelvin.size), np.nan)
+    if surface is not None and surface.transition is not None:
+        for i, heat in enumerate(kelvin.tolist()):
+            found = surface.transition_estimate(None if surface.b is None else heat)
+            seen[:, i] = found.value, found.low, found.high
+    return ContactTransition(
+        temperature=kelvin,
+        speed=turn.speed,
+        measured=seen[0],
+        low=seen[1],
+        high=seen[2],
+        by_roughness=turn.by_roughness,
+        by_boundary=turn.sensitivity["boundary"],
+    )
