@@ -151,6 +151,9 @@ fn falling_root(c: &Polynomial, end: f64) -> f64 {
         let (v, slope) = value_and_slope(c, t);
         (low, high) = if v > 0.0 { (t, high) } else { (low, t) };
         let newton = t - v / slope;
+        if newton.to_bits() == t.to_bits() {
+            break; // to the last digit; the bracket has closed on it, and halving would lead away
+        }
         let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
         let step = (next - t).abs();
         t = next;
@@ -241,6 +244,19 @@ mod tests {
         let c = from_roots(&[0.3, 0.300_001]);
         let root = first_crossing(&c, 1.0).expect("the polynomial dips below zero");
         assert!((root - 0.3).abs() < 1e-9);
+    }
+
+    #[test]
+    #[allow(clippy::excessive_precision)]
+    fn a_nearly_straight_line_is_met_to_rounding_whatever_the_interval() {
+        let mut c = [0.0; ORDER + 1];
+        (c[0], c[1], c[2], c[3]) =
+            (11.992_468_576, -230.008_686_525, 0.018_916_186, -0.004_153_311);
+        for i in 1..2000 {
+            let end = 0.0522 + 1e-4 * f64::from(i);
+            let root = first_crossing(&c, end).unwrap();
+            assert!(value(&c, root).abs() < 1e-13, "{end}: {root}");
+        }
     }
 
     #[test]
