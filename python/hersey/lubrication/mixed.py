@@ -19,7 +19,7 @@ from hersey import _core
 from hersey.arrays import FloatArray, pointwise
 from hersey.errors import ParameterError
 from hersey.lubrication.contact import Contact
-from hersey.lubrication.film import REGIMES, film_thickness
+from hersey.lubrication.film import REGIMES, film_thickness, soft_force_beyond
 from hersey.lubrication.lubricant import Lubricant
 from hersey.result import Result, json_record
 from hersey.units import celsius, fields_in_si, takes_si
@@ -29,6 +29,11 @@ if TYPE_CHECKING:
 
 #: The core takes no film whose thickness hangs on load less than so.
 _LEAST_LOAD_EXPONENT = 0.01
+#: Index of the soft regime, whose drag has more than the shear of the nip.
+_SOFT = REGIMES.index("isoviscous-elastic")
+#: Films over roughness, if alone, between which the force of inlet and pressure is a power of eta U: its local
+#: power falls slowly, and drag of lambda 1 to 30 is met within 0.1 % (0.5 % to 50).
+_BETWEEN = (5.0, 20.0)
 
 
 @dataclass(frozen=True)
@@ -134,8 +139,8 @@ class MixedContact:
 
     ``regime`` is the law of the film, ``reference`` (Pa m) the product of viscosity and belt speed at which
     the film alone is as thick as the roughness, ``stiffness`` the pressure of the asperities over F(lambda)
-    and over the mean pressure of the nip, ``shear`` and ``rolling`` (N) the forces of a film of lambda = 1
-    there.
+    and over the mean pressure of the nip, ``shear`` (N) the force that shears a film of lambda = 1 there over
+    the nip, ``rolling`` (N) what inlet and pressure add to it, as eta U to the ``rolling_exponent``.
     """
 
     contact: Contact
@@ -209,8 +214,8 @@ class MixedFilm(Result):
     """Film and asperities at operating points; arrays of one shape.
 
     ``speed`` of the roll (rad/s), ``temperature`` (K), ``viscosity`` (Pa s), ``lambda_ratio``, ``share`` of
-    the load that asperities carry, and the torques (N m) of the asperities, of the sheared film and of its
-    rolling part.
+    the load that asperities carry, and the torques (N m) of the asperities, of the film sheared over the nip
+    and of what its inlet and its pressure add (all that `Film` has beyond eta U/h_c).
     """
 
     speed: FloatArray
@@ -308,7 +313,7 @@ class MixedFilm(Result):
         return pl.DataFrame({name: np.ravel(values) for name, values in columns.items()})
 
 
-@takes_si(speed="speed", temperature="temperature", rolling="force")
+@takes_si(speed="speed", temperature="temperature")
 def mixed_contact(
     contact: Contact,
     lubricant: Lubricant,
@@ -318,8 +323,6 @@ def mixed_contact(
     speed: float,
     temperature: float,
     regime: str = "governing",
-    rolling: float = 0.0,
-    rolling_exponent: float | None = None,
 ) -> MixedContact:
     """Return the law by which film and asperities share the load of a nip.
 
@@ -333,10 +336,6 @@ def mixed_contact(
         A point (rad/s, K) whose film the law goes through; with the soft film, the law is the same from any.
     regime
         Law of the film: ``governing``, that which holds at the point, or the name of one.
-    rolling
-        Force of the rolling (Poiseuille) part at the point where the film carries all, N.
-    rolling_exponent
-        Of that force in viscosity times speed; that of the film if not given.
 
     Raises
     ------
@@ -375,7 +374,12 @@ def mixed_contact(
             f"presses with {1e-6 * film.nip.pressure_mean:.3g} MPa: state stiffer or denser summits, or a "
             "softer nip"
         )
-    power = exponent if rolling_exponent is None else rolling_exponent
+    rolling, power = 0.0, exponent
+    if index == _SOFT:
+        ends = np.array(_BETWEEN) ** (1.0 / exponent)
+        low, high = soft_force_beyond(contact, reference * ends).tolist()
+        power = float(np.log(high / low) / np.log(ends[1] / ends[0]))
+        rolling = low / float(ends[0]) ** power
     mixed = MixedContact(
         contact=contact,
         lubricant=lubricant,
@@ -387,7 +391,7 @@ def mixed_contact(
         load_exponent=max(_core.FILM_LOAD_EXPONENTS[index], _LEAST_LOAD_EXPONENT),
         stiffness=asperities.pressure / film.nip.pressure_mean,
         shear=reference / contact.roughness * film.nip.width * contact.length,
-        rolling=rolling * (reference / product) ** power,
+        rolling=rolling,
         rolling_exponent=power,
     )
     mixed.transition(temperature)
