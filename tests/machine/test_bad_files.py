@@ -25,6 +25,7 @@ from tests.conftest import ROOT
 MESSAGES = Path(__file__).with_name("messages.json")
 
 MACHINE = (ROOT / "examples" / "machine.toml").read_text()
+BOUNDARY = '[boundary]\nfriction = 0.1\ntemperature_slope = "-0.1 %/K"\nat = "180 degC"\n'
 EXAMPLE = MACHINE[: MACHINE.index("# What is in the nip")] + '[lubricant]\nexample = "cylinder oil"\n'
 MAPPING = """
 [time]
@@ -103,6 +104,24 @@ CORPUS: dict[str, tuple[Callable[[Path], Any], str, list[tuple[str, str]]]] = {
             ("# [sensors.torque]", '[rest]\ntorque = "20 mN*m"\nlog = "free.csv"'),
             ("# [sensors.torque]", '[rest]\nlog = "free.csv"'),
             ("# [sensors.torque]", '[rest]\ntorque = "20 mN*m"\ntare = "standing"'),
+            ("# [sensors.torque]", '[asperities]\nmodulus = "3 GPa"'),
+            ("# [sensors.torque]", "[asperities]\nsigma_over_beta = 0.01"),
+            ("# [sensors.torque]", '[asperities]\nmodulus = "3 N"\n[boundary]\nfriction = 0.1'),
+            ("# [sensors.torque]", '[asperities]\nmodulus = "30 MPa"\n[boundary]\nfriction = 0.1'),
+            ("# [sensors.torque]", '[asperities]\nmodulus = "3 GPa"\nsigma = 1\n[boundary]\nfriction = 0.1'),
+            ("# [sensors.torque]", "[boundary]\nfriction = 0.1"),
+            ("# [sensors.torque]", '[boundary]\nfriction = "0.1"'),
+            ("# [sensors.torque]", '[boundary]\nfriction = 0.1\ntemperature_slope = "-0.1 %/K"'),
+            ("# [sensors.torque]", "[boundary]\nfriction = 0.1\nstatic_friction = 0"),
+            (
+                MACHINE[MACHINE.index("roughness") : MACHINE.index("# What is in the nip")],
+                f'[asperities]\nmodulus = "3 GPa"\n{BOUNDARY}',
+            ),
+            (
+                MACHINE[MACHINE.index("[lubricant]") : MACHINE.index("# What the drive takes")],
+                f'[asperities]\nmodulus = "3 GPa"\n{BOUNDARY}',
+            ),
+            ("# [sensors.torque]", f'[asperities]\nmodulus = "3 GPa"\n{BOUNDARY}'),
             ('stick_speed = "0.3 mm/s"', 'stick_speed = "0.3 mm/s"\nstick_speed_rule = "still"'),
             ('stick_speed = "0.3 mm/s"', 'stick_speed = "0.3 mm/s"\nstick_speed_temperature = "150"'),
             ("[drivetrain]", "limits = 3\n[drivetrain]"),

@@ -9,7 +9,7 @@ at the roll, against the rotation. It is stated, or fitted to a log that was rec
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,12 +17,14 @@ from numpy.typing import ArrayLike
 from hersey.arrays import FloatArray
 from hersey.damping.estimate import Estimate, estimate, quantile
 from hersey.errors import InsufficientDataError, ParameterError
-from hersey.motion.drag import Drag
+from hersey.motion.drag import AnyDrag
 from hersey.result import Result, json_record, table_of
 from hersey.units import celsius, rpm, takes_si
 
 if TYPE_CHECKING:
     import polars as pl
+
+AnyLaw = TypeVar("AnyLaw", bound=AnyDrag)
 
 #: Factors beyond the speeds of a no-load log up to which its line is drawn on: where it tells the slope in
 #: speed, and where it does not.
@@ -225,11 +227,13 @@ class RestOfDrive(Result):
         )
 
 
-def with_rest(film: Drag, rest: RestOfDrive, roll_radius: float, temperature: float | None) -> Drag:
+def with_rest(film: AnyLaw, rest: RestOfDrive, roll_radius: float, temperature: float | None) -> AnyLaw:
     """Return the drag of film and rest together, so far as a drag law holds the rest."""
-    held = {field.name for field in fields(film)}
+    held = {field.name for field in fields(film)}  # type: ignore[arg-type]
     at_the_belt: dict[str, Any] = rest.at_the_belt(roll_radius, temperature)
-    return replace(film, **{name: value for name, value in at_the_belt.items() if name in held})
+    return replace(  # type: ignore[type-var]
+        film, **{name: value for name, value in at_the_belt.items() if name in held}
+    )
 
 
 def estimates_of(

@@ -305,17 +305,7 @@ def film_thickness(
         nip.half_width,
     )
     central = np.choose(regime, list(laws.central.values()))
-    force = pointwise(
-        _core.soft_traction,
-        viscosity,
-        entrainment,
-        contact.reduced_radius,
-        contact.effective_modulus,
-        nip.edge,
-        nip.curvature,
-        nip.half_width,
-        contact.rubber_thickness,
-    )
+    force = _soft_traction(contact, viscosity, entrainment)
     soft = regime == _SOFT
     film = Film(
         speed=speeds,
@@ -339,6 +329,43 @@ def film_thickness(
     layer = contact.supply if supply is None else supply
     corrections = _corrections(film, lubricant, layer, starvation_sharpness)
     return Film(**{**vars(film), "corrections": corrections})
+
+
+def soft_force_beyond(contact: Contact, product: FloatArray) -> FloatArray:
+    """Return what a soft film takes beyond eta U/h_c over the nip, N: inlet shear and rolling, flooded.
+
+    ``product`` is that of viscosity and belt speed, Pa m.
+    """
+    one, entrainment = np.ones_like(product), 0.5 * product
+    nip = contact.nip
+    laws = pointwise(
+        _core.line_film,
+        0.0,
+        one,
+        entrainment,
+        contact.load_per_length,
+        contact.reduced_radius,
+        contact.effective_modulus,
+        nip.layer_factor,
+    )
+    force = _soft_traction(contact, one, entrainment)
+    plain = product / laws.central[REGIMES[_SOFT]] * nip.width
+    return np.asarray(contact.length * (plain * (force.shear_factor - 1.0) + force.rolling))
+
+
+def _soft_traction(contact: Contact, viscosity: FloatArray, entrainment: FloatArray) -> _core.Traction:
+    nip = contact.nip
+    return pointwise(
+        _core.soft_traction,
+        viscosity,
+        entrainment,
+        contact.reduced_radius,
+        contact.effective_modulus,
+        nip.edge,
+        nip.curvature,
+        nip.half_width,
+        contact.rubber_thickness,
+    )
 
 
 def _corrections(

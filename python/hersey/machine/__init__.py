@@ -5,6 +5,7 @@ machine              `Machine` and the file as a whole
 limits               what the machine can bear; operating points
 nip                  the tables of contact and lubricant
 rest                 the table of what the drive takes without the film
+sharing              the tables of what shares the load with the film
 uncertainty          how far a parameter is known
 temperature_profile  temperature against time, from a file
 ===================  ==============================================================

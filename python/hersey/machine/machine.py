@@ -8,10 +8,11 @@ from dataclasses import field
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
+import numpy as np
 from pydantic import BeforeValidator
 from pydantic.dataclasses import dataclass
 
-from hersey.damping.rest import RestOfDrive
+from hersey.damping.rest import RestOfDrive, with_rest
 from hersey.damping.surface import WITH_TRANSITION
 from hersey.errors import ParameterError
 from hersey.files.toml import Quantity, Table, naming, read_tables, read_toml
@@ -19,12 +20,19 @@ from hersey.log.sensor_tables import SensorTables, sensors_of
 from hersey.log.sensors import Sensors
 from hersey.lubrication.contact import Contact
 from hersey.lubrication.lubricant import Lubricant
+from hersey.lubrication.mixed import Asperities, BoundaryFriction, MixedContact, mixed_contact
+from hersey.lubrication.mixed_drag import MixedDrag
 from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.nip import ContactTable, LubricantTable
 from hersey.machine.rest import RestTable
+from hersey.machine.sharing import NEEDED, AsperitiesTable, BoundaryTable
 from hersey.machine.uncertainty import Uncertainty, read_uncertainty
 from hersey.motion.simulation import Drivetrain
 from hersey.spelling import printable
+from hersey.units import takes_si
+
+#: Belt speed (m/s) whose film says which law holds, where the machine states no points.
+_USUAL_SPEED = 0.1
 
 
 @plain_dataclass(frozen=True)
@@ -36,7 +44,8 @@ class Machine:
     of the fit), at others by ``stick_speed_rule`` (see `DampingSurface.stick_speed_at`). ``uncertainty``
     says how far parameters are known. ``contact`` and ``lubricant`` make the film, if they are stated.
     ``sensors`` are those of its logs, so far as a log's own mapping states no errors of them. ``rest`` is
-    what the drive takes besides the film.
+    what the drive takes besides the film. ``asperities`` and ``boundary`` share the load with the film;
+    ``static_friction`` is that of a belt at rest (None: e times the drag at the stick speed).
     """
 
     stiffness: float
@@ -52,6 +61,73 @@ class Machine:
     lubricant: Lubricant | None = None
     sensors: Sensors = field(default_factory=Sensors)
     rest: RestOfDrive | None = None
+    asperities: Asperities | None = None
+    boundary: BoundaryFriction | None = None
+    static_friction: float | None = None
+
+    @property
+    def mixed(self) -> MixedContact | None:
+        """What shares the load, and how; None where no asperities and no boundary friction are stated.
+
+        The film is by the law that holds at the points of the machine, in their mean.
+
+        Raises
+        ------
+        ParameterError
+            If contact, its roughness, lubricant, asperities or boundary friction is missing.
+        """
+        if self.asperities is None and self.boundary is None:
+            return None
+        missing = [table for table in NEEDED if getattr(self, table) is None]
+        if missing:
+            raise ParameterError(
+                "film and asperities share the load of contact, lubricant, asperities and boundary: "
+                f"[{missing[0]}] is missing, with {NEEDED[missing[0]]}"
+            )
+        assert self.contact is not None
+        assert self.lubricant is not None
+        assert self.asperities is not None
+        assert self.boundary is not None
+        if self.contact.roughness is None:
+            raise ParameterError(
+                '[contact] lacks the roughness of both faces together, rms: add roughness = "0.4 um"'
+            )
+        speed = float(np.mean([point.speed for point in self.points])) if self.points else _USUAL_SPEED
+        heats = [point.temperature for point in self.points] or self.lubricant.temperature_range
+        return mixed_contact(
+            self.contact,
+            self.lubricant,
+            self.asperities,
+            self.boundary,
+            speed=speed / self.contact.roll_radius,
+            temperature=float(np.mean(heats)),
+        )
+
+    @takes_si(temperature="temperature")
+    def mixed_drag(self, temperature: float) -> MixedDrag:
+        """Return the drag of the belt by `mixed` at a temperature (K), with the rest of the drive.
+
+        The stick speed is that of the machine, moved to this temperature as the transition speed is; a belt
+        at rest breaks away at ``static_friction`` times load.
+
+        Raises
+        ------
+        ParameterError
+            If the machine does not state what shares the load, or the drag falls nowhere.
+        """
+        mixed = self.mixed
+        if mixed is None:
+            raise ParameterError(
+                "the machine does not say what shares the load with the film: state "
+                f"[asperities] {NEEDED['asperities']} and [boundary] {NEEDED['boundary']}"
+            )
+        stick = self.stick_speed
+        if self.stick_speed_temperature is not None and self.stick_speed_rule == WITH_TRANSITION:
+            stated, here = mixed.lubricant.viscosity([self.stick_speed_temperature, temperature])
+            stick *= float(stated / here)
+        static = None if self.static_friction is None else self.static_friction * mixed.contact.load
+        drag = MixedDrag(mixed, temperature, stick, static_force=static)
+        return drag if self.rest is None else with_rest(drag, self.rest, self.roll_radius, temperature)
 
     @property
     def train(self) -> Drivetrain:
@@ -94,6 +170,8 @@ class _MachineFile(Table):
     uncertainty: dict[str, Any] = field(default_factory=dict)
     sensors: SensorTables = field(default_factory=SensorTables)
     rest: RestTable | None = None
+    asperities: AsperitiesTable | None = None
+    boundary: BoundaryTable | None = None
 
 
 def read_machine(path: str | Path) -> Machine:
@@ -101,7 +179,8 @@ def read_machine(path: str | Path) -> Machine:
 
     These are ``[limits]``, ``[contact]``, ``[lubricant]``, ``[[points]]``, ``[uncertainty]``, and
     ``[sensors.torque]``, ``[sensors.speed]`` and ``[sensors.temperature]`` with the errors of a mapping, and
-    ``[rest]``, numbers or a log beside the file.
+    ``[rest]``, numbers or a log beside the file. ``[asperities]`` and ``[boundary]`` say what shares the load
+    with the film; they need each other, ``[contact]`` with a roughness, and ``[lubricant]``.
 
     Every value is a string such as ``"11 N/mm"``; an uncertainty is ``"10 %"`` or ``"0.1 mm/s to 1 mm/s"``
     (see `Uncertainty`).
@@ -132,7 +211,11 @@ def read_machine(path: str | Path) -> Machine:
     if tables.rest is not None:
         with naming(f"{path.name}: [rest]"):
             rest = tables.rest.rest(path)
-    return Machine(
+    boundary = None
+    if tables.boundary is not None:
+        with naming(f"{path.name}: [boundary]"):
+            boundary = tables.boundary.boundary()
+    machine = Machine(
         **vars(tables.drivetrain),
         limits=tables.limits,
         points=tables.points,
@@ -141,4 +224,10 @@ def read_machine(path: str | Path) -> Machine:
         lubricant=lubricant,
         sensors=sensors_of(**vars(tables.sensors)),
         rest=rest,
+        asperities=None if tables.asperities is None else tables.asperities.asperities(),
+        boundary=boundary,
+        static_friction=None if tables.boundary is None else tables.boundary.static_friction,
     )
+    with naming(path.name):
+        _ = machine.mixed  # what it lacks is said here, with the file
+    return machine

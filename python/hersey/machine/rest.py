@@ -35,13 +35,17 @@ def _slope(given: Any, info: ValidationInfo[Any]) -> Any:
     return float(match[1]) / 100
 
 
+#: A share for each kelvin such as ``"-0.2 %/K"``, in 1/K.
+PerKelvin = Annotated[float, BeforeValidator(_slope)]
+
+
 @dataclass(frozen=True)
 class RestTable(Table):
     """Either the numbers, or a ``log`` recorded without the film, beside the machine's file."""
 
     torque: Annotated[float, Quantity("torque", 0.0, 1e6, "20 mN*m")] | None = None
     damping: Annotated[float, Quantity("rotational damping", 0.0, 1e6, "1 mN*m*s/rad")] | None = None
-    temperature_slope: Annotated[float, BeforeValidator(_slope)] | None = None
+    temperature_slope: PerKelvin | None = None
     at: Annotated[float, Quantity("temperature", 150.0, 1000.0, "180 degC")] | None = None
     uncertainty: Share | None = None
     log: Text | None = None

@@ -31,8 +31,8 @@ class MixedLawPart(Part):
     film_exponent: float
     load_exponent: float
     stiffness: float
-    shear: float = Field(description="N")
-    rolling: float = Field(description="N")
+    shear: float = Field(description="of a film of lambda = 1 over the nip, N")
+    rolling: float = Field(description="what inlet and pressure add, at the reference, N")
     rolling_exponent: float
     asperities: AsperitiesPart
     friction: BoundaryFrictionPart
@@ -61,6 +61,7 @@ class MixedTransitionPart(Part):
     lambda_ratio: Holed
     torque: Holed = Field(description="N m")
     sensitivity: dict[str, Holed] = Field(description="d ln eta U by the logarithm of each number of the law")
+    by_roughness: Holed = Field(description="d ln speed by the logarithm of roughness")
 
 
 class MixedPart(Part):
