@@ -32,7 +32,7 @@ from hersey.units import celsius
 _HEIGHT = 470
 #: Height of that sheet over the radius of the roll.
 _TALL = 4.8
-#: Width of the enlarged nip, pixels; nips shown to either side of the axis; film drawn, as a share of the nip.
+#: Width of the enlarged nip, pixels; nips shown to either side of the axis; film drawn, share of the nip.
 _NIP_WIDTH, _NIPS, _DRAWN = 330, 0.85, 0.05
 #: Width of the heater over that of the nip, and thickness over the radius: no file states them.
 _HEATER = (1.5, 0.16)
@@ -98,8 +98,8 @@ def has_nip(contact: Contact) -> Claim:
     return Claim(
         "Fig. 1",
         "Eq. 8 gives the width of the nip.",
-        f"holds if it is within {ABOUT:.0%} of that of a rigid heater on the bonded rubber, solved numerically; "
-        "in direction if within a factor 2.",
+        f"holds if it is within {ABOUT:.0%} of that of a rigid heater on the bonded rubber, solved "
+        "numerically; in direction if within a factor 2.",
         Verdict.of(abs(ratio - 1.0) <= ABOUT, 0.5 <= ratio <= 2.0),
         f"Eq. 8 has {1e3 * paper:.2f} mm, the layer {1e3 * layer:.2f} mm; Eq. 8 is "
         f"{'inside' if contact.nip.paper_in_range else 'outside'} its range here.",

@@ -58,8 +58,8 @@ def is_power_law(measured: Measured) -> Claim:
     return Claim(
         "Fig. 3",
         "Damping varies as a power of speed.",
-        f"holds if the power law of each temperature misses no dwell of the rising branch by over {ABOUT:.0%}; "
-        "in direction if its root mean square does not.",
+        f"holds if the power law of each temperature misses no dwell of the rising branch by over "
+        f"{ABOUT:.0%}; in direction if its root mean square does not.",
         Verdict.of(worst <= ABOUT, typical <= ABOUT),
         f"It misses them by {typical:.1%} (root mean square), by {worst:.1%} at most.",
         {"largest_miss": worst, "typical_miss": typical},

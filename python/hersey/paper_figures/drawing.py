@@ -1,4 +1,4 @@
-"""Drawings to scale: outlines, arrows, dimensions and texts, each layer of a chart in the units of the thing."""
+"""Drawings to scale: outlines, arrows, dimensions and texts, in the units of the thing drawn."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 import altair as alt
 
-from hersey.charts.style import INK, RIM, plot
+from hersey.charts.style import INK, RIM, Chart, Row, plot
 
 #: Grey of what the file does not state.
 UNSTATED = "#777"
@@ -59,16 +59,16 @@ class Drawing:
     def text(self, place: Place, text: str | Sequence[str], *, rim: bool = False, **look: Any) -> None:
         """Write one line, or several, left of which the place is unless told otherwise."""
         lines = [text] if isinstance(text, str) else list(text)
-        style = {"align": "left", "baseline": "middle", "fontSize": 12, "color": INK, "lineHeight": 15} | look
-        rows = [{"x": place[0], "y": place[1], "text": lines}]
+        base: Row = {"align": "left", "baseline": "middle", "fontSize": 12, "color": INK, "lineHeight": 15}
+        rows: list[Row] = [{"x": place[0], "y": place[1]}]
         # A list of lines is not a field that Vega-Lite reads as text: it stands in the mark.
-        for edge in (RIM, {}) if rim else ({},):
-            self._add(plot(rows).mark_text(**(style | edge), text=lines))
+        for edge in [RIM, {}] if rim else [{}]:
+            self._add(plot(rows).mark_text(**(base | look | edge), text=lines))
 
-    def chart(self, **properties: Any) -> alt.LayerChart:
+    def chart(self, **properties: Any) -> Chart:
         """Return the drawing."""
         width, height = self.size
-        chart: alt.LayerChart = alt.layer(*self._layers).properties(
+        chart: Chart = alt.layer(*self._layers).properties(
             width=width, height=height, view=alt.ViewBackground(stroke=None), **properties
         )
         return chart

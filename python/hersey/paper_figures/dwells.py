@@ -53,12 +53,7 @@ def dots(measured: Measured, curves: Sequence[Curve], channel: alt.Y, x: alt.X) 
 
 def _channels(measured: Measured) -> tuple[alt.Color, alt.Shape]:
     """Colour and shape of temperatures, named above the chart: on its right stand names of lines."""
-    known = measured.surface.b is not None
-    color, shape = temperature_channels(measured.kelvin, legend=known)
-    if known:
-        above = {"orient": "top", "title": "°C", "symbolOpacity": 1}
-        color, shape = color.legend(**above), shape.legend(**above)
-    return color, shape
+    return temperature_channels(measured.kelvin, legend=measured.surface.b is not None, orient="top")
 
 
 def speed_axis(measured: Measured) -> alt.X:

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import altair as alt
 import numpy as np
 
+from hersey.arrays import BoolArray
 from hersey.charts.labels import apart
 from hersey.charts.style import BLUE, INK, ORANGE, WIDTH, Chart, Row, plot, rows_of
 from hersey.errors import ParameterError
+from hersey.lubrication.contact import Contact
 from hersey.lubrication.film import Film, film_thickness
 from hersey.lubrication.reynolds import LineContactSolution, solve_line_contact
 from hersey.machine.machine import Machine
@@ -71,19 +74,20 @@ def exponents(film: Film) -> dict[str, float]:
     contact, lubricant = film.contact, film.lubricant
     speed, kelvin = float(film.speed), float(film.temperature)
     law = film.regime_names()[0]
+    span = math.log1p(_CHANGE) - math.log1p(-_CHANGE)
 
-    def logarithm(contact_: object = contact, factor: float = 1.0) -> float:
-        changed = film_thickness(contact_, lubricant, speed=speed * factor, temperature=kelvin)  # type: ignore[arg-type]
+    def logarithm(changed_contact: Contact = contact, factor: float = 1.0) -> float:
+        changed = film_thickness(changed_contact, lubricant, speed=speed * factor, temperature=kelvin)
         return float(np.log(changed.centres[law]))
 
     def by(name: str) -> float:
         up, down = (
             replace(contact, **{name: getattr(contact, name) * (1.0 + way * _CHANGE)}) for way in (1, -1)
         )
-        return (logarithm(up) - logarithm(down)) / (np.log1p(_CHANGE) - np.log1p(-_CHANGE))
+        return (logarithm(up) - logarithm(down)) / span
 
     ends = [logarithm(factor=1.0 + way * _CHANGE) for way in (1, -1)]
-    by_speed = (ends[0] - ends[1]) / (np.log1p(_CHANGE) - np.log1p(-_CHANGE))
+    by_speed = (ends[0] - ends[1]) / span
     # The roll's radius is also what makes the belt's speed of a speed of rotation.
     found = {"viscosity": by_speed, "speed": by_speed, "radius": by("roll_radius") - by_speed}
     return {
@@ -100,8 +104,8 @@ def hangs_on(film: Film) -> Claim:
     return Claim(
         "Fig. 5",
         "The film hangs mostly on viscosity and speed, and very weakly on load and modulus.",
-        f"holds if the exponents of viscosity and speed are the greatest, and those of load and modulus below "
-        f"{_WEAK:g}; in direction if the former.",
+        "holds if the exponents of viscosity and speed are the greatest, and those of load and modulus "
+        f"below {_WEAK:g}; in direction if the former.",
         Verdict.of(bool(most and weak < _WEAK), bool(most)),
         f"Exponents of the film by the law that holds here, {film.regime_names()[0]} (in brackets those of "
         f"Eq. 5): {listed}.",
@@ -116,8 +120,8 @@ def is_sheared(film: Film) -> Claim:
     return Claim(
         "Eq. 6",
         "The film is sheared as between parallel plates: the gradient of pressure adds nothing.",
-        f"holds if plain shear of the central film over the nip is within {ABOUT:.0%} of the film's torque; in "
-        "direction if shear is over half of it.",
+        f"holds if plain shear of the central film over the nip is within {ABOUT:.0%} of the film's torque; "
+        "in direction if shear is over half of it.",
         Verdict.of(abs(plain) <= ABOUT, shear > 0.5 * whole),
         f"The torque is {plain:+.1%} of plain shear away from it; the gradient of pressure makes "
         f"{rolling / whole:.1%} of it.",
@@ -138,7 +142,7 @@ def _solved(film: Film) -> LineContactSolution:
     )
 
 
-def _pressure(solution: LineContactSolution, film: Film, seen: np.ndarray, axis: alt.Scale) -> Chart:
+def _pressure(solution: LineContactSolution, film: Film, seen: BoolArray, axis: alt.Scale) -> Chart:
     """Pressure along the nip, and its mean over the nip."""
     rows = rows_of(x=1e3 * solution.x[seen], y=1e-3 * solution.pressure[seen])
     nip, half = film.nip, 1e3 * film.nip.half_width
@@ -159,7 +163,7 @@ def _pressure(solution: LineContactSolution, film: Film, seen: np.ndarray, axis:
     return alt.layer(*layers, width=WIDTH, height=_HEIGHTS[0])
 
 
-def _gap(solution: LineContactSolution, film: Film, seen: np.ndarray, axis: alt.Scale) -> Chart:
+def _gap(solution: LineContactSolution, film: Film, seen: BoolArray, axis: alt.Scale) -> Chart:
     """The film between the heater above and the belt on its rubber below, the heater's face straight."""
     top = _TALL * 1e6 * solution.central_thickness
     rows = rows_of(x=1e3 * solution.x[seen], film=-1e6 * solution.film_thickness[seen])

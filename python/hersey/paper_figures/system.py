@@ -65,8 +65,8 @@ def holds_on(machine: Machine, measured: Measured) -> Claim:
     return Claim(
         "Fig. 6",
         "One degree of freedom is enough: belt and roll do not slide on each other.",
-        "holds if the grip of the roll exceeds every drag of the log and, where torque falls with speed, what "
-        "breaks a stuck belt away; in direction if the former.",
+        "holds if the grip of the roll exceeds every drag of the log and, where torque falls with speed, "
+        "what breaks a stuck belt away; in direction if the former.",
         Verdict.of(most < grip, drag < grip),
         f"The drag of the log is at most {drag:.4g} N, the grip {grip:.4g} N.{stuck}",
         {"greatest_drag": drag, "grip": grip, "breakaway": math.nan if breakaway is None else breakaway},
@@ -117,12 +117,12 @@ def _diagram(machine: Machine) -> Chart:
     sheet.line([(462.0, middle + 20), (512.0, middle + 20), (512.0, middle - 20), (462.0, middle - 20)])
     sheet.line([(512.0, middle), (560.0, middle), (560.0, 22.0)])
     stick = f"stick speed {1e3 * machine.stick_speed:.3g} mm/s"
-    sheet.text((487.0, middle + 46), "drag B(v1, T) v1", align="center")
+    sheet.text((487.0, middle - 34), "drag B(v1, T) v1", align="center")
     sheet.text((568.0, middle + 7), stick)
     frequency = math.sqrt(machine.stiffness / machine.mass) / (2.0 * math.pi)
     sheet.text((8.0, 42.0), [f"free: {frequency:.3g} Hz", f"R = {1e3 * machine.roll_radius:.4g} mm"])
     if machine.limits.grip is not None:
-        text = f"grip µ N = {machine.limits.roll_friction:g} x {machine.limits.nip_load:.4g} N = {machine.limits.grip:.4g} N"
+        text = f"grip µ N = {machine.limits.roll_friction:g} x {machine.limits.nip_load:.4g} N"
         sheet.text((190.0, middle - 48), text, align="center")
     return sheet.chart()
 

@@ -67,10 +67,11 @@ def describes(measured: Measured) -> Claim:
     return Claim(
         "Fig. 4",
         "B = a T^b w^c describes the damping measured.",
-        f"holds if the surface misses no dwell by over {ABOUT:.0%}; in direction if its root mean square does "
-        "not.",
+        f"holds if the surface misses no dwell by over {ABOUT:.0%}; in direction if its root mean square "
+        "does not.",
         Verdict.of(worst <= ABOUT, typical <= ABOUT),
-        f"The surface, {bends}, misses the dwells by {typical:.1%} (root mean square), by {worst:.1%} at most.",
+        f"The surface, {bends}, misses the dwells by {typical:.1%} (root mean square), "
+        f"by {worst:.1%} at most.",
         {"largest_miss": worst, "typical_miss": typical},
     )
 
@@ -83,8 +84,8 @@ def is_straight(measured: Measured) -> Claim:
     return Claim(
         "Eq. 9",
         "The logarithm of torque against 1/T is a straight line.",
-        f"holds if the least-squares line misses the mean torque of no temperature by over {ABOUT:.0%}, of at "
-        "least three; in direction if torque falls as it grows hotter.",
+        f"holds if the least-squares line misses the mean torque of no temperature by over {ABOUT:.0%}, "
+        "of at least three; in direction if torque falls as it grows hotter.",
         Verdict.of(count > 2 and miss <= ABOUT, slope > 0.0),
         f"It misses {count} temperatures by {miss:.1%} at most; its slope is {energy / 1e3:.3g} kJ/mol "
         f"({energy / _CALORIE:.5g} cal/mol), where the paper has {_REPORTED:g} cal/mol for its grease.",
@@ -102,7 +103,8 @@ def is_energy(measured: Measured, machine: Machine) -> Claim:
     return Claim(
         "Eq. 9",
         "The slope, over the exponent 0.3 of viscosity, is the activation energy of the lubricant.",
-        f"holds if it is within {ABOUT:.0%} of that of the machine's file; in direction if within a factor 2.",
+        f"holds if it is within {ABOUT:.0%} of that of the machine's file; in direction if within a "
+        "factor 2.",
         Verdict.of(abs(ratio - 1.0) <= ABOUT, 0.5 <= ratio <= 2.0),
         f"The log has {energy / 1e3:.3g} kJ/mol, the lubricant of the file {stated / 1e3:.3g} kJ/mol at the "
         "mean of 1/T.",
