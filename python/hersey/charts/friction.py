@@ -31,7 +31,7 @@ COEFFICIENT = "Friction coefficient T/(R N) (1)"
 #: Points of a line, strips of the shade, and its darkest.
 _LINE, _STRIPS, _DARKEST = 240, 96, 0.55
 #: How far the model goes beyond its least drag, ratios of the Hersey number, and room beside the dwells.
-_BELOW, _BEYOND, _ROOM = 30.0, 100.0, 1.5
+_BELOW, _BEYOND, _ROOM = 100.0, 100.0, 1.5
 #: Share of the load on the asperities above which lubrication is called boundary, and lambda of a film.
 BOUNDARY_SHARE, FILM_LAMBDA = 0.9, 3.0
 #: A level is drawn if it is within this ratio of what else is seen.

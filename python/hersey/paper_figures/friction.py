@@ -15,6 +15,7 @@ from hersey.machine.machine import Machine
 from hersey.paper_figures.cross_section import contact_of
 from hersey.paper_figures.figure import ABOUT, Claim, PaperFigure, Verdict
 from hersey.paper_figures.measured import Measured
+from hersey.paper_figures.system import motor_left
 from hersey.verdict.evidence import MeasuredFilm, measured_film
 
 #: Share of the dwells, at either end of the Hersey number, over which a slope is taken; fewest dwells of it.
@@ -56,14 +57,10 @@ def figure_8(machine: Machine, measured: Measured | None = None) -> PaperFigure:
 
 def motor_friction(machine: Machine) -> float | None:
     """Return the friction coefficient at which the motor gives no more, the rest of the drive taken off."""
-    limits, contact = machine.limits, machine.contact
-    if limits.motor_torque is None or contact is None:
+    contact = machine.contact
+    if machine.limits.motor_torque is None or contact is None:
         return None
-    left = limits.motor_torque
-    if machine.rest is not None and machine.points:
-        point = machine.points[0]
-        left -= float(machine.rest.torque(point.speed / contact.roll_radius, point.temperature))
-    return left / (contact.roll_radius * contact.load) if left > 0.0 else None
+    return motor_left(machine) / (contact.roll_radius * contact.load) or None
 
 
 def turns(film: MeasuredFilm) -> Claim:

@@ -13,7 +13,7 @@ from hersey.damping.estimate import Estimate
 from hersey.damping.fit import fit
 from hersey.damping.surface import DampingSurface
 from hersey.units import celsius
-from hersey.verdict.regime import regime
+from hersey.verdict.regime import branch_exponents
 
 #: Names of the branch on which torque falls with speed, and of one alone, as `BranchExponent` has them.
 FALLING, ALONE = "mixed", "all"
@@ -104,7 +104,7 @@ class Measured:
         """Every branch with an exponent, as the verdict on the regime has them."""
         found = []
         of = dict(self.groups)
-        for each in regime(self.points, self.surface).exponents:
+        for each in branch_exponents(self.points, self.surface):
             group = of[each.temperature]
             speed = self.speed[group]
             index = group[(speed >= each.speed_low) & (speed <= each.speed_high)]

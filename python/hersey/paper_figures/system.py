@@ -48,10 +48,23 @@ def forces_of(machine: Machine, measured: Measured | None) -> list[tuple[str, fl
     if limits.grip is not None:
         found.append(("grip of the roll, µ N", limits.grip))
     if limits.motor_torque is not None:
-        found.append(("motor torque over R", limits.motor_torque / radius))
+        left = motor_left(machine)
+        found.append(
+            ("motor" if machine.rest is None else "motor, less the rest of the drive", left / radius)
+        )
     if limits.spring_force is not None:
         found.append(("spring at most", limits.spring_force))
     return found
+
+
+def motor_left(machine: Machine) -> float:
+    """Return the torque of the motor that the rest of the drive leaves, N m, at the first operating point."""
+    assert machine.limits.motor_torque is not None
+    if machine.rest is None or not machine.points:
+        return machine.limits.motor_torque
+    point = machine.points[0]
+    taken = machine.rest.torque(point.speed / machine.roll_radius, point.temperature)
+    return max(machine.limits.motor_torque - float(taken), 0.0)
 
 
 def holds_on(machine: Machine, measured: Measured) -> Claim:
@@ -135,19 +148,19 @@ def _bars(machine: Machine, forces: list[tuple[str, float]]) -> Chart:
             "force": force,
             "order": i,
             "bears": i >= len(forces) - _limits(machine),
-            "text": f"{force:.4g} N, {1e3 * force / machine.stiffness:.3g} mm",
+            "text": f"{force:.3g} N, {1e3 * force / machine.stiffness:.3g} mm",
         }
         for i, (name, force) in enumerate(forces)
     ]
     top = 1.25 * max(force for _, force in forces)
-    y = alt.Y("name:N", title=None, sort=[name for name, _ in forces], axis=alt.Axis(labelLimit=220))
+    y = alt.Y("name:N", title=None, sort=[name for name, _ in forces], axis=alt.Axis(labelLimit=240))
     x = alt.X("force:Q", title="Force at the belt (N)", scale=alt.Scale(domain=[0.0, top], nice=False))
     color = alt.Color(
         "bears:N", scale=alt.Scale(domain=[False, True], range=["#5b7fb5", "#c9cdd3"]), legend=None
     )
     bars = plot(rows).mark_bar(stroke=INK, strokeWidth=0.8).encode(x=x, y=y, color=color)
     texts = plot(rows).mark_text(align="left", dx=5, color=INK, fontSize=12).encode(x=x, y=y, text="text:N")
-    return alt.layer(bars, texts, width=WIDTH - 160, height=_BAR * len(forces))
+    return alt.layer(bars, texts, width=WIDTH - 190, height=_BAR * len(forces))
 
 
 def _limits(machine: Machine) -> int:

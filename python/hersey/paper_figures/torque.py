@@ -44,11 +44,9 @@ def figure_2(measured: Measured, machine: Machine | None = None) -> PaperFigure:
         lines(measured, powers),
         marks(measured, factor * measured.torque, y, x),
     ]
-    subtitle = [
-        f"{measured.name}: dwells; solid: power of speed through the rising branch; dashed: straight line"
-    ]
+    subtitle = f"{measured.name}; solid: power of speed through the rising branch; dashed: straight line"
     if theory:
-        subtitle[0] += "; dotted: Eq. 9"
+        subtitle += "; dotted: Eq. 9" if min(tall) < top else "; Eq. 9 is beyond the chart"
     title = alt.Title("Fig. 2: Torque against speed and temperature", subtitle=subtitle)
     chart = alt.layer(*layers, title=title, width=WIDTH, height=HEIGHT)
     claims = [rises_as(measured), bends(measured)]
