@@ -15,6 +15,7 @@ from hersey.charts.style import HEIGHT, INK, WIDTH, Chart, Row, plot
 from hersey.document.film_part import film_points
 from hersey.document.parts import FilmPoint
 from hersey.lubrication.film import REGIMES, Film
+from hersey.lubrication.mixed import MixedContact
 from hersey.units import celsius, rpm
 from hersey.verdict.evidence import MeasuredFilm
 
@@ -30,10 +31,16 @@ _LEAST = ((-2.0, 4.0), (-1.0, 3.0))
 _U = 1e-10
 
 
-def film_chart(film: Film, names: list[str] | None = None, measured: MeasuredFilm | None = None) -> Chart:
+def film_chart(
+    film: Film,
+    names: list[str] | None = None,
+    measured: MeasuredFilm | None = None,
+    mixed: MixedContact | None = None,
+) -> Chart:
     """Return the regime chart with the points of a film on it, over the Stribeck curve if there is a log.
 
-    Points without ``names`` are called by their speed and temperature.
+    Points without ``names`` are called by their speed and temperature. The curve has the model of a ``mixed``
+    contact, if one is given.
     """
     names = _places(film) if names is None else names
     dwells = []
@@ -43,7 +50,7 @@ def film_chart(film: Film, names: list[str] | None = None, measured: MeasuredFil
     if measured is None:
         return chart
     stacked: Chart = alt.vconcat(
-        chart, friction_chart(measured, grip=measured.grip), spacing=24
+        chart, friction_chart(measured, mixed, grip=measured.grip), spacing=24
     ).resolve_scale(color="independent", shape="independent")
     return stacked
 

@@ -111,7 +111,7 @@ def film(
         from hersey.charts.render import picture
 
         with working("drawing"):
-            chart = chart_of(predicted, names=names, measured=measured)
+            chart = chart_of(predicted, names=names, measured=measured, mixed=machine.mixed)
             content = picture(chart, figure.suffix)
         write_atomically(figure, content, overwrite=True)
     if as_json:

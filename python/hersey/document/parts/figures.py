@@ -29,7 +29,7 @@ class FigurePart(Part):
 
 
 class FiguresPart(Part):
-    """The paper's figures drawn anew: claims judged, and the data; ``units`` from Fig. 9 on."""
+    """The paper's figures drawn anew: claims judged, and the data of the curves."""
 
-    units: dict[str, str]
+    units: dict[str, str] = Field(description="of Figs. 9 to 14 and those beyond the paper")
     figures: list[FigurePart]
