@@ -303,7 +303,7 @@ def test_exponents_and_names_that_do_not_overlap() -> None:
 def test_films_on_their_chart() -> None:
     assert column("Film", "g_v", "name") == pytest.approx(film().g_v.ravel())
     assert column("Film", "name") == [f"{v / RPM:.3g} rpm, 147 °C" for v in (1.0, 5.0)]
-    assert column("MeasuredFilm", "friction", "temperature") == pytest.approx(measured().friction)
+    assert column("MeasuredFilm", "friction", "level") == pytest.approx(measured().friction)
 
 
 def test_a_motion_and_its_modes() -> None:

@@ -86,6 +86,7 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
 @pytest.mark.parametrize("name", PRINTED)
 def test_a_command_prints_its_part(name: str, files: dict[str, str], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("hersey.paper_figures.all_figures", lambda: [figure()])
+    monkeypatch.setattr("hersey.paper_figures.drive_figures", lambda *_: ((), ()))
     document = printed([name, *(files.get(argument, argument) for argument in ARGUMENTS[name])])
     assert document["schema_version"] == SCHEMA_VERSION
     assert document["hersey_version"] == hersey.__version__

@@ -413,18 +413,18 @@ def test_the_stribeck_curve_in_numbers(measured: MeasuredFilm) -> None:
     panel = film_chart(measured.predicted, ["a"] * measured.speed.size, measured).to_dict(validate=False)[
         "vconcat"
     ][1]
-    line, dots, rule = (panel["layer"][i]["data"]["values"] for i in range(3))
+    line, _, rule, _, dots = (layer["data"]["values"] for layer in panel["layer"])
     assert [row["hersey"] for row in dots] == pytest.approx((1e6 * measured.hersey_number).tolist())
     assert [row["friction"] for row in dots] == pytest.approx(measured.friction.tolist())
     order = np.argsort(measured.hersey_number)
     film = measured.predicted_torque * measured.calibration.value / (15e-3 * 300.0)
     assert [row["hersey"] for row in line] == pytest.approx((1e6 * measured.hersey_number[order]).tolist())
     assert [row["friction"] for row in line] == pytest.approx(film[order].tolist())
-    rounded = [f"{5 * round((t - 273.15) / 5)} °C" for t in measured.temperature]
-    assert [row["temperature"] for row in dots] == rounded
-    assert rule == [{"friction": 0.6, "text": "the belt slips on the roll: stall"}]
-    shown = panel["layer"][1]["encoding"]["color"]["scale"]["domain"]
-    assert shown == ["90 °C", "120 °C", "150 °C", "180 °C"]
+    rounded = [5.0 * round((t - 273.15) / 5) for t in measured.temperature]
+    assert [row["level"] for row in dots] == rounded
+    assert [(row["friction"], row["text"]) for row in rule] == [(0.6, "belt slips on the roll (0.6)")]
+    shown = panel["layer"][-1]["encoding"]["color"]["scale"]["domain"]
+    assert shown == [90.0, 120.0, 150.0, 180.0]
     free = film_chart(measured.predicted, [], replace(measured, grip=None)).to_dict(validate=False)
     assert len(free["vconcat"][1]["layer"]) == 2
 

@@ -12,7 +12,8 @@ log            speed, torque and temperature over time
 inspection     the channels of a log, and their faults
 damping        dwells, surface, candidates, two logs, the next dwells
 regime         exponents against what each regime predicts
-film           the regime chart and the Stribeck curve
+film           the regime chart, over the Stribeck curve
+friction       the Stribeck curve: dwells, model, regimes, stall
 mixed          torque of film and asperities against speed
 transition     transition speed against temperature
 motion         a trajectory, and the lap to which it settles

@@ -9,12 +9,14 @@ import numpy as np
 
 from hersey import _core
 from hersey.arrays import FloatArray, IntArray, pointwise
+from hersey.charts.friction import friction_chart
 from hersey.charts.labels import Labels
-from hersey.charts.style import HEIGHT, INK, WIDTH, Chart, Row, logarithmic, plot
+from hersey.charts.style import HEIGHT, INK, WIDTH, Chart, Row, plot
 from hersey.charts.transition import transition_chart
 from hersey.document.film_part import film_points
 from hersey.document.parts import FilmPoint
 from hersey.lubrication.film import REGIMES, Film
+from hersey.lubrication.mixed import MixedContact
 from hersey.units import celsius, rpm
 from hersey.verdict.evidence import MeasuredFilm
 from hersey.verdict.transition import ContactTransition
@@ -36,12 +38,14 @@ def film_chart(
     names: list[str] | None = None,
     measured: MeasuredFilm | None = None,
     transition: ContactTransition | None = None,
+    mixed: MixedContact | None = None,
 ) -> Chart:
     """Return the regime chart with the points of a film on it.
 
     Over the Stribeck curve if there is a log, and over transition speeds if they are given.
 
-    Points without ``names`` are called by their speed and temperature.
+    Points without ``names`` are called by their speed and temperature. The curve has the model of a ``mixed``
+    contact, if one is given.
     """
     names = _places(film) if names is None else names
     dwells = []
@@ -49,7 +53,7 @@ def film_chart(
         dwells = film_points(measured.predicted, [""] * measured.speed.size)
     charts: list[Chart] = [regime_chart(film_points(film, names), dwells, film.nip.layer_factor)]
     if measured is not None:
-        charts.append(_stribeck(measured))
+        charts.append(friction_chart(measured, mixed, grip=measured.grip))
     if transition is not None:
         numbers = (getattr(transition, name) for name in ("temperature", "speed", "measured", "low", "high"))
         charts.append(transition_chart(*(each.tolist() for each in numbers)))
@@ -63,9 +67,9 @@ def measured_chart(measured: MeasuredFilm) -> Chart:
     """Return where the dwells of a log lie on the regime chart, over their Stribeck curve."""
     dwells = film_points(measured.predicted, [""] * measured.speed.size)
     chart = regime_chart([], dwells, measured.predicted.nip.layer_factor)
-    stacked: Chart = alt.vconcat(chart, _stribeck(measured), spacing=24).resolve_scale(
-        color="independent", shape="independent"
-    )
+    stacked: Chart = alt.vconcat(
+        chart, friction_chart(measured, grip=measured.grip), spacing=24
+    ).resolve_scale(color="independent", shape="independent")
     return stacked
 
 
@@ -128,66 +132,6 @@ def _texts(points: list[Row], spans: list[tuple[float, float]], regime: IntArray
         x, y = (alt.X("across:Q", scale=None, axis=None), alt.Y("down:Q", scale=None, axis=None))
         layers.append(plot(placed).mark_text(color=INK, **look).encode(x=x, y=y, text=alt.Text("name:N")))
     return layers
-
-
-def _stribeck(measured: MeasuredFilm) -> Chart:
-    points = [
-        {
-            "hersey": float(measured.hersey_number[i]) * 1e6,
-            "friction": float(measured.friction[i]),
-            "temperature": f"{5 * round(celsius(measured.temperature[i]) / 5)} °C",
-        }
-        for i in range(measured.speed.size)
-    ]
-    scale = measured.friction / measured.torque
-    order = np.argsort(measured.hersey_number)
-    film = [
-        {
-            "hersey": float(measured.hersey_number[i]) * 1e6,
-            "friction": float(measured.predicted_torque[i] * scale[i] * measured.calibration.value),
-        }
-        for i in order
-    ]
-    x = alt.X(
-        "hersey:Q",
-        title="Hersey number eta U/p (um), p the mean pressure of the nip, U the sliding speed",
-        scale=logarithmic(),
-    )
-    y = alt.Y(
-        "friction:Q",
-        title="friction coefficient T/(R N)",
-        scale=logarithmic(),
-    )
-    temperatures = [f"{t} °C" for t in sorted({5 * round(celsius(t) / 5) for t in measured.temperature})]
-    colours = alt.Scale(domain=temperatures, scheme="viridis")
-    dots = (
-        plot(points)
-        .mark_point(filled=True, size=45, opacity=0.9)
-        .encode(
-            x=x,
-            y=y,
-            color=alt.Color("temperature:N", scale=colours, legend=alt.Legend(title=None)),
-            shape=alt.Shape(
-                "temperature:N", scale=alt.Scale(domain=temperatures), legend=alt.Legend(title=None)
-            ),
-        )
-    )
-    line = plot(film).mark_line(color=INK, strokeDash=[6, 4], strokeWidth=1.5).encode(x=x, y=y)
-    layers: list[alt.Chart] = [line, dots]
-    if measured.grip is not None:
-        rule = [{"friction": measured.grip, "text": "the belt slips on the roll: stall"}]
-        layers.append(plot(rule).mark_rule(color="#a33", strokeWidth=1.5).encode(y=y))
-        layers.append(
-            plot(rule)
-            .mark_text(align="left", baseline="bottom", dx=4, dy=-3, color="#a33")
-            .encode(x=alt.value(0), y=y, text="text:N")
-        )
-    subtitle = (
-        f"dashed: film of the governing law times {measured.calibration.value:.3g}, the one factor that "
-        "brings it to the data"
-    )
-    title = alt.Title("Stribeck curve", subtitle=subtitle)
-    return alt.layer(*layers).properties(width=WIDTH, height=HEIGHT, title=title)
 
 
 def _places(film: Film) -> list[str]:

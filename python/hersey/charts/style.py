@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import AbstractContextManager
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
 import altair as alt
 import numpy as np
@@ -20,7 +20,7 @@ _SHAPES = ("circle", "square", "triangle-up", "diamond", "cross", "triangle-down
 Row = dict[str, Any]
 #: A pale rim around words, so that lines do not run through them.
 RIM: Row = {"color": "white", "stroke": "white", "strokeWidth": 3.5, "strokeJoin": "round"}
-Chart = alt.LayerChart | alt.FacetChart | alt.VConcatChart
+Chart = alt.LayerChart | alt.FacetChart | alt.VConcatChart | alt.HConcatChart
 
 
 class _Inline:
@@ -47,11 +47,11 @@ def temperature_name(kelvin: float | None) -> float:
 
 
 def temperature_channels(
-    kelvin: Sequence[float | None], *, legend: bool = True
+    kelvin: Sequence[float | None], *, legend: bool = True, orient: Literal["right", "top"] = "right"
 ) -> tuple[alt.Color, alt.Shape]:
     """Return colour by lightness and shape of the field ``level``, so that temperatures survive greyscale."""
     levels = sorted({temperature_name(t) for t in kelvin})
-    named = alt.Legend(title="°C", symbolOpacity=1) if legend else None
+    named = alt.Legend(title="°C", symbolOpacity=1, orient=orient) if legend else None
     shapes = [_SHAPES[i % len(_SHAPES)] for i in range(len(levels))]
     return (
         alt.Color("level:N", scale=alt.Scale(domain=levels, range=ramp(len(levels))), legend=named),

@@ -48,7 +48,7 @@ VERBS = {
     "sweep": "Find what every combination of parameters settles to, and count the outcomes.",
     "hysteresis": "Find the drive speeds between which the past decides whether the belt sticks.",
     "figures": (
-        "Draw the paper's Figs. 9-14 anew and two of our own; say of each claim whether it holds "
+        "Draw the paper's Figs. 1-14 anew and two of our own; say of each claim whether it holds "
         "and how well."
     ),
     "testbench": (

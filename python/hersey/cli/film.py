@@ -114,7 +114,7 @@ def film(
 
         with working("drawing"):
             turn = None if shared is None else shared.transition
-            chart = chart_of(predicted, names=names, measured=measured, transition=turn)
+            chart = chart_of(predicted, names=names, measured=measured, transition=turn, mixed=machine.mixed)
             content = picture(chart, figure.suffix)
         write_atomically(figure, content, overwrite=True)
     if as_json:

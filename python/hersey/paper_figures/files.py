@@ -15,8 +15,9 @@ from hersey.result import json_value
 
 _HEAD = f"""# Figures of the paper, drawn anew, and figures beyond it
 
-Units are inches, ounces of force and seconds. Every number is computed, but for A of Eq. 29 and the speeds
-and ranges that the paper names. *About* means within {ABOUT:g} of an exponent, or {ABOUT:.0%} of a value.
+Figs. 1 to 8 are drawn of a machine and a log, in the units of their axes; the others of the paper's model, in
+inches, ounces of force and seconds. Every number of these is computed, but for A of Eq. 29 and the speeds and
+ranges that the paper names. *About* means within {ABOUT:g} of an exponent, or {ABOUT:.0%} of a value.
 """
 
 

@@ -122,7 +122,7 @@ def regime(
     hypotheses = judged(surface.c, table=table)
     by = explained(points, surface, hypotheses, law)
     return Regime(
-        _exponents(points, surface),
+        branch_exponents(points, surface),
         hypotheses,
         by.explanations,
         by.named,
@@ -141,7 +141,8 @@ def _taken_off(points: SteadyPoints) -> str:
     )
 
 
-def _exponents(points: SteadyPoints, surface: DampingSurface) -> tuple[BranchExponent, ...]:
+def branch_exponents(points: SteadyPoints, surface: DampingSurface) -> tuple[BranchExponent, ...]:
+    """Return the exponent of each branch at each temperature that has three speeds on it."""
     speed = np.abs(points.column("speed"))
     torque = np.abs(points.column("torque"))
     error = np.hypot(points.column("torque_error") / torque, surface.statistics.scatter)

@@ -19,7 +19,7 @@ class ClaimPart(Part):
 
 
 class FigurePart(Part):
-    """A figure with its claims and the data of its curves by column, in the units of the paper."""
+    """A figure with its claims and the data of its curves by column: Figs. 1 to 8 in SI with units."""
 
     name: str
     number: int | None = Field(description="in the paper; null for a figure that it does not have")
@@ -31,5 +31,5 @@ class FigurePart(Part):
 class FiguresPart(Part):
     """The paper's figures drawn anew: claims judged, and the data of the curves."""
 
-    units: dict[str, str]
+    units: dict[str, str] = Field(description="of Figs. 9 to 14 and those beyond the paper")
     figures: list[FigurePart]

@@ -1,0 +1,63 @@
+"""Figs. 1 to 8 of a user's own machine and log, or of those that ship with the package."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from hersey.charts.style import unchecked
+from hersey.errors import HerseyError
+from hersey.log.reading import read
+from hersey.machine.machine import Machine, read_machine
+from hersey.paper_figures.cross_section import figure_1
+from hersey.paper_figures.damping import figure_3, figure_7
+from hersey.paper_figures.figure import PaperFigure
+from hersey.paper_figures.friction import figure_8
+from hersey.paper_figures.measured import Measured
+from hersey.paper_figures.nip import figure_5
+from hersey.paper_figures.system import figure_6
+from hersey.paper_figures.temperature import figure_4
+from hersey.paper_figures.torque import figure_2
+
+#: The example's files lie here as links to ``examples``: a package that is built holds the files themselves.
+_SHIPPED = Path(__file__).parent
+
+
+def drive_figures(
+    measured: Measured | None = None, machine: Machine | None = None
+) -> tuple[tuple[PaperFigure, ...], tuple[str, ...]]:
+    """Return those of Figs. 1 to 8 that a log and a machine can make, and why the others are left out.
+
+    Figs. 1, 5, 6 and 8 need the machine, Figs. 2, 3, 4 and 7 the log; Fig. 8 shows both where both are given.
+    """
+    figures, left_out = [], []
+
+    def make(number: int, figure: Callable[[], PaperFigure]) -> None:
+        try:
+            figures.append(figure())
+        except HerseyError as error:
+            left_out.append(f"Fig. {number} is left out: {error}")
+
+    with unchecked():
+        if machine is not None:
+            make(1, lambda: figure_1(machine))
+            make(5, lambda: figure_5(machine))
+            make(6, lambda: figure_6(machine, measured))
+            make(8, lambda: figure_8(machine, measured))
+        else:
+            left_out.append("Figs. 1, 5, 6 and 8 are left out: they need a machine's file, --machine")
+        if measured is not None:
+            make(2, lambda: figure_2(measured, machine))
+            make(3, lambda: figure_3(measured))
+            make(4, lambda: figure_4(measured, machine))
+            make(7, lambda: figure_7(measured))
+        else:
+            left_out.append("Figs. 2, 3, 4 and 7 are left out: they need a log, --log")
+    return tuple(sorted(figures, key=lambda figure: figure.number)), tuple(left_out)
+
+
+def shipped() -> tuple[Measured, Machine]:
+    """Return the log of the virtual test stand and the machine's file that ship as examples."""
+    machine = read_machine(_SHIPPED / "machine.toml")
+    points = read(_SHIPPED / "bench.csv").steady(tare="standing")
+    return Measured.of(points if machine.rest is None else points.without(machine.rest)), machine
