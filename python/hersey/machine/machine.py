@@ -19,10 +19,12 @@ from hersey.log.sensor_tables import SensorTables, sensors_of
 from hersey.log.sensors import Sensors
 from hersey.lubrication.contact import Contact
 from hersey.lubrication.lubricant import Lubricant
+from hersey.machine.heat import HeatTable
 from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.nip import ContactTable, LubricantTable
 from hersey.machine.rest import RestTable
 from hersey.machine.uncertainty import Uncertainty, read_uncertainty
+from hersey.motion.heat import HeatBalance
 from hersey.motion.simulation import Drivetrain
 from hersey.spelling import printable
 
@@ -36,7 +38,7 @@ class Machine:
     of the fit), at others by ``stick_speed_rule`` (see `DampingSurface.stick_speed_at`). ``uncertainty``
     says how far parameters are known. ``contact`` and ``lubricant`` make the film, if they are stated.
     ``sensors`` are those of its logs, so far as a log's own mapping states no errors of them. ``rest`` is
-    what the drive takes besides the film.
+    what the drive takes besides the film, ``heat`` what makes its temperature, from a cold start.
     """
 
     stiffness: float
@@ -52,6 +54,7 @@ class Machine:
     lubricant: Lubricant | None = None
     sensors: Sensors = field(default_factory=Sensors)
     rest: RestOfDrive | None = None
+    heat: HeatBalance | None = None
 
     @property
     def train(self) -> Drivetrain:
@@ -94,6 +97,7 @@ class _MachineFile(Table):
     uncertainty: dict[str, Any] = field(default_factory=dict)
     sensors: SensorTables = field(default_factory=SensorTables)
     rest: RestTable | None = None
+    heat: HeatTable | None = None
 
 
 def read_machine(path: str | Path) -> Machine:
@@ -101,7 +105,7 @@ def read_machine(path: str | Path) -> Machine:
 
     These are ``[limits]``, ``[contact]``, ``[lubricant]``, ``[[points]]``, ``[uncertainty]``, and
     ``[sensors.torque]``, ``[sensors.speed]`` and ``[sensors.temperature]`` with the errors of a mapping, and
-    ``[rest]``, numbers or a log beside the file.
+    ``[rest]``, numbers or a log beside the file, and ``[heat]``.
 
     Every value is a string such as ``"11 N/mm"``; an uncertainty is ``"10 %"`` or ``"0.1 mm/s to 1 mm/s"``
     (see `Uncertainty`).
@@ -119,7 +123,7 @@ def read_machine(path: str | Path) -> Machine:
             f"machine's file: give it as --mapping '{printable(str(path))}'"
         )
     tables = read_tables(path, _MachineFile)
-    uncertainty, contact, lubricant, rest = {}, None, None, None
+    uncertainty, contact, lubricant, rest, heat = {}, None, None, None, None
     for parameter, text in tables.uncertainty.items():
         with naming(f"{path.name}: uncertainty.{parameter}"):
             uncertainty[parameter] = read_uncertainty(parameter, text)
@@ -132,6 +136,9 @@ def read_machine(path: str | Path) -> Machine:
     if tables.rest is not None:
         with naming(f"{path.name}: [rest]"):
             rest = tables.rest.rest(path)
+    if tables.heat is not None:
+        with naming(f"{path.name}: [heat]"):
+            heat = tables.heat.heat()
     return Machine(
         **vars(tables.drivetrain),
         limits=tables.limits,
@@ -141,4 +148,5 @@ def read_machine(path: str | Path) -> Machine:
         lubricant=lubricant,
         sensors=sensors_of(**vars(tables.sensors)),
         rest=rest,
+        heat=heat,
     )
