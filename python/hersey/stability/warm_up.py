@@ -45,11 +45,11 @@ class WarmUp(Result):
     """A course of drive speed from a cold start, and the temperatures that go with it.
 
     Arrays have shape (points,): ``time`` (s), ``drive_speed`` (m/s; straight lines join the points),
-    ``film_temperature`` and ``roll_temperature`` (K), and ``drag`` (N), that of steady sliding at each moment,
-    NaN while the drive stands. ``force_limit`` (N) is kept with a ``margin``, a share of it, to spare. The
-    drive starts at ``start`` (s) and is at ``target_speed`` (m/s) from ``full_speed`` (s) on, infinite if not
-    within the time looked at. The belt slides for good from ``slides_from`` (s) on: ``peak_force`` (N) is the
-    greatest spring force of its motion, ``response``.
+    ``film_temperature`` and ``roll_temperature`` (K), and ``drag`` (N), that of steady sliding at each
+    moment, NaN while the drive stands. ``force_limit`` (N) is kept with a ``margin``, a share of it, to
+    spare. The drive starts at ``start`` (s) and is at ``target_speed`` (m/s) from ``full_speed`` (s) on,
+    infinite if not within the time looked at. In the motion, ``response``, the belt slides for good from
+    ``slides_from`` (s) on, and ``peak_force`` (N) is the greatest spring force.
 
     Beside it: at full speed from the start on drag begins with ``drag_at_once`` (N) and keeps ``force_limit``
     from ``within_at_once`` (s) on; standing until the film is warm enough for the target brings full speed at
@@ -108,7 +108,8 @@ class WarmUp(Result):
         at = int(np.searchsorted(self.time, self.full_speed))
         sliding = "" if math.isfinite(self.slides_from) else " The belt sticks at it."
         how = "" if self.full_speed - self.start <= self._least_ramp else ", slow until warm"
-        return f"{first}{how}: full speed {target} after {self.full_speed:.4g} s, at {_warmth(self, at)}.{sliding}"
+        when = f"full speed {target} after {self.full_speed:.4g} s, at {_warmth(self, at)}"
+        return f"{first}{how}: {when}.{sliding}"
 
     @property
     def kept_below(self) -> float:
@@ -135,7 +136,12 @@ class WarmUp(Result):
     def table(self) -> str:
         """Return the course as CSV, which `hersey plan --temperature-profile` reads, too."""
         lines = ["time [s],drive speed [m/s],temperature [degC],roll [degC]"]
-        columns = (self.time, self.drive_speed, celsius(self.film_temperature), celsius(self.roll_temperature))
+        columns = (
+            self.time,
+            self.drive_speed,
+            celsius(self.film_temperature),
+            celsius(self.roll_temperature),
+        )
         lines += [",".join(f"{value:.9g}" for value in row) for row in zip(*columns, strict=True)]
         return "\n".join(lines) + "\n"
 
@@ -149,7 +155,9 @@ class WarmUp(Result):
         last = min(self.time.size - 1, int(np.searchsorted(self.time, self.full_speed)))
         for i in np.unique(np.linspace(0, last, _ROWS).round().astype(int)).tolist():
             film, roll = celsius(self.film_temperature[i]), celsius(self.roll_temperature[i])
-            lines.append(f"  {self.time[i]:9.4g}  {1e3 * self.drive_speed[i]:12.4g}  {film:11.1f}  {roll:11.1f}")
+            lines.append(
+                f"  {self.time[i]:9.4g}  {1e3 * self.drive_speed[i]:12.4g}  {film:11.1f}  {roll:11.1f}"
+            )
         return "\n".join([*lines, *(f"- {warning}" for warning in self.warnings)])
 
     def headline(self) -> str:
@@ -313,7 +321,7 @@ class _Rule:
         self._fold = _Between(self._fold_at, _FOLD_STEP)
 
     def allowed(self, film: FloatArray) -> FloatArray:
-        """The target, or the greatest speed below it that keeps the limit; 0 if none slides with so little."""
+        """The target, or the greatest speed below it that keeps the limit; 0 if none slides so."""
         speeds = np.array([self._allowed(kelvin) for kelvin in film.tolist()])
         return np.where(speeds > self.transition(film), speeds, 0.0)
 
@@ -424,7 +432,7 @@ def _slides_from(run: Trajectory) -> float:
         return math.inf
     begun = [event.time for event in run.events if event.from_mode in _HELD]
     slipped = run.time[run.slipping]
-    return max([0.0, *begun[-1:], *slipped[-1:].tolist()])
+    return max(0.0, *begun[-1:], *map(float, slipped[-1:]))
 
 
 def _warnings(warm: WarmUp, rule: _Rule, resting: Trajectory) -> list[str]:
@@ -432,21 +440,21 @@ def _warnings(warm: WarmUp, rule: _Rule, resting: Trajectory) -> list[str]:
     said = []
     if warm.peak_force > warm.force_limit:
         said.append(
-            f"the spring takes up to {warm.peak_force:.4g} N where the belt breaks away or speeds up, more than "
-            f"the limit of {warm.force_limit:.4g} N, which holds for steady sliding"
+            f"the spring takes up to {warm.peak_force:.4g} N where the belt breaks away or speeds up, more "
+            f"than the limit of {warm.force_limit:.4g} N, which is kept in steady sliding"
         )
     if math.isfinite(warm.full_speed) and warm.slides_from > warm.full_speed:
         said.append(
-            "the belt sticks and slips on the way"
-            + (f", until {warm.slides_from:.4g} s" if math.isfinite(warm.slides_from) else " and at the end")
-            + ": find a start for it with plan_profile, over the temperature profile of this warm-up"
+            "the belt slides for good only "
+            + (f"from {warm.slides_from:.4g} s on" if math.isfinite(warm.slides_from) else "beyond the end")
+            + ": seek a start for it with plan_profile, over the temperature profile of this warm-up"
         )
     later = _film(resting)
     late = (resting.time[::_FINER] > warm.full_speed) & (rule.transition(later) >= warm.target_speed)
     if late.any():
         said.append(
-            f"the film goes on warming: from {celsius(float(later[late][0])):.4g} degC on the transition speed is "
-            "above the target, and sliding at it is unstable"
+            f"the film goes on warming: from {celsius(float(later[late][0])):.4g} degC on the transition "
+            "speed is above the target, and sliding at it is unstable"
         )
     return said
 
