@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     import polars as pl
 
 #: Points of a course; rounds at the most, and the temperature to which two of them agree, K.
-_POINTS, _ROUNDS, _ALIKE = 1001, 50, 0.1
+_POINTS, _ROUNDS, _ALIKE = 501, 50, 0.1
 #: Between these temperatures speeds are interpolated, K: the allowed one, and the fold, which takes longer.
 _STEP, _FOLD_STEP = 0.5, 10.0
 #: The course goes on beyond its estimated end by this share, and by these laps of the free belt.
