@@ -9,6 +9,7 @@ import pytest
 
 import hersey
 from hersey.errors import HerseyError, ParameterError
+from hersey.stability.warm_up import _ramped
 
 _TRAIN = hersey.Drivetrain(11e3, 11.0)
 _DRAG = hersey.Drag(
@@ -83,6 +84,17 @@ def test_drag_keeps_the_limit_and_the_drive_its_acceleration() -> None:
     assert warm.table().count("\n") == warm.time.size + 1
 
 
+def test_friction_alone_warms() -> None:
+    """Speed and temperature make each other: the rounds go on until both agree."""
+    heat = replace(_HEAT, film_capacity=3.0, exchange=0.01, heater_power=1.0, setpoint=None)
+    warm = hersey.warm_up(_TRAIN, _DRAG, heat, longest=60.0, **_LIMITS)
+    assert warm.found
+    assert warm.rounds > 2
+    assert warm.full_speed_standing == np.inf
+    on_the_way = (warm.drive_speed > 0.01) & (warm.drive_speed < 0.119)
+    assert warm.drag[on_the_way] == pytest.approx(162.0, rel=1e-3)
+
+
 def test_more_motor_is_never_later() -> None:
     limits = (70.0, 100.0, 150.0, 300.0)
     each = [
@@ -93,6 +105,10 @@ def test_more_motor_is_never_later() -> None:
     assert times == sorted(times, reverse=True)
     assert times[-1] < times[1] < np.inf
     assert all(warm.full_speed <= warm.full_speed_standing for warm in each)
+
+
+def test_a_drive_slows_down_in_time() -> None:
+    assert _ramped(np.array([5.0, 5.0, 5.0, 1.0, 0.0, 5.0]), 2.0).tolist() == [0.0, 2.0, 3.0, 1.0, 0.0, 2.0]
 
 
 def test_a_warm_belt_comes_straight_up() -> None:
@@ -124,6 +140,39 @@ def test_a_transition_that_passes_the_target_is_warned_of() -> None:
     )
     assert warm.found
     assert any("goes on warming" in warning for warning in warm.warnings)
+    hot = replace(_HEAT, film_temperature=450.0, roll_temperature=450.0)
+    sticks = hersey.warm_up(
+        _TRAIN, moving, hot, target_speed=0.02, force_limit=300.0, acceleration=0.5, longest=20.0
+    )
+    assert sticks.start == np.inf
+
+
+def test_a_mixed_contact_warms_up_and_its_belt_is_watched() -> None:
+    """Film drag keeps the limit; breaking the contact away takes more, and the belt goes on sticking."""
+    from hersey.lubrication.lubricant import EXAMPLES
+
+    roll = hersey.Contact(
+        roll_radius=15e-3,
+        rubber_thickness=3.5e-3,
+        modulus=0.6e6,
+        poisson_ratio=0.48,
+        length=0.22,
+        load=300.0,
+        roughness=0.4e-6,
+    )
+    contact = hersey.mixed_contact(
+        roll, EXAMPLES["cylinder oil"], hersey.Asperities(modulus=50e9), 0.1, speed=4.0, temperature=373.15
+    )
+    drag = hersey.MixedDrag(contact, temperature=373.15, stick_speed=3e-4, closure="stiction")
+    warm = hersey.warm_up(
+        _TRAIN, drag, _HEAT, target_speed=0.1, force_limit=5.0, acceleration=0.5, longest=60.0
+    )
+    sliding = warm.drive_speed > drag.transition_speed(310.0)
+    assert np.nanmax(warm.drag[sliding]) < 4.5 * 1.002
+    assert warm.drag_at_once == pytest.approx(float(drag.force(0.1, 300.0)), rel=1e-6)
+    assert warm.slides_from > warm.full_speed
+    assert any("slides for good only" in warning for warning in warm.warnings)
+    assert warm.peak_force > 5.0
 
 
 def test_bad_input() -> None:
