@@ -37,6 +37,7 @@ from hersey.document.parts import (
     StickSlipPart,
     TrajectoryPart,
     VerdictPart,
+    WarmUpPart,
 )
 from hersey.result import LINE, Result, json_value, table_of
 from hersey.verdict.evidence import verdict
@@ -126,6 +127,13 @@ def plan() -> hersey.Plan:
     return hersey.plan_profile(TRAIN, DRAG, target_speed=1.2, limits=limits)
 
 
+def warm_up() -> hersey.WarmUp:
+    heat = machine().heat
+    assert heat is not None
+    drag = surface().drag(**machine().belt)
+    return hersey.warm_up(machine().train, drag, heat, target_speed=0.05, force_limit=180.0, acceleration=0.5)
+
+
 def judged() -> Any:
     contact, lubricant = machine().contact, machine().lubricant
     assert contact is not None
@@ -149,6 +157,7 @@ RESULTS: dict[str, tuple[Callable[[], Any], type[Part]]] = {
     "HysteresisBand": (lambda: hersey.hysteresis(TRAIN, DRAG), BandPart),
     "OperatingMap": (map_, MapPart),
     "Plan": (plan, PlanPart),
+    "WarmUp": (warm_up, WarmUpPart),
     "ModelComparison": (models, ModelsPart),
     "LogComparison": (lambda: hersey.compare(points(), points()), ComparisonPart),
     "TestDesign": (lambda: hersey.design(models(), count=1), DesignPart),

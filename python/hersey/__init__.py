@@ -18,7 +18,7 @@ lubrication     lubricant, contact, film, the paper's equations, the numerical l
 machine         the machine's file: drivetrain, nip, limits, uncertainty, operating points
 verdict         what exponents and film say together
 identification  the cycles of a trace, and the drive behind them
-stability       hysteresis, disturbances, the operating map, drive profiles
+stability       hysteresis, disturbances, the operating map, drive profiles, warm-ups
 document        the analysis document: the contract with the page
 charts          one chart per result
 report          the page
@@ -89,6 +89,7 @@ if TYPE_CHECKING:
     )
     from hersey.stability.operating_map import OperatingMap, operating_map
     from hersey.stability.plan import Plan, plan_profile
+    from hersey.stability.warm_up import WarmUp, warm_up
     from hersey.verdict.evidence import MeasuredFilm, measured_film
     from hersey.verdict.regime import Regime, regime
 
@@ -129,6 +130,7 @@ _HOMES = {
     "stability.disturbance": "Disturbance SafeStep disturbance safe_step",
     "stability.operating_map": "OperatingMap operating_map",
     "stability.plan": "Plan plan_profile",
+    "stability.warm_up": "WarmUp warm_up",
 }
 _HOME_OF = {name: module for module, names in _HOMES.items() for name in names.split()}
 
@@ -175,6 +177,7 @@ __all__ = [
     "Trajectory",
     "Transition",
     "Uncertainty",
+    "WarmUp",
     "__version__",
     "compare",
     "compare_models",
@@ -209,6 +212,7 @@ __all__ = [
     "stick_slip",
     "sweep",
     "viscosity_laws",
+    "warm_up",
 ]
 
 

@@ -104,6 +104,13 @@ def plan() -> hersey.Plan:
     )
 
 
+def warm_up() -> hersey.WarmUp:
+    drag = surface().drag(**machine().belt)
+    return hersey.warm_up(
+        machine().train, drag, machine().heat, target_speed=0.05, force_limit=180.0, acceleration=0.5
+    )
+
+
 def belt_map() -> hersey.OperatingMap:
     return hersey.operating_map(
         surface(),
@@ -144,6 +151,7 @@ MADE: dict[str, Callable[[], Any]] = {
     "HysteresisBand": lambda: hersey.hysteresis(*belt()),
     "OperatingMap": belt_map,
     "Plan": plan,
+    "WarmUp": warm_up,
 }
 
 
@@ -368,3 +376,27 @@ def test_choices_are_passed_on() -> None:
 def test_what_has_no_chart_says_so() -> None:
     with pytest.raises(ParameterError, match="no chart of an object of type int"):
         chart_of(3)
+
+
+def test_a_warm_up_shows_its_course_and_its_temperatures() -> None:
+    warm = result_of("WarmUp")
+    rows = [rows for rows in layers("WarmUp") if "value" in rows[0] and "time" in rows[0]]
+    assert [row["value"] for row in rows[0]] == pytest.approx(1e3 * warm.drive_speed)
+    assert [row["value"] for row in rows[-1] if row["body"] == "film"] == pytest.approx(
+        warm.film_temperature - 273.15
+    )
+
+
+def test_a_motion_with_temperature_as_a_state_shows_it() -> None:
+    drag = surface().drag(**machine().belt)
+    run = hersey.simulate(
+        machine().train, drag, drive_speed=0.03, heat=machine().heat, duration=5.0, samples=51
+    )
+    shown = chart_of(run).to_dict(validate=False)
+    assert "Temperature (°C)" in titles(shown)
+    assert "Temperature (°C)" not in titles(specification("Trajectory"))
+    alt.Chart.from_dict(valid(shown), validate=True)
+    panel = shown["vconcat"][2]["data"]["values"]
+    assert [row["value"] for row in panel if row["body"] == "roll"] == pytest.approx(
+        run.roll_temperature - 273.15
+    )

@@ -42,6 +42,7 @@ ARGUMENTS: dict[str, list[str]] = {
     "map": [MACHINE, "--fit", "FIT"],
     "figures": ["--out", "FIGURES"],
     "plan": [MACHINE, "--fit", "FIT", "--target", "60 mm/s", "--at", "150 degC"],
+    "warmup": [MACHINE, "--fit", "FIT", "--target", "60 mm/s", "--from", "20 degC"],
 }
 #: Names of fields that the header of every print has.
 HEADER = {"schema_version", "hersey_version", "command"}
@@ -168,3 +169,15 @@ def test_fit_builds_no_simulation(files: dict[str, str], monkeypatch: pytest.Mon
     monkeypatch.setattr(assembly, "simulate", refuse)
     assert Path(files["FIT"]).exists()
     assert set(printed(["fit", BENCH, *TARE])) == HEADER | {"warnings", "files", "points", "fit", "regime"}
+
+
+def test_a_simulation_with_heat_prints_its_temperatures(files: dict[str, str]) -> None:
+    of_a_fit = ["--machine", MACHINE, "--fit", files["FIT"], "--heat", "--from", "20 degC"]
+    document = printed(["simulate", *of_a_fit, "--drive-speed", "30 mm/s", "--duration", "5 s"])
+    part = PRINTED["simulate"]
+    document = {key: value for key, value in document.items() if key not in HEADER}
+    assert json.loads(part.model_validate(document).model_dump_json()) == document
+    film = document["warming"]["film_temperature"]
+    assert film[0] == pytest.approx(293.15)
+    assert film == sorted(film)
+    assert abs(document["energy"]["residual"]) < 1e-8

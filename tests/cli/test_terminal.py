@@ -62,6 +62,7 @@ TYPED: dict[str, list[list[str]]] = {
     "film": [[MACHINE, "--log", LOG], [BROKEN]],
     "map": [[BROKEN, LOG], [MACHINE, LOG, "--out", f"{IN_FILE}.bmp"]],
     "plan": [[MACHINE, LOG, "--to", HOSTILE]],
+    "warmup": [[MACHINE, LOG, "--target", HOSTILE], [BROKEN, LOG]],
     "compare": [[LOG, OTHER]],
     "design": [[LOG], [LOG, "--speed", HOSTILE]],
     "cycles": [
@@ -78,7 +79,7 @@ TYPED: dict[str, list[list[str]]] = {
 
 
 #: Verbs of which only refusals are typed here: what they print otherwise holds no name.
-REFUSED = {"map", "plan", "simulate", "sweep", "hysteresis", "figures"}
+REFUSED = {"map", "plan", "warmup", "simulate", "sweep", "hysteresis", "figures"}
 
 
 def test_every_verb_is_typed() -> None:

@@ -21,6 +21,7 @@ cycles         trace, cycles and fitted motion
 hysteresis     what the belt does at which drive speed
 operating_map  the operating map
 plan           a drive profile and the motion
+warm_up        speed, drag and temperatures of a warm-up
 =============  ====================================================
 """
 
@@ -58,6 +59,7 @@ CHARTS = {
     "HysteresisBand": ("hysteresis", "band_chart"),
     "OperatingMap": ("operating_map", "map_chart"),
     "Plan": ("plan", "plan_chart"),
+    "WarmUp": ("warm_up", "warm_up_chart"),
 }
 
 

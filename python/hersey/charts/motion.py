@@ -9,6 +9,7 @@ import altair as alt
 from hersey.arrays import FloatArray
 from hersey.charts.style import BLUE, INK, ORANGE, WIDTH, Chart, Row, plot, rows_of, tip
 from hersey.motion.simulation import StickSlipCycle, Trajectory
+from hersey.units import celsius
 
 #: Names and colours of the modes, dark to light by speed.
 MODES = {
@@ -29,11 +30,13 @@ def trajectory_chart(run: Trajectory, *, units: tuple[str, str, str] = SI) -> Ch
     panels = [
         _over_time(run, run.belt_speed, f"Belt speed ({length}/{time})", time, height=210),
         _over_time(run, run.spring_force, f"Spring force ({force})", time, height=150),
+        *_temperatures(run, time),
         mode_strip(run, title=f"Time ({time})"),
     ]
     changes = f"{len(run.events)} changes of mode" if run.events else "no change of mode"
     title = alt.Title("Motion of the belt", subtitle=f"{run.time.size} samples; {changes}")
-    return alt.vconcat(*panels, spacing=8, title=title)
+    stacked: Chart = alt.vconcat(*panels, spacing=8, title=title).resolve_scale(color="independent")
+    return stacked
 
 
 def cycle_chart(cycle: StickSlipCycle, *, units: tuple[str, str, str] = SI) -> Chart:
@@ -47,6 +50,47 @@ def cycle_chart(cycle: StickSlipCycle, *, units: tuple[str, str, str] = SI) -> C
     title = alt.Title("What the motion settles to", subtitle=_in_words(cycle, time))
     stacked: Chart = alt.vconcat(*panels, spacing=14, title=title).resolve_scale(color="independent")
     return stacked
+
+
+def temperatures_over_time(
+    times: FloatArray, film: FloatArray, roll: FloatArray, x: alt.X, *, unit: str = "s"
+) -> alt.Chart:
+    """Return the temperatures (K) of film and roll over time, in degC on an axis of their own."""
+    rows = [
+        row
+        for body, kelvin in (("film", film), ("roll", roll))
+        for row in rows_of(time=times, value=celsius(kelvin), body=[body] * times.size)
+    ]
+    legend = alt.Legend(title=None, orient="top-left", fillColor="white", padding=4)
+    chart: alt.Chart = (
+        plot(rows)
+        .mark_line(strokeWidth=1.5)
+        .encode(
+            x=x,
+            y=alt.Y(
+                "value:Q",
+                title="Temperature (°C)",
+                scale=alt.Scale(zero=False),
+                axis=alt.Axis(minExtent=_AXIS),
+            ),
+            color=alt.Color(
+                "body:N", scale=alt.Scale(domain=["film", "roll"], range=[ORANGE, INK]), legend=legend
+            ),
+            tooltip=[tip("time", f"time ({unit})"), tip("value", "temperature (°C)"), "body:N"],
+        )
+        .properties(width=WIDTH, height=120)
+    )
+    return chart
+
+
+def _temperatures(run: Trajectory, time: str) -> list[alt.Chart]:
+    if run.film_temperature is None or run.roll_temperature is None:
+        return []
+    return [
+        temperatures_over_time(
+            run.time, run.film_temperature, run.roll_temperature, _bare_time(run), unit=time
+        )
+    ]
 
 
 def mode_strip(run: Trajectory, *, title: str = "Time (s)") -> alt.Chart:
@@ -73,18 +117,23 @@ def mode_strip(run: Trajectory, *, title: str = "Time (s)") -> alt.Chart:
 
 
 def _over_time(run: Trajectory, values: FloatArray, name: str, time: str, *, height: int) -> alt.Chart:
-    """A quantity against time; the axis is drawn under the last panel alone."""
-    x = alt.X(
-        "time:Q",
-        title=None,
-        scale=alt.Scale(domain=[0.0, float(run.time[-1])], nice=False),
-        axis=alt.Axis(tickCount=12, labels=False, ticks=False),
-    )
+    """A quantity against time."""
+    x = _bare_time(run)
     y = alt.Y("value:Q", title=name, axis=alt.Axis(minExtent=_AXIS))
     tips = [tip("time", f"time ({time})"), tip("value", name)]
     line = plot(rows_of(time=run.time, value=values)).mark_line(color=BLUE, strokeWidth=1.5)
     chart: alt.Chart = line.encode(x=x, y=y, tooltip=tips).properties(width=WIDTH, height=height)
     return chart
+
+
+def _bare_time(run: Trajectory) -> alt.X:
+    """Time without labels: the axis is drawn under the last panel alone."""
+    return alt.X(
+        "time:Q",
+        title=None,
+        scale=alt.Scale(domain=[0.0, float(run.time[-1])], nice=False),
+        axis=alt.Axis(tickCount=12, labels=False, ticks=False),
+    )
 
 
 def _in_words(cycle: StickSlipCycle, time: str) -> str:

@@ -34,6 +34,7 @@ VERBS = {
     "plan": (
         "Find the quickest profile of drive speed from rest that ends smooth, and say how surely it does."
     ),
+    "warmup": "Find the quickest warm-up whose drag stays below grip and motor: slow until warm.",
     "compare": (
         "Compare two lubricants, ages or units: ratio of damping, change of exponents and of the transition."
     ),

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from hersey.log.means import MeansTable
     from hersey.machine.machine import Machine
     from hersey.motion.drag import Drag
+    from hersey.motion.heat import HeatBalance
     from hersey.motion.simulation import Drivetrain
 
 Logs = Annotated[list[Path], typer.Argument(metavar="LOG...", help="Log file, or several of one machine.")]
@@ -376,8 +377,8 @@ class Belt:
         return drag, numbers if drag == film else replace(numbers, filled="; ".join(filter(None, told)))
 
 
-def temperature_of(text: str) -> float | None:
-    """Return the temperature that ``--at`` names, K; None if it is not given."""
+def temperature_of(text: str, flag: str = "--at") -> float | None:
+    """Return the temperature that ``--at``, or another flag, names, K; None if it is not given."""
     from hersey.errors import ParameterError
     from hersey.units import parse
 
@@ -385,8 +386,63 @@ def temperature_of(text: str) -> float | None:
         return None
     value = parse("temperature", text)
     if not value > 0:
-        raise ParameterError(f"--at is {text}: it must be above absolute zero")
+        raise ParameterError(f"{flag} is {text}: it must be above absolute zero")
     return value
+
+
+def target_of(text: str, machine: Machine, flag: str = "--target") -> float:
+    """Return the speed that ``--target``, or another flag, names, of belt or roll, m/s at the belt."""
+    from hersey.errors import ParameterError, WrongKindError
+    from hersey.units import parse
+
+    if not text:
+        raise ParameterError("give the target: --target '60 mm/s'")
+    try:
+        target = parse("belt speed", text)
+    except WrongKindError:
+        target = parse("speed", text) * machine.roll_radius
+    if not target > 0:
+        raise ParameterError(f"{flag} is {text}: it must be greater than 0")
+    return target
+
+
+def heat_of(machine: Machine, file: Path, start: str) -> HeatBalance:
+    """Return what warms a machine, from the temperature that ``--from`` names, or as its file states."""
+    from hersey.errors import ParameterError
+
+    if machine.heat is None:
+        raise ParameterError(
+            f"{file.name} does not say what warms the nip: add [heat], with film_capacity, roll_capacity, "
+            "exchange, surroundings and heater_power"
+        )
+    kelvin = temperature_of(start, "--from")
+    if kelvin is None:
+        return machine.heat
+    return replace(machine.heat, film_temperature=kelvin, roll_temperature=kelvin)
+
+
+def warming_drag(surface: DampingSurface, machine: Machine) -> Drag:
+    """Return the fitted drag as it varies with temperature."""
+    from hersey.errors import ParameterError
+
+    if surface.b is None:
+        raise ParameterError("the log is isothermal: drag against temperature is needed for a warm-up")
+    return surface.drag(**machine.belt)
+
+
+def beyond_the_log(surface: DampingSurface, lowest: float, highest: float) -> list[str]:
+    """Return what to say of temperatures (K) that the log does not cover."""
+    from hersey.units import celsius
+
+    if surface.temperature_range is None:
+        return []
+    low, high = surface.temperature_range
+    if low - 1.0 <= lowest and highest <= high + 1.0:
+        return []
+    return [
+        f"the log covers {celsius(low):.4g} to {celsius(high):.4g} degC: drag at "
+        f"{celsius(lowest):.4g} to {celsius(highest):.4g} degC is extrapolated"
+    ]
 
 
 def share(flag: str, text: str) -> float:

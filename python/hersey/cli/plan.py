@@ -14,12 +14,13 @@ from hersey.cli.options import (
     Reading,
     SomeLogs,
     reads_logs,
+    target_of,
     temperature_of,
 )
 from hersey.cli.outputs import may_draw, may_write, print_json
 from hersey.cli.progress import bar, working
 from hersey.cli.terminal import say
-from hersey.errors import OutputError, ParameterError, WrongKindError
+from hersey.errors import OutputError, ParameterError
 
 if TYPE_CHECKING:
     from hersey.arrays import FloatArray
@@ -93,7 +94,7 @@ def plan(
     from hersey.stability.plan import plan_profile
 
     machine = read_machine(machine_file)
-    wanted = _target(target, machine)
+    wanted = target_of(target, machine)
     kelvin = temperature_of(at)
     with memory_limit(reading.max_memory):
         profile = None if profile_file is None else read_temperature_profile(profile_file)
@@ -131,20 +132,6 @@ def plan(
                 say(f"{what}: {written}")
     if not planned.found:
         raise typer.Exit(IMPOSSIBLE)
-
-
-def _target(text: str, machine: Machine) -> float:
-    from hersey.units import parse
-
-    if not text:
-        raise ParameterError("give the target: --target '60 mm/s'")
-    try:
-        target = parse("belt speed", text)
-    except WrongKindError:
-        target = parse("speed", text) * machine.roll_radius
-    if not target > 0:
-        raise ParameterError(f"--target is {text}: it must be greater than 0")
-    return target
 
 
 def _uncertainty(machine: Machine, drag: Drag) -> dict[str, Uncertainty]:

@@ -3,18 +3,32 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from hersey.cli.options import (
     AsJson,
     Belt,
+    FitFile,
     Force,
+    Reading,
+    beyond_the_log,
+    heat_of,
     takes,
+    target_of,
+    warming_drag,
 )
-from hersey.cli.outputs import may_write, print_json
+from hersey.cli.outputs import may_draw, may_write, print_json
+from hersey.cli.progress import working
 from hersey.cli.terminal import say
+from hersey.errors import ParameterError
+
+if TYPE_CHECKING:
+    from hersey.motion.simulation import Trajectory
+
+#: Time simulated with temperature as a state if none is given.
+_WARMING = "60 s"
 
 
 @takes(Belt, "belt")
@@ -33,6 +47,19 @@ def simulate(
     csv: Annotated[
         Path | None, typer.Option("--csv", metavar="FILE", help="Write the motion as CSV.")
     ] = None,
+    heat: Annotated[
+        bool,
+        typer.Option(
+            "--heat", help="Temperature as a state, by [heat] of --machine and the drag of --fit, from cold."
+        ),
+    ] = False,
+    fit_file: FitFile = None,
+    begin: Annotated[
+        str, typer.Option("--from", help="With --heat: temperature at the start.  [default: that of [heat]]")
+    ] = "",
+    figure: Annotated[
+        Path | None, typer.Option("--figure", help="Draw the motion: .html, .png, .svg or .pdf.")
+    ] = None,
     as_json: AsJson = False,
     force: Force = False,
 ) -> None:
@@ -43,8 +70,16 @@ def simulate(
 
     Example: [bold]hersey simulate --stiffness 2000 --drive-speed 1.3[/bold]
     """
+    inputs = [path for path in (belt.machine, fit_file) if path is not None]
     if csv is not None:
-        may_write(csv, force, inputs=[belt.machine] if belt.machine else [])
+        may_write(csv, force, inputs)
+    if figure is not None:
+        may_draw(figure, force, inputs)
+    if heat:
+        _warming(belt, fit_file, drive_speed, duration, start, begin, check, csv, figure, as_json)
+        return
+    if fit_file is not None or begin:
+        raise ParameterError(f"{'--from' if begin else '--fit'} goes with --heat")
 
     from hersey.motion import simulation as motion
     from hersey.result import json_value
@@ -55,23 +90,10 @@ def simulate(
     speed, time = (numbers.values[name] or 0.0 for name in ("drive_speed", "duration"))
     cycle = motion.stick_slip(train, drag, drive_speed=speed, start=start)
     run = None
-    if csv is not None or check:
+    if csv is not None or check or figure is not None:
         run = motion.simulate(train, drag, drive_speed=speed, duration=time, start=start, check=check)
-    if csv is not None and run is not None:
-        import polars as pl
-
-        from hersey.files.writing import write_atomically
-
-        table = pl.DataFrame(
-            {
-                "time": run.time,
-                "belt_speed": run.belt_speed,
-                "stretch": run.stretch,
-                "spring_force": run.spring_force,
-                "mode": run.mode,
-            }
-        )
-        write_atomically(csv, table.write_csv(), overwrite=True)
+    if run is not None:
+        _write(run, csv, figure)
     if as_json:
         ran = {} if run is None else {"energy": json_value(run.energy), "check": json_value(run.check)}
         print_json("simulate", cycle.to_dict() | ran)
@@ -82,3 +104,75 @@ def simulate(
     if run is not None and run.check is not None:
         lines.append(str(run.check))
     say("\n".join([*lines, *numbers.words]))
+
+
+def _write(run: Trajectory, csv: Path | None, figure: Path | None) -> None:
+    from hersey.files.writing import write_atomically
+
+    if csv is not None:
+        import polars as pl
+
+        names = ("time", "belt_speed", "stretch", "spring_force", "mode")
+        columns = {name: getattr(run, name) for name in names}
+        bodies = {name: getattr(run, name) for name in ("film_temperature", "roll_temperature")}
+        columns |= {name: kelvin for name, kelvin in bodies.items() if kelvin is not None}
+        write_atomically(csv, pl.DataFrame(columns).write_csv(), overwrite=True)
+    if figure is not None:
+        from hersey.charts import chart_of
+        from hersey.charts.render import picture
+
+        with working("drawing"):
+            content = picture(chart_of(run), figure.suffix)
+        write_atomically(figure, content, overwrite=True)
+
+
+def _warming(
+    belt: Belt,
+    fit_file: Path | None,
+    drive_speed: str | None,
+    duration: str | None,
+    start: str,
+    begin: str,
+    check: bool,
+    csv: Path | None,
+    figure: Path | None,
+    as_json: bool,
+) -> None:
+    """Simulate with temperature as a state, and say what the motion settles to where it ends."""
+    from hersey.machine.machine import read_machine
+    from hersey.motion.simulation import simulate as moved
+    from hersey.motion.simulation import stick_slip
+    from hersey.result import json_value
+    from hersey.units import celsius, parse
+
+    if belt.machine is None or fit_file is None:
+        raise ParameterError(
+            "--heat needs --machine with [heat], and --fit with what hersey fit --json printed"
+        )
+    if belt != Belt(machine=belt.machine):
+        raise ParameterError(
+            "--heat takes belt and drag from --machine and --fit: leave the other numbers out"
+        )
+    if drive_speed is None:
+        raise ParameterError("give the speed of the drive: --drive-speed '30 mm/s'")
+    machine = read_machine(belt.machine)
+    warmth = heat_of(machine, belt.machine, begin)
+    speed, time = target_of(drive_speed, machine, "--drive-speed"), parse("time", duration or _WARMING)
+    surface = Reading().surface(None, fit_file, machine)
+    drag = warming_drag(surface, machine)
+    with working("simulating"):
+        run = moved(
+            machine.train, drag, drive_speed=speed, heat=warmth, duration=time, start=start, check=check
+        )
+    film = run.film_temperature
+    assert film is not None
+    state = float(run.belt_speed[-1]), float(run.stretch[-1])
+    cycle = stick_slip(machine.train, drag, drive_speed=speed, temperature=float(film[-1]), start=state)
+    _write(run, csv, figure)
+    if as_json:
+        beside = {"energy": json_value(run.energy), "check": json_value(run.check), "warming": run.to_dict()}
+        print_json("simulate", cycle.to_dict() | beside)
+        return
+    said = beyond_the_log(surface, float(film.min()), float(film.max()))
+    settled = f"At {celsius(float(film[-1])):.4g} degC it settles to {cycle.headline()}."
+    say("\n".join([run.summary(), settled, *(f"- {each}" for each in said)]))

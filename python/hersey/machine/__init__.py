@@ -4,6 +4,7 @@
 machine              `Machine` and the file as a whole
 limits               what the machine can bear; operating points
 nip                  the tables of contact and lubricant
+heat                 the table of what warms the nip, and what the rest takes away
 rest                 the table of what the drive takes without the film
 sharing              the tables of what shares the load with the film
 uncertainty          how far a parameter is known

@@ -27,6 +27,16 @@ class Limits(Table):
     speed: _Speed | None = None
     spring_force: Annotated[float, Quantity("force", 1e-6, 1e7)] | None = None
 
+    def force(self, roll_radius: float) -> tuple[str, float] | None:
+        """Return the least of grip, motor torque over the roll's radius (m) and spring force, with its name.
+
+        In N; None if none of them is stated.
+        """
+        motor = None if self.motor_torque is None else self.motor_torque / roll_radius
+        stated = {"grip": self.grip, "motor torque": motor, "spring force": self.spring_force}
+        forces = {name: force for name, force in stated.items() if force is not None}
+        return min(forces.items(), key=lambda item: item[1], default=None)
+
     @property
     def grip(self) -> float | None:
         """Drag at which the belt slips on the roll (N), if friction and load are stated."""

@@ -22,11 +22,13 @@ from hersey.lubrication.contact import Contact
 from hersey.lubrication.lubricant import Lubricant
 from hersey.lubrication.mixed import Asperities, BoundaryFriction, MixedContact, mixed_contact
 from hersey.lubrication.mixed_drag import MixedDrag
+from hersey.machine.heat import HeatTable
 from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.nip import ContactTable, LubricantTable
 from hersey.machine.rest import RestTable
 from hersey.machine.sharing import NEEDED, AsperitiesTable, BoundaryTable
 from hersey.machine.uncertainty import Uncertainty, read_uncertainty
+from hersey.motion.heat import HeatBalance
 from hersey.motion.simulation import Drivetrain
 from hersey.spelling import printable
 from hersey.units import takes_si
@@ -44,8 +46,9 @@ class Machine:
     of the fit), at others by ``stick_speed_rule`` (see `DampingSurface.stick_speed_at`). ``uncertainty``
     says how far parameters are known. ``contact`` and ``lubricant`` make the film, if they are stated.
     ``sensors`` are those of its logs, so far as a log's own mapping states no errors of them. ``rest`` is
-    what the drive takes besides the film. ``asperities`` and ``boundary`` share the load with the film;
-    ``static_friction`` is that of a belt at rest (None: e times the drag at the stick speed).
+    what the drive takes besides the film, ``heat`` what makes its temperature, from a cold start.
+    ``asperities`` and ``boundary`` share the load with the film; ``static_friction`` is that of a belt at
+    rest (None: e times the drag at the stick speed).
     """
 
     stiffness: float
@@ -129,6 +132,8 @@ class Machine:
         drag = MixedDrag(mixed, temperature, stick, static_force=static)
         return drag if self.rest is None else with_rest(drag, self.rest, self.roll_radius, temperature)
 
+    heat: HeatBalance | None = None
+
     @property
     def train(self) -> Drivetrain:
         """The drivetrain of the motion."""
@@ -172,6 +177,7 @@ class _MachineFile(Table):
     rest: RestTable | None = None
     asperities: AsperitiesTable | None = None
     boundary: BoundaryTable | None = None
+    heat: HeatTable | None = None
 
 
 def read_machine(path: str | Path) -> Machine:
@@ -179,8 +185,8 @@ def read_machine(path: str | Path) -> Machine:
 
     These are ``[limits]``, ``[contact]``, ``[lubricant]``, ``[[points]]``, ``[uncertainty]``, and
     ``[sensors.torque]``, ``[sensors.speed]`` and ``[sensors.temperature]`` with the errors of a mapping, and
-    ``[rest]``, numbers or a log beside the file. ``[asperities]`` and ``[boundary]`` say what shares the load
-    with the film; they need each other, ``[contact]`` with a roughness, and ``[lubricant]``.
+    ``[rest]``, numbers or a log beside the file, and ``[heat]``. ``[asperities]`` and ``[boundary]`` say what
+    shares the load with the film; they need each other, ``[contact]`` with a roughness, and ``[lubricant]``.
 
     Every value is a string such as ``"11 N/mm"``; an uncertainty is ``"10 %"`` or ``"0.1 mm/s to 1 mm/s"``
     (see `Uncertainty`).
@@ -198,7 +204,7 @@ def read_machine(path: str | Path) -> Machine:
             f"machine's file: give it as --mapping '{printable(str(path))}'"
         )
     tables = read_tables(path, _MachineFile)
-    uncertainty, contact, lubricant, rest = {}, None, None, None
+    uncertainty, contact, lubricant, rest, heat = {}, None, None, None, None
     for parameter, text in tables.uncertainty.items():
         with naming(f"{path.name}: uncertainty.{parameter}"):
             uncertainty[parameter] = read_uncertainty(parameter, text)
@@ -215,6 +221,9 @@ def read_machine(path: str | Path) -> Machine:
     if tables.boundary is not None:
         with naming(f"{path.name}: [boundary]"):
             boundary = tables.boundary.boundary()
+    if tables.heat is not None:
+        with naming(f"{path.name}: [heat]"):
+            heat = tables.heat.heat()
     machine = Machine(
         **vars(tables.drivetrain),
         limits=tables.limits,
@@ -227,6 +236,7 @@ def read_machine(path: str | Path) -> Machine:
         asperities=None if tables.asperities is None else tables.asperities.asperities(),
         boundary=boundary,
         static_friction=None if tables.boundary is None else tables.boundary.static_friction,
+        heat=heat,
     )
     with naming(path.name):
         _ = machine.mixed  # what it lacks is said here, with the file

@@ -8,7 +8,7 @@ fit         the damping surface and the regime
 film        the film of a nip
 mixed       film and asperities that share its load
 motion      trajectories, cycles, sweeps
-stability   bands, maps, plans
+stability   bands, maps, plans, warm-ups
 models      candidates, comparisons of logs, designs
 inspection  what a log holds
 cycles      cycles of a trace and the drive behind them
@@ -50,7 +50,14 @@ from hersey.document.parts.models import ComparisonPart, DesignPart, ModelsPart
 from hersey.document.parts.motion import SimulationPart, StickSlipPart, SweepPart, TrajectoryPart
 from hersey.document.parts.part import SCHEMA_VERSION, Interval, OpenInterval, Part
 from hersey.document.parts.rest import RestPart
-from hersey.document.parts.stability import BandPart, DisturbancePart, MapPart, PlanPart, StepPart
+from hersey.document.parts.stability import (
+    BandPart,
+    DisturbancePart,
+    MapPart,
+    PlanPart,
+    StepPart,
+    WarmUpPart,
+)
 
 #: What each command prints with ``--json``, beside version and command.
 PRINTED: dict[str, type[Part]] = {
@@ -67,6 +74,7 @@ PRINTED: dict[str, type[Part]] = {
     "hysteresis": BandPart,
     "map": MapPart,
     "plan": PlanPart,
+    "warmup": WarmUpPart,
     "figures": FiguresPart,
 }
 
@@ -119,4 +127,5 @@ __all__ = [
     "TransitionAt",
     "TransitionPart",
     "VerdictPart",
+    "WarmUpPart",
 ]

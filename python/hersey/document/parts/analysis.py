@@ -18,7 +18,7 @@ from hersey.document.parts.log import InputFile, Point, Quality, Timeline
 from hersey.document.parts.models import ComparisonPart, DesignPart, ModelsPart
 from hersey.document.parts.motion import SimulationPart, StickSlipPart, SweepPart
 from hersey.document.parts.part import SCHEMA_VERSION, Part
-from hersey.document.parts.stability import BandPart, MapPart, PlanPart
+from hersey.document.parts.stability import BandPart, MapPart, PlanPart, WarmUpPart
 
 
 class Analysis(Part):
@@ -48,4 +48,5 @@ class Analysis(Part):
     band: BandPart | None = None
     map: MapPart | None = None
     plan: PlanPart | None = None
+    warm_up: WarmUpPart | None = None
     figures: FiguresPart | None = None

@@ -119,6 +119,9 @@ class StickSlipPart(Part):
     laps: int
     energy: EnergyPart | None = None
     check: CheckPart | None = None
+    warming: TrajectoryPart | None = Field(
+        default=None, description="the run in which temperature was a state; the rest holds where it ends"
+    )
 
 
 class SweepPart(Part):

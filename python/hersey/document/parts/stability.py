@@ -100,6 +100,31 @@ class MapPart(Part):
     stick_speed_rule: Literal["with transition", "fixed"]
 
 
+class WarmUpPart(Part):
+    """Drive speed from a cold start: times in s, speeds in m/s, temperatures in K, forces in N."""
+
+    verdict: str
+    beside: list[str] = Field(description="what full speed at once, and standing until warm, would do")
+    target_speed: float
+    force_limit: float
+    margin: float = Field(description="share of the limit kept to spare")
+    acceleration: float = Field(description="m/s^2")
+    time: Numbers = Field(description="shape (n,)")
+    drive_speed: Numbers = Field(description="shape (n,), straight lines between")
+    film_temperature: Numbers = Field(description="shape (n,)")
+    roll_temperature: Numbers = Field(description="shape (n,)")
+    drag: Holed = Field(description="of sliding steadily, shape (n,); null at standstill")
+    start: float | None = Field(description="of the drive; null if it cannot start")
+    full_speed: float | None = Field(description="from when on; null if not within the time looked at")
+    slides_from: float | None = Field(description="from when on the belt slides for good; null if never")
+    peak_force: float = Field(description="of the spring, in the motion")
+    drag_at_once: float = Field(description="greatest, at full speed from the start on")
+    within_at_once: float | None = Field(description="when that keeps the limit; null if not in time")
+    full_speed_standing: float | None = Field(description="by standing until warm; null if not in time")
+    rounds: int
+    warnings: list[str]
+
+
 class RowPart(Part):
     """A point of a drive profile."""
 

@@ -1,0 +1,101 @@
+"""The warm-up typed: what it writes, and one line for each mistake."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+import hersey
+from hersey.cli.options import warming_drag
+from hersey.document.saved_fit import read_fit
+from hersey.errors import ParameterError
+from hersey.machine import read_temperature_profile
+from tests.cli.command import run
+from tests.conftest import ROOT
+
+MACHINE = (ROOT / "examples" / "machine.toml").read_text()
+TYPED = ["warmup", "machine.toml", "--fit", "fit.json", "--target", "60 mm/s", "--from", "20 degC"]
+HEATED = ["simulate", "--machine", "machine.toml", "--fit", "fit.json", "--heat", "--drive-speed", "30 mm/s"]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("warm")
+    bench = str(ROOT / "examples" / "bench.csv")
+    (folder / "fit.json").write_text(run("fit", bench, "--tare", "standing", "--json", cwd=ROOT).stdout)
+    (folder / "machine.toml").write_text(MACHINE)
+    (folder / "bare.toml").write_text(MACHINE[: MACHINE.index("# What the machine can bear")])
+    (folder / "weak.toml").write_text(MACHINE.replace('"900 W"', '"10 W"'))
+    head, _, tail = MACHINE.partition("[limits]")
+    (folder / "free.toml").write_text(
+        head + tail[tail.index("\n[") :].replace("[contact]", '[contact]\nload = "300 N"')
+    )
+    return folder
+
+
+def test_the_course_is_written_and_serves_a_plan(folder: Path) -> None:
+    done = run(*TYPED, "--out", "course.csv", cwd=folder)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith("Start at once, slow until warm: full speed 60 mm/s after ")
+    assert "the limit is that of the grip" in done.stdout
+    assert "extrapolated" in done.stdout
+    course = read_temperature_profile(folder / "course.csv")
+    assert course.first == pytest.approx(293.15)
+    assert "exists: say --force" in run(*TYPED, "--out", "course.csv", cwd=folder).stderr
+
+
+def test_where_full_speed_is_not_reached_nothing_is_written(folder: Path) -> None:
+    done = run(*TYPED[:1], "weak.toml", *TYPED[2:], "--out", "none.csv", "--longest", "20 s", cwd=folder)
+    assert done.returncode == 1
+    assert "not reached within 20 s" in done.stdout
+    assert not (folder / "none.csv").exists()
+
+
+def test_a_motion_with_heat_is_told_and_written(folder: Path) -> None:
+    done = run(*HEATED, "--from", "20 degC", "--duration", "5 s", "--csv", "run.csv", cwd=folder)
+    assert done.returncode == 0, done.stderr
+    assert "film            20.00 to " in done.stdout
+    assert "it settles to" in done.stdout
+    header, first = (folder / "run.csv").read_text().splitlines()[:2]
+    assert header.endswith("mode,film_temperature,roll_temperature")
+    assert first.endswith("293.15,293.15")
+
+
+@pytest.mark.parametrize(
+    ("typed", "says"),
+    [
+        ([*TYPED[:1], "bare.toml", *TYPED[2:]], "bare.toml does not say what warms the nip: add [heat]"),
+        ([*TYPED[:1], "free.toml", *TYPED[2:]], "free.toml states no limit of force"),
+        ([*TYPED[:4], "--from", "20 degC"], "give the target"),
+        ([*TYPED, "--margin", "0.1"], "--margin is '0.1'"),
+        ([*TYPED, "--longest", "30"], "needs a number and a unit"),
+        ([*TYPED[:6], "--from", "-300 degC"], "--from is -300 degC"),
+        ([*TYPED, "--out", "w.svg", "--figure", "w.svg"], "name two files"),
+        (HEATED[:5] + HEATED[6:], "--heat"),
+        ([*HEATED, "--stiffness", "11 N/mm"], "leave the other numbers out"),
+        (HEATED[:6], "--drive-speed"),
+        (["simulate", "--from", "20 degC"], "--from goes with --heat"),
+        ([*HEATED[:2], "bare.toml", *HEATED[3:]], "add [heat]"),
+    ],
+)
+def test_a_mistake_ends_in_one_line(typed: list[str], says: str, folder: Path) -> None:
+    done = run(*typed, cwd=folder)
+    assert done.returncode == 2
+    assert done.stderr.startswith("hersey: ")
+    assert done.stderr.count("\n") == 1
+    assert says in done.stderr
+
+
+def test_an_isothermal_fit_warms_nothing(folder: Path) -> None:
+    flat = replace(read_fit(folder / "fit.json"), b=None)
+    with pytest.raises(ParameterError, match="the log is isothermal"):
+        warming_drag(flat, hersey.read_machine(folder / "machine.toml"))
+
+
+def test_the_least_force_is_named() -> None:
+    limits = hersey.Limits(motor_torque=3.0, roll_friction=0.6, nip_load=300.0)
+    assert limits.force(0.015) == ("grip", 180.0)
+    assert limits.force(0.02) == ("motor torque", pytest.approx(150.0))
+    assert hersey.Limits().force(0.02) is None
