@@ -242,7 +242,7 @@ class Search:
             return True
         temperatures = self.thermal.at(wait), self.thermal.at(wait + later)
         return any(
-            self.trials.kept([m.drag.law_at(t).breakaway_force for m in self.trials.machines]) <= limit
+            self.trials.kept([m.drag.law_at(t).holding_force for m in self.trials.machines]) <= limit
             for t in temperatures
         )
 
