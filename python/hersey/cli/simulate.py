@@ -55,8 +55,11 @@ def simulate(
     speed, time = (numbers.values[name] or 0.0 for name in ("drive_speed", "duration"))
     cycle = motion.stick_slip(train, drag, drive_speed=speed, start=start)
     run = None
-    if csv is not None or check:
+    motor = None
+    if csv is not None or check or belt.machine is not None:
         run = motion.simulate(train, drag, drive_speed=speed, duration=time, start=start, check=check)
+    if run is not None:
+        motor = belt.motor_use(run)
     if csv is not None and run is not None:
         import polars as pl
 
@@ -69,11 +72,13 @@ def simulate(
                 "stretch": run.stretch,
                 "spring_force": run.spring_force,
                 "mode": run.mode,
+                "roll_slips": run.slipping,
             }
         )
         write_atomically(csv, table.write_csv(), overwrite=True)
     if as_json:
         ran = {} if run is None else {"energy": json_value(run.energy), "check": json_value(run.check)}
+        ran |= {} if motor is None else {"motor": json_value(motor)}
         print_json("simulate", cycle.to_dict() | ran)
         return
     lines = [cycle.summary()]
@@ -81,4 +86,8 @@ def simulate(
         lines.append(f"energy balance: {run.energy.residual:.1e} of the energy turned over is missing")
     if run is not None and run.check is not None:
         lines.append(str(run.check))
+    if run is not None and run.roll_slips:
+        lines.append(f"over {time:g} s {run.slipping_in_words()}")
+    if motor is not None:
+        lines.append(str(motor))
     say("\n".join([*lines, *numbers.words]))

@@ -238,7 +238,7 @@ class MachineSample:
             if force:
                 turned = greatest_stretch(run.time, run.belt_speed, run.stretch, drive)
                 at_events = (abs(stretch) for stretch in run.events.stretch)
-                peak = self.train.stiffness * max(turned, *at_events, 0.0)
+                peak = min(self.train.stiffness * max(turned, *at_events, 0.0), force_limit)
             if _GRIP_LOST in run.events.guard:
                 return Outcome(math.inf, peak, FORCE)
             state = float(run.belt_speed[-1]), float(run.stretch[-1])
