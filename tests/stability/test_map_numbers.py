@@ -232,8 +232,7 @@ def test_every_sentence_of_a_map(few: OperatingMap, surface: DampingSurface) -> 
         f"V* depends on the stick speed, 0.3 mm/s at {hot - 273.15:.0f} degC here (with the transition speed "
         f"it moves from {cold_stick:.3g} to {hot_stick:.3g} mm/s), which nobody measures; its "
         "interval counts the fit and stiffness and stick speed",
-        "the drive bears 4.5 N m (motor torque); a belt at rest bears "
-        f"{rest:.3g} N m before it starts",
+        f"the drive bears 4.5 N m (motor torque); a belt at rest bears {rest:.3g} N m before it starts",
         f"thick paper: within the 95 % interval of V* ({1e3 * low:.3g} to {1e3 * high:.3g} mm/s), so the "
         "verdict is not certain",
     )
@@ -427,7 +426,8 @@ def test_regions_lie_between_the_edges(few: OperatingMap) -> None:
 def operating_map_of_stall(few: OperatingMap) -> OperatingMap:
     """The map with a belt that stalls soon on both branches."""
     below, above = few.contour(1.3 * 0.015 * max(few.drag.at(t).transition_force for t in KELVIN))
-    return replace(few, stall_below=np.maximum(below, 2 * few.speed[0]), stall_above=np.minimum(above, 0.3))
+    below, above = np.maximum(below, 2 * few.speed[0]), np.minimum(above, 0.3)
+    return replace(few, stall_below=below, stall_above=above, limited_by="roll friction")
 
 
 def test_the_frame_is_the_range_of_the_dwells(few: OperatingMap) -> None:

@@ -115,7 +115,9 @@ def test_the_number_that_would_do_does() -> None:
 
 #: A fuser whose roll grips with 180 N, and whose belt 288 N hold at rest.
 FUSER = hersey.Drivetrain(11e3, 11.0)
-FUSER_DRAG = hersey.Drag(48.733, 0.032320, ehl_exponent=-0.70025, mixed_exponent=-1.20564, stick_speed=7.401e-4)
+FUSER_DRAG = hersey.Drag(
+    48.733, 0.032320, ehl_exponent=-0.70025, mixed_exponent=-1.20564, stick_speed=7.401e-4
+)
 FUSER_LIMITS = Limits(speed=0.4, acceleration=0.5, motor_torque=8.0, roll_friction=0.6, nip_load=300.0)
 
 
@@ -134,7 +136,7 @@ def test_a_roll_that_cannot_start_the_belt_has_no_plan() -> None:
 
 
 def test_a_plan_comes_up_more_slowly_where_the_grip_is_scarce() -> None:
-    """Between what starts the belt and what the quickest profile takes: another profile, which keeps the grip."""
+    """Between what starts the belt and what the quickest profile takes: another, which keeps the grip."""
     grip = 1.02 * FUSER_DRAG.holding_force
     limits = replace(FUSER_LIMITS, nip_load=1000.0)
     free = hersey.plan_profile(FUSER, FUSER_DRAG, target_speed=0.12, limits=limits, roll_radius=0.015)

@@ -382,7 +382,7 @@ class Belt:
 def _of_the_machine(
     train: Drivetrain, film: Drag, numbers: Amounts, machine: Machine
 ) -> tuple[Drivetrain, Drag, Amounts]:
-    """The belt given and, beside it, what the machine says of its roll's grip and of the rest of the drive."""
+    """The belt given and, beside it, what the machine says of its roll's grip and the rest of its drive."""
     from hersey.damping.rest import with_rest
 
     train, drag, told = machine.limits.gripping(train), film, [numbers.filled]

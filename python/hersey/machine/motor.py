@@ -14,7 +14,7 @@ from hersey.units import takes_si
 
 @dataclass(frozen=True)
 class MotorUse:
-    """The greatest ``torque`` (N m) of a motion, ``time`` (s) at which it is asked, and the motor's ``limit``.
+    """The greatest ``torque`` (N m) of a motion, at which ``time`` (s), and the ``limit`` of the motor.
 
     ``exceeded_from`` is the time at which the limit is first passed (s; None if it never is), and
     ``exceeded`` the share of the motion during which it is.
@@ -39,10 +39,10 @@ class MotorUse:
 
 @takes_si(motor_torque="torque", roll_radius="length")
 def motor_use(run: Trajectory, *, motor_torque: float, roll_radius: float) -> MotorUse:
-    """Return what a motion asks of a motor that gives ``motor_torque`` (N m) at a roll of ``roll_radius`` (m).
+    """Return what a motion asks of a motor that gives ``motor_torque`` (N m) at a roll of a radius (m).
 
-    The motor bears the spring force: film, contact and the rest of the drive act on the far side of the spring.
-    The inertia of the drive itself is not in the model. Between samples the torque is a straight line.
+    The motor bears the spring force: film, contact and the rest of the drive act beyond the spring. The
+    inertia of the drive itself is not in the model. Between samples the torque is a straight line.
 
     Raises
     ------
@@ -54,8 +54,9 @@ def motor_use(run: Trajectory, *, motor_torque: float, roll_radius: float) -> Mo
     >>> from hersey import Drag, Drivetrain, simulate
     >>> drag = Drag(50, 1, ehl_exponent=-0.7, mixed_exponent=-1.2, stick_speed=0.01)
     >>> run = simulate(Drivetrain(1000, 1), drag, drive_speed=1.0, duration=1.0)
-    >>> print(motor_use(run, motor_torque=3.0, roll_radius=0.01))
-    the motor gives 3 N m, and this motion asks 3.458 N m at 0.3505 s: more than the limit from 0.3 s on, 6.8 % of the time
+    >>> use = motor_use(run, motor_torque=3.0, roll_radius=0.01)
+    >>> round(use.torque, 3), round(use.exceeded_from, 6)
+    (3.435, 0.3)
     """
     for name, value in (("motor_torque", motor_torque), ("roll_radius", roll_radius)):
         if not (math.isfinite(value) and value > 0):

@@ -58,7 +58,7 @@ class AnyDrag:
 
     @property
     def holding_force(self) -> float:
-        """The force that a belt at rest bears before it starts: ``breakaway_force`` and the rest of the drive."""
+        """The force that a belt at rest bears: ``breakaway_force`` and that of the rest of the drive."""
         return self.law().holding_force
 
     @takes_si(force="force", temperature="temperature")

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 class Scenario:
     """Parameters (SI, or numbers in consistent units) and options of a sweep.
 
-    ``grip``, ``rest_force`` and ``rest_damping`` are those of a `Drivetrain` and a `Drag`, the same in every set.
+    ``grip``, ``rest_force`` and ``rest_damping`` are those of `Drivetrain` and `Drag`, the same in every set.
     """
 
     parameters: dict[str, FloatArray]

@@ -190,7 +190,7 @@ def hysteresis(
 ) -> HysteresisBand:
     """Return the band of drive speeds where the past decides whether the belt sticks.
 
-    A roll whose grip does not start the belt leaves it at rest at every drive speed: ``upper`` is infinite then.
+    A roll whose grip does not start the belt leaves it at rest at all drive speeds: ``upper`` is infinite.
 
     Parameters
     ----------
@@ -262,8 +262,8 @@ def _always_grips(train: Drivetrain) -> None:
     """Refuse a grip where many bands are found at once, by laps that know none."""
     if train.grip is not None:
         raise ParameterError(
-            f"grip is {train.grip:g}: many bands at once are those of a roll that always grips; leave it out, "
-            "and compare it with drag.holding_force"
+            f"grip is {train.grip:g}: many bands at once are those of a roll that always grips; leave it "
+            "out, and compare it with drag.holding_force"
         )
 
 

@@ -34,9 +34,10 @@ class OperatingMap(Result):
     fit and the parameters in ``uncertain``. Drag exceeds ``torque_limit`` (N m, set by ``limited_by``) from
     ``stall_above`` up (infinite if never) and, on the falling branch, up to ``stall_below`` (0 if never).
     ``torque`` in N m, shape (n, m), is that of steady sliding at ``speed``, shape (m,). The measured ranges
-    bound the dwells. ``holding`` (N m, shape (n,)) is what a belt at rest bears, the rest of the drive counted:
-    where it exceeds ``torque_limit`` the drive does not start the belt. The bands are those of a roll that
-    grips, which it does wherever it starts the belt. ``stick_speed_rule`` says how the stick speed goes with temperature.
+    bound the dwells. ``holding`` (N m, shape (n,)) is what a belt at rest bears, the rest of the drive
+    counted: where it exceeds ``torque_limit`` the drive does not start the belt. The bands are those of a
+    roll that grips, as it does wherever it starts the belt. ``stick_speed_rule`` says how the stick speed
+    goes with temperature.
     """
 
     temperature: FloatArray | None

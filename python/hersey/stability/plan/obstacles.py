@@ -11,9 +11,11 @@ import numpy as np
 from hersey.errors import ParameterError
 from hersey.machine.limits import Limits
 from hersey.stability.plan.draws import Trials
-from hersey.stability.plan.search import Room, Search
+from hersey.stability.plan.search import PROBES, Room, Search
 from hersey.stability.plan.trial import MachineSample, Shape
 
+#: Profiles tried for the force that would do, where the force allowed does not even start the belt.
+_FEW_PROBES = 500
 #: Digits of the number that would do, rounded up.
 _DIGITS = 3
 #: Names and units of the limits, as people read them.
@@ -149,17 +151,28 @@ def _of_force(search: Search, reach: Reach) -> list[Obstacle]:
     """Obstacles of force, if a profile works without any limit of force."""
     if not reach.forces:
         return []
-    free = _relaxed(search, search.room, math.inf)
-    easiest = free.least(lambda _, outcome: outcome.peak_force)
-    if easiest is None:
-        return []
-    force = free.trials.peak(easiest[1])
     starting = _starting_force(search.trials)
+    free = _relaxed(search, search.room, math.inf)
+    probes = _FEW_PROBES if starting > reach.force else PROBES
+    easiest = free.least(lambda _, outcome: outcome.peak_force, probes)
+    if easiest is None:
+        return [
+            _not_started(n, limit, starting, reach) for n, limit in reach.forces.items() if starting > limit
+        ]
+    force = free.trials.peak(easiest[1])
     short = {name: limit for name, limit in reach.forces.items() if limit < force}
     return [
         _obstacle(name, limit * reach.factors[name], force * reach.factors[name], held=starting > limit)
         for name, limit in short.items()
     ]
+
+
+def _not_started(name: str, limit: float, starting: float, reach: Reach) -> Obstacle:
+    """The obstacle of a force that does not start the belt, where no force would leave a profile."""
+    (label, unit), factor = _NAMES[name], reach.factors[name]
+    least, most = (_written(value * factor, unit) for value in (_up(starting), limit))
+    text = f"the {label} of {most} does not start this belt, which bears {least} at rest"
+    return Obstacle(name, limit * factor, None, text)
 
 
 def _of_room(search: Search, reach: Reach, greatest: float) -> list[Obstacle]:

@@ -249,11 +249,7 @@ class Unknown:
             failures=dict(sorted(failures.items())),
             peak_force=float(np.quantile([f.peak_force for f in outcomes], confidence, method="higher")),
             accepted=nominal.ready < math.inf
-            and (
-                good == 1
-                if len(outcomes) == 1
-                else lower_bound(good, len(outcomes), _LEVEL) >= confidence
-            ),
+            and (good == 1 if len(outcomes) == 1 else lower_bound(good, len(outcomes), _LEVEL) >= confidence),
             machines=machines,
         )
 
@@ -298,9 +294,7 @@ def _found(
         share=proof.share,
         share_low=proof.share_low,
         draws=proof.draws,
-        failures={
-            reach.broken if why == FORCE else why: number for why, number in proof.failures.items()
-        },
+        failures={reach.broken if why == FORCE else why: number for why, number in proof.failures.items()},
         uses=tuple(LimitUse(*row) for row in reach.uses(shape, proof.peak_force)),
         obstacles=(),
         peak_force=proof.peak_force,

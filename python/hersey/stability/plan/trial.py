@@ -213,8 +213,8 @@ class MachineSample:
     ) -> Outcome:
         """Return what the profile does to this machine; followed at least ``until`` that time.
 
-        The motion is that of a roll whose grip is the limit of force, so where it exceeds the limit is an event
-        located to rounding; up to there the roll grips, and no grip would change the motion.
+        The motion is that of a roll whose grip is the limit of force: where the force passes it is an event
+        located to rounding, and up to there the roll grips, so that a grip changes nothing.
         """
         drive = shape.points(waited=False)
         train = self._train(force_limit)
