@@ -260,6 +260,8 @@ def _simulated(
     first = drag.holding_force / train.stiffness / speed
     run = simulate(train, drag, drive_speed=speed, duration=first + 6.0 * period, samples=4001)
     samples = kept(run.belt_speed, 1500)
+    if cycle.kind in ("stalled", "grip_slip"):
+        title += "; the roll slips on the belt" + (" and does not move it" if cycle.kind == "stalled" else "")
     return SimulationPart(
         title=title,
         source=source,

@@ -53,6 +53,8 @@ class DragPart(Part):
     speed_temperature_exponent: float
     temperature_zero: float
     static_force: float | None = Field(default=None, description="what the contact bears at rest, N")
+    static_growth: float = Field(default=0.0, description="of the static force, for each e-fold of time")
+    static_growth_time: float | None = Field(default=None, description="s")
     rest_force: float = Field(default=0.0, description="of the rest of the drive, N")
     rest_damping: float = Field(default=0.0, description="of the rest of the drive, N s/m")
     rest_temperature_slope: float = Field(default=0.0, description="relative, 1/K")
