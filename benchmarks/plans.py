@@ -10,7 +10,7 @@ with located events up to the end of the first slide, where the force is greates
 the share of 1000 fresh draws, of another seed, that slide for good from the plan's end on and never let the
 roll slip or ask more than the motor gives; where that is below the bound that the plan states, of 20,000.
 
-Usage: python -m benchmarks.plans [--cases 200] [--first 0] [--seconds 600] > plans.jsonl
+Usage: python -m benchmarks.plans [--cases 200] [--first 0] [--step 1] [--seconds 600] > plans.jsonl
        python -m benchmarks.plans --table plans.jsonl
 """
 
@@ -302,6 +302,7 @@ def main() -> None:
     parser.add_argument("--cases", type=int, default=200)
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--step", type=int, default=1)
+    parser.add_argument("--closure", help="only machines of this closure: with stiction a plan takes minutes")
     parser.add_argument("--seconds", type=float, default=600.0)
     parser.add_argument("--table", type=Path)
     given = parser.parse_args()
@@ -312,6 +313,8 @@ def main() -> None:
     for number in range(given.first, given.cases, given.step):
         if time.monotonic() > end:
             break
+        if given.closure not in (None, asked(number).drag.closure):
+            continue
         print(json.dumps(row_of(number)), flush=True)
 
 

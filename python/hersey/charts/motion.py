@@ -75,7 +75,9 @@ def mode_strip(run: Trajectory, *, title: str = "Time (s)") -> alt.Chart:
     return chart.properties(width=WIDTH, height=26)
 
 
-def _over_time(run: Trajectory, values: FloatArray, name: str, time: str, *, height: int) -> Chart:
+def _over_time(
+    run: Trajectory, values: FloatArray, name: str, time: str, *, height: int
+) -> alt.Chart | Chart:
     """A quantity against time; the axis is drawn under the last panel alone."""
     x = alt.X(
         "time:Q",

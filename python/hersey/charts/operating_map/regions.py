@@ -36,7 +36,7 @@ def bands_of(result: OperatingMap, frame: Frame) -> Bands:
     below, lower, bend, upper, above = (
         frame.clipped(side_to_side(result, getattr(result, n))) for n in names
     )
-    below = np.where(side_to_side(result, result.starts), below, frame.high)
+    below = np.where(side_to_side(result, result.starts.astype(float)) > 0, below, frame.high)
     bottom, top = np.full_like(below, frame.low), np.full_like(below, frame.high)
 
     def between(low: FloatArray, high: FloatArray) -> Edges:
