@@ -188,6 +188,9 @@ def test_neighbours_differ_in_one_number_by_a_thousandth() -> None:
         "stick_speed",
     ]
     assert sorted(seen) == sorted((name, by) for name in names for by in (-1e-3, 1e-3))
+    beside = neighbours(TRAIN, replace(DRAG, static_force=400.0, rest_force=5.0))
+    assert len(beside) == 2 * (len(names) + 2) + 1
+    assert {vars(machine.drag)["rest_force"] for machine in beside} == {5.0, 5.0 * 0.999, 5.0 * 1.001}
 
 
 def test_streams_of_draws_follow_seed_and_number() -> None:

@@ -82,7 +82,8 @@ def drawn(
 
 def neighbours(train: Drivetrain, drag: AnyDrag) -> list[MachineSample]:
     """Return the machine, and those with one parameter a little off: no profile may stand on the edge."""
-    nominal = {name: float(v) for name, v in {**vars(train), **vars(drag)}.items() if name in OF_THE_BELT}
+    known = {**vars(train), **vars(drag)}
+    nominal = {name: float(known[name]) for name in (*OF_THE_BELT, *BESIDE) if known.get(name)}
     moved = [{name: value * (1.0 + by)} for name, value in nominal.items() for by in (-_EDGE, _EDGE)]
     return [MachineSample(train, drag), *(_machine(train, drag, values) for values in moved)]
 
