@@ -137,3 +137,33 @@ def test_every_number_of_a_belt_has_a_kind() -> None:
     for name in ("bristle_stiffness", "bristle_damping", "from_speed"):
         with pytest.raises(HerseyError, match="--" + name.replace("_", "-")):
             amounts({name: "1 K"}, needed=())
+
+
+def test_a_machine_brings_grip_motor_and_rest(tmp_path: Path) -> None:
+    """A roll of 18 N that starts no belt of 97 N; a motor of 0.2 N m; a rest of 20 mN m at 15 mm."""
+    lines = [
+        '[drivetrain]', 'stiffness = "11 N/mm"', 'mass = "11 kg"', 'roll_radius = "15 mm"',
+        'stick_speed = "0.3 mm/s"', '[rest]', 'torque = "20 mN*m"', '[limits]', 'motor_torque = "0.2 N*m"',
+    ]  # fmt: skip
+    grip = ["roll_friction = 0.06", 'nip_load = "300 N"']
+    (tmp_path / "free.toml").write_text("\n".join(lines))
+    (tmp_path / "weak.toml").write_text("\n".join([*lines, *grip]))
+    drag = ["--transition-force", "14 N", "--transition-speed", "25 mm/s"]
+    typed = ["simulate", *drag, "--drive-speed", "20 mm/s", "--machine"]
+    weak = run(*typed, "weak.toml", cwd=tmp_path).stdout
+    assert weak.startswith("stalled")
+    assert "the roll slips on the belt from 0.0818182 on" in weak
+    assert "the motor gives 0.2 N m, and this motion asks 0.27 N m" in weak
+    assert "the roll grips the belt with up to 18 N; it does not start one at rest" in weak
+    free = json.loads(run(*typed, "free.toml", "--json", cwd=tmp_path).stdout)
+    assert (free["kind"], free["motor"]["limit"]) == ("stick_slip", pytest.approx(0.2))
+    assert free["motor"]["torque"] > 1.0
+    scenario = tmp_path / "sweep.toml"
+    exponents = ["ehl_exponent = -0.7", "mixed_exponent = -1.2", 'drive_speed = "20 mm/s"']
+    shape = ['transition_force = "14 N"', 'transition_speed = "25 mm/s"', *exponents]
+    scenario.write_text("\n".join(["[parameters]", *shape]))
+    for file, kind in (("weak.toml", "stalled"), ("free.toml", "stick slip")):
+        done = run("sweep", scenario, "--machine", file, cwd=tmp_path).stdout
+        assert done.startswith(kind)
+        assert "the rest of the drive acts beside the drag: 1.333 N and 0 N s/m" in done
+        assert ("the roll grips the belt with up to 18 N" in done) == (file == "weak.toml")

@@ -41,7 +41,7 @@ ARGUMENTS: dict[str, list[str]] = {
     "hysteresis": ["--drive-speed", "1.2", "--from-speed", "2.5", "--to-speed", "1.2"],
     "map": [MACHINE, "--fit", "FIT"],
     "figures": ["--out", "FIGURES"],
-    "plan": [MACHINE, "--fit", "FIT", "--target", "60 mm/s", "--at", "150 degC"],
+    "plan": ["STRONG", "--fit", "FIT", "--target", "60 mm/s", "--at", "150 degC"],
     "warmup": [MACHINE, "--fit", "FIT", "--target", "60 mm/s", "--from", "20 degC"],
 }
 #: Names of fields that the header of every print has.
@@ -80,7 +80,9 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
     folder = tmp_path_factory.mktemp("json")
     (folder / "scenario.toml").write_text(SCENARIO)
     (folder / "fit.json").write_text(json.dumps(printed(["fit", BENCH, *TARE])))
-    own = {"FIGURES": str(folder / "figures")}
+    strong = re.sub('nip_load = "[0-9.]+', 'nip_load = "1000', (ROOT / MACHINE).read_text())
+    (folder / "strong.toml").write_text(strong)
+    own = {"FIGURES": str(folder / "figures"), "STRONG": str(folder / "strong.toml")}
     return own | {"FIT": str(folder / "fit.json"), "SCENARIO": str(folder / "scenario.toml")}
 
 

@@ -22,6 +22,7 @@ from hersey.document.assembly import fit_document
 from hersey.document.saved_fit import read_fit
 from hersey.errors import InsufficientDataError, ParameterError, WrongKindError
 from hersey.log.torque_log import Correction
+from hersey.stability.plan.draws import drawn as machines_drawn
 from hersey.testbench.truth import Truth
 from hersey.verdict.cautions import _rest_warnings
 from tests.damping.test_surface import grid, points_of
@@ -282,3 +283,25 @@ def test_motion_map_and_limits_count_film_and_rest() -> None:
     assert map_.state_at(AT, 0.1).torque == pytest.approx(surface.total_torque(0.1 / 0.015, AT), rel=1e-9)
     for kelvin, speed in zip(hot, map_.stall_above, strict=True):
         assert surface.total_torque(speed / 0.015, kelvin) == pytest.approx(1.2, rel=1e-9)
+
+
+def test_draws_of_the_rest_have_its_errors() -> None:
+    """As stated, 10 % at 95 %: both numbers go together, at the belt and at a temperature."""
+    rest = hersey.RestOfDrive.stated(
+        constant=0.02, per_speed=1e-3, uncertainty=0.1, temperature_slope=-0.01, reference_temperature=400.0
+    )
+    drawn = rest.samples(20_000, 1, roll_radius=0.015, temperature=420.0)
+    at = rest.at_the_belt(0.015, 420.0)
+    for name, values in drawn.items():
+        assert np.mean(values) == pytest.approx(at[name], rel=2e-3)
+        assert np.std(values) == pytest.approx(np.log1p(0.1) / 1.96 * at[name], rel=0.03)
+    assert np.corrcoef(*drawn.values())[0, 1] == pytest.approx(1.0)
+    machine = machines_drawn(
+        hersey.Drivetrain(1e4, 1.0),
+        hersey.Drag(50, 0.03, -0.7, -1.2, stick_speed=3e-4, rest_force=1.0),
+        {},
+        drawn,
+        np.random.default_rng(1),
+        1,
+    )[0]
+    assert vars(machine.drag)["rest_force"] in drawn["rest_force"]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 import hersey
@@ -17,4 +19,6 @@ def surface(points: hersey.SteadyPoints) -> DampingSurface:
 
 @pytest.fixture(scope="module")
 def machine() -> Machine:
-    return read_machine(ROOT / "examples" / "machine.toml")
+    """The machine of the examples with a roll that grips throughout, and a motor that starts the belt."""
+    machine = read_machine(ROOT / "examples" / "machine.toml")
+    return replace(machine, limits=replace(machine.limits, roll_friction=None, motor_torque=4.5))

@@ -429,3 +429,15 @@ def test_cycles_without_sticking_come_back_to_themselves() -> None:
             ParameterError, match=r"slowest is to lie from the stick speed 0\.01 to below 0\.9"
         ):
             hersey.cycles_without_sticking(train, drag, slowest=[wrong])
+
+
+def test_a_roll_that_does_not_start_the_belt_leaves_it_at_rest_at_all_speeds() -> None:
+    weak, strong = (replace(TRAIN, grip=share * DRAG.holding_force) for share in (0.99, 1.01))
+    assert hersey.hysteresis(strong, DRAG).upper == hersey.hysteresis(TRAIN, DRAG).upper
+    never = hersey.hysteresis(weak, DRAG)
+    assert np.isinf(never.upper)
+    assert "up the belt slides if it comes from above, and not if it comes from rest" in never.verdict()
+    with pytest.raises(ParameterError, match="a roll that always grips"):
+        hersey.hysteresis_sweep(weak, DRAG, mass=[1.0, 2.0])
+    with pytest.raises(ParameterError, match="a roll that always grips"):
+        hersey.hysteresis(strong, DRAG, samples={"mass": [1.0, 2.0]})

@@ -133,7 +133,7 @@ def test_between_few_temperatures_the_fold_is_interpolated_in_logarithms(
 
 
 def test_stall_and_contours_by_hand(few: OperatingMap) -> None:
-    limit = 0.6 * 300 * 0.015
+    limit = 4.5
     assert few.torque_limit == pytest.approx(limit)
     for i, t in enumerate(KELVIN):
         law = few.drag.at(t)
@@ -222,7 +222,7 @@ def test_states_and_torques_go_with_their_temperatures(few: OperatingMap) -> Non
 
 
 def test_every_sentence_of_a_map(few: OperatingMap, surface: DampingSurface) -> None:
-    rest = max(few.drag.at(t).breakaway_force for t in KELVIN) * 0.015
+    rest = max(few.drag.at(t).holding_force for t in KELVIN) * 0.015
     hot = drag_of(surface).reference_temperature
     assert hot is not None
     low, high = (np.interp(453.15, KELVIN, edge) for edge in few.upper_interval)
@@ -232,8 +232,7 @@ def test_every_sentence_of_a_map(few: OperatingMap, surface: DampingSurface) -> 
         f"V* depends on the stick speed, 0.3 mm/s at {hot - 273.15:.0f} degC here (with the transition speed "
         f"it moves from {cold_stick:.3g} to {hot_stick:.3g} mm/s), which nobody measures; its "
         "interval counts the fit and stiffness and stick speed",
-        "stall counts steady sliding beyond 2.7 N m (roll friction); a belt at rest can bear "
-        f"{rest:.3g} N m before it starts",
+        f"the drive bears 4.5 N m (motor torque); a belt at rest bears {rest:.3g} N m before it starts",
         f"thick paper: within the 95 % interval of V* ({1e3 * low:.3g} to {1e3 * high:.3g} mm/s), so the "
         "verdict is not certain",
     )
@@ -427,7 +426,8 @@ def test_regions_lie_between_the_edges(few: OperatingMap) -> None:
 def operating_map_of_stall(few: OperatingMap) -> OperatingMap:
     """The map with a belt that stalls soon on both branches."""
     below, above = few.contour(1.3 * 0.015 * max(few.drag.at(t).transition_force for t in KELVIN))
-    return replace(few, stall_below=np.maximum(below, 2 * few.speed[0]), stall_above=np.minimum(above, 0.3))
+    below, above = np.maximum(below, 2 * few.speed[0]), np.minimum(above, 0.3)
+    return replace(few, stall_below=below, stall_above=above, limited_by="roll friction")
 
 
 def test_the_frame_is_the_range_of_the_dwells(few: OperatingMap) -> None:
@@ -527,8 +527,8 @@ def test_both_axes_of_speed_say_the_same(few: OperatingMap) -> None:
         "solid: transition speed, shaded its 95 % interval; dashed: V*, dotted its 95 % interval (fit, "
         "stiffness, "
         "stick speed)",
-        "thin: drag torque; frame: range of the dwells; hatched: extrapolated; stall beyond 2.7 N·m "
-        "(roll friction)",
+        "thin: drag torque; frame: range of the dwells; hatched: extrapolated; stall beyond 4.5 N·m "
+        "(motor torque)",
     ]
 
 

@@ -14,6 +14,8 @@ import pytest
 import hersey
 from hersey.charts import PICTURES
 from hersey.charts.operating_map import map_chart
+from hersey.charts.operating_map.frame import Frame
+from hersey.charts.operating_map.regions import bands_of
 from hersey.charts.render import picture
 from hersey.damping.candidates.shared_errors import Freedom
 from hersey.damping.estimate import Estimate
@@ -41,7 +43,7 @@ QUICK: dict[str, Any] = {**AT, "draws": 2}
 
 @pytest.fixture(scope="module")
 def drawn(surface: DampingSurface, machine: Machine) -> OperatingMap:
-    points = (*machine.points, OperatingPoint("cold <b>start</b>", 0.3, 350.0))
+    points = (*machine.points, OperatingPoint("cold <b>start</b>", 1.2, 350.0))
     return operating_map(surface, machine.train, **AT, limits=machine.limits, points=points)
 
 
@@ -105,7 +107,7 @@ def test_the_edges_part_what_simulation_finds_beside_them(surface: DampingSurfac
 
 
 def test_stall_is_where_the_drag_exceeds_the_limit(surface: DampingSurface, machine: Machine) -> None:
-    grip = Limits(roll_friction=0.2, nip_load=250.0, motor_torque=8.0)
+    grip = Limits(roll_friction=0.2, nip_load=250.0, motor_torque=8.0)  # too weak for a belt at rest
     drawn = operating_map(surface, machine.train, **QUICK, limits=grip)
     assert (drawn.torque_limit, drawn.limited_by) == (pytest.approx(0.2 * 250 * 0.015), "roll friction")
     t, above, below = drawn.temperature[30], drawn.stall_above[30], drawn.stall_below[30]
@@ -113,15 +115,48 @@ def test_stall_is_where_the_drag_exceeds_the_limit(surface: DampingSurface, mach
     for speed in (above, below):
         assert float(drawn.drag.at(t).force(speed)) * 0.015 == pytest.approx(drawn.torque_limit, rel=1e-9)
     around = [0.999 * below, 1.001 * below, 0.999 * above, 1.001 * above]
-    assert (drawn.states(t, around) == "stall").tolist() == [True, False, False, True]
+    assert [s.moving == "stall" for s in drawn.look_up(t, around)] == [True, False, False, True]
+    assert set(drawn.states(t, around)) == {"stall"}
     motor = operating_map(surface, machine.train, **QUICK, limits=replace(grip, motor_torque=0.74))
     assert (motor.torque_limit, motor.limited_by) == (0.74, "motor torque")
     free = operating_map(surface, machine.train, **QUICK)
+    assert motor.beyond == "motor"
     assert np.all(np.isinf(free.stall_above))
     assert np.all(free.stall_below == 0)
+    assert free.starts.all()
     assert any("motor_torque" in text for text in free.warnings)
     tight = operating_map(surface, machine.train, **QUICK, limits=Limits(motor_torque=0.5))
-    assert set(tight.states(t, tight.speed)) == {"stall"}
+    assert set(tight.states(t, tight.speed)) == {"motor"}
+
+
+@pytest.mark.parametrize(
+    ("grip", "slow", "fast"), [(250.0, "stalled", "stalled"), (300.0, "stick_slip", "grip_slip")]
+)
+def test_what_the_roll_cannot_bear_simulation_finds_slipping(
+    surface: DampingSurface, machine: Machine, grip: float, slow: str, fast: str
+) -> None:
+    """A belt at rest bears 288 N: a roll of 250 N starts none, one of 300 N slips where it runs heavier."""
+    limits = Limits(roll_friction=0.5, nip_load=2 * grip)
+    drawn = operating_map(surface, machine.train, **QUICK, limits=limits, temperatures=[360.0, 453.15])
+    assert drawn.starts.tolist() == [grip == 300.0] * 2
+    assert drawn.holding == pytest.approx([0.015 * drawn.drag.at(t).holding_force for t in (360.0, 453.15)])
+    gripping = replace(machine.train, grip=grip)
+    for t, speed, kind in ((453.15, 0.01, slow), (360.0, 1.1 * drawn.stall_above[0], fast)):
+        cycle = hersey.stick_slip(gripping, drawn.drag.at(t), drive_speed=speed)
+        state = drawn.state_at(t, speed)
+        assert cycle.kind == kind
+        assert (state.state == "stall") == (kind in ("stalled", "grip_slip"))
+    smooth = drawn.state_at(453.15, 0.15)
+    assert (smooth.state, smooth.moving) == ("smooth" if grip == 300.0 else "stall", "smooth")
+    assert ("goes on sliding" in smooth.verdict()) == (grip == 250.0)
+    said = "\n".join([*drawn.warnings, drawn.summary()])
+    assert ("so it is not started at all" in said) == ("not started" in said) == (grip == 250.0)
+    own = operating_map(surface, gripping, **QUICK, temperatures=[360.0, 453.15])  # the drivetrain's own grip
+    assert own.torque_limit == pytest.approx(0.015 * grip)
+    parts = bands_of(drawn, Frame.of(drawn))
+    shown = {name for name, edges in parts.items() if any(np.any(high > low) for low, high in edges)}
+    assert ("smooth" in shown) == (grip == 300.0)
+    assert ("stall" in shown) == (grip == 250.0)  # beyond the speeds shown where the roll starts the belt
 
 
 def test_contours_are_lines_of_equal_drag(drawn: OperatingMap) -> None:
@@ -136,7 +171,7 @@ def test_points_are_judged(drawn: OperatingMap) -> None:
     judged = {p.name: p.at for p in drawn.points}
     assert judged["full speed"].state == "smooth"
     assert judged["thick paper"].state == "bistable"
-    assert judged["cold <b>start</b>"].state == "stall"
+    assert judged["cold <b>start</b>"].state == "motor"
     assert [p.extrapolated for p in judged.values()] == [False, False, True]
     said = "\n".join(drawn.warnings)
     assert "thick paper: within the 95 % interval of V*" not in said  # only the fit is counted here
@@ -323,18 +358,24 @@ def test_the_picture_names_everything(drawn: OperatingMap) -> None:
     shown = texts(svg)
     for text in ("Temperature (°C)", "Drive speed at the belt (mm/s)", "Roll speed (rpm)"):
         assert text in shown
-    for text in ("smooth", "stick-slip", "stall", "bistable: smooth only from above", "1 N·m"):
+    for text in (
+        "smooth",
+        "stick-slip",
+        "more than the motor bears",
+        "bistable: smooth only from above",
+        "1 N·m",
+    ):
         assert text in shown
     for text in ("full speed", "thick paper", "cold <b>start</b>", "greatest drive speed"):
         assert text in shown
-    assert any("stall beyond 2.7 N·m (roll friction)" in text for text in shown)
+    assert any("stall beyond 4.5 N·m (motor torque)" in text for text in shown)
     assert "NaN" not in svg
 
 
 def test_labels_do_not_overlap(surface: DampingSurface, machine: Machine) -> None:
     from hersey.charts.labels import Labels
     from hersey.charts.operating_map.chart import _layers
-    from hersey.charts.operating_map.frame import HEIGHT, WIDTH, Frame
+    from hersey.charts.operating_map.frame import HEIGHT, WIDTH
 
     crowd = tuple(OperatingPoint(f"point {i}", 0.04 + 0.004 * i, 450.0 + i) for i in range(6))
     drawn = operating_map(surface, machine.train, **QUICK, limits=machine.limits, points=crowd)

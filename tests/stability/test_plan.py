@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -105,7 +106,50 @@ def test_the_number_that_would_do_does() -> None:
     enough = refused.obstacles[0].needed
     assert enough is not None
     wider = replace(tight, spring_force=enough)
-    assert hersey.plan_profile(TRAIN, DRAG, target_speed=1.9, limits=wider).found
+    plan = hersey.plan_profile(TRAIN, DRAG, target_speed=1.9, limits=wider)
+    assert plan.found
+    assert plan.warnings == (
+        "the roll's grip is not stated (roll_friction and nip_load): it is taken to hold throughout",
+    )
+
+
+#: A fuser whose roll grips with 180 N, and whose belt 288 N hold at rest.
+FUSER = hersey.Drivetrain(11e3, 11.0)
+FUSER_DRAG = hersey.Drag(
+    48.733, 0.032320, ehl_exponent=-0.70025, mixed_exponent=-1.20564, stick_speed=7.401e-4
+)
+FUSER_LIMITS = Limits(speed=0.4, acceleration=0.5, motor_torque=8.0, roll_friction=0.6, nip_load=300.0)
+
+
+def test_a_roll_that_cannot_start_the_belt_has_no_plan() -> None:
+    """Once a plan of 98.5 % with a remark: its motion needed 434 N, and the roll grips with 180 N."""
+    refused = hersey.plan_profile(
+        FUSER, FUSER_DRAG, target_speed=0.045, limits=FUSER_LIMITS, roll_radius=0.015
+    )
+    assert [o.limit for o in refused.obstacles] == ["grip"]
+    assert refused.obstacles[0].given == pytest.approx(180.0)
+    enough = refused.obstacles[0].needed
+    assert enough is not None
+    assert enough > FUSER_DRAG.holding_force > 180.0
+    assert f"the roll's grip of 180 N does not start this belt: {enough:g} N are needed" in refused.verdict()
+    assert hersey.stick_slip(replace(FUSER, grip=180.0), FUSER_DRAG, drive_speed=0.045).kind == "stalled"
+
+
+def test_a_plan_comes_up_more_slowly_where_the_grip_is_scarce() -> None:
+    """Between what starts the belt and what the quickest profile takes: another, which keeps the grip."""
+    grip = 1.02 * FUSER_DRAG.holding_force
+    limits = replace(FUSER_LIMITS, nip_load=1000.0)
+    free = hersey.plan_profile(FUSER, FUSER_DRAG, target_speed=0.12, limits=limits, roll_radius=0.015)
+    train = replace(FUSER, grip=grip)
+    kept = hersey.plan_profile(train, FUSER_DRAG, target_speed=0.12, limits=limits, roll_radius=0.015)
+    assert free.peak_force > grip > kept.peak_force
+    assert kept.duration > free.duration
+    for plan, slips in ((free, True), (kept, False)):
+        assert plan.schedule is not None
+        run = hersey.simulate(
+            train, FUSER_DRAG, drive_speed=plan.schedule, duration=2 * plan.duration, tolerance=1e-11
+        )
+        assert ("grip_lost" in [event.guard for event in run.events]) == slips
 
 
 def test_waiting_for_warmth() -> None:
@@ -163,7 +207,10 @@ def test_smooth_closures_are_refused() -> None:
 
 
 def test_the_command_writes_table_and_figure(examples_here: Path) -> None:
-    command = ["plan", "examples/machine.toml", "examples/bench.csv", "--tare", "standing"]
+    text = (examples_here / "examples" / "machine.toml").read_text()
+    strong = re.sub('(nip_load|motor_torque) = "[0-9.]+', r'\1 = "1000', text)  # a grip that suffices
+    (examples_here / "machine.toml").write_text(strong)
+    command = ["plan", "machine.toml", "examples/bench.csv", "--tare", "standing"]
     asked = [*command, "--target", "45 mm/s", "--at", "180 degC", "--seed", "4"]
     result = run(*asked, "--out", "p.csv", "--figure", "p.svg", "--json", cwd=examples_here)
     assert result.returncode == 0, result.stderr

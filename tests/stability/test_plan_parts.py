@@ -17,7 +17,7 @@ from hersey.motion.schedule import Schedule
 from hersey.motion.simulation import simulate
 from hersey.stability.plan import Plan
 from hersey.stability.plan.draws import Trials, drawn, lower_bound, most_failures, needed, neighbours
-from hersey.stability.plan.obstacles import Reach, speed_text
+from hersey.stability.plan.obstacles import Reach, _obstacle, speed_text
 from hersey.stability.plan.planner import Unknown
 from hersey.stability.plan.search import Room, Search
 from hersey.stability.plan.trial import MachineSample, Shape, TemperatureProfile, greatest_stretch, rounded
@@ -120,10 +120,10 @@ def test_why_a_trial_fails() -> None:
     assert (sticks.ready, sticks.why) == (math.inf, "stick-slip")
     over = Shape(1.9, 3.0, 0.3, 0.4, 0.5)
     peak = machine.trial(over, TemperatureProfile(None), force=True).peak_force
-    broken = machine.trial(over, TemperatureProfile(None), 0.99 * peak)
+    broken = machine.trial(over, TemperatureProfile(None), 0.999 * peak, force=True)
     assert (broken.ready, broken.why) == (math.inf, "force")
-    assert broken.peak_force == pytest.approx(peak)
-    assert machine.trial(over, TemperatureProfile(None), 1.01 * peak).why == ""
+    assert broken.peak_force == pytest.approx(0.999 * peak)
+    assert machine.trial(over, TemperatureProfile(None), 1.001 * peak).why == ""
 
 
 def test_what_comes_after_a_profile_counts() -> None:
@@ -188,6 +188,9 @@ def test_neighbours_differ_in_one_number_by_a_thousandth() -> None:
         "stick_speed",
     ]
     assert sorted(seen) == sorted((name, by) for name in names for by in (-1e-3, 1e-3))
+    beside = neighbours(TRAIN, replace(DRAG, static_force=400.0, rest_force=5.0))
+    assert len(beside) == 2 * (len(names) + 2) + 1
+    assert {vars(machine.drag)["rest_force"] for machine in beside} == {5.0, 5.0 * 0.999, 5.0 * 1.001}
 
 
 def test_streams_of_draws_follow_seed_and_number() -> None:
@@ -279,6 +282,14 @@ def test_reach_of_a_drive() -> None:
         ("spring_force", 150.0, 80.0),
         ("motor_torque", pytest.approx(2.0), pytest.approx(1.6)),
     ]
+    assert reach.broken == "the motor's torque does not suffice"
+    gripped = replace(limits, roll_friction=0.6, nip_load=100.0)
+    assert (Reach.of(gripped, 0.02).force, Reach.of(gripped, 0.02, 50.0).force) == (pytest.approx(60.0), 50.0)
+    assert Reach.of(gripped, 0.02).broken == "the roll slips on the belt"
+    assert _obstacle("motor_torque", 2.0, 5.3821, held=True).text == (
+        "the motor torque of 2 N m does not start this belt: 5.39 N m are needed"
+    )
+    assert _obstacle("grip", 180.0, 434.0).text == "the roll's grip is limited to 180 N: 434 N would do"
     free = Reach.of(Limits(), None)
     assert (free.speed, free.acceleration, free.force, free.uses(shape, 80.0)) == (
         math.inf,
@@ -354,7 +365,7 @@ def test_an_attempt_counts_only_if_it_is_quicker() -> None:
 
 
 LIMITS = Limits(
-    speed=4.0, acceleration=10.0, motor_torque=8.0, spring_force=500.0, roll_friction=0.3, nip_load=200.0
+    speed=4.0, acceleration=10.0, motor_torque=8.0, spring_force=500.0, roll_friction=0.3, nip_load=2000.0
 )
 
 
@@ -386,12 +397,10 @@ def test_numbers_of_a_plan_belong_together(plan: Plan) -> None:
     assert uses["motor_torque"] == (pytest.approx(8.0), pytest.approx(0.02 * plan.peak_force))
     steepest = max(plan.peak_speed / plan.rise, (plan.peak_speed - 1.9) / plan.fall if plan.fall else 0.0)
     assert uses["acceleration"] == (10.0, pytest.approx(steepest))
-    assert plan.warnings == (
-        f"the spring force reaches {plan.peak_force:.4g} N, more than the grip of the roll, 60 N: the "
-        f"belt may "
-        "slip on the roll, which is not in the model",
-    )
+    assert uses["grip"] == (600.0, plan.peak_force)
+    assert plan.warnings == ()
     assert plan.response is not None
+    assert not plan.response.slipping.any()
     assert plan.response.time[-1] == pytest.approx(1.15 * plan.duration + 2 * LAP)
 
 
@@ -481,7 +490,11 @@ def test_the_chart_of_a_plan_in_numbers(plan: Plan) -> None:
     limits = {
         r["name"]: r["value"] for layer in force["layer"] for r in rows(layer) if "value" in r and "name" in r
     }
-    assert limits == {"limit": pytest.approx(500.0), "motor limit": pytest.approx(400.0)}
+    assert limits == {
+        "limit": pytest.approx(500.0),
+        "motor limit": pytest.approx(400.0),
+        "grip of the roll": pytest.approx(600.0),
+    }
     axes = next(layer for layer in speeds["layer"] if len(rows(layer)) > 100)["encoding"]
     assert axes["x"]["scale"]["domain"] == pytest.approx([0.0, end])
     top = max(plan.peak_speed, plan.response.belt_speed.max())

@@ -36,7 +36,8 @@ def fitted() -> hersey.DampingSurface:
 
 def machine(rule: str = WITH_TRANSITION, at: float | None = None) -> hersey.Machine:
     known = hersey.read_machine(ROOT / "examples" / "machine.toml")
-    return replace(known, stick_speed_rule=rule, stick_speed_temperature=at, uncertainty={})
+    gripping = replace(known.limits, roll_friction=None)
+    return replace(known, stick_speed_rule=rule, stick_speed_temperature=at, uncertainty={}, limits=gripping)
 
 
 @pytest.mark.parametrize("rule", RULES)

@@ -34,7 +34,10 @@ def trajectory_chart(run: Trajectory, *, units: tuple[str, str, str] = SI) -> Ch
         mode_strip(run, title=f"Time ({time})"),
     ]
     changes = f"{len(run.events)} changes of mode" if run.events else "no change of mode"
-    title = alt.Title("Motion of the belt", subtitle=f"{run.time.size} samples; {changes}")
+    words = [f"{run.time.size} samples; {changes}"]
+    if run.roll_slips:
+        words.append(f"shaded: {run.slipping_in_words()}")
+    title = alt.Title("Motion of the belt", subtitle=words)
     stacked: Chart = alt.vconcat(*panels, spacing=8, title=title).resolve_scale(color="independent")
     return stacked
 
@@ -116,14 +119,22 @@ def mode_strip(run: Trajectory, *, title: str = "Time (s)") -> alt.Chart:
     return chart.properties(width=WIDTH, height=26)
 
 
-def _over_time(run: Trajectory, values: FloatArray, name: str, time: str, *, height: int) -> alt.Chart:
+def _over_time(
+    run: Trajectory, values: FloatArray, name: str, time: str, *, height: int
+) -> alt.Chart | Chart:
     """A quantity against time."""
     x = _bare_time(run)
     y = alt.Y("value:Q", title=name, axis=alt.Axis(minExtent=_AXIS))
     tips = [tip("time", f"time ({time})"), tip("value", name)]
     line = plot(rows_of(time=run.time, value=values)).mark_line(color=BLUE, strokeWidth=1.5)
-    chart: alt.Chart = line.encode(x=x, y=y, tooltip=tips).properties(width=WIDTH, height=height)
-    return chart
+    drawn: alt.Chart = line.encode(x=x, y=y, tooltip=tips)
+    if not run.roll_slips:
+        return drawn.properties(width=WIDTH, height=height)
+    # where the roll slips on the belt the panel is shaded from top to bottom
+    spans: list[Row] = [{"time": begin, "to": end} for begin, end in run.roll_slips]
+    shade = plot(spans).mark_rect(color=ORANGE, opacity=0.25).encode(x=x, x2=alt.X2("to:Q"))
+    layered: Chart = alt.layer(shade, drawn).properties(width=WIDTH, height=height)
+    return layered
 
 
 def _bare_time(run: Trajectory) -> alt.X:
@@ -141,7 +152,9 @@ def _in_words(cycle: StickSlipCycle, time: str) -> str:
     if cycle.frequency == 0:
         return kind
     unit = "Hz" if time == "s" else f"1/{time}"
-    return f"{kind} at {cycle.frequency:.4g} {unit}, stuck {cycle.stuck_fraction:.1%} of the time"
+    words = f"{kind} at {cycle.frequency:.4g} {unit}, stuck {cycle.stuck_fraction:.1%} of the time"
+    slips = cycle.grip_slip_duration * cycle.frequency
+    return words + (f"; the roll slips {slips:.1%} of it" if slips else "")
 
 
 def _lap(cycle: StickSlipCycle, time: str) -> Chart:

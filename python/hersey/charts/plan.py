@@ -108,6 +108,7 @@ def _force(plan: Plan, window: tuple[float, float]) -> Chart:
     labels = {
         "spring_force": "limit",
         "motor_torque": "motor limit",
+        "grip": "grip of the roll",
     }
     rules = []
     for use in plan.uses:

@@ -111,11 +111,17 @@ def amounts(
 
 
 def of_a_machine(file: Path) -> dict[str, float]:
-    """Return what a machine's file states of a belt, in SI."""
+    """Return what a machine's file states of a belt, in SI, its roll's grip and the rest of its drive."""
     from hersey.machine.machine import read_machine
 
     machine = read_machine(file)
-    return {name: float(getattr(machine, name)) for name in _OF_A_MACHINE}
+    stated = {name: float(getattr(machine, name)) for name in _OF_A_MACHINE}
+    if machine.limits.grip is not None:
+        stated["grip"] = machine.limits.grip
+    if machine.rest is not None:
+        rest = machine.rest.at_the_belt(machine.roll_radius)
+        stated |= {name: rest[name] for name in ("rest_force", "rest_damping")}
+    return stated
 
 
 def _bare(text: str) -> float | None:

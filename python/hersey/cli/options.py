@@ -24,9 +24,10 @@ if TYPE_CHECKING:
     from hersey.log import TorqueLog
     from hersey.log.means import MeansTable
     from hersey.machine.machine import Machine
+    from hersey.machine.motor import MotorUse
     from hersey.motion.drag import Drag
     from hersey.motion.heat import HeatBalance
-    from hersey.motion.simulation import Drivetrain
+    from hersey.motion.simulation import Drivetrain, Trajectory
 
 Logs = Annotated[list[Path], typer.Argument(metavar="LOG...", help="Log file, or several of one machine.")]
 SomeLogs = Annotated[
@@ -360,21 +361,41 @@ class Belt:
         of_belt: dict[str, Any] = {name: numbers.values[name] for name in texts}
         train = Drivetrain(of_belt.pop("stiffness"), of_belt.pop("mass"))
         drag = Drag(**of_belt, **plain)
-        return (train, *self._with_rest(drag, numbers))
-
-    def _with_rest(self, film: Drag, numbers: Amounts) -> tuple[Drag, Amounts]:
-        """The drag given and, beside it, what the machine says of the rest of the drive."""
         if self.machine is None:
-            return film, numbers
-        from hersey.damping.rest import with_rest
+            return train, drag, numbers
         from hersey.machine.machine import read_machine
 
+        return _of_the_machine(train, drag, numbers, read_machine(self.machine))
+
+    def motor_use(self, run: Trajectory) -> MotorUse | None:
+        """Return what a motion asks of the machine's motor, None where its file states no torque of it."""
+        if self.machine is None:
+            return None
+        from hersey.machine.machine import read_machine
+        from hersey.machine.motor import motor_use
+
         machine = read_machine(self.machine)
-        if machine.rest is None:
-            return film, numbers
+        if machine.limits.motor_torque is None:
+            return None
+        return motor_use(run, motor_torque=machine.limits.motor_torque, roll_radius=machine.roll_radius)
+
+
+def _of_the_machine(
+    train: Drivetrain, film: Drag, numbers: Amounts, machine: Machine
+) -> tuple[Drivetrain, Drag, Amounts]:
+    """The belt given and, beside it, what the machine says of its roll's grip and the rest of its drive."""
+    from hersey.damping.rest import with_rest
+
+    train, drag, told = machine.limits.gripping(train), film, [numbers.filled]
+    if machine.rest is not None:
         drag = with_rest(film, machine.rest, machine.roll_radius, None)
-        told = [numbers.filled, f"the rest of the drive acts beside the drag given: {machine.rest}"]
-        return drag, numbers if drag == film else replace(numbers, filled="; ".join(filter(None, told)))
+    if drag != film:
+        told.append(f"the rest of the drive acts beside the drag given: {machine.rest}")
+    if train.grip is not None:
+        told.append(f"the roll grips the belt with up to {train.grip:.4g} N")
+    if train.grip is not None and drag.holding_force > train.grip:
+        told.append(f"it does not start one at rest, which bears {drag.holding_force:.4g} N")
+    return train, drag, replace(numbers, filled="; ".join(filter(None, told)))
 
 
 def temperature_of(text: str, flag: str = "--at") -> float | None:

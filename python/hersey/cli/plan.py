@@ -159,4 +159,6 @@ def _drag(
     with warnings.catch_warnings():  # the fit's own command says how many draws have no falling branch
         warnings.simplefilter("ignore")
         samples = surface.drag_samples(_DRAWS, seed, **machine.belt, temperature=at)
+    if surface.rest is not None:
+        samples |= surface.rest.samples(_DRAWS, seed, roll_radius=machine.roll_radius, temperature=at)
     return drag, samples

@@ -90,12 +90,15 @@ def simulate(
     speed, time = (numbers.values[name] or 0.0 for name in ("drive_speed", "duration"))
     cycle = motion.stick_slip(train, drag, drive_speed=speed, start=start)
     run = None
-    if csv is not None or check or figure is not None:
+    motor = None
+    if csv is not None or check or figure is not None or belt.machine is not None:
         run = motion.simulate(train, drag, drive_speed=speed, duration=time, start=start, check=check)
     if run is not None:
+        motor = belt.motor_use(run)
         _write(run, csv, figure)
     if as_json:
         ran = {} if run is None else {"energy": json_value(run.energy), "check": json_value(run.check)}
+        ran |= {} if motor is None else {"motor": json_value(motor)}
         print_json("simulate", cycle.to_dict() | ran)
         return
     lines = [cycle.summary()]
@@ -103,6 +106,10 @@ def simulate(
         lines.append(f"energy balance: {run.energy.residual:.1e} of the energy turned over is missing")
     if run is not None and run.check is not None:
         lines.append(str(run.check))
+    if run is not None and run.roll_slips:
+        lines.append(f"over {time:g} s {run.slipping_in_words()}")
+    if motor is not None:
+        lines.append(str(motor))
     say("\n".join([*lines, *numbers.words]))
 
 
@@ -113,7 +120,7 @@ def _write(run: Trajectory, csv: Path | None, figure: Path | None) -> None:
         import polars as pl
 
         names = ("time", "belt_speed", "stretch", "spring_force", "mode")
-        columns = {name: getattr(run, name) for name in names}
+        columns = {name: getattr(run, name) for name in names} | {"roll_slips": run.slipping}
         bodies = {name: getattr(run, name) for name in ("film_temperature", "roll_temperature")}
         columns |= {name: kelvin for name, kelvin in bodies.items() if kelvin is not None}
         write_atomically(csv, pl.DataFrame(columns).write_csv(), overwrite=True)

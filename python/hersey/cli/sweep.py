@@ -25,7 +25,7 @@ def sweep(
         typer.Option(
             "--machine",
             metavar="TOML",
-            help="Machine's file: stiffness, mass and stick speed where the scenario has none.",
+            help="Machine's file: stiffness, mass and stick speed where the scenario has none, grip, rest.",
         ),
     ] = None,
     out: Annotated[
@@ -69,5 +69,12 @@ def sweep(
         say(f"  {name.replace('_', ' '):16s}{low:.6g} to {high:.6g}")
     for failure in counted["failures"]:
         say(f"- {failure}")
+    if described.grip is not None:
+        say(f"- the roll grips the belt with up to {described.grip:.4g} N")
+    if described.rest_force or described.rest_damping:
+        say(
+            f"- the rest of the drive acts beside the drag: {described.rest_force:.4g} N and "
+            f"{described.rest_damping:.4g} N s/m"
+        )
     if out is not None:
         say(f"sweep: {out}")

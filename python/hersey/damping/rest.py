@@ -164,6 +164,26 @@ class RestOfDrive(Result):
             "rest_damping": max(self.per_speed.value, 0.0) / roll_radius**2 * warmth,
         }
 
+    @takes_si(roll_radius="length", temperature="temperature")
+    def samples(
+        self, count: int, seed: int, *, roll_radius: float, temperature: float | None = None
+    ) -> dict[str, FloatArray]:
+        """Return draws of ``rest_force`` (N) and ``rest_damping`` (N s/m), arrays of shape (count,).
+
+        They follow Student's t with the degrees of freedom of the log it is from; a temperature slope is
+        taken as known. Arguments are those of `at_the_belt`; the seed is at least 0.
+        """
+        rng = np.random.default_rng([seed, 3])
+        drawn = rng.multivariate_normal(np.zeros(2), self.covariance[:2, :2], size=count)
+        if np.isfinite(self.freedom):
+            drawn *= np.sqrt(self.freedom / rng.chisquare(self.freedom, size=(count, 1)))
+        level, by_speed = (np.array([self.constant.value, self.per_speed.value]) + drawn).T
+        warmth = float(self._warmth(temperature))
+        return {
+            "rest_force": np.maximum(level, 0.0) / roll_radius * warmth,
+            "rest_damping": np.maximum(by_speed, 0.0) / roll_radius**2 * warmth,
+        }
+
     def _warmth(self, temperature: ArrayLike | None) -> FloatArray:
         """By how much the torque is that of the reference temperature; it never turns negative."""
         if temperature is None or self.reference_temperature is None:

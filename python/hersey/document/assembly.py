@@ -257,9 +257,11 @@ def _simulated(
 ) -> SimulationPart:
     cycle = stick_slip(train, drag, drive_speed=speed)
     period = 1.0 / cycle.frequency if cycle.frequency else 10.0 * (train.mass / train.stiffness) ** 0.5
-    first = drag.breakaway_force / train.stiffness / speed
+    first = drag.holding_force / train.stiffness / speed
     run = simulate(train, drag, drive_speed=speed, duration=first + 6.0 * period, samples=4001)
     samples = kept(run.belt_speed, 1500)
+    if cycle.kind in ("stalled", "grip_slip"):
+        title += "; the roll slips on the belt" + (" and does not move it" if cycle.kind == "stalled" else "")
     return SimulationPart(
         title=title,
         source=source,

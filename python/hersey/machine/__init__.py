@@ -3,6 +3,7 @@
 ===================  ==============================================================
 machine              `Machine` and the file as a whole
 limits               what the machine can bear; operating points
+motor                what a motion asks of the motor
 nip                  the tables of contact and lubricant
 heat                 the table of what warms the nip, and what the rest takes away
 rest                 the table of what the drive takes without the film
@@ -14,14 +15,17 @@ temperature_profile  temperature against time, from a file
 
 from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.machine import Machine, read_machine
+from hersey.machine.motor import MotorUse, motor_use
 from hersey.machine.temperature_profile import read_temperature_profile
 from hersey.machine.uncertainty import Uncertainty, read_uncertainty
 
 __all__ = [
     "Limits",
     "Machine",
+    "MotorUse",
     "OperatingPoint",
     "Uncertainty",
+    "motor_use",
     "read_machine",
     "read_temperature_profile",
     "read_uncertainty",

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Annotated
 
 from pydantic.dataclasses import dataclass
 
 from hersey.files.toml import Quantity, Table, Text
+from hersey.motion.simulation import Drivetrain
 
 _Speed = Annotated[float, Quantity("belt speed", 1e-6, 1e3)]
 
@@ -43,6 +45,10 @@ class Limits(Table):
         if self.roll_friction is None or self.nip_load is None:
             return None
         return self.roll_friction * self.nip_load
+
+    def gripping(self, train: Drivetrain) -> Drivetrain:
+        """Return the drivetrain with the grip of its roll; one that states a grip keeps it."""
+        return train if train.grip is not None else replace(train, grip=self.grip)
 
 
 @dataclass(frozen=True)

@@ -136,8 +136,8 @@ class Machine:
 
     @property
     def train(self) -> Drivetrain:
-        """The drivetrain of the motion."""
-        return Drivetrain(self.stiffness, self.mass)
+        """The drivetrain of the motion, whose roll grips the belt so far as `limits` say."""
+        return self.limits.gripping(Drivetrain(self.stiffness, self.mass))
 
     @property
     def belt(self) -> dict[str, Any]:

@@ -56,6 +56,11 @@ class AnyDrag:
         """The drag A of the contact that a belt at rest can bear: ``static_force``, or that of Eq. 29."""
         return self.law().breakaway_force
 
+    @property
+    def holding_force(self) -> float:
+        """The force that a belt at rest bears: ``breakaway_force`` and that of the rest of the drive."""
+        return self.law().holding_force
+
     @takes_si(force="force", temperature="temperature")
     def speeds_of(self, force: float, temperature: float | None = None) -> tuple[float, float]:
         """Return the speeds below and above the transition at which drag has risen to ``force``.

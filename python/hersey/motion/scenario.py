@@ -26,7 +26,10 @@ if TYPE_CHECKING:
 
 @plain_dataclass(frozen=True)
 class Scenario:
-    """Parameters (SI, or numbers in consistent units) and options of a sweep."""
+    """Parameters (SI, or numbers in consistent units) and options of a sweep.
+
+    ``grip``, ``rest_force`` and ``rest_damping`` are those of `Drivetrain` and `Drag`, the same in every set.
+    """
 
     parameters: dict[str, FloatArray]
     closure: str
@@ -36,6 +39,9 @@ class Scenario:
     duration: float | None
     tolerance: float
     zip: bool
+    grip: float | None = None
+    rest_force: float = 0.0
+    rest_damping: float = 0.0
 
     @property
     def sets(self) -> int:
@@ -55,13 +61,15 @@ class Scenario:
             closure=self.closure,
             bristle_stiffness=self.bristle_stiffness,
             bristle_damping=self.bristle_damping,
+            rest_force=self.rest_force,
+            rest_damping=self.rest_damping,
         )
         varied: dict[str, Any] = {
             name: values if values.size > 1 else float(values.flat[0])
             for name, values in self.parameters.items()
         }
         return sweep(
-            Drivetrain(first["stiffness"], first["mass"]),
+            Drivetrain(first["stiffness"], first["mass"], grip=self.grip),
             drag,
             **varied,
             zip=self.zip,
@@ -141,6 +149,8 @@ class _ScenarioFile(Table):
     parameters: _ParametersTable
 
 
+#: What a machine states of a belt beside its parameters.
+_BESIDE = ("grip", "rest_force", "rest_damping")
 #: A line for each parameter that a scenario may lack.
 _LINES = {
     "stiffness": '"11 N/mm"',
@@ -160,7 +170,7 @@ def read_scenario(
     """Read a scenario: a table ``[parameters]`` with all eight, and ``[options]``.
 
     ``stated`` are parameters in SI that the scenario need not state, from the file ``stated_in``; what it
-    states holds.
+    states holds. They may have the ``grip`` of the roll, and ``rest_force`` and ``rest_damping`` too.
 
     A parameter is a string with its unit (``"11 N/mm"``), a list of such strings, or a table ``{from, to,
     count}`` with ``spacing = "linear"`` or ``"log"``. With ``units = "consistent"`` among the options it is a
@@ -180,6 +190,7 @@ def read_scenario(
         )
     tables = read_tables(path, _ScenarioFile, plain=plain)
     options = {key: value for key, value in vars(tables.options).items() if key != "units"}
+    options |= {name: value for name, value in (stated or {}).items() if name in _BESIDE}
     scenario = Scenario(parameters=_filled(path, tables.parameters, stated, stated_in), **options)
     if scenario.sets > MOST_SETS:
         raise ParameterError(f"{path.name}: {scenario.sets:.3g} parameter sets are more than {MOST_SETS:.0e}")

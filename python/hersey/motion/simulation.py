@@ -162,6 +162,24 @@ class Trajectory(Result):
         """The mode at each sample: ``ehl``, ``mixed``, ``microslip`` or ``stuck``."""
         return np.array(_core.MODES)[self.mode_index]
 
+    @property
+    def roll_slips(self) -> list[tuple[float, float]]:
+        """When the roll begins and ends to slip on the belt; the last may end with the motion."""
+        begins = [float(self.time[0])] if self.slipping[0] else []
+        begins += [event.time for event in self.events if event.guard == "grip_lost"]
+        ends = [event.time for event in self.events if event.guard == "grip_regained"]
+        spans = zip(begins, [*ends, float(self.time[-1])], strict=False)
+        return [(begin, end) for begin, end in spans if end > begin]
+
+    def slipping_in_words(self) -> str:
+        """Return when the roll slips, and how long; empty if it never does."""
+        if not (spans := self.roll_slips):
+            return ""
+        total, begin = sum(end - begin for begin, end in spans), spans[0][0]
+        if len(spans) == 1:
+            return f"the roll slips on the belt from {begin:.6g} on, for {total:.6g}"
+        return f"the roll slips on the belt {len(spans)} times, first at {begin:.6g}, for {total:.6g} in all"
+
     def summary(self) -> str:
         """Return ranges, energies and check as text, in the units of the arguments."""
         lines = [
@@ -171,6 +189,7 @@ class Trajectory(Result):
             f"  stretch         {self.stretch.min():.6f} to {self.stretch.max():.6f}",
             f"  spring force    {self.spring_force.min():.6f} to {self.spring_force.max():.6f}",
             *self._heating(),
+            *([f"  {self.slipping_in_words()}"] if self.roll_slips else []),
             f"energy balance: {self.energy.residual:.1e} of the energy turned over is missing",
         ]
         return "\n".join([*lines, *([] if self.check is None else [str(self.check)])])
@@ -217,6 +236,13 @@ class Trajectory(Result):
         )
 
 
+#: What is said of a kind in which the roll slips.
+_MEANT = {
+    "stalled": ": the roll slips on the belt and does not move it",
+    "grip_slip": ": the roll slips on the belt, which slides more slowly",
+}
+
+
 @dataclass(frozen=True, repr=False)
 class StickSlipCycle(Result):
     """What the motion settles to.
@@ -253,12 +279,13 @@ class StickSlipCycle(Result):
         """Return what the motion settles to as text, in the units of the arguments."""
         return "\n".join(
             [
-                f"{self.kind.replace('_', ' ')}",
+                f"{self.kind.replace('_', ' ')}{_MEANT.get(self.kind, '')}",
                 f"  frequency       {self.frequency:.6f}",
                 f"  stuck fraction  {self.stuck_fraction:.6f}",
                 f"  belt speed      {self.speed_min:.6f} to {self.speed_max:.6f}",
                 f"  stretch         {self.stretch_min:.6f} to {self.stretch_max:.6f}",
                 f"  drag work       {self.drag_work:.6f} a lap",
+                *([f"  roll slips      {self.grip_slip_duration:.6f} a lap"] * (self.grip_slip_duration > 0)),
             ]
         )
 

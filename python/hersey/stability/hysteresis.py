@@ -95,9 +95,11 @@ class HysteresisBand(Result):
                 f"No band: stick-slip ends at {self.upper:.6g}, not above the transition speed "
                 f"{self.transition:.6g}, so the past does not matter."
             )
+        certain = f"Stick-slip is certain below {self.lower:.6g}. From {self.transition:.6g} "
+        if np.isinf(self.upper):
+            return certain + "up the belt slides if it comes from above, and not if it comes from rest."
         return (
-            f"Stick-slip is certain below {self.lower:.6g}. "
-            f"From {self.transition:.6g} to {self.upper:.6g} the belt slides if it comes from above "
+            f"{certain}to {self.upper:.6g} the belt slides if it comes from above "
             "and sticks if it comes from below. Above, it slides."
         )
 
@@ -188,6 +190,8 @@ def hysteresis(
 ) -> HysteresisBand:
     """Return the band of drive speeds where the past decides whether the belt sticks.
 
+    A roll whose grip does not start the belt leaves it at rest at all drive speeds: ``upper`` is infinite.
+
     Parameters
     ----------
     temperature
@@ -230,6 +234,7 @@ def hysteresis(
     changes = _sensitivities(train, plain, tolerance, steps) if sensitivity else ({}, {})
     interval, lower_interval, share = None, None, None
     if samples is not None:
+        _always_grips(train)
         drawn = {name: _drawn(name, values) for name, values in samples.items()}
         edges = _sampled(train, plain, drawn, tolerance, steps)
         interval, lower_interval = _middle(edges.upper), _middle(edges.lower)
@@ -251,6 +256,15 @@ def hysteresis(
         lower_interval=lower_interval,
         share_bistable=share,
     )
+
+
+def _always_grips(train: Drivetrain) -> None:
+    """Refuse a grip where many bands are found at once, by laps that know none."""
+    if train.grip is not None:
+        raise ParameterError(
+            f"grip is {train.grip:g}: many bands at once are those of a roll that always grips; leave it "
+            "out, and compare it with drag.holding_force"
+        )
 
 
 def _drawn(name: str, values: Any) -> Any:
@@ -301,6 +315,7 @@ def hysteresis_sweep(
 
     if not isinstance(drag, Drag):
         raise ParameterError("a sweep needs a Drag")
+    _always_grips(train)
     if drag.varies_with_temperature != (temperature is not None):
         drag.law_at(None if temperature is None else 300.0)
     varied: dict[str, ArrayLike | None] = {

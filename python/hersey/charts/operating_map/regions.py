@@ -18,7 +18,8 @@ REGIONS = (
     ("bistable", "bistable: smooth only from above", "smooth only from above", "#f5cf7f"),
     ("swing", "small swing without sticking", "small swing", "#e08f2d"),
     ("stick_slip", "stick-slip", "stick-slip", "#cc6a3d"),
-    ("stall", "stall", "stall", "#44444e"),
+    ("stall", "stall: the roll slips", "stall", "#44444e"),
+    ("motor", "more than the motor bears", "motor stops", "#44444e"),
 )
 #: Lower and upper edge (m/s) of a part of a region at each column of the chart.
 Edges = tuple[FloatArray, FloatArray]
@@ -30,24 +31,27 @@ _THIN = 4.0
 
 
 def bands_of(result: OperatingMap, frame: Frame) -> Bands:
-    """Return the parts of each region; the stall has two."""
+    """Return the parts of each region; what is beyond the drive has two, or all where it does not start."""
     names = ("stall_below", "lower", "transition", "upper", "stall_above")
     below, lower, bend, upper, above = (
         frame.clipped(side_to_side(result, getattr(result, n))) for n in names
     )
+    below = np.where(side_to_side(result, result.starts.astype(float)) > 0, below, frame.high)
     bottom, top = np.full_like(below, frame.low), np.full_like(below, frame.high)
 
     def between(low: FloatArray, high: FloatArray) -> Edges:
         low = np.clip(low, below, above)
         return low, np.maximum(np.clip(high, below, above), low)
 
-    return {
+    bands = {
         "stick_slip": [between(bottom, lower)],
         "swing": [between(lower, bend)],
         "bistable": [between(bend, upper)],
         "smooth": [between(upper, top)],
-        "stall": [(bottom, below), (above, top)],
+        "stall": [],
+        "motor": [],
     }
+    return bands | {result.beyond: [(bottom, below), (above, top)]}
 
 
 def regions(bands: Bands, frame: Frame) -> alt.Chart:

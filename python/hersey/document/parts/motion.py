@@ -34,6 +34,7 @@ class TrainPart(Part):
 
     stiffness: float = Field(description="N/m")
     mass: float = Field(description="kg")
+    grip: float | None = Field(default=None, description="force up to which the roll grips the belt, N")
 
 
 class DragPart(Part):
@@ -51,6 +52,12 @@ class DragPart(Part):
     force_temperature_exponent: float
     speed_temperature_exponent: float
     temperature_zero: float
+    static_force: float | None = Field(default=None, description="what the contact bears at rest, N")
+    static_growth: float = Field(default=0.0, description="of the static force, for each e-fold of time")
+    static_growth_time: float | None = Field(default=None, description="s")
+    rest_force: float = Field(default=0.0, description="of the rest of the drive, N")
+    rest_damping: float = Field(default=0.0, description="of the rest of the drive, N s/m")
+    rest_temperature_slope: float = Field(default=0.0, description="relative, 1/K")
 
 
 class EnergyPart(Part):
@@ -101,6 +108,16 @@ class TrajectoryPart(Part):
     roll_temperature: Numbers | None = Field(default=None, description="K, if it is a state")
 
 
+class MotorPart(Part):
+    """What a motion asks of the motor, N m; ``exceeded_from`` in s, ``exceeded`` a share of the motion."""
+
+    torque: float
+    time: float = Field(description="s")
+    limit: float
+    exceeded_from: float | None
+    exceeded: float
+
+
 class StickSlipPart(Part):
     """What a motion settles to, with the energies of a run from the start if one was asked for."""
 
@@ -119,6 +136,7 @@ class StickSlipPart(Part):
     laps: int
     energy: EnergyPart | None = None
     check: CheckPart | None = None
+    motor: MotorPart | None = None
     warming: TrajectoryPart | None = Field(
         default=None, description="the run in which temperature was a state; the rest holds where it ends"
     )

@@ -56,7 +56,10 @@ class StatePart(Part):
     """What the belt does at one temperature and drive speed: speeds in m/s, torque in N m."""
 
     state: str
+    moving: str = Field(description="state of a belt that moves already")
     torque: float
+    holding: float = Field(description="what a belt at rest bears before it starts")
+    starts: bool = Field(description="whether the drive starts a belt at rest")
     lower: float | None
     transition: float
     upper: float | None
@@ -86,6 +89,7 @@ class MapPart(Part):
     stall_below: Holed
     stall_above: Holed
     torque: list[Numbers] = Field(description="of steady sliding, N m, shape (n, m)")
+    holding: Numbers = Field(description="what a belt at rest bears, N m, shape (n,)")
     torque_limit: float | None = Field(description="N m")
     limited_by: str
     speed_limit: float | None = Field(description="m/s")

@@ -62,7 +62,8 @@ def operating_map(
         As in `DampingSurface.drag`; by default the stick speed is that at the fit's reference temperature and
         moves with temperature as the transition speed does.
     limits
-        What the drive can bear: ``motor_torque``, or ``roll_friction`` with ``nip_load``, gives the stall.
+        What the drive can bear: ``motor_torque``, or ``roll_friction`` with ``nip_load``, gives the stall;
+        a grip that ``train`` states comes before theirs.
     points
         Operating points to judge.
     uncertainty
@@ -93,6 +94,7 @@ def operating_map(
     ['stick_slip', 'bistable', 'smooth']
     """
     limits = limits or Limits()
+    grip, train = limits.gripping(train).grip, replace(train, grip=None)
     if draws < 1:
         raise ParameterError(f"draws is {draws}: at least 1 is needed")
     if surface.transition is None:
@@ -116,7 +118,7 @@ def operating_map(
     edges = edges_at(train, drag, kelvin, stick_speed_rule)
     speed_grid = shown_speeds(edges, reach, points, limits.speed, speeds)
     laws = laws_at(drag, kelvin, stick_speed_rule)
-    limit, limited_by = torque_limit(limits, roll_radius)
+    limit, limited_by = torque_limit(grip, limits.motor_torque, roll_radius)
     below, above = contour(laws, np.inf if limit is None else limit / roll_radius)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
@@ -141,6 +143,7 @@ def operating_map(
         stall_below=below,
         stall_above=above,
         torque=np.array([law.force(speed_grid) for law in laws]) * roll_radius,
+        holding=np.array([law.holding_force for law in laws]) * roll_radius,
         torque_limit=limit,
         limited_by=limited_by,
         speed_limit=limits.speed,
@@ -160,13 +163,15 @@ def operating_map(
     return replace(map_, points=placed, warnings=tuple(said))
 
 
-def torque_limit(limits: Limits, roll_radius: float) -> tuple[float | None, str]:
+def torque_limit(
+    grip: float | None, motor_torque: float | None, roll_radius: float
+) -> tuple[float | None, str]:
     """The torque on the roll (N m) at which the belt slips on it or the motor gives up, and which."""
     known = []
-    if limits.grip is not None:
-        known.append((limits.grip * roll_radius, "roll friction"))
-    if limits.motor_torque is not None:
-        known.append((limits.motor_torque, "motor torque"))
+    if grip is not None:
+        known.append((grip * roll_radius, "roll friction"))
+    if motor_torque is not None:
+        known.append((motor_torque, "motor torque"))
     return min(known) if known else (None, "")
 
 
@@ -197,10 +202,11 @@ def _remarks(map_: OperatingMap, points: Sequence[PlacedPoint]) -> list[str]:
     if map_.torque_limit is None:
         said.append("no stall is shown: state motor_torque, or roll_friction and nip_load, among the limits")
     else:
-        rest = max(law.breakaway_force for law in laws) * map_.roll_radius
+        least, most = float(map_.holding.min()), float(map_.holding.max())
+        bears = f"{least:.3g} N m" if most <= 1.0005 * least else f"{least:.3g} to {most:.3g} N m"
         said.append(
-            f"stall counts steady sliding beyond {map_.torque_limit:.3g} N m ({map_.limited_by}); "
-            f"a belt at rest can bear {rest:.3g} N m before it starts"
+            f"the drive bears {map_.torque_limit:.3g} N m ({map_.limited_by}); "
+            f"a belt at rest bears {bears} before it starts{_started(map_)}"
         )
     for p in points:
         within = _within(map_, p)
@@ -212,6 +218,17 @@ def _remarks(map_: OperatingMap, points: Sequence[PlacedPoint]) -> list[str]:
         fast = [p for p in points if p.speed > map_.speed_limit]
         said += [f"{p.name}: faster than the drive, {1e3 * map_.speed_limit:.3g} mm/s" for p in fast]
     return said
+
+
+def _started(map_: OperatingMap) -> str:
+    """Where the drive does not start a belt at rest, if anywhere."""
+    if map_.starts.all():
+        return ""
+    if not map_.starts.any():
+        return ", so it is not started at all"
+    assert map_.temperature is not None  # one column starts or does not
+    stands = [f"{convert(t, 'K', 'degC'):.0f}" for t in map_.temperature[~map_.starts][[0, -1]]]
+    return f", so it is not started from {stands[0]} to {stands[1]} degC"
 
 
 def _within(map_: OperatingMap, point: PlacedPoint) -> str:

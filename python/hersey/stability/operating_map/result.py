@@ -34,7 +34,10 @@ class OperatingMap(Result):
     fit and the parameters in ``uncertain``. Drag exceeds ``torque_limit`` (N m, set by ``limited_by``) from
     ``stall_above`` up (infinite if never) and, on the falling branch, up to ``stall_below`` (0 if never).
     ``torque`` in N m, shape (n, m), is that of steady sliding at ``speed``, shape (m,). The measured ranges
-    bound the dwells. ``stick_speed_rule`` says how the stick speed goes with temperature.
+    bound the dwells. ``holding`` (N m, shape (n,)) is what a belt at rest bears, the rest of the drive
+    counted: where it exceeds ``torque_limit`` the drive does not start the belt. The bands are those of a
+    roll that grips, as it does wherever it starts the belt. ``stick_speed_rule`` says how the stick speed
+    goes with temperature.
     """
 
     temperature: FloatArray | None
@@ -47,6 +50,7 @@ class OperatingMap(Result):
     stall_below: FloatArray
     stall_above: FloatArray
     torque: FloatArray
+    holding: FloatArray
     torque_limit: float | None
     limited_by: str
     speed_limit: float | None
@@ -59,6 +63,11 @@ class OperatingMap(Result):
     train: Drivetrain
     drag: Drag
     stick_speed_rule: str
+
+    @property
+    def starts(self) -> NDArray[np.bool_]:
+        """Whether the drive starts a belt at rest, at each temperature."""
+        return self.holding <= (np.inf if self.torque_limit is None else self.torque_limit)
 
     @takes_si(temperature="temperature", speed="belt speed")
     def state_at(self, temperature: float | None, speed: float) -> MapState:
@@ -151,23 +160,33 @@ class OperatingMap(Result):
         rows = zip(speeds.tolist(), kelvin.tolist(), place.ravel().tolist(), strict=True)
         return [self._state(laws[i], {k: float(v[i]) for k, v in edges.items()}, t, v) for v, t, i in rows]
 
+    @property
+    def beyond(self) -> str:
+        """The state beyond ``torque_limit``: the roll slips, or the motor gives up."""
+        return "motor" if self.limited_by == "motor torque" else "stall"
+
     def _laws(self, kelvin: FloatArray | None) -> list[Drag]:
         return laws_at(self.drag, kelvin, self.stick_speed_rule)
 
     def _state(self, law: Drag, edges: Mapping[str, float], kelvin: float, speed: float) -> MapState:
-        torque = float(law.force(speed)) * self.roll_radius
-        if self.torque_limit is not None and torque > self.torque_limit:
-            state = "stall"
+        torque, holding = (force * self.roll_radius for force in (float(law.force(speed)), law.holding_force))
+        limit = np.inf if self.torque_limit is None else self.torque_limit
+        if torque > limit:
+            moving = self.beyond
         elif speed < edges["lower"]:
-            state = "stick_slip"
+            moving = "stick_slip"
         elif speed < edges["transition"]:
-            state = "swing"
+            moving = "swing"
         else:
-            state = "bistable" if speed < edges["upper"] else "smooth"
+            moving = "bistable" if speed < edges["upper"] else "smooth"
+        starts = bool(holding <= limit)
+        state = moving if starts else self.beyond
         low, high = self.measured_speed
         cold, hot = self.measured_temperature or (-np.inf, np.inf)
         outside = not (low <= speed <= high and cold <= kelvin <= hot)
-        return MapState(state, torque, **edges, stick_speed=law.stick_speed, extrapolated=outside)
+        return MapState(
+            state, moving, torque, holding, starts, **edges, stick_speed=law.stick_speed, extrapolated=outside
+        )
 
 
 def _summary(map_: OperatingMap) -> str:
@@ -182,6 +201,7 @@ def _summary(map_: OperatingMap) -> str:
         speeds = [f"{_mm(e[i])} [{_mm(low[i])}, {_mm(high[i])}]" for e, (low, high) in edges]
         where = "as in the log" if map_.temperature is None else _celsius(map_.temperature[i])
         stall = "never" if np.isinf(map_.stall_above[i]) else _mm(map_.stall_above[i])
+        stall = stall if map_.starts[i] else "not started"
         cells = (where, _mm(map_.lower[i]), *speeds, stall if map_.torque_limit else "not known")
         lines.append("".join(f"{text:<26s}" for text in cells).rstrip())
     for point in map_.points:

@@ -9,13 +9,20 @@ if TYPE_CHECKING:
     pass
 
 #: States, from the slow side up. ``swing``: a small swing without sticking survives, a stuck belt sticks on.
-STATES = ("stick_slip", "swing", "bistable", "smooth", "stall")
+#: ``stall``: the roll slips on the belt; ``motor``: the motor gives up.
+STATES = ("stick_slip", "swing", "bistable", "smooth", "stall", "motor")
 _VERDICTS = {
     "stick_slip": "Stick-slip is certain.",
     "swing": "The belt swings; it sticks once it has stuck.",
     "bistable": "Smooth only if it comes from above; from rest it sticks and slips.",
     "smooth": "Smooth.",
-    "stall": "The drag is more than the drive can bear.",
+    "stall": "The drag is more than the roll grips: it slips on the belt.",
+    "motor": "The drag is more than the motor can bear.",
+}
+#: The same of a belt at rest, which the drive does not start.
+_NOT_STARTED = {
+    "stall": "The roll slips on a belt at rest and does not start it",
+    "motor": "The motor does not start a belt at rest",
 }
 
 
@@ -23,13 +30,18 @@ _VERDICTS = {
 class MapState:
     """What the belt does at one temperature and drive speed; speeds in m/s, torque in N m.
 
-    ``state`` is one of `STATES`. ``torque`` is that of steady sliding, with which the drive must cope.
+    ``state`` is one of `STATES`. ``torque`` is that of steady sliding, with which the drive must cope, and
+    ``holding`` that which a belt at rest bears before it starts; where the drive cannot bear it (``starts``
+    is false) the state is ``stall`` or ``motor``, and ``moving`` that of a belt which moves already.
     ``stick_speed`` is that at this temperature. ``extrapolated`` says that no dwell of the
     fit lies that far out.
     """
 
     state: str
+    moving: str
     torque: float
+    holding: float
+    starts: bool
     lower: float
     transition: float
     upper: float
@@ -38,7 +50,10 @@ class MapState:
 
     def verdict(self) -> str:
         """Return what the state means, in one sentence."""
-        return _VERDICTS[self.state]
+        if self.starts:
+            return _VERDICTS[self.state]
+        slides = self.moving in ("bistable", "smooth")
+        return _NOT_STARTED[self.state] + ("; one that slides already goes on sliding." if slides else ".")
 
 
 @dataclass(frozen=True)

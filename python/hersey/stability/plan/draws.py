@@ -13,7 +13,7 @@ from scipy.stats import beta
 from hersey.arrays import FloatArray
 from hersey.errors import ParameterError
 from hersey.machine.uncertainty import Uncertainty
-from hersey.motion.drag import AnyDrag
+from hersey.motion.drag import BESIDE, AnyDrag
 from hersey.motion.parameters import OF_THE_BELT
 from hersey.motion.simulation import Drivetrain
 from hersey.stability.plan.trial import MachineSample, Shape, TemperatureProfile
@@ -65,8 +65,8 @@ def drawn(
     nominal = {**vars(train), **vars(drag)}
     columns: dict[str, FloatArray] = {}
     for name in [*uncertainty, *samples]:
-        if name not in OF_THE_BELT or name not in nominal:
-            known = ", ".join(key for key in OF_THE_BELT if key in nominal)
+        if name not in (*OF_THE_BELT, *BESIDE) or name not in nominal:
+            known = ", ".join(key for key in (*OF_THE_BELT, *BESIDE) if key in nominal)
             raise ParameterError(f"uncertainty: '{name}' is no parameter of this drive: {known}")
     for name in sorted(set(uncertainty) - set(samples)):
         columns[name] = uncertainty[name].draw(rng, float(nominal[name]), count)
@@ -82,7 +82,8 @@ def drawn(
 
 def neighbours(train: Drivetrain, drag: AnyDrag) -> list[MachineSample]:
     """Return the machine, and those with one parameter a little off: no profile may stand on the edge."""
-    nominal = {name: float(v) for name, v in {**vars(train), **vars(drag)}.items() if name in OF_THE_BELT}
+    known = {**vars(train), **vars(drag)}
+    nominal = {name: float(known[name]) for name in (*OF_THE_BELT, *BESIDE) if known.get(name)}
     moved = [{name: value * (1.0 + by)} for name, value in nominal.items() for by in (-_EDGE, _EDGE)]
     return [MachineSample(train, drag), *(_machine(train, drag, values) for values in moved)]
 

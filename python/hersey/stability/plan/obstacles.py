@@ -11,9 +11,11 @@ import numpy as np
 from hersey.errors import ParameterError
 from hersey.machine.limits import Limits
 from hersey.stability.plan.draws import Trials
-from hersey.stability.plan.search import Room, Search
+from hersey.stability.plan.search import PROBES, Room, Search
 from hersey.stability.plan.trial import MachineSample, Shape
 
+#: Profiles tried for the force that would do, where the force allowed does not even start the belt.
+_FEW_PROBES = 500
 #: Digits of the number that would do, rounded up.
 _DIGITS = 3
 #: Names and units of the limits, as people read them.
@@ -22,7 +24,14 @@ _NAMES = {
     "acceleration": ("acceleration", "m/s^2"),
     "spring_force": ("spring force", "N"),
     "motor_torque": ("motor torque", "N m"),
+    "grip": ("roll's grip", "N"),
     "target_speed": ("target speed", "m/s"),
+}
+#: What is said of a draw that needs more than a limit of force.
+_BROKEN = {
+    "spring_force": "the spring force exceeds its limit",
+    "motor_torque": "the motor's torque does not suffice",
+    "grip": "the roll slips on the belt",
 }
 
 
@@ -53,10 +62,10 @@ class Reach:
     factors: Mapping[str, float]
 
     @classmethod
-    def of(cls, limits: Limits, roll_radius: float | None) -> Reach:
-        """Return the reach of a drive; the torque acts at ``roll_radius`` (m)."""
-        factors = {"spring_force": 1.0}
-        given = {"spring_force": limits.spring_force}
+    def of(cls, limits: Limits, roll_radius: float | None, grip: float | None = None) -> Reach:
+        """Return the reach of a drive; the torque acts at ``roll_radius`` (m), ``grip`` (N) is the roll's."""
+        factors = {"spring_force": 1.0, "grip": 1.0}
+        given = {"spring_force": limits.spring_force, "grip": limits.grip if grip is None else grip}
         if limits.motor_torque is not None:
             if roll_radius is None or not (math.isfinite(roll_radius) and roll_radius > 0):
                 raise ParameterError("a limit of motor_torque needs the roll_radius, greater than 0")
@@ -69,6 +78,11 @@ class Reach:
     def force(self) -> float:
         """The least of the forces, infinite without a limit."""
         return min(self.forces.values(), default=math.inf)
+
+    @property
+    def broken(self) -> str:
+        """What happens where the spring force exceeds them: the least of them binds."""
+        return _BROKEN[min(self.forces, key=self.forces.__getitem__)]
 
     def uses(self, shape: Shape, force: float) -> list[tuple[str, float, float]]:
         """Return name, limit and use of every limit that is given."""
@@ -115,33 +129,50 @@ def _lowest_target(trials: Trials, target: float) -> float:
 def _least_force(trials: Trials, target: float) -> float:
     """The force without which the belt neither breaks away nor slides where temperature ends."""
     thermal = trials.thermal
+    sliding = [machine.at(thermal.at(thermal.end), target)[1] for machine in trials.machines]
+    return max(_starting_force(trials), trials.kept(sliding))
+
+
+def _starting_force(trials: Trials) -> float:
+    """The force without which the belt does not break away at any time."""
+    thermal, spread = trials.thermal, trials.machines
     times = np.linspace(0.0, thermal.end, 50).tolist() if thermal.schedule is not None else [0.0]
-    spread = trials.machines
     sample = spread[:: max(1, len(spread) // 100)] if len(times) > 1 else spread
-    off = [min(_breakaway(m, thermal.at(t)) for t in times) for m in sample]
-    sliding = [machine.at(thermal.at(thermal.end), target)[1] for machine in spread]
+    off = [min(_holding(m, thermal.at(t)) for t in times) for m in sample]
     share = min(trials.allowed * len(sample) // len(spread) + 1, len(off))
-    return max(sorted(off)[-share], trials.kept(sliding))
+    return sorted(off)[-share]
 
 
-def _breakaway(machine: MachineSample, temperature: float | None) -> float:
-    return machine.drag.law_at(temperature).breakaway_force
+def _holding(machine: MachineSample, temperature: float | None) -> float:
+    return machine.drag.law_at(temperature).holding_force
 
 
 def _of_force(search: Search, reach: Reach) -> list[Obstacle]:
     """Obstacles of force, if a profile works without any limit of force."""
     if not reach.forces:
         return []
+    starting = _starting_force(search.trials)
     free = _relaxed(search, search.room, math.inf)
-    easiest = free.least(lambda _, outcome: outcome.peak_force)
+    probes = _FEW_PROBES if starting > reach.force else PROBES
+    easiest = free.least(lambda _, outcome: outcome.peak_force, probes)
     if easiest is None:
-        return []
+        return [
+            _not_started(n, limit, starting, reach) for n, limit in reach.forces.items() if starting > limit
+        ]
     force = free.trials.peak(easiest[1])
     short = {name: limit for name, limit in reach.forces.items() if limit < force}
     return [
-        _obstacle(name, limit * reach.factors[name], force * reach.factors[name])
+        _obstacle(name, limit * reach.factors[name], force * reach.factors[name], held=starting > limit)
         for name, limit in short.items()
     ]
+
+
+def _not_started(name: str, limit: float, starting: float, reach: Reach) -> Obstacle:
+    """The obstacle of a force that does not start the belt, where no force would leave a profile."""
+    (label, unit), factor = _NAMES[name], reach.factors[name]
+    least, most = (_written(value * factor, unit) for value in (_up(starting), limit))
+    text = f"the {label} of {most} does not start this belt, which bears {least} at rest"
+    return Obstacle(name, limit * factor, None, text)
 
 
 def _of_room(search: Search, reach: Reach, greatest: float) -> list[Obstacle]:
@@ -175,11 +206,15 @@ def _relaxed(search: Search, room: Room, force: float) -> Search:
     )
 
 
-def _obstacle(name: str, given: float, needed: float) -> Obstacle:
+def _obstacle(name: str, given: float, needed: float, *, held: bool = False) -> Obstacle:
+    """The obstacle of a limit; ``held``: it does not even start the belt."""
     label, unit = _NAMES[name]
     enough = _up(needed)
     least, most = (_written(value, unit) for value in (enough, given))
-    return Obstacle(name, given, enough, f"the {label} is limited to {most}: {least} would do")
+    text = f"the {label} is limited to {most}: {least} would do"
+    if held and name != "spring_force":
+        text = f"the {label} of {most} does not start this belt: {least} are needed"
+    return Obstacle(name, given, enough, text)
 
 
 def speed_text(value: float) -> str:
@@ -194,7 +229,8 @@ def _written(value: float, unit: str) -> str:
 
 
 def _together(search: Search, limits: Limits) -> Obstacle:
-    given = [_NAMES[name][0] for name, value in vars(limits).items() if value is not None and name in _NAMES]
+    stated = {**vars(limits), "grip": limits.grip}
+    given = [_NAMES[name][0] for name, value in stated.items() if value is not None and name in _NAMES]
     if given:
         text = f"no limit alone forbids it: relax several of {', '.join(given)} together"
         return Obstacle("several", math.nan, None, text)

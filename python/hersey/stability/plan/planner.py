@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -22,7 +22,15 @@ from hersey.stability.plan.draws import Trials, drawn, lower_bound, most_failure
 from hersey.stability.plan.obstacles import Reach, obstacles
 from hersey.stability.plan.result import LimitUse, Plan
 from hersey.stability.plan.search import Progress, Room, Search
-from hersey.stability.plan.trial import ROUNDING, MachineSample, Outcome, Shape, TemperatureProfile, rounded
+from hersey.stability.plan.trial import (
+    FORCE,
+    ROUNDING,
+    MachineSample,
+    Outcome,
+    Shape,
+    TemperatureProfile,
+    rounded,
+)
 from hersey.units import takes_si
 
 #: Probability with which a profile that passes keeps its confidence: high, for the search tries many.
@@ -73,9 +81,9 @@ def plan_profile(
         with it.
     limits
         Checked over the whole profile and after it: ``speed`` and ``acceleration`` of the drive, and the
-        spring force of the simulated motion against ``spring_force`` and ``motor_torque`` over
-        ``roll_radius`` (the inertia of the drive itself is not in the model). Above the grip
-        ``roll_friction * nip_load`` the plan warns: slip on the roll is not in the model.
+        spring force of the simulated motion against ``spring_force``, ``motor_torque`` over ``roll_radius``
+        (the inertia of the drive itself is not in the model) and the roll's grip, ``roll_friction *
+        nip_load`` unless ``train`` states its own. No plan lets the roll slip on the belt.
     roll_radius
         m; needed with a limit of torque.
     uncertainty
@@ -107,10 +115,11 @@ def plan_profile(
     limits = Limits() if limits is None else limits
     _check(drag, target_speed, limits, confidence, seed)
     thermal = TemperatureProfile(temperature)
+    reach = Reach.of(limits, roll_radius, train.grip)
+    gripping, train = limits.gripping(train), replace(train, grip=None)  # the grip is a limit of force here
     nominal = MachineSample(train, drag)
     nominal.at(thermal.at(thermal.end), target_speed)  # refuses a temperature missing or not wanted
     unknown = Unknown(train, drag, dict(uncertainty or {}), dict(samples or {}), seed)
-    reach = Reach.of(limits, roll_radius)
     band = hysteresis(train, drag, temperature=thermal.at(thermal.end), sensitivity=False)
     wide = max(_FOLDS * min(band.upper, _TRANSITIONS * band.transition), 2.0 * target_speed)
     greatest = limits.speed or wide
@@ -145,8 +154,8 @@ def plan_profile(
                 duration = float(shape.points()[0][-1])
             proof = unknown.verify(shape, duration, thermal, reach.force, confidence, number)
             if proof.accepted:
-                facts |= {"tried": search.count, "warnings": _warnings(limits, proof.peak_force)}
-                return _found(nominal, shape, thermal, proof, reach, facts)
+                facts |= {"tried": search.count, "warnings": _warnings(reach)}
+                return _found(MachineSample(gripping, drag), shape, thermal, proof, reach, facts)
             if number == _VERIFIED:
                 break
             share = _STRICTER[number - 1] * most_failures(confidence, _LEVEL, proof.draws) / proof.draws
@@ -223,17 +232,12 @@ class Unknown:
         machines = self.draws(number, max(_FRESH, math.ceil(10.0 / (1.0 - confidence))))
         laps = thermal.end / machines[0].lap
         long = _LONG if laps < _LONG_LAPS else 1
-        outcomes = [
-            machine.trial(
-                shape,
-                thermal,
-                force_limit,
-                force=True,
-                until=thermal.end if i < long else 0.0,
-                tolerance=_TIGHT,
-            )
-            for i, machine in enumerate(machines)
-        ]
+
+        def tried(machine: MachineSample, until: float) -> Outcome:
+            return machine.trial(shape, thermal, force_limit, force=True, until=until, tolerance=_TIGHT)
+
+        outcomes = [tried(machine, thermal.end if i < long else 0.0) for i, machine in enumerate(machines)]
+        nominal = tried(MachineSample(self.train, self.drag), 0.0)
         failures = Counter(_failures(outcomes, duration))
         good = len(outcomes) - failures.total()
         share = good / len(outcomes)
@@ -244,9 +248,8 @@ class Unknown:
             draws=len(outcomes),
             failures=dict(sorted(failures.items())),
             peak_force=float(np.quantile([f.peak_force for f in outcomes], confidence, method="higher")),
-            accepted=good == 1
-            if len(outcomes) == 1
-            else lower_bound(good, len(outcomes), _LEVEL) >= confidence,
+            accepted=nominal.ready < math.inf
+            and (good == 1 if len(outcomes) == 1 else lower_bound(good, len(outcomes), _LEVEL) >= confidence),
             machines=machines,
         )
 
@@ -291,7 +294,7 @@ def _found(
         share=proof.share,
         share_low=proof.share_low,
         draws=proof.draws,
-        failures=proof.failures,
+        failures={reach.broken if why == FORCE else why: number for why, number in proof.failures.items()},
         uses=tuple(LimitUse(*row) for row in reach.uses(shape, proof.peak_force)),
         obstacles=(),
         peak_force=proof.peak_force,
@@ -299,13 +302,10 @@ def _found(
     )
 
 
-def _warnings(limits: Limits, force: float) -> tuple[str, ...]:
-    if limits.grip is None or force <= limits.grip:
+def _warnings(reach: Reach) -> tuple[str, ...]:
+    if "grip" in reach.forces:
         return ()
-    return (
-        f"the spring force reaches {force:.4g} N, more than the grip of the roll, {limits.grip:.4g} N: "
-        "the belt may slip on the roll, which is not in the model",
-    )
+    return ("the roll's grip is not stated (roll_friction and nip_load): it is taken to hold throughout",)
 
 
 def _check(drag: AnyDrag, target_speed: float, limits: Limits, confidence: float, seed: int) -> None:

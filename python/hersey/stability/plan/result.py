@@ -40,7 +40,7 @@ class Plan(Result):
     the motion at the nominal parameters, its time counted from the end of the wait. ``fold_speed``,
     ``transition_speed`` and ``stick_speed`` (m/s) are nominal, at ``temperature`` (K), that of the end. Peak
     speeds up to ``greatest_speed`` were sought, ``tried`` profiles tried. ``warnings`` names
-    what the model leaves out.
+    what was not stated, or is not in the model.
     """
 
     kind: str

@@ -39,7 +39,7 @@ _KEPT = 12
 #: Best profiles refined, others of the grid so much slower at most, steps at random, draws of a step.
 _BEST, _OTHERS, _VALLEYS, _TRIES, _DRAWS = 3, 9, 1.15, 160, 6
 #: Profiles tried for the number that would do, those tried on all machines, and waits among them.
-_PROBES, _PROBED, _FEW_WAITS = 4000, 200, 5
+PROBES, _PROBED, _FEW_WAITS = 4000, 200, 5
 #: Speeds and durations within this factor are the same, and relative time that a simpler profile may cost.
 _SAME, _SAME_TIME = 1.01, 1e-5
 #: Waits of the grid over a temperature profile, and share of the profile's duration to which a wait is found.
@@ -131,16 +131,18 @@ class Search:
             self.attempt(shape)
         return self.run(again=True)
 
-    def least(self, demand: Callable[[Shape, Outcome], float]) -> tuple[float, Shape] | None:
+    def least(
+        self, demand: Callable[[Shape, Outcome], float], probes: int = PROBES
+    ) -> tuple[float, Shape] | None:
         """Return the profile that works with the least demand on the drive, and the demand at the nominal.
 
-        Of the grid only: the number that would do, not the least possible.
+        Of so many profiles of the grid only: the number that would do, not the least possible.
         """
         rows: list[tuple[float, Shape]] = []
         grid = [shape for stretch in _STRETCHES for shape in self.grid(stretch)]
         waits = self.waits()
         waits = waits[:: max(1, len(waits) // _FEW_WAITS)]
-        few = max(1, len(grid) * len(waits) // _PROBES)
+        few = max(1, len(grid) * len(waits) // probes)
         tried = [(wait, shape) for wait in waits for shape in grid][::few]
         for i, (wait, shape) in enumerate(tried):
             if i % 64 == 0:
@@ -242,7 +244,7 @@ class Search:
             return True
         temperatures = self.thermal.at(wait), self.thermal.at(wait + later)
         return any(
-            self.trials.kept([m.drag.law_at(t).breakaway_force for m in self.trials.machines]) <= limit
+            self.trials.kept([m.drag.law_at(t).holding_force for m in self.trials.machines]) <= limit
             for t in temperatures
         )
 

@@ -30,6 +30,8 @@ _WATCH, _CALM, _DOUBLINGS = 3.0, 1.5, 6
 _PER_LAP = 24
 #: Modes in which the belt does not slide.
 _HELD = ("stuck", "microslip")
+#: The event of a spring force that reaches the limit, and what is said of it.
+_GRIP_LOST, FORCE = "grip_lost", "force"
 
 
 @dataclass(frozen=True)
@@ -108,7 +110,7 @@ class Outcome(NamedTuple):
 
     ``ready`` is the time from which the drive is at the target and the belt slides for good (s; infinite if
     never, or if a limit is broken), ``peak_force`` the greatest magnitude of the spring force up to there and
-    after (N; NaN if not asked for), ``why`` what went wrong.
+    after (N; no more than the limit; NaN if not asked for), ``why`` what went wrong.
     """
 
     ready: float
@@ -209,16 +211,20 @@ class MachineSample:
         until: float = 0.0,
         tolerance: float = 1e-9,
     ) -> Outcome:
-        """Return what the profile does to this machine; followed at least ``until`` that time."""
+        """Return what the profile does to this machine; followed at least ``until`` that time.
+
+        The motion is that of a roll whose grip is the limit of force: where the force passes it is an event
+        located to rounding, and up to there the roll grips, so that a grip changes nothing.
+        """
         drive = shape.points(waited=False)
-        force = force or force_limit < math.inf
+        train = self._train(force_limit)
         watch = _WATCH * self.lap
         peak = math.nan
         for _ in range(_DOUBLINGS):
             duration = max(shape.ramps + watch, until - shape.wait)
             samples = math.ceil(duration / self.lap * _PER_LAP) + 1 if force else 2
             run = _core.simulate(
-                self.train._arguments,
+                train,
                 self._law,
                 ("speed", (*drive, None)),
                 thermal.arguments(shape.wait, self.drag.temperature_zero),
@@ -232,26 +238,35 @@ class MachineSample:
             if force:
                 turned = greatest_stretch(run.time, run.belt_speed, run.stretch, drive)
                 at_events = (abs(stretch) for stretch in run.events.stretch)
-                peak = self.train.stiffness * max(turned, *at_events, 0.0)
+                peak = min(self.train.stiffness * max(turned, *at_events, 0.0), force_limit)
+            if _GRIP_LOST in run.events.guard:
+                return Outcome(math.inf, peak, FORCE)
             state = float(run.belt_speed[-1]), float(run.stretch[-1])
-            kind = self._settled(thermal.at(shape.wait + duration), shape.target, state, tolerance)
+            kind = self._settled(train, thermal.at(shape.wait + duration), shape.target, state, tolerance)
             if kind != "steady_sliding":
                 return Outcome(math.inf, peak, kind.replace("_", "-"))
-            if peak > force_limit:
-                return Outcome(math.inf, peak, "force")
             released, held = _last_held(run.events)
             if not held and duration - released >= _CALM * self.lap:
                 return self._for_good(shape, thermal, force_limit, max(released, shape.ramps), peak)
             watch *= 2.0
         return Outcome(math.inf, peak, "still sticking")
 
+    def _train(self, force_limit: float) -> tuple[float, float, float | None]:
+        grip = force_limit if force_limit < math.inf else None
+        return float(self.train.stiffness), float(self.train.mass), grip
+
     def _settled(
-        self, temperature: float | None, target: float, state: tuple[float, float], tolerance: float
+        self,
+        train: tuple[float, float, float | None],
+        temperature: float | None,
+        target: float,
+        state: tuple[float, float],
+        tolerance: float,
     ) -> str:
         """What the motion settles to from a state, temperature held."""
         zero = self.drag.temperature_zero
         law = self._law if temperature is None else self._law.at(temperature - zero)
-        return _core.stick_slip(self.train._arguments, law, target, state, None, tolerance, MOST_STEPS).kind
+        return _core.stick_slip(train, law, target, state, None, tolerance, MOST_STEPS).kind
 
     def _for_good(
         self,
@@ -268,7 +283,7 @@ class MachineSample:
                 return Outcome(math.inf, peak, "transition speed")
             peak = max(peak, drag)
             if drag > force_limit:
-                return Outcome(math.inf, peak, "force")
+                return Outcome(math.inf, peak, FORCE)
         return Outcome(shape.wait + ready, peak, "")
 
 
