@@ -12,6 +12,7 @@ from hersey.damping.rest import RestOfDrive
 from hersey.errors import ParameterError
 from hersey.lubrication.mixed import MixedContact
 from hersey.lubrication.mixed_drag import MixedDrag
+from hersey.result import json_record
 from hersey.units import ZERO_CELSIUS, rpm
 
 
@@ -62,7 +63,7 @@ class PhysicalTruth:
             {"temperature_degC": level, "speed_rpm": round(float(rpm(speed)), 4)}
             for level, speed in zip(temperatures, speeds, strict=True)
         ]
-        return {**parts, "rest": rest, "transitions": turns}
+        return json_record({**parts, "rest": rest, "transitions": turns})
 
     def _contact(self) -> MixedContact:
         if self.mixed is None:
