@@ -1,4 +1,4 @@
-"""Write what ships of the machine in machine.toml: bench.csv, no-load.csv and bench-truth.json, from their seeds.
+"""Write what ships of the machine in machine.toml, from seeds: bench.csv, no-load.csv and bench-truth.json.
 
 The virtual test stand makes the torque of three parts, and the truth holds all their numbers:
 

@@ -64,7 +64,7 @@ def surface() -> hersey.DampingSurface:
 
 @cache
 def machine() -> hersey.Machine:
-    return hersey.read_machine(ROOT / "examples" / "machine.toml")
+    return hersey.read_machine(ROOT / "tests" / "stand" / "machine.toml")
 
 
 @cache

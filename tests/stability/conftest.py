@@ -17,4 +17,4 @@ def surface(points: hersey.SteadyPoints) -> DampingSurface:
 
 @pytest.fixture(scope="module")
 def machine() -> Machine:
-    return read_machine(ROOT / "examples" / "machine.toml")
+    return read_machine(ROOT / "tests" / "stand" / "machine.toml")

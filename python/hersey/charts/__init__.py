@@ -15,6 +15,7 @@ regime         exponents against what each regime predicts
 film           the regime chart and the Stribeck curve
 mixed          torque of film and asperities against speed
 transition     transition speed against temperature
+carried        what film, contact and rest of the drive take, stacked
 motion         a trajectory, and the lap to which it settles
 cycles         trace, cycles and fitted motion
 hysteresis     what the belt does at which drive speed

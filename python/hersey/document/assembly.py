@@ -13,6 +13,7 @@ from hersey.arrays import FloatArray
 from hersey.damping.dwells import SteadyPoints, groups_of_temperature
 from hersey.damping.fit import fit
 from hersey.damping.surface import DampingSurface
+from hersey.document.carried_part import carried_part
 from hersey.document.film_part import film_part
 from hersey.document.parts import (
     Analysis,
@@ -79,6 +80,7 @@ def analyse(
         fit=_fit_part(points, surface),
         regime=RegimePart.model_validate(seen.to_dict()),
         film=film,
+        carried=carried_part(points, surface, machine),
         simulation=_simulation(surface, machine),
         timeline=_timeline(log),
     )

@@ -1,8 +1,8 @@
 """A virtual test stand: logs of a drive whose true damping surface is known, with what real logs suffer from.
 
-The lubricant follows B = a T^b w^c above a transition speed and a steeper exponent below it, and the transition
-sits at a fixed Hersey number; or film, contact and the rest of the drive make the torque (`PhysicalTruth`). What
-it writes is synthetic, and says so.
+The lubricant follows B = a T^b w^c above a transition speed and a steeper exponent below it; the transition
+sits at a fixed Hersey number and so moves with temperature. Or film, contact and the rest of the drive make
+the torque (`PhysicalTruth`). What it writes is synthetic, and says so.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from hersey.arrays import FloatArray
 from hersey.errors import ParameterError
 from hersey.files.writing import write_atomically
 from hersey.motion.simulation import Drivetrain, simulate
+from hersey.result import json_value
 from hersey.testbench.physical import PhysicalTruth
 from hersey.testbench.truth import RPM, Truth
 from hersey.units import ZERO_CELSIUS
@@ -71,12 +72,15 @@ class VirtualLog:
     seed: int
 
     def truth_document(self) -> dict[str, object]:
-        """Return truth, stand and seed as plain data."""
+        """Return truth, its transition speed at each temperature, stand and seed as plain data."""
+        levels = np.array(self.stand.temperatures_degC)
+        speeds = np.round(self.truth.transition_speed(levels) / RPM, 4)
         return {
             "synthetic": True,
             "seed": self.seed,
             "version": _core.VERSION,
-            "truth": self.truth.to_dict(self.stand.temperatures_degC),
+            "truth": self.truth.to_dict(),
+            "transition_speeds_rpm": json_value(speeds),
             "stand": asdict(self.stand),
         }
 

@@ -57,8 +57,8 @@ class Truth:
             stick_speed=stick_speed,
         )
 
-    def to_dict(self, temperatures: tuple[float, ...]) -> dict[str, Any]:
-        """Return its numbers as plain data; they are the same at all temperatures."""
+    def to_dict(self) -> dict[str, Any]:
+        """Return its numbers as plain data."""
         return asdict(self)
 
 
