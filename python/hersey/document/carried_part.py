@@ -49,10 +49,9 @@ def carried_part(
         measured_speed=speed[hot].tolist(),
         measured_torque=whole[hot].tolist(),
         ratio=ratio,
-        transition_speed=turn if np.isfinite(turn) else None,
         text=[
             _shares(mixed, points, named, level),
-            _agreement(ratio, surface, turn, level),
+            _agreement(ratio),
             *_paper(mixed, float(named[len(named) // 2]), level),
         ],
     )
@@ -72,18 +71,14 @@ def _shares(mixed: MixedContact, points: SteadyPoints, speed: FloatArray, level:
     return f"{lead} {'; '.join(parts)}, at {celsius(level):.0f} degC."
 
 
-def _agreement(ratio: tuple[float, float, float], surface: DampingSurface, turn: float, level: float) -> str:
-    """How the measured torque and transition compare with it."""
+def _agreement(ratio: tuple[float, float, float]) -> str:
+    """How the measured torque compares with it."""
     low, mean, high = ratio
     agrees = low > 1 / _AGREES and high < _AGREES
-    text = (
+    return (
         f"Measured torque is {mean:.2f} times that, {low:.2f} to {high:.2f} times by dwell"
         f"{'' if agrees else ': what the file states does not make this log'}."
     )
-    if surface.transition is not None and np.isfinite(turn):
-        seen = surface.transition_speed(level)
-        text += f" Torque is to be least at {rpm(turn):.3g} rpm there, and the fit has {rpm(seen):.3g} rpm."
-    return text
 
 
 def _paper(mixed: MixedContact, speed: float, level: float) -> list[str]:

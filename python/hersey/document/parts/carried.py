@@ -21,5 +21,4 @@ class CarriedPart(Part):
     ratio: tuple[float, float, float] = Field(
         description="measured over predicted torque of all dwells: least, geometric mean, largest"
     )
-    transition_speed: float | None = Field(description="of least torque of the contact there, predicted")
     text: list[str] = Field(description="in sentences")
