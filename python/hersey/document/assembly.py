@@ -262,6 +262,7 @@ def _simulated(
     first = drag.breakaway_force / train.stiffness / speed
     run = simulate(train, drag, drive_speed=speed, duration=first + 6.0 * period, samples=4001)
     samples = kept(run.belt_speed, 1500)
+    beside = {"rest_force": drag.rest_force, "rest_damping": drag.rest_damping}
     return SimulationPart(
         title=title,
         source=source,
@@ -277,6 +278,7 @@ def _simulated(
             "mixed_exponent": drag.mixed_exponent,
             "stick_speed": drag.stick_speed,
             "closure": drag.closure,
+            **(beside if any(beside.values()) else {}),
         },
         kind=cycle.kind,
         frequency=cycle.frequency,
