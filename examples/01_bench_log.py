@@ -1,6 +1,6 @@
-"""Fit the shipped log of the virtual test stand and compare with its truth.
+"""Fit the shipped log of the virtual test stand, and compare rest of the drive and transition with the truth.
 
-Usage: python examples/01_bench_log.py [FOLDER]: the figure is written into FOLDER (build/examples).
+Usage: python examples/01_bench_log.py [FOLDER]: the figures are written into FOLDER (build/examples).
 """
 
 from __future__ import annotations
@@ -16,14 +16,22 @@ from hersey.document.assembly import analyse
 HERE = Path(__file__).parent
 FOLDER = Path(sys.argv[1] if len(sys.argv) > 1 else "build/examples")
 
+machine = hersey.read_machine(HERE / "machine.toml")
 log = hersey.read(HERE / "bench.csv")
-points = log.steady(tare="standing")
-surface = hersey.fit(points)
-truth = json.loads((HERE / "bench-truth.json").read_text())["truth"]
+points = log.steady(tare="standing").without(machine.rest)
+document = analyse(log, points, machine=machine)
+told = json.loads((HERE / "bench-truth.json").read_text())
 
-print(hersey.regime(points, surface).verdict)
-for name, estimate in (("a", surface.a), ("b", surface.b), ("c", surface.c)):
-    print(f"{name}: {estimate}, in truth {truth[name]}")
+print(*document.verdict, sep="\n")
+for name in ("constant", "per_speed"):
+    print(f"rest of the drive, {name}: {getattr(machine.rest, name)}, in truth {told['truth']['rest'][name]}")
+transition = document.film.transition
+ends = zip(transition.measured, transition.low, transition.high, strict=True)
+for speeds, true in zip(ends, told["transition_speeds_rpm"], strict=True):
+    value, low, high = (hersey.units.rpm(speed) for speed in speeds)
+    print(f"transition: {value:.3g} rpm [{low:.3g}, {high:.3g}], in truth {true:.3g}")
+print(*document.carried.text, sep="\n")
 
 FOLDER.mkdir(parents=True, exist_ok=True)
-charts(analyse(log, points))["damping"].save(FOLDER / "01_bench_damping.png", scale_factor=2)
+for name in ("damping", "carried"):
+    charts(document)[name].save(FOLDER / f"01_bench_{name}.png", scale_factor=2)

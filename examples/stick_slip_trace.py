@@ -1,5 +1,8 @@
 """Write the synthetic trace of stick-slip that ships as stick-slip.csv, from its seed.
 
+It is of a rig of its own, light and soft: the drive of machine.toml swings nearly free between short
+stops, and a record of that tells little but its period.
+
 Usage: python examples/stick_slip_trace.py [FILE]
 """
 

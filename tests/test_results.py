@@ -65,7 +65,7 @@ def surface() -> hersey.DampingSurface:
 
 @cache
 def machine() -> hersey.Machine:
-    return hersey.read_machine(ROOT / "examples" / "machine.toml")
+    return hersey.read_machine(ROOT / "tests" / "stand" / "machine.toml")
 
 
 @cache

@@ -142,7 +142,7 @@ IN_A_FILE = tuple(name for name in ON_A_LINE if len(name) <= 1000)
 @pytest.fixture(scope="module")
 def drawn_map(points: hersey.SteadyPoints, tmp_path_factory: pytest.TempPathFactory) -> OperatingMap:
     """A map of a machine file whose points have hostile names."""
-    text = (ROOT / "examples" / "machine.toml").read_text()
+    text = (ROOT / "tests" / "stand" / "machine.toml").read_text()
     path = tmp_path_factory.mktemp("machine") / "machine.toml"
     names = "".join(
         f'[[points]]\nname = {json.dumps(name, ensure_ascii=False)}\nspeed = "{40 + 2 * i} mm/s"\n'

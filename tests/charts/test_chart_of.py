@@ -34,7 +34,7 @@ def log() -> hersey.TorqueLog:
 
 @cache
 def points() -> hersey.SteadyPoints:
-    return log().steady(tare="standing")
+    return log().steady(tare="standing").without(machine().rest)
 
 
 @cache

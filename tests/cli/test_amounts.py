@@ -17,7 +17,7 @@ from hersey.errors import HerseyError, ParameterError, UnitError
 from tests.cli.command import run
 from tests.conftest import ROOT
 
-MACHINE = ROOT / "examples" / "machine.toml"
+MACHINE = ROOT / "tests" / "stand" / "machine.toml"
 BELT = ("stiffness", "mass", "transition_force", "transition_speed", "stick_speed")
 OUNCE, INCH = 0.45359237 / 16 * 9.80665, 0.0254
 

@@ -21,7 +21,7 @@ IS_AN_INPUT = "is an input: name another file for the output\n"
 
 def test_a_report_never_replaces_what_it_reads(bench_csv: Path, tmp_path: Path) -> None:
     machine, log, mapping = (tmp_path / name for name in ("machine.toml", "bench.csv", "bench-rig.toml"))
-    shutil.copy(ROOT / "examples" / "machine.toml", machine)
+    shutil.copy(ROOT / "tests" / "stand" / "machine.toml", machine)
     shutil.copy(bench_csv, log)
     mapping.write_text("")
     for path in (machine, log, mapping):
@@ -36,10 +36,12 @@ def test_a_report_never_replaces_what_it_reads(bench_csv: Path, tmp_path: Path) 
 def test_a_map_and_a_plan_never_replace_what_they_read(bench_csv: Path, tmp_path: Path) -> None:
     fit = tmp_path / "fit.html"
     fit.write_text("{}")
-    done = run("map", ROOT / "examples" / "machine.toml", "--fit", fit, "--out", fit, "--force", cwd=tmp_path)
+    done = run(
+        "map", ROOT / "tests" / "stand" / "machine.toml", "--fit", fit, "--out", fit, "--force", cwd=tmp_path
+    )
     assert done.stderr.endswith(f"fit.html {IS_AN_INPUT}")
     machine, course = tmp_path / "machine.toml", tmp_path / "course.csv"
-    shutil.copy(ROOT / "examples" / "machine.toml", machine)
+    shutil.copy(ROOT / "tests" / "stand" / "machine.toml", machine)
     course.write_text("time (s),temperature (degC)\n0,150\n")
     asked = ["plan", machine, bench_csv, "--target", "40 mm/s", "--temperature-profile", course]
     for path in (machine, course, bench_csv):
@@ -97,7 +99,7 @@ def test_every_verb_that_writes_is_refused_above() -> None:
 
 def test_the_stick_speed_moves_with_the_temperature_asked_for(points: hersey.SteadyPoints) -> None:
     surface = hersey.fit(points)
-    machine = read_machine(ROOT / "examples" / "machine.toml")
+    machine = read_machine(ROOT / "tests" / "stand" / "machine.toml")
     whole = surface.drag(roll_radius=0.015, stick_speed=machine.stick_speed)
     for kelvin in (373.15, 453.15):
         drag, samples = _drag(surface, machine, kelvin, 3, varies=False)
@@ -139,10 +141,10 @@ def test_a_plan_for_a_hot_machine_says_its_speeds(
     tmp_path: Path, bench_csv: Path, points: hersey.SteadyPoints
 ) -> None:
     """The printed transition speed and V* are those of the drag at the temperature asked for."""
-    machine = read_machine(ROOT / "examples" / "machine.toml")
+    machine = read_machine(ROOT / "tests" / "stand" / "machine.toml")
     done = run(
-        "plan", ROOT / "examples" / "machine.toml", bench_csv, "--tare", "standing", "--target", "20 mm/s",
-        "--at", "180 degC", "--seed", "9", "--json", cwd=tmp_path,
+        "plan", ROOT / "tests" / "stand" / "machine.toml", bench_csv, "--tare", "standing",
+        "--target", "20 mm/s", "--at", "180 degC", "--seed", "9", "--json", cwd=tmp_path,
     )  # fmt: skip
     assert done.returncode == 1, done.stderr
     document = json.loads(done.stdout)

@@ -23,7 +23,7 @@ from tests.conftest import ROOT
 
 EXAMPLES = ROOT / "examples"
 BENCH = str(EXAMPLES / "bench.csv")
-MACHINE = str(EXAMPLES / "machine.toml")
+MACHINE = str(ROOT / "tests" / "stand" / "machine.toml")  # without a rest of the drive
 TRACE = str(EXAMPLES / "stick-slip.csv")
 TARE = ["--tare", "standing"]
 #: Arguments that make each command print its part, all of it and quickly.

@@ -12,7 +12,7 @@ from hersey.machine import read_machine
 from tests.cli.command import run
 from tests.conftest import ROOT
 
-MACHINE = (ROOT / "examples" / "machine.toml").read_text()
+MACHINE = (ROOT / "tests" / "stand" / "machine.toml").read_text()
 STATED = '\n[rest]\ntorque = "20 mN*m"\ndamping = "1 mN*m*s/rad"\n'
 RPM = np.array([8.0, 12, 20, 30, 45, 70, 100, 140])
 

@@ -29,7 +29,7 @@ BOTH = "errors of the sensor of torque: those of the mapping are used, not those
 
 @pytest.fixture
 def machine(tmp_path: Path) -> Machine:
-    text = (ROOT / "examples" / "machine.toml").read_text()
+    text = (ROOT / "tests" / "stand" / "machine.toml").read_text()
     (tmp_path / "machine.toml").write_text(text + SENSORS)
     return read_machine(tmp_path / "machine.toml")
 
@@ -68,5 +68,5 @@ def test_every_command_of_a_machine_takes_its_sensors(command: str, tmp_path: Pa
 def test_a_finished_fit_keeps_its_own(tmp_path: Path) -> None:
     done = run("map", "machine.toml", "--fit", "none.json", cwd=tmp_path)
     assert "errors of the sensors: those of the fit are used, not those of the machine's file" in done.stderr
-    done = run("map", ROOT / "examples" / "machine.toml", "--fit", "none.json", cwd=tmp_path)
+    done = run("map", ROOT / "tests" / "stand" / "machine.toml", "--fit", "none.json", cwd=tmp_path)
     assert "sensors" not in done.stderr

@@ -198,11 +198,11 @@ def test_the_bound_on_film_heating_is_a_prior_of_its_size() -> None:
 def test_the_machine_states_what_the_mapping_does_not(tmp_path: Path) -> None:
     path = tmp_path / "machine.toml"
     path.write_text(
-        (ROOT / "examples" / "machine.toml").read_text()
+        (ROOT / "tests" / "stand" / "machine.toml").read_text()
         + '[sensors.torque]\ngain_error = "3 %"\n'
         + '[sensors.temperature]\nzero_error = "5 K"\nfilm_heating = "4 K"\n'
     )
-    assert read_machine(ROOT / "examples" / "machine.toml").sensors == Sensors()
+    assert read_machine(ROOT / "tests" / "stand" / "machine.toml").sensors == Sensors()
     of_machine = read_machine(path).sensors
     assert of_machine == Sensors(5.0, 0.03, film_heating=4.0, stated=("temperature", "torque"))
     said = LogMapping(torque=TorqueMapping("M", "N*m", zero_error=0.002)).sensors

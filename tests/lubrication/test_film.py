@@ -21,12 +21,12 @@ from hersey.verdict.evidence import measured_film, solved_exponent, verdict
 from tests.cli.command import run
 from tests.conftest import ROOT
 
-TOML = (ROOT / "examples" / "machine.toml").read_text()
+TOML = (ROOT / "tests" / "stand" / "machine.toml").read_text()
 
 
 @pytest.fixture(scope="module")
 def machine() -> Machine:
-    return read_machine(ROOT / "examples" / "machine.toml")
+    return read_machine(ROOT / "tests" / "stand" / "machine.toml")
 
 
 @pytest.fixture(scope="module")

@@ -24,7 +24,7 @@ from tests.conftest import ROOT
 
 MESSAGES = Path(__file__).with_name("messages.json")
 
-MACHINE = (ROOT / "examples" / "machine.toml").read_text()
+MACHINE = (ROOT / "tests" / "stand" / "machine.toml").read_text()
 BOUNDARY = '[boundary]\nfriction = 0.1\ntemperature_slope = "-0.1 %/K"\nat = "180 degC"\n'
 EXAMPLE = MACHINE[: MACHINE.index("# What is in the nip")] + '[lubricant]\nexample = "cylinder oil"\n'
 MAPPING = """
@@ -473,7 +473,7 @@ if __name__ == "__main__":
 
 
 def test_what_is_stated_of_the_lubricant_is_kept(tmp_path: Path) -> None:
-    text = (ROOT / "examples" / "machine.toml").read_text()
+    text = (ROOT / "tests" / "stand" / "machine.toml").read_text()
     head, _, rest = text.partition("[lubricant]")
     tail = rest[rest.index("\n[") :] if "\n[" in rest else ""
     path = tmp_path / "machine.toml"

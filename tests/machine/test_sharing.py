@@ -27,7 +27,7 @@ torque = "15 mN*m"
 
 def machine(folder: Path, tables: str = TABLES) -> Machine:
     path = folder / "machine.toml"
-    path.write_text((ROOT / "examples" / "machine.toml").read_text() + tables)
+    path.write_text((ROOT / "tests" / "stand" / "machine.toml").read_text() + tables)
     return read_machine(path)
 
 

@@ -19,6 +19,6 @@ def surface(points: hersey.SteadyPoints) -> DampingSurface:
 
 @pytest.fixture(scope="module")
 def machine() -> Machine:
-    """The machine of the examples with a roll that grips throughout, and a motor that starts the belt."""
-    machine = read_machine(ROOT / "examples" / "machine.toml")
-    return replace(machine, limits=replace(machine.limits, roll_friction=None, motor_torque=4.5))
+    """The stand's machine with a roll that grips throughout, and a motor that starts the belt."""
+    machine = read_machine(ROOT / "tests" / "stand" / "machine.toml")
+    return replace(machine, limits=replace(machine.limits, roll_friction=None, motor_torque=8.0))

@@ -481,7 +481,7 @@ def test_what_is_no_fit_is_refused(tmp_path: Path) -> None:
 
 
 def test_the_command_maps_a_fit_and_overwrites_nothing(fit_json: Path, tmp_path: Path) -> None:
-    machine = ROOT / "examples" / "machine.toml"
+    machine = ROOT / "tests" / "stand" / "machine.toml"
     first = run("map", machine, "--fit", fit_json, cwd=tmp_path)
     assert first.returncode == 0, first.stderr
     assert "thick paper (45 mm/s, 180 degC" in first.stdout
@@ -494,7 +494,7 @@ def test_the_command_maps_a_fit_and_overwrites_nothing(fit_json: Path, tmp_path:
 
 
 def test_the_command_refuses_what_it_cannot_use(fit_json: Path, bench_csv: Path, tmp_path: Path) -> None:
-    machine = ROOT / "examples" / "machine.toml"
+    machine = ROOT / "tests" / "stand" / "machine.toml"
     for arguments, message in (
         ((machine,), "give either a LOG or --fit"),
         ((machine, bench_csv, "--fit", fit_json), "give either a LOG or --fit"),

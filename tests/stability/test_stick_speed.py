@@ -35,7 +35,7 @@ def fitted() -> hersey.DampingSurface:
 
 
 def machine(rule: str = WITH_TRANSITION, at: float | None = None) -> hersey.Machine:
-    known = hersey.read_machine(ROOT / "examples" / "machine.toml")
+    known = hersey.read_machine(ROOT / "tests" / "stand" / "machine.toml")
     gripping = replace(known.limits, roll_friction=None)
     return replace(known, stick_speed_rule=rule, stick_speed_temperature=at, uncertainty={}, limits=gripping)
 

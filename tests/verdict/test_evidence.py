@@ -29,7 +29,7 @@ GAS = 8.31446261815324
 
 @pytest.fixture(scope="module")
 def machine() -> Machine:
-    return read_machine(ROOT / "examples" / "machine.toml")
+    return read_machine(ROOT / "tests" / "stand" / "machine.toml")
 
 
 @pytest.fixture(scope="module")

@@ -12,6 +12,7 @@ import altair as alt
 import numpy as np
 
 from hersey.charts import FIGURES
+from hersey.charts.carried import carried_chart
 from hersey.charts.film import regime_chart
 from hersey.charts.regime import exponent_chart, exponent_row
 from hersey.charts.render import picture
@@ -51,6 +52,7 @@ def charts(document: Analysis) -> dict[str, Chart]:
         "regime": regime,
         "film": film,
         "transition": transition,
+        "carried": carried,
         "simulation_speed": simulation_speed,
         "simulation_force": simulation_force,
         "timeline_speed": timeline_speed,
@@ -66,6 +68,7 @@ def torque(document: Analysis) -> Chart:
     """Torque against speed per temperature, with the fitted law (the paper's Fig. 2)."""
     scale, unit = _torque_unit(document)
     subtitle = "points are dwells with two standard errors; lines are the fitted law"
+    subtitle += "" if document.fit.rest is None else "; the rest of the drive is taken off"
     title = alt.Title("Drag torque against speed", subtitle=subtitle)
     return _against_speed(document, "torque", f"Torque ({unit})", scale).properties(title=title)
 
@@ -191,6 +194,11 @@ def transition(document: Analysis) -> Chart | None:
     if part is None:
         return None
     return transition_chart(part.temperature, part.speed, part.measured, part.low, part.high)
+
+
+def carried(document: Analysis) -> Chart | None:
+    """What of the torque the film carries, what the contact, what the rest of the drive."""
+    return None if document.carried is None else carried_chart(document.carried)
 
 
 def simulation_speed(document: Analysis) -> Chart:

@@ -448,7 +448,7 @@ class DampingSurface(Result):
         >>> import hersey
         >>> surface = hersey.fit(hersey.read("examples/bench.csv").steady(tare="standing"))
         >>> surface.predict("25 rpm", "150 degC").torque.round(3)
-        array([0.912])
+        array([0.2])
         """
         speeds = np.abs(np.asarray(speed, dtype=float))
         self._warn_outside("speed", speeds, self.speed_range)

@@ -13,6 +13,7 @@ from hersey.arrays import FloatArray
 from hersey.damping.dwells import SteadyPoints, groups_of_temperature
 from hersey.damping.fit import fit
 from hersey.damping.surface import DampingSurface
+from hersey.document.carried_part import carried_part
 from hersey.document.film_part import film_part
 from hersey.document.parts import (
     Analysis,
@@ -79,6 +80,7 @@ def analyse(
         fit=_fit_part(points, surface),
         regime=RegimePart.model_validate(seen.to_dict()),
         film=film,
+        carried=carried_part(points, surface, machine),
         simulation=_simulation(surface, machine),
         timeline=_timeline(log),
     )
@@ -262,6 +264,7 @@ def _simulated(
     samples = kept(run.belt_speed, 1500)
     if cycle.kind in ("stalled", "grip_slip"):
         title += "; the roll slips on the belt" + (" and does not move it" if cycle.kind == "stalled" else "")
+    beside = {"rest_force": drag.rest_force, "rest_damping": drag.rest_damping}
     return SimulationPart(
         title=title,
         source=source,
@@ -277,6 +280,7 @@ def _simulated(
             "mixed_exponent": drag.mixed_exponent,
             "stick_speed": drag.stick_speed,
             "closure": drag.closure,
+            **(beside if any(beside.values()) else {}),
         },
         kind=cycle.kind,
         frequency=cycle.frequency,

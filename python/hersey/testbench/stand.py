@@ -1,7 +1,8 @@
 """A virtual test stand: logs of a drive whose true damping surface is known, with what real logs suffer from.
 
 The lubricant follows B = a T^b w^c above a transition speed and a steeper exponent below it; the transition
-sits at a fixed Hersey number and so moves with temperature. What it writes is synthetic, and says so.
+sits at a fixed Hersey number and so moves with temperature. Or film, contact and the rest of the drive make
+the torque (`PhysicalTruth`). What it writes is synthetic, and says so.
 """
 
 from __future__ import annotations
@@ -18,9 +19,11 @@ from hersey import _core
 from hersey.arrays import FloatArray
 from hersey.errors import ParameterError
 from hersey.files.writing import write_atomically
-from hersey.motion.drag import Drag
 from hersey.motion.simulation import Drivetrain, simulate
+from hersey.result import json_value
+from hersey.testbench.physical import PhysicalTruth
 from hersey.testbench.truth import RPM, Truth
+from hersey.units import ZERO_CELSIUS
 
 #: First line of every log.
 PREAMBLE = "# SYNTHETIC log of the hersey virtual test stand (not a measurement)"
@@ -64,17 +67,20 @@ class VirtualLog:
     """What the stand recorded (columns as `COLUMNS`), and the truth behind it."""
 
     table: pl.DataFrame
-    truth: Truth
+    truth: Truth | PhysicalTruth
     stand: Stand
     seed: int
 
     def truth_document(self) -> dict[str, object]:
-        """Return truth, stand and seed as plain data."""
+        """Return truth, its transition speed at each temperature, stand and seed as plain data."""
+        levels = np.array(self.stand.temperatures_degC)
+        speeds = np.round(self.truth.transition_speed(levels) / RPM, 4)
         return {
             "synthetic": True,
             "seed": self.seed,
             "version": _core.VERSION,
-            "truth": asdict(self.truth),
+            "truth": self.truth.to_dict(),
+            "transition_speeds_rpm": json_value(speeds),
             "stand": asdict(self.stand),
         }
 
@@ -87,7 +93,9 @@ class VirtualLog:
             file.write(text)
 
 
-def run(*, seed: int = 0, truth: Truth | None = None, stand: Stand | None = None) -> VirtualLog:
+def run(
+    *, seed: int = 0, truth: Truth | PhysicalTruth | None = None, stand: Stand | None = None
+) -> VirtualLog:
     """Run the staircase up and down at every temperature and return the log.
 
     Parameters
@@ -142,7 +150,7 @@ def _standing(stand: Stand) -> Part:
 
 def _staircase(
     stand: Stand,
-    truth: Truth,
+    truth: Truth | PhysicalTruth,
     random: np.random.Generator,
     before: float,
     level: float,
@@ -179,24 +187,20 @@ def _heater(stand: Stand, time: FloatArray) -> FloatArray:
     return np.asarray(1.0 - np.exp(-decay) * (np.cos(swing * decay) + np.sin(swing * decay) / swing))
 
 
-def _stick_slip(stand: Stand, truth: Truth, level: float, speed: float) -> tuple[FloatArray, FloatArray]:
+def _stick_slip(
+    stand: Stand, truth: Truth | PhysicalTruth, level: float, speed: float
+) -> tuple[FloatArray, FloatArray]:
     """Speed and torque of a stretch of stick-slip at half the slowest speed: the torque is the spring's."""
-    w_t = float(truth.transition_speed(np.array(level)))
-    drag = Drag(
-        transition_force=float(truth.torque(np.array(w_t), np.array(level))) / stand.roll_radius,
-        transition_speed=w_t * stand.roll_radius,
-        ehl_exponent=truth.c,
-        mixed_exponent=truth.mixed_exponent,
-        stick_speed=stand.stick_speed,
-    )
     count = round(2 * stand.dwell / stand.sampling_interval)
     slow = 0.5 * speed
+    drag = truth.drag(level, stand.roll_radius, stand.stick_speed)
     motion = simulate(
         Drivetrain(stand.stiffness, stand.mass),
         drag,
         drive_speed=slow * stand.roll_radius,
         duration=count * stand.sampling_interval,
         samples=count,
+        temperature=level + ZERO_CELSIUS if drag.varies_with_temperature else None,
         tolerance=1e-8,
     )
     return np.full(count, slow), motion.spring_force * stand.roll_radius

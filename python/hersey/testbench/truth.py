@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from typing import Any
 
 import numpy as np
 
 from hersey import _core
 from hersey.arrays import FloatArray
 from hersey.errors import ParameterError
+from hersey.motion.drag import Drag
 from hersey.units import ZERO_CELSIUS
 
 RPM = 2.0 * np.pi / 60.0
@@ -43,6 +45,21 @@ class Truth:
         exponent = 1.0 + np.where(w >= w_t, self.c, self.mixed_exponent)
         ratio = np.where(w > 0, w, 1.0) / w_t
         return np.asarray(np.where(w > 0, np.sign(speed) * level * ratio**exponent, 0.0))
+
+    def drag(self, temperature: float, roll_radius: float, stick_speed: float) -> Drag:
+        """Return the drag of the belt at a temperature in degC, radius in m and stick speed in m/s."""
+        w_t = float(self.transition_speed(np.array(temperature)))
+        return Drag(
+            transition_force=float(self.torque(np.array(w_t), np.array(temperature))) / roll_radius,
+            transition_speed=w_t * roll_radius,
+            ehl_exponent=self.c,
+            mixed_exponent=self.mixed_exponent,
+            stick_speed=stick_speed,
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return its numbers as plain data."""
+        return asdict(self)
 
 
 @dataclass(frozen=True)

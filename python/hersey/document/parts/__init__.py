@@ -7,6 +7,7 @@ log         logs and dwells
 fit         the damping surface and the regime
 film        the film of a nip
 mixed       film and asperities that share its load
+carried     what carries the torque of the drive
 motion      trajectories, cycles, sweeps
 stability   bands, maps, plans, warm-ups
 models      candidates, comparisons of logs, designs
@@ -18,6 +19,7 @@ analysis    the whole document
 """
 
 from hersey.document.parts.analysis import Analysis
+from hersey.document.parts.carried import CarriedPart
 from hersey.document.parts.cycles import CyclesPart, DrivePart
 from hersey.document.parts.figures import FiguresPart
 from hersey.document.parts.film import FilmPart, FilmPoint, FilmStatesPart, MeasuredFilmPart, VerdictPart
@@ -84,6 +86,7 @@ __all__ = [
     "Analysis",
     "BandPart",
     "BranchPart",
+    "CarriedPart",
     "Cell",
     "ChannelUse",
     "ClosurePart",

@@ -9,6 +9,7 @@ from typing import Literal
 
 from pydantic import Field
 
+from hersey.document.parts.carried import CarriedPart
 from hersey.document.parts.cycles import CyclesPart
 from hersey.document.parts.figures import FiguresPart
 from hersey.document.parts.film import FilmPart
@@ -36,6 +37,7 @@ class Analysis(Part):
     fit: FitPart
     regime: RegimePart
     film: FilmPart | None = None
+    carried: CarriedPart | None = None
     simulation: SimulationPart
     timeline: Timeline
     inspection: InspectionPart | None = None

@@ -169,6 +169,15 @@ async function film() {
   data.film.notes.forEach((text) => add(notes, "li", text));
 }
 
+async function carried() {
+  if (!data.carried) return;
+  add(report, "h2", "What carries the torque");
+  const lines = add(report, "ul");
+  lines.id = "carried";
+  data.carried.text.forEach((text) => add(lines, "li", text));
+  await chart(report, "carried");
+}
+
 function reproduce() {
   add(report, "h2", "How to reproduce this report");
   if (data.command) add(report, "pre", data.command).id = "command";
@@ -201,6 +210,7 @@ async function main() {
         : `the minimum of a smooth curve: the bend is gradual, and the trend lines on either side meet at ${digits(data.fit.transition.meeting_speed * TO_RPM, 3)} rpm.`}`
     : `No falling branch is announced: ${data.fit.no_transition}.`);
   await film();
+  await carried();
   add(report, "h2", "What stick-slip looks like");
   await chart(report, "simulation_speed");
   await chart(report, "simulation_force");

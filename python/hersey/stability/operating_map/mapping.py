@@ -89,8 +89,8 @@ def operating_map(
     --------
     >>> from hersey import fit, read
     >>> surface = fit(read("examples/bench.csv").steady(tare="standing"))
-    >>> map_ = operating_map(surface, Drivetrain(11e3, 11.0), roll_radius=0.015, stick_speed=3e-4)
-    >>> [map_.state_at(180 + 273.15, v).state for v in (0.02, 0.045, 0.12)]
+    >>> map_ = operating_map(surface, Drivetrain(11e3, 11.0), roll_radius=0.015, stick_speed=1.3e-3)
+    >>> [map_.state_at(180 + 273.15, v).state for v in (0.02, 0.045, 0.2)]
     ['stick_slip', 'bistable', 'smooth']
     """
     limits = limits or Limits()
