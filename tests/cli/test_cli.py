@@ -68,7 +68,11 @@ def test_the_band_is_printed_and_piped(tmp_path: Path) -> None:
 
 def test_simulation_is_written_as_csv(tmp_path: Path) -> None:
     assert run("simulate", "--csv", "motion.csv", cwd=tmp_path).returncode == 0
-    assert (tmp_path / "motion.csv").read_text().startswith("time,belt_speed,stretch,spring_force,mode\n")
+    assert (
+        (tmp_path / "motion.csv")
+        .read_text()
+        .startswith("time,belt_speed,stretch,spring_force,mode,roll_slips\n")
+    )
     assert run("simulate", "--csv", "motion.csv", cwd=tmp_path).returncode == 2
 
 

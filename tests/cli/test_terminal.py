@@ -45,8 +45,8 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / f"{IN_FILE}2.csv").write_text(log.replace(",20,", ",20.5,"), encoding="utf-8", newline="")
     trace = (ROOT / "examples" / "stick-slip.csv").read_text().replace("force", f"force {IN_CELL}")
     (folder / f"{IN_FILE}-trace.csv").write_text(trace, encoding="utf-8", newline="")
-    for name in ("machine", "scenario"):
-        text = next((ROOT / "examples").glob(f"*{name}*.toml")).read_text()
+    for name, home in (("machine", ROOT / "tests" / "stand"), ("scenario", ROOT / "examples")):
+        text = (home / f"{name}.toml").read_text()
         (folder / f"{IN_FILE}-{name}.toml").write_text(text, encoding="utf-8")
     (folder / f"{IN_FILE}-broken.toml").write_text(f"[drivetrain]\n{json.dumps(HOSTILE)} = 1\n")
     return folder

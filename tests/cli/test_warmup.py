@@ -15,8 +15,8 @@ from hersey.machine import read_temperature_profile
 from tests.cli.command import run
 from tests.conftest import ROOT
 
-MACHINE = (ROOT / "examples" / "machine.toml").read_text()
-TYPED = ["warmup", "machine.toml", "--fit", "fit.json", "--target", "60 mm/s", "--from", "20 degC"]
+MACHINE = (ROOT / "examples" / "machine.toml").read_text().replace('"1 N*m"', '"0.3 N*m"')
+TYPED = ["warmup", "machine.toml", "--fit", "fit.json", "--target", "200 mm/s", "--from", "20 degC"]
 HEATED = ["simulate", "--machine", "machine.toml", "--fit", "fit.json", "--heat", "--drive-speed", "30 mm/s"]
 
 
@@ -24,7 +24,9 @@ HEATED = ["simulate", "--machine", "machine.toml", "--fit", "fit.json", "--heat"
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("warm")
     bench = str(ROOT / "examples" / "bench.csv")
-    (folder / "fit.json").write_text(run("fit", bench, "--tare", "standing", "--json", cwd=ROOT).stdout)
+    (folder / "no-load.csv").write_bytes((ROOT / "examples" / "no-load.csv").read_bytes())
+    typed = ["fit", bench, "--tare", "standing", "--no-load", "no-load.csv", "--json"]
+    (folder / "fit.json").write_text(run(*typed, cwd=folder).stdout)
     (folder / "machine.toml").write_text(MACHINE)
     (folder / "bare.toml").write_text(MACHINE[: MACHINE.index("# What the machine can bear")])
     (folder / "weak.toml").write_text(MACHINE.replace('"900 W"', '"10 W"'))
@@ -38,8 +40,8 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_the_course_is_written_and_serves_a_plan(folder: Path) -> None:
     done = run(*TYPED, "--out", "course.csv", cwd=folder)
     assert done.returncode == 0, done.stderr
-    assert done.stdout.startswith("Start at once, slow until warm: full speed 60 mm/s after ")
-    assert "the limit is that of the grip" in done.stdout
+    assert done.stdout.startswith("Start at once, slow until warm: full speed 200 mm/s after ")
+    assert "the limit is that of the motor torque" in done.stdout
     assert "extrapolated" in done.stdout
     course = read_temperature_profile(folder / "course.csv")
     assert course.first == pytest.approx(293.15)
@@ -59,7 +61,7 @@ def test_a_motion_with_heat_is_told_and_written(folder: Path) -> None:
     assert "film            20.00 to " in done.stdout
     assert "it settles to" in done.stdout
     header, first = (folder / "run.csv").read_text().splitlines()[:2]
-    assert header.endswith("mode,film_temperature,roll_temperature")
+    assert header.endswith("mode,roll_slips,film_temperature,roll_temperature")
     assert first.endswith("293.15,293.15")
 
 

@@ -9,11 +9,11 @@ import pytest
 import hersey
 from tests.conftest import ROOT
 
-TEXT = (ROOT / "examples" / "machine.toml").read_text()
+TEXT = (ROOT / "tests" / "stand" / "machine.toml").read_text()
 
 
 def test_bodies_start_as_warm_as_the_surroundings_unless_stated(tmp_path: Path) -> None:
-    heat = hersey.read_machine(ROOT / "examples" / "machine.toml").heat
+    heat = hersey.read_machine(ROOT / "tests" / "stand" / "machine.toml").heat
     assert heat == hersey.HeatBalance(
         film_capacity=150.0,
         roll_capacity=250.0,
