@@ -95,7 +95,7 @@ _Floats: TypeAlias = NDArray[np.float64]
 _Closure: TypeAlias = tuple[str, float | None, float | None]
 _Train: TypeAlias = tuple[float, float, float | None]
 _Schedule: TypeAlias = tuple[list[float], list[float], list[list[float]] | None]
-Heat: TypeAlias = tuple[
+_Heat: TypeAlias = tuple[
     tuple[float, float],
     float,
     tuple[float, float],
@@ -518,7 +518,7 @@ def simulate(
     tolerance: float,
     integrator: str,
     most_steps: int,
-    heat: Heat | None = None,
+    heat: _Heat | None = None,
 ) -> Trajectory: ...
 def steady_start(train: _Train, drag: Law, speed: float, nudged: bool) -> State: ...
 def stick_slip(

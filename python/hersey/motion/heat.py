@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from hersey import _core
 from hersey.errors import ParameterError
 from hersey.motion.schedule import Schedule, ScheduleArguments
 from hersey.units import fields_in_si
@@ -17,6 +16,18 @@ _KINDS: dict[str, str | tuple[str, ...]] = {
     **dict.fromkeys(("surroundings", "setpoint", "film_temperature", "roll_temperature"), "temperature"),
     **dict.fromkeys(("heater_power", "film_load", "roll_load"), "power"),
 }
+#: The balance as the core takes it: capacities, exchange, losses, surroundings, heater, loads, start, and zero of
+#: the temperature scale of the drag law.
+_Arguments = tuple[
+    tuple[float, float],
+    float,
+    tuple[float, float],
+    float,
+    tuple[ScheduleArguments | None, tuple[float, float, float] | None],
+    tuple[ScheduleArguments, ScheduleArguments],
+    tuple[float, float],
+    float,
+]
 
 
 @dataclass(frozen=True)
@@ -81,7 +92,7 @@ class HeatBalance:
         if self.heater_gain is not None and self.setpoint is None:
             raise ParameterError("heater_gain is of a heater with a setpoint: give setpoint too")
 
-    def arguments(self, temperature_zero: float) -> _core.Heat:
+    def arguments(self, temperature_zero: float) -> _Arguments:
         """Return the balance as the core takes it, for a law whose scale begins at some K."""
         return (
             (float(self.film_capacity), float(self.roll_capacity)),
