@@ -16,8 +16,8 @@ _KINDS: dict[str, str | tuple[str, ...]] = {
     **dict.fromkeys(("surroundings", "setpoint", "film_temperature", "roll_temperature"), "temperature"),
     **dict.fromkeys(("heater_power", "film_load", "roll_load"), "power"),
 }
-#: The balance as the core takes it: capacities, exchange, losses, surroundings, heater, loads, start, and zero of
-#: the temperature scale of the drag law.
+#: The balance as the core takes it: capacities, exchange, losses, surroundings, heater, loads, start, and
+#: zero of the temperature scale of the drag law.
 _Arguments = tuple[
     tuple[float, float],
     float,
