@@ -31,6 +31,7 @@ TYPED: dict[str, tuple[list[str], float]] = {
         [MACHINE, *BENCH, "--target", "60 mm/s", "--at", "150 degC", "--out", "p.csv", "--figure", "p.png"],
         8.0,
     ),
+    "warmup": ([MACHINE, *BENCH, "--target", "200 mm/s", "--from", "20 degC", "--out", "w.csv"], 3.0),
     "compare": ([*BENCH, BENCH[0], "--json"], 2.5),
     "design": (BENCH, 2.0),
     "cycles": ([str(EXAMPLES / "stick-slip.csv"), "--drive-speed", "20 mm/s", "--identify"], 3.0),

@@ -31,7 +31,7 @@ def test_models_of_a_log(bench_csv: Path) -> None:
 
 def test_models_as_json(bench_csv: Path, tmp_path: Path) -> None:
     machine = tmp_path / "machine.toml"
-    machine.write_text((ROOT / "examples" / "machine.toml").read_text() + STATED)
+    machine.write_text((ROOT / "tests" / "stand" / "machine.toml").read_text() + STATED)
     flags = ["--bootstrap", "0", "--isothermal", "--json", "--machine", machine]
     plain = json.loads(printed("models", bench_csv, *BENCH, *flags))
     contact = [law for law in plain["refused"] if law["name"].startswith("film and asperities")]
@@ -68,7 +68,7 @@ def test_compare_two_logs(bench_csv: Path, tmp_path: Path) -> None:
 
 def test_film_says_who_shares_the_load(bench_csv: Path, tmp_path: Path) -> None:
     machine = tmp_path / "machine.toml"
-    machine.write_text((ROOT / "examples" / "machine.toml").read_text() + STATED)
+    machine.write_text((ROOT / "tests" / "stand" / "machine.toml").read_text() + STATED)
     text = printed("film", machine, "--log", bench_csv, *BENCH)
     assert "asperities carry 21 to 78.3 %" in text
     row = next(line for line in text.splitlines() if line.startswith("   180.0 ") and "[" in line)

@@ -21,4 +21,4 @@ def surface(points: hersey.SteadyPoints) -> DampingSurface:
 def machine() -> Machine:
     """The stand's machine with a roll that grips throughout, and a motor that starts the belt."""
     machine = read_machine(ROOT / "tests" / "stand" / "machine.toml")
-    return replace(machine, limits=replace(machine.limits, roll_friction=None, motor_torque=8.0))
+    return replace(machine, limits=replace(machine.limits, roll_friction=None, motor_torque=4.5))

@@ -33,7 +33,7 @@ def design(
 ) -> None:
     """Propose the next dwells to record: those that make the fitted law, or one quantity, known best.
 
-    Example: [bold]hersey design examples/bench.csv --tare standing --quantity "transition speed"[/bold]
+    Example: [bold]hersey design examples/bench.csv --tare standing --quantity "Stribeck speed"[/bold]
     """
     from hersey.damping.candidates import compare_models
     from hersey.damping.design import design as designed
