@@ -340,7 +340,7 @@ impl Drag {
         drag.stick_speed = above("stick speed at this temperature", drag.stick_speed * speed, 0.0)?;
         drag.decay_speed = finite("stick speed at this temperature", drag.decay_speed * speed)?;
         let boundary = temperature_law.boundary_factor(temperature)?;
-        let below_stick_speed = force * (1.0 + drag.boundary_share() * (boundary - 1.0));
+        let below_stick_speed = force * (1.0 + self.boundary_share() * (boundary - 1.0));
         let breakaway = drag.breakaway_force * below_stick_speed;
         drag.breakaway_force = finite("drag at this temperature", breakaway)?;
         if let Some(mixed) = &mut drag.mixed {
@@ -446,12 +446,12 @@ impl Drag {
     /// speed of least force.
     #[must_use]
     pub fn speeds_of(&self, force: f64) -> (f64, f64) {
-        let foot =
-            if self.rest.damping > 0.0 { self.rising_from() } else { self.transition_speed() };
+        let smooth = self.rest.damping > 0.0 || self.mixed.is_some();
+        let foot = if smooth { self.rising_from() } else { self.transition_speed() };
         if force <= self.force(foot) {
             return (foot, foot);
         }
-        if self.rest.damping > 0.0 {
+        if smooth {
             return self.searched_speeds(force, foot);
         }
         let force = force - self.rest.force;

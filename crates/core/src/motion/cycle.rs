@@ -13,7 +13,7 @@ use super::lap::{
 };
 use super::piece::{Phase, Piece};
 use super::system::{Drivetrain, Integrator, Start, System};
-use crate::drag::{Drag, Mode};
+use crate::drag::{Closure, Drag, Mode};
 use crate::error::{Error, above};
 use crate::work::Work;
 
@@ -406,7 +406,9 @@ fn has_come_to_slip(piece: &Piece) -> bool {
     let drag = piece.flow.drag;
     if drag.closure().has_memory() && mode == Mode::Microslip {
         // bristles bear what the grip does, and creep no more
-        return speed <= STEADY * drag.stick_speed();
+        let Closure::LuGre { bristle_stiffness, .. } = drag.closure() else { return false };
+        let borne = (bristle_stiffness * piece.start.bristle - pull).abs() <= STEADY * pull.abs();
+        return borne && speed <= STEADY * drag.stick_speed();
     }
     let slope = drag.slope(speed);
     mode != Mode::Stuck && slope > 0.0 && (pull - drag.force(speed)).abs() <= STEADY * slope * speed

@@ -267,6 +267,9 @@ impl Member {
             return false;
         }
         let steady = self.damping * self.drive.powf(self.exponents.1);
+        if steady * self.scale.pull >= self.system.train.grip() {
+            return false;
+        }
         let (ahead, off) = (lanes.speed[l] - self.drive, lanes.pull[l] - steady);
         ahead * ahead + off * off < margin * margin
     }
@@ -383,7 +386,7 @@ impl Member {
             }
             self.take_in(&piece);
             lanes.impulse[l] += piece.impulse(0.0) / (pull_scale * time_scale);
-            if let Some(event) = event.filter(|e| e.from == Mode::Stuck) {
+            if let Some(event) = event.filter(|e| e.from == Mode::Stuck && e.to != Mode::Stuck) {
                 let now = origin + event.time / time_scale;
                 let stretch = event.stretch * system.train.stiffness() / pull_scale;
                 let state = (stretch, event.belt_speed / speed_scale);

@@ -91,7 +91,7 @@ impl Extrapolation {
 /// A smooth closure has no stuck phase: there it is the moment when the belt leaves the creep below `v_s`.
 pub(super) fn release(event: Option<Event>, smooth: bool, train: &Drivetrain) -> Option<Section> {
     let released = |e: &Event| {
-        e.from == Mode::Stuck
+        (e.from == Mode::Stuck && e.to != Mode::Stuck)
             || (smooth && e.from == Mode::Microslip && e.guard == Guard::StickSpeed)
     };
     let Event { time, belt_speed, stretch, .. } = event.filter(released)?;

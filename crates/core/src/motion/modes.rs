@@ -6,6 +6,9 @@ use super::piece::{Condition, Phase, Piece};
 use super::thermal::ThermalFactors;
 use crate::drag::{Closure, Mode};
 
+/// Relative difference of belt and roll from which they are as fast as each other.
+const MET: f64 = 1e-9;
+
 impl Motion<'_> {
     /// Bristles of a sliding belt are bent as in steady sliding.
     pub(super) fn bend_bristles(&mut self) {
@@ -40,9 +43,11 @@ impl Motion<'_> {
         if crept {
             return Mode::Stuck;
         }
-        if !lost && self.phase.mode != Mode::Stuck {
+        let (rate, stiffness) = (self.drive_rate()[0], self.now.system.train.stiffness());
+        // where the drive has jumped below the belt the two have not met: the pull falls by itself
+        let met = self.are_level();
+        if !lost && met && self.phase.mode != Mode::Stuck {
             // as fast as the roll to the last bit, or the grip would be lost again at once
-            let (rate, stiffness) = (self.drive_rate()[0], self.now.system.train.stiffness());
             self.phase.speed = rate / stiffness;
             if towards * (rate - stiffness * self.phase.speed) > 0.0 {
                 let up = towards > 0.0;
@@ -213,8 +218,14 @@ impl Motion<'_> {
                 let ahead = Condition::Ahead(self.drive_rate(), self.now.system.train.stiffness());
                 watch.look(ahead, Guard::GripRegained);
             } else {
-                watch.look(Condition::GripsForward(grip), Guard::GripLost);
-                watch.look(Condition::GripsBack(grip), Guard::GripLost);
+                // where roll and belt have just met the pull leaves that limit, whatever rounding says
+                let (met, forward) = (self.has_just_met(grip), self.phase.pull > 0.0);
+                if !(met && forward) {
+                    watch.look(Condition::GripsForward(grip), Guard::GripLost);
+                }
+                if !met || forward {
+                    watch.look(Condition::GripsBack(grip), Guard::GripLost);
+                }
             }
         }
         match self.phase.mode {
@@ -240,6 +251,18 @@ impl Motion<'_> {
             Mode::Ehl | Mode::Mixed => self.watch_branch(&mut watch),
         }
         watch.first
+    }
+
+    /// Whether roll and belt have just met: the pull is that of the grip, and rounding says whether it grows or falls.
+    fn has_just_met(&self, grip: f64) -> bool {
+        self.phase.pull.abs() >= grip && self.are_level()
+    }
+
+    /// Whether belt and roll are as fast as each other, but for rounding.
+    fn are_level(&self) -> bool {
+        let (rate, train) = (self.drive_rate(), &self.now.system.train);
+        let scale = rate[0].abs() + rate[1].abs() * train.time_scale();
+        (rate[0] - train.stiffness() * self.phase.speed).abs() <= MET * scale
     }
 
     /// Watch the ends of the branch of the law.

@@ -93,7 +93,8 @@ pub fn simulate(
     let mut energy = Energy::default();
     // what was asked for is read, however much it is
     let reading = work.apart(u64::MAX);
-    let mut end_state = (start.belt_speed, system.pull(start)?);
+    // what the spring pulls beyond the grip is lost before anything moves
+    let mut end_state = (start.belt_speed, motion.phase().direction * motion.phase().pull);
     let initial = stored(system, end_state, 0.0);
     while motion.time() < duration {
         let (piece, event) = motion.advance(duration - motion.time())?;
