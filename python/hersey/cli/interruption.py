@@ -35,9 +35,11 @@ def interruptible() -> Iterator[None]:
     before = signal.signal(signal.SIGTERM, _raise)
     wakeup = signal.set_wakeup_fd(theirs.fileno(), warn_on_full_buffer=False)
     threading.Thread(target=_watch, args=(ours,), daemon=True).start()
+    told, sys.unraisablehook = sys.unraisablehook, _swallowed
     try:
         yield
     finally:
+        sys.unraisablehook = told
         signal.set_wakeup_fd(wakeup)
         signal.signal(signal.SIGTERM, before)
         theirs.close()  # which ends the thread
@@ -63,6 +65,12 @@ def _watch(signals: socket.socket) -> None:
             if number[0] in (signal.SIGINT, signal.SIGTERM):
                 time.sleep(_PATIENCE)
                 end()
+
+
+def _swallowed(lost: sys.UnraisableHookArgs) -> None:
+    """Say nothing of an interrupt that Python swallows: the thread that watches ends the program."""
+    if not issubclass(lost.exc_type, KeyboardInterrupt):
+        sys.__unraisablehook__(lost)
 
 
 def _raise(_signal: int, _frame: object) -> None:
