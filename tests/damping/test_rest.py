@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -261,10 +261,6 @@ def test_at_the_belt_it_acts_at_the_radius_of_the_roll() -> None:
     assert at["rest_temperature_slope"] == pytest.approx(SLOPE / 0.9)
 
 
-@pytest.mark.skipif(
-    "rest_force" not in {field.name for field in fields(hersey.Drag)},
-    reason="the drag law holds no rest of the drive yet",
-)
 def test_motion_map_and_limits_count_film_and_rest() -> None:
     w, t = grid(np.geomspace(0.1, 15, 10), TEMPERATURES)
     corner = (t / 150.0) ** 3.0

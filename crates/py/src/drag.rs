@@ -2,13 +2,14 @@
 
 use hersey_core::Error;
 use hersey_core::drag::{Closure, Drag, Rest, SpeedLaw, Strengthening, TemperatureLaw};
-use hersey_core::lubrication::mixed::{MixedLaw, Sharing};
+use hersey_core::lubrication::mixed::MixedLaw;
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 
 use crate::errors::{raised, refused};
 use crate::interrupt::{copied, interruptible};
 use crate::lubrication::ViscosityLaw;
+use crate::mixed::sharing_of;
 
 /// A drag law.
 #[pyclass(frozen, module = "hersey._core")]
@@ -110,26 +111,7 @@ impl Law {
         stick_speed: f64,
         closure: ClosureArguments<'_>,
     ) -> PyResult<Self> {
-        let [
-            reference,
-            film_exponent,
-            load_exponent,
-            stiffness,
-            boundary,
-            shear,
-            rolling,
-            rolling_exponent,
-        ] = numbers;
-        let law = MixedLaw::new(Sharing {
-            reference,
-            film_exponent,
-            load_exponent,
-            stiffness,
-            boundary,
-            shear,
-            rolling,
-            rolling_exponent,
-        });
+        let law = MixedLaw::new(sharing_of(numbers));
         let closure = closure_from(closure)?;
         law.and_then(|law| Drag::mixed(law, viscosity, stick_speed, closure))
             .map(Self)

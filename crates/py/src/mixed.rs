@@ -27,7 +27,10 @@ pub struct MixedTransition {
     sensitivity: Py<PyDict>,
 }
 
-fn law([reference, film_exponent, load_exponent, stiffness, forces @ ..]: [f64; 8]) -> Sharing {
+/// The numbers of the law, in the order of `SHARING`.
+pub fn sharing_of(
+    [reference, film_exponent, load_exponent, stiffness, forces @ ..]: [f64; 8],
+) -> Sharing {
     let [boundary, shear, rolling, rolling_exponent] = forces;
     Sharing {
         reference,
@@ -58,7 +61,7 @@ pub fn mixed_contact(py: Python<'_>, columns: Columns<'_, 9>) -> PyResult<Mixed>
     let found = mapped(py, &columns, |[product, numbers @ ..]| {
         let bits = numbers.map(f64::to_bits);
         let same = last.filter(|(same, _)| *same == bits);
-        let law = same.map_or_else(|| MixedLaw::new(law(numbers)), |(_, law)| Ok(law))?;
+        let law = same.map_or_else(|| MixedLaw::new(sharing_of(numbers)), |(_, law)| Ok(law))?;
         last = Some((bits, law));
         Ok(law.at(product))
     })?;
@@ -75,7 +78,8 @@ pub fn mixed_contact(py: Python<'_>, columns: Columns<'_, 9>) -> PyResult<Mixed>
 /// The transition of a mixed contact, from the numbers of the law in the order of `SHARING`.
 #[pyfunction]
 pub fn mixed_transition(py: Python<'_>, columns: Columns<'_, 8>) -> PyResult<MixedTransition> {
-    let found = mapped(py, &columns, |numbers| Ok(MixedLaw::new(law(numbers))?.transition()))?;
+    let found =
+        mapped(py, &columns, |numbers| Ok(MixedLaw::new(sharing_of(numbers))?.transition()))?;
     let array = |of: fn(&mixed::Transition) -> f64| {
         found.of(py, |transition| transition.as_ref().map_or(f64::NAN, of))
     };
