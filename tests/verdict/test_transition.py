@@ -15,6 +15,7 @@ from hersey.charts.transition import transition_chart
 from hersey.document.film_part import film_document, shared_load
 from hersey.errors import InsufficientDataError
 from hersey.lubrication.film_temperature import film_temperature
+from hersey.units import rpm
 from hersey.verdict.transition import contact_transition
 from tests.conftest import ROOT
 
@@ -46,7 +47,8 @@ def test_the_contact_stands_beside_the_log() -> None:
     assert np.all((turn.low < turn.measured) & (turn.measured < turn.high))
     assert turn.ratio == pytest.approx(turn.speed / turn.measured)
     assert len(turn.summary().splitlines()) == 4
-    assert f"{turn.ratio[0]:.2g} of it" in turn.notes()[0]
+    assert f"at {rpm(turn.speed[0]):.3g} rpm, by the log at {rpm(turn.measured[0]):.3g}" in turn.notes()[0]
+    assert f"{turn.ratio[0]:.2f} times that" in turn.notes()[0]
 
 
 def test_the_interval_of_the_log_is_that_of_its_draws() -> None:

@@ -21,8 +21,8 @@ _LOOKS = {
     "falling torque": (ORANGE, "square"),
     "all speeds": ("#555", "diamond"),
 }
-#: The axis shows at least these exponents; a regime without a lower end is shaded down to the last one.
-_LEAST, _GREATEST, _OPEN = -1.3, 0.1, -1.4
+#: The axis shows at least these exponents.
+_LEAST, _GREATEST = -1.3, 0.1
 
 
 def regime_chart(result: Regime) -> Chart:
@@ -59,9 +59,9 @@ def exponent_chart(rows: list[Row], regimes: Sequence[tuple[str, float | None, f
 def _regimes(
     regimes: Sequence[tuple[str, float | None, float]], scale: alt.Scale, low: float, high: float
 ) -> list[alt.Chart]:
-    """Ranges shaded, single exponents dashed, all named on the right."""
+    """Ranges shaded (an open one down to the axis), single exponents dashed, all named on the right."""
     named: list[Row] = [
-        {"name": name, "low": _OPEN if least is None or math.isinf(least) else least, "high": greatest}
+        {"name": name, "low": low if least is None or math.isinf(least) else least, "high": greatest}
         for name, least, greatest in regimes
     ]
     y = alt.Y("low:Q", scale=scale)

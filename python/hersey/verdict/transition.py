@@ -12,7 +12,7 @@ from hersey.damping.surface import DampingSurface
 from hersey.lubrication.film_temperature import film_temperature
 from hersey.lubrication.mixed import MixedContact
 from hersey.result import json_record
-from hersey.units import celsius
+from hersey.units import celsius, rpm
 
 
 @dataclass(frozen=True)
@@ -41,12 +41,12 @@ class ContactTransition:
     def summary(self) -> str:
         """Return a row for each temperature."""
         lines = [
-            "transition speed (least torque), rad/s, and d ln speed/d ln of what is stated (viscosity: -1)",
+            "transition speed (least torque), rpm, and d ln speed/d ln of what is stated (viscosity: -1)",
             f"  {'degC':>6s} {'contact':>9s} {'measured':>26s} {'ratio':>7s} {'roughness':>10s} "
             f"{'boundary friction':>18s}",
         ]
         for i, kelvin in enumerate(self.temperature.tolist()):
-            speed = "nowhere" if np.isnan(self.speed[i]) else f"{self.speed[i]:.3g}"
+            speed = "nowhere" if np.isnan(self.speed[i]) else f"{rpm(self.speed[i]):.3g}"
             seen, ratio = self._seen(i), self.ratio[i]
             shown = "" if np.isnan(ratio) else f"{ratio:.3g}"
             shifts = (self.by_roughness[i], self.by_boundary[i])
@@ -65,9 +65,9 @@ class ContactTransition:
             if np.isnan(self.speed[i]):
                 out.append(f"By the contact as stated drag falls nowhere {at}: there is no transition.")
                 continue
-            text = f"By the contact as stated drag is least {at} at {self.speed[i]:.3g} rad/s"
+            text = f"By the contact as stated drag is least {at} at {rpm(self.speed[i]):.3g} rpm"
             if not np.isnan(self.measured[i]):
-                text += f", the log has it at {self._seen(i)}: {self.ratio[i]:.2g} of it"
+                text += f", by the log at {self._seen(i)}: the contact has {self.ratio[i]:.2f} times that"
             out.append(
                 f"{text}. It goes as roughness to the power {self.by_roughness[i]:.2f}, as boundary friction "
                 f"to {self.by_boundary[i]:.2f}, as the inverse of viscosity."
@@ -82,9 +82,8 @@ class ContactTransition:
         if np.isnan(self.measured[i]):
             return "none shown"
         told = np.isfinite(self.low[i]) and np.isfinite(self.high[i])
-        return f"{self.measured[i]:.3g}" + (
-            f" [{self.low[i]:.3g}, {self.high[i]:.3g}]" if told else " (not told)"
-        )
+        value, low, high = (rpm(x[i]) for x in (self.measured, self.low, self.high))
+        return f"{value:.3g}" + (f" [{low:.3g}, {high:.3g}]" if told else " (not told)")
 
 
 def contact_transition(
