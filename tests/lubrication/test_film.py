@@ -87,7 +87,7 @@ def test_an_example_lubricant_and_a_hardness(tmp_path: Path) -> None:
     assert machine.contact.modulus == pytest.approx(1.69e6, rel=0.01)
 
 
-def test_the_measured_film_is_eta_a_over_b(
+def test_the_measured_film_is_eta_a_over_b_with_rolling_as_predicted(
     points: hersey.SteadyPoints, surface: DampingSurface, machine: Machine
 ) -> None:
     assert machine.contact is not None
@@ -98,7 +98,10 @@ def test_the_measured_film_is_eta_a_over_b(
     damping = points.column("torque")[i] / machine.contact.roll_radius / belt
     area = float(hersey.nip_width(machine.contact)) * machine.contact.length
     eta = machine.lubricant.viscosity(points.column("temperature")[i])
-    assert measured.thickness[i] == pytest.approx(eta * area / damping)
+    film = measured.predicted
+    share = film.shear[i] / film.shear_factor[i] / film.torque[i]  # of plain shear
+    assert 0.5 < share < 0.98
+    assert measured.thickness[i] == pytest.approx(eta * area / damping / share)
     assert (measured.low < measured.thickness).all()
     assert (measured.thickness < measured.high).all()
     assert measured.systematic == pytest.approx(np.exp(np.hypot(np.log(1.2), np.log(1.1))))
@@ -125,9 +128,7 @@ def test_what_the_film_made_is_found_again(points: hersey.SteadyPoints, machine:
     measured = measured_film(synthetic, refit, machine.contact, machine.lubricant)
     assert measured.calibration.value == pytest.approx(1.0, rel=1e-9)
     film = measured.predicted
-    # eta A/B takes all of the drag for plain shear
-    plain = film.shear / film.shear_factor
-    assert measured.thickness == pytest.approx(film.central * film.factor * plain / film.torque)
+    assert measured.thickness == pytest.approx(film.central * film.factor, rel=1e-9)
     says = verdict(measured, refit, machine.contact, machine.lubricant, hersey.regime(synthetic, refit))
     (soft,) = (p for p in says.predictions if p.name == "soft EHL")
     assert soft.low < says.exponent.value < soft.high

@@ -1,8 +1,10 @@
 """From measurement to film: how thick, how loaded, and which regime the exponents speak for.
 
-The measured film is delta = eta A/B with B = torque/(omega R^2) the translational damping and A the area of
-the nip. The Hersey number is eta U/p (m) with p = N/(nip L), the Sommerfeld number eta U L/N (no unit), both
-with the sliding speed U = omega R; the friction coefficient is torque/(R N).
+The measured film is delta = eta A/B, with B = torque/(omega R^2) the translational damping and A the area of
+the nip, times what inlet, pressure and thinning make of it: predicted torque over that of plain shear of the
+predicted film. A dwell with the predicted torque therefore has the predicted film. The Hersey number is
+eta U/p (m) with p = N/(nip L), the Sommerfeld number eta U L/N (no unit), both with the sliding speed
+U = omega R; the friction coefficient is torque/(R N).
 """
 
 from __future__ import annotations
@@ -142,7 +144,7 @@ def measured_film(
     expected = film.torque
     radius, nip = contact.roll_radius, film.nip
     load, width = _loaded(points, contact, nip.width)
-    thickness = film.viscosity * width * contact.length * speed * radius**2 / torque
+    thickness = film.central * film.factor * (expected / torque) * (width / nip.width)
     variance = (points.column("torque_error") / torque) ** 2 + surface.statistics.scatter**2
     variance += np.sum(points.zero_errors**2, axis=1) / torque**2
     variance += shared_variance(surface.statistics.shared)
@@ -365,9 +367,8 @@ def _dwell_lines(measured: MeasuredFilm) -> list[str]:
             f"{1e6 * film.central[i] * film.factor[i]:10.3g} {measured.friction[i]:9.3g} "
             f"{1e6 * measured.hersey_number[i]:11.3g} {measured.sommerfeld_number[i]:10.3g}"
         )
-    lines.append(
-        "  measured film eta A/B, A the nip; U sliding speed, p mean pressure of the nip; all dwells: --json"
-    )
+    lines.append("  measured film eta A/B, A the nip, rolling as predicted; U sliding speed, p mean pressure")
+    lines.append("  of the nip; all dwells: --json")
     return lines
 
 
