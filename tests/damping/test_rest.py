@@ -18,6 +18,7 @@ from hersey.damping.candidates.fitting import fit_law
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.estimate import quantile
+from hersey.damping.rest import with_rest
 from hersey.document.assembly import fit_document
 from hersey.document.saved_fit import read_fit
 from hersey.errors import InsufficientDataError, ParameterError, WrongKindError
@@ -259,6 +260,17 @@ def test_at_the_belt_it_acts_at_the_radius_of_the_roll() -> None:
     assert at["rest_force"] == pytest.approx(0.9 * CONSTANT / 0.015)
     assert at["rest_damping"] == pytest.approx(0.9 * PER_SPEED / 0.015**2)
     assert at["rest_temperature_slope"] == pytest.approx(SLOPE / 0.9)
+
+
+def test_beside_a_drag_table_it_is_that_of_one_temperature() -> None:
+    table = hersey.DragTable((0.01, 0.1, 1.0), (80.0, 50.0, 70.0), stick_speed=0.01)
+    drag = with_rest(table, stated(), 0.015, AT + 50.0)
+    added = 0.9 * (CONSTANT / 0.015 + PER_SPEED / 0.015**2 * 0.1)
+    assert drag.force(0.1) == pytest.approx(50.0 + added)
+    with pytest.raises(ParameterError, match="a drag table holds at one: give temperature"):
+        with_rest(table, stated(), 0.015, None)
+    even = RestOfDrive.stated(constant=CONSTANT, per_speed=PER_SPEED, uncertainty=0.1)
+    assert with_rest(table, even, 0.015, None).rest_force == pytest.approx(CONSTANT / 0.015)
 
 
 def test_motion_map_and_limits_count_film_and_rest() -> None:

@@ -14,20 +14,8 @@ from scipy.optimize import brentq
 import hersey
 from hersey import _core
 from hersey.errors import ParameterError
-from hersey.lubrication.lubricant import EXAMPLES
 from hersey.lubrication.mixed import Asperities, BoundaryFriction, MixedContact, mixed_contact, mixed_torque
-
-ROLL = hersey.Contact(
-    roll_radius=15e-3,
-    rubber_thickness=3.5e-3,
-    modulus=0.6e6,
-    poisson_ratio=0.48,
-    length=0.22,
-    load=300.0,
-    roughness=0.4e-6,
-)
-OIL = EXAMPLES["cylinder oil"]
-WARM = 373.15
+from tests.lubrication.roll import OIL, ROLL, WARM
 
 
 def mixed(friction: Any = 0.1, **changed: Any) -> MixedContact:

@@ -11,22 +11,9 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
 import hersey
-from hersey.lubrication.lubricant import EXAMPLES
+from tests.lubrication.roll import DRAG, MIXED, OIL
 
-_ROLL = hersey.Contact(
-    roll_radius=15e-3,
-    rubber_thickness=3.5e-3,
-    modulus=0.6e6,
-    poisson_ratio=0.48,
-    length=0.22,
-    load=300.0,
-    roughness=0.4e-6,
-)
-_MIXED = hersey.mixed_contact(
-    _ROLL, EXAMPLES["cylinder oil"], hersey.Asperities(modulus=50e9), 0.1, speed=4.0, temperature=373.15
-)
 _TRAIN = hersey.Drivetrain(11e3, 11.0)
-_DRAG = hersey.MixedDrag(_MIXED, temperature=373.15, stick_speed=3e-4, closure="stiction")
 
 
 def _share(lam: float, stiffness: float) -> float:
@@ -38,7 +25,7 @@ def _share(lam: float, stiffness: float) -> float:
 
 def _force(x: float) -> float:
     """Force at a product of viscosity and speed, from the equations of the law one by one."""
-    law, free = _MIXED, (x / _MIXED.reference) ** _MIXED.film_exponent
+    law, free = MIXED, (x / MIXED.reference) ** MIXED.film_exponent
 
     def excess(lam: float) -> float:
         return float(lam * (1 - _share(lam, law.stiffness)) ** law.load_exponent - free)
@@ -55,22 +42,22 @@ def _force(x: float) -> float:
 @pytest.fixture(scope="module")
 def force() -> CubicSpline:
     """Drag against the logarithm of belt speed at 100 degC, through the equations of the law."""
-    eta = float(EXAMPLES["cylinder oil"].viscosity(373.15))
+    eta = float(OIL.viscosity(373.15))
     speeds = np.geomspace(2e-4, 0.6, 400)
     return CubicSpline(np.log(speeds), [_force(eta * v) for v in speeds])
 
 
 def test_the_force_is_that_of_the_equations(force: CubicSpline) -> None:
     speeds = np.geomspace(4e-4, 0.5, 23)
-    assert _DRAG.force(speeds, 373.15) == pytest.approx(force(np.log(speeds)), rel=1e-6)
+    assert DRAG.force(speeds, 373.15) == pytest.approx(force(np.log(speeds)), rel=1e-6)
 
 
 def test_the_transition_is_the_least_force(force: CubicSpline) -> None:
-    transition = _DRAG.transition_speed(373.15)
+    transition = DRAG.transition_speed(373.15)
     assert float(force(np.log(transition), 1)) == pytest.approx(
         0.0, abs=1e-4 * float(force(np.log(transition)))
     )
-    assert transition == pytest.approx(float(_MIXED.transition(373.15).belt_speed), rel=1e-9)
+    assert transition == pytest.approx(float(MIXED.transition(373.15).belt_speed), rel=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -78,7 +65,7 @@ def test_the_transition_is_the_least_force(force: CubicSpline) -> None:
 )
 def test_motion(force: CubicSpline, drive: float, static: float | None, rest: float) -> None:
     """Stiction by hand: held up to A, slipping on A exp(-k u/v_s) and the law, dead at the stick speed."""
-    drag = replace(_DRAG, static_force=static, rest_force=rest)
+    drag = replace(DRAG, static_force=static, rest_force=rest)
     sliding = float(force(np.log(3e-4)))
     most = np.e * sliding if static is None else static
     decay = 3e-4 / np.log(most / sliding)
@@ -118,7 +105,7 @@ def test_motion(force: CubicSpline, drive: float, static: float | None, rest: fl
 @pytest.mark.parametrize("closure", ["retained", "stiction"])
 def test_a_course_of_temperature_keeps_the_energy_and_agrees_with_another_integrator(closure: str) -> None:
     friction = hersey.BoundaryFriction(0.1, slope=-2e-4, temperature=373.15)
-    drag = replace(_DRAG, contact=replace(_MIXED, friction=friction), closure=closure, rest_force=2.0)
+    drag = replace(DRAG, contact=replace(MIXED, friction=friction), closure=closure, rest_force=2.0)
     course = hersey.Schedule([0.0, 2.0], [373.15, 393.15])
     run = hersey.simulate(_TRAIN, drag, drive_speed=0.02, temperature=course, duration=2.0, check=True)
     assert abs(run.energy.residual) < 1e-8
@@ -129,6 +116,6 @@ def test_a_course_of_temperature_keeps_the_energy_and_agrees_with_another_integr
 
 
 def test_a_drag_that_never_falls_is_refused() -> None:
-    smooth = replace(_MIXED, friction=hersey.BoundaryFriction(1e-6))
+    smooth = replace(MIXED, friction=hersey.BoundaryFriction(1e-6))
     with pytest.raises(hersey.HerseyError, match="rises at all speeds"):
-        replace(_DRAG, contact=smooth)
+        replace(DRAG, contact=smooth)

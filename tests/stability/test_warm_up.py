@@ -10,6 +10,7 @@ import pytest
 import hersey
 from hersey.errors import HerseyError, ParameterError
 from hersey.stability.warm_up import _ramped
+from tests.lubrication.roll import DRAG as CONTACT_DRAG
 
 _TRAIN = hersey.Drivetrain(11e3, 11.0)
 _DRAG = hersey.Drag(
@@ -149,27 +150,12 @@ def test_a_transition_that_passes_the_target_is_warned_of() -> None:
 
 def test_a_mixed_contact_warms_up_and_its_belt_is_watched() -> None:
     """Film drag keeps the limit; breaking the contact away takes more, and the belt goes on sticking."""
-    from hersey.lubrication.lubricant import EXAMPLES
-
-    roll = hersey.Contact(
-        roll_radius=15e-3,
-        rubber_thickness=3.5e-3,
-        modulus=0.6e6,
-        poisson_ratio=0.48,
-        length=0.22,
-        load=300.0,
-        roughness=0.4e-6,
-    )
-    contact = hersey.mixed_contact(
-        roll, EXAMPLES["cylinder oil"], hersey.Asperities(modulus=50e9), 0.1, speed=4.0, temperature=373.15
-    )
-    drag = hersey.MixedDrag(contact, temperature=373.15, stick_speed=3e-4, closure="stiction")
     warm = hersey.warm_up(
-        _TRAIN, drag, _HEAT, target_speed=0.1, force_limit=5.0, acceleration=0.5, longest=60.0
+        _TRAIN, CONTACT_DRAG, _HEAT, target_speed=0.1, force_limit=5.0, acceleration=0.5, longest=60.0
     )
-    sliding = warm.drive_speed > drag.transition_speed(310.0)
+    sliding = warm.drive_speed > CONTACT_DRAG.transition_speed(310.0)
     assert np.nanmax(warm.drag[sliding]) < 4.5 * 1.002
-    assert warm.drag_at_once == pytest.approx(float(drag.force(0.1, 300.0)), rel=1e-6)
+    assert warm.drag_at_once == pytest.approx(float(CONTACT_DRAG.force(0.1, 300.0)), rel=1e-6)
     assert warm.slides_from > warm.full_speed
     assert any("slides for good only" in warning for warning in warm.warnings)
     assert warm.peak_force > 5.0

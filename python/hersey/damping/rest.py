@@ -8,7 +8,7 @@ at the roll, against the rotation. It is stated, or fitted to a log that was rec
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from hersey.arrays import FloatArray
 from hersey.damping.estimate import Estimate, estimate, quantile
 from hersey.errors import InsufficientDataError, ParameterError
-from hersey.motion.drag import AnyDrag
+from hersey.motion.drag import AnyDrag, DragTable
 from hersey.result import Result, json_record, table_of
 from hersey.units import celsius, rpm, takes_si
 
@@ -248,12 +248,19 @@ class RestOfDrive(Result):
 
 
 def with_rest(film: AnyLaw, rest: RestOfDrive, roll_radius: float, temperature: float | None) -> AnyLaw:
-    """Return the drag of film and rest together, so far as a drag law holds the rest."""
-    held = {field.name for field in fields(film)}  # type: ignore[arg-type]
+    """Return the drag of film and rest together, the rest that of a temperature (K).
+
+    Raises
+    ------
+    ParameterError
+        If the rest changes with temperature, none is given, and the film's drag is a table, which does not.
+    """
     at_the_belt: dict[str, Any] = rest.at_the_belt(roll_radius, temperature)
-    return replace(  # type: ignore[type-var]
-        film, **{name: value for name, value in at_the_belt.items() if name in held}
-    )
+    if isinstance(film, DragTable) and at_the_belt.pop("rest_temperature_slope") and temperature is None:
+        raise ParameterError(
+            "the rest of the drive changes with temperature, and a drag table holds at one: give temperature"
+        )
+    return replace(film, **at_the_belt)  # type: ignore[type-var]
 
 
 def estimates_of(

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 
 import numpy as np
 
 from hersey import _core
 from hersey.lubrication.mixed import MixedContact
-from hersey.motion.drag import AnyDrag
+from hersey.motion.drag import KINDS, BesideShape
 from hersey.units import fields_in_si, takes_si
 
 
 @dataclass(frozen=True)
-class MixedDrag(AnyDrag):
+class MixedDrag(BesideShape):
     """Drag force against belt speed and temperature of a `MixedContact`; it falls and rises by itself.
 
     The law is smooth; its transition is the speed of least drag. With temperature its speeds, the stick
@@ -41,21 +41,12 @@ class MixedDrag(AnyDrag):
     contact: MixedContact
     temperature: float
     stick_speed: float
-    closure: str = "retained"
-    bristle_stiffness: float | None = None
-    bristle_damping: float | None = None
-    static_force: float | None = None
-    rest_force: float = 0.0
-    rest_damping: float = 0.0
+    _: KW_ONLY
     rest_temperature_slope: float = 0.0
 
     def __post_init__(self) -> None:
         """Bring the values to SI if they come with units, and let the core check them."""
-        forces = dict.fromkeys(("static_force", "rest_force"), "force")
-        speeds = {"stick_speed": "belt speed", "temperature": "temperature"}
-        stiff = {"bristle_stiffness": "stiffness"}
-        damping = dict.fromkeys(("bristle_damping", "rest_damping"), "translational damping")
-        fields_in_si(self, {**forces, **speeds, **stiff, **damping})
+        fields_in_si(self, {"temperature": "temperature", **KINDS})
         self.law()
 
     @property
@@ -73,11 +64,9 @@ class MixedDrag(AnyDrag):
         lubricant, friction = self.contact.lubricant, self.contact.friction
         kelvin = np.asarray(self.temperature, dtype=float)
         numbers = [float(number) for number in self.contact.numbers(kelvin)]
-        static = None if self.static_force is None else float(self.static_force)
-        closure = (self.closure, self.bristle_stiffness, self.bristle_damping)
         viscosity = float(lubricant.viscosity(kelvin))
-        law = _core.Law.mixed(numbers, viscosity, float(self.stick_speed), closure)
-        return law.with_common((static, float(self.rest_force), float(self.rest_damping))).with_viscosity_law(
+        law = _core.Law.mixed(numbers, viscosity, float(self.stick_speed), self._closure)
+        return law.with_common(self._beside).with_viscosity_law(
             float(self.temperature),
             lubricant.law,
             float(friction.slope / friction.at(kelvin)),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import KW_ONLY, dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,8 +16,8 @@ from hersey.units import fields_in_si, takes_si
 CLOSURES = ("retained", "stiction", "stribeck", "lugre")
 #: What every law takes besides its shape.
 BESIDE = ("static_force", "rest_force", "rest_damping")
-#: Kinds of what a drag law takes.
-_KINDS = {
+#: Kinds of what every drag law takes.
+KINDS = {
     "stick_speed": "belt speed",
     "static_force": "force",
     "rest_force": "force",
@@ -80,8 +80,31 @@ class AnyDrag:
         return law.force(np.ascontiguousarray(speeds.ravel())).reshape(speeds.shape)
 
 
+@dataclass(frozen=True, kw_only=True)
+class BesideShape(AnyDrag):
+    """What drag laws take besides their shape: near rest, and the rest of the drive; all as of `Drag`."""
+
+    closure: str = "retained"
+    bristle_stiffness: float | None = None
+    bristle_damping: float | None = None
+    static_force: float | None = None
+    rest_force: float = 0.0
+    rest_damping: float = 0.0
+
+    @property
+    def _closure(self) -> tuple[str, float | None, float | None]:
+        """What the belt does near rest, as the core takes it."""
+        return self.closure, self.bristle_stiffness, self.bristle_damping
+
+    @property
+    def _beside(self) -> tuple[float | None, float, float]:
+        """`BESIDE`, as the core takes it."""
+        static = None if self.static_force is None else float(self.static_force)
+        return static, float(self.rest_force), float(self.rest_damping)
+
+
 @dataclass(frozen=True)
-class Drag(AnyDrag):
+class Drag(BesideShape):
     """Drag force against belt speed (Eqs. 17-30), and temperature if a ``reference_temperature`` is given.
 
     ``F = F_t (v/v_t)^(1+n)`` with n the damping exponent of the branch: ``ehl_exponent`` above the
@@ -114,16 +137,11 @@ class Drag(AnyDrag):
     ehl_exponent: float
     mixed_exponent: float
     stick_speed: float
-    closure: str = "retained"
-    bristle_stiffness: float | None = None
-    bristle_damping: float | None = None
+    _: KW_ONLY
     reference_temperature: float | None = None
     force_temperature_exponent: float = 0.0
     speed_temperature_exponent: float = 0.0
     temperature_zero: float = 0.0
-    static_force: float | None = None
-    rest_force: float = 0.0
-    rest_damping: float = 0.0
     rest_temperature_slope: float = 0.0
     static_growth: float = 0.0
     static_growth_time: float | None = None
@@ -132,7 +150,7 @@ class Drag(AnyDrag):
         """Bring the values to SI if they come with units, and let the core check them."""
         temperatures = dict.fromkeys(("reference_temperature", "temperature_zero"), "temperature")
         kinds = {"transition_force": "force", "transition_speed": "belt speed", "static_growth_time": "time"}
-        fields_in_si(self, {**kinds, **_KINDS, **temperatures})
+        fields_in_si(self, {**kinds, **KINDS, **temperatures})
         if self.static_growth and (self.closure != "stiction" or self.static_growth_time is None):
             needed = "static_growth_time" if self.closure == "stiction" else "closure 'stiction'"
             raise ParameterError(f"static_growth is {self.static_growth:g}: it needs {needed}")
@@ -184,8 +202,8 @@ class Drag(AnyDrag):
             float(self.ehl_exponent),
             float(self.mixed_exponent),
             float(self.stick_speed),
-            (self.closure, self.bristle_stiffness, self.bristle_damping),
-        ).with_common(_common(self))
+            self._closure,
+        ).with_common(self._beside)
         if self.static_growth and self.static_growth_time is not None:
             law = law.with_strengthening(float(self.static_growth), float(self.static_growth_time))
         if self.reference_temperature is None:
@@ -210,12 +228,11 @@ class Drag(AnyDrag):
             raise ParameterError("static_growth is of one belt: a sweep of many has no such parameter")
         if self.static_force is None and not self.rest_force and not self.rest_damping:
             return None
-        force, rest, damping = _common(self)
-        return [np.full(sets, np.nan if value is None else value) for value in (force, rest, damping)]
+        return [np.full(sets, np.nan if value is None else value) for value in self._beside]
 
 
 @dataclass(frozen=True)
-class DragTable(AnyDrag):
+class DragTable(BesideShape):
     """Drag through measured points: straight lines between them in logarithmic scales, monotone therefore.
 
     Beyond the points the outer lines go on; the transition is the point of least force.
@@ -235,28 +252,17 @@ class DragTable(AnyDrag):
     speeds: tuple[float, ...]
     forces: tuple[float, ...]
     stick_speed: float
-    closure: str = "retained"
-    bristle_stiffness: float | None = None
-    bristle_damping: float | None = None
-    static_force: float | None = None
-    rest_force: float = 0.0
-    rest_damping: float = 0.0
 
     def __post_init__(self) -> None:
         """Bring the values to SI if they come with units, and let the core check them."""
-        fields_in_si(self, {"speeds": "belt speed", "forces": "force", **_KINDS})
+        fields_in_si(self, {"speeds": "belt speed", "forces": "force", **KINDS})
         object.__setattr__(self, "speeds", tuple(float(v) for v in self.speeds))
         object.__setattr__(self, "forces", tuple(float(f) for f in self.forces))
         self.law()
 
     def law(self) -> _core.Law:
         """Return the law as the core holds it."""
-        closure = (self.closure, self.bristle_stiffness, self.bristle_damping)
-        law = _core.Law.tabulated(list(self.speeds), list(self.forces), float(self.stick_speed), closure)
-        return law.with_common(_common(self))
-
-
-def _common(drag: Drag | DragTable) -> tuple[float | None, float, float]:
-    """Return what every law of the core takes besides its shape."""
-    static = None if drag.static_force is None else float(drag.static_force)
-    return static, float(drag.rest_force), float(drag.rest_damping)
+        law = _core.Law.tabulated(
+            list(self.speeds), list(self.forces), float(self.stick_speed), self._closure
+        )
+        return law.with_common(self._beside)

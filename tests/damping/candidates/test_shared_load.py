@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import hersey
 from hersey.damping.candidates import Candidate, compare_models
 from hersey.damping.candidates.branched import HELD, SHARED
 from hersey.damping.candidates.candidate import contact_candidates
@@ -16,21 +15,12 @@ from hersey.damping.candidates.observations import Inputs, Observations
 from hersey.damping.candidates.shared_load import SharedLoadLaw
 from hersey.damping.candidates.thermal import ARRHENIUS
 from hersey.errors import InsufficientDataError, ParameterError
-from hersey.lubrication.lubricant import EXAMPLES
 from hersey.lubrication.mixed import Asperities, BoundaryFriction, mixed_contact
+from tests.lubrication.roll import OIL, ROLL
 
-ROLL = hersey.Contact(
-    roll_radius=15e-3,
-    rubber_thickness=3.5e-3,
-    modulus=0.6e6,
-    poisson_ratio=0.48,
-    length=0.22,
-    load=300.0,
-    roughness=0.4e-6,
-)
 CONTACT = mixed_contact(
     ROLL,
-    EXAMPLES["cylinder oil"],
+    OIL,
     Asperities(modulus="50 GPa"),
     BoundaryFriction(0.1, slope=-1e-4, temperature="100 degC"),
     speed=4.0,
