@@ -1,21 +1,23 @@
 """From a log to the law of its damping.
 
-==========  =========================================================
-dwells      dwells, reduced to steady points with honest errors
-estimate    a number with its uncertainty
-rest        the rest of the drive: what it takes besides the film
-smoothing   a smooth curve through dwells, and where it is least
-scaled      dwells of all temperatures on one curve
-gradual     a gradual bend: its minimum, and what motion is given of it
-branches    two branches of the law: whether, and where torque is least
-shown       whether the dwells show a transition, in each direction
-surface     the damping surface, and what can be asked of it
-fit         fitting it: the paper's candidate among all
-candidates  every law fitted to the same dwells, one chosen
-no_load     the rest of the drive from a log without the film
-rising      the rising branch by itself: whether one exponent holds
-systematic  what errors of the sensors do to a fit
-compare     two logs against each other
-design      which dwells to record next
-==========  =========================================================
+=============  =========================================================
+dwells         dwells, reduced to steady points with honest errors
+estimate       a number with its uncertainty
+rest           the rest of the drive: what it takes besides the film
+smoothing      a smooth curve through dwells, and where it is least
+scaled         dwells of all temperatures on one curve
+gradual        a gradual bend: its minimum, and what motion is given of it
+branches       two branches of the law: whether, and where torque is least
+shown          whether the dwells show a transition, in each direction
+fitted_law     a fitted law: its numbers, the torque it gives, its limits
+surface        the same with its transition, and the drag on a belt
+surface_words  what a surface says of itself: summary, record, table
+fit            fitting it: the paper's candidate among all
+candidates     every law fitted to the same dwells, one chosen
+no_load        the rest of the drive from a log without the film
+rising         the rising branch by itself: whether one exponent holds
+systematic     what errors of the sensors do to a fit
+compare        two logs against each other
+design         which dwells to record next
+=============  =========================================================
 """

@@ -17,9 +17,10 @@ from hersey.damping.candidates.observations import Observations
 from hersey.damping.candidates.thermal import scaled_temperature
 from hersey.damping.dwells import SteadyPoints, groups_of_temperature
 from hersey.damping.estimate import Estimate, estimate
+from hersey.damping.fitted_law import SCALES, FitStatistics
 from hersey.damping.scaled import law_of
 from hersey.damping.shown import why_not_shown
-from hersey.damping.surface import SCALES, DampingSurface, FitStatistics
+from hersey.damping.surface import DampingSurface
 from hersey.damping.systematic import sensor_shifts
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.units import celsius

@@ -13,7 +13,8 @@ from hersey.damping.candidates.lack_of_fit import SPEEDS_OF_CURVATURE, LackOfFit
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.candidates.thermal import Thermal
 from hersey.damping.dwells import SteadyPoints, distinct_speeds
-from hersey.damping.surface import SCALES, DampingSurface
+from hersey.damping.fitted_law import SCALES
+from hersey.damping.surface import DampingSurface
 
 
 @dataclass(frozen=True)

@@ -12,9 +12,10 @@ from hersey.damping.branches import Transition
 from hersey.damping.candidates.branched import transition_exponent
 from hersey.damping.candidates.shared_errors import Freedom, SharedScatter
 from hersey.damping.estimate import Estimate
+from hersey.damping.fitted_law import FitStatistics
 from hersey.damping.gradual import Closure
 from hersey.damping.rest import RestOfDrive
-from hersey.damping.surface import DampingSurface, FitStatistics
+from hersey.damping.surface import DampingSurface
 from hersey.document.parts import ClosurePart, FitPart, InputFile, Interval, Point, RestPart, TransitionPart
 from hersey.errors import ParameterError
 from hersey.files.text import read_text

@@ -1,0 +1,190 @@
+"""A fitted law B = a T^b w^c as it came out of a fit: its numbers, the torque it gives, and its limits."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from hersey import _core
+from hersey.arrays import FloatArray
+from hersey.damping.branches import Transition
+from hersey.damping.candidates.branched import HELD, ONE, Law
+from hersey.damping.candidates.intervals import Band, band_of, of_one_dwell
+from hersey.damping.candidates.observations import Inputs
+from hersey.damping.candidates.shared_errors import Freedom, SharedScatter
+from hersey.damping.candidates.thermal import CELSIUS, KELVIN, Thermal
+from hersey.damping.estimate import Estimate
+from hersey.damping.rest import RestOfDrive
+from hersey.errors import ExtrapolationWarning, ParameterError, UntoldWarning
+from hersey.result import Result
+from hersey.units import takes_si
+
+#: Law of temperature by the scale of T in T^b.
+SCALES = {"degC": CELSIUS, "K": KELVIN}
+
+
+@dataclass(frozen=True)
+class FitStatistics:
+    """How well the law describes the points."""
+
+    points: int
+    variables: int
+    chi_square: float
+    reduced_chi_square: float
+    scatter: float  #: relative, between dwells, beyond the standard errors of their means
+    shared: tuple[SharedScatter, ...]  #: of visits to a temperature and of runs
+    dwell_error: float  #: relative, median of the errors of the dwells
+    aicc: float
+    r_squared_damping: float
+    r_squared_torque: float
+
+
+@dataclass(frozen=True, repr=False)
+class FittedLaw(Result):
+    """A fitted law B = a T^b w^c, and what it gives; T in ``temperature_scale``, w in rad/s, B in N m s/rad.
+
+    ``b`` is None for isothermal data. ``covariance`` is that of ``variables``, the numbers fitted, about
+    ``reference_speed`` (rad/s) and ``reference_temperature`` (K). ``torque_space`` holds a, b, c
+    of the fit to torque. ``speed_range`` and ``temperature_range`` (SI) bound the data. Where a ``rest`` of
+    the drive was taken off, all of this is of the film alone; `total_torque` is what the log shows.
+    """
+
+    a: Estimate
+    b: Estimate | None
+    c: Estimate
+    transition: Transition | None
+    temperature_scale: str
+    reference_speed: float
+    reference_temperature: float | None
+    variables: tuple[str, ...]
+    values: FloatArray
+    covariance: FloatArray
+    freedoms: Freedom
+    torque_space: dict[str, Estimate]
+    statistics: FitStatistics
+    speed_range: tuple[float, float]
+    temperature_range: tuple[float, float] | None
+    residuals: FloatArray  #: ln(measured/fitted), shape (points,)
+    rejected_transition: str  #: why a second branch is not announced, empty if it is
+    data_sha256: tuple[str, ...]
+    sensors: str = ""  #: their errors in words, which the systematic parts stand for
+    rest: RestOfDrive | None = None  #: taken off the torque before the fit
+    version: str = field(default=_core.VERSION)
+
+    @takes_si(speed="speed", temperature="temperature")
+    def damping(self, speed: ArrayLike, temperature: ArrayLike | None = None) -> FloatArray:
+        """Return damping in N m s/rad at speeds (rad/s) and temperatures (K), broadcast together.
+
+        Warns with `ExtrapolationWarning` outside the range of the data. Around a gradual bend it is that of
+        the trend lines on either side, as are `torque` and `predict`: they describe each branch, but meet
+        below the torque measured, so that `drag` has the torque of the dwells at the transition instead.
+        """
+        speeds = np.abs(np.asarray(speed, dtype=float))
+        self._warn_outside("speed", speeds, self.speed_range)
+        if self.b is not None and temperature is None:
+            raise ParameterError("this law depends on temperature: give it one, in K")
+        kelvin = None
+        if self.b is not None and temperature is not None:
+            kelvin = np.asarray(temperature, dtype=float)
+            self._warn_outside("temperature", kelvin, self.temperature_range)
+            speeds, kelvin = np.broadcast_arrays(speeds, kelvin)
+        inputs = self._inputs(speeds, kelvin)
+        return np.asarray(np.exp(self._law.predict(self._law_values, inputs)).reshape(speeds.shape) / speeds)
+
+    @cached_property
+    def _law(self) -> Law:
+        thermal = None
+        if self.reference_temperature is not None:
+            thermal = Thermal(SCALES[self.temperature_scale], self.reference_temperature)
+        return Law(thermal, HELD if self.transition else ONE)
+
+    @cached_property
+    def _law_values(self) -> FloatArray:
+        """The values as the law has them."""
+        return self._with_torque(self.values)
+
+    def _with_torque(self, values: FloatArray) -> FloatArray:
+        """Values whose level is of torque, not of damping."""
+        return np.append(values[0] + np.log(self.reference_speed), values[1:])
+
+    def _inputs(self, speed: FloatArray, kelvin: FloatArray | None) -> Inputs:
+        z = np.log(speed.ravel() / self.reference_speed)
+        hot = None if kelvin is None else np.ravel(kelvin)
+        return Inputs(z, hot, np.zeros(z.size, dtype=np.intp))
+
+    @takes_si(speed="speed", temperature="temperature")
+    def torque(self, speed: ArrayLike, temperature: ArrayLike | None = None) -> FloatArray:
+        """Return drag torque in N m, with the sign of the speed (rad/s); temperature in K."""
+        return np.asarray(self.damping(speed, temperature) * np.asarray(speed, dtype=float))
+
+    @takes_si(speed="speed", temperature="temperature")
+    def total_torque(self, speed: ArrayLike, temperature: ArrayLike | None = None) -> FloatArray:
+        """Return the torque of the log in N m: that of the film and, if one was taken off, of the rest."""
+        film = self.torque(speed, temperature)
+        return film if self.rest is None else film + self.rest.torque(speed, temperature)
+
+    @takes_si(speed="speed", temperature="temperature")
+    def predict(self, speed: Any, temperature: Any = None) -> Band:
+        """Return torque with its 95 % limits: of the law, and of one further dwell in a visit of its own.
+
+        Parameters
+        ----------
+        speed
+            rad/s, or strings such as ``"400 rpm"``, or pint quantities.
+        temperature
+            K, or strings such as ``"150 degC"``, or pint quantities; needed if the law depends on it. Both
+            broadcast together.
+
+        Examples
+        --------
+        >>> import hersey
+        >>> surface = hersey.fit(hersey.read("examples/bench.csv").steady(tare="standing"))
+        >>> surface.predict("25 rpm", "150 degC").torque.round(3)
+        array([0.2])
+        """
+        speeds = np.abs(np.asarray(speed, dtype=float))
+        self._warn_outside("speed", speeds, self.speed_range)
+        kelvin = None
+        if self.b is not None:
+            if temperature is None:
+                raise ParameterError("this law depends on temperature: give it one, in K")
+            kelvin = np.asarray(temperature, dtype=float)
+            self._warn_outside("temperature", kelvin, self.temperature_range)
+            speeds, kelvin = np.broadcast_arrays(speeds, kelvin)
+        of_points = self.statistics
+        dwell = of_one_dwell(of_points.scatter, of_points.dwell_error, of_points.shared)
+        inputs = self._inputs(speeds, kelvin)
+        self._warn_untold()
+        return band_of(self._law, self._law_values, self.freedoms, dwell, inputs)
+
+    def _warn_untold(self) -> None:
+        if self.b is not None and not self.b.told:
+            warnings.warn(UntoldWarning(), stacklevel=4)
+
+    @property
+    def freedom(self) -> int:
+        """Degrees of freedom of the fit."""
+        return self.statistics.points - self.statistics.variables
+
+    def coefficients(self) -> dict[str, Estimate]:
+        """Return a, b (where thermal) and c by name."""
+        return {"a": self.a, **({"b": self.b} if self.b else {}), "c": self.c}
+
+    def log_temperature(self, kelvin: FloatArray) -> FloatArray:
+        """Return the logarithm of temperatures (K) over the reference, in the scale of the law; any shape."""
+        assert self._law.thermal is not None
+        return self._law.thermal.shape(kelvin)[0]
+
+    def _warn_outside(self, name: str, values: FloatArray, limits: tuple[float, float] | None) -> None:
+        if limits and (np.any(values < limits[0] * 0.999) or np.any(values > limits[1] * 1.001)):
+            unit = "rad/s" if name == "speed" else "K"
+            warnings.warn(
+                f"{name} outside the measured {limits[0]:.4g} to {limits[1]:.4g} {unit}: extrapolated",
+                ExtrapolationWarning,
+                stacklevel=4,
+            )

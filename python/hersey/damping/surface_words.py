@@ -1,0 +1,167 @@
+"""What a fitted surface says of itself: its headline, its summary, its record and its table."""
+
+from __future__ import annotations
+
+import textwrap
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hersey.damping.candidates.shared_errors import SharedScatter
+from hersey.damping.estimate import Estimate
+from hersey.damping.fitted_law import FittedLaw
+from hersey.damping.rest import RestOfDrive
+from hersey.result import json_record
+from hersey.units import celsius
+
+if TYPE_CHECKING:
+    import polars as pl
+
+
+def headline_of(s: FittedLaw) -> str:
+    """Return the law and its exponents."""
+    law = "B = a T^b w^c" if s.b else "B = a w^c"
+    exponents = f"b = {s.b.value:.4g}, c = {s.c.value:.4g}" if s.b else f"c = {s.c.value:.4g}"
+    where = "no transition"
+    if s.transition is not None:
+        where = f"transition at {s.transition.speed.value:.4g} rad/s"
+    return f"{law}, {exponents}, {where}"
+
+
+def summary_of(s: FittedLaw) -> str:
+    """Return the fit as text, in the layout that users of lmfit know."""
+    law = "B = a T^b w^c" if s.b else "B = a w^c"
+    unit = f"T in {s.temperature_scale}, " if s.b else ""
+    st = s.statistics
+    lines = [
+        "[[Model]]",
+        f"    {law}    (B in N m s/rad, {unit}w in rad/s)",
+        "[[Fit Statistics]]",
+        "    # fitting method   = robust likelihood of ln torque, errors of torque, speed and temperature",
+        f"    # scatter added    = {st.scatter:.3%} between dwells, beyond the errors of their means",
+        *(f"    # scatter shared   = {_shared_text(shared)}" for shared in st.shared),
+        *_sensors_text(s.sensors),
+        *_rest_text(s.rest),
+        f"    # data points      = {st.points}",
+        f"    # variables        = {st.variables}",
+        f"    chi-square         = {st.chi_square:.6g}  (against the errors of the dwells alone)",
+        f"    reduced chi-square = {st.reduced_chi_square:.6g}  (1 if these errors explained it all)",
+        f"    Akaike (AICc)      = {st.aicc:.6g}",
+        f"    R-squared, torque  = {st.r_squared_torque:.6f}",
+        f"    R-squared, damping = {st.r_squared_damping:.6f}  (division by speed spreads the values:",
+        "                         nearer 1, yet it tells no more)",
+        "[[Variables]]                                        95 % interval",
+    ]
+    lines += [_variable("a", s.a), *([_variable("b", s.b)] if s.b else []), _variable("c", s.c)]
+    if s.transition:
+        at = (
+            ""
+            if s.reference_temperature is None
+            else f" at {_temperature_text(s.reference_temperature, s.temperature_scale)}"
+        )
+        lines += [
+            _variable("c_mixed", s.transition.mixed_exponent),
+            _variable("w_t", s.transition.speed) + f"  rad/s{at}",
+        ]
+        if s.b:
+            lines.append(f"    w_t varies as T^{s.transition.temperature_exponent:.3g} (fixed Hersey number)")
+        lines.append("    below w_t the exponent is c_mixed")
+        if s.transition.gradual:
+            lines.append("    the bend is gradual: w_t is where a smooth curve through the dwells is least,")
+            lines.append(f"    the trend lines on either side meet at {s.transition.meeting_speed:.4g} rad/s")
+    lines += ["[[Fitted in torque space, errors absolute]]"]
+    lines += [_variable(name, estimate) for name, estimate in s.torque_space.items()]
+    lines += ["[[Correlations]] (unreported are below 0.1)", *_correlations(s)]
+    return "\n".join(lines)
+
+
+def record_of(s: FittedLaw) -> dict[str, Any]:
+    """Return the fit in SI; T of the law in its scale."""
+    statistics = {name: value for name, value in vars(s.statistics).items() if name != "variables"}
+    return json_record(
+        {
+            "law": "B = a T^b w^c" if s.b else "B = a w^c",
+            "temperature_scale": s.temperature_scale,
+            "reference_speed": s.reference_speed,
+            "reference_temperature": s.reference_temperature,
+            "coefficients": s.coefficients(),
+            "torque_space": s.torque_space,
+            "transition": s.transition,
+            "no_transition": s.rejected_transition,
+            "variables": s.variables,
+            "values": s.values,
+            "covariance": s.covariance,
+            "variance_parts": s.freedoms.parts,
+            "variance_uncertainty": s.freedoms.uncertainty,
+            **statistics,
+            "speed_range": s.speed_range,
+            "temperature_range": s.temperature_range,
+            "sensors": s.sensors,
+            "rest": s.rest,
+            "summary": summary_of(s),
+        }
+    )
+
+
+def table_of(s: FittedLaw) -> pl.DataFrame:
+    """Return the coefficients with error and 95 % interval; T of the law in its scale, w in rad/s."""
+    import polars as pl
+
+    named = [(name, estimate, "") for name, estimate in s.coefficients().items()]
+    if s.transition is not None:
+        named.append(("c_mixed", s.transition.mixed_exponent, ""))
+        named.append(("w_t", s.transition.speed, "rad/s"))
+    named[0] = ("a", s.a, "N m s/rad at T = 1, w = 1")
+    rows = [(name, e.value, e.error, e.low, e.high, unit) for name, e, unit in named]
+    numbers = dict.fromkeys(("value", "error", "low", "high"), pl.Float64)
+    return pl.DataFrame(rows, schema={"name": pl.String, **numbers, "unit": pl.String}, orient="row")
+
+
+def _variable(name: str, e: Estimate) -> str:
+    if not e.told:
+        return f"    {name:8s} {e.value: .7g}, interval not told"
+    share = f"({abs(e.error / e.value):.2%})" if e.value else ""
+    ends = f"[{e.low:.6g}, {e.high:.6g}]"
+    sensors = f"  sensors +/- {e.systematic:.2g}" if e.systematic else ""
+    return f"    {name:8s} {e.value: .7g} +/- {e.error:.3g} {share:10s} {ends}{sensors}"
+
+
+def _sensors_text(sensors: str) -> list[str]:
+    """Errors of the sensors in lines that a page holds."""
+    return (
+        textwrap.wrap(f"    # sensors +/-      = {sensors}", 96, subsequent_indent=25 * " ")
+        if sensors
+        else []
+    )
+
+
+def _rest_text(rest: RestOfDrive | None) -> list[str]:
+    """What was taken off before the fit, in lines that a page holds."""
+    if rest is None:
+        return []
+    told = f"    # torque of film   = measured less the rest of the drive: {rest}"
+    return textwrap.wrap(told, 96, subsequent_indent=25 * " ")
+
+
+def _shared_text(shared: SharedScatter) -> str:
+    if not shared.told:
+        few = "too few, or the law takes up what they differ by"
+        return f"by the dwells of a {shared.name}: not told, they are {few}"
+    return f"{shared.deviation:.3%} by the dwells of a {shared.name} (p = {shared.p_value:.2g} for none)"
+
+
+def _correlations(s: FittedLaw) -> list[str]:
+    deviation = np.sqrt(np.diag(s.covariance))
+    pairs = []
+    for i, first in enumerate(s.variables):
+        for j in range(i + 1, len(s.variables)):
+            spread = deviation[i] * deviation[j]
+            r = float(s.covariance[i, j] / spread) if spread else 0.0
+            if abs(r) >= 0.1:
+                pairs.append((-abs(r), f"    C({first}, {s.variables[j]}) = {r:+.4f}"))
+    return [text for _, text in sorted(pairs)]
+
+
+def _temperature_text(kelvin: float, scale: str) -> str:
+    """Return a temperature (K) in the scale of a law, for people."""
+    return f"{kelvin:.4g} K" if scale == "K" else f"{celsius(kelvin):.4g} degC"
