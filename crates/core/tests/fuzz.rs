@@ -7,27 +7,10 @@ use hersey_core::drag::{Closure, Drag};
 use hersey_core::motion::{CycleKind, Drivetrain, Integrator, Start, System, simulate, stick_slip};
 use std::collections::BTreeMap;
 
-/// Sebastiano Vigna's splitmix64.
-struct Random(u64);
+#[path = "common/random.rs"]
+mod random;
 
-impl Random {
-    #[allow(clippy::cast_precision_loss)] // 53 bits fit
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-
-    fn decades(&mut self, low: f64, high: f64) -> f64 {
-        10_f64.powf(self.between(low, high))
-    }
-}
+use random::Random;
 
 fn check(random: &mut Random) -> &'static str {
     let seed = random.0;

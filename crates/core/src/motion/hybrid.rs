@@ -21,6 +21,11 @@ const SAME_TEMPERATURE: f64 = 1e-14;
 /// Events without any time passing before the motion is given up as endless switching.
 const MAX_EVENTS_AT_ONCE: u32 = 32;
 
+/// Share of the time reached and of the time scale of the belt that is next to no time, and pieces as short as that, one
+/// after the other, before the motion is given up.
+const NO_TIME: f64 = 1e-14;
+const MAX_CRAWLED: u32 = 1000;
+
 /// Pull and speed with which a belt that starts below the stick speed first slides faster, if it does.
 pub(crate) fn first_slide(
     system: &System,
@@ -49,6 +54,9 @@ pub(super) struct Motion<'a> {
     /// Length that the next Runge-Kutta step should have.
     pub next_step: f64,
     events_at_once: u32,
+    /// Pieces in a row in which next to no time passed, and the unit of time of the belt.
+    crawled: u32,
+    unit: f64,
     /// Pieces made.
     pub steps: usize,
     pub work: &'a Work<'a>,
@@ -74,6 +82,8 @@ impl<'a> Motion<'a> {
             now: Surroundings::at_start(system),
             next_step: f64::INFINITY,
             events_at_once: 0,
+            crawled: 0,
+            unit: Some(system.train.time_scale()).filter(|unit| unit.is_finite()).unwrap_or(0.0),
             steps: 0,
             work,
             stopped: 0.0,
@@ -112,9 +122,8 @@ impl<'a> Motion<'a> {
         self.steps += 1;
         self.work.take(1).map_err(|error| error.at_time(self.now.time))?;
         self.now.take_temperature();
-        if self.phase.creeping && self.rate()[0] >= self.stiffness() * self.phase.speed {
-            // the drive has turned: the backward pull no longer grows, and the belt is held
-            (self.phase.creeping, self.phase.mode) = (false, Mode::Stuck);
+        if self.phase.creeping {
+            self.creep_on();
         }
         let until_change = self.now.next_change - self.now.time;
         let longest = longest.min(until_change);
@@ -124,12 +133,30 @@ impl<'a> Motion<'a> {
             self.piece(longest)?
         };
         let Some((elapsed, guard)) = self.first_guard(&piece) else {
+            if piece.duration < until_change {
+                self.check_progress(piece.duration)?;
+            }
             self.go_on(&piece, until_change);
             return Ok((piece, None));
         };
         piece.duration = elapsed;
+        self.check_progress(elapsed)?;
         let event = self.meet(guard, &piece)?;
         Ok((piece, event))
+    }
+
+    /// Refuse to go on in pieces that lead nowhere, one after the other.
+    #[inline]
+    fn check_progress(&mut self, duration: f64) -> Result<(), Error> {
+        if duration > NO_TIME * (self.now.time + self.unit) {
+            self.crawled = 0;
+            return Ok(());
+        }
+        self.crawled += 1;
+        if self.crawled > MAX_CRAWLED {
+            return Err(Error::Stalled { time: self.now.time });
+        }
+        Ok(())
     }
 
     /// The next piece at the temperature that its own friction makes: made anew until it is.

@@ -8,6 +8,8 @@ use crate::drag::{Closure, Mode};
 
 /// Relative difference of belt and roll from which they are as fast as each other.
 const MET: f64 = 1e-9;
+/// Fall of what holds a belt, over itself and per e-fold of speed, that is none.
+const LEVEL: f64 = 1e-6;
 
 impl Motion<'_> {
     /// Bristles of a sliding belt are bent as in steady sliding.
@@ -39,9 +41,8 @@ impl Motion<'_> {
         let towards = self.phase.pull.signum();
         self.phase.pull = towards * self.now.system.train.grip();
         self.phase.slipping = lost;
-        // the backward pull grows no more
         if crept {
-            return Mode::Stuck;
+            return self.still_creeping();
         }
         let (rate, stiffness) = (self.drive_rate()[0], self.now.system.train.stiffness());
         // where the drive has jumped below the belt the two have not met: the pull falls by itself
@@ -122,6 +123,7 @@ impl Motion<'_> {
             (Guard::TransitionSpeed | Guard::TablePoint, _) => self.over_knot(),
             (Guard::StickSpeed, from) => self.over_stick_speed(from),
             (Guard::HoldingForce, Mode::Stuck) => self.released(),
+            (Guard::HoldingForce, _) if crept => self.held_again(),
             (Guard::HoldingForce, _) => self.caught(),
             (Guard::Reversal, _) => self.turned(crept),
             (Guard::GripLost, _) => self.change_grip(true, crept),
@@ -164,6 +166,47 @@ impl Motion<'_> {
             self.stop_dead();
         }
         Mode::Stuck
+    }
+
+    /// The backward pull falls short of what holds a belt that crept: both are equal now.
+    fn held_again(&mut self) -> Mode {
+        self.follow_creep();
+        self.phase.released = true;
+        Mode::Stuck
+    }
+
+    /// A belt that creeps goes on to, unless nothing moves what holds it while the roll slips.
+    fn still_creeping(&mut self) -> Mode {
+        if self.phase.slipping && self.now.thermal.is_none() {
+            return self.held_again();
+        }
+        self.phase.creeping = true;
+        Mode::Microslip
+    }
+
+    /// The speed at which the backward pull is just the holding force, which the series meets but for its tolerance.
+    fn follow_creep(&mut self) {
+        for _ in 0..2 {
+            let speed = self.phase.speed;
+            let slope = self.now.holding_slope(self.now.held_branch(speed, false), speed);
+            let next = speed - (self.now.holding_force(speed) + self.phase.pull) / slope;
+            if next > 0.5 * speed && next < 2.0 * speed {
+                self.phase.speed = next;
+            }
+        }
+    }
+
+    /// Creep on, but where the law has left the belt at a speed at which what holds it does not fall: there it slides.
+    pub(super) fn creep_on(&mut self) {
+        self.follow_creep();
+        let Phase { speed, pull, .. } = self.phase;
+        let branch = self.now.held_branch(speed, false);
+        if let Some(branch) = branch
+            && self.now.holding_slope(Some(branch), speed) * speed > -LEVEL * pull.abs()
+        {
+            (self.phase.creeping, self.phase.branch) = (false, branch);
+            self.phase.mode = self.now.system.drag.branch_mode(branch);
+        }
     }
 
     /// At rest for an instant: held there, or off the other way.
@@ -215,11 +258,15 @@ impl Motion<'_> {
         let drag = &self.now.system.drag;
         if let Some(grip) = self.now.system.grip() {
             if self.phase.slipping {
-                let ahead = Condition::Ahead(self.drive_rate(), self.now.system.train.stiffness());
-                watch.look(ahead, Guard::GripRegained);
+                let (mut rate, stiffness) = (self.drive_rate(), self.now.system.train.stiffness());
+                if self.are_level() {
+                    rate[0] = stiffness * self.phase.speed; // rounding must not say who is ahead
+                }
+                watch.look(Condition::Ahead(rate, stiffness), Guard::GripRegained);
             } else {
                 // where roll and belt have just met the pull leaves that limit, whatever rounding says
-                let (met, forward) = (self.has_just_met(grip), self.phase.pull > 0.0);
+                let forward = self.phase.pull > 0.0;
+                let met = self.has_just_met(grip) && !piece.pulls_harder();
                 if !(met && forward) {
                     watch.look(Condition::GripsForward(grip), Guard::GripLost);
                 }
@@ -229,11 +276,14 @@ impl Motion<'_> {
             }
         }
         match self.phase.mode {
+            // pull and holding force stay as they are
+            Mode::Stuck if self.phase.slipping && self.now.thermal.is_none() => {}
             Mode::Stuck => {
                 watch.look(Condition::HeldForward, Guard::HoldingForce);
                 watch.look(Condition::HeldBack, Guard::HoldingForce);
             }
             Mode::Microslip if self.phase.creeping => {
+                watch.look(Condition::Slowing, Guard::HoldingForce);
                 watch.look(Condition::Faster(0.0), Guard::Reversal);
             }
             Mode::Microslip => {

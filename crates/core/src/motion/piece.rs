@@ -72,6 +72,8 @@ pub(super) enum Condition {
     HeldForward,
     /// The held belt is pulled back by less than can hold it.
     HeldBack,
+    /// The creeping belt slows down.
+    Slowing,
     /// The spring pulls forward by less than the roll's grip on the belt bears.
     GripsForward(f64),
     /// The spring pulls back by less than that.
@@ -107,10 +109,7 @@ impl Piece<'_> {
 
     /// The same at a temperature of the law, where that is a state.
     pub(super) fn friction_at(&self, temperature: f64, elapsed: f64, pull: f64, speed: f64) -> f64 {
-        let mut flow = self.flow;
-        flow.temperature_law =
-            flow.temperature_law.map(|(_, law)| ([temperature, 0.0, 0.0, 0.0], law));
-        self.friction_of(&flow, elapsed, pull, speed)
+        self.friction_of(&self.flow.at_temperature(Some(temperature)), elapsed, pull, speed)
     }
 
     fn friction_of(&self, flow: &Flow, elapsed: f64, pull: f64, speed: f64) -> f64 {
@@ -122,6 +121,18 @@ impl Piece<'_> {
         d * flow.force(elapsed, &[d * pull, d * speed, bristle])
     }
 
+    /// Whether the pull, which does not move at the start, grows from there on.
+    pub(super) fn pulls_harder(&self) -> bool {
+        let growth = match &self.path {
+            Path::Series(series) => series.pull[2..].iter().find(|c| **c != 0.0).copied(),
+            Path::Steps { .. } => {
+                let Flow { rate, stiffness, .. } = self.flow;
+                Some(rate[1] - stiffness * self.flow.rates(0.0, &self.start.state())[1])
+            }
+        };
+        growth.is_some_and(|growth| growth * self.start.pull > 0.0)
+    }
+
     /// When `condition` ends first within the piece.
     pub(super) fn end_of(
         &self,
@@ -130,7 +141,10 @@ impl Piece<'_> {
     ) -> Option<f64> {
         match &self.path {
             Path::Series(series) => {
-                let g = condition.series(series, thermal, self.start.pull.signum());
+                let mut g = condition.series(series, thermal, self.start.pull.signum());
+                if self.start.released && matches!(condition, Condition::HeldBack) {
+                    g[1] = g[1].max(0.0); // a belt that crept is held because this does not fall
+                }
                 first_crossing(&g, self.duration)
             }
             Path::Steps { .. } => {
@@ -300,6 +314,7 @@ impl Condition {
                 towards * (driven - stiffness * series.speed[i])
             }),
             Self::Overcome => difference(&series.pull.map(|c| towards * c), &series.drag),
+            Self::Slowing => derivative(&series.speed).map(|c| -c),
             Self::HeldForward => difference(&series.drag, &series.pull),
             Self::HeldBack => std::array::from_fn(|i| series.drag[i] + series.pull[i]),
         }
@@ -316,7 +331,7 @@ impl Condition {
             Self::GripsBack(_) => rates[0],
             Self::Ahead(rate, stiffness) => towards * (rate[1] - stiffness * rates[1]),
             Self::Overcome => towards * rates[0] - flow.force_slope(y) * rates[1],
-            Self::HeldForward | Self::HeldBack => f64::NAN,
+            Self::Slowing | Self::HeldForward | Self::HeldBack => f64::NAN,
         }
     }
 
@@ -332,7 +347,8 @@ impl Condition {
             Self::GripsBack(grip) => grip + y[0],
             Self::Ahead(rate, stiffness) => towards * (horner(&rate, t) - stiffness * y[1]),
             Self::Overcome => towards * y[0] - flow.force(t, y),
-            Self::HeldForward | Self::HeldBack => f64::NAN, // a held belt has a series
+            // a held or creeping belt has a series
+            Self::Slowing | Self::HeldForward | Self::HeldBack => f64::NAN,
         }
     }
 }

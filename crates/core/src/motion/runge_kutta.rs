@@ -29,6 +29,14 @@ pub(super) struct Flow<'a> {
 }
 
 impl Flow<'_> {
+    /// The same at one temperature of the law, if it is given.
+    pub(super) fn at_temperature(mut self, temperature: Option<f64>) -> Self {
+        if let (Some(temperature), Some((course, _))) = (temperature, &mut self.temperature_law) {
+            *course = [temperature, 0.0, 0.0, 0.0];
+        }
+        self
+    }
+
     /// Factors of forces and speeds at time `t`.
     #[inline]
     pub(super) fn factors(&self, t: f64) -> (f64, f64) {

@@ -3,7 +3,7 @@
 use super::event::ROUNDING;
 use super::hybrid::Motion;
 use super::piece::{Path, Phase, Piece};
-use super::polynomial::{INVERSE, ORDER, Polynomial, first_crossing};
+use super::polynomial::{INVERSE, ORDER, Polynomial, first_crossing, value};
 use super::runge_kutta::{Flow, Formula, growth};
 use super::schedule::Cubic;
 use super::sharing::SharingStart;
@@ -11,6 +11,7 @@ use super::system::Integrator;
 use super::taylor::{
     Recurrence, Series, Slip, SlipStart, UNCHANGED, creep_series, held_series, product,
 };
+use super::thermal::ThermalFactors;
 use crate::drag::{Closure, Mode, Strengthening, TemperatureLaw};
 use crate::error::Error;
 
@@ -26,6 +27,10 @@ const RUNGE_KUTTA: (u64, u64) = (40, 10);
 /// Time over that until a held belt is released from which the rest is left to the pieces after.
 const FAR: f64 = 1e6;
 
+/// Factor by which a series is shortened that has left the law, and how often at most.
+const SHORTENED: f64 = 0.7;
+const MAX_SHORTENINGS: usize = 20;
+
 /// Lengths tried for one Runge-Kutta step before the motion is given up.
 const MAX_TRIES: usize = 200;
 
@@ -39,7 +44,10 @@ impl<'a> Motion<'a> {
         if self.on_a_corner() {
             return Ok(self.along(Series::still(start.pull, start.speed), longest));
         }
-        if start.creeping || !self.needs_steps(longest) {
+        if start.creeping {
+            return Ok(self.creep_piece(longest));
+        }
+        if !self.needs_steps(longest) {
             return Ok(self.series_piece(longest));
         }
         self.steps_piece(longest)
@@ -82,18 +90,38 @@ impl<'a> Motion<'a> {
                 let holding = Series { pull: series.drag, ..series };
                 let scale = self.phase.pull.abs().max(1e-3 * breakaway);
                 let good = holding.step_size(self.tolerance, scale, 1.0).min(longest);
-                // and not past the moment when the stick speed passes the belt: there another law holds it
-                let (speed, v_s) = (self.phase.speed, self.now.system.drag.stick_speed());
-                let side = if self.now.held_fast(self.phase.speed) { -1.0 } else { 1.0 };
-                let mut gap = thermal.speed.map(|c| side * v_s * c);
-                gap[0] -= side * speed;
-                if gap[0] <= ROUNDING * speed {
-                    gap[0] = 0.0; // it leaves the belt now, and may come back
-                }
-                first_crossing(&gap, good).filter(|passing| *passing > 0.0).unwrap_or(good)
+                let branch = self.now.standing_branch(self.phase.speed);
+                self.until_law_changes(branch, &series.speed, thermal, good)
             }
         };
         self.along(series, duration)
+    }
+
+    /// No longer than until a speed of the law passes a belt that is held or creeps: there another formula holds it.
+    fn until_law_changes(
+        &self,
+        branch: Option<usize>,
+        speed: &Polynomial,
+        thermal: &ThermalFactors,
+        longest: f64,
+    ) -> f64 {
+        let drag = &self.now.system.drag;
+        let v_s = drag.stick_speed();
+        let (lower, upper) = match branch {
+            None => (None, Some(v_s)),
+            Some(branch) => (Some(drag.lower_knot(branch).unwrap_or(v_s)), drag.upper_knot(branch)),
+        };
+        let passing = |limit: Option<f64>, side: f64| {
+            let limit = limit?;
+            let mut gap: Polynomial =
+                std::array::from_fn(|n| side * (limit * thermal.speed[n] - speed[n]));
+            if gap[0] <= ROUNDING * speed[0] {
+                gap[0] = 0.0; // it leaves the belt now, and may come back
+            }
+            first_crossing(&gap, longest).filter(|passing| *passing > 0.0)
+        };
+        let first = [passing(lower, -1.0), passing(upper, 1.0)].into_iter().flatten();
+        first.fold(longest, f64::min)
     }
 
     /// The same while what holds the belt grows with the time that it has stood.
@@ -189,19 +217,28 @@ impl<'a> Motion<'a> {
     }
 
     fn slip_start(&self) -> SlipStart<'_> {
-        let Phase { mode, branch, pull, speed, .. } = self.phase;
+        self.slip_start_on(match self.phase.mode {
+            Mode::Ehl | Mode::Mixed => Some(self.phase.branch),
+            Mode::Stuck => self.now.standing_branch(self.phase.speed),
+            Mode::Microslip => None,
+        })
+    }
+
+    /// The same by a branch of the law, or by the one below the stick speed.
+    fn slip_start_on(&self, on_branch: Option<usize>) -> SlipStart<'_> {
+        let Phase { mode, pull, speed, .. } = self.phase;
         let drag = &self.now.system.drag;
         let x = self.now.at_reference(speed);
-        let on_branch = match mode {
-            Mode::Ehl | Mode::Mixed => Some(branch),
-            Mode::Stuck if self.now.held_fast(self.phase.speed) => Some(drag.branch(x)),
-            _ => None,
-        };
         let contact = drag.mixed_contact().filter(|_| on_branch.is_some());
         let sharing = contact.map(|contact| SharingStart::at(contact, x));
         let (base, law) = match on_branch {
             Some(branch) => {
-                (drag.branch_force(branch, x), Recurrence::power(drag.branch_exponent(branch), x))
+                let boundary = self.now.thermal.as_ref().map_or(1.0, |thermal| thermal.boundary[0]);
+                let base = match sharing {
+                    Some(_) => drag.branch_force_and_slope(branch, x, boundary).0,
+                    None => drag.branch_force(branch, x),
+                };
+                (base, Recurrence::power(drag.branch_exponent(branch), x))
             }
             None if mode == Mode::Stuck => {
                 let strength = self.strength_now();
@@ -214,12 +251,11 @@ impl<'a> Motion<'a> {
             }
         };
         let drag_now = match on_branch {
-            Some(branch) if sharing.is_some() => self.now.branch_drag(branch, speed),
             Some(_) => self.now.force(base),
             None => self.now.force_below(base),
         };
         let released = self.phase.released;
-        let total = if released { pull } else { drag_now + self.now.rest(speed) };
+        let total = if released { pull.abs() } else { drag_now + self.now.rest(speed) };
         SlipStart {
             stiffness: self.stiffness(),
             mass: self.now.system.train.mass(),
@@ -237,21 +273,64 @@ impl<'a> Motion<'a> {
     }
 
     fn series_piece(&self, longest: f64) -> Piece<'a> {
-        let [mut pull_scale, speed_scale, _] = self.scales();
-        if self.phase.creeping {
-            pull_scale = self.phase.pull.abs(); // the speed follows its logarithm
-        }
-        let start = self.slip_start();
-        let decay_speed = self.now.system.drag.decay_speed();
-        let series = if self.phase.creeping {
-            creep_series(&start, decay_speed)
-        } else {
-            self.arch.dispatch(Slip(start))
-        };
+        let [pull_scale, speed_scale, _] = self.scales();
+        let series = self.arch.dispatch(Slip(self.slip_start()));
         let duration = series
             .step_size(self.tolerance, pull_scale, speed_scale)
             .min(LONGEST_STEP * self.now.system.train.time_scale())
             .min(longest);
+        let mut piece = self.along(series, duration);
+        if self.now.system.drag.mixed_contact().is_some() {
+            self.keep_to_law(&mut piece, speed_scale);
+        }
+        piece
+    }
+
+    /// Shorten a piece until its series is still true at its end: the share of asperities that begin to touch may grow
+    /// by terms beyond the last, which the length of a step does not see.
+    #[cold]
+    fn keep_to_law(&self, piece: &mut Piece, speed_scale: f64) {
+        let Path::Series(series) = &piece.path else { return };
+        let (course, mass) = (self.now.temperature_law(), piece.flow.mass);
+        for _ in 0..MAX_SHORTENINGS {
+            let t = piece.duration;
+            let (speed, pull) = (value(&series.speed, t), value(&series.pull, t));
+            let state = [pull, speed, 0.0];
+            let temperature = course.map(|(course, _)| value(&course, t));
+            let force = piece.flow.at_temperature(temperature).force(t, &state);
+            let off = value(&series.drag, t) - force;
+            if off.abs() * t <= self.tolerance * mass * speed_scale {
+                return;
+            }
+            piece.duration *= SHORTENED;
+        }
+    }
+
+    /// The belt slows just as fast as the growing backward pull allows.
+    #[cold]
+    fn creep_piece(&self, longest: f64) -> Piece<'a> {
+        let Phase { speed, pull, .. } = self.phase;
+        let crept = |branch| {
+            creep_series(&self.slip_start_on(branch), self.now.holding_slope(branch, speed))
+        };
+        let mut branch = self.now.held_branch(speed, false);
+        let mut series = crept(branch);
+        let risen = self.now.held_branch(speed, true);
+        if let Some(thermal) = &self.now.thermal
+            && risen != branch
+            && product(&series.speed, &thermal.slowness, 1) > 0.0
+        {
+            (branch, series) = (risen, crept(risen));
+        }
+        let [_, speed_scale, _] = self.scales();
+        let good = series
+            .step_size(self.tolerance, pull.abs(), speed_scale) // the speed follows the pull's logarithm
+            .min(LONGEST_STEP * self.now.system.train.time_scale())
+            .min(longest);
+        let duration = match &self.now.thermal {
+            Some(thermal) => self.until_law_changes(branch, &series.speed, thermal, good),
+            None => good,
+        };
         self.along(series, duration)
     }
 

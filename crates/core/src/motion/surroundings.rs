@@ -145,11 +145,33 @@ impl<'a> Surroundings<'a> {
         self.thermal.as_ref().map_or(speed, |thermal| speed * thermal.slowness[0])
     }
 
-    /// Whether a belt held at `speed` is faster than the stick speed, which may move past it, or about to be.
-    pub(super) fn held_fast(&self, speed: f64) -> bool {
-        let (x, v_s) = (self.at_reference(speed), self.system.drag.stick_speed());
+    /// Branch of the law that holds a belt at `speed`, where a law that moves has left it above the stick speed; where
+    /// formulas meet that on which it is about to be, `rising` in the terms of the law or not.
+    pub(super) fn held_branch(&self, speed: f64, rising: bool) -> Option<usize> {
+        let drag = &self.system.drag;
+        let nudge = if rising { 2.0 * ROUNDING } else { -2.0 * ROUNDING };
+        let x = self.at_reference(speed) * (1.0 + nudge);
+        (x > drag.stick_speed()).then(|| drag.branch(x))
+    }
+
+    /// The same of a belt that keeps its speed.
+    pub(super) fn standing_branch(&self, speed: f64) -> Option<usize> {
         let falling = self.thermal.as_ref().is_some_and(|thermal| thermal.speed[1] < 0.0);
-        if (x - v_s).abs() <= ROUNDING * v_s { falling } else { x > v_s }
+        self.held_branch(speed, falling)
+    }
+
+    /// Slope in speed of what holds a belt at `speed`, by `branch` of the law or the one below the stick speed.
+    pub(super) fn holding_slope(&self, branch: Option<usize>, speed: f64) -> f64 {
+        let (drag, x) = (&self.system.drag, self.at_reference(speed));
+        let contact = match branch {
+            Some(branch) => {
+                let boundary = self.thermal.as_ref().map_or(1.0, |thermal| thermal.boundary[0]);
+                self.force(drag.branch_force_and_slope(branch, x, boundary).1)
+            }
+            None => -self.force_below(drag.exponential(x)) / drag.decay_speed(),
+        };
+        let slowness = self.thermal.as_ref().map_or(1.0, |thermal| thermal.slowness[0]);
+        contact * slowness + (self.rest(1.0) - self.rest(0.0))
     }
 
     /// What can hold a belt at `speed`; a law that moves may leave a held belt above the stick speed.

@@ -97,7 +97,7 @@ impl pulp::WithSimd for Slip<'_> {
 fn slip_series(start: &SlipStart) -> Series {
     match start.thermal {
         None if start.rest.is_none() && start.sharing.is_none() => plain_series(start),
-        thermal => full_series(start, thermal),
+        _ => full_series(start),
     }
 }
 
@@ -134,30 +134,55 @@ fn plain_series(start: &SlipStart) -> Series {
     Series { pull: p, speed: u, drag: f }
 }
 
-/// The same with the rest of the drive, and a law that moves with temperature: its speeds enter as `q = u/v(T)`, its
-/// forces as a factor.
+/// The same with the rest of the drive, and a law that moves with temperature.
 #[inline(never)]
-fn full_series(start: &SlipStart, thermal: Option<&ThermalFactors>) -> Series {
+fn full_series(start: &SlipStart) -> Series {
     let (mut p, mut u, mut f) = ([0.0; ORDER + 1], [0.0; ORDER + 1], [0.0; ORDER + 1]);
-    let (mut q, mut rate, mut g) = ([0.0; ORDER + 1], [0.0; ORDER + 1], [0.0; ORDER + 1]);
     (p[0], u[0], f[0]) = (start.pull, start.speed, start.total);
-    (q[0], g[0]) = (start.speed * thermal.map_or(1.0, |t| t.slowness[0]), start.force);
-    let boundary = thermal.map_or(&UNCHANGED, |t| &t.boundary);
-    let mut sharing = start.sharing.map(|sharing| SharingSeries::starting(sharing, q[0]));
+    let mut drag = DragSeries::starting(start);
     for n in 1..=ORDER {
         u[n] = (p[n - 1] - f[n - 1]) / start.mass * INVERSE[n];
         let driven = if n < 5 { start.rate[n - 1] } else { 0.0 };
         p[n] = (driven - start.stiffness * u[n - 1]) * INVERSE[n];
-        q[n] = thermal.map_or(u[n], |t| product(&u, &t.slowness, n));
-        rate[n] = POWERS[n] * q[n];
-        g[n] = match &mut sharing {
-            Some(sharing) => sharing.force(n, &q, boundary),
-            None => drag_term(start.law, n, &q, &rate, &g),
-        };
-        f[n] =
-            start.factor().map_or(g[n], |factor| product(&g, factor, n)) + rest_term(start, &u, n);
+        f[n] = drag.force(n, &u);
     }
     Series { pull: p, speed: u, drag: f }
+}
+
+/// All drag along a speed, as far as it is known: speeds of the law enter as `q = u/v(T)`, its forces as a factor.
+struct DragSeries<'s> {
+    start: &'s SlipStart<'s>,
+    q: Polynomial,
+    /// Coefficients of `q` times their power.
+    rate: Polynomial,
+    /// Drag of the contact before temperature has any part in it.
+    contact: Polynomial,
+    sharing: Option<SharingSeries>,
+}
+
+impl<'s> DragSeries<'s> {
+    fn starting(start: &'s SlipStart<'s>) -> Self {
+        let (mut q, mut contact) = ([0.0; ORDER + 1], [0.0; ORDER + 1]);
+        q[0] = start.speed * start.thermal.map_or(1.0, |thermal| thermal.slowness[0]);
+        contact[0] = start.force;
+        let sharing = start.sharing.map(|sharing| SharingSeries::starting(sharing, q[0]));
+        Self { start, q, rate: [0.0; ORDER + 1], contact, sharing }
+    }
+
+    /// Coefficient `n > 0` along the speed `u`, known up to there; it may be asked for again with another `u[n]`.
+    fn force(&mut self, n: usize, u: &Polynomial) -> f64 {
+        let Self { start, q, rate, contact, sharing } = self;
+        q[n] = start.thermal.map_or(u[n], |thermal| product(u, &thermal.slowness, n));
+        rate[n] = POWERS[n] * q[n];
+        contact[n] = match sharing {
+            Some(sharing) => {
+                sharing.force(n, q, start.thermal.map_or(&UNCHANGED, |thermal| &thermal.boundary))
+            }
+            None => drag_term(start.law, n, q, rate, contact),
+        };
+        start.factor().map_or(contact[n], |factor| product(contact, factor, n))
+            + rest_term(start, u, n)
+    }
 }
 
 /// Coefficient `n` of the drag of the rest of the drive along the speed `u`.
@@ -201,21 +226,10 @@ pub(super) fn held_series(start: &SlipStart) -> Series {
         let pulled = if j == 0 { driven - start.stiffness * start.speed } else { *driven };
         p[j + 1] = pulled * INVERSE[j + 1];
     }
-    if let Some(thermal) = start.thermal {
-        let q = thermal.slowness.map(|c| start.speed * c);
-        let holding = match start.sharing {
-            Some(sharing) => {
-                let mut series = SharingSeries::starting(sharing, q[0]);
-                std::array::from_fn(|n| match n {
-                    0 => start.force,
-                    _ => series.force(n, &q, &thermal.boundary),
-                })
-            }
-            None => composed(start.law, &q, start.force),
-        };
+    if start.thermal.is_some() {
+        let mut drag = DragSeries::starting(start);
         for (n, c) in f.iter_mut().enumerate().skip(1) {
-            let factor = start.factor().unwrap_or(&UNCHANGED);
-            *c = product(&holding, factor, n) + rest_term(start, &u, n);
+            *c = drag.force(n, &u);
         }
     }
     Series { pull: p, speed: u, drag: f }
@@ -223,48 +237,21 @@ pub(super) fn held_series(start: &SlipStart) -> Series {
 
 /// Series of creep, where the belt slows just as fast as the growing backward pull allows.
 ///
-/// A belt that moves at `u < v_s` against the pull of the spring cannot leave the holding force
-/// `A exp(-u/v_d) + r(u)`, `r` that of the rest of the drive: any faster and it is held, any slower and it slips. So
-/// `A exp(-u/v_d) = y` with `y = -p - r(u)` stays true while `p' = rate - k u`, that is
-/// `(u/v_d)' = (ln A - ln y)'`.
-pub(super) fn creep_series(start: &SlipStart, decay_speed: f64) -> Series {
-    let (mut p, mut u, mut y) = ([0.0; ORDER + 1], [0.0; ORDER + 1], [0.0; ORDER + 1]);
-    let (mut log, mut x) = ([0.0; ORDER + 1], [0.0; ORDER + 1]);
-    let Rest { force, damping } = start.rest;
-    let rest = start.thermal.map_or(UNCHANGED, |thermal| thermal.rest);
-    let scale = start.thermal.map_or(UNCHANGED, |thermal| thermal.speed);
+/// A belt that moves at `u` against the pull of the spring cannot leave the force that holds it, `F(u, T) + r(u, T)` with
+/// `r` that of the rest of the drive: any faster and it is held, any slower and it slips. So `F + r = -p` stays true
+/// while `p' = rate - k u`. Each coefficient of `F + r` holds the same share of that of `u`, its `slope` in speed.
+pub(super) fn creep_series(start: &SlipStart, slope: f64) -> Series {
+    let (mut p, mut u) = ([0.0; ORDER + 1], [0.0; ORDER + 1]);
     (p[0], u[0]) = (start.pull, start.speed);
-    y[0] = -p[0] - rest[0] * (force + damping * u[0]);
-    x[0] = start.speed / decay_speed * start.thermal.map_or(1.0, |thermal| thermal.slowness[0]);
-    let growth = start.thermal.map_or([0.0; ORDER + 1], |thermal| logarithm(&thermal.below));
-    // y_n and ln y hold a share of u_n each, which is brought to the other side
-    let share = 1.0 - decay_speed * scale[0] * rest[0] * damping / y[0];
-    for j in 0..ORDER {
-        let n = j + 1;
-        let driven = if j < 4 { start.rate[j] } else { 0.0 };
-        p[n] = (driven - start.stiffness * u[j]) * INVERSE[n];
-        let moved: f64 = (0..n).map(|i| u[i] * rest[n - i]).sum();
-        y[n] = -p[n] - force * rest[n] - damping * moved;
-        let sum: f64 = (1..n).map(|i| POWERS[i] * log[i] * y[n - i]).sum();
-        log[n] = (y[n] - sum * INVERSE[n]) / y[0];
-        x[n] = growth[n] - log[n];
-        u[n] = decay_speed * product(&x, &scale, n) / share;
-        let own = rest[0] * damping * u[n];
-        y[n] -= own;
-        log[n] -= own / y[0];
-        x[n] += own / y[0];
+    let mut drag = DragSeries::starting(start);
+    for n in 1..=ORDER {
+        let driven = if n < 5 { start.rate[n - 1] } else { 0.0 };
+        p[n] = (driven - start.stiffness * u[n - 1]) * INVERSE[n];
+        let held = drag.force(n, &u);
+        u[n] = (-p[n] - held) / slope;
+        drag.force(n, &u);
     }
     Series { pull: p, speed: u, drag: p.map(|c| -c) }
-}
-
-pub(super) fn logarithm(c: &Polynomial) -> Polynomial {
-    let mut log = [0.0; ORDER + 1];
-    log[0] = c[0].ln();
-    for n in 1..=ORDER {
-        let sum: f64 = (1..n).map(|i| POWERS[i] * log[i] * c[n - i]).sum();
-        log[n] = (c[n] - sum * INVERSE[n]) / c[0];
-    }
-    log
 }
 
 /// Exponent bits of 1.0.

@@ -1,0 +1,228 @@
+//! Random runs of all closures, with rest, static force, temperature, grip and drives that turn back: each ends, and its
+//! work is accounted for.
+//!
+//! The suite runs some hundred; `make fuzz` runs many more.
+
+use hersey_core::drag::{Closure, Drag, Rest, SpeedLaw, Strengthening, TemperatureLaw};
+use hersey_core::lubrication::mixed::{MixedLaw, Sharing};
+use hersey_core::lubrication::viscosity;
+use hersey_core::motion::{
+    Drive, Drivetrain, HeatBalance, Heater, Integrator, Schedule, Start, System, simulate,
+};
+use hersey_core::{Error, Work};
+use std::collections::BTreeMap;
+
+#[path = "common/random.rs"]
+mod random;
+
+use random::Random;
+
+const SHARING: Sharing = Sharing {
+    reference: 0.02,
+    film_exponent: 0.6,
+    load_exponent: 0.2,
+    stiffness: 1000.0,
+    boundary: 30.0,
+    shear: 1.0,
+    rolling: 0.1,
+    rolling_exponent: 0.6,
+};
+
+/// Temperature at which the laws are given, K.
+const REFERENCE: f64 = 373.0;
+
+fn closure_of(random: &mut Random, stiffness: f64, mass: f64) -> Closure {
+    match random.unit() {
+        share if share < 0.45 => Closure::Retained,
+        share if share < 0.9 => Closure::Stiction,
+        share if share < 0.97 => Closure::Stribeck,
+        _ => {
+            let bristle_stiffness = stiffness * random.decades(1.0, 2.0);
+            let bristle_damping =
+                2.0 * (bristle_stiffness * mass).sqrt() * random.between(0.2, 1.5);
+            Closure::LuGre { bristle_stiffness, bristle_damping }
+        }
+    }
+}
+
+fn drag_of(random: &mut Random, stiffness: f64, mass: f64) -> Result<Drag, Error> {
+    let closure = closure_of(random, stiffness, mass);
+    let stick = random.decades(-3.0, -0.5);
+    let mixed = random.unit() < 0.3;
+    let drag = if mixed {
+        let law = MixedLaw::new(SHARING)?;
+        let viscosity = random.decades(-2.0, -0.5);
+        let transition = law.transition().unwrap().product / viscosity;
+        Drag::mixed(law, viscosity, stick * transition, closure)?
+    } else {
+        let (force, transition) = (random.decades(0.0, 2.5), random.decades(-2.0, 0.5));
+        let (ehl, falling) = (random.between(-0.95, -0.2), random.between(-1.8, -1.02));
+        Drag::new(force, transition, ehl, falling, stick * transition, closure)?
+    };
+    let paper = drag.breakaway_force();
+    let (force, speed) = (drag.transition_force(), drag.transition_speed());
+    let mut drag = drag;
+    if random.unit() < 0.5 {
+        let factor = 1.0 + random.decades(-2.0, 1.0);
+        drag = drag.with_breakaway_force(paper / std::f64::consts::E * factor)?;
+    }
+    if random.unit() < 0.2 {
+        let strengthening =
+            Strengthening { growth: random.between(0.01, 0.1), time: random.decades(-2.0, 0.0) };
+        drag = drag.with_strengthening(strengthening)?;
+    }
+    if random.unit() < 0.6 {
+        let damping =
+            if random.unit() < 0.4 { force / speed * random.decades(-3.0, 0.0) } else { 0.0 };
+        drag = drag.with_rest(Rest { force: force * random.decades(-2.0, 0.3), damping })?;
+    }
+    let law = TemperatureLaw {
+        reference: REFERENCE,
+        force_exponent: random.between(-3.0, 1.0),
+        speed: if random.unit() < 0.5 {
+            SpeedLaw::Power(random.between(-3.0, 3.0))
+        } else {
+            SpeedLaw::Viscosity(viscosity::TemperatureLaw::Arrhenius {
+                prefactor: 1e-6,
+                activation_energy: 3e4,
+            })
+        },
+        boundary_slope: if mixed { random.between(-3e-3, 3e-3) } else { 0.0 },
+        rest_slope: random.between(-5e-3, 5e-3),
+    };
+    drag.with_temperature_law(law)
+}
+
+/// A drive that ramps up and down, jumps, stands still and turns back.
+fn drive_of(random: &mut Random, speed: f64, time: f64) -> Result<Drive, Error> {
+    let (mut times, mut values) = (vec![0.0], vec![speed * random.decades(-1.0, 0.5)]);
+    for _ in 0..5 {
+        let last = times[times.len() - 1];
+        let next =
+            if random.unit() < 0.15 { last } else { last + time * random.between(0.02, 0.3) };
+        times.push(next);
+        values.push(match random.unit() {
+            share if share < 0.3 => values[values.len() - 1],
+            share if share < 0.4 => 0.0,
+            _ => speed * random.between(-1.5, 2.0),
+        });
+    }
+    Ok(Drive::Speed(Schedule::linear("drive_speed", &times, &values)?))
+}
+
+fn heat_of(random: &mut Random) -> HeatBalance {
+    let heater = if random.unit() < 0.5 {
+        Heater::Power(Schedule::constant(random.between(0.0, 800.0)))
+    } else {
+        let most = random.between(0.0, 800.0);
+        let setpoint = REFERENCE + [0.0, 10.0, -5.0][(3.0 * random.unit()) as usize];
+        Heater::Controlled { setpoint, most, gain: random.decades(0.0, 3.0) }
+    };
+    HeatBalance {
+        capacity: [random.decades(0.0, 3.0), random.decades(1.0, 3.0)],
+        exchange: random.between(0.0, 20.0),
+        loss: [random.between(0.0, 2.0), random.between(0.0, 2.0)],
+        surroundings: 300.0,
+        heater,
+        load: [Schedule::constant(0.0), Schedule::constant(0.0)],
+        start: [REFERENCE, random.between(300.0, REFERENCE)],
+        temperature_zero: 0.0,
+    }
+}
+
+fn check(random: &mut Random, only: bool) -> Result<&'static str, Error> {
+    let seed = random.0;
+    let (stiffness, mass) = (random.decades(1.0, 5.0), random.decades(-2.0, 1.0));
+    let drag = drag_of(random, stiffness, mass)?;
+    let speed = drag.transition_speed();
+    let holding = drag.holding_force(0.0);
+    let mut train = Drivetrain::new(stiffness, mass)?;
+    if random.unit() < 0.5 {
+        train = train.with_grip(holding * random.between(0.2, 1.5))?;
+    }
+    let duration = 20.0 * train.time_scale() + 2.0 * holding / (stiffness * speed);
+    let drive = drive_of(random, speed, duration)?;
+    let start = if random.unit() < 0.5 {
+        Start::REST
+    } else {
+        Start::steady(&train, &drag, speed * random.decades(-3.0, 0.0))?
+    };
+    let share = random.unit();
+    let system = if share < 0.6 {
+        let mut times = vec![0.0];
+        let mut values = vec![REFERENCE];
+        for _ in 0..3 {
+            times.push(times[times.len() - 1] + duration * random.between(0.1, 0.5));
+            values.push(REFERENCE + random.between(-40.0, 60.0));
+        }
+        let course = Schedule::linear("temperature", &times, &values)?;
+        System::new(train, &drag, drive, Some(course))?
+    } else if share < 0.8 {
+        System::with_heat(train, &drag, drive, heat_of(random))?
+    } else {
+        System::new(train, &drag, drive, Some(Schedule::constant(REFERENCE)))?
+    };
+    if only {
+        println!("{seed:#x} {train:?} {drag:?}\n{system:?}\n{start:?} {duration}");
+    }
+    let began = std::time::Instant::now();
+    let work = Work::unwatched(200_000);
+    let run = simulate(&system, start, duration, 11, 1e-9, Integrator::Adaptive, &work);
+    let took = began.elapsed().as_secs_f64();
+    let closure = drag.closure();
+    match run {
+        Ok(run) => {
+            let residual = run.energy.residual();
+            if only {
+                for event in &run.events {
+                    println!("{event:?}");
+                }
+                println!("{:?} {}", run.energy, run.steps);
+            }
+            assert!(run.belt_speed.iter().chain(&run.stretch).all(|x| x.is_finite()), "{seed:#x}");
+            if took > 0.2 {
+                println!("SLOW {took:.1} {seed:#x} {closure:?} {} steps", run.steps);
+            }
+            if !(residual.abs() < 1e-8) {
+                println!(
+                    "RES {residual:e} {seed:#x} {closure:?} course {share:.2} grip {} events {}",
+                    train.grip(),
+                    run.events.len()
+                );
+                return Ok("residual");
+            }
+            Ok("fine")
+        }
+        Err(error) => {
+            println!(
+                "ERR {error} {seed:#x} {closure:?} course {share:.2} grip {} {took:.1} s",
+                train.grip()
+            );
+            Ok("error")
+        }
+    }
+}
+
+fn run(seed: u64, cases: usize) -> BTreeMap<String, usize> {
+    let mut outcomes = BTreeMap::new();
+    for case in 0..cases {
+        let mut random = Random(seed.wrapping_mul(1_000_003).wrapping_add(case as u64));
+        let outcome = check(&mut random, false)
+            .map_or_else(|e| format!("refused: {}", &e.to_string()[..20]), str::to_string);
+        *outcomes.entry(outcome).or_insert(0) += 1;
+    }
+    outcomes
+}
+
+#[test]
+#[ignore = "minutes"]
+fn the_work_of_many_random_runs_is_accounted_for() {
+    let get = |name: &str| std::env::var(name).ok().and_then(|s| s.parse().ok());
+    if let Some(only) = get("ONLY") {
+        check(&mut Random(only), true).unwrap();
+        return;
+    }
+    let seed = get("FUZZ_SEED").unwrap_or(1);
+    let began = std::time::Instant::now();
+    println!("{:?} {:?}", run(seed, get("CASES").unwrap_or(2000) as usize), began.elapsed());
+}
