@@ -31,10 +31,11 @@ const SHARING: Sharing = Sharing {
 /// Temperature at which the laws are given, K.
 const REFERENCE: f64 = 373.0;
 
-fn closure_of(random: &mut Random, stiffness: f64, mass: f64) -> Closure {
+fn closure_of(random: &mut Random, stiffness: f64, mass: f64, smooth: bool) -> Closure {
     match random.unit() {
         share if share < 0.45 => Closure::Retained,
         share if share < 0.9 => Closure::Stiction,
+        _ if !smooth => Closure::Retained, // the smooth ones cost a hundred times as much
         share if share < 0.97 => Closure::Stribeck,
         _ => {
             let bristle_stiffness = stiffness * random.decades(1.0, 2.0);
@@ -45,8 +46,8 @@ fn closure_of(random: &mut Random, stiffness: f64, mass: f64) -> Closure {
     }
 }
 
-fn drag_of(random: &mut Random, stiffness: f64, mass: f64) -> Result<Drag, Error> {
-    let closure = closure_of(random, stiffness, mass);
+fn drag_of(random: &mut Random, stiffness: f64, mass: f64, smooth: bool) -> Result<Drag, Error> {
+    let closure = closure_of(random, stiffness, mass, smooth);
     let stick = random.decades(-3.0, -0.5);
     let mixed = random.unit() < 0.3;
     let drag = if mixed {
@@ -115,7 +116,12 @@ fn heat_of(random: &mut Random) -> HeatBalance {
         Heater::Power(Schedule::constant(random.between(0.0, 800.0)))
     } else {
         let most = random.between(0.0, 800.0);
-        let setpoint = REFERENCE + [0.0, 10.0, -5.0][(3.0 * random.unit()) as usize];
+        let setpoint = REFERENCE
+            + match random.unit() {
+                share if share < 0.33 => 0.0,
+                share if share < 0.67 => 10.0,
+                _ => -5.0,
+            };
         Heater::Controlled { setpoint, most, gain: random.decades(0.0, 3.0) }
     };
     HeatBalance {
@@ -130,10 +136,10 @@ fn heat_of(random: &mut Random) -> HeatBalance {
     }
 }
 
-fn check(random: &mut Random, only: bool) -> Result<&'static str, Error> {
-    let seed = random.0;
+/// The equation of a random belt, where its motion starts, and how long it is followed.
+fn system_of(random: &mut Random, smooth: bool) -> Result<(System, Start, f64), Error> {
     let (stiffness, mass) = (random.decades(1.0, 5.0), random.decades(-2.0, 1.0));
-    let drag = drag_of(random, stiffness, mass)?;
+    let drag = drag_of(random, stiffness, mass, smooth)?;
     let speed = drag.transition_speed();
     let holding = drag.holding_force(0.0);
     let mut train = Drivetrain::new(stiffness, mass)?;
@@ -162,67 +168,58 @@ fn check(random: &mut Random, only: bool) -> Result<&'static str, Error> {
     } else {
         System::new(train, &drag, drive, Some(Schedule::constant(REFERENCE)))?
     };
-    if only {
-        println!("{seed:#x} {train:?} {drag:?}\n{system:?}\n{start:?} {duration}");
-    }
-    let began = std::time::Instant::now();
-    let work = Work::unwatched(200_000);
-    let run = simulate(&system, start, duration, 11, 1e-9, Integrator::Adaptive, &work);
-    let took = began.elapsed().as_secs_f64();
-    let closure = drag.closure();
-    match run {
+    Ok((system, start, duration))
+}
+
+/// How the run of a seed ends; a law may be refused, or end where friction has brought the temperature.
+fn outcome(seed: u64, smooth: bool) -> Result<&'static str, Error> {
+    let (system, start, duration) = match system_of(&mut Random(seed), smooth) {
+        Ok(case) => case,
+        Err(error) if error.is_unfinished() => return Err(error),
+        Err(_) => return Ok("refused"),
+    };
+    let work = Work::unwatched(10_000_000);
+    match simulate(&system, start, duration, 11, 1e-9, Integrator::Adaptive, &work) {
         Ok(run) => {
             let residual = run.energy.residual();
-            if only {
-                for event in &run.events {
-                    println!("{event:?}");
-                }
-                println!("{:?} {}", run.energy, run.steps);
-            }
+            assert!(residual.abs() < 1e-8, "energy {residual:e}: seed {seed:#x}");
             assert!(run.belt_speed.iter().chain(&run.stretch).all(|x| x.is_finite()), "{seed:#x}");
-            if took > 0.2 {
-                println!("SLOW {took:.1} {seed:#x} {closure:?} {} steps", run.steps);
-            }
-            if !(residual.abs() < 1e-8) {
-                println!(
-                    "RES {residual:e} {seed:#x} {closure:?} course {share:.2} grip {} events {}",
-                    train.grip(),
-                    run.events.len()
-                );
-                return Ok("residual");
-            }
-            Ok("fine")
+            Ok("accounted for")
         }
-        Err(error) => {
-            println!(
-                "ERR {error} {seed:#x} {closure:?} course {share:.2} grip {} {took:.1} s",
-                train.grip()
-            );
-            Ok("error")
-        }
+        Err(error) if error.is_unfinished() => Err(error),
+        Err(_) => Ok("ended"),
     }
 }
 
-fn run(seed: u64, cases: usize) -> BTreeMap<String, usize> {
+fn run(seeds: impl Iterator<Item = u64>, smooth: bool) -> BTreeMap<&'static str, usize> {
     let mut outcomes = BTreeMap::new();
-    for case in 0..cases {
-        let mut random = Random(seed.wrapping_mul(1_000_003).wrapping_add(case as u64));
-        let outcome = check(&mut random, false)
-            .map_or_else(|e| format!("refused: {}", &e.to_string()[..20]), str::to_string);
-        *outcomes.entry(outcome).or_insert(0) += 1;
+    for seed in seeds {
+        let ended = outcome(seed, smooth).unwrap_or_else(|error| panic!("{error}: seed {seed:#x}"));
+        *outcomes.entry(ended).or_insert(0) += 1;
     }
     outcomes
 }
 
+/// In turn: creep at a grip that slips, above the stick speed that has moved below the belt, and beyond a turn; a
+/// drive that turns back where the roll met the belt, standing and sliding; a mixed law whose boundary friction varies,
+/// and where asperities begin to touch.
 #[test]
-#[ignore = "minutes"]
+fn runs_that_went_wrong_are_accounted_for() {
+    let seeds = [0xa7_d8f2, 0xf_49b0, 0xf_48b3, 0xf_48ee, 0xb7_1c69, 0xf_492f, 0xf_48e2, 0x2d_cc10];
+    assert_eq!(run(seeds.into_iter(), true)["accounted for"], seeds.len());
+}
+
+#[test]
+fn the_work_of_random_runs_is_accounted_for() {
+    let outcomes = run((0..240).map(|i| 0x5eed_0000 + i), false);
+    assert!(outcomes["accounted for"] > 220, "{outcomes:?}");
+}
+
+#[test]
+#[ignore = "minutes: make fuzz"]
 fn the_work_of_many_random_runs_is_accounted_for() {
-    let get = |name: &str| std::env::var(name).ok().and_then(|s| s.parse().ok());
-    if let Some(only) = get("ONLY") {
-        check(&mut Random(only), true).unwrap();
-        return;
-    }
-    let seed = get("FUZZ_SEED").unwrap_or(1);
-    let began = std::time::Instant::now();
-    println!("{:?} {:?}", run(seed, get("CASES").unwrap_or(2000) as usize), began.elapsed());
+    let seed = std::env::var("FUZZ_SEED").ok().and_then(|s| s.parse().ok()).unwrap_or(1_u64);
+    let cases = std::env::var("FUZZ_CASES").ok().and_then(|s| s.parse().ok()).unwrap_or(5000);
+    let first = seed.wrapping_mul(1_000_003);
+    println!("FUZZ_SEED={seed}: {:?}", run((0..cases).map(|i| first + i), true));
 }

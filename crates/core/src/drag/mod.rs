@@ -120,6 +120,12 @@ impl MixedContact {
         Ok((above("transition_speed", transition.product / self.viscosity, 0.0)?, transition.force))
     }
 
+    /// Speed of the transition with `boundary` times the boundary friction; zero where there is none.
+    #[inline(never)]
+    pub(crate) fn transition_speed(&self, boundary: f64) -> f64 {
+        self.law.transition_product(boundary).map_or(0.0, |product| product / self.viscosity)
+    }
+
     #[inline(never)]
     fn force(&self, u: f64) -> f64 {
         self.law.force(self.viscosity * u)

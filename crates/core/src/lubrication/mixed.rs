@@ -300,6 +300,24 @@ impl MixedLaw {
     /// Below it the force falls, down to the shear of the film that is held between the asperities.
     #[must_use]
     pub fn transition(&self) -> Option<Transition> {
+        let lambda = self.transition_lambda()?;
+        let product = self.product(lambda);
+        let sensitivity = self.sensitivity(lambda);
+        Some(Transition { product, lambda, force: self.force(product), sensitivity })
+    }
+
+    /// Product of viscosity and speed at the transition with `boundary` times the boundary friction.
+    pub(crate) fn transition_product(&self, boundary: f64) -> Option<f64> {
+        let law = self.with_forces(1.0, boundary);
+        law.transition_lambda().map(|lambda| law.product(lambda))
+    }
+
+    fn product(&self, lambda: f64) -> f64 {
+        let law = &self.sharing;
+        law.reference * law.product(lambda, law.asperities(lambda).0)
+    }
+
+    fn transition_lambda(&self) -> Option<f64> {
         // Lambda over that at rest: where no asperity touches, and where next to no film carries.
         const WIDE: f64 = 12.0;
         const NARROW: f64 = 1e-6;
@@ -323,10 +341,7 @@ impl MixedLaw {
             }
             if falls(middle) { low = middle } else { high = middle }
         }
-        let lambda = self.dry + high;
-        let product = law.reference * law.product(lambda, law.asperities(lambda).0);
-        let sensitivity = self.sensitivity(lambda);
-        Some(Transition { product, lambda, force: self.force(product), sensitivity })
+        Some(self.dry + high)
     }
 
     /// By the theorem of implicit functions: along `rise = 0`, each partial by a difference of an analytic function.

@@ -149,7 +149,7 @@ impl<'a> Heat<'a> {
     /// Temperatures from `time` on under the heat of friction, and how long their first `terms` powers are good for: to the
     /// precision asked for, and until the heater changes its law.
     pub(super) fn foreseen(
-        &self,
+        &mut self,
         time: f64,
         friction: &Polynomial,
         terms: usize,
@@ -178,6 +178,11 @@ impl<'a> Heat<'a> {
             let flow = [heater + friction[n] - exchanged - lost(0), exchanged - lost(1)];
             for i in 0..2 {
                 t[i][n + 1] = flow[i] * INVERSE[n + 1] / b.capacity[i];
+            }
+            if n == 0 {
+                // at the limit of two laws of the heater, where both give the same, it is known now which one follows
+                self.courses[0][1] = t[0][1];
+                self.choose_heating();
             }
         }
         let mut good = f64::INFINITY;

@@ -5,7 +5,7 @@
 
 use super::event::{Event, Guard};
 use super::piece::{Path, Phase, Piece};
-use super::polynomial::{ORDER, Polynomial, value};
+use super::polynomial::{ORDER, Polynomial, derivative, first_crossing, value};
 use super::schedule::Cubic;
 use super::surroundings::Surroundings;
 use super::system::{Integrator, Start, System, checked_tolerance};
@@ -17,6 +17,9 @@ use crate::work::Work;
 const MAX_ROUNDS: usize = 40;
 /// Relative change of the temperatures between rounds, from which they are the same.
 const SAME_TEMPERATURE: f64 = 1e-14;
+
+/// How far beyond a temperature the law is looked at, so that it need not be at each.
+const BEYOND: f64 = 1.0;
 
 /// Events without any time passing before the motion is given up as endless switching.
 const MAX_EVENTS_AT_ONCE: u32 = 32;
@@ -57,6 +60,8 @@ pub(super) struct Motion<'a> {
     /// Pieces in a row in which next to no time passed, and the unit of time of the belt.
     crawled: u32,
     unit: f64,
+    /// Least and greatest temperature at which the law is known to be one.
+    checked: Option<(f64, f64)>,
     /// Pieces made.
     pub steps: usize,
     pub work: &'a Work<'a>,
@@ -79,7 +84,8 @@ impl<'a> Motion<'a> {
             tolerance: checked_tolerance(tolerance)?,
             integrator,
             arch: pulp::Arch::new(),
-            now: Surroundings::at_start(system),
+            now: Surroundings::at_start(system)?,
+            checked: None,
             next_step: f64::INFINITY,
             events_at_once: 0,
             crawled: 0,
@@ -121,7 +127,7 @@ impl<'a> Motion<'a> {
     pub(super) fn advance(&mut self, longest: f64) -> Result<(Piece<'a>, Option<Event>), Error> {
         self.steps += 1;
         self.work.take(1).map_err(|error| error.at_time(self.now.time))?;
-        self.now.take_temperature();
+        self.now.take_temperature()?;
         if self.phase.creeping {
             self.creep_on();
         }
@@ -153,10 +159,17 @@ impl<'a> Motion<'a> {
             return Ok(());
         }
         self.crawled += 1;
-        if self.crawled > MAX_CRAWLED {
-            return Err(Error::Stalled { time: self.now.time });
-        }
-        Ok(())
+        if self.crawled > MAX_CRAWLED { Err(self.stalled()) } else { Ok(()) }
+    }
+
+    /// Why the motion cannot go on: the law of drag is about to end, or numbers do.
+    #[cold]
+    pub(super) fn stalled(&self) -> Error {
+        let near = self.now.temperature_law().and_then(|(course, _)| {
+            let ahead = course[0] + BEYOND * course[1].signum();
+            self.now.system.check_law_at(ahead).err()
+        });
+        near.unwrap_or(Error::Stalled { time: self.now.time })
     }
 
     /// The next piece at the temperature that its own friction makes: made anew until it is.
@@ -185,14 +198,14 @@ impl<'a> Motion<'a> {
             let end = if piece.duration.is_finite() { piece.duration } else { 0.0 };
             let law = self.now.temperature_law();
             above("temperature", law.map_or(1.0, |(course, _)| value(&course, end)), 0.0)?;
-            self.now.take_temperature();
+            self.now.take_temperature()?;
             if off <= SAME_TEMPERATURE && piece.duration <= good {
-                self.check_law(piece.duration)?;
+                self.check_law(end)?;
                 self.temperatures = courses;
                 return Ok(piece);
             }
         }
-        Err(Error::Stalled { time: self.now.time })
+        Err(self.stalled())
     }
 
     /// The temperature that the law followed along the last piece, in its scale.
@@ -202,14 +215,31 @@ impl<'a> Motion<'a> {
         course
     }
 
-    /// Refuse temperatures at which the law of drag has ended.
-    fn check_law(&self, elapsed: f64) -> Result<(), Error> {
-        let Some((course, law)) = self.now.temperature_law() else { return Ok(()) };
-        let elapsed = if elapsed.is_finite() { elapsed } else { 0.0 };
-        let temperature = above("temperature", value(&course, elapsed), 0.0)?;
-        above("stick speed at this temperature", law.speed_factor(temperature)?, 0.0)?;
-        law.boundary_factor(temperature)?;
-        law.rest_factor(temperature).map(|_| ())
+    /// Refuse temperatures over `elapsed` from now at which there is no law of drag.
+    #[cold]
+    fn check_law(&mut self, elapsed: f64) -> Result<(), Error> {
+        let Some((course, _)) = self.now.temperature_law() else { return Ok(()) };
+        let slope = derivative(&course);
+        let rising = if slope[0] < 0.0 { slope.map(|c| -c) } else { slope };
+        let turned = first_crossing(&rising, elapsed).unwrap_or(0.0);
+        for temperature in [turned, elapsed].map(|t| value(&course, t)) {
+            let (low, high) = self.checked.unwrap_or((f64::INFINITY, f64::NEG_INFINITY));
+            if low <= temperature && temperature <= high {
+                continue;
+            }
+            // all of a law is monotone in temperature, so that what holds at both ends holds between them
+            let beyond =
+                if temperature < low { temperature - BEYOND } else { temperature + BEYOND };
+            let reached = if self.now.system.check_law_at(beyond).is_ok() {
+                beyond
+            } else {
+                self.now.system.check_law_at(temperature)?;
+                temperature
+            };
+            self.checked =
+                Some((low.min(reached).min(temperature), high.max(reached).max(temperature)));
+        }
+        Ok(())
     }
 
     /// To the end of a piece that no guard ends, and into the next segment of the schedules if it reaches there.
@@ -235,7 +265,7 @@ impl<'a> Motion<'a> {
         self.now.pass(piece.duration);
         [self.phase.pull, self.phase.speed, self.phase.bristle] = piece.state(piece.duration);
         let from = self.phase.mode;
-        self.now.take_temperature();
+        self.now.take_temperature()?;
         self.cross(guard);
         if self.phase.mode == Mode::Stuck && from != Mode::Stuck {
             self.phase.at_rest_since = self.now.time;

@@ -55,6 +55,8 @@ pub(super) struct Extrapolation {
 }
 
 impl Extrapolation {
+    /// Laps looked at.
+    const LAPS: usize = 4;
     /// Share of the way to the expected limit that is skipped.
     const SKIPPED: f64 = 0.7;
     /// Growth of a swing away from an unstable orbit that is skipped at once.
@@ -64,8 +66,11 @@ impl Extrapolation {
 
     /// A pull further along the way of the laps, if they are slow and steady enough to foresee.
     pub(super) fn ahead(&mut self, pull: f64, steady_pull: f64) -> Option<f64> {
+        if self.pulls.len() == Self::LAPS {
+            self.pulls.remove(0);
+        }
         self.pulls.push(pull);
-        let [.., a, b, c, d] = self.pulls[..] else { return None };
+        let [a, b, c, d] = self.pulls[..] else { return None };
         let (ratio, before) = ((d - c) / (c - b), (c - b) / (b - a));
         let steady = (ratio - before).abs() < 0.1 * (1.0 - ratio).abs();
         let growth = ratio - 1.0;

@@ -79,7 +79,7 @@ impl Motion<'_> {
         let onward = self.rate()[0] - self.stiffness() * speed;
         let rising = net_force > 0.0 || (net_force == 0.0 && onward >= 0.0);
         let x = self.now.at_reference(speed);
-        let mut branch = drag.branch(x);
+        let mut branch = self.now.sliding_branch(speed);
         if !rising && branch > 0 && drag.upper_knot(branch - 1) == Some(x) && x > drag.stick_speed()
         {
             branch -= 1;
@@ -134,6 +134,10 @@ impl Motion<'_> {
     /// Onto the next branch of the law.
     fn over_knot(&mut self) -> Mode {
         let drag = &self.now.system.drag;
+        if self.now.transition_moves() {
+            self.phase.branch = 1 - self.phase.branch; // it lies where the piece has found it
+            return drag.branch_mode(self.phase.branch);
+        }
         let x = self.now.at_reference(self.phase.speed);
         let above = drag.upper_knot(self.phase.branch);
         let below = drag.lower_knot(self.phase.branch);
@@ -200,11 +204,17 @@ impl Motion<'_> {
     pub(super) fn creep_on(&mut self) {
         self.follow_creep();
         let Phase { speed, pull, .. } = self.phase;
-        let branch = self.now.held_branch(speed, false);
-        if let Some(branch) = branch
-            && self.now.holding_slope(Some(branch), speed) * speed > -LEVEL * pull.abs()
-        {
-            (self.phase.creeping, self.phase.branch) = (false, branch);
+        let branch = self.creep_branch();
+        let scale = speed.max(self.now.speed(self.now.system.drag.stick_speed()));
+        if self.now.holding_slope(branch, speed) * scale <= -LEVEL * pull.abs() {
+            return;
+        }
+        self.phase.creeping = false;
+        if branch.is_some() && self.now.held_branch(speed, false).is_none() {
+            self.phase.mode = self.held_again(); // the stick speed passes below it, where the law rises
+        } else if branch.is_some() {
+            let branch = self.now.sliding_branch(speed);
+            self.phase.branch = branch;
             self.phase.mode = self.now.system.drag.branch_mode(branch);
         }
     }
@@ -236,7 +246,7 @@ impl Motion<'_> {
         self.phase.creeping = self.phase.speed > 0.0 && !forward;
         self.phase.released = !self.phase.creeping;
         if forward && self.phase.speed >= self.now.speed(drag.stick_speed()) {
-            self.phase.branch = drag.branch(self.now.at_reference(self.phase.speed));
+            self.phase.branch = self.now.sliding_branch(self.phase.speed);
             drag.branch_mode(self.phase.branch)
         } else {
             Mode::Microslip
@@ -311,7 +321,8 @@ impl Motion<'_> {
     /// Whether belt and roll are as fast as each other, but for rounding.
     fn are_level(&self) -> bool {
         let (rate, train) = (self.drive_rate(), &self.now.system.train);
-        let scale = rate[0].abs() + rate[1].abs() * train.time_scale();
+        let slow = train.stiffness() * self.now.speed(self.now.system.drag.stick_speed());
+        let scale = rate[0].abs() + rate[1].abs() * train.time_scale() + slow;
         (rate[0] - train.stiffness() * self.phase.speed).abs() <= MET * scale
     }
 
@@ -319,6 +330,11 @@ impl Motion<'_> {
     #[inline]
     fn watch_branch(&self, watch: &mut Watch) {
         let (drag, branch) = (&self.now.system.drag, self.phase.branch);
+        if self.now.transition_moves() {
+            let sign = if branch == 0 { -1.0 } else { 1.0 };
+            watch.look(Condition::Beyond(sign), Guard::TransitionSpeed);
+            return watch.look(Condition::Faster(drag.stick_speed()), Guard::StickSpeed);
+        }
         let named = |is_transition: bool| {
             if is_transition { Guard::TransitionSpeed } else { Guard::TablePoint }
         };

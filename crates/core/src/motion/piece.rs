@@ -34,6 +34,9 @@ impl Phase {
     }
 }
 
+/// Relative difference of a speed and the transition from which the belt has just met it.
+const MET: f64 = 1e-9;
+
 /// Halvings of a step in search of a moment when a condition that starts from nil holds.
 const MAX_HALVINGS: usize = 50;
 
@@ -72,6 +75,8 @@ pub(super) enum Condition {
     HeldForward,
     /// The held belt is pulled back by less than can hold it.
     HeldBack,
+    /// The belt is faster than the transition of a mixed contact, which moves by itself, or with -1 slower.
+    Beyond(f64),
     /// The creeping belt slows down.
     Slowing,
     /// The spring pulls forward by less than the roll's grip on the belt bears.
@@ -139,6 +144,9 @@ impl Piece<'_> {
         condition: Condition,
         thermal: Option<&ThermalFactors>,
     ) -> Option<f64> {
+        if let Condition::Beyond(sign) = condition {
+            return self.end_beyond(sign, thermal?);
+        }
         match &self.path {
             Path::Series(series) => {
                 let mut g = condition.series(series, thermal, self.start.pull.signum());
@@ -157,6 +165,24 @@ impl Piece<'_> {
                 self.first_zero(g, begin, slope)
             }
         }
+    }
+
+    /// When the belt passes the transition of a mixed contact that moves by itself.
+    #[cold]
+    fn end_beyond(&self, sign: f64, thermal: &ThermalFactors) -> Option<f64> {
+        let contact = self.flow.drag.mixed_contact()?;
+        let transition = |t: f64| {
+            contact.transition_speed(value(&thermal.boundary, t)) * value(&thermal.speed, t)
+        };
+        let ends = [transition(0.0), transition(self.duration)];
+        if let Some((low, high)) = self.speed_range()
+            && (ends.iter().all(|v| *v < low) || ends.iter().all(|v| *v > high))
+        {
+            return if sign * (low - ends[0]) > 0.0 { None } else { Some(0.0) };
+        }
+        let g = |t: f64| sign * (self.state(t)[1] - transition(t));
+        let begin = if g(0.0).abs() <= MET * ends[0] { 0.0 } else { g(0.0) };
+        self.first_zero(g, begin, 0.0)
     }
 
     /// First zero of `g` along a piece made of steps; a zero at the start counts only if `g` falls there.
@@ -314,6 +340,7 @@ impl Condition {
                 towards * (driven - stiffness * series.speed[i])
             }),
             Self::Overcome => difference(&series.pull.map(|c| towards * c), &series.drag),
+            Self::Beyond(_) => [f64::NAN; ORDER + 1], // of the piece, which knows the contact
             Self::Slowing => derivative(&series.speed).map(|c| -c),
             Self::HeldForward => difference(&series.drag, &series.pull),
             Self::HeldBack => std::array::from_fn(|i| series.drag[i] + series.pull[i]),
@@ -331,7 +358,7 @@ impl Condition {
             Self::GripsBack(_) => rates[0],
             Self::Ahead(rate, stiffness) => towards * (rate[1] - stiffness * rates[1]),
             Self::Overcome => towards * rates[0] - flow.force_slope(y) * rates[1],
-            Self::Slowing | Self::HeldForward | Self::HeldBack => f64::NAN,
+            Self::Beyond(_) | Self::Slowing | Self::HeldForward | Self::HeldBack => f64::NAN,
         }
     }
 
@@ -347,8 +374,8 @@ impl Condition {
             Self::GripsBack(grip) => grip + y[0],
             Self::Ahead(rate, stiffness) => towards * (horner(&rate, t) - stiffness * y[1]),
             Self::Overcome => towards * y[0] - flow.force(t, y),
-            // a held or creeping belt has a series
-            Self::Slowing | Self::HeldForward | Self::HeldBack => f64::NAN,
+            // a held or creeping belt has a series, and a transition that moves is the piece's
+            Self::Beyond(_) | Self::Slowing | Self::HeldForward | Self::HeldBack => f64::NAN,
         }
     }
 }

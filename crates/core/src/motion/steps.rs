@@ -306,22 +306,30 @@ impl<'a> Motion<'a> {
         }
     }
 
+    fn crept(&self, branch: Option<usize>) -> Series {
+        let slope = self.now.holding_slope(branch, self.phase.speed);
+        creep_series(&self.slip_start_on(branch), slope)
+    }
+
+    /// Branch of the law, or the one below the stick speed, that a creeping belt follows.
+    pub(super) fn creep_branch(&self) -> Option<usize> {
+        let fallen = self.now.held_branch(self.phase.speed, false);
+        let risen = self.now.held_branch(self.phase.speed, true);
+        if let Some(thermal) = &self.now.thermal
+            && risen != fallen
+            && product(&self.crept(fallen).speed, &thermal.slowness, 1) > 0.0
+        {
+            return risen;
+        }
+        fallen
+    }
+
     /// The belt slows just as fast as the growing backward pull allows.
     #[cold]
     fn creep_piece(&self, longest: f64) -> Piece<'a> {
-        let Phase { speed, pull, .. } = self.phase;
-        let crept = |branch| {
-            creep_series(&self.slip_start_on(branch), self.now.holding_slope(branch, speed))
-        };
-        let mut branch = self.now.held_branch(speed, false);
-        let mut series = crept(branch);
-        let risen = self.now.held_branch(speed, true);
-        if let Some(thermal) = &self.now.thermal
-            && risen != branch
-            && product(&series.speed, &thermal.slowness, 1) > 0.0
-        {
-            (branch, series) = (risen, crept(risen));
-        }
+        let pull = self.phase.pull;
+        let branch = self.creep_branch();
+        let series = self.crept(branch);
         let [_, speed_scale, _] = self.scales();
         let good = series
             .step_size(self.tolerance, pull.abs(), speed_scale) // the speed follows the pull's logarithm
@@ -374,7 +382,7 @@ impl<'a> Motion<'a> {
         loop {
             tries += 1;
             if tries > MAX_TRIES {
-                return Err(Error::Stalled { time: self.now.time });
+                return Err(self.stalled());
             }
             self.work.take(cost).map_err(|error| error.at_time(self.now.time))?;
             if let Some((_, errors)) = formula.step(&flow, &state, duration, &scales, tolerance) {

@@ -5,8 +5,9 @@ use super::heat::Heat;
 use super::polynomial::{ORDER, Polynomial};
 use super::schedule::Cubic;
 use super::system::{Drive, System};
-use super::thermal::{STEADY, ThermalFactors};
+use super::thermal::ThermalFactors;
 use crate::drag::{Closure, TemperatureLaw};
+use crate::error::Error;
 
 /// Drive and drag law at the time that the motion has reached.
 pub(super) struct Surroundings<'a> {
@@ -25,7 +26,7 @@ pub(super) struct Surroundings<'a> {
 
 impl<'a> Surroundings<'a> {
     /// Those of `system` at time 0.
-    pub(super) fn at_start(system: &'a System) -> Self {
+    pub(super) fn at_start(system: &'a System) -> Result<Self, Error> {
         let mut surroundings = Self {
             system,
             time: 0.0,
@@ -36,8 +37,8 @@ impl<'a> Surroundings<'a> {
             heat: system.heat.as_ref().map(Heat::at_start),
         };
         surroundings.find_next_change();
-        surroundings.take_temperature();
-        surroundings
+        surroundings.take_temperature()?;
+        Ok(surroundings)
     }
 
     /// Rate of the pull if the belt stood still, about now, for a belt that moves in `direction`.
@@ -110,15 +111,25 @@ impl<'a> Surroundings<'a> {
     }
 
     /// Take the law as it is now.
+    ///
+    /// # Errors
+    /// If it has ended.
     #[inline]
-    pub(super) fn take_temperature(&mut self) {
+    pub(super) fn take_temperature(&mut self) -> Result<(), Error> {
         if self.heat.is_none() && self.system.temperature.is_none() {
-            return; // nothing to take, and the factors are large
+            return Ok(()); // nothing to take, and the factors are large
         }
-        self.thermal = self.temperature_law().map(|(temperature, law)| {
-            let share = self.system.drag.boundary_share();
-            ThermalFactors::new(law, share, &temperature).unwrap_or(STEADY)
-        });
+        let Some((temperature, law)) = self.temperature_law() else { return Ok(()) };
+        let share = self.system.drag.boundary_share();
+        self.thermal = Some(ThermalFactors::new(law, share, &temperature)?);
+        Ok(())
+    }
+
+    /// Whether the transition of a mixed contact moves among the speeds of the law, as boundary friction varies by itself.
+    pub(super) fn transition_moves(&self) -> bool {
+        let law = self.system.drag.temperature_law();
+        let moves = self.thermal.is_some() && law.is_some_and(|law| law.boundary_slope != 0.0);
+        moves && self.system.drag.mixed_contact().is_some()
     }
 
     /// A speed of the law as it is now.
@@ -143,6 +154,15 @@ impl<'a> Surroundings<'a> {
     #[inline]
     pub(super) fn at_reference(&self, speed: f64) -> f64 {
         self.thermal.as_ref().map_or(speed, |thermal| speed * thermal.slowness[0])
+    }
+
+    /// Branch of the law on which a belt slides at `speed`.
+    pub(super) fn sliding_branch(&self, speed: f64) -> usize {
+        let (drag, x) = (&self.system.drag, self.at_reference(speed));
+        if let (Some(contact), Some(thermal)) = (drag.mixed_contact(), &self.thermal) {
+            return usize::from(x >= contact.transition_speed(thermal.boundary[0]));
+        }
+        drag.branch(x)
     }
 
     /// Branch of the law that holds a belt at `speed`, where a law that moves has left it above the stick speed; where
@@ -171,7 +191,7 @@ impl<'a> Surroundings<'a> {
             None => -self.force_below(drag.exponential(x)) / drag.decay_speed(),
         };
         let slowness = self.thermal.as_ref().map_or(1.0, |thermal| thermal.slowness[0]);
-        contact * slowness + (self.rest(1.0) - self.rest(0.0))
+        contact * slowness + self.rest_slope()
     }
 
     /// What can hold a belt at `speed`; a law that moves may leave a held belt above the stick speed.
@@ -215,6 +235,12 @@ impl<'a> Surroundings<'a> {
     /// Drag in steady sliding at `speed >= 0`, which is at least the stick speed or of a closure that is not smooth.
     pub(super) fn steady_drag(&self, speed: f64) -> f64 {
         self.contact_drag(speed) + self.rest(speed)
+    }
+
+    /// Slope in speed of the drag of the rest of the drive, as it is now.
+    pub(super) fn rest_slope(&self) -> f64 {
+        let damping = self.system.drag.rest().damping;
+        self.thermal.as_ref().map_or(damping, |thermal| damping * thermal.rest[0])
     }
 
     /// Drag of the rest of the drive at `speed >= 0`, as it is now.

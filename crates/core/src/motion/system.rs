@@ -2,7 +2,7 @@
 
 use super::heat::HeatBalance;
 use super::schedule::Schedule;
-use crate::drag::{Closure, Drag};
+use crate::drag::{Closure, Drag, SpeedLaw};
 use crate::error::{Error, above, at_least, at_most, below, finite};
 
 /// Spring and mass between the drive and the sliding contact; for a rotor, torsional stiffness and inertia.
@@ -136,8 +136,8 @@ impl System {
     /// The equation of `train` and `drag` under `drive`, at a `temperature` in the scale of the drag law.
     ///
     /// # Errors
-    /// If a drive of given speed has no spring, the temperature leaves the positive range of its scale, or
-    /// there is a temperature and the drag does not vary with it.
+    /// If a drive of given speed has no spring, the temperature leaves the positive range of its scale, or the law of drag
+    /// ends within the range of the temperature; a law that does not vary with temperature is the same at all.
     pub fn new(
         train: Drivetrain,
         drag: &Drag,
@@ -152,21 +152,14 @@ impl System {
         };
         let (low, high) = schedule.range();
         above("temperature", low, 0.0)?;
-        let (cold, hot) = (drag.at(low)?, drag.at(high)?);
-        for law in [cold, hot] {
-            below("stick_speed", law.stick_speed(), law.transition_speed())?;
+        let mut system = Self { train, drag: drag.clone(), drive, temperature: None, heat: None };
+        system.check_law_at(low)?;
+        system.check_law_at(high)?;
+        match schedule.steady() {
+            Some(temperature) => system.drag = drag.at(temperature)?,
+            None => system.temperature = drag.temperature_law().map(|_| schedule),
         }
-        if let Some(temperature) = schedule.steady() {
-            return Ok(Self {
-                train,
-                drag: drag.at(temperature)?,
-                drive,
-                temperature: None,
-                heat: None,
-            });
-        }
-        let temperature = drag.temperature_law().map(|_| schedule);
-        Ok(Self { train, drag: drag.clone(), drive, temperature, heat: None })
+        Ok(system)
     }
 
     /// The equation of `train` and `drag` under `drive`, at the temperature that `heat` and friction make.
@@ -181,11 +174,24 @@ impl System {
         heat: HeatBalance,
     ) -> Result<Self, Error> {
         heat.check()?;
-        drag.temperature_law()
+        let law = drag
+            .temperature_law()
             .ok_or(Error::TooFew { quantity: "temperature law of the drag", needed: 1 })?;
-        let cold = drag.at(heat.start[0] - heat.temperature_zero)?;
-        below("stick_speed", cold.stick_speed(), cold.transition_speed())?;
-        Ok(Self { heat: Some(heat), ..Self::new(train, drag, drive, None)? })
+        if matches!(law.speed, SpeedLaw::Viscosity(_)) {
+            let quantity = "zero of the temperature scale of a viscosity, which is absolute,";
+            at_most(quantity, at_least(quantity, heat.temperature_zero, 0.0)?, 0.0)?;
+        }
+        let start = heat.start[0] - heat.temperature_zero;
+        let system = Self { heat: Some(heat), ..Self::new(train, drag, drive, None)? };
+        system.check_law_at(start)?;
+        Ok(system)
+    }
+
+    /// Refuse a `temperature`, in the scale of the law, at which there is no law of drag.
+    pub(super) fn check_law_at(&self, temperature: f64) -> Result<(), Error> {
+        let law = self.drag.at(temperature)?;
+        let quantity = "stick speed at this temperature, against the transition speed,";
+        below(quantity, law.stick_speed(), law.transition_speed()).map(|_| ())
     }
 
     /// A belt at constant `drive_speed` and the temperature at which the law is given.

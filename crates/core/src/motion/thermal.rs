@@ -1,8 +1,9 @@
 //! How the law of drag moves while the temperature does: the factors of its forces and speeds as series.
 
 use super::polynomial::{INVERSE, ORDER, POWERS, Polynomial};
-use super::taylor::{Recurrence, UNCHANGED, composed, product};
+use super::taylor::{Recurrence, composed, product};
 use crate::drag::{SpeedLaw, TemperatureLaw};
+use crate::error::Error;
 use crate::lubrication::viscosity::{self, GAS_CONSTANT};
 
 /// How forces and speeds of the law move during a step.
@@ -23,17 +24,19 @@ pub(super) struct ThermalFactors {
 }
 
 impl ThermalFactors {
-    /// From the course of the temperature, and the share of boundary friction in the drag at the stick speed; none where
-    /// a viscosity ends.
+    /// From the course of the temperature, and the share of boundary friction in the drag at the stick speed.
+    ///
+    /// # Errors
+    /// If a viscosity has ended at the temperature.
     #[inline(never)]
     pub(super) fn new(
         law: &TemperatureLaw,
         boundary_share: f64,
         temperature: &Polynomial,
-    ) -> Option<Self> {
+    ) -> Result<Self, Error> {
         let t = *temperature;
         // from one number, the same to the last bit wherever the law is asked
-        let first = law.speed_factor(t[0]).ok()?;
+        let first = law.speed_factor(t[0])?;
         let (speed, slowness) = match &law.speed {
             SpeedLaw::Power(exponent) => {
                 (power(&t, law.reference, *exponent), power(&t, law.reference, -exponent))
@@ -55,7 +58,7 @@ impl ThermalFactors {
         let boundary = linear(law.boundary_slope);
         let mut with_boundary = boundary.map(|c| boundary_share * c);
         with_boundary[0] = 1.0 + boundary_share * (boundary[0] - 1.0);
-        Some(Self {
+        Ok(Self {
             force,
             below: std::array::from_fn(|n| product(&force, &with_boundary, n)),
             speed,
@@ -73,15 +76,15 @@ fn power(t: &Polynomial, reference: f64, exponent: f64) -> Polynomial {
 }
 
 /// Viscosity along a temperature in K.
-fn viscosity_series(law: &viscosity::TemperatureLaw, t: &Polynomial) -> Option<Polynomial> {
-    let first = law.viscosity(t[0]).ok()?;
+fn viscosity_series(law: &viscosity::TemperatureLaw, t: &Polynomial) -> Result<Polynomial, Error> {
+    let first = law.viscosity(t[0])?;
     let exponential = |slope: f64, zero: f64| {
         let mut above = *t;
         above[0] -= zero;
         let inverse = composed(Recurrence::power(-1.0, above[0]), &above, 1.0 / above[0]);
         composed(Recurrence::exponential(-1.0 / slope), &inverse, first)
     };
-    Some(match *law {
+    Ok(match *law {
         viscosity::TemperatureLaw::Arrhenius { activation_energy, .. } => {
             exponential(activation_energy / GAS_CONSTANT, 0.0)
         }
@@ -115,13 +118,3 @@ fn walther_series(a: f64, b: f64, density: f64, first: f64, t: &Polynomial) -> P
     }
     nu.map(|c| c * unit)
 }
-
-/// Factors that do not move.
-pub(super) const STEADY: ThermalFactors = ThermalFactors {
-    force: UNCHANGED,
-    below: UNCHANGED,
-    speed: UNCHANGED,
-    slowness: UNCHANGED,
-    boundary: UNCHANGED,
-    rest: UNCHANGED,
-};
