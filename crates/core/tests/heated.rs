@@ -116,15 +116,12 @@ fn a_viscosity_is_asked_at_an_absolute_temperature_only() {
     let heat = HeatBalance { temperature_zero: 20.0, ..bodies(400.0, 20.0, unheated()) };
     let error = System::with_heat(train(), &drag, at_speed(0.1), heat).unwrap_err();
     assert!(error.to_string().contains("absolute"), "{error}");
-    // cooled to where the law diverges, held and sliding
-    for start in [Start::REST, Start::steady(&train(), &drag, 0.5).unwrap()] {
-        let mut heat = bodies(400.0, 20.0, unheated());
-        heat.load[0] = Schedule::constant(400.0);
-        let speed = start.belt_speed;
-        let system = System::with_heat(train(), &drag, at_speed(speed), heat).unwrap();
-        let error = followed(&system, start, 20.0).unwrap_err();
-        assert!(!error.is_unfinished(), "{error}");
-    }
+    // cooled to where the law diverges
+    let mut heat = bodies(400.0, 20.0, unheated());
+    heat.load[0] = Schedule::constant(400.0);
+    let system = System::with_heat(train(), &drag, at_speed(0.0), heat).unwrap();
+    let error = followed(&system, Start::REST, 20.0).unwrap_err();
+    assert!(error.to_string().starts_with("temperature of a Vogel law"), "{error}");
 }
 
 #[test]

@@ -15,7 +15,8 @@ use crate::work::Work;
 pub struct Band {
     /// Where the last motion without sticking ends: below, every start leads to stick-slip.
     pub lower: f64,
-    /// Transition speed, below which steady sliding is unstable.
+    /// Transition speed of the law of drag. Steady sliding is unstable where drag, the rest of the drive counted, falls with
+    /// speed: below `Drag::rising_from`, which is this speed unless the rest rises with speed or the law falls beyond.
     pub transition: f64,
     /// The fold `V*`: above, stick-slip dies out.
     pub upper: f64,
