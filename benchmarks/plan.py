@@ -52,6 +52,7 @@ class Case:
     limits: Limits
     temperature: hersey.Schedule | None
     uncertainty: dict[str, Uncertainty]
+    roll_radius: float | None = None
 
 
 def case(number: int) -> Case:
@@ -110,6 +111,7 @@ def planned(given: Case, seed: int) -> Plan:
         target_speed=given.target,
         temperature=given.temperature,
         limits=given.limits,
+        roll_radius=given.roll_radius,
         uncertainty=given.uncertainty,
         confidence=CONFIDENCE,
         seed=seed,

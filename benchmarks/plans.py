@@ -10,8 +10,10 @@ with located events up to the end of the first slide, where the force is greates
 the share of 1000 fresh draws, of another seed, that slide for good from the plan's end on and never let the
 roll slip or ask more than the motor gives; where that is below the bound that the plan states, of 20,000.
 
-Usage: python -m benchmarks.plans [--cases 200] [--first 0] [--step 1] [--seconds 600] > plans.jsonl
+Usage: python -m benchmarks.plans [--cases 200] [--seconds 600] --out plans.jsonl
        python -m benchmarks.plans --table plans.jsonl
+
+The lines go to the end of the file; machines that are in it already are not run again.
 """
 
 from __future__ import annotations
@@ -21,7 +23,7 @@ import json
 import math
 import time
 from collections import Counter
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -30,14 +32,13 @@ from scipy.integrate import solve_ivp
 from scipy.stats import binom
 
 import hersey
-from benchmarks.plan import case
+from benchmarks.plan import CONFIDENCE, Case, case, planned
 from hersey.machine.limits import Limits
 from hersey.machine.uncertainty import Uncertainty
-from hersey.stability.plan import Plan, plan_profile
+from hersey.stability.plan import Plan
 from hersey.stability.plan.draws import drawn
 from hersey.stability.plan.trial import MachineSample
 
-CONFIDENCE = 0.95
 #: Fresh draws, and those that settle it where the share of the first is below the bound.
 FRESH, SETTLED = 1000, 20_000
 #: One machine in so many is not wholly known.
@@ -45,21 +46,14 @@ ONE_IN = 4
 SLIDES = ("mixed", "ehl")
 
 
-@dataclass(frozen=True)
-class Asked:
+class Asked(Case):
     """A machine without the grip of its roll, what is asked of it, and what is not known of it."""
-
-    train: hersey.Drivetrain
-    drag: hersey.Drag
-    target: float
-    limits: Limits
-    roll_radius: float
-    uncertainty: dict[str, Uncertainty]
 
     @property
     def bears(self) -> float:
         """The spring force at which the roll slips or the motor gives up, N."""
         assert self.limits.motor_torque is not None
+        assert self.roll_radius is not None
         return min(float(self.limits.grip or math.inf), self.limits.motor_torque / self.roll_radius)
 
 
@@ -87,21 +81,7 @@ def asked(number: int) -> Asked:
     )
     known = number % ONE_IN
     shares = {**given.uncertainty, "rest_force": Uncertainty(share=rng.uniform(0.05, 0.3))}
-    return Asked(given.train, drag, given.target, limits, radius, {} if known else shares)
-
-
-def planned(given: Asked, seed: int) -> Plan:
-    """Return the plan of a machine."""
-    return plan_profile(
-        given.train,
-        given.drag,
-        target_speed=given.target,
-        limits=given.limits,
-        roll_radius=given.roll_radius,
-        uncertainty=given.uncertainty,
-        confidence=CONFIDENCE,
-        seed=seed,
-    )
+    return Asked(given.train, drag, given.target, limits, None, {} if known else shares, radius)
 
 
 def followed(given: Asked, plan: Plan) -> tuple[float, int]:
@@ -300,22 +280,26 @@ def main() -> None:
     """Print one line of JSON per machine, or the table of such lines."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--cases", type=int, default=200)
-    parser.add_argument("--first", type=int, default=0)
-    parser.add_argument("--step", type=int, default=1)
-    parser.add_argument("--closure", help="only machines of this closure: with stiction a plan takes minutes")
     parser.add_argument("--seconds", type=float, default=600.0)
+    parser.add_argument("--out", type=Path)
     parser.add_argument("--table", type=Path)
     given = parser.parse_args()
     if given.table is not None:
         print(table([json.loads(line) for line in given.table.read_text().splitlines()]))
         return
+    before = given.out.read_text().splitlines() if given.out is not None and given.out.exists() else []
+    done = {json.loads(line)["case"] for line in before}
     end = time.monotonic() + given.seconds
-    for number in range(given.first, given.cases, given.step):
+    for number in range(given.cases):
         if time.monotonic() > end:
             break
-        if given.closure not in (None, asked(number).drag.closure):
-            continue
-        print(json.dumps(row_of(number)), flush=True)
+        if number not in done:
+            line = json.dumps(row_of(number))
+            if given.out is None:
+                print(line, flush=True)
+            else:
+                with given.out.open("a") as file:
+                    file.write(line + "\n")
 
 
 if __name__ == "__main__":

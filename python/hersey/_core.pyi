@@ -70,6 +70,7 @@ __all__ = [
     "shore_a_modulus",
     "simulate",
     "soft_traction",
+    "start_ups",
     "starvation",
     "steady_start",
     "stick_slip",
@@ -520,6 +521,18 @@ def simulate(
     most_steps: int,
     heat: _Heat | None = None,
 ) -> Trajectory: ...
+def start_ups(
+    belts: Sequence[tuple[_Train, Law]],
+    drives: Sequence[tuple[_Schedule, float]],
+    temperature: _Schedule | None,
+    heat: _Heat | None,
+    asked: tuple[float, float, float],
+    peak: bool,
+    allowed: int,
+    tolerance: float,
+    threads: int,
+    most_steps: int,
+) -> tuple[list[float], list[float], list[str]]: ...
 def steady_start(train: _Train, drag: Law, speed: float, nudged: bool) -> State: ...
 def stick_slip(
     train: _Train,

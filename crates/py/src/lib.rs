@@ -11,6 +11,7 @@ mod mixed;
 mod motion;
 mod reynolds;
 mod stability;
+mod start_up;
 
 use pyo3::prelude::*;
 
@@ -41,6 +42,8 @@ mod _core {
     use super::reynolds::{Exponents, LineContact, line_contact};
     #[pymodule_export]
     use super::stability::{Band, Bands, Swings, band, bands, swings};
+    #[pymodule_export]
+    use super::start_up::start_ups;
 
     use numpy::PyArrayMethods;
     use pyo3::prelude::*;

@@ -13,7 +13,7 @@ use crate::errors::{raised, refused};
 use crate::interrupt::interruptible;
 
 /// Times, values, and cubics between the times unless the values are joined by straight lines.
-type ScheduleArguments = (Vec<f64>, Vec<f64>, Option<Vec<[f64; 4]>>);
+pub type ScheduleArguments = (Vec<f64>, Vec<f64>, Option<Vec<[f64; 4]>>);
 
 /// The changes of mode, as lists of one length.
 #[pyclass(frozen, get_all, module = "hersey._core")]
@@ -105,7 +105,7 @@ pub fn mode_name(mode: Mode) -> &'static str {
     }
 }
 
-fn schedule_from(
+pub fn schedule_from(
     name: &'static str,
     (times, values, cubics): ScheduleArguments,
 ) -> PyResult<Schedule> {
@@ -121,7 +121,7 @@ fn schedule_from(
 
 /// Heat capacities, exchange, losses, surroundings, heater (its power, or temperature, most power and gain), what is taken
 /// from each body, temperatures at the start, and zero of the temperature scale of the drag law.
-type HeatArguments = (
+pub type HeatArguments = (
     [f64; 2],
     f64,
     [f64; 2],
@@ -132,7 +132,7 @@ type HeatArguments = (
     f64,
 );
 
-fn heat_from(arguments: HeatArguments) -> PyResult<HeatBalance> {
+pub fn heat_from(arguments: HeatArguments) -> PyResult<HeatBalance> {
     let (capacity, exchange, loss, surroundings, heater, load, start, temperature_zero) = arguments;
     let heater = match heater {
         (Some(power), _) => Heater::Power(schedule_from("heater power", power)?),

@@ -262,7 +262,7 @@ impl<'a> Laps<'a> {
             return Some(StickSlipCycle::slipping(belt_speed, stuck, stretch, self.count));
         }
         let still = piece.duration.is_infinite()
-            || is_steady(piece, self.train, self.drag, self.drive_speed);
+            || is_steady(&piece.start, self.train, self.drag, self.drive_speed);
         if still {
             let stretch = steady_stretch(piece, self.train, self.drag, self.drive_speed);
             return Some(StickSlipCycle::steady(self.drive_speed, stretch, self.count));
@@ -375,29 +375,41 @@ impl<'a> Laps<'a> {
 /// On a rising branch the energy of the deviation, `m (u - v)^2/2 + k (s - s*)^2/2`, falls at the rate
 /// `(F(u) - F(v)) (u - v) >= 0`; once it is too small to carry the belt down to the transition speed, the belt
 /// never leaves the branch again and the deviation dies out.
-fn is_steady(piece: &Piece, train: &Drivetrain, drag: &Drag, drive_speed: f64) -> bool {
-    let (belt_speed, pull) = piece.at(0.0);
-    if piece.start.creeping {
+fn is_steady(phase: &Phase, train: &Drivetrain, drag: &Drag, drive_speed: f64) -> bool {
+    if phase.creeping {
+        let belt_speed = phase.direction * phase.speed;
         return (belt_speed - drive_speed).abs() <= STEADY * drag.stick_speed();
     }
+    swing_that_dies_out(phase, train, drag, drive_speed).is_some()
+}
+
+/// The most that the spring will ever pull on a belt that slides with the drive for good, by that energy; none if it may not.
+pub(super) fn swing_that_dies_out(
+    phase: &Phase,
+    train: &Drivetrain,
+    drag: &Drag,
+    drive_speed: f64,
+) -> Option<f64> {
     // only the rest of the drive makes drag rise below the transition
-    if piece.start.mode != Mode::Ehl && drag.rest().damping == 0.0 {
-        return false;
+    if phase.mode != Mode::Ehl && drag.rest().damping == 0.0 {
+        return None;
     }
+    let (belt_speed, pull) = (phase.direction * phase.speed, phase.direction * phase.pull);
     let (speed, foot) = (drive_speed.abs(), drag.rising_from());
     // bristles remember: their force lags behind the speed, and can feed a swing
     let memory = drag.closure().has_memory();
     let rising = speed >= foot && !memory;
     let margin = speed - if rising { foot } else { drag.transition_speed() };
-    let above = piece.start.mode == Mode::Ehl || (rising && belt_speed.abs() > foot);
+    let above = phase.mode == Mode::Ehl || (rising && belt_speed.abs() > foot);
     if !above || margin < 0.0 {
-        return false;
+        return None;
     }
     let reach = if rising { margin.max(STEADY * speed) } else { STEADY * speed };
     let steady_pull = drag.force(drive_speed);
     let off = pull - steady_pull;
     let energy = train.mass() * (belt_speed - drive_speed).powi(2) + off * off / train.stiffness();
-    energy < train.mass() * reach * reach && steady_pull.abs() <= train.grip()
+    let dies = energy < train.mass() * reach * reach && steady_pull.abs() <= train.grip();
+    dies.then(|| steady_pull.abs() + (train.stiffness() * energy).sqrt())
 }
 
 /// Whether a belt on which the roll slips has come to the speed at which drag is what the grip bears, for good.

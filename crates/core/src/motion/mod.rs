@@ -21,6 +21,7 @@
 //! | `ensemble`    | what thousands of belts settle to                                         |
 //! | `lap`         | one lap: its sections, its extremes, and where the laps are heading       |
 //! | `cycle`       | what the motion settles to: steady sliding, oscillation, stick-slip       |
+//! | `start_up`    | from when on a belt that starts from rest slides for good                 |
 //!
 //! The state is the pull of the spring and the belt speed (and the deflection of the bristles, with
 //! `LuGre`). A torque on a rotor is the same equation: `J` for the mass, `K` for the stiffness.
@@ -38,6 +39,7 @@ mod polynomial;
 mod runge_kutta;
 mod schedule;
 mod sharing;
+mod start_up;
 mod steps;
 mod surroundings;
 mod system;
@@ -51,6 +53,7 @@ pub use event::{Event, Guard};
 pub use heat::{HeatBalance, Heater};
 pub(crate) use hybrid::first_slide;
 pub use schedule::{Cubic, Schedule};
+pub use start_up::{Ending, StartUp, Started, start_up};
 pub(crate) use system::checked_tolerance;
 pub use system::{Drive, Drivetrain, Integrator, NUDGE, Start, System};
 pub use trajectory::{Energy, Trajectory, simulate};

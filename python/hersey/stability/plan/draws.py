@@ -16,10 +16,12 @@ from hersey.machine.uncertainty import Uncertainty
 from hersey.motion.drag import BESIDE, AnyDrag
 from hersey.motion.parameters import OF_THE_BELT
 from hersey.motion.simulation import Drivetrain
-from hersey.stability.plan.trial import MachineSample, Shape, TemperatureProfile
+from hersey.stability.plan.trial import COARSE, MachineSample, Shape, TemperatureProfile, outcomes
 
 #: Relative distance that a profile for known parameters keeps from failure, in each of them.
 _EDGE = 1e-3
+#: Machines that say soon whether a profile may work on all: so many, and one in so many.
+_FEW, _ONE_IN = 6, 16
 
 
 def needed(confidence: float, level: float, failures: int) -> int:
@@ -113,13 +115,31 @@ class Trials:
         self.allowed, self.thermal, self.force_limit = allowed, thermal, force_limit
         self.count = 0
 
-    def time(self, shape: Shape, best: float = math.inf) -> float:
-        """Return the time at which all but the allowed machines are ready, infinite if not below ``best``."""
-        ready, late = [], []
-        for i, machine in enumerate(self.machines):
+    @property
+    def few(self) -> int:
+        """How many machines, those that refused others before, say soon whether a profile may work on all."""
+        count = len(self.machines)
+        return min(_FEW + 2 * self.allowed + count // _ONE_IN, count)
+
+    def time(
+        self, shape: Shape, best: float = math.inf, *, few: bool = False, tolerance: float = COARSE
+    ) -> float:
+        """Return the time at which all but the allowed machines are ready, infinite if not below ``best``.
+
+        ``few``: of those that refused others before only, so that it is no later than that of all.
+        """
+        found = outcomes(
+            self.machines[: self.few] if few else self.machines,
+            [shape],
+            self.thermal,
+            self.force_limit,
+            latest=best,
+            allowed=self.allowed,
+            tolerance=tolerance,
+        )
+        ready, late = [outcome.ready for outcome in found], []
+        for i, time in enumerate(ready):
             self.count += 1
-            time = machine.trial(shape, self.thermal, self.force_limit).ready
-            ready.append(time)
             if time >= best:
                 late.append(i)
                 if len(late) > self.allowed:
@@ -129,8 +149,8 @@ class Trials:
 
     def peak(self, shape: Shape) -> float:
         """Return the spring force that all but the allowed machines keep below; infinite if it fails."""
-        outcomes = [m.trial(shape, self.thermal, force=True) for m in self.machines]
-        return self.kept([f.peak_force if f.ready < math.inf else math.inf for f in outcomes])
+        found = outcomes(self.machines, [shape], self.thermal, force=True)
+        return self.kept([f.peak_force if f.ready < math.inf else math.inf for f in found])
 
     def kept(self, values: Sequence[float]) -> float:
         """Return the value that all but the allowed machines keep below."""

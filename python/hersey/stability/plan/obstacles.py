@@ -154,7 +154,7 @@ def _of_force(search: Search, reach: Reach) -> list[Obstacle]:
     starting = _starting_force(search.trials)
     free = _relaxed(search, search.room, math.inf)
     probes = _FEW_PROBES if starting > reach.force else PROBES
-    easiest = free.least(lambda _, outcome: outcome.peak_force, probes)
+    easiest = free.least(probes=probes)
     if easiest is None:
         return [
             _not_started(n, limit, starting, reach) for n, limit in reach.forces.items() if starting > limit
@@ -182,12 +182,12 @@ def _of_room(search: Search, reach: Reach, greatest: float) -> list[Obstacle]:
         free = _relaxed(
             search, replace(search.room, speed=max(greatest, reach.speed)), search.trials.force_limit
         )
-        least = free.least(lambda shape, _: shape.peak)
+        least = free.least(lambda shape: shape.peak)
         if least is not None and (peak := free.slower(least[1]).peak) > reach.speed:
             reasons.append(_obstacle("speed", reach.speed, peak))
     if reach.acceleration < math.inf:
         free = _relaxed(search, replace(search.room, acceleration=math.inf), search.trials.force_limit)
-        least = free.least(lambda shape, _: shape.acceleration)
+        least = free.least(lambda shape: shape.acceleration)
         if least is not None and reach.acceleration < least[0] < math.inf:
             reasons.append(_obstacle("acceleration", reach.acceleration, least[0]))
     return reasons

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -29,6 +29,7 @@ from hersey.stability.plan.trial import (
     Outcome,
     Shape,
     TemperatureProfile,
+    outcomes,
     rounded,
 )
 from hersey.units import takes_si
@@ -233,23 +234,25 @@ class Unknown:
         laps = thermal.end / machines[0].lap
         long = _LONG if laps < _LONG_LAPS else 1
 
-        def tried(machine: MachineSample, until: float) -> Outcome:
-            return machine.trial(shape, thermal, force_limit, force=True, until=until, tolerance=_TIGHT)
+        def tried(machines: Sequence[MachineSample], until: float = 0.0) -> list[Outcome]:
+            return outcomes(
+                machines, [shape], thermal, force_limit, force=True, until=until, tolerance=_TIGHT
+            )
 
-        outcomes = [tried(machine, thermal.end if i < long else 0.0) for i, machine in enumerate(machines)]
-        nominal = tried(MachineSample(self.train, self.drag), 0.0)
-        failures = Counter(_failures(outcomes, duration))
-        good = len(outcomes) - failures.total()
-        share = good / len(outcomes)
+        found = [*tried(machines[:long], thermal.end), *tried(machines[long:])]
+        [nominal] = tried([MachineSample(self.train, self.drag)])
+        failures = Counter(_failures(found, duration))
+        good = len(found) - failures.total()
+        share = good / len(found)
         return Proof(
             duration=duration,
             share=share,
-            share_low=share if len(outcomes) == 1 else lower_bound(good, len(outcomes), _STATED),
-            draws=len(outcomes),
+            share_low=share if len(found) == 1 else lower_bound(good, len(found), _STATED),
+            draws=len(found),
             failures=dict(sorted(failures.items())),
-            peak_force=float(np.quantile([f.peak_force for f in outcomes], confidence, method="higher")),
+            peak_force=float(np.quantile([f.peak_force for f in found], confidence, method="higher")),
             accepted=nominal.ready < math.inf
-            and (good == 1 if len(outcomes) == 1 else lower_bound(good, len(outcomes), _LEVEL) >= confidence),
+            and (good == 1 if len(found) == 1 else lower_bound(good, len(found), _LEVEL) >= confidence),
             machines=machines,
         )
 

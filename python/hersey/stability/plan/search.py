@@ -1,7 +1,8 @@
 """The quickest profile: a grid in the order of its duration, then ever finer steps around the best found.
 
 A profile is first tried at the nominal parameters, which refuse most, then on all drawn machines, those that
-refused others before first. It counts only if it works on all but the few allowed.
+refused others before first. It counts only if it works on all but the few allowed. Steps of the refinement
+are tried on those that refused others alone, and the last of them on all.
 """
 
 from __future__ import annotations
@@ -15,7 +16,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hersey.stability.plan.draws import Trials
-from hersey.stability.plan.trial import ROUNDING, MachineSample, Outcome, Shape, TemperatureProfile
+from hersey.stability.plan.trial import (
+    COARSE,
+    FINE,
+    ROUNDING,
+    MachineSample,
+    Outcome,
+    Shape,
+    TemperatureProfile,
+    outcomes,
+)
 
 Progress = Callable[[int, int], object]
 
@@ -25,6 +35,8 @@ _HOLDS = (0.0, 0.1, 0.2, 0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 3.0, 5.0, 8.0)
 _FALLS = (0.0, 0.1, 0.2, 0.35, 0.5, 0.75, 1.0, 1.5, 2.5, 4.0, 7.0)
 #: Factors on these durations: each only if those before find nothing.
 _STRETCHES = (1.0, 6.0, 40.0)
+#: Shares of them in the profiles tried for the number that would do: the longest take the longest.
+_SHARES = (0.6, 0.3, 0.1)
 #: Peak speeds of the grid between target and greatest.
 _PEAKS = 10
 #: Profiles tried at random below the best found, and steps of the refinement as shares of its duration.
@@ -39,7 +51,9 @@ _KEPT = 12
 #: Best profiles refined, others of the grid so much slower at most, steps at random, draws of a step.
 _BEST, _OTHERS, _VALLEYS, _TRIES, _DRAWS = 3, 9, 1.15, 160, 6
 #: Profiles tried for the number that would do, those tried on all machines, and waits among them.
-PROBES, _PROBED, _FEW_WAITS = 4000, 200, 5
+PROBES, _PROBED, _FEW_WAITS = 1500, 200, 5
+#: Profiles followed at once, spread over the cores: of the grid, and of those probed.
+_TOGETHER, _PROBED_TOGETHER = 16, 64
 #: Speeds and durations within this factor are the same, and relative time that a simpler profile may cost.
 _SAME, _SAME_TIME = 1.01, 1e-5
 #: Waits of the grid over a temperature profile, and share of the profile's duration to which a wait is found.
@@ -91,6 +105,8 @@ class Search:
         self.time = math.inf
         self.working: list[tuple[float, Shape]] = []
         self.known: list[Shape] = []
+        self.refused: set[Shape] = set()
+        self._grids: dict[float, list[Shape]] = {}
         self.count = 0
 
     def run(self, *, again: bool = False) -> Shape | None:
@@ -114,6 +130,8 @@ class Search:
             self._descend(valley)
         self._wander((self.time, self.best), rng)
         self._simplify()
+        fine = self.trials.time(self.best, tolerance=FINE)
+        self.time = fine if fine < math.inf else self.time
         return self.best
 
     def again(self, machines: Sequence[MachineSample], allowed: int) -> Shape | None:
@@ -122,6 +140,7 @@ class Search:
         self.trials = Trials(everyone, allowed, self.thermal, self.trials.force_limit)
         self.known += [shape for _, shape in self._apart(_KEPT)]
         self.working, self.best, self.time = [], None, math.inf
+        self.refused = set()
         longer = {
             replace(shape, rise=shape.rise * up, hold=shape.hold * on, fall=shape.fall * down)
             for shape in self.known
@@ -132,28 +151,44 @@ class Search:
         return self.run(again=True)
 
     def least(
-        self, demand: Callable[[Shape, Outcome], float], probes: int = PROBES
+        self, demand: Callable[[Shape], float] | None = None, probes: int = PROBES
     ) -> tuple[float, Shape] | None:
-        """Return the profile that works with the least demand on the drive, and the demand at the nominal.
+        """Return the profile that works with the least demand on the drive, and that demand.
 
-        Of so many profiles of the grid only: the number that would do, not the least possible.
+        Without one it is the spring force at the nominal. Of so many profiles of the grid only: the number
+        that would do, not the least possible.
         """
-        rows: list[tuple[float, Shape]] = []
-        grid = [shape for stretch in _STRETCHES for shape in self.grid(stretch)]
         waits = self.waits()
         waits = waits[:: max(1, len(waits) // _FEW_WAITS)]
-        few = max(1, len(grid) * len(waits) // probes)
-        tried = [(wait, shape) for wait in waits for shape in grid][::few]
-        for i, (wait, shape) in enumerate(tried):
-            if i % 64 == 0:
-                self._report(i, len(tried))
-            moved = replace(shape, wait=wait)
-            outcome = self.nominal.trial(moved, self.thermal, self.trials.force_limit, force=True)
-            if outcome.ready < math.inf:
-                rows.append((demand(moved, outcome), moved))
-        rows.sort(key=_time)
-        even = rows[:: max(1, len(rows) // _PROBED)]
+        tried = []
+        for stretch, share in zip(_STRETCHES, _SHARES, strict=True):
+            rows = list(itertools.product(waits, self.grid(stretch)))
+            few = max(1, math.ceil(len(rows) / (probes * share)))
+            tried += [replace(shape, wait=wait) for wait, shape in rows[::few]]
+        if demand is not None:
+            tried.sort(key=demand)
+        working: list[tuple[float, Shape]] = []
+        for i in range(0, len(tried), _PROBED_TOGETHER):
+            self._report(i, len(tried))
+            for shape, outcome in self._probed(tried[i : i + _PROBED_TOGETHER], force=demand is None):
+                if outcome.ready == math.inf:
+                    continue
+                if demand is None:
+                    working.append((outcome.peak_force, shape))
+                elif self.trials.time(shape) < math.inf:
+                    return demand(shape), shape
+        working.sort(key=_time)
+        even = working[:: max(1, len(working) // _PROBED)]
         return next((row for row in even if self.trials.time(row[1]) < math.inf), None)
+
+    def _probed(self, shapes: Sequence[Shape], *, force: bool) -> list[tuple[Shape, Outcome]]:
+        """What profiles do to the nominal machine; those of one wait go together."""
+        limit, found = self.trials.force_limit, []
+        for wait in dict.fromkeys(shape.wait for shape in shapes):
+            same = [shape for shape in shapes if shape.wait == wait]
+            done = outcomes([self.nominal], same, self.thermal, limit, force=force, tolerance=COARSE)
+            found += list(zip(same, done, strict=True))
+        return found
 
     def slower(self, shape: Shape) -> Shape:
         """Return the profile with the least peak speed, to a per cent, that works with the same ramps."""
@@ -169,6 +204,11 @@ class Search:
 
     def grid(self, stretch: float = 1.0) -> list[Shape]:
         """Return the profiles of the grid that the room allows, quickest first, without waits."""
+        if stretch not in self._grids:
+            self._grids[stretch] = self._made(stretch)
+        return self._grids[stretch]
+
+    def _made(self, stretch: float) -> list[Shape]:
         lap = self.nominal.lap * stretch
         peaks = np.linspace(self.target, self.room.speed, _PEAKS + 1)[1:].tolist()
         if not self.room.speed > self.target:
@@ -194,18 +234,52 @@ class Search:
     def attempt(self, shape: Shape, below: float = math.inf) -> float:
         """Return the time of a profile, infinite if it fails or is not below that of the best, or another."""
         below = self.time if below == math.inf else below
-        if shape.end >= below or not self.room.allows(shape):
+        if not self._is_worth(shape, below):
+            return math.inf
+        return self._on_all(shape, self._alone([shape], below)[0], below)
+
+    def _may(self, shape: Shape, below: float) -> float:
+        """Time of a profile on the machines that refused others before, infinite if not below another."""
+        if not self._is_worth(shape, below):
             return math.inf
         self.count += 1
-        if self.nominal.trial(shape, self.thermal, self.trials.force_limit).ready >= below:
-            return math.inf
-        time = self.trials.time(shape, below)
+        alone = self._alone([shape], below)[0]
+        return self.trials.time(shape, below, few=True) if alone < below else math.inf
+
+    def _confirmed(self, way: list[tuple[float, Shape]]) -> tuple[float, Shape]:
+        """Return the quickest of ever quicker profiles that works on all machines, as the first does."""
+        while len(way) > 1:
+            _, shape = way.pop()
+            time = self.trials.time(shape, way[0][0])
+            if time < way[0][0]:
+                self._keep(time, shape)
+                return time, shape
+        return way[0]
+
+    def _is_worth(self, shape: Shape, below: float) -> bool:
+        return shape not in self.refused and shape.end < below and self.room.allows(shape)
+
+    def _alone(self, shapes: Sequence[Shape], below: float = math.inf) -> list[float]:
+        """Times at which the nominal machine is ready with each of some profiles of one wait."""
+        limit = self.trials.force_limit
+        found = outcomes([self.nominal], shapes, self.thermal, limit, latest=below, tolerance=COARSE)
+        return [outcome.ready for outcome in found]
+
+    def _on_all(self, shape: Shape, alone: float, below: float) -> float:
+        """Time of a profile on all machines, after that of the nominal one; infinite if not below another."""
+        self.count += 1
+        time = self.trials.time(shape, below) if alone < below else math.inf
         if time >= below:
+            if below == math.inf:
+                self.refused.add(shape)
             return math.inf
+        self._keep(time, shape)
+        return time
+
+    def _keep(self, time: float, shape: Shape) -> None:
         self.working.append((time, shape))
         if time < self.time:
             self.best, self.time = shape, time
-        return time
 
     def _report(self, done: int, total: int) -> None:
         if self.progress is not None:
@@ -227,13 +301,16 @@ class Search:
     def _at_wait(self, grid: Sequence[Shape], wait: float, done: int, total: int) -> bool:
         """Try the grid after a wait; whether something worked that was quicker than the best."""
         before = self.time
-        for j, shape in enumerate(grid):
-            moved = replace(shape, wait=wait)
-            if moved.end >= self.time:
+        for j in range(0, len(grid), _TOGETHER):
+            self._report(done + j, total)
+            moved = [replace(shape, wait=wait) for shape in grid[j : j + _TOGETHER]]
+            if moved[0].end >= self.time:
                 break
-            if j % 64 == 0:
-                self._report(done + j, total)
-            self.attempt(moved, self.time * _NEAR)
+            below = self.time * _NEAR
+            worth = [shape for shape in moved if self._is_worth(shape, below)]
+            for shape, alone in zip(worth, self._alone(worth, below), strict=True):
+                if shape.end < self.time:
+                    self._on_all(shape, alone, self.time * _NEAR)
         return self.time < before
 
     def _may_start(self, wait: float) -> bool:
@@ -312,10 +389,11 @@ class Search:
 
     def _wander(self, start: tuple[float, Shape], rng: np.random.Generator) -> tuple[float, Shape]:
         """Step at random, far and near, and keep what makes the profile quicker."""
-        time, shape = start
+        way = [start]
         span = max(self.room.speed - self.target, 0.0)
         low, high = np.log(_STEPS[-1]), np.log(2.0 * _STEPS[0])
         for _ in range(_TRIES):
+            time, shape = way[-1]
             moved = shape
             for _ in range(_DRAWS):
                 step = np.exp(rng.uniform(low, high))
@@ -325,19 +403,18 @@ class Search:
                 moved = self._moved(shape, up * span, rise * size, hold * size, fall * size, wait)
                 if moved.end < time:
                     break
-            quicker = self.attempt(moved, time)
+            quicker = self._may(moved, time)
             if quicker < time:
-                time, shape = quicker, moved
-        return time, shape
+                way.append((quicker, moved))
+        return self._confirmed(way)
 
     def _descend(self, valley: tuple[float, Shape]) -> None:
         """Step along every combination of the numbers of a profile, ever finer."""
-        time, shape = valley
         for step in _STEPS:
-            moved: tuple[float, Shape] | None = (time, shape)
-            while moved is not None:
-                time, shape = moved
-                moved = self._stepped(time, shape, step)
+            way = [valley]
+            while (moved := self._stepped(*way[-1], step)) is not None:
+                way.append(moved)
+            valley = self._confirmed(way)
 
     def _simplify(self) -> None:
         """Leave out what is too short to matter: an overshoot, a hold."""
@@ -357,7 +434,7 @@ class Search:
         span, size = step * max(self.room.speed - self.target, 0.0), step * shape.ramps
         for up, rise, hold, fall in itertools.product((0, -1, 1), repeat=4):
             moved = self._moved(shape, up * span, rise * size, hold * size, fall * size, 0.0)
-            quicker = self.attempt(moved, time)
+            quicker = self._may(moved, time)
             if quicker < time:
                 return quicker, moved
         return None

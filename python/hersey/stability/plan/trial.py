@@ -7,6 +7,8 @@ of the belt, followed until a whole lap has passed without sticking and then to 
 from __future__ import annotations
 
 import math
+import os
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -24,14 +26,13 @@ from hersey.motion.simulation import Drivetrain
 _DIGITS = 6
 #: Relative error of sums and quotients of rounded numbers.
 ROUNDING = 1e-9
-#: Laps followed after the last ramp at first, laps without sticking that end the trial, doublings at most.
-_WATCH, _CALM, _DOUBLINGS = 3.0, 1.5, 6
-#: Samples per lap from which the greatest spring force is found, cubics between them.
-_PER_LAP = 24
-#: Modes in which the belt does not slide.
-_HELD = ("stuck", "microslip")
-#: The event of a spring force that reaches the limit, and what is said of it.
-_GRIP_LOST, FORCE = "grip_lost", "force"
+#: Threads over which the machines are spread; what is found does not depend on it.
+_THREADS = os.cpu_count() or 1
+#: Tolerance of the motions of the search, and of what is said of them.
+COARSE, FINE = 1e-7, 1e-9
+#: What is said of a spring force that reaches the limit, and of other endings of a trial.
+FORCE = "force"
+_WHY = {"grip_lost": FORCE, "still_sticking": "still sticking", "late": "sticks longer"}
 
 
 @dataclass(frozen=True)
@@ -94,11 +95,11 @@ def rounded(value: float, *, up: bool = False) -> float:
     """Return a duration or speed with the digits of a table."""
     if not value > 0:
         return 0.0
+    near = float(f"{value:.{_DIGITS}g}")
+    if not up or near >= value * (1.0 - ROUNDING):
+        return near
     unit = 10.0 ** (math.floor(math.log10(value)) - _DIGITS + 1)
-    count = math.ceil(value / unit * (1.0 - ROUNDING)) if up else round(value / unit)
-    near = float(f"{count * unit:.{_DIGITS}g}")
-    enough = not up or near >= value * (1.0 - ROUNDING)
-    return near if enough else float(f"{(count + 1) * unit:.{_DIGITS}g}")
+    return float(f"{near + unit:.{_DIGITS}g}")
 
 
 def _slope(speed: float, duration: float) -> float:
@@ -208,67 +209,17 @@ class MachineSample:
         force_limit: float = math.inf,
         *,
         force: bool = False,
-        until: float = 0.0,
-        tolerance: float = 1e-9,
+        tolerance: float = FINE,
     ) -> Outcome:
-        """Return what the profile does to this machine; followed at least ``until`` that time.
+        """Return what the profile does to this machine."""
+        return outcomes([self], [shape], thermal, force_limit, force=force, tolerance=tolerance)[0]
 
-        The motion is that of a roll whose grip is the limit of force: where the force passes it is an event
-        located to rounding, and up to there the roll grips, so that a grip changes nothing.
-        """
-        drive = shape.points(waited=False)
-        train = self._train(force_limit)
-        watch = _WATCH * self.lap
-        peak = math.nan
-        for _ in range(_DOUBLINGS):
-            duration = max(shape.ramps + watch, until - shape.wait)
-            samples = math.ceil(duration / self.lap * _PER_LAP) + 1 if force else 2
-            run = _core.simulate(
-                train,
-                self._law,
-                ("speed", (*drive, None)),
-                thermal.arguments(shape.wait, self.drag.temperature_zero),
-                (0.0, 0.0),
-                duration,
-                samples,
-                tolerance,
-                "adaptive",
-                MOST_STEPS,
-            )
-            if force:
-                turned = greatest_stretch(run.time, run.belt_speed, run.stretch, drive)
-                at_events = (abs(stretch) for stretch in run.events.stretch)
-                peak = min(self.train.stiffness * max(turned, *at_events, 0.0), force_limit)
-            if _GRIP_LOST in run.events.guard:
-                return Outcome(math.inf, peak, FORCE)
-            state = float(run.belt_speed[-1]), float(run.stretch[-1])
-            kind = self._settled(train, thermal.at(shape.wait + duration), shape.target, state, tolerance)
-            if kind != "steady_sliding":
-                return Outcome(math.inf, peak, kind.replace("_", "-"))
-            released, held = _last_held(run.events)
-            if not held and duration - released >= _CALM * self.lap:
-                return self._for_good(shape, thermal, force_limit, max(released, shape.ramps), peak)
-            watch *= 2.0
-        return Outcome(math.inf, peak, "still sticking")
-
-    def _train(self, force_limit: float) -> tuple[float, float, float | None]:
+    def belt(self, force_limit: float) -> tuple[tuple[float, float, float | None], _core.Law]:
+        """Return the machine as the core takes it: the limit of force is the grip of the roll."""
         grip = force_limit if force_limit < math.inf else None
-        return float(self.train.stiffness), float(self.train.mass), grip
+        return (float(self.train.stiffness), float(self.train.mass), grip), self._law
 
-    def _settled(
-        self,
-        train: tuple[float, float, float | None],
-        temperature: float | None,
-        target: float,
-        state: tuple[float, float],
-        tolerance: float,
-    ) -> str:
-        """What the motion settles to from a state, temperature held."""
-        zero = self.drag.temperature_zero
-        law = self._law if temperature is None else self._law.at(temperature - zero)
-        return _core.stick_slip(train, law, target, state, None, tolerance, MOST_STEPS).kind
-
-    def _for_good(
+    def for_good(
         self,
         shape: Shape,
         thermal: TemperatureProfile,
@@ -287,33 +238,46 @@ class MachineSample:
         return Outcome(shape.wait + ready, peak, "")
 
 
-def _last_held(events: _core.Events) -> tuple[float, bool]:
-    """When the belt last began to slide, and whether it is held at the end."""
-    if not events.time or events.to_mode[-1] in _HELD:
-        return math.inf, True
-    begun = zip(reversed(events.time), reversed(events.from_mode), strict=True)
-    return next((time for time, mode in begun if mode in _HELD), 0.0), False
+def outcomes(
+    machines: Sequence[MachineSample],
+    shapes: Sequence[Shape],
+    thermal: TemperatureProfile,
+    force_limit: float = math.inf,
+    *,
+    latest: float = math.inf,
+    allowed: int | None = None,
+    force: bool = False,
+    until: float = 0.0,
+    tolerance: float = FINE,
+) -> list[Outcome]:
+    """Return what a profile does to each machine, in order, until more than ``allowed`` of them fail.
 
-
-def greatest_stretch(
-    time: FloatArray, speed: FloatArray, stretch: FloatArray, drive: tuple[list[float], list[float]]
-) -> float:
-    """Return the greatest magnitude of the stretch, from samples and the cubics between them."""
-    step = float(time[1] - time[0])
-    rate = np.interp(time, *drive) - speed
-    best = float(np.abs(stretch).max())
-    for i in np.flatnonzero(rate[:-1] * rate[1:] < 0).tolist():
-        rows = stretch[i], stretch[i + 1], rate[i] * step, rate[i + 1] * step
-        best = max(best, abs(_turning_value(*map(float, rows))))
-    return best
-
-
-def _turning_value(low: float, high: float, low_slope: float, high_slope: float) -> float:
-    """Value of the cubic of given ends and slopes on [0, 1] where its slope changes sign."""
-    a = low_slope + high_slope - 2.0 * (high - low)
-    b = 3.0 * (high - low) - 2.0 * low_slope - high_slope
-    q = -(b + math.copysign(math.sqrt(max(b * b - 3.0 * a * low_slope, 0.0)), b))
-    for x in (q / (3.0 * a) if a else math.nan, low_slope / q if q else math.nan):
-        if 0.0 <= x <= 1.0:
-            return low + x * (low_slope + x * (b + x * a))
-    return max(low, high, key=abs)
+    Or what each profile, of one wait and target, does to one machine. Followed at least ``until`` that time.
+    What is not ready before ``latest`` fails. The motion is that of a roll whose grip is the limit of force:
+    where the force passes it is an event located to rounding, and up to there the roll grips, so that a grip
+    changes nothing.
+    """
+    if not machines or not shapes:
+        return []
+    first = shapes[0]
+    released, peaks, endings = _core.start_ups(
+        [machine.belt(force_limit) for machine in machines],
+        [((*shape.points(waited=False), None), shape.ramps) for shape in shapes],
+        thermal.arguments(first.wait, machines[0].drag.temperature_zero),
+        None,
+        (first.target, until - first.wait, latest - first.wait),
+        force,
+        max(len(machines), len(shapes)) if allowed is None else allowed,
+        tolerance,
+        _THREADS,
+        MOST_STEPS,
+    )
+    found = []
+    for i, (at, pull, ending) in enumerate(zip(released, peaks, endings, strict=True)):
+        machine, shape = machines[i % len(machines)], shapes[i % len(shapes)]
+        peak = min(pull, force_limit) if force else math.nan
+        if ending:
+            found.append(Outcome(math.inf, peak, _WHY.get(ending, ending.replace("_", "-"))))
+        else:
+            found.append(machine.for_good(shape, thermal, force_limit, max(at, shape.ramps), peak))
+    return found
