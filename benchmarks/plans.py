@@ -33,7 +33,6 @@ from scipy.stats import binom
 
 import hersey
 from benchmarks.plan import CONFIDENCE, Case, case, planned
-from hersey.machine.limits import Limits
 from hersey.machine.uncertainty import Uncertainty
 from hersey.stability.plan import Plan
 from hersey.stability.plan.draws import drawn
