@@ -71,7 +71,7 @@ lowest: build ## the tests at the lowest versions of everything we depend on (mi
 	build/lowest/bin/python -m pytest -n auto -m "not slow" --ignore tests/browser
 
 fuzz: ## 100,000 random parameter sets through the motion core (minutes; FUZZ_SEED=1)
-	cargo test --release --quiet --package hersey-core --test fuzz -- --ignored --nocapture
+	cargo test --release --quiet --package hersey-core --test fuzz --test account -- --ignored --nocapture
 
 # SEED, COUNT and MINUTES say which inputs, how many, and for how long at most; what fails is kept in build/fuzz.
 SEED ?= 1

@@ -209,6 +209,14 @@ fn runs_that_went_wrong_are_accounted_for() {
     assert_eq!(run(seeds.into_iter(), true)["accounted for"], seeds.len());
 }
 
+/// Its steps shrink in heat until no time passes.
+#[test]
+fn a_motion_that_gets_nowhere_is_given_up_soon() {
+    if let Err(error) = outcome(0xb7_1b31, true) {
+        assert!(!matches!(error, Error::TooLong { .. }), "{error}");
+    }
+}
+
 #[test]
 fn the_work_of_random_runs_is_accounted_for() {
     let outcomes = run((0..240).map(|i| 0x5eed_0000 + i), false);
