@@ -95,7 +95,7 @@ fn a_law_that_ends_where_friction_leads_is_refused() {
     let heat = bodies(373.0, 20.0, Heater::Power(Schedule::constant(500.0)));
     let system = System::with_heat(train(), &drag, at_speed(0.1), heat).unwrap();
     let error = followed(&system, Start::REST, 10.0).unwrap_err();
-    assert!(error.to_string().starts_with("drag"), "{error}");
+    assert!(!error.is_unfinished(), "{error}");
     // a law whose rest of the drive would turn negative
     let law = TemperatureLaw { rest_slope: -0.01, ..TemperatureLaw::powers(373.0, -1.0, 2.0) };
     let drag = Drag::new(10.0, 0.1, -0.7, -1.4, 0.01, Closure::Stiction).unwrap();
