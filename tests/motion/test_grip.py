@@ -42,3 +42,16 @@ def test_a_spring_beyond_the_grip_slips_off_before_anything_moves() -> None:
     )
     assert run.spring_force[0] == pytest.approx(11.0)
     assert abs(run.energy.residual) < 1e-8
+
+
+@pytest.mark.parametrize("closure", ["retained", "stiction", "stribeck"])
+def test_a_stall_is_told_from_slipping_and_from_an_unsettled_motion(closure: str) -> None:
+    """A smooth closure never holds the belt: it creeps below the stick speed. That is a stall too."""
+    drag = hersey.Drag(**{**vars(_DRAG), "closure": closure})
+    train = hersey.Drivetrain(11e3, 2.0, grip=0.5 * drag.holding_force)
+    for start in ("rest", (0.0, 2e-3)):
+        assert hersey.stick_slip(train, drag, drive_speed=0.02, start=start).kind == "stalled"
+    swept = hersey.sweep(train, drag, drive_speed=[0.02], duration=2.0)
+    assert swept.kind.values.tolist() == ["stalled"]
+    heavy = hersey.sweep(hersey.Drivetrain(11e3, 2.0, grip=10.5), drag, drive_speed=[0.5], start="steady")
+    assert heavy.kind.values.tolist() == ["grip_slip"]

@@ -247,11 +247,9 @@ _MEANT = {
 class StickSlipCycle(Result):
     """What the motion settles to.
 
-    ``kind`` is ``steady_sliding``, ``oscillation`` (without sticking), ``stick_slip``, ``stalled`` (the belt
-    is held while the roll slips on it), ``grip_slip`` (it slides steadily, slower than the roll that slips
-    on it), or ``unsettled`` if no orbit closed within the laps allowed. Frequency is in laps per unit of
-    time, 0 in steady sliding; ``drag_work`` is the work against drag per lap and ``grip_slip_duration`` the
-    time per lap during which the roll slips, likewise. Bristles remember, so with them the motion may repeat
+    ``kind`` is one of `stick_slip`'s. Frequency is in laps per unit of time, 0 in motion without laps;
+    ``drag_work`` is the work against drag per lap and ``grip_slip_duration`` the time per lap during which
+    the roll slips, likewise. Bristles remember, so with them the motion may repeat
     itself after ``laps_per_period`` laps; then frequency, durations and work are those of the mean lap, and
     extremes those of all. With a smooth closure, which never holds the belt, the belt counts as stuck while
     it creeps below the stick speed.
@@ -468,6 +466,24 @@ def stick_slip(
     ``steady`` starts sliding with the drive but for a nudge of 0.1 % in speed, since an unstable balance is
     nothing that a belt can keep; a pair is the belt speed and the stretch to start from. ``most_steps`` is
     the work that the motion may take, as for `simulate`.
+
+    The kinds of motion, each that which goes on for good:
+
+    ``steady_sliding``
+        The belt is as fast as the drive; the roll grips it.
+    ``oscillation``
+        It swings without sticking; the roll may slip on it for a part of the lap.
+    ``stick_slip``
+        It sticks and slips in turn: it is held, or with a smooth closure creeps below the stick speed. The
+        roll may slip on it for a part of the lap (``grip_slip_duration``).
+    ``stalled``
+        The roll slips on a belt that never starts: it is held, or with a smooth closure creeps below the
+        stick speed.
+    ``grip_slip``
+        The roll slips on a belt that slides steadily, slower than the roll but no slower than the stick
+        speed, where drag equals the grip.
+    ``unsettled``
+        None of these was reached within the laps allowed, or the time.
 
     Raises
     ------

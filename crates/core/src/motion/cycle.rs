@@ -22,15 +22,16 @@ use crate::work::Work;
 pub enum CycleKind {
     /// The belt moves at drive speed.
     SteadySliding,
-    /// The belt speed swings about drive speed without sticking.
+    /// The belt speed swings about drive speed without sticking; the roll may slip on it meanwhile.
     Oscillation,
-    /// The belt sticks and slips.
+    /// The belt sticks and slips in turn; the roll may slip on it meanwhile.
     StickSlip,
     /// No periodic motion was reached within the laps allowed.
     Unsettled,
-    /// The belt is held, and the roll slips on it.
+    /// The belt is held, or creeps below the stick speed where the closure never holds it, and the roll slips on it
+    /// for good.
     Stalled,
-    /// The belt slides steadily, more slowly than the roll that slips on it.
+    /// The belt slides steadily at the stick speed or faster, more slowly than the roll that slips on it for good.
     GripSlip,
 }
 
@@ -229,7 +230,7 @@ impl<'a> Laps<'a> {
         let (piece, event) = self.motion.advance(self.until - now)?;
         self.lap.add(&piece, self.smooth);
         self.pieces += 1;
-        if let Some(end) = self.end_without_lap(&piece) {
+        if let Some(end) = self.end_without_lap(&piece, event.is_none()) {
             return Ok(Some(end));
         }
         let Some(section) = self.section(event, &piece) else { return Ok(None) };
@@ -253,12 +254,14 @@ impl<'a> Laps<'a> {
     }
 
     /// What the motion is if it slides steadily from this piece on, or makes no laps at all.
-    fn end_without_lap(&self, piece: &Piece) -> Option<StickSlipCycle> {
-        if piece.start.slipping && (piece.duration.is_infinite() || has_come_to_slip(piece)) {
+    fn end_without_lap(&self, piece: &Piece, uneventful: bool) -> Option<StickSlipCycle> {
+        // nothing ends a stall but an event; that of a motion that is not followed for ever is cut off
+        let held = piece.start.mode == Mode::Stuck && uneventful;
+        let endless = piece.duration.is_infinite() || held;
+        if piece.start.slipping && (endless || has_come_to_slip(piece)) {
             let (belt_speed, pull) = piece.at(0.0);
             let stretch = pull / self.train.stiffness();
-            let creeps = self.memory && piece.start.mode == Mode::Microslip;
-            let stuck = piece.start.mode == Mode::Stuck || creeps;
+            let stuck = matches!(piece.start.mode, Mode::Stuck | Mode::Microslip);
             return Some(StickSlipCycle::slipping(belt_speed, stuck, stretch, self.count));
         }
         let still = piece.duration.is_infinite()
