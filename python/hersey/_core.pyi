@@ -286,6 +286,8 @@ class Sweep:
 @final
 class Band:
     @property
+    def stalls(self) -> bool: ...
+    @property
     def lower(self) -> float: ...
     @property
     def transition(self) -> float: ...
@@ -306,6 +308,8 @@ class Band:
 
 @final
 class Bands:
+    @property
+    def stalls(self) -> NDArray[np.bool_]: ...
     @property
     def lower(self) -> _Floats: ...
     @property
@@ -560,6 +564,7 @@ def bands(
     parameters: Sequence[_Floats],
     closure: _Closure,
     beside: Sequence[_Floats] | None,
+    grip: float | None,
     lower: bool,
     tolerance: float,
     threads: int,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import hersey
+from hersey.charts.hysteresis import band_chart
 from hersey.errors import ParameterError
 from hersey.machine.uncertainty import Uncertainty
 
@@ -431,13 +433,72 @@ def test_cycles_without_sticking_come_back_to_themselves() -> None:
             hersey.cycles_without_sticking(train, drag, slowest=[wrong])
 
 
-def test_a_roll_that_does_not_start_the_belt_leaves_it_at_rest_at_all_speeds() -> None:
-    weak, strong = (replace(TRAIN, grip=share * DRAG.holding_force) for share in (0.99, 1.01))
-    assert hersey.hysteresis(strong, DRAG).upper == hersey.hysteresis(TRAIN, DRAG).upper
-    never = hersey.hysteresis(weak, DRAG)
-    assert np.isinf(never.upper)
-    assert "up the belt slides if it comes from above, and not if it comes from rest" in never.verdict()
-    with pytest.raises(ParameterError, match="a roll that always grips"):
-        hersey.hysteresis_sweep(weak, DRAG, mass=[1.0, 2.0])
-    with pytest.raises(ParameterError, match="a roll that always grips"):
-        hersey.hysteresis(strong, DRAG, samples={"mass": [1.0, 2.0]})
+def test_a_roll_that_does_not_start_the_belt_stalls_and_is_told_from_stick_slip() -> None:
+    """The paper's rule holds a moving belt with less than one at rest: stick-slip may go on all the same."""
+    weak, weaker = (replace(TRAIN, grip=share * DRAG.holding_force) for share in (0.99, 0.35))
+    band, never = hersey.hysteresis(weak, DRAG), hersey.hysteresis(weaker, DRAG)
+    assert band.stalls
+    assert never.stalls
+    assert hersey.stick_slip(weak, DRAG, drive_speed=1.5).kind == "stalled"
+    released = (DRAG.stick_speed, float(DRAG.force(DRAG.stick_speed)) / TRAIN.stiffness)
+    kinds = [hersey.stick_slip(train, DRAG, drive_speed=1.5, start=released).kind for train in (weak, weaker)]
+    assert kinds == ["stick_slip", "stalled"]
+    assert band.verdict().startswith("A belt at rest is not started: it stalls at any drive speed")
+    assert (never.lower, never.upper, never.sensitivity, never.bistable) == (0.0, 0.0, {}, False)
+    assert "No stick-slip: one that sticks stalls too" in never.verdict()
+    for stalling in (band, never):
+        drawn = band_chart(stalling).to_dict()
+        states = drawn["layer"][0]["data"]["values"]
+        assert [row["state"] for row in states] == ["stall: the roll slips"]
+    assert not hersey.hysteresis(replace(TRAIN, grip=1.01 * DRAG.holding_force), DRAG).stalls
+    stiction = hersey.hysteresis(weak, replace(DRAG, closure="stiction"))
+    assert (stiction.stalls, stiction.upper) == (True, 0.0)
+
+
+def test_a_smooth_closure_that_stalls_has_no_stick_slip() -> None:
+    drag = replace(DRAG, closure="stribeck", stick_speed=0.1)
+    band = hersey.hysteresis(replace(TRAIN, grip=60.0), drag)
+    assert (band.stalls, band.lower, band.upper) == (True, 0.0, 0.0)
+
+
+@pytest.mark.parametrize("share", [0.45, 0.7, 1.05])
+@pytest.mark.parametrize("closure", ["retained", "stiction"])
+@pytest.mark.parametrize("damping", [0.6, 1.6])
+def test_the_fold_is_that_of_the_roll_that_slips(share: float, closure: str, damping: float) -> None:
+    """Just below it the belt goes on sticking, or swinging while the roll slips; just above it does not."""
+    drag = replace(DRAG, transition_force=damping * 1000**0.5, closure=closure)
+    train = replace(TRAIN, grip=share * drag.holding_force)
+    band, free = (hersey.hysteresis(t, drag, sensitivity=False) for t in (train, TRAIN))
+    if closure == "stiction" and band.stalls:
+        assert band.upper == 0
+        return
+    assert band.upper <= free.upper
+    if (damping, share) == (0.6, 0.45) or closure == "stiction":
+        assert band.upper < 0.95 * free.upper
+    release = float(drag.force(drag.stick_speed)) / train.stiffness
+    start: Any = (drag.stick_speed, release) if band.stalls else "rest"
+    for factor, rough in ((1 - 1e-5, True), (1 + 1e-5, False)):
+        cycle = hersey.stick_slip(train, drag, drive_speed=factor * band.upper, start=start)
+        goes_on = cycle.kind in ("stick_slip", "oscillation") and (
+            cycle.grip_slip_duration > 0 or cycle.stick_duration > 0
+        )
+        assert goes_on == rough, (factor, cycle)
+
+
+def test_many_bands_know_the_grip_and_one_that_always_holds_changes_no_bit() -> None:
+    forces = np.geomspace(5.0, 100.0, 9)
+    train = replace(TRAIN, grip=150.0)
+    swept = hersey.hysteresis_sweep(train, DRAG, transition_force=forces)
+    alone = [hersey.hysteresis(train, replace(DRAG, transition_force=f), sensitivity=False) for f in forces]
+    assert swept.upper.values.tolist() == [band.upper for band in alone]
+    assert swept.lower.values.tolist() == [band.lower for band in alone]
+    assert swept.stalls.values.tolist() == [band.stalls for band in alone]
+    assert 0 < swept.stalls.values.sum() < forces.size
+    free, gripped = (
+        hersey.hysteresis_sweep(t, DRAG, transition_force=forces) for t in (TRAIN, replace(TRAIN, grip=1e3))
+    )
+    for name in free:
+        np.testing.assert_array_equal(free[name], gripped[name])
+    draws = hersey.hysteresis(train, DRAG, samples={"transition_force": forces})
+    assert draws.interval is not None
+    assert draws.interval[0] == 0.0

@@ -23,6 +23,7 @@ pub struct Band {
     lower: f64,
     transition: f64,
     upper: f64,
+    stalls: bool,
     /// Not a number where the fold was found by simulation.
     speed_max: f64,
     lower_accuracy: f64,
@@ -38,6 +39,7 @@ pub struct Bands {
     lower: Py<PyArray1<f64>>,
     transition: Py<PyArray1<f64>>,
     upper: Py<PyArray1<f64>>,
+    stalls: Py<PyArray1<bool>>,
     speed_max: Py<PyArray1<f64>>,
     lower_accuracy: Py<PyArray1<f64>>,
     upper_accuracy: Py<PyArray1<f64>>,
@@ -58,6 +60,7 @@ impl Bands {
             lower: number(|b| b.lower),
             transition: number(|b| b.transition),
             upper: number(|b| b.upper),
+            stalls: flag(|b| b.stalls),
             speed_max: number(|b| b.speed_max),
             lower_accuracy: number(|b| b.lower_accuracy),
             upper_accuracy: number(|b| b.upper_accuracy),
@@ -90,6 +93,7 @@ pub fn band(
         lower: found.lower,
         transition: found.transition,
         upper: found.upper,
+        stalls: found.stalls,
         speed_max: found.speed_max,
         lower_accuracy: found.lower_accuracy,
         upper_accuracy: found.upper_accuracy,
@@ -108,6 +112,7 @@ pub fn bands<'py>(
     parameters: [PyReadonlyArray1<'py, f64>; 7],
     closure: ClosureArguments<'_>,
     beside: Option<[PyReadonlyArray1<'py, f64>; 3]>,
+    grip: Option<f64>,
     lower: bool,
     tolerance: f64,
     threads: usize,
@@ -121,7 +126,9 @@ pub fn bands<'py>(
     let belt = |i: usize| -> Result<(Drivetrain, Drag), Error> {
         let [k, m, force, speed, ehl, mixed, stick] = std::array::from_fn(|c| columns[c][i]);
         let drag = Drag::new(force, speed, ehl, mixed, stick, closure)?;
-        Ok((Drivetrain::new(k, m)?, with_common(drag, common(i))?))
+        let train = Drivetrain::new(k, m)?;
+        let train = grip.map_or(Ok(train), |grip| train.with_grip(grip))?;
+        Ok((train, with_common(drag, common(i))?))
     };
     let belts = each(py, columns[0].len(), |i| belt(i).map_err(|error| (i, error)))?
         .map_err(|(i, error)| raised_at("set", i, error))?;

@@ -43,6 +43,8 @@ def _states(band: HysteresisBand, low: float, high: float, x: alt.X) -> alt.Char
         "bistable": (max(band.transition, band.lower), top),
         "smooth": (max(top, band.transition), high),
     }
+    if band.stalls:  # at any speed; what one that moves does the verdict says
+        spans = {"stall": (low, high)}
     looks = {name: (text, color) for name, text, _, color in REGIONS}
     rows: list[Row] = [
         {"from": max(a, low), "to": b, "state": looks[name][0]} for name, (a, b) in spans.items() if b > a

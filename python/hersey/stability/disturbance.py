@@ -135,7 +135,7 @@ def disturbance(
     band = hysteresis(train, drag, temperature=temperature, sensitivity=False)
     if drive_speed < band.transition:
         return Disturbance(drive_speed, 0.0, 0.0)
-    if drive_speed > band.upper:
+    if drive_speed > band.upper and not band.stalls:
         return Disturbance(drive_speed, inf, inf)
     law = drag.law_at(temperature)
     _, stretch = steady_start(train, drag, drive_speed, temperature)
@@ -149,7 +149,7 @@ def disturbance(
         return _sticks(train, drag, drive_speed + fall, drive_speed, 0.0, temperature)[0]
 
     kick = _threshold(kicked, drive_speed) if kicked(drive_speed) else inf
-    farthest = 4.0 * (band.upper if band.upper < inf else 10 * law.transition_speed)
+    farthest = 4.0 * (max(band.upper, drive_speed) if band.upper < inf else 10 * law.transition_speed)
     step = _threshold(stepped, farthest) if stepped(farthest) else inf
     return Disturbance(drive_speed, kick, step)
 
@@ -194,5 +194,5 @@ def _sticks(
 
 
 def _is_rough(cycle: StickSlipCycle, stick_speed: float) -> bool:
-    """Whether the belt goes on to slow down to the stick speed, held there or swinging back through zero."""
+    """Whether the belt goes on to slow down to the stick speed: held, be it for good, or swinging back."""
     return cycle.kind != "steady_sliding" and cycle.speed_min <= stick_speed * (1 + 1e-9)

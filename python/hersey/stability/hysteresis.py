@@ -37,6 +37,7 @@ _COLUMNS = (
     "lower",
     "transition",
     "upper",
+    "stalls",
     "speed_max",
     "lower_accuracy",
     "upper_accuracy",
@@ -47,7 +48,7 @@ _COLUMNS = (
 #: Kinds of the units of what a sweep of bands varies.
 _PARAMETER_KINDS = {name: kind for name in OF_THE_BELT if (kind := KINDS[name]) is not None}
 #: Those that are no decimal numbers.
-_WHOLE = {"half_laps": bool, "deeper": bool, "laps": int}
+_WHOLE = {"stalls": bool, "half_laps": bool, "deeper": bool, "laps": int}
 
 
 @dataclass(frozen=True, repr=False)
@@ -66,6 +67,7 @@ class HysteresisBand(Result):
     lower: float
     transition: float
     upper: float
+    stalls: bool
     closure: str
     method: str
     lower_accuracy: float
@@ -90,6 +92,20 @@ class HysteresisBand(Result):
 
     def verdict(self) -> str:
         """Return what the band means, in a sentence or two."""
+        stalled = (
+            "A belt at rest is not started: it stalls at any drive speed, the roll slipping on it. "
+            if self.stalls
+            else ""
+        )
+        return stalled + self._in_motion()
+
+    def _in_motion(self) -> str:
+        """What the band means for a belt that is not stalled."""
+        if self.upper == 0:
+            return (
+                "No stick-slip: one that sticks stalls too. One that slides goes on sliding from the "
+                f"transition speed {self.transition:.6g} up, as far as the grip bears the drag."
+            )
         if not self.bistable:
             return (
                 f"No band: stick-slip ends at {self.upper:.6g}, not above the transition speed "
@@ -190,7 +206,9 @@ def hysteresis(
 ) -> HysteresisBand:
     """Return the band of drive speeds where the past decides whether the belt sticks.
 
-    A roll whose grip does not start the belt leaves it at rest at all drive speeds: ``upper`` is infinite.
+    Where the roll's grip bears less than the spring would pull the roll slips for a part of each lap, and
+    stick-slip dies out at a slower drive: ``upper`` is that of the slipping roll, above which no swing lasts
+    on which it slips, be it without sticking. One that does not even start the belt is told by ``stalls``.
 
     Parameters
     ----------
@@ -230,11 +248,10 @@ def hysteresis(
     plain = drag.at(temperature) if isinstance(drag, Drag) else None
     closure = str(getattr(drag, "closure", "retained"))
     if sensitivity is None:
-        sensitivity = plain is not None and band.half_laps
+        sensitivity = plain is not None and band.half_laps and band.upper > 0
     changes = _sensitivities(train, plain, tolerance, steps) if sensitivity else ({}, {})
     interval, lower_interval, share = None, None, None
     if samples is not None:
-        _always_grips(train)
         drawn = {name: _drawn(name, values) for name, values in samples.items()}
         edges = _sampled(train, plain, drawn, tolerance, steps)
         interval, lower_interval = _middle(edges.upper), _middle(edges.lower)
@@ -243,6 +260,7 @@ def hysteresis(
         lower=band.lower,
         transition=band.transition,
         upper=band.upper,
+        stalls=band.stalls,
         closure=closure,
         method="half laps" if band.half_laps else "simulation",
         lower_accuracy=band.lower_accuracy,
@@ -256,15 +274,6 @@ def hysteresis(
         lower_interval=lower_interval,
         share_bistable=share,
     )
-
-
-def _always_grips(train: Drivetrain) -> None:
-    """Refuse a grip where many bands are found at once, by laps that know none."""
-    if train.grip is not None:
-        raise ParameterError(
-            f"grip is {train.grip:g}: many bands at once are those of a roll that always grips; leave it "
-            "out, and compare it with drag.holding_force"
-        )
 
 
 def _drawn(name: str, values: Any) -> Any:
@@ -315,7 +324,6 @@ def hysteresis_sweep(
 
     if not isinstance(drag, Drag):
         raise ParameterError("a sweep needs a Drag")
-    _always_grips(train)
     if drag.varies_with_temperature != (temperature is not None):
         drag.law_at(None if temperature is None else 300.0)
     varied: dict[str, ArrayLike | None] = {
@@ -342,7 +350,7 @@ def hysteresis_sweep(
     shape = next(iter(columns.values())).shape
     if temperature is not None:
         columns = {**columns, **_at_temperatures(drag, columns["temperature"])}
-    bands = _bands(columns, drag, tolerance, most_steps, threads, progress, lower=lower)
+    bands = _bands(train, columns, drag, tolerance, most_steps, threads, progress, lower=lower)
     coordinates = {
         name: (axes, columns[name]) if zip and values.ndim else values
         for name, values in given.items()
@@ -376,7 +384,8 @@ def cycles_without_sticking(
 
     At the stick speed that drive speed is the fold V* of laps released there (``retained``); from there it
     falls to the lower edge of the band and rises again to the transition speed, where the swing has shrunk
-    to nothing. Such a swing knows no closure but ``lugre``, whose bristles remember.
+    to nothing. Such a swing knows no closure but ``lugre``, whose bristles remember, and no grip: the roll is
+    taken to grip throughout.
 
     Parameters
     ----------
@@ -429,6 +438,7 @@ def _at_temperatures(drag: Drag, temperatures: FloatArray) -> dict[str, FloatArr
 
 
 def _bands(
+    train: Drivetrain,
     columns: Mapping[str, FloatArray],
     drag: Drag,
     tolerance: float,
@@ -448,7 +458,8 @@ def _bands(
             np.ascontiguousarray(columns[name].ravel()) if name in columns else column
             for name, column in zip(BESIDE, beside, strict=True)
         ]
-    return _core.bands(arrays, closure, beside, lower, float(tolerance), workers, progress, steps)
+    grip = None if train.grip is None else float(train.grip)
+    return _core.bands(arrays, closure, beside, grip, lower, float(tolerance), workers, progress, steps)
 
 
 def _sensitivities(
@@ -461,7 +472,7 @@ def _sensitivities(
     base = np.array([float(parameters[name]) for name in OF_THE_BELT])
     factors = np.vstack([1 + _STEP * np.eye(len(OF_THE_BELT)), 1 - _STEP * np.eye(len(OF_THE_BELT))])
     columns = dict(zip(OF_THE_BELT, (base * factors).T, strict=True))
-    edges = _bands(columns, drag, tolerance, most_steps)
+    edges = _bands(train, columns, drag, tolerance, most_steps)
     if edges.failures:
         raise edges.failures[0].error
 
@@ -487,7 +498,7 @@ def _sampled(
     parameters = {**vars(train), **vars(drag)}
     given = {name: numbers_of(name, samples.get(name, parameters[name])) for name in OF_THE_BELT}
     _, columns = together(given)
-    bands = _bands(columns, drag, tolerance, most_steps)
+    bands = _bands(train, columns, drag, tolerance, most_steps)
     for failure in bands.failures:
         raise failure.error.within(f"samples: draw {failure.index}")
     return bands

@@ -1,7 +1,7 @@
 //! The band of drive speeds where the past decides whether a belt sticks.
 
 use super::cycles;
-use super::fold::{Fold, SlipLap, folds};
+use super::fold::{Fold, Gripped, SlipLap, SlippingFold, folds, gripped};
 use crate::drag::{Closure, Drag};
 use crate::error::{Error, unless_stopped};
 use crate::motion::{
@@ -18,8 +18,11 @@ pub struct Band {
     /// Transition speed of the law of drag. Steady sliding is unstable where drag, the rest of the drive counted, falls with
     /// speed: below `Drag::rising_from`, which is this speed unless the rest rises with speed or the law falls beyond.
     pub transition: f64,
-    /// The fold `V*`: above, stick-slip dies out.
+    /// The fold `V*`: above, stick-slip dies out, and any swing on which the roll slips. Zero, as `lower` is, where the roll slips on a belt that sticks and
+    /// holds it for good: then there is no stick-slip.
     pub upper: f64,
+    /// The roll's grip does not start a belt at rest.
+    pub stalls: bool,
     /// Greatest belt speed of the slip lap at the fold; not a number where that was found by simulation.
     pub speed_max: f64,
     /// Relative accuracy of the edges.
@@ -77,7 +80,10 @@ pub fn bands(
     checked_tolerance(tolerance)?;
     let laps: Vec<Option<SlipLap>> =
         belts.iter().map(|(train, drag)| slip_lap(train, drag)).collect();
-    let uppers = half_lap_folds(belts, &laps, tolerance, work)?;
+    let free = half_lap_folds(belts, &laps, tolerance, work)?;
+    let slipping = gripped_folds(belts, &laps, &free, tolerance, work)?;
+    let uppers: Vec<Option<Fold>> =
+        slipping.iter().map(|found| Some(found.as_ref()?.fold)).collect();
     let deeper = deeper_stick_slip(belts, &uppers, tolerance, work)?;
     let lowers = if lower { lower_edges(&laps, tolerance, work)? } else { vec![None; belts.len()] };
     unless_stopped((0..belts.len()).map(|i| {
@@ -85,30 +91,58 @@ pub fn bands(
         checked_branches(drag)?;
         let motions = Motions::new(train, drag, tolerance, work);
         let transition = drag.transition_speed();
+        let stalls = stalls(&motions)?;
+        let half = uppers[i].filter(|_| !deeper[i]);
+        let never = Band {
+            lower: if lower { 0.0 } else { f64::NAN },
+            transition,
+            upper: 0.0,
+            stalls,
+            speed_max: f64::NAN,
+            lower_accuracy: if lower { 0.0 } else { f64::NAN },
+            upper_accuracy: 0.0,
+            method: if half.is_some() { Method::HalfLaps } else { Method::Simulation },
+            deeper: false,
+            laps: 0,
+        };
+        if holds_for_good(train, drag, stalls) {
+            return Ok(never);
+        }
         let (lower, lower_accuracy) = match lowers[i] {
             _ if !lower => (f64::NAN, f64::NAN),
             Some(edge) => (edge * transition, MEETING * tolerance),
             None => (lower_by_simulation(&motions)?, HALVED_LOWER),
         };
-        let half = uppers[i].filter(|_| !deeper[i]);
         let (upper, upper_accuracy) = if let Some(fold) = half {
             (fold.drive_speed * transition, MEETING * tolerance)
         } else {
             let from = uppers[i].map_or(1.0, |fold| fold.drive_speed * (1.0 + ABOVE));
             let near = if drag.closure().is_smooth() { HALVED_SMOOTH } else { HALVED };
-            let upper = upper_by_simulation(&motions, from * transition, near)?;
+            let start = if stalls { released(train, drag) } else { Start::REST };
+            let upper = upper_by_simulation(&motions, start, from * transition, near)?;
             (upper, near.max(PASSING * tolerance))
+        };
+        // no swing is wider than that on which the roll slips
+        let slips = train.grip().is_finite() && uppers[i] != free[i];
+        let sticks_below = match slipping[i].filter(|_| half.is_some()) {
+            Some(found) if slips => found.sticks_below * transition,
+            None if train.grip().is_finite() => upper,
+            _ => f64::INFINITY,
+        };
+        let (lower, lower_accuracy) = if sticks_below < lower {
+            (sticks_below, upper_accuracy)
+        } else {
+            (lower, lower_accuracy)
         };
         Ok(Band {
             lower,
-            transition,
             upper,
             speed_max: half.map_or(f64::NAN, |fold| fold.speed_max * transition),
             lower_accuracy,
             upper_accuracy,
-            method: if half.is_some() { Method::HalfLaps } else { Method::Simulation },
             deeper: deeper[i],
             laps: half.map_or(0, |fold| fold.laps),
+            ..never
         })
     }))
 }
@@ -146,14 +180,46 @@ impl<'a> Motions<'a> {
         Self { train, drag, tolerance, each, together: work.apart(each.saturating_mul(many)) }
     }
 
-    /// Whether the belt goes on to stick.
+    /// Whether the belt goes on to stick and slip.
     fn stick(&self, drive_speed: f64, start: Start) -> Result<bool, Error> {
+        Ok(lasts(&self.settle(drive_speed, start)?, self.drag))
+    }
+
+    fn settle(&self, drive_speed: f64, start: Start) -> Result<StickSlipCycle, Error> {
         let work = self.together.apart(self.each.min(self.together.left()));
         let (train, drag, tolerance) = (self.train, self.drag, self.tolerance);
         let cycle = settle(train, drag, drive_speed, start, Span::UntilClosed, tolerance, &work);
         self.together.take(work.done())?;
-        Ok(lasts(&cycle?, drag))
+        cycle
     }
+}
+
+/// Whether the belt is held at one force, and at once.
+fn is_sharp(drag: &Drag) -> bool {
+    !drag.closure().is_smooth() && drag.strengthening().is_none()
+}
+
+/// Whether the roll's grip does not start a belt at rest, at the transition speed if that depends on the speed.
+fn stalls(motions: &Motions) -> Result<bool, Error> {
+    let (train, drag) = (motions.train, motions.drag);
+    if train.grip().is_infinite() {
+        return Ok(false);
+    }
+    if is_sharp(drag) {
+        return Ok(train.grip() <= drag.holding_force(0.0));
+    }
+    Ok(motions.settle(drag.transition_speed(), Start::REST)?.kind == CycleKind::Stalled)
+}
+
+/// Whether a belt that sticks is held for good, as the roll slips before it would be released.
+fn holds_for_good(train: &Drivetrain, drag: &Drag, stalls: bool) -> bool {
+    if is_sharp(drag) { train.grip() <= drag.holding_force(drag.stick_speed()) } else { stalls }
+}
+
+/// Where a belt that sticks at the stick speed is released.
+fn released(train: &Drivetrain, drag: &Drag) -> Start {
+    let belt_speed = drag.stick_speed();
+    Start { belt_speed, stretch: drag.holding_force(belt_speed) / train.stiffness() }
 }
 
 /// The belt in scaled units, if its drag has two power branches whose force follows the speed at once.
@@ -180,15 +246,11 @@ fn half_lap_folds(
     tolerance: f64,
     work: &Work,
 ) -> Result<Vec<Option<Fold>>, Error> {
-    let sharp = |drag: &Drag| {
-        matches!(drag.closure(), Closure::Retained | Closure::Stiction)
-            && drag.strengthening().is_none()
-    };
     let (places, known): (Vec<usize>, Vec<SlipLap>) = laps
         .iter()
         .enumerate()
         .filter_map(|(i, lap)| Some((i, (*lap)?)))
-        .filter(|(i, _)| sharp(&belts[*i].1))
+        .filter(|(i, _)| is_sharp(&belts[*i].1))
         .unzip();
     let start = |index: usize, drive_speed: f64| {
         let (train, drag) = &belts[places[index]];
@@ -205,6 +267,35 @@ fn half_lap_folds(
     Ok(found)
 }
 
+/// The same under a roll that slips on belts whose laps ask for more than its grip.
+fn gripped_folds(
+    belts: &[(Drivetrain, Drag)],
+    laps: &[Option<SlipLap>],
+    free: &[Option<Fold>],
+    tolerance: f64,
+    work: &Work,
+) -> Result<Vec<Option<SlippingFold>>, Error> {
+    let (places, known): (Vec<usize>, Vec<Gripped>) = belts
+        .iter()
+        .enumerate()
+        .filter(|(_, (train, drag))| train.grip().is_finite() && !holds_for_good(train, drag, true))
+        .filter_map(|(i, (train, drag))| {
+            let impedance = (train.stiffness() * train.mass()).sqrt();
+            let grip = (train.grip() - drag.rest().force) / (drag.transition_speed() * impedance);
+            Some((i, Gripped { lap: laps[i]?, grip, free: free[i]? }))
+        })
+        .filter(|(_, given)| given.may_slip())
+        .unzip();
+    let gripping = |fold: &Option<Fold>| {
+        fold.map(|fold| SlippingFold { sticks_below: fold.drive_speed, fold })
+    };
+    let mut found: Vec<Option<SlippingFold>> = free.iter().map(gripping).collect();
+    for (place, fold) in places.into_iter().zip(gripped(&known, tolerance, work)?) {
+        found[place] = fold;
+    }
+    Ok(found)
+}
+
 /// Scaled pull and speed at which a belt that stood still passes the stick speed, for a scaled drive speed.
 fn leaving_stick_speed(
     train: &Drivetrain,
@@ -214,7 +305,8 @@ fn leaving_stick_speed(
     work: &Work,
 ) -> Option<(f64, f64)> {
     let speed = drag.transition_speed();
-    let system = System::at_speed(*train, drag, drive_speed * speed).ok()?;
+    let always_grips = Drivetrain::new(train.stiffness(), train.mass()).ok()?;
+    let system = System::at_speed(always_grips, drag, drive_speed * speed).ok()?;
     let start = Start { belt_speed: 0.0, stretch: drag.holding_force(0.0) / train.stiffness() };
     let (pull, belt_speed) = first_slide(&system, start, tolerance, &work.apart(work.allowed()))?;
     let pull = pull - drag.rest().force;
@@ -252,9 +344,12 @@ fn deeper_stick_slip(
     Ok(deeper)
 }
 
-/// Whether a motion goes on to slow down to the stick speed, be it held there or swinging back through zero.
+/// Whether a motion goes on to slow down to the stick speed, be it held there or swinging back through zero, and
+/// to slip again: a belt that is held for good does not.
 fn lasts(cycle: &StickSlipCycle, drag: &Drag) -> bool {
-    cycle.kind != CycleKind::SteadySliding && cycle.speed_min <= drag.stick_speed() * (1.0 + HALVED)
+    use CycleKind::{GripSlip, Stalled, SteadySliding};
+    !matches!(cycle.kind, SteadySliding | GripSlip | Stalled)
+        && cycle.speed_min <= drag.stick_speed() * (1.0 + HALVED)
 }
 
 /// Slowest speeds, over the transition speed, between which the slowest unstable cycle is looked for.
@@ -316,11 +411,19 @@ fn below_three(points: &[(f64, f64)]) -> Option<f64> {
     (bottom > a && bottom < c && apart(bottom)).then_some(bottom)
 }
 
-/// Least drive speed above `from` at which a belt from rest ends without sticking, if it sticks at `from`;
-/// otherwise the greatest below at which it sticks.
-fn upper_by_simulation(motions: &Motions, from: f64, accuracy: f64) -> Result<f64, Error> {
+/// Least drive speed above `from` at which a belt from `start`, at rest or released, ends without sticking and
+/// without a roll that slips each lap, if it does not at `from`; otherwise the greatest below at which it does.
+fn upper_by_simulation(
+    motions: &Motions,
+    start: Start,
+    from: f64,
+    accuracy: f64,
+) -> Result<f64, Error> {
     let drag = motions.drag;
-    let sticks = |drive_speed: f64| motions.stick(drive_speed, Start::REST);
+    let sticks = |drive_speed: f64| {
+        let cycle = motions.settle(drive_speed, start)?;
+        Ok(lasts(&cycle, drag) || cycle.grip_slip_duration > 0.0)
+    };
     let (mut low, mut high) = (from, from);
     if sticks(from)? {
         while sticks(high)? {

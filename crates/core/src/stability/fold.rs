@@ -9,6 +9,9 @@
 //! Whether a lap comes back is asked where it slows down through the transition: forward from the start, and
 //! back in time from the slowest point, where the motion forgets what forward it would blow up. The drive
 //! speed at which both arrive with the same pull is found by the secant method, each on its own lane.
+//!
+//! Where the roll slips before the belt is as fast as the drive, both meet with just the pull that the grip
+//! bears, whatever came before: the lap then begins there.
 
 use crate::error::Error;
 use crate::motion::lanes::{Lanes, arrival, run_lanes};
@@ -34,6 +37,11 @@ impl SlipLap {
     pub fn is_node(&self) -> bool {
         -self.mixed * self.damping >= 2.0
     }
+
+    /// A drive speed close to the baseline's fold, so that few laps are needed.
+    fn guess(&self) -> f64 {
+        0.45 + 0.52 * self.slowest.powf(-0.26)
+    }
 }
 
 /// A drive speed at which the lap comes back to its start.
@@ -55,6 +63,8 @@ const MAX_STEPS: u32 = 20_000;
 const FASTEST: f64 = 1e4;
 /// Closeness of laps to the curve of slow motion, in e-folds, from which they are the same.
 const FORGOTTEN: f64 = 45.0;
+/// Room left beside the greatest speed of a lap near the fold.
+const CLOSE: f64 = 0.01;
 /// Error of the drive speed, foretold by the secant method, at which it ends.
 const FOUND: f64 = 1e-12;
 
@@ -71,13 +81,86 @@ pub(super) fn folds(
     work: &Work,
     start: impl Fn(usize, f64) -> Option<(f64, f64)>,
 ) -> Result<Vec<Option<Fold>>, Error> {
-    let mut found = vec![None; laps.len()];
-    let mut waiting = laps.iter().enumerate();
+    let seekers = laps.iter().enumerate().map(|(index, lap)| Seeker::new(index, *lap));
+    seek(seekers, laps.len(), tolerance, work, start)
+}
+
+/// A lap whose fold is known, and the greatest pull on it, scaled: that of the roll's grip.
+pub(super) struct Gripped {
+    pub lap: SlipLap,
+    pub grip: f64,
+    pub free: Fold,
+}
+
+impl Gripped {
+    /// Whether the free lap at the fold asks for the grip, as far as can be said without following it.
+    ///
+    /// From the drive speed `w` up to the greatest speed `(p - F)(p - F)' >= -(u - w) u'` where `F` is the greatest
+    /// drag on the way, so the pull where the belt overtakes the drive is less than that by the gain in speed.
+    pub(super) fn may_slip(&self) -> bool {
+        let SlipLap { damping, mixed, ehl, .. } = self.lap;
+        let drag = |u: f64| damping * u.powf(if u < 1.0 { mixed } else { ehl });
+        let Fold { drive_speed, speed_max, .. } = self.free;
+        let pull = drag(drive_speed).max(drag(speed_max)) + (speed_max - drive_speed).max(0.0);
+        // the greatest speed is that of the last lap that was followed, close to the fold
+        let most = pull * (1.0 + CLOSE);
+        !(most.is_finite() && self.grip > most)
+    }
+}
+
+/// What is left of a fold under a roll that slips.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct SlippingFold {
+    /// Drive speed, over `v_t`, above which the belt sticks no more.
+    pub sticks_below: f64,
+    /// Above this no swing lasts on which the roll slips, be it without sticking.
+    pub fold: Fold,
+}
+
+/// The folds of the same laps under a roll that slips; the fold itself where the grip is never needed.
+///
+/// Where the free lap pulls less than the grip where the belt overtakes the drive, one that begins there with
+/// the pull of the grip comes back slower and sticks: then the drive speed of the fold is found to stick at once.
+///
+/// # Errors
+/// If `work` is stopped.
+pub(super) fn gripped(
+    laps: &[Gripped],
+    tolerance: f64,
+    work: &Work,
+) -> Result<Vec<Option<SlippingFold>>, Error> {
+    let start = |index: usize, drive_speed: f64| Some((laps[index].grip, drive_speed));
+    let seekers = laps.iter().enumerate().map(|(index, given)| Seeker::gripped(index, given));
+    let sticking = seek(seekers, laps.len(), tolerance, work, start)?;
+    let slips =
+        |index: usize| sticking[index].filter(|f| f.drive_speed < laps[index].free.drive_speed);
+    let seekers = laps.iter().enumerate().filter_map(|(index, given)| {
+        Some(Seeker::gripped(index, given).meeting(given.grip, slips(index)?.drive_speed))
+    });
+    let swinging = seek(seekers, laps.len(), tolerance, work, start)?;
+    let least = |index: usize| {
+        let sticks_below = sticking[index]?.drive_speed;
+        let free = laps[index].free;
+        if slips(index).is_none() {
+            return Some(SlippingFold { sticks_below: free.drive_speed, fold: free });
+        }
+        let fold = swinging[index]?;
+        Some(SlippingFold { sticks_below, fold })
+    };
+    Ok((0..laps.len()).map(least).collect())
+}
+
+/// What `seekers`, so many, find.
+fn seek(
+    mut seekers: impl Iterator<Item = Seeker>,
+    many: usize,
+    tolerance: f64,
+    work: &Work,
+    start: impl Fn(usize, f64) -> Option<(f64, f64)>,
+) -> Result<Vec<Option<Fold>>, Error> {
+    let mut found = vec![None; many];
     let admit = |lanes: &mut Lanes, l: usize| {
-        waiting.find_map(|(index, lap)| {
-            let mut seeker = Seeker::new(index, *lap);
-            seeker.forward(lanes, l, &start).then_some(seeker)
-        })
+        seekers.find_map(|mut seeker| seeker.forward(lanes, l, &start).then_some(seeker))
     };
     run_lanes(tolerance, work, admit, |seeker, lanes, l| match seeker.follow(lanes, l, &start) {
         Next::Goes => true,
@@ -99,6 +182,8 @@ struct Seeker {
     arrived: Option<f64>,
     speed_max: f64,
     steps: u32,
+    /// Pull of the grip with which the lap is to end at the drive speed, and begin anew, if not at its slowest point.
+    meets: Option<f64>,
 }
 
 /// What a lap did at the drive speed that is looked at.
@@ -118,15 +203,36 @@ enum Next {
 
 impl Seeker {
     fn new(index: usize, lap: SlipLap) -> Self {
-        // close to the baseline's, so that few laps are needed
-        let guess = 0.45 + 0.52 * lap.slowest.powf(-0.26);
+        let guess = lap.guess();
         // without a way back from below the transition the fold is there or above
         let search = if lap.is_node() {
             Search::new(1.0 - f64::EPSILON, 1.0)
         } else {
             Search::new(lap.slowest, guess.max(0.5 * (1.0 + lap.slowest)))
         };
-        Self { index, lap, search, arrived: None, speed_max: 0.0, steps: 0 }
+        Self { index, lap, search, arrived: None, speed_max: 0.0, steps: 0, meets: None }
+    }
+
+    /// The same for a lap that begins at the drive speed with the pull of the grip, no faster than the free one.
+    fn gripped(index: usize, Gripped { lap, grip, free }: &Gripped) -> Self {
+        let mut seeker = Self::new(index, *lap);
+        // from here on sliding drags more than the grip bears, and no belt overtakes the drive
+        let stalls = (grip / lap.damping).powf(1.0 / lap.ehl);
+        seeker.search.most = free.drive_speed;
+        seeker.search.at = if free.drive_speed < stalls {
+            free.drive_speed
+        } else {
+            seeker.search.escapes = Some(stalls);
+            lap.guess().min(0.5 * (1.0 + stalls))
+        };
+        seeker
+    }
+
+    /// The same for a lap that comes back to where the roll slips, from the drive speed at which it just sticks.
+    fn meeting(mut self, grip: f64, sticks: f64) -> Self {
+        (self.search.sticks, self.search.at) = (sticks, sticks);
+        self.meets = Some(grip);
+        self
     }
 
     /// Speed at which the two halves are compared.
@@ -135,14 +241,20 @@ impl Seeker {
     }
 
     fn load(&mut self, lanes: &mut Lanes, l: usize, (pull, speed): (f64, f64), sense: f64) {
-        let SlipLap { damping, mixed, slowest, .. } = self.lap;
+        let SlipLap { damping, mixed, ehl, slowest } = self.lap;
+        // only where belt and drive meet under a roll that slips
+        let fast = speed > 1.0 || (speed >= 1.0 && sense > 0.0);
+        let exponent = if fast { ehl } else { mixed };
         self.steps = 0;
         (lanes.time[l], lanes.impulse[l], lanes.sense[l]) = (0.0, 0.0, sense);
         (lanes.pull[l], lanes.speed[l]) = (pull, speed);
-        lanes.drag[l] = damping * speed.powf(mixed);
-        (lanes.drive[l], lanes.exponent[l], lanes.floor[l]) = (self.search.at, mixed, slowest);
-        lanes.lower[l] = 0.5 * slowest;
-        lanes.upper[l] = if sense > 0.0 { 1.0 } else { self.section() };
+        lanes.drag[l] = damping * speed.powf(exponent);
+        (lanes.drive[l], lanes.exponent[l], lanes.floor[l]) = (self.search.at, exponent, slowest);
+        (lanes.lower[l], lanes.upper[l]) = if fast {
+            (1.0, f64::INFINITY)
+        } else {
+            (0.5 * slowest, if sense > 0.0 { 1.0 } else { self.section() })
+        };
         lanes.turned[l] = if pull.to_bits() == lanes.drag[l].to_bits() { 1.0 } else { 0.0 };
     }
 
@@ -197,6 +309,9 @@ impl Seeker {
             return Next::Goes;
         }
         if let Some(pull) = self.arrived {
+            if self.goes_on_back(lanes, l) {
+                return Next::Goes;
+            }
             // back in time from the slowest point the belt has reached the section
             return self.judge(Outcome::Gap(pull - lanes.pull[l]), lanes, l, start);
         }
@@ -229,8 +344,32 @@ impl Seeker {
             return self.judge(Outcome::Gap(lanes.pull[l] - steady), lanes, l, start);
         }
         self.arrived = Some(lanes.pull[l]);
-        self.load(lanes, l, self.last_point(), -1.0);
+        let last = self.last_point();
+        self.load(lanes, l, self.meets.map_or(last, |grip| (grip, drive)), -1.0);
+        if self.meets.is_some() && drive <= 1.0 {
+            lanes.lower[l] = last.1;
+        }
         Next::Goes
+    }
+
+    /// Whether the lap back from where the roll slips goes on: over the transition, past its slowest point, or,
+    /// where that is slower than any that matters, from there.
+    fn goes_on_back(&mut self, lanes: &mut Lanes, l: usize) -> bool {
+        if self.meets.is_none() || lanes.arrival[l] == arrival::UPPER {
+            return false;
+        }
+        let SlipLap { damping, mixed, .. } = self.lap;
+        if lanes.arrival[l] == arrival::TURNING {
+            return true;
+        }
+        let last = self.last_point();
+        if lanes.speed[l] > last.1 {
+            (lanes.drag[l], lanes.exponent[l]) = (damping, mixed);
+            (lanes.lower[l], lanes.upper[l]) = (last.1, 1.0);
+        } else {
+            self.load(lanes, l, last, -1.0);
+        }
+        true
     }
 
     /// Whether the belt slows down so gently that it cannot fall below a drive faster than the transition.
@@ -272,6 +411,8 @@ impl Seeker {
 struct Search {
     /// Drive speed that is looked at.
     at: f64,
+    /// Drive speed above which none is looked for.
+    most: f64,
     sticks: f64,
     escapes: Option<f64>,
     last: Option<(f64, f64)>,
@@ -286,7 +427,7 @@ enum Step {
 
 impl Search {
     fn new(sticks: f64, at: f64) -> Self {
-        Self { at, sticks, escapes: None, last: None, laps: 0 }
+        Self { at, most: f64::INFINITY, sticks, escapes: None, last: None, laps: 0 }
     }
 
     fn take(&mut self, outcome: Outcome) -> Step {
@@ -296,10 +437,10 @@ impl Search {
             Outcome::Gap(gap) => Some(gap),
             Outcome::Escapes => None,
         };
-        if gap == Some(0.0) {
+        let sticks = gap.is_some_and(|g| g < 0.0);
+        if gap == Some(0.0) || (sticks && x >= self.most) {
             return Step::At(x);
         }
-        let sticks = gap.is_some_and(|g| g < 0.0);
         if sticks {
             self.sticks = self.sticks.max(x);
         } else {

@@ -33,7 +33,8 @@ class BandPart(Part):
 
     lower: float | None
     transition: float
-    upper: float | None
+    upper: float | None = Field(description="zero, as lower, where no belt sticks and slips in turn")
+    stalls: bool = Field(description="the roll's grip does not start a belt at rest")
     closure: str
     method: Literal["half laps", "simulation"]
     lower_accuracy: float | None = Field(description="relative")

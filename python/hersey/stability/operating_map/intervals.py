@@ -87,7 +87,9 @@ def intervals(
             threads=threads,
         )
         require_all(band)
-        low, high = _middle(band["upper"].values / law.transition_speed)
+        # without stick-slip the belt slides from the transition speed up, if anything moves it
+        upper = np.where(band["upper"] > 0, band["upper"], band["transition"])
+        low, high = _middle(upper / law.transition_speed)
         ratios.append((min(low, _FARTHEST), min(high, _FARTHEST)))
     upper = np.array(ratios).T
     if kelvin is not None:

@@ -94,7 +94,7 @@ def operating_map(
     ['stick_slip', 'bistable', 'smooth']
     """
     limits = limits or Limits()
-    grip, train = limits.gripping(train).grip, replace(train, grip=None)
+    train = limits.gripping(train)
     if draws < 1:
         raise ParameterError(f"draws is {draws}: at least 1 is needed")
     if surface.transition is None:
@@ -118,7 +118,7 @@ def operating_map(
     edges = edges_at(train, drag, kelvin, stick_speed_rule)
     speed_grid = shown_speeds(edges, reach, points, limits.speed, speeds)
     laws = laws_at(drag, kelvin, stick_speed_rule)
-    limit, limited_by = torque_limit(grip, limits.motor_torque, roll_radius)
+    limit, limited_by = torque_limit(train.grip, limits.motor_torque, roll_radius)
     below, above = contour(laws, np.inf if limit is None else limit / roll_radius)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")

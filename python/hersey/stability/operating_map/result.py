@@ -35,9 +35,10 @@ class OperatingMap(Result):
     ``stall_above`` up (infinite if never) and, on the falling branch, up to ``stall_below`` (0 if never).
     ``torque`` in N m, shape (n, m), is that of steady sliding at ``speed``, shape (m,). The measured ranges
     bound the dwells. ``holding`` (N m, shape (n,)) is what a belt at rest bears, the rest of the drive
-    counted: where it exceeds ``torque_limit`` the drive does not start the belt. The bands are those of a
-    roll that grips, as it does wherever it starts the belt. ``stick_speed_rule`` says how the stick speed
-    goes with temperature.
+    counted: where it exceeds ``torque_limit`` the drive does not start the belt. The bands are those of the
+    roll with its grip (``train``), on which the belt slips where a lap asks for more; ``lower`` is zero where
+    no belt sticks and slips in turn, as one that sticks is held for good. ``stick_speed_rule`` says how the
+    stick speed goes with temperature.
     """
 
     temperature: FloatArray | None
@@ -171,7 +172,9 @@ class OperatingMap(Result):
     def _state(self, law: Drag, edges: Mapping[str, float], kelvin: float, speed: float) -> MapState:
         torque, holding = (force * self.roll_radius for force in (float(law.force(speed)), law.holding_force))
         limit = np.inf if self.torque_limit is None else self.torque_limit
-        if torque > limit:
+        starts = bool(holding <= limit)
+        held = edges["lower"] == 0 and speed < edges["transition"]
+        if torque > limit or (held and not starts):
             moving = self.beyond
         elif speed < edges["lower"]:
             moving = "stick_slip"
@@ -179,7 +182,6 @@ class OperatingMap(Result):
             moving = "swing"
         else:
             moving = "bistable" if speed < edges["upper"] else "smooth"
-        starts = bool(holding <= limit)
         state = moving if starts else self.beyond
         low, high = self.measured_speed
         cold, hot = self.measured_temperature or (-np.inf, np.inf)
