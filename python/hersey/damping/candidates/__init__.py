@@ -3,6 +3,7 @@
 ====================  ===============================================================================
 observations          dwells in logarithms, with the errors of torque, speed and temperature
 thermal               laws of temperature: power, Arrhenius, VFT
+named                 what every law has: parameters with names
 branched              laws of speed and temperature with one or two branches
 stribeck              the Stribeck curve
 rest_law              torque without a film

@@ -17,6 +17,7 @@ from functools import cached_property
 import numpy as np
 
 from hersey.arrays import BoolArray, FloatArray
+from hersey.damping.candidates.named import Named
 from hersey.damping.candidates.observations import Inputs
 from hersey.damping.candidates.thermal import Thermal
 
@@ -56,7 +57,7 @@ class Bend:
 
 
 @dataclass(frozen=True)
-class Law:
+class Law(Named):
     """A candidate about reference values.
 
     ``branches`` is one of the constants above; ``groups`` is how many temperatures have an exponent of
@@ -84,10 +85,6 @@ class Law:
     def broken(self) -> bool:
         """Whether there are two branches."""
         return self.branches in (HELD, FREE)
-
-    def index(self, name: str) -> int:
-        """Return where a parameter stands."""
-        return self.names.index(name)
 
     def predict(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """Return ln torque."""

@@ -16,6 +16,7 @@ import numpy as np
 from scipy import optimize
 
 from hersey.arrays import FloatArray
+from hersey.damping.candidates.named import Named
 from hersey.damping.candidates.observations import Inputs
 from hersey.damping.candidates.thermal import Thermal
 
@@ -28,7 +29,7 @@ _LOG_BOUND = 40.0
 
 
 @dataclass(frozen=True)
-class ConstantPlusLaw:
+class ConstantPlusLaw(Named):
     """A candidate about reference values.
 
     ``exponent`` holds the film's exponent of damping in speed; None leaves it free.
@@ -50,15 +51,6 @@ class ConstantPlusLaw:
             *(("viscous",) if self.viscous else ()),
             *(("r",) if self.rest_thermal and self.thermal else ()),
         )
-
-    @property
-    def broken(self) -> bool:
-        """There is no corner."""
-        return False
-
-    def index(self, name: str) -> int:
-        """Return where a parameter stands."""
-        return self.names.index(name)
 
     def predict(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """Return ln torque."""

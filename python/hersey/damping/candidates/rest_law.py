@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hersey.arrays import FloatArray
+from hersey.damping.candidates.named import Named
 from hersey.damping.candidates.observations import Inputs
 
 #: Unit of temperature, K, in which the slope is of the size of the others.
@@ -19,23 +20,18 @@ KELVIN = 100.0
 
 
 @dataclass(frozen=True)
-class RestLaw:
+class RestLaw(Named):
     """The parts that a log can tell: one that rises with speed, one that varies about ``reference`` (K)."""
 
     with_speed: bool
     reference: float | None
     thermal = None
-    broken = False
 
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the parameters, in order."""
         speed = ("per_speed",) if self.with_speed else ()
         return ("constant", *speed, *(("temperature_slope",) if self.reference is not None else ()))
-
-    def index(self, name: str) -> int:
-        """Return where a parameter stands."""
-        return self.names.index(name)
 
     def predict(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """Return torque over that of reference."""

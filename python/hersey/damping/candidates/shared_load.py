@@ -18,6 +18,7 @@ import numpy as np
 
 from hersey import _core
 from hersey.arrays import FloatArray
+from hersey.damping.candidates.named import Named
 from hersey.damping.candidates.observations import Inputs
 
 #: Logarithm of the largest factor on what is stated.
@@ -69,7 +70,7 @@ class _Last:
 
 
 @dataclass(frozen=True)
-class SharedLoadLaw:
+class SharedLoadLaw(Named):
     """A candidate about a contact; ``speed`` (rad/s) and ``torque`` (N m) are those of reference."""
 
     contact: SharedLoad
@@ -78,16 +79,11 @@ class SharedLoadLaw:
     viscosity_known: bool = False
     _last: _Last = field(default_factory=_Last, init=False, repr=False, compare=False)
     thermal = None
-    broken = False
 
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the parameters, in order."""
         return (*(() if self.viscosity_known else ("viscosity",)), "roughness", "boundary", "rest")
-
-    def index(self, name: str) -> int:
-        """Return where a parameter stands."""
-        return self.names.index(name)
 
     def predict(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """Return ln torque."""

@@ -14,12 +14,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from hersey.arrays import FloatArray
+from hersey.damping.candidates.named import Named
 from hersey.damping.candidates.observations import Inputs
 from hersey.damping.candidates.thermal import Thermal
 
 
 @dataclass(frozen=True)
-class StribeckLaw:
+class StribeckLaw(Named):
     """A candidate about reference values; isothermal without ``thermal``."""
 
     thermal: Thermal | None
@@ -28,15 +29,6 @@ class StribeckLaw:
     def names(self) -> tuple[str, ...]:
         """Names of the parameters, in order."""
         return ("level", *(("e",) if self.thermal else ()), "stick", "viscous", "at")
-
-    @property
-    def broken(self) -> bool:
-        """A Stribeck curve has no corner."""
-        return False
-
-    def index(self, name: str) -> int:
-        """Return where a parameter stands."""
-        return self.names.index(name)
 
     def predict(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """Return ln torque."""
