@@ -1,9 +1,10 @@
-"""What must be known before a fit is trusted: said alike by `fit`, `report` and `inspect`."""
+"""What must be known before a fit is trusted: said alike by every command that fits a log."""
 
 from __future__ import annotations
 
 import json
 import re
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,7 @@ import pytest
 
 from hersey.units import rpm
 from tests.cli.command import run
+from tests.conftest import ROOT
 
 SPEEDS = (2, 4, 8, 16, 32, 64, 128)
 OFFSET = 0.004
@@ -52,7 +54,9 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
+@cache
 def told(folder: Path, verb: str, *options: str) -> Any:
+    """What a command prints as JSON; asked once, to be looked at and not changed."""
     done = run(verb, *options, "--json", cwd=folder)
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
@@ -103,6 +107,24 @@ def test_inspect_and_report_do_not_contradict_each_other(asked: tuple[str, ...],
     transitions = [each for each in support["can"] if each.startswith("a transition")]
     assert bool(transitions) == (document["fit"]["transition"] is not None)
     assert any("one exponent" in each for each in support["cannot"]) == bool(_drifts(document))
+
+
+def test_inspect_says_before_a_fit_what_a_fit_says_of_tare_and_order(folder: Path) -> None:
+    early = re.compile("tare|standing stretch|time go together")
+    for asked in CASES[3:]:
+        warned = told(folder, "report", *asked)["warnings"]
+        cautions = told(folder, "inspect", *asked)["cautions"]
+        assert cautions == [each for each in warned if early.search(each)]
+    assert any("Temperature and time go together" in each for each in cautions)
+
+
+def test_models_and_film_say_it_too(folder: Path) -> None:
+    warned = told(folder, "fit", "falling.csv")["warnings"]
+    cheap = ["falling.csv", "--bootstrap", "0"]
+    assert told(folder, "models", *cheap)["warnings"] == warned
+    machine = ROOT / "tests" / "stand" / "machine.toml"
+    film = run("film", machine, "--log", "falling.csv", cwd=folder).stdout
+    assert film.endswith("".join(f"\n- {each}" for each in warned) + "\n")
 
 
 def _drifts(document: Any) -> list[str]:

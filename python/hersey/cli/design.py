@@ -38,6 +38,7 @@ def design(
     from hersey.damping.candidates import compare_models
     from hersey.damping.design import design as designed
 
+    within = _range("speed", "--speeds", speeds), _range("temperature", "--temperatures", temperatures)
     points = reading.points(reading.log(logs))
     with working("fitting the candidates"):
         fitted = compare_models(points, bootstrap=0, cross_validate=False)
@@ -45,8 +46,8 @@ def design(
         fitted,
         count=count,
         quantity=quantity,
-        speeds=_range("speed", "--speeds", speeds),
-        temperatures=_range("temperature", "--temperatures", temperatures),
+        speeds=within[0],
+        temperatures=within[1],
         seed=seed,
     )
     if as_json:

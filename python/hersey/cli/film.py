@@ -72,6 +72,7 @@ def film(
     from hersey.document.film_part import film_document, shared_load
     from hersey.files.writing import write_atomically
     from hersey.machine.machine import read_machine
+    from hersey.verdict.cautions import cautions
     from hersey.verdict.checks import check_film
     from hersey.verdict.evidence import measured_film, verdict
     from hersey.verdict.regime import regime
@@ -86,7 +87,7 @@ def film(
     kelvin = temperature_of(at)
     if not log and reading != Reading():
         raise ParameterError("options that say how to read a log need --log")
-    measured, says, surface = None, None, None
+    measured, says, surface, doubts = None, None, None, []
     if log:
         from hersey.damping.fit import fit
 
@@ -105,8 +106,9 @@ def film(
             points, surface, contact=machine.contact, lubricant=machine.lubricant, temperature=kelvin
         )
         says = verdict(measured, surface, machine.contact, machine.lubricant, seen)
+        doubts = cautions(points, surface)
     predicted, names = _predicted(machine, measured, kelvin, belt_speed)
-    notes = check_film(machine, predicted, measured)
+    notes = (*check_film(machine, predicted, measured), *doubts)
     shared = shared_load(machine, predicted, measured, surface)
     if figure is not None:
         from hersey.charts import chart_of

@@ -37,7 +37,10 @@ def models(
     Example: [bold]hersey models examples/bench.csv --tare standing[/bold]
     """
     from hersey.damping.candidates import compare_models
+    from hersey.damping.fit import fit
+    from hersey.errors import InsufficientDataError
     from hersey.machine.machine import read_machine
+    from hersey.verdict.cautions import cautions
 
     machine = None if machine_file is None else read_machine(machine_file)
     contact = None if machine is None else machine.mixed
@@ -51,7 +54,14 @@ def models(
         comparison = compare_models(
             points, contact=contact, bootstrap=bootstrap, seed=seed, progress=progress
         )
+    try:
+        surface = fit(points, temperature_scale=reading.temperature_scale)
+    except InsufficientDataError:  # other laws may hold where the surface has no meaning
+        surface = None
+    doubts = cautions(points, surface)
     if as_json:
-        print_json("models", comparison.to_dict())
+        print_json("models", {**comparison.to_dict(), "warnings": doubts})
         return
     say(comparison.summary())
+    for doubt in doubts:
+        say(f"- {doubt}")

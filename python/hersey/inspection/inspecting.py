@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,16 +12,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.errors import HerseyError
+from hersey.damping.dwells import SteadyPoints
+from hersey.damping.dwells.doubtful import doubtful_order, doubtful_tare
+from hersey.errors import HerseyError, InsufficientDataError
 from hersey.inspection.clock import Clock, clock_of
 from hersey.inspection.faults import DITHER, Fault, Traits, traits
 from hersey.inspection.raw import RawChannel, RawLog, raw_channels, roles_of
-from hersey.inspection.support import Support, support_of, support_of_means
+from hersey.inspection.support import Support, support_of_points
 from hersey.log.channels import OTHER_ROLES, ROLES, ChannelChoice, Stated
 from hersey.log.corrections import Corrected
 from hersey.log.doubtful import doubtful_units
 from hersey.log.mapping import LogMapping, as_stated, mapping_of, read_with_mapping, without_what_is_said
-from hersey.log.means import read_means
+from hersey.log.means import MeansTable, read_means
 from hersey.log.sensors import Sensors
 from hersey.log.torque_log import NO_CLOCK, Correction, LogFile
 from hersey.result import Result, json_record
@@ -87,7 +89,7 @@ class Inspection(Result):
     support
         Dwells and what they can tell, or None if the logs cannot be read.
     cautions
-        Units that are doubtful, as a fit says them too.
+        Units, tare and order of the dwells where they are doubtful, as a fit says them too.
     """
 
     files: tuple[FileReport, ...]
@@ -242,9 +244,9 @@ def inspect(
     }
     known = Stated(*(getattr(stated, f.name) or getattr(said.stated, f.name) for f in fields(Stated)))
     reports = tuple(_file_report(raw_channels(file), choices, known) for file in files)
-    of_fit = {"rotation": rotation, "temperature_scale": temperature_scale}
     if means:
-        return _of_means(files, reports, choices, isothermal, signs, known, chosen.sensors, **of_fit)
+        of_fit = rotation, temperature_scale
+        return _of_means(files, reports, choices, isothermal, signs, known, chosen.sensors, of_fit)
     hopeless = any(set(report.without) - {"temperature"} for report in reports)
     holes = any(c.role and c.traits.missing for report in reports for c in report.channels)
     cold = any("temperature" in report.without for report in reports)
@@ -261,9 +263,23 @@ def inspect(
         return Inspection(reports, problem, (), {}, (), None)
     reports = tuple(_with_notes(report, read.log.files) for report in reports)
     dropped = {file.name: file.missing_rows for file in read.log.files if file.missing_rows}
-    support = support_of(read.log, min_dwell=min_dwell, tare=tare, **of_fit)
-    doubts = tuple(doubtful_units(read.log))
+    log = read.log
+    support, doubts = _supported(
+        lambda: log.steady(min_dwell=min_dwell, tare=tare, rotation=rotation), temperature_scale
+    )
+    doubts = (*doubtful_units(log), *doubts)
     return Inspection(reports, "", needed, dropped, read.corrections, support, doubts)
+
+
+def _supported(reduce: Callable[[], SteadyPoints], temperature_scale: str) -> tuple[Support, tuple[str, ...]]:
+    """What dwells support, and what is doubtful of them; a log without a dwell supports nothing."""
+    try:
+        points = reduce()
+    except InsufficientDataError as error:
+        return Support(0, 0, None, (), {}, (), (str(error),)), ()
+    notes = () if isinstance(points.log, MeansTable) else points.notes  # what a table lacks, support says
+    doubts = (*doubtful_tare(points), *notes, *doubtful_order(points))
+    return support_of_points(points, temperature_scale=temperature_scale), doubts
 
 
 def _of_means(
@@ -274,9 +290,10 @@ def _of_means(
     signs: Mapping[str, int] | None,
     known: Stated,
     sensors: Sensors,
-    **of_fit: str,
+    of_fit: tuple[str, str],
 ) -> Inspection:
-    """What a table of means holds: it needs no clock; ``of_fit`` as `support_of_means` takes it."""
+    """What a table of means holds: it needs no clock; ``of_fit`` are rotation and temperature scale."""
+    rotation, temperature_scale = of_fit
     reports = tuple(
         replace(
             report,
@@ -300,8 +317,9 @@ def _of_means(
         return Inspection(reports, str(error), (), {}, (), None)
     dropped = {file.name: file.missing_rows for file in table.files if file.missing_rows}
     reports = tuple(_with_notes(report, table.files) for report in reports)
-    support = support_of_means(replace(table, sensors=sensors), **of_fit)
-    return Inspection(reports, "", (), dropped, (), support, tuple(doubtful_units(table)))
+    table = replace(table, sensors=sensors)
+    support, doubts = _supported(lambda: SteadyPoints.from_table(table, rotation=rotation), temperature_scale)
+    return Inspection(reports, "", (), dropped, (), support, (*doubtful_units(table), *doubts))
 
 
 def _with_notes(report: FileReport, files: Sequence[LogFile]) -> FileReport:

@@ -18,7 +18,6 @@ from hersey.damping.rising import Rising, rising
 from hersey.damping.surface import DampingSurface
 from hersey.errors import InsufficientDataError
 from hersey.log.means import MeansTable
-from hersey.log.torque_log import TorqueLog
 from hersey.units import convert, rpm
 
 #: Speeds that span less than this factor, and temperatures that span less than so many kelvin, give an
@@ -57,38 +56,8 @@ class Support:
     cannot: tuple[str, ...]
 
 
-def support_of(
-    log: TorqueLog,
-    *,
-    min_dwell: float = 2.0,
-    tare: str = "none",
-    rotation: str = "both",
-    temperature_scale: str = "degC",
-) -> Support:
-    """Return what a log supports; a log without a dwell supports nothing, and says why.
-
-    ``min_dwell`` (s), ``tare``, ``rotation`` and ``temperature_scale`` are those of the fit to come.
-    """
-    try:
-        points = log.steady(min_dwell=min_dwell, tare=tare, rotation=rotation)
-    except InsufficientDataError as error:
-        return Support(0, 0, None, (), {}, (), (str(error),))
-    return support_of_points(points, temperature_scale=temperature_scale)
-
-
-def support_of_means(
-    table: MeansTable, *, rotation: str = "both", temperature_scale: str = "degC"
-) -> Support:
-    """Return what a table of means supports."""
-    try:
-        points = SteadyPoints.from_table(table, rotation=rotation)
-    except InsufficientDataError as error:
-        return Support(0, 0, None, (), {}, (), (str(error),))
-    return support_of_points(points, temperature_scale=temperature_scale)
-
-
 def support_of_points(points: SteadyPoints, *, temperature_scale: str = "degC") -> Support:
-    """Return what dwells support."""
+    """Return what dwells support; ``temperature_scale`` is that of the fit to come."""
     log = points.log
     speed = np.abs(points.column("speed"))
     kelvin = points.column("temperature") if log.has_temperature else None

@@ -5,28 +5,27 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy import stats
 
 from hersey.arrays import FloatArray
 from hersey.damping.dwells import SteadyPoints
+from hersey.damping.dwells.doubtful import doubtful_order, doubtful_tare
 from hersey.damping.surface import DampingSurface
 from hersey.log.doubtful import doubtful_units
 from hersey.units import celsius
 
 #: A difference between directions counts as one beyond this share and this many standard errors.
 NOTABLE_DIFFERENCE, SIGNIFICANT = 0.02, 3.0
-#: A tare beyond this share of the least torque is asked about.
-LARGE_TARE = 0.1
 #: Temperature beyond those of a no-load log, K, from which it is said to be extrapolated.
 FAR = 10.0
-#: Rank correlation with time beyond which a quantity goes together with it, for so many dwells at least.
-IN_ORDER, FEWEST_IN_ORDER = 0.9, 5
 #: p-value of chance below which a scatter of whole visits is spoken of.
 SURE = 0.01
 
 
-def cautions(points: SteadyPoints, surface: DampingSurface) -> list[str]:
-    """Return what must be known before a fit is trusted, in sentences: the same for every command."""
+def cautions(points: SteadyPoints, surface: DampingSurface | None) -> list[str]:
+    """Return what must be known before a fit is trusted, in sentences: the same for every command.
+
+    Without a surface, where dwells bear none, what is known of log and dwells alone.
+    """
     log = points.log
     out = [f"Corrected: {correction}." for correction in log.corrections]
     for file, run in zip(log.files, log.runs or (None,) * len(log.files), strict=True):
@@ -41,7 +40,7 @@ def cautions(points: SteadyPoints, surface: DampingSurface) -> list[str]:
                 f"{file.name}: rows are missing at {run.gaps()} places ({max(share, 0):.1%} of the time)."
             )
     out += doubtful_units(log)
-    out += _tare_warning(points)
+    out += doubtful_tare(points)
     out += points.notes
     out += _rest_warnings(points)
     if loads := points.varying_load:
@@ -56,9 +55,11 @@ def cautions(points: SteadyPoints, surface: DampingSurface) -> list[str]:
             f"Stick-slip was recorded: {len(swinging)} "
             f"{'stretch' if len(swinging) == 1 else 'stretches'} of held speed, left out of the fit."
         )
-    out += _direction_warnings(points, surface)
-    out += _order_warnings(points, surface)
-    out += _fit_warnings(surface)
+    if surface is not None:
+        out += _direction_warnings(points, surface)
+    out += doubtful_order(points)
+    if surface is not None:
+        out += _fit_warnings(surface)
     return out
 
 
@@ -82,26 +83,6 @@ def _rest_warnings(points: SteadyPoints) -> list[str]:
                 f"{celsius(float(kelvin.max())):.0f} degC: it is extrapolated."
             )
     return out
-
-
-def _tare_warning(points: SteadyPoints) -> list[str]:
-    standing = points.standing_torque
-    if standing is None:
-        return []
-    least = float(np.min(np.abs(points.column("torque"))))
-    if points.tare:
-        if abs(points.tare) < LARGE_TARE * least:
-            return []
-        return [
-            f"The tare, {points.tare * 1e3:.3g} mN m, is {abs(points.tare) / least:.0%} of the least dwell: "
-            "is it the sensor's offset, and did the drive stand free?"
-        ]
-    if abs(standing) < 0.001 * least:
-        return []
-    return [
-        f"While the drive stood, torque read {standing * 1e3:.3g} mN m, {abs(standing) / least:.1%} of the "
-        "least dwell. It is not subtracted; if it is the sensor's offset, say --tare standing."
-    ]
 
 
 def _direction_warnings(points: SteadyPoints, surface: DampingSurface) -> list[str]:
@@ -158,22 +139,6 @@ def _fit_warnings(surface: DampingSurface) -> list[str]:
             "scatter between dwells, or a law that does not hold."
         )
     return out
-
-
-def _order_warnings(points: SteadyPoints, surface: DampingSurface) -> list[str]:
-    """What goes together with time cannot be told from a drift of the drive."""
-    if len(points) < FEWEST_IN_ORDER or len(points.log.runs) != 1:
-        return []
-    named = {"speed": ("c", np.log(np.abs(points.column("speed"))))}
-    if surface.b is not None:
-        named["temperature"] = ("b", points.column("temperature"))
-    order = np.arange(len(points))
-    return [
-        f"{what.capitalize()} and time go together: wear-in or any other drift would pass for {what} in "
-        f"exponent {exponent}. Go back to the first {what} at the end."
-        for what, (exponent, values) in named.items()
-        if abs(float(stats.spearmanr(order, values).statistic)) > IN_ORDER
-    ]
 
 
 def _shared_warnings(surface: DampingSurface) -> list[str]:

@@ -12,6 +12,7 @@ settling        where a dwell has settled, by itself and by what all show togeth
 judging         which rows of a stretch are a dwell, or why none are
 nothing_steady  why a log has no dwell at all, and what to do
 zero            the zero of the torque over the log, from every standing stretch
+doubtful        what is doubtful before a fit: the tare, and what goes together with time
 reduction       `steady_points`: from a log to its dwells
 ==============  =======================================================================
 

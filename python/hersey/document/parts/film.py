@@ -166,7 +166,7 @@ class FilmPart(Part):
     verdict: str = ""
     mixed: MixedPart | None = Field(default=None, description="who carries what, at the points")
     transition: ContactTransitionPart | None = Field(default=None, description="where drag is least")
-    notes: list[str] = Field(default=[], description="what in the numbers cannot be")
+    notes: list[str] = Field(default=[], description="what in the numbers cannot be, and cautions of the log")
     points: list[FilmPoint] = Field(default=[], description="points of interest on the regime chart")
     dwells: list[FilmPoint] = Field(default=[], description="dwells on the regime chart")
 

@@ -95,5 +95,5 @@ class InspectionPart(Part):
     needed: list[str]
     dropped: dict[str, int] = Field(description="rows left out, by file")
     corrections: list[CorrectionPart]
-    cautions: list[str] = Field(description="units in which the numbers would not be ordinary")
+    cautions: list[str] = Field(description="units, tare and order that are doubtful")
     support: SupportPart | None

@@ -115,6 +115,7 @@ class ModelsPart(Part):
     errors_in_variables: OrthogonalPart
     activation_energy: ActivationPart
     hersey_collapse: CollapsePart | None
+    warnings: list[str] = Field(default=[], description="what must be known before a fit is trusted")
 
 
 class ChangePart(Part):

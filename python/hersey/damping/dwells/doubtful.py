@@ -1,0 +1,52 @@
+"""What is doubtful in dwells before anything is fitted: their tare, and what goes together with time."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy import stats
+
+from hersey.damping.dwells.groups import groups_of_temperature
+from hersey.damping.dwells.points import SteadyPoints
+
+#: A tare beyond this share of the least torque is asked about.
+LARGE_TARE = 0.1
+#: Rank correlation with time beyond which a quantity goes together with it, for so many dwells at least.
+IN_ORDER, FEWEST_IN_ORDER = 0.9, 5
+
+
+def doubtful_tare(points: SteadyPoints) -> list[str]:
+    """Return in a sentence what is doubtful of the zero of torque, with the option that mends it; or none."""
+    standing = points.standing_torque
+    if standing is None:
+        return []
+    least = float(np.min(np.abs(points.column("torque"))))
+    if points.tare:
+        if abs(points.tare) < LARGE_TARE * least:
+            return []
+        return [
+            f"The tare, {points.tare * 1e3:.3g} mN m, is {abs(points.tare) / least:.0%} of the least dwell: "
+            "is it the sensor's offset, and did the drive stand free?"
+        ]
+    if abs(standing) < 0.001 * least:
+        return []
+    return [
+        f"While the drive stood, torque read {standing * 1e3:.3g} mN m, {abs(standing) / least:.1%} of the "
+        "least dwell. It is not subtracted; if it is the sensor's offset, say --tare standing."
+    ]
+
+
+def doubtful_order(points: SteadyPoints) -> list[str]:
+    """Return in sentences what goes together with time, and so cannot be told from a drift of the drive."""
+    if len(points) < FEWEST_IN_ORDER or len(points.log.runs) != 1:
+        return []
+    named = {"speed": ("c", np.log(np.abs(points.column("speed"))))}
+    if points.log.has_temperature and len(list(groups_of_temperature(points.column("temperature")))) > 1:
+        named["temperature"] = ("b", points.column("temperature"))
+    named = {what: each for what, each in named.items() if np.ptp(each[1]) > 0}
+    order = np.arange(len(points))
+    return [
+        f"{what.capitalize()} and time go together: wear-in or any other drift would pass for {what} in "
+        f"exponent {exponent}. Go back to the first {what} at the end."
+        for what, (exponent, values) in named.items()
+        if abs(float(stats.spearmanr(order, values).statistic)) > IN_ORDER
+    ]
