@@ -51,10 +51,10 @@ test-rust: ## tests of the core
 	cargo test --release --quiet --package hersey-core
 
 test-python: build browser ## tests of the package and the page
-	$(BIN)/python -m pytest -n auto
+	$(BIN)/python -m pytest -n auto --dist worksteal
 
 quick: build ## the tests of the package that take a moment, while working
-	$(BIN)/python -m pytest -n auto -m "not slow" --ignore tests/browser
+	$(BIN)/python -m pytest -n auto --dist worksteal -m "not slow" --ignore tests/browser
 
 # The page is tested in a real Chromium; Playwright drives the one of the system.
 browser: ## install Chromium if there is none

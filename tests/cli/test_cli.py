@@ -13,6 +13,7 @@ import pytest
 
 from hersey.cli.application import VERBS
 from tests.cli.command import run, start
+from tests.cli.test_json import figure
 from tests.conftest import ROOT
 
 
@@ -25,7 +26,11 @@ def example(*command: str) -> str:
 
 
 @pytest.mark.parametrize("command", [(), *[(c,) for c in VERBS]])
-def test_the_example_in_the_help_works_as_typed(command: tuple[str, ...], examples_here: Path) -> None:
+def test_the_example_in_the_help_works_as_typed(
+    command: tuple[str, ...], examples_here: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """All but the simulations of the paper's figures, which have tests of their own."""
+    monkeypatch.setattr("hersey.paper_figures.all_figures", lambda: [figure()])
     typed = shlex.split(example(*command))
     result = run(*typed[1:], cwd=examples_here)
     assert result.returncode == 0, result.stderr

@@ -52,7 +52,7 @@ def test_every_verb_is_tried() -> None:
 
 
 @pytest.mark.parametrize("verb", TYPED)
-@pytest.mark.parametrize("moment", range(3))
+@pytest.mark.parametrize("moment", range(2))
 def test_ctrl_c_ends_a_command(verb: str, moment: int, tmp_path: Path) -> None:
     typed, lasts = TYPED[verb]
     process = subprocess.Popen(
@@ -66,7 +66,7 @@ def test_ctrl_c_ends_a_command(verb: str, moment: int, tmp_path: Path) -> None:
     assert process.stdout.readline() == b"ready\n"
     time.sleep(random.Random(f"{verb} {moment}").uniform(0, 0.9 * lasts))
     before = processor_time(process.pid)
-    os.kill(process.pid, signal.SIGTERM if moment == 2 else signal.SIGINT)
+    os.kill(process.pid, signal.SIGTERM if moment == 1 else signal.SIGINT)
     stdout, stderr = process.stdout.read(), process.stderr.read()
     os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOWAIT)  # it has ended, and can still be looked at
     used = processor_time(process.pid) - before

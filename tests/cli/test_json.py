@@ -41,7 +41,7 @@ ARGUMENTS: dict[str, list[str]] = {
     "hysteresis": ["--drive-speed", "1.2", "--from-speed", "2.5", "--to-speed", "1.2"],
     "map": [MACHINE, "--fit", "FIT"],
     "figures": ["--out", "FIGURES"],
-    "plan": ["STRONG", "--fit", "FIT", "--target", "60 mm/s", "--at", "150 degC"],
+    "plan": ["STRONG", "--fit", "FIT", "--target", "60 mm/s", "--at", "150 degC", "--confidence", "0.5"],
     "warmup": [MACHINE, "--fit", "FIT", "--target", "60 mm/s", "--from", "20 degC"],
 }
 #: Names of fields that the header of every print has.

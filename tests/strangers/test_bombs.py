@@ -188,7 +188,10 @@ def _workbook(sheet: str, strings: str = "") -> bytes:
     """A workbook of one sheet with this text in it, and a table of strings that its cells may name."""
     space = 'xmlns="http://schemas.openxmlformats.org/spreadsheetml/2006/main"'
     memory, sound = io.BytesIO(), io.BytesIO(xlsx({"Run": [["Time [s]", "Torque [N*m]"], [0.0, 1.0]]}))
-    with zipfile.ZipFile(sound) as old, zipfile.ZipFile(memory, "w", zipfile.ZIP_DEFLATED) as new:
+    with (
+        zipfile.ZipFile(sound) as old,
+        zipfile.ZipFile(memory, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as new,
+    ):
         for name in old.namelist():
             if not name.endswith("sheet1.xml"):
                 new.writestr(name, old.read(name))
@@ -217,7 +220,7 @@ def npz(rows: int, stored: int) -> bytes:
     """An array that says it has so many rows, and a stream of so many zeros behind that."""
     memory = io.BytesIO()
     with (
-        zipfile.ZipFile(memory, "w", zipfile.ZIP_DEFLATED) as archive,
+        zipfile.ZipFile(memory, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as archive,
         archive.open("torque.npy", "w", force_zip64=True) as member,
     ):
         head = {"descr": "<f8", "fortran_order": False, "shape": (rows,)}

@@ -1,4 +1,4 @@
-"""Two thousand damaged files, and a check that the driver sees what it looks for."""
+"""Twelve hundred damaged files, and a check that the driver sees what it looks for."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ pytestmark = linux
 pytest.importorskip("asammdf")
 pytest.importorskip("h5py")
 pytest.importorskip("nptdms")
-SEED, PARTS, EACH = 2015, 8, 250
+SEED, PARTS, EACH = 2015, 8, 150
 
 
 @pytest.fixture(scope="session")
