@@ -8,16 +8,24 @@ import shlex
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import typer
 
 from hersey.charts import PICTURES
+from hersey.cli.progress import working
+from hersey.cli.terminal import say
 from hersey.errors import OutputError
 from hersey.spelling import printable
 
 if TYPE_CHECKING:
     from pydantic import BaseModel
+
+    from hersey.stability.plan import Plan
+    from hersey.stability.warm_up import WarmUp
+
+#: Exit code where what was sought does not exist.
+NOT_FOUND = 1
 
 
 def command() -> str:
@@ -95,3 +103,52 @@ def may_draw(
     if path.suffix not in PICTURES:
         raise OutputError(f"{flag} {path}: name a file that ends in {', '.join(PICTURES)}")
     may_write(path, force, inputs)
+
+
+def may_write_table_and_figure(
+    table: Path | None, figure: Path | None, force: bool, inputs: Sequence[Path]
+) -> None:
+    """Refuse early what ``--out`` and ``--figure`` name, if it cannot be written."""
+    if table is not None and figure is not None and table.absolute() == figure.absolute():
+        raise OutputError(f"--out and --figure both name {table}: name two files")
+    if figure is not None:
+        may_draw(figure, force, inputs)
+    if table is not None:
+        may_write(table, force, inputs)
+
+
+def give(
+    name: str,
+    result: Plan | WarmUp,
+    *,
+    called: str,
+    table: Path | None,
+    figure: Path | None,
+    as_json: bool,
+    **chart: Any,
+) -> None:
+    """Write table and figure of a course that a command has found, and print the result.
+
+    ``called`` is what the command calls its table, ``chart`` what else the chart takes. Where nothing was
+    found nothing is written, and the command ends with `NOT_FOUND`.
+    """
+    from hersey.files.writing import write_atomically
+
+    if result.found and figure is not None:
+        from hersey.charts import chart_of
+        from hersey.charts.render import picture
+
+        with working("drawing"):
+            content = picture(chart_of(result, **chart), figure.suffix)
+        write_atomically(figure, content, overwrite=True)
+    if result.found and table is not None:
+        write_atomically(table, result.table(), overwrite=True)
+    if as_json:
+        print_json(name, result.to_dict())
+    else:
+        say(result.summary())
+        for what, written in ((called, table), ("figure", figure)):
+            if result.found and written is not None:
+                say(f"{what}: {written}")
+    if not result.found:
+        raise typer.Exit(NOT_FOUND)

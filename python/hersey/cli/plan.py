@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -13,14 +14,15 @@ from hersey.cli.options import (
     Force,
     Reading,
     SomeLogs,
+    beyond_the_log,
+    heat_of,
     reads_logs,
     target_of,
     temperature_of,
 )
-from hersey.cli.outputs import may_draw, may_write, print_json
-from hersey.cli.progress import bar, working
-from hersey.cli.terminal import say
-from hersey.errors import OutputError, ParameterError
+from hersey.cli.outputs import give, may_write_table_and_figure
+from hersey.cli.progress import bar
+from hersey.errors import ParameterError
 
 if TYPE_CHECKING:
     from hersey.arrays import FloatArray
@@ -32,8 +34,6 @@ if TYPE_CHECKING:
 
 #: Draws of the fit from which those of the plan are taken.
 _DRAWS = 4000
-#: Exit code where no profile exists.
-IMPOSSIBLE = 1
 
 
 @reads_logs
@@ -57,6 +57,13 @@ def plan(
             help="Instead: temperature against time, in any format that a log may have.",
         ),
     ] = None,
+    heat: Annotated[
+        bool,
+        typer.Option("--heat", help="Instead: the temperature that [heat] of the file and the plan make."),
+    ] = False,
+    start: Annotated[
+        str, typer.Option("--from", help="With --heat: of the cold start.  [default: that of [heat]]")
+    ] = "",
     confidence: Annotated[
         float, typer.Option("--confidence", help="Share of the belts that must run smoothly, 0.5 to 0.999.")
     ] = 0.95,
@@ -78,16 +85,14 @@ def plan(
     Exit code 1 says that no profile exists; then nothing is written.
     """
     inputs = reading.inputs(machine_file, logs, fit_file, profile_file)
-    if out is not None and figure is not None and out.absolute() == figure.absolute():
-        raise OutputError(f"--out and --figure both name {out}: name two files")
-    if figure is not None:
-        may_draw(figure, force, inputs)
-    if out is not None:
-        may_write(out, force, inputs)
-    if at and profile_file is not None:
-        raise ParameterError("give either --at or --temperature-profile")
+    may_write_table_and_figure(out, figure, force, inputs)
+    if sum((bool(at), profile_file is not None, heat)) > 1:
+        raise ParameterError("give one of --at, --temperature-profile and --heat")
+    if start and not heat:
+        raise ParameterError("--from goes with --heat")
 
-    from hersey.files.writing import write_atomically
+    import numpy as np
+
     from hersey.log import memory_limit
     from hersey.machine.machine import read_machine
     from hersey.machine.temperature_profile import read_temperature_profile
@@ -96,16 +101,18 @@ def plan(
     machine = read_machine(machine_file)
     wanted = target_of(target, machine)
     kelvin = temperature_of(at)
+    warmth = heat_of(machine, machine_file, start) if heat else None
     with memory_limit(reading.max_memory):
         profile = None if profile_file is None else read_temperature_profile(profile_file)
     surface = reading.surface(logs, fit_file, machine)
-    drag, samples = _drag(surface, machine, kelvin, seed, varies=profile is not None)
+    drag, samples = _drag(surface, machine, kelvin, seed, varies=heat or profile is not None)
     with bar("planning", unit="profiles") as progress:
         planned = plan_profile(
             machine.train,
             drag,
             target_speed=wanted,
             temperature=profile,
+            heat=warmth,
             limits=machine.limits,
             roll_radius=machine.roll_radius,
             uncertainty=_uncertainty(machine, drag),
@@ -114,24 +121,12 @@ def plan(
             seed=seed,
             progress=progress,
         )
-    if planned.found and figure is not None:
-        from hersey.charts import chart_of
-        from hersey.charts.render import picture
-
-        with working("drawing"):
-            content = picture(chart_of(planned, temperature=profile), figure.suffix)
-        write_atomically(figure, content, overwrite=True)
-    if planned.found and out is not None:
-        write_atomically(out, planned.table(), overwrite=True)
-    if as_json:
-        print_json("plan", planned.to_dict())
-    else:
-        say(planned.summary())
-        for what, written in (("profile", out), ("figure", figure)):
-            if planned.found and written is not None:
-                say(f"{what}: {written}")
-    if not planned.found:
-        raise typer.Exit(IMPOSSIBLE)
+    course = planned.course if heat else profile
+    if planned.course is not None:
+        film = np.asarray(planned.course.values)
+        said = beyond_the_log(surface, float(film.min()), float(film.max()))
+        planned = replace(planned, warnings=(*planned.warnings, *said))
+    give("plan", planned, called="profile", table=out, figure=figure, as_json=as_json, temperature=course)
 
 
 def _uncertainty(machine: Machine, drag: Drag) -> dict[str, Uncertainty]:
@@ -150,10 +145,10 @@ def _drag(
 
     if surface.b is not None and kelvin is None and not varies:
         raise ParameterError(
-            "the drag varies with temperature: give --at '150 degC' or --temperature-profile"
+            "the drag varies with temperature: give --at '150 degC', --temperature-profile or --heat"
         )
     if surface.b is None and (kelvin is not None or varies):
-        raise ParameterError("the log is isothermal: leave out --at and --temperature-profile")
+        raise ParameterError("the log is isothermal: leave out --at, --temperature-profile and --heat")
     drag = surface.drag(**machine.belt, temperature=kelvin)
     at = drag.reference_temperature if varies else kelvin
     with warnings.catch_warnings():  # the fit's own command says how many draws have no falling branch

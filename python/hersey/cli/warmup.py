@@ -21,13 +21,9 @@ from hersey.cli.options import (
     target_of,
     warming_drag,
 )
-from hersey.cli.outputs import may_draw, may_write, print_json
+from hersey.cli.outputs import give, may_write_table_and_figure
 from hersey.cli.progress import working
-from hersey.cli.terminal import say
-from hersey.errors import OutputError, ParameterError
-
-#: Exit code where full speed is not reached.
-NOT_REACHED = 1
+from hersey.errors import ParameterError
 
 
 @reads_logs
@@ -65,14 +61,8 @@ def warmup(
     Exit code 1 says that full speed is not reached; then nothing is written.
     """
     inputs = reading.inputs(machine_file, logs, fit_file)
-    if out is not None and figure is not None and out.absolute() == figure.absolute():
-        raise OutputError(f"--out and --figure both name {out}: name two files")
-    if figure is not None:
-        may_draw(figure, force, inputs)
-    if out is not None:
-        may_write(out, force, inputs)
+    may_write_table_and_figure(out, figure, force, inputs)
 
-    from hersey.files.writing import write_atomically
     from hersey.machine.machine import read_machine
     from hersey.stability.warm_up import warm_up
     from hersey.units import parse
@@ -103,21 +93,4 @@ def warmup(
     film = warm.film_temperature
     said = beyond_the_log(surface, float(film.min()), float(film.max()))
     warm = replace(warm, warnings=(*warm.warnings, f"the limit is that of the {limit[0]}", *said))
-    if warm.found and figure is not None:
-        from hersey.charts import chart_of
-        from hersey.charts.render import picture
-
-        with working("drawing"):
-            content = picture(chart_of(warm), figure.suffix)
-        write_atomically(figure, content, overwrite=True)
-    if warm.found and out is not None:
-        write_atomically(out, warm.table(), overwrite=True)
-    if as_json:
-        print_json("warmup", warm.to_dict())
-    else:
-        say(warm.summary())
-        for what, written in (("course", out), ("figure", figure)):
-            if warm.found and written is not None:
-                say(f"{what}: {written}")
-    if not warm.found:
-        raise typer.Exit(NOT_REACHED)
+    give("warmup", warm, called="course", table=out, figure=figure, as_json=as_json)

@@ -13,6 +13,7 @@ draws     machines drawn from what is not known of one, and what must hold
 search    the quickest profile that works on all but a few of them
 obstacles why there is none: the limit, and the number that would do
 result    the plan, its table and its words
+warming   the film's temperature where heater and plan make it
 planner   the whole way: search, proof on fresh draws, plan
 ========= ==================================================================
 """

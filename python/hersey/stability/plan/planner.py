@@ -15,11 +15,12 @@ from hersey.errors import ParameterError
 from hersey.machine.limits import Limits
 from hersey.machine.uncertainty import Uncertainty
 from hersey.motion.drag import AnyDrag
+from hersey.motion.heat import HeatBalance
 from hersey.motion.schedule import Schedule
 from hersey.motion.simulation import Drivetrain, simulate
 from hersey.stability.hysteresis import hysteresis
 from hersey.stability.plan.draws import Trials, drawn, lower_bound, most_failures, needed, neighbours
-from hersey.stability.plan.obstacles import Reach, obstacles
+from hersey.stability.plan.obstacles import Obstacle, Reach, obstacles
 from hersey.stability.plan.result import LimitUse, Plan
 from hersey.stability.plan.search import Progress, Room, Search
 from hersey.stability.plan.trial import (
@@ -32,6 +33,7 @@ from hersey.stability.plan.trial import (
     outcomes,
     rounded,
 )
+from hersey.stability.plan.warming import ALIKE, ROUNDS, apart, course_of
 from hersey.units import takes_si
 
 #: Probability with which a profile that passes keeps its confidence: high, for the search tries many.
@@ -63,6 +65,7 @@ def plan_profile(
     *,
     target_speed: float,
     temperature: float | Schedule | None = None,
+    heat: HeatBalance | None = None,
     limits: Limits | None = None,
     roll_radius: float | None = None,
     uncertainty: Mapping[str, Uncertainty] | None = None,
@@ -80,6 +83,9 @@ def plan_profile(
     temperature
         K, or its profile from the moment at which the drive could start; needed if the drag varies
         with it.
+    heat
+        Instead of it: what makes the temperature from that moment on, friction under the plan too. Plan and
+        temperature are found in rounds; the proof has the temperature as a state of every motion.
     limits
         Checked over the whole profile and after it: ``speed`` and ``acceleration`` of the drive, and the
         spring force of the simulated motion against ``spring_force``, ``motor_torque`` over ``roll_radius``
@@ -103,6 +109,8 @@ def plan_profile(
     ------
     ParameterError
         If a value is out of range, with its name.
+    UnfinishedError
+        If a motion cannot be finished.
 
     Examples
     --------
@@ -115,57 +123,110 @@ def plan_profile(
     """
     limits = Limits() if limits is None else limits
     _check(drag, target_speed, limits, confidence, seed)
-    thermal = TemperatureProfile(temperature)
+    if heat is not None and temperature is not None:
+        raise ParameterError("give either temperature or heat, which makes it")
     reach = Reach.of(limits, roll_radius, train.grip)
     gripping, train = limits.gripping(train), replace(train, grip=None)  # the grip is a limit of force here
-    nominal = MachineSample(train, drag)
-    nominal.at(thermal.at(thermal.end), target_speed)  # refuses a temperature missing or not wanted
     unknown = Unknown(train, drag, dict(uncertainty or {}), dict(samples or {}), seed)
-    band = hysteresis(train, drag, temperature=thermal.at(thermal.end), sensitivity=False)
-    wide = max(_FOLDS * min(band.upper, _TRANSITIONS * band.transition), 2.0 * target_speed)
-    greatest = limits.speed or wide
-    trials = unknown.trials(confidence, thermal, reach.force)
-    search = Search(
-        nominal,
-        trials,
-        thermal,
-        target_speed,
-        Room(greatest, reach.acceleration),
-        seed=seed,
-        progress=progress,
-    )
-    facts: dict[str, Any] = {
-        "target_speed": target_speed,
-        "confidence": confidence,
-        "seed": seed,
-        "fold_speed": band.upper,
-        "transition_speed": band.transition,
-        "stick_speed": drag.law_at(thermal.at(thermal.end)).stick_speed,
-        "temperature": thermal.at(thermal.end),
-        "greatest_speed": greatest,
-    }
-    reasons = obstacles(search, limits, reach, wide, searched=False)
-    if not reasons:
-        shape = search.run()
-        for number in range(1, _VERIFIED + 1):
-            if shape is None:
-                break
-            duration = max(rounded(search.time, up=True), shape.end)
-            if search.time <= shape.end:
-                duration = float(shape.points()[0][-1])
-            proof = unknown.verify(shape, duration, thermal, reach.force, confidence, number)
-            if proof.accepted:
-                facts |= {"tried": search.count, "warnings": _warnings(reach)}
-                return _found(MachineSample(gripping, drag), shape, thermal, proof, reach, facts)
-            if number == _VERIFIED:
-                break
-            share = _STRICTER[number - 1] * most_failures(confidence, _LEVEL, proof.draws) / proof.draws
-            known = len(search.trials.machines) + proof.draws
-            shape = search.again(proof.machines, math.floor(share * known))
-        reasons = obstacles(search, limits, reach, wide, searched=True)
-    return Plan(**facts, **_NOTHING, obstacles=reasons, tried=search.count)
+    asked = _Asked(unknown, gripping, target_speed, limits, reach, confidence, progress)
+    if heat is None:
+        return asked.on(TemperatureProfile(temperature))[0]
+    course = course_of(train, drag, heat)
+    for _ in range(ROUNDS):
+        thermal = TemperatureProfile(course)
+        plan, shape = asked.on(thermal)
+        if plan.schedule is None or shape is None:
+            return replace(plan, course=course)
+        before, course = course, course_of(gripping, drag, heat, plan.schedule)
+        if (off := apart(before, course)) < ALIKE:
+            return asked.proven(plan, shape, TemperatureProfile(course), heat)
+    text = f"plan and temperature do not agree after {ROUNDS} rounds: they differ by {off:.2g} K"
+    return asked.without(plan, Obstacle("temperature", off, None, text), course)
 
 
+@dataclass(frozen=True)
+class _Asked:
+    """What is asked of a plan, and of which machine."""
+
+    unknown: Unknown
+    gripping: Drivetrain
+    target_speed: float
+    limits: Limits
+    reach: Reach
+    confidence: float
+    progress: Progress | None
+
+    def on(self, thermal: TemperatureProfile) -> tuple[Plan, Shape | None]:
+        """Return the plan over a profile of temperature, and its shape."""
+        unknown, limits, reach, target = self.unknown, self.limits, self.reach, self.target_speed
+        end = thermal.at(thermal.end)
+        nominal = MachineSample(unknown.train, unknown.drag)
+        nominal.at(end, target)  # refuses a temperature missing or not wanted
+        band = hysteresis(unknown.train, unknown.drag, temperature=end, sensitivity=False)
+        wide = max(_FOLDS * min(band.upper, _TRANSITIONS * band.transition), 2.0 * target)
+        greatest = limits.speed or wide
+        trials = unknown.trials(self.confidence, thermal, reach.force)
+        room = Room(greatest, reach.acceleration)
+        search = Search(nominal, trials, thermal, target, room, seed=unknown.seed, progress=self.progress)
+        facts: dict[str, Any] = {
+            "target_speed": target,
+            "confidence": self.confidence,
+            "seed": unknown.seed,
+            "fold_speed": band.upper,
+            "transition_speed": band.transition,
+            "stick_speed": unknown.drag.law_at(end).stick_speed,
+            "temperature": end,
+            "greatest_speed": greatest,
+        }
+        reasons = obstacles(search, limits, reach, wide, searched=False)
+        if not reasons:
+            shape = search.run()
+            for number in range(1, _VERIFIED + 1):
+                if shape is None:
+                    break
+                duration = max(rounded(search.time, up=True), shape.end)
+                if search.time <= shape.end:
+                    duration = float(shape.points()[0][-1])
+                proof = unknown.verify(shape, duration, thermal, reach.force, self.confidence, number)
+                if proof.accepted:
+                    facts |= {"tried": search.count, "warnings": _warnings(reach)}
+                    machine = MachineSample(self.gripping, unknown.drag)
+                    return _found(machine, shape, thermal, proof, reach, facts), shape
+                if number == _VERIFIED:
+                    break
+                share = _STRICTER[number - 1] * most_failures(self.confidence, _LEVEL, proof.draws)
+                share /= proof.draws
+                known = len(search.trials.machines) + proof.draws
+                shape = search.again(proof.machines, math.floor(share * known))
+            reasons = obstacles(search, limits, reach, wide, searched=True)
+        return Plan(**facts, **_NOTHING, obstacles=reasons, tried=search.count), None
+
+    def proven(self, plan: Plan, shape: Shape, thermal: TemperatureProfile, heat: HeatBalance) -> Plan:
+        """Return the plan with a proof of its own: temperature is a state of every motion."""
+        assert thermal.schedule is not None
+        proof = self.unknown.verify(
+            shape, plan.duration, thermal, self.reach.force, self.confidence, _VERIFIED + 1, heat
+        )
+        if not proof.accepted:
+            text = (
+                f"the plan holds over the temperature that it makes at the nominal parameters, but on "
+                f"{100 * proof.share:.4g} % of draws only where each makes its own: ask for less confidence"
+            )
+            return self.without(plan, Obstacle("temperature", proof.share, None, text), thermal.schedule)
+        facts = {name: getattr(plan, name) for name in _FACTS} | {"course": thermal.schedule}
+        machine = MachineSample(self.gripping, self.unknown.drag)
+        return _found(machine, shape, thermal, proof, self.reach, facts)
+
+    def without(self, plan: Plan, obstacle: Obstacle, course: Schedule) -> Plan:
+        """Return a plan without its profile, and why."""
+        return replace(plan, **_NOTHING, obstacles=(obstacle,), course=course)
+
+
+#: What of a plan does not depend on its proof.
+_FACTS = (
+    *("target_speed", "confidence", "seed", "fold_speed", "transition_speed", "stick_speed", "temperature"),
+    *("greatest_speed", "tried", "warnings"),
+)
 #: What a plan without a profile has.
 _NOTHING: dict[str, Any] = {
     "kind": "impossible",
@@ -228,15 +289,23 @@ class Unknown:
         force_limit: float,
         confidence: float,
         number: int,
+        heat: HeatBalance | None = None,
     ) -> Proof:
-        """Try a profile on draws that the search has not seen."""
+        """Try a profile on draws that the search has not seen; with ``heat`` each makes its temperature."""
         machines = self.draws(number, max(_FRESH, math.ceil(10.0 / (1.0 - confidence))))
         laps = thermal.end / machines[0].lap
-        long = _LONG if laps < _LONG_LAPS else 1
+        long = 0 if heat is not None else _LONG if laps < _LONG_LAPS else 1
 
         def tried(machines: Sequence[MachineSample], until: float = 0.0) -> list[Outcome]:
             return outcomes(
-                machines, [shape], thermal, force_limit, force=True, until=until, tolerance=_TIGHT
+                machines,
+                [shape],
+                thermal,
+                force_limit,
+                force=True,
+                until=until,
+                tolerance=_TIGHT,
+                heat=heat,
             )
 
         found = [*tried(machines[:long], thermal.end), *tried(machines[long:])]

@@ -13,6 +13,7 @@ from hersey.motion.schedule import Schedule
 from hersey.motion.simulation import Trajectory
 from hersey.result import Result, json_record
 from hersey.stability.plan.obstacles import Obstacle, speed_text
+from hersey.units import celsius
 
 if TYPE_CHECKING:
     import polars as pl
@@ -40,7 +41,8 @@ class Plan(Result):
     the motion at the nominal parameters, its time counted from the end of the wait. ``fold_speed``,
     ``transition_speed`` and ``stick_speed`` (m/s) are nominal, at ``temperature`` (K), that of the end. Peak
     speeds up to ``greatest_speed`` were sought, ``tried`` profiles tried. ``warnings`` names
-    what was not stated, or is not in the model.
+    what was not stated, or is not in the model. ``course`` is the film's temperature (K) against time that a
+    plan made with heat makes, from the moment at which the drive could start.
     """
 
     kind: str
@@ -69,6 +71,7 @@ class Plan(Result):
     peak_force: float
     tried: int
     response: Trajectory | None
+    course: Schedule | None = None
 
     @property
     def found(self) -> bool:
@@ -107,6 +110,13 @@ class Plan(Result):
             f"asked for {100 * self.confidence:g} %)."
         )
 
+    def warmth(self) -> str:
+        """Return how warm the film is as the plan goes on, in a sentence; nothing where it is given."""
+        if self.course is None:
+            return ""
+        at = [f"{celsius(self.course.at(time)):.4g} degC" for time in (0.0, self.wait, self.duration)]
+        return f"film: {at[0]} at first, {at[1]} as the drive starts, {at[2]} when the belt slides for good"
+
     def table(self) -> str:
         """Return the profile as CSV for a motor controller: straight lines between the rows."""
         lines = ["time [s],drive speed [m/s]"]
@@ -120,6 +130,7 @@ class Plan(Result):
             lines += [f"  {time:12.6g}  {1e3 * value:18.6g}" for time, value in self.rows()]
             lines.append("")
             lines += [f"{use.name.replace('_', ' ')}: {use.used:.4g} of {use.limit:.4g}" for use in self.uses]
+            lines += [self.warmth()] if self.course is not None else []
             lines += [f"- {warning}" for warning in self.warnings]
             lines += [f"- {number} of {self.draws} draws: {why}" for why, number in self.failures.items()]
         speeds = (self.transition_speed, self.fold_speed, self.stick_speed)
@@ -133,9 +144,11 @@ class Plan(Result):
         return f"{target}, {self.duration:.4g} s" if self.found else target
 
     def to_dict(self) -> dict[str, Any]:
-        """Return all but the response, in SI; None for what is infinite or missing."""
+        """Return all but response and course, in SI; None for what is infinite or missing."""
         plain = {
-            f.name: getattr(self, f.name) for f in fields(self) if f.name not in ("response", "schedule")
+            f.name: getattr(self, f.name)
+            for f in fields(self)
+            if f.name not in ("response", "schedule", "course")
         }
         rows = [{"time": t, "drive_speed": v} for t, v in self.rows()]
         return json_record({"verdict": self.verdict(), "rows": rows, **plain})

@@ -410,11 +410,15 @@ class Search:
 
     def _descend(self, valley: tuple[float, Shape]) -> None:
         """Step along every combination of the numbers of a profile, ever finer."""
+        tried: set[Shape] = set()  # what is not quicker than one profile is not quicker than a quicker one
         for step in _STEPS:
             way = [valley]
-            while (moved := self._stepped(*way[-1], step)) is not None:
+            while (moved := self._stepped(*way[-1], step, tried)) is not None:
                 way.append(moved)
+            quickest = way[-1][1]
             valley = self._confirmed(way)
+            if valley[1] != quickest:
+                tried.clear()
 
     def _simplify(self) -> None:
         """Leave out what is too short to matter: an overshoot, a hold."""
@@ -430,10 +434,15 @@ class Search:
         if time < self.time * (1.0 + _SAME_TIME):
             self.best, self.time = shape, time
 
-    def _stepped(self, time: float, shape: Shape, step: float) -> tuple[float, Shape] | None:
+    def _stepped(
+        self, time: float, shape: Shape, step: float, tried: set[Shape]
+    ) -> tuple[float, Shape] | None:
         span, size = step * max(self.room.speed - self.target, 0.0), step * shape.ramps
         for up, rise, hold, fall in itertools.product((0, -1, 1), repeat=4):
             moved = self._moved(shape, up * span, rise * size, hold * size, fall * size, 0.0)
+            if moved in tried:
+                continue
+            tried.add(moved)
             quicker = self._may(moved, time)
             if quicker < time:
                 return quicker, moved

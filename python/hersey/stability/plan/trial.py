@@ -18,6 +18,7 @@ import numpy as np
 from hersey import _core
 from hersey.arrays import FloatArray
 from hersey.motion.drag import AnyDrag
+from hersey.motion.heat import HeatBalance
 from hersey.motion.parameters import MOST_STEPS
 from hersey.motion.schedule import Schedule, ScheduleArguments
 from hersey.motion.simulation import Drivetrain
@@ -249,23 +250,29 @@ def outcomes(
     force: bool = False,
     until: float = 0.0,
     tolerance: float = FINE,
+    heat: HeatBalance | None = None,
 ) -> list[Outcome]:
     """Return what a profile does to each machine, in order, until more than ``allowed`` of them fail.
 
     Or what each profile, of one wait and target, does to one machine. Followed at least ``until`` that time.
     What is not ready before ``latest`` fails. The motion is that of a roll whose grip is the limit of force:
     where the force passes it is an event located to rounding, and up to there the roll grips, so that a grip
-    changes nothing.
+    changes nothing. With ``heat`` temperature is a state of each motion, from the wait on; the profile of
+    temperature then tells what comes after.
     """
     if not machines or not shapes:
         return []
-    first = shapes[0]
+    zero = machines[0].drag.temperature_zero
+    begin = 0.0 if heat is not None else shapes[0].wait
     released, peaks, endings = _core.start_ups(
         [machine.belt(force_limit) for machine in machines],
-        [((*shape.points(waited=False), None), shape.ramps) for shape in shapes],
-        thermal.arguments(first.wait, machines[0].drag.temperature_zero),
-        None,
-        (first.target, until - first.wait, latest - first.wait),
+        [
+            ((*shape.points(waited=heat is not None), None), shape.ramps + shape.wait - begin)
+            for shape in shapes
+        ],
+        None if heat is not None else thermal.arguments(begin, zero),
+        None if heat is None else heat.arguments(zero),
+        (shapes[0].target, until - begin, latest - begin),
         force,
         max(len(machines), len(shapes)) if allowed is None else allowed,
         tolerance,
@@ -279,5 +286,6 @@ def outcomes(
         if ending:
             found.append(Outcome(math.inf, peak, _WHY.get(ending, ending.replace("_", "-"))))
         else:
-            found.append(machine.for_good(shape, thermal, force_limit, max(at, shape.ramps), peak))
+            ready = max(at + begin - shape.wait, shape.ramps)
+            found.append(machine.for_good(shape, thermal, force_limit, ready, peak))
     return found

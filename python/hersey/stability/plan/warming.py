@@ -1,0 +1,53 @@
+"""The film's temperature where a heater and the plan itself make it, as a course to plan on."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from hersey.arrays import FloatArray
+from hersey.motion.drag import AnyDrag
+from hersey.motion.heat import HeatBalance
+from hersey.motion.schedule import Schedule
+from hersey.motion.simulation import Drivetrain, simulate
+
+#: Rounds of plan and temperature at most, and what the film's temperature may change by in the last, K.
+ROUNDS, ALIKE = 8, 0.05
+#: Time over which the film is followed, s, samples of it, and what a course of straight lines may be off, K.
+_LONGEST, _SAMPLES, _OFF = 1800.0, 18_001, 0.01
+
+
+def course_of(
+    train: Drivetrain, drag: AnyDrag, heat: HeatBalance, drive_speed: float | Schedule = 0.0
+) -> Schedule:
+    """Return the film's temperature (K) against time under a drive, up to where it stays.
+
+    From the start of the heat balance on, for half an hour at the most.
+    """
+    run = simulate(train, drag, drive_speed=drive_speed, heat=heat, duration=_LONGEST, samples=_SAMPLES)
+    assert run.film_temperature is not None
+    last = float(run.film_temperature[-1])
+    moving = np.flatnonzero(np.abs(run.film_temperature - last) > ALIKE)
+    count = int(moving[-1]) + 2 if moving.size else 1
+    time, film = run.time[:count], np.append(run.film_temperature[: count - 1], last)
+    kept = _corners(time, film)
+    return Schedule(time[kept], film[kept])
+
+
+def apart(one: Schedule, other: Schedule) -> float:
+    """Return how far two courses are apart at the most, K."""
+    times = np.union1d(np.asarray(one.times), np.asarray(other.times))
+    return float(np.max(np.abs([one.at(t) - other.at(t) for t in times.tolist()])))
+
+
+def _corners(time: FloatArray, value: FloatArray) -> list[int]:
+    """Points that straight lines join to within what a course may be off (Douglas and Peucker)."""
+    kept, spans = {0, time.size - 1}, [(0, time.size - 1)]
+    while spans:
+        low, high = spans.pop()
+        inside = slice(low, high + 1)
+        off = np.abs(value[inside] - np.interp(time[inside], time[[low, high]], value[[low, high]]))
+        worst = low + int(np.argmax(off))
+        if off[worst - low] > _OFF:
+            kept.add(worst)
+            spans += [(low, worst), (worst, high)]
+    return sorted(kept)
