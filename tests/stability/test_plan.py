@@ -234,6 +234,14 @@ def test_the_command_says_what_forbids_a_profile(examples_here: Path) -> None:
     assert refused.returncode == 1
     assert "not above the transition speed" in refused.stdout
     assert not (examples_here / "p.csv").exists()
+    text = (examples_here / "examples" / "machine.toml").read_text()
+    weak = re.sub('motor_torque = "[0-9.]+', 'motor_torque = "0.1', text)
+    (examples_here / "examples" / "weak.toml").write_text(weak)
+    cold = ["--target", "45 mm/s", "--heat", "--from", "20 degC", "--out", "p.csv"]
+    never = run("plan", "examples/weak.toml", *command[2:], *cold, cwd=examples_here)
+    assert never.returncode == 1
+    assert "the motor torque of 0.1 N m does not start this belt" in never.stdout
+    assert not (examples_here / "p.csv").exists()
     for arguments, words in (
         (["--target", "45"], "45"),
         (["--at", "180 degC"], "--target"),
@@ -243,6 +251,8 @@ def test_the_command_says_what_forbids_a_profile(examples_here: Path) -> None:
             "--temperature-profile",
         ),
         (["--target", "45 mm/s", "--temperature-profile", "none.csv"], "none.csv"),
+        (["--target", "45 mm/s", "--at", "180 degC", "--heat"], "--heat"),
+        (["--target", "45 mm/s", "--at", "180 degC", "--from", "20 degC"], "--heat"),
     ):
         result = run(*command, *arguments, cwd=examples_here)
         assert result.returncode == 2

@@ -103,6 +103,7 @@ def test_a_trial_with_heat_is_the_motion_with_heat() -> None:
 def test_draws_make_their_own_temperature(monkeypatch: pytest.MonkeyPatch) -> None:
     """The last proof has heat as a state: a course that is no longer true leaves it alone."""
     monkeypatch.setattr("hersey.stability.plan.planner._FRESH", 60)
+    monkeypatch.setattr("hersey.stability.plan.planner._LONG", 1)
     seen = []
     verify = Unknown.verify
 
