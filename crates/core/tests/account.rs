@@ -209,7 +209,7 @@ fn runs_that_went_wrong_are_accounted_for() {
     assert_eq!(run(seeds.into_iter(), true)["accounted for"], seeds.len());
 }
 
-/// Its steps shrink in heat until no time passes.
+/// Heat and a law whose rest of the drive, of which there is none, would turn negative.
 #[test]
 fn a_motion_that_gets_nowhere_is_given_up_soon() {
     if let Err(error) = outcome(0xb7_1b31, true) {

@@ -2,7 +2,7 @@
 
 use hersey_core::Error;
 use hersey_core::Work;
-use hersey_core::drag::{Closure, Drag, SpeedLaw, TemperatureLaw};
+use hersey_core::drag::{Closure, Drag, Rest, SpeedLaw, TemperatureLaw};
 use hersey_core::lubrication::mixed::{MixedLaw, Sharing};
 use hersey_core::lubrication::viscosity;
 use hersey_core::motion::{
@@ -99,6 +99,7 @@ fn a_law_that_ends_where_friction_leads_is_refused() {
     // a law whose rest of the drive would turn negative
     let law = TemperatureLaw { rest_slope: -0.01, ..TemperatureLaw::powers(373.0, -1.0, 2.0) };
     let drag = Drag::new(10.0, 0.1, -0.7, -1.4, 0.01, Closure::Stiction).unwrap();
+    let drag = drag.with_rest(Rest { force: 1.0, damping: 0.0 }).unwrap();
     let drag = drag.with_temperature_law(law).unwrap();
     let heat = bodies(373.0, 20.0, Heater::Power(Schedule::constant(500.0)));
     let system = System::with_heat(train(), &drag, at_speed(0.1), heat).unwrap();
@@ -150,4 +151,44 @@ fn a_heater_at_its_set_point_heats_or_rests_but_never_cools() {
         let exact = still + (400.0 - still) * (-502.0 / 20.0 * time).exp();
         assert!((t - exact).abs() < 1e-8, "{t} {exact}");
     }
+}
+
+fn power_law(rest: Rest) -> Drag {
+    let law = TemperatureLaw { rest_slope: -4e-3, ..TemperatureLaw::powers(373.0, -1.0, 0.0) };
+    let drag = Drag::new(50.0, 1.0, -0.7, -1.2, 0.01, Closure::Retained).unwrap();
+    drag.with_rest(rest).unwrap().with_temperature_law(law).unwrap()
+}
+
+/// The film is warmed by the contact alone, however the rest of the drive changes within a step.
+#[test]
+fn the_heat_of_the_contact_leaves_out_the_rest_as_it_is_when_warm() {
+    let drag = power_law(Rest { force: 200.0, damping: 20.0 });
+    let system =
+        System::with_heat(train(), &drag, at_speed(1.5), bodies(373.0, 2.0, unheated())).unwrap();
+    let warm = |tolerance: f64| {
+        let start = Start { belt_speed: 1.5, stretch: 0.28 };
+        let work = Work::default();
+        let run =
+            simulate(&system, start, 5.0, 11, tolerance, Integrator::Adaptive, &work).unwrap();
+        run.temperature[10][0]
+    };
+    let (coarse, fine) = (warm(1e-7), warm(1e-12));
+    assert!((coarse - fine).abs() < 1e-3, "{coarse} {fine}");
+}
+
+/// A belt without a rest of the drive has none whose change with temperature could end the law.
+#[test]
+fn a_rest_that_is_not_there_does_not_end_the_law() {
+    assert!(power_law(Rest::default()).at(700.0).is_ok());
+}
+
+/// Nothing but warmth moves a belt that starts in balance.
+#[test]
+fn a_belt_in_balance_is_moved_by_the_warmth_of_its_friction() {
+    let drag = power_law(Rest::default());
+    let system =
+        System::with_heat(train(), &drag, at_speed(1.5), bodies(373.0, 2.0, unheated())).unwrap();
+    let start = Start::steady(&train(), &drag, 1.5).unwrap();
+    let run = followed(&system, start, 0.1).unwrap();
+    assert!(run.energy.residual().abs() < 1e-10, "{:e}", run.energy.residual());
 }

@@ -123,7 +123,9 @@ impl Drag {
             drag.knots = vec![mixed.knot()?];
             below("stick_speed", drag.stick_speed, drag.transition_speed())?;
         }
-        drag.rest = drag.rest.scaled(temperature_law.rest_factor(temperature)?);
+        if !drag.rest.is_none() {
+            drag.rest = drag.rest.scaled(temperature_law.rest_factor(temperature)?);
+        }
         drag.check_rest()?;
         drag.rising_from = drag.found_rising_from();
         Ok(drag)

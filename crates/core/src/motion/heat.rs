@@ -246,21 +246,19 @@ impl<'a> Heat<'a> {
 }
 
 impl Piece<'_> {
-    /// Heat that friction of the contact makes over the piece; of one made of steps, by its values at four times.
-    pub(super) fn heat_of_contact(&self) -> Polynomial {
+    /// Heat that friction of the contact makes over the piece, `factor` that of the rest of the drive along it; of one made
+    /// of steps, by its values at four times.
+    pub(super) fn heat_of_contact(&self, factor: &Polynomial) -> Polynomial {
         let rest = self.flow.drag.rest();
-        let factor = |t: f64| self.flow.rest_factor(t);
         match &self.path {
             Path::Series(series) => {
                 // a held belt is braked by just the pull
                 let held = self.start.mode == Mode::Stuck || self.start.creeping;
                 let braking = if held { &series.pull } else { &series.drag };
                 let mut contact = *braking;
-                let share = factor(0.0);
-                for (c, u) in contact.iter_mut().zip(&series.speed) {
-                    *c -= share * rest.damping * u;
+                for (n, c) in contact.iter_mut().enumerate() {
+                    *c -= rest.force * factor[n] + rest.damping * product(&series.speed, factor, n);
                 }
-                contact[0] -= share * rest.force;
                 let mut heat = [0.0; ORDER + 1];
                 for (n, c) in heat.iter_mut().enumerate() {
                     *c = product(&contact, &series.speed, n);
@@ -271,7 +269,8 @@ impl Piece<'_> {
                 let times = [0.0, 1.0, 2.0, 3.0].map(|i| i / 3.0 * self.duration);
                 let powers = times.map(|t| {
                     let state = self.state(t);
-                    (self.flow.force(t, &state) - factor(t) * rest.at(state[1])) * state[1]
+                    let rest = self.flow.rest_factor(t) * rest.at(state[1]);
+                    (self.flow.force(t, &state) - rest) * state[1]
                 });
                 through(&powers, self.duration / 3.0)
             }

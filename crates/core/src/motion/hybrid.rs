@@ -179,9 +179,10 @@ impl<'a> Motion<'a> {
         for _ in 0..MAX_ROUNDS {
             self.next_step = step;
             let mut piece = self.piece(longest)?;
-            let heat_of_contact = piece.heat_of_contact();
+            let heat_of_contact = piece.heat_of_contact(&self.now.rest_course());
             let time = self.now.time;
             let Some(heat) = &mut self.now.heat else { return Ok(piece) };
+            let assumed = heat.courses; // those to come take their slope already
             // steps follow a cubic
             let terms = if matches!(piece.path, Path::Steps { .. }) { 4 } else { ORDER };
             let (courses, good) = heat.foreseen(time, &heat_of_contact, terms, tolerance);
@@ -189,7 +190,7 @@ impl<'a> Motion<'a> {
                 (piece.duration, longest) = (good, good);
             }
             let moved = |i: usize| {
-                let (new, old) = (&courses[i], &heat.courses[i]);
+                let (new, old) = (&courses[i], &assumed[i]);
                 (value(new, piece.duration) - value(old, piece.duration)).abs() / new[0]
             };
             let off = if piece.duration.is_finite() { moved(0).max(moved(1)) } else { 0.0 };

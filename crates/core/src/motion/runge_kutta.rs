@@ -66,6 +66,9 @@ impl Flow<'_> {
     /// Factor of the rest of the drive at time `t`.
     #[inline]
     pub(super) fn rest_factor(&self, t: f64) -> f64 {
+        if self.drag.rest().is_none() {
+            return 1.0; // nothing that could end
+        }
         self.temperature_law.map_or(1.0, |(temperature, temperature_law)| {
             temperature_law.rest_factor(horner(&temperature, t)).unwrap_or(f64::NAN)
         })

@@ -5,6 +5,7 @@ use super::heat::Heat;
 use super::polynomial::{ORDER, Polynomial};
 use super::schedule::Cubic;
 use super::system::{Drive, System};
+use super::taylor::UNCHANGED;
 use super::thermal::ThermalFactors;
 use crate::drag::{Closure, TemperatureLaw};
 use crate::error::Error;
@@ -235,6 +236,11 @@ impl<'a> Surroundings<'a> {
     /// Drag in steady sliding at `speed >= 0`, which is at least the stick speed or of a closure that is not smooth.
     pub(super) fn steady_drag(&self, speed: f64) -> f64 {
         self.contact_drag(speed) + self.rest(speed)
+    }
+
+    /// Factor of the rest of the drive from now on.
+    pub(super) fn rest_course(&self) -> Polynomial {
+        self.thermal.as_ref().map_or(UNCHANGED, |thermal| thermal.rest)
     }
 
     /// Slope in speed of the drag of the rest of the drive, as it is now.
