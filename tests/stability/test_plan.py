@@ -259,3 +259,27 @@ def test_the_command_says_what_forbids_a_profile(examples_here: Path) -> None:
         assert result.returncode == 2
         assert words in result.stderr
         assert result.stderr.count("\n") == 1
+
+
+def test_a_temperature_that_changes_within_laps_is_followed_to_its_end() -> None:
+    """Cooling by 33 K in 45 laps brings the transition speed up to a swing that would have died out."""
+    train, target = hersey.Drivetrain((111.83 / 0.04) ** 2, 1), 1.5784
+    drag = hersey.Drag(
+        111.8277,
+        1,
+        ehl_exponent=-0.70678,
+        mixed_exponent=-1.38485,
+        stick_speed=0.08497,
+        rest_force=44.3455,
+        reference_temperature=400,
+        force_temperature_exponent=-1.89,
+        speed_temperature_exponent=-0.6835,
+    )
+    cooling = hersey.Schedule([0, 0.08], [433.58, 400])
+    plan = hersey.plan_profile(train, drag, target_speed=target, temperature=cooling)
+    assert plan.found
+    run = hersey.simulate(train, drag, drive_speed=plan.schedule, temperature=cooling, duration=0.3)
+    late = [event for event in run.events if event.time > plan.duration * (1 + 1e-9)]
+    assert not any(event.to_mode == "stuck" for event in late)
+    swing = np.ptp(run.belt_speed[run.time > 0.28])
+    assert swing < 0.8 * np.ptp(run.belt_speed[(run.time > 0.08) & (run.time < 0.1)])

@@ -31,6 +31,8 @@ ROUNDING = 1e-9
 _THREADS = os.cpu_count() or 1
 #: Tolerance of the motions of the search, and of what is said of them.
 COARSE, FINE = 1e-7, 1e-9
+#: Laps within which a temperature changes quickly: a swing that dies out at one may not at the next.
+_QUICK = 100.0
 #: What is said of a spring force that reaches the limit, and of other endings of a trial.
 FORCE = "force"
 _WHY = {"grip_lost": FORCE, "still_sticking": "still sticking", "late": "sticks longer"}
@@ -254,7 +256,8 @@ def outcomes(
 ) -> list[Outcome]:
     """Return what a profile does to each machine, in order, until more than ``allowed`` of them fail.
 
-    Or what each profile, of one wait and target, does to one machine. Followed at least ``until`` that time.
+    Or what each profile, of one wait and target, does to one machine. Followed at least ``until`` that time,
+    and while the temperature changes quickly.
     What is not ready before ``latest`` fails. The motion is that of a roll whose grip is the limit of force:
     where the force passes it is an event located to rounding, and up to there the roll grips, so that a grip
     changes nothing. With ``heat`` temperature is a state of each motion, from the wait on; the profile of
@@ -264,6 +267,8 @@ def outcomes(
         return []
     zero = machines[0].drag.temperature_zero
     begin = 0.0 if heat is not None else shapes[0].wait
+    if thermal.end <= _QUICK * machines[0].lap:
+        until = max(until, thermal.end)
     released, peaks, endings = _core.start_ups(
         [machine.belt(force_limit) for machine in machines],
         [
