@@ -102,3 +102,24 @@ def is_whole(path: Path) -> bool:
         ".md": lambda: content.endswith(b"\n"),
     }
     return ends[path.suffix]()
+
+
+def test_an_interrupt_while_a_class_is_made_is_one() -> None:
+    """Python up to 3.11 raises `RuntimeError` from what ends `__set_name__`, be it Ctrl-C."""
+    in_a_class = """
+import hersey.cli.application as application
+from hersey.cli import main
+
+class Name:
+    def __set_name__(self, owner, name):
+        raise KeyboardInterrupt
+
+def interrupted():
+    class Made:
+        name = Name()
+
+application.main = interrupted
+main()
+"""
+    done = subprocess.run([sys.executable, "-c", in_a_class], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (130, "hersey: interrupted\n")

@@ -33,7 +33,7 @@ def main() -> None:
 
         print(f"hersey {__version__}")
         return
-    from hersey.cli.interruption import end, interruptible
+    from hersey.cli.interruption import comes_of_interrupt, end, interruptible
 
     try:
         with interruptible():
@@ -42,6 +42,10 @@ def main() -> None:
             run()
     except KeyboardInterrupt:
         end()
+    except Exception as error:
+        if comes_of_interrupt(error):
+            end()
+        raise
 
 
 def __getattr__(name: str) -> Any:

@@ -45,6 +45,12 @@ def interruptible() -> Iterator[None]:
         theirs.close()  # which ends the thread
 
 
+def comes_of_interrupt(error: BaseException) -> bool:
+    """Whether Ctrl-C is behind an error: Python makes another of it where a class is made."""
+    cause = error.__cause__
+    return cause is not None and (isinstance(cause, KeyboardInterrupt) or comes_of_interrupt(cause))
+
+
 def end() -> NoReturn:
     """End at once: nothing half-written stays, and processes of ours end with this one."""
     _ending.acquire()  # never given back: the first to come here ends the process
