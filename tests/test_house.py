@@ -39,6 +39,7 @@ ROOMS = (
     "verdict",
     "identification",
     "stability",
+    "life",
     "document",
     "charts",
     "report",

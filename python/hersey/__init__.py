@@ -19,6 +19,7 @@ machine         the machine's file: drivetrain, nip, limits, uncertainty, operat
 verdict         what exponents and film say together
 identification  the cycles of a trace, and the drive behind them
 stability       hysteresis, disturbances, the operating map, drive profiles, warm-ups
+life            fatigue and populations: what ends a drive, and when
 document        the analysis document: the contract with the page
 charts          one chart per result
 report          the page
@@ -51,6 +52,15 @@ if TYPE_CHECKING:
     from hersey.errors import HerseyError
     from hersey.identification import CycleRecord, IdentifiedDrive, cycles, identify
     from hersey.inspection import Inspection, inspect
+    from hersey.life.fatigue import (
+        RainflowCycles,
+        SNCurve,
+        damage_rate,
+        life_of,
+        miner_damage,
+        rainflow_cycles,
+        stick_slip_damage_rate,
+    )
     from hersey.log import TorqueLog, memory_limit, read
     from hersey.log.mapping import read_with_mapping
     from hersey.lubrication.contact import Contact, nip_width
@@ -131,6 +141,9 @@ _HOMES = {
     "stability.operating_map": "OperatingMap operating_map",
     "stability.plan": "Plan plan_profile",
     "stability.warm_up": "WarmUp warm_up",
+    "life.fatigue": (
+        "RainflowCycles SNCurve damage_rate life_of miner_damage rainflow_cycles stick_slip_damage_rate"
+    ),
 }
 _HOME_OF = {name: module for module, names in _HOMES.items() for name in names.split()}
 
@@ -165,8 +178,10 @@ __all__ = [
     "OperatingMap",
     "OperatingPoint",
     "Plan",
+    "RainflowCycles",
     "Regime",
     "RestOfDrive",
+    "SNCurve",
     "SafeStep",
     "Schedule",
     "ShearThinning",
@@ -183,6 +198,7 @@ __all__ = [
     "compare_models",
     "cycles",
     "cycles_without_sticking",
+    "damage_rate",
     "design",
     "disturbance",
     "drag_torque",
@@ -193,13 +209,16 @@ __all__ = [
     "hysteresis_sweep",
     "identify",
     "inspect",
+    "life_of",
     "measured_film",
     "memory_limit",
+    "miner_damage",
     "mixed_contact",
     "mixed_torque",
     "nip_width",
     "operating_map",
     "plan_profile",
+    "rainflow_cycles",
     "read",
     "read_machine",
     "read_temperature_profile",
@@ -210,6 +229,7 @@ __all__ = [
     "simulate",
     "solve_line_contact",
     "stick_slip",
+    "stick_slip_damage_rate",
     "sweep",
     "viscosity_laws",
     "warm_up",

@@ -1,0 +1,6 @@
+"""How a drive ages, and what ends it.
+
+=======  =====================================================================
+fatigue  cycles of torque counted, and the damage that they do to a part
+=======  =====================================================================
+"""
