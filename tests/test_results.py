@@ -32,6 +32,7 @@ from hersey.document.parts import (
     Part,
     PlanPart,
     PointsPart,
+    PopulationPart,
     RegimePart,
     RestPart,
     StickSlipPart,
@@ -158,6 +159,10 @@ RESULTS: dict[str, tuple[Callable[[], Any], type[Part]]] = {
     "OperatingMap": (map_, MapPart),
     "Plan": (plan, PlanPart),
     "WarmUp": (warm_up, WarmUpPart),
+    "Population": (
+        lambda: hersey.weibull([4.0, 6.0, 7.0, 9.0], [True, True, False, True], unit="h"),
+        PopulationPart,
+    ),
     "ModelComparison": (models, ModelsPart),
     "LogComparison": (lambda: hersey.compare(points(), points()), ComparisonPart),
     "TestDesign": (lambda: hersey.design(models(), count=1), DesignPart),

@@ -28,7 +28,7 @@ testbench       the virtual test stand
 cli             one file per verb
 ==============  ==============================================================================
 
-SI inside, always; units are read and written at the door. Every interval is at 95 %. Nothing flows
+SI inside, always; units are read and written at the door. Intervals are at 95 %, those of lives at 90 %. Nothing flows
 backwards: a log knows no fit, a fit knows no motion. Names are loaded when they are used.
 """
 
@@ -61,6 +61,7 @@ if TYPE_CHECKING:
         rainflow_cycles,
         stick_slip_damage_rate,
     )
+    from hersey.life.population import BLife, Population, weibull
     from hersey.log import TorqueLog, memory_limit, read
     from hersey.log.mapping import read_with_mapping
     from hersey.lubrication.contact import Contact, nip_width
@@ -144,11 +145,13 @@ _HOMES = {
     "life.fatigue": (
         "RainflowCycles SNCurve damage_rate life_of miner_damage rainflow_cycles stick_slip_damage_rate"
     ),
+    "life.population": "BLife Population weibull",
 }
 _HOME_OF = {name: module for module, names in _HOMES.items() for name in names.split()}
 
 __all__ = [
     "Asperities",
+    "BLife",
     "BoundaryFriction",
     "Contact",
     "CycleRecord",
@@ -178,6 +181,7 @@ __all__ = [
     "OperatingMap",
     "OperatingPoint",
     "Plan",
+    "Population",
     "RainflowCycles",
     "Regime",
     "RestOfDrive",
@@ -233,6 +237,7 @@ __all__ = [
     "sweep",
     "viscosity_laws",
     "warm_up",
+    "weibull",
 ]
 
 

@@ -152,6 +152,7 @@ MADE: dict[str, Callable[[], Any]] = {
     "OperatingMap": belt_map,
     "Plan": plan,
     "WarmUp": warm_up,
+    "Population": lambda: hersey.weibull([4.0, 6.0, 7.0, 9.0], [True, True, False, True], unit="h"),
 }
 
 
@@ -385,6 +386,26 @@ def test_a_warm_up_shows_its_course_and_its_temperatures() -> None:
     assert [row["value"] for row in rows[-1] if row["body"] == "film"] == pytest.approx(
         warm.film_temperature - 273.15
     )
+
+
+def test_failures_stand_at_their_ranks_and_other_units_on_the_axis() -> None:
+    law = result_of("Population")
+    band, line, points, ticks = layers("Population")
+    assert "Age (h)" in titles(specification("Population"))
+    assert [row["age"] for row in points] == [4.0, 6.0, 9.0]
+    assert [row["share"] for row in points] == pytest.approx(100 * law.median_ranks[1])
+    assert [row["age"] for row in ticks] == [7.0]
+    at = [np.log(law.scale) + row["place"] / law.shape for row in line]
+    assert np.log([row["age"] for row in line]) == pytest.approx(at)
+    assert all(row["low"] < row["age"] < row["high"] for row in band)
+
+
+def test_a_population_without_a_law_still_shows_its_units() -> None:
+    for failed in ([False, False], [True, False], [True, True]):
+        law = hersey.weibull([10.0, 10.0], failed)
+        shown = chart_of(law).to_dict(validate=False)
+        alt.Chart.from_dict(valid(shown), validate=True)
+        assert law.note in shown["title"]["subtitle"]
 
 
 def test_a_motion_with_temperature_as_a_state_shows_it() -> None:

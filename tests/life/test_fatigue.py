@@ -96,6 +96,11 @@ def test_two_blocks_by_hand() -> None:
         assert miner_damage(both, curve) == pytest.approx(0.4 + 486_000 / life, rel=1e-14)
 
 
+def test_the_endurance_limit_itself_still_harms() -> None:
+    curve = SNCurve(20.0, 2e6, 5.0, endurance=20.0)
+    assert curve.life([20.0, 19.999]).tolist() == [2e6, math.inf]
+
+
 def test_the_mean_by_goodman() -> None:
     """30 N m about 25 N m with 100 N m at the most harm as 40 N m about zero, in either direction."""
     curve = SNCurve(20.0, 2e6, 5.0, ultimate=100.0)

@@ -23,6 +23,7 @@ hysteresis     what the belt does at which drive speed
 operating_map  the operating map
 plan           a drive profile and the motion
 warm_up        speed, drag and temperatures of a warm-up
+weibull        share failed against age
 =============  ====================================================
 """
 
@@ -61,6 +62,7 @@ CHARTS = {
     "OperatingMap": ("operating_map", "map_chart"),
     "Plan": ("plan", "plan_chart"),
     "WarmUp": ("warm_up", "warm_up_chart"),
+    "Population": ("weibull", "weibull_chart"),
 }
 
 

@@ -10,6 +10,7 @@ mixed       film and asperities that share its load
 carried     what carries the torque of the drive
 motion      trajectories, cycles, sweeps
 stability   bands, maps, plans, warm-ups
+life        ages at failure
 models      candidates, comparisons of logs, designs
 inspection  what a log holds
 cycles      cycles of a trace and the drive behind them
@@ -36,6 +37,7 @@ from hersey.document.parts.fit import (
     TransitionPart,
 )
 from hersey.document.parts.inspection import InspectionPart
+from hersey.document.parts.life import PopulationPart
 from hersey.document.parts.log import (
     ChannelUse,
     InputFile,
@@ -116,6 +118,7 @@ __all__ = [
     "PlanPart",
     "Point",
     "PointsPart",
+    "PopulationPart",
     "Quality",
     "RegimePart",
     "RejectedStretch",
