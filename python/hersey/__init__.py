@@ -28,8 +28,8 @@ testbench       the virtual test stand
 cli             one file per verb
 ==============  ==============================================================================
 
-SI inside, always; units are read and written at the door. Intervals are at 95 %, those of lives at 90 %. Nothing flows
-backwards: a log knows no fit, a fit knows no motion. Names are loaded when they are used.
+SI inside, always; units are read and written at the door. Intervals are at 95 %, those of lives at 90 %.
+Nothing flows backwards: a log knows no fit, a fit knows no motion. Names are loaded when they are used.
 """
 
 from __future__ import annotations

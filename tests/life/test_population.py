@@ -52,6 +52,11 @@ def test_published_median_ranks() -> None:
     assert ranks[0] == pytest.approx(1 - 0.5 ** (1 / 5), rel=1e-12)
 
 
+def test_a_unit_taken_off_at_the_age_of_a_failure_had_outlived_it() -> None:
+    ranks = weibull([10, 10, 20], [False, True, True]).median_ranks[1]
+    assert ranks[0] == pytest.approx(1 - 0.5 ** (1 / 3), rel=1e-12)
+
+
 def test_intervals_cover() -> None:
     """In 300 campaigns of 8 units that end at the fourth failure, B10's interval holds the truth in 90 %."""
     units = np.sort(1000 * np.random.default_rng(7).weibull(2.0, (300, 8)), axis=1)
