@@ -190,9 +190,12 @@ def test_every_flag_is_in_the_docs() -> None:
     assert set(documented) == set(commands())
     of_a_log, of_a_belt = sections[0].split("\n## ")[1:]
     for name, command in commands().items():
-        own = {parameter.name for parameter in command.params}
+        parameters = [
+            p for each in (command, *getattr(command, "commands", {}).values()) for p in each.params
+        ]
+        own = {parameter.name for parameter in parameters}
         text = documented[name] + of_a_log * ("min_dwell" in own) + of_a_belt * ("ehl_exponent" in own)
-        for parameter in command.params:
+        for parameter in parameters:
             for flag in parameter.opts:
                 if flag.startswith("--"):
                     assert f"`{flag}`" in text, f"{name} {flag}"

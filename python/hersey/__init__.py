@@ -19,7 +19,7 @@ machine         the machine's file: drivetrain, nip, limits, uncertainty, operat
 verdict         what exponents and film say together
 identification  the cycles of a trace, and the drive behind them
 stability       hysteresis, disturbances, the operating map, drive profiles, warm-ups
-life            fatigue and populations: what ends a drive, and when
+life            runs of many units at many ages, fatigue, populations: what ends a drive, and when
 document        the analysis document: the contract with the page
 charts          one chart per result
 report          the page
@@ -52,6 +52,7 @@ if TYPE_CHECKING:
     from hersey.errors import HerseyError
     from hersey.identification import CycleRecord, IdentifiedDrive, cycles, identify
     from hersey.inspection import Inspection, inspect
+    from hersey.life.campaign import Campaign
     from hersey.life.fatigue import (
         RainflowCycles,
         SNCurve,
@@ -146,6 +147,7 @@ _HOMES = {
         "RainflowCycles SNCurve damage_rate life_of miner_damage rainflow_cycles stick_slip_damage_rate"
     ),
     "life.population": "BLife Population weibull",
+    "life.campaign": "Campaign",
 }
 _HOME_OF = {name: module for module, names in _HOMES.items() for name in names.split()}
 
@@ -153,6 +155,7 @@ __all__ = [
     "Asperities",
     "BLife",
     "BoundaryFriction",
+    "Campaign",
     "Contact",
     "CycleRecord",
     "CyclesWithoutSticking",

@@ -61,6 +61,7 @@ def test_a_map_and_a_plan_never_replace_what_they_read(bench_csv: Path, tmp_path
         "plan none.toml none.csv --target 1 --figure kept.svg",
         "cycles none.csv --figure kept.svg",
         "sweep none.toml --out kept.csv",
+        "campaign export none.hersey --out kept.csv",
         "simulate --mass -1 --csv kept.csv",
         "simulate --mass -1 --figure kept.svg",
         "warmup none.toml none.csv --target 1 --out kept.csv",

@@ -33,6 +33,7 @@ TYPED: dict[str, tuple[list[str], float]] = {
     ),
     "warmup": ([MACHINE, *BENCH, "--target", "200 mm/s", "--from", "20 degC", "--out", "w.csv"], 3.0),
     "compare": ([*BENCH, BENCH[0], "--json"], 2.5),
+    "campaign": (["add", "life.hersey", *BENCH, "--unit", "F12", "--age", "120000 pages"], 2.0),
     "design": (BENCH, 2.0),
     "cycles": ([str(EXAMPLES / "stick-slip.csv"), "--drive-speed", "20 mm/s", "--identify"], 3.0),
     "simulate": (["--csv", "s.csv", "--duration", "3000"], 1.0),
@@ -99,6 +100,7 @@ def is_whole(path: Path) -> bool:
         ".csv": lambda: content.endswith(b"\n"),
         ".parquet": lambda: content.endswith(b"PAR1"),
         ".json": lambda: bool(json.loads(content)),
+        ".hersey": lambda: content.startswith(b"SQLite format 3\0") or not content,
         ".md": lambda: content.endswith(b"\n"),
     }
     return ends[path.suffix]()

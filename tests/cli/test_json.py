@@ -34,6 +34,7 @@ ARGUMENTS: dict[str, list[str]] = {
     "models": [BENCH, *TARE, "--bootstrap", "0", "--isothermal"],
     "design": [BENCH, *TARE, "--count", "1"],
     "compare": [BENCH, BENCH, *TARE],
+    "campaign": ["check", "CAMPAIGN"],
     "cycles": [TRACE, "--drive-speed", "20 mm/s", "--identify", "--closures", "retained"],
     "film": [MACHINE, "--log", BENCH, *TARE],
     "simulate": ["--check"],
@@ -82,7 +83,14 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
     (folder / "fit.json").write_text(json.dumps(printed(["fit", BENCH, *TARE])))
     strong = re.sub('nip_load = "[0-9.]+', 'nip_load = "1000', (ROOT / MACHINE).read_text())
     (folder / "strong.toml").write_text(strong)
-    own = {"FIGURES": str(folder / "figures"), "STRONG": str(folder / "strong.toml")}
+    with hersey.Campaign.create(folder / "life.hersey") as campaign:
+        points = hersey.read(BENCH).steady(tare="standing")
+        campaign.add(points, log=BENCH, unit="F12", age="120000 pages")
+    own = {
+        "CAMPAIGN": str(folder / "life.hersey"),
+        "FIGURES": str(folder / "figures"),
+        "STRONG": str(folder / "strong.toml"),
+    }
     return own | {"FIT": str(folder / "fit.json"), "SCENARIO": str(folder / "scenario.toml")}
 
 
@@ -104,8 +112,14 @@ def test_a_command_prints_its_part(name: str, files: dict[str, str], monkeypatch
         part.model_validate({**document, "unheard_of": 1})
 
 
+def parameters(name: str) -> list[Any]:
+    """Parameters of a verb, and of the verbs that it has."""
+    verb = load(name)
+    return [p for each in (verb, *getattr(verb, "commands", {}).values()) for p in each.params]
+
+
 def test_every_command_with_json_has_a_part() -> None:
-    with_json = {name for name in VERBS if any(p.name == "as_json" for p in load(name).params)}
+    with_json = {name for name in VERBS if any(p.name == "as_json" for p in parameters(name))}
     assert with_json == set(PRINTED) == set(ARGUMENTS)
 
 

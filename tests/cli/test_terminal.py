@@ -64,6 +64,15 @@ TYPED: dict[str, list[list[str]]] = {
     "plan": [[MACHINE, LOG, "--to", HOSTILE]],
     "warmup": [[MACHINE, LOG, "--target", HOSTILE], [BROKEN, LOG]],
     "compare": [[LOG, OTHER]],
+    "campaign": [
+        ["add", f"{IN_FILE}.hersey", LOG, "--unit", "F12", "--age", "1 h"],
+        ["show", f"{IN_FILE}.hersey", "F12"],
+        ["check", f"{IN_FILE}.hersey", "--json"],
+        ["list", f"{IN_FILE}.hersey", "--json"],
+        ["add", f"{IN_FILE}.hersey", LOG, "--unit", HOSTILE, "--age", "1 h"],
+        ["add", f"{IN_FILE}.hersey", LOG, "--unit", "F12", "--age", f"1 {HOSTILE}"],
+        ["list", LOG],
+    ],
     "design": [[LOG], [LOG, "--speed", HOSTILE]],
     "cycles": [
         [TRACE, "--value", f"force {IN_CELL}", "--drive-speed", "20 mm/s"],

@@ -38,6 +38,7 @@ VERBS = {
     "compare": (
         "Compare two lubricants, ages or units: ratio of damping, change of exponents and of the transition."
     ),
+    "campaign": "Keep the runs of a life test, many units at many ages, in one file: add, list, check.",
     "design": (
         "Propose the next dwells to record: those that make the fitted law, or one quantity, known best."
     ),
@@ -61,8 +62,12 @@ VERBS = {
 def load(name: str) -> Any:
     """Return a verb's command with all its options, from its module."""
     module = importlib.import_module(f"hersey.cli.{name}")
+    verbs = getattr(module, name, None)
+    if isinstance(verbs, typer.Typer):  # a verb with verbs of its own
+        verbs.info.context_settings = _CONTEXT
+        return typer.main.get_command(verbs)
     verb = typer.Typer(add_completion=False, rich_markup_mode="rich", context_settings=_CONTEXT)
-    verb.command(name)(getattr(module, name, None) or getattr(module, f"{name}_"))
+    verb.command(name)(verbs or getattr(module, f"{name}_"))
     return typer.main.get_command(verb)
 
 

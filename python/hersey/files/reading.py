@@ -123,6 +123,18 @@ class OpenFile:
         return digest.hexdigest()
 
 
+def hash_of(path: Path) -> str:
+    """Return the SHA-256 of a file.
+
+    Raises
+    ------
+    MissingFileError
+        As `open_file`.
+    """
+    with open_file(path) as file:
+        return OpenFile(path, file).sha256()
+
+
 @contextmanager
 def open_file(path: Path) -> Iterator[BinaryIO]:
     """Open a file that a command was given, with errors that a person can act on.

@@ -13,6 +13,7 @@ stability   bands, maps, plans, warm-ups
 life        ages at failure
 models      candidates, comparisons of logs, designs
 inspection  what a log holds
+campaign    runs of many units at many ages
 cycles      cycles of a trace and the drive behind them
 figures     the paper's figures, drawn anew
 analysis    the whole document
@@ -20,6 +21,7 @@ analysis    the whole document
 """
 
 from hersey.document.parts.analysis import Analysis
+from hersey.document.parts.campaign import CampaignPart
 from hersey.document.parts.carried import CarriedPart
 from hersey.document.parts.cycles import CyclesPart, DrivePart
 from hersey.document.parts.figures import FiguresPart
@@ -71,6 +73,7 @@ PRINTED: dict[str, type[Part]] = {
     "models": ModelsPart,
     "design": DesignPart,
     "compare": ComparisonPart,
+    "campaign": CampaignPart,
     "cycles": CyclesPart,
     "film": FilmPart,
     "simulate": StickSlipPart,
@@ -88,6 +91,7 @@ __all__ = [
     "Analysis",
     "BandPart",
     "BranchPart",
+    "CampaignPart",
     "CarriedPart",
     "Cell",
     "ChannelUse",

@@ -9,6 +9,7 @@ from typing import Literal
 
 from pydantic import Field
 
+from hersey.document.parts.campaign import CampaignPart
 from hersey.document.parts.carried import CarriedPart
 from hersey.document.parts.cycles import CyclesPart
 from hersey.document.parts.figures import FiguresPart
@@ -43,6 +44,7 @@ class Analysis(Part):
     inspection: InspectionPart | None = None
     models: ModelsPart | None = None
     compare: ComparisonPart | None = None
+    campaign: CampaignPart | None = None
     design: DesignPart | None = None
     cycles: CyclesPart | None = None
     motion: StickSlipPart | None = None

@@ -1,0 +1,92 @@
+"""Reading the runs of a campaign: one here, hundreds in two processes of our own, in the order given.
+
+Run as the script of such a process too, see `hersey.processes.server`.
+"""
+
+from __future__ import annotations
+
+import json
+from collections import deque
+from collections.abc import Iterable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import asdict, fields
+from pathlib import Path
+from queue import SimpleQueue
+from typing import Any
+
+from hersey.cli.options import Reading
+from hersey.errors import HerseyError, UnreadableLogError
+from hersey.files.reading import hash_of
+from hersey.life.campaign import Entry, entry_of
+from hersey.processes.child import Child, FailedError, LostError
+
+#: Processes that read, and runs that are read ahead of the one that is added.
+_PROCESSES, _AHEAD = 2, 6
+
+
+def settings_of(reading: Reading, log: Path, machine: Path | None) -> str:
+    """Return how a log is read, as it is kept: what is no default, and hashes of files beside the log."""
+    from hersey.log.mapping import mapping_of
+
+    said: dict[str, Any] = {
+        each.name: value for each in fields(reading) if (value := getattr(reading, each.name)) != each.default
+    }
+    mapping = mapping_of([log], reading.mapping or None).source
+    beside = {"mapping": mapping, "no_load": reading.no_load or None, "machine": machine}
+    files = {
+        name: {"path": str(path), "sha256": hash_of(Path(path))} for name, path in beside.items() if path
+    }
+    return json.dumps({"reading": said, "files": files}, sort_keys=True)
+
+
+def entry(reading: Reading, log: Path, machine_file: Path | None, settings: str) -> Entry:
+    """Read a log, reduce and fit it."""
+    from hersey.machine.machine import read_machine
+
+    machine = None if machine_file is None else read_machine(machine_file)
+    points = reading.points(reading.log([log], machine), machine)
+    return entry_of(points, log, temperature_scale=reading.temperature_scale, settings=json.loads(settings))
+
+
+def answer(request: dict[str, Any], _payload: bytes) -> tuple[dict[str, Any], bytes]:
+    """Read a run in a process of its own."""
+    machine = request["machine"]
+    read = entry(
+        Reading(**request["reading"]), Path(request["log"]), machine and Path(machine), request["settings"]
+    )
+    return asdict(read), b""
+
+
+def entries(
+    reading: Reading, logs: Iterable[tuple[Path, str]], machine: Path | None
+) -> Iterator[Entry | HerseyError]:
+    """Read logs, each with its settings, several at a time; yield what is kept of each, or why it is not."""
+    children: SimpleQueue[Child] = SimpleQueue()
+    for _ in range(_PROCESSES):
+        children.put(Child(Path(__file__)))
+
+    def read(log: Path, settings: str) -> Entry | HerseyError:
+        child = children.get()
+        asked = {"log": str(log), "machine": machine and str(machine), "settings": settings}
+        try:
+            return Entry(**child.ask({"reading": asdict(reading), **asked})[0])
+        except FailedError as error:
+            return UnreadableLogError(str(error))
+        except LostError as error:
+            return UnreadableLogError(f"{log.name}: the process that read it ended: {error}: add it alone")
+        finally:
+            children.put(child)
+
+    with ThreadPoolExecutor(_PROCESSES) as pool:
+        pending: deque[Future[Entry | HerseyError]] = deque()
+        try:
+            for log, settings in logs:
+                pending.append(pool.submit(read, log, settings))
+                if len(pending) > _AHEAD:
+                    yield pending.popleft().result()
+            while pending:
+                yield pending.popleft().result()
+        finally:
+            pool.shutdown(wait=False, cancel_futures=True)
+            while not children.empty():
+                children.get().stop()

@@ -1,0 +1,100 @@
+"""The age of a unit: a number with its unit, a time or any countable noun."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+
+from hersey.errors import ParameterError, UnitError
+from hersey.units import conversion
+
+_AGE = re.compile(r"\s*([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)\s*(.*?)\s*", re.DOTALL)
+_WORD = re.compile(r"[^\W\d_][\w-]{0,39}")
+_WAY_OUT = "write a number and what it counts, as '120000 pages', '310 h' or '2e6 cycles'"
+
+
+@dataclass(frozen=True)
+class Age:
+    """How long a unit has run: ``value`` (0 for a new one) in ``unit``.
+
+    Examples
+    --------
+    >>> Age.parse("120000 pages")
+    Age(value=120000.0, unit='pages')
+    >>> Age.parse("90 min").as_unit("h").value
+    1.5
+    """
+
+    value: float
+    unit: str
+
+    def __post_init__(self) -> None:
+        """Refuse what no age can be."""
+        if not (math.isfinite(self.value) and self.value >= 0.0):
+            raise ParameterError(f"an age is {self.value:g} {self.unit}: it must be 0 (new) or greater")
+        refuse_no_unit(self.unit)
+
+    @classmethod
+    def parse(cls, text: str, unit: str = "") -> Age:
+        """Return the age that a text states; ``unit`` is that of a bare number.
+
+        Raises
+        ------
+        ParameterError
+            If it is no number, or below 0.
+        UnitError
+            If it has no unit, or one that is no word.
+        """
+        match = _AGE.fullmatch(text[:200])
+        if match is None:
+            raise ParameterError(f"age '{text[:40]}' is no number with a unit: {_WAY_OUT}")
+        if re.match(r"[.,' ]?[0-9]", match[2]):
+            raise ParameterError(f"age '{text[:40]}': write its number without marks between the digits")
+        if not (match[2] or unit):
+            raise UnitError(f"age '{text[:40]}' has no unit: {_WAY_OUT}")
+        return cls(float(match[1]), match[2] or unit)
+
+    def as_unit(self, unit: str) -> Age:
+        """Return the same age in another unit: times are converted, other words must be the same.
+
+        Raises
+        ------
+        UnitError
+            If the units count different things.
+        """
+        mine, other = _seconds(self.unit), _seconds(unit)
+        if mine is not None and other is not None:
+            return Age(self.value if mine == other else self.value * mine / other, unit)
+        if mine is other and _counted(self.unit) == _counted(unit):
+            return Age(self.value, unit)
+        raise UnitError(f"an age in {self.unit} among ages in {unit}: give it in {unit}")
+
+    def __str__(self) -> str:
+        """Return number and unit."""
+        return f"{self.value:.10g} {self.unit}"
+
+
+def refuse_no_unit(unit: str) -> None:
+    """Refuse what cannot be the unit of an age.
+
+    Raises
+    ------
+    UnitError
+        If it is not one word.
+    """
+    if _WORD.fullmatch(unit) is None:
+        raise UnitError(f"unit '{unit[:40]}' of an age must be one word: {_WAY_OUT}")
+
+
+def _seconds(unit: str) -> float | None:
+    """Seconds of one unit, or None if it is no time."""
+    try:
+        return conversion("time", unit).scale
+    except UnitError:
+        return None
+
+
+def _counted(unit: str) -> str:
+    """The noun, be it one or many."""
+    return unit.casefold().removesuffix("s")

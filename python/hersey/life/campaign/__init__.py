@@ -1,0 +1,22 @@
+"""The file of a life test: steady points and fits of many runs of many units, in one SQLite file.
+
+=======  ==========================================================================
+kept     what is kept of a run, and how it is written and read back
+store    the file: its schema and version, opening, transactions, what can go wrong
+adding   which runs are new, there already, changed or under another unit
+table    a table of runs: log, unit and age in each row
+checks   whether files, ages and fits are as they should be
+file     `Campaign`: add, list, read back, export
+=======  ==========================================================================
+
+Logs stay where they are; the file holds their paths and hashes. What is committed survives a process that is
+killed at any moment; writers wait for each other.
+"""
+
+from hersey.life.campaign.adding import Added
+from hersey.life.campaign.checks import Finding, Findings
+from hersey.life.campaign.file import Campaign
+from hersey.life.campaign.kept import Entry, entry_of
+from hersey.life.campaign.table import RunToAdd, read_runs
+
+__all__ = ["Added", "Campaign", "Entry", "Finding", "Findings", "RunToAdd", "entry_of", "read_runs"]

@@ -1,0 +1,206 @@
+"""Adding a run: which are new, there already, changed, or under another unit or age."""
+
+from __future__ import annotations
+
+import datetime
+import json
+import os
+import re
+import sqlite3
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from hersey.errors import ParameterError
+from hersey.life.age import Age
+from hersey.life.campaign.kept import COLUMNS, Entry
+from hersey.spelling import printable
+
+if TYPE_CHECKING:
+    import polars as pl
+
+#: What became of a run.
+ADDED, ALREADY, REPLACED = "added", "already there", "replaced"
+_LONGEST_UNIT = 60
+
+
+@dataclass(frozen=True)
+class Added:
+    """What became of a run, number ``run``: ``outcome`` is ``added``, ``already there`` or ``replaced``."""
+
+    run: int
+    unit: str
+    age: Age
+    path: str
+    dwells: int
+    outcome: str
+    notes: tuple[str, ...] = ()
+
+    def summary(self) -> str:
+        """Return it in a line, and a line for each note."""
+        name = Path(self.path).name
+        head = f"{name}: {self.outcome}: run {self.run}, {self.unit} at {self.age}, {self.dwells} dwells"
+        return "\n".join([head, *(f"- {note}" for note in self.notes)])
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return it as JSON can hold it."""
+        return asdict(self)
+
+    def to_frame(self) -> pl.DataFrame:
+        """Return it as a table of one row."""
+        import polars as pl
+
+        age = {f"age ({self.age.unit})": self.age.value}
+        named = {"run": self.run, "unit": self.unit, **age, "log": self.path}
+        return pl.DataFrame({**named, "dwells": self.dwells, "outcome": self.outcome})
+
+
+def stored(path: str, home: Path) -> str | bytes:
+    """Return how a log's path stands in the file: from the campaign's folder if it lies there, else whole."""
+    inside = os.path.relpath(path, home)
+    kept = path if inside.startswith(os.pardir) else inside
+    try:
+        kept.encode()
+    except UnicodeEncodeError:  # a name that is no text
+        return os.fsencode(kept)
+    return kept
+
+
+def lies_at(kept: str | bytes, home: Path) -> Path:
+    """Return the path of a log, whole."""
+    return home / os.fsdecode(kept)
+
+
+def age_unit(database: sqlite3.Connection) -> str:
+    """Return the unit of a campaign's ages, empty before the first run."""
+    row = database.execute("SELECT value FROM campaign WHERE name = 'age unit'").fetchone()
+    return str(row[0]) if row else ""
+
+
+def add_entry(
+    database: sqlite3.Connection, home: Path, entry: Entry, unit: str, age: Age, force: bool
+) -> Added:
+    """Add a run inside a transaction.
+
+    Raises
+    ------
+    ParameterError
+        If it is changed, or under another unit or age, and ``force`` is false.
+    UnitError
+        If the ages of the campaign are in another unit.
+    """
+    age = _in_the_unit_of_all(database, age)
+    unit = _unit(database, unit, force)
+    name, path = Path(entry.path).name, stored(entry.path, home)
+    notes, outcome = [f"kept without a fit: {entry.no_fit}"] if entry.no_fit else [], ADDED
+    there = database.execute(
+        "SELECT id, unit, age, settings FROM runs WHERE sha256 = ?", (entry.sha256,)
+    ).fetchone()
+    if there is not None:
+        run, of, at, settings = there
+        same = (of, at) == (unit, age.value)
+        if same and settings == entry.settings and not force:
+            return Added(run, unit, age, entry.path, len(entry.dwells), ALREADY)
+        if not force:
+            was = f"{of} at {Age(at, age.unit)}"
+            what = (
+                f"is there already as run {run}, read in another way: say --force to keep this reading"
+                if same
+                else f"has the same content as run {run} of {was}: say --force to have it as {unit} at {age}"
+            )
+            raise ParameterError(f"{name} {what}")
+        outcome = REPLACED
+        notes += [] if same else [f"it was {of} at {Age(at, age.unit)}"]
+        database.execute("DELETE FROM runs WHERE id = ?", (run,))
+    for run, of, at in database.execute("SELECT id, unit, age FROM runs WHERE path = ?", (path,)).fetchall():
+        same = (of, at) == (unit, age.value)
+        if not force:
+            way = "replace it" if same else "add it beside that one, whose log is gone"
+            was = f"run {run} of {of} at {Age(at, age.unit)}"
+            raise ParameterError(f"{name} has changed since it was added as {was}: say --force to {way}")
+        if same:
+            outcome = REPLACED
+            database.execute("DELETE FROM runs WHERE id = ?", (run,))
+        else:
+            notes.append(
+                f"the log of run {run} ({of} at {Age(at, age.unit)}) was overwritten; its dwells stay"
+            )
+    return Added(
+        _inserted(database, path, entry, unit, age),
+        unit,
+        age,
+        entry.path,
+        len(entry.dwells),
+        outcome,
+        tuple(notes),
+    )
+
+
+def is_there(database: sqlite3.Connection, sha256: str, unit: str, age: Age, settings: str) -> Added | None:
+    """Return the run of a log with this hash if adding it so would change nothing."""
+    row = database.execute(
+        "SELECT id, age, path, dwells FROM runs WHERE (sha256, unit, settings) = (?, ?, ?)",
+        (sha256, unit, settings),
+    ).fetchone()
+    if row is None or age.as_unit(age_unit(database)).value != row[1]:
+        return None
+    return Added(row[0], unit, age, os.fsdecode(row[2]), row[3], ALREADY)
+
+
+def _in_the_unit_of_all(database: sqlite3.Connection, age: Age) -> Age:
+    unit = age_unit(database)
+    if unit:
+        return age.as_unit(unit)
+    database.execute("INSERT INTO campaign VALUES ('age unit', ?)", (age.unit,))
+    return age
+
+
+def _unit(database: sqlite3.Connection, unit: str, force: bool) -> str:
+    """The unit's name, which must be one that can be read and typed again."""
+    unit = " ".join(unit.split())
+    if not unit or len(unit) > _LONGEST_UNIT or printable(unit) != unit:
+        raise ParameterError(
+            f"unit '{unit[:_LONGEST_UNIT]}' is no name: give 1 to {_LONGEST_UNIT} characters, as --unit F12"
+        )
+    known = [row[0] for row in database.execute("SELECT DISTINCT unit FROM runs")]
+    alike = [other for other in known if _folded(other) == _folded(unit)]
+    if unit in known or not alike or force:
+        return unit
+    raise ParameterError(
+        f"unit '{unit}' is called '{alike[0]}' so far: write it so, or say --force if it is another"
+    )
+
+
+def _folded(unit: str) -> str:
+    return re.sub(r"[\W_]", "", unit).casefold()
+
+
+def _inserted(database: sqlite3.Connection, path: str | bytes, entry: Entry, unit: str, age: Age) -> int:
+    fit = json.loads(entry.fit) if entry.fit else None
+    transition = fit and fit["transition"]
+    values = {
+        "unit": unit,
+        "age": age.value,
+        "path": path,
+        "sha256": entry.sha256,
+        "written": entry.written,
+        "added": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
+        "version": entry.version,
+        "settings": entry.settings,
+        "reduction": entry.reduction,
+        "fit": entry.fit,
+        "no_fit": entry.no_fit,
+        "dwells": len(entry.dwells),
+        "exponent": fit and fit["coefficients"]["c"]["value"],
+        "transition_speed": transition and transition["speed"]["value"],
+    }
+    run = database.execute(
+        f"INSERT INTO runs ({', '.join(values)}) VALUES ({', '.join('?' * len(values))})",
+        tuple(values.values()),
+    ).lastrowid
+    assert run is not None
+    database.executemany(
+        f"INSERT INTO dwells VALUES ({', '.join('?' * (2 + len(COLUMNS)))})",
+        [(run, number, *row) for number, row in enumerate(entry.dwells)],
+    )
+    return run

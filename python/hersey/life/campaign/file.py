@@ -1,0 +1,304 @@
+"""`Campaign`: many units at many ages, in one file."""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, Self
+
+from hersey.damping.dwells import SteadyPoints
+from hersey.errors import OutputError, ParameterError
+from hersey.life.age import Age
+from hersey.life.campaign.adding import Added, add_entry, age_unit, is_there, lies_at
+from hersey.life.campaign.checks import Findings, check
+from hersey.life.campaign.kept import COLUMNS, Entry, entry_of, points_of
+from hersey.life.campaign.store import PATIENCE, open_store, refuse_no_place, told, transaction
+from hersey.spelling import meant
+
+if TYPE_CHECKING:
+    import polars as pl
+
+    from hersey.damping.surface import DampingSurface
+
+#: Columns of the list of runs.
+_LISTED = "id, unit, age, path, sha256, dwells, exponent, transition_speed, no_fit, version, added"
+
+
+class Campaign:
+    """Runs of many units at many ages: their steady points, fits and where they came from, in one file.
+
+    Each change is one transaction, which holds whole or not at all whatever happens; several programs may
+    write in turn. Logs stay where they are. `create` and `open` make one; it is a context manager.
+    """
+
+    def __init__(self, path: Path, database: sqlite3.Connection) -> None:
+        """Take an open file: see `open` and `create`."""
+        self.path, self._database = path, database
+        self._home = path.absolute().parent
+
+    @classmethod
+    def create(cls, path: str | Path, *, wait: float = PATIENCE) -> Campaign:
+        """Open a campaign for writing, and make it if there is none.
+
+        Parameters
+        ----------
+        path
+            Its file; the name of a new one ends in ``.hersey``.
+        wait
+            For how long to wait for other writers, s.
+
+        Raises
+        ------
+        HerseyError
+            If it is no campaign, of a newer version, or cannot be written.
+        """
+        return cls(Path(path), open_store(Path(path), create=True, wait=wait))
+
+    @staticmethod
+    def refuse_unless_writable(path: str | Path) -> None:
+        """Refuse what is no campaign, or where none can be made, before long work; errors as `create`."""
+        refuse_no_place(Path(path), create=True)
+        if Path(path).exists():
+            Campaign.create(path).close()
+
+    @classmethod
+    def open(cls, path: str | Path, *, write: bool = True, wait: float = PATIENCE) -> Campaign:
+        """Open a campaign that is there, for reading alone where ``write`` is false.
+
+        Raises
+        ------
+        HerseyError
+            If there is none, or as `create`.
+        """
+        return cls(Path(path), open_store(Path(path), write=write, wait=wait))
+
+    def close(self) -> None:
+        """Close the file."""
+        self._database.close()
+
+    def __enter__(self) -> Self:
+        """Return itself."""
+        return self
+
+    def __exit__(
+        self, _kind: type[BaseException] | None, _error: BaseException | None, _trace: TracebackType | None
+    ) -> None:
+        """Close the file."""
+        self.close()
+
+    @property
+    def age_unit(self) -> str:
+        """The unit of all ages, empty before the first run."""
+        with told(self.path):
+            return age_unit(self._database)
+
+    def __len__(self) -> int:
+        """Return how many runs there are."""
+        with told(self.path):
+            return int(self._database.execute("SELECT count(*) FROM runs").fetchone()[0])
+
+    def add(
+        self,
+        points: SteadyPoints,
+        *,
+        log: str | Path,
+        unit: str,
+        age: str | Age,
+        fit: DampingSurface | None = None,
+        settings: dict[str, Any] | None = None,
+        force: bool = False,
+    ) -> Added:
+        """Add the steady points of a log as a run of a unit at an age: in one transaction.
+
+        The same log at the same unit and age is one run, however often it is added.
+
+        Parameters
+        ----------
+        points
+            Of one log; all that they hold is kept.
+        log
+            Its file, which stays where it is.
+        unit
+            The unit's name.
+        age
+            As ``"120000 pages"``; 0 for a new unit. Times of all units go together, other words must be one.
+        fit
+            The damping surface; fitted here if left out.
+        settings
+            How the log was read, as JSON can hold it.
+        force
+            Replace a run whose log has changed, or that was under another unit or age.
+
+        Raises
+        ------
+        ParameterError
+            If the log has changed, is there under another unit or age, or was read in another way.
+        UnitError
+            If the age has no unit, or another than those of the campaign.
+        OutputError
+            If the file cannot be written.
+        """
+        parsed = Age.parse(age) if isinstance(age, str) else age
+        entry = entry_of(points, log, fit=fit, settings=settings)
+        return self.add_entries([(entry, unit, parsed)], force=force)[0]
+
+    def add_entries(self, entries: Iterable[tuple[Entry, str, Age]], *, force: bool = False) -> list[Added]:
+        """Add several runs, each with its unit and age, in one transaction: all or none; errors as `add`."""
+        with transaction(self._database, self.path):
+            return [add_entry(self._database, self._home, *each, force=force) for each in entries]
+
+    def there(self, sha256: str, unit: str, age: Age, settings: str) -> Added | None:
+        """Return the run of a log with this hash if adding it so would change nothing, or None."""
+        with told(self.path):
+            return is_there(self._database, sha256, unit, age, settings)
+
+    def runs(self, unit: str = "") -> pl.DataFrame:
+        """Return a row per run, of one unit or of all, by unit and age.
+
+        Columns ``run`` (its number), ``unit``, ``age`` (in `age_unit`), ``log``, ``sha256``, ``dwells``,
+        ``exponent`` (c of the damping surface), ``transition_speed`` (rad/s; null where none is seen),
+        ``no_fit`` (why there is no fit, or empty), ``version`` (of hersey) and ``added`` (UTC).
+
+        Raises
+        ------
+        ParameterError
+            If there is no such unit.
+        """
+        import polars as pl
+
+        where, given = ("WHERE unit = ?", (unit,)) if unit else ("", ())
+        with told(self.path):
+            rows = self._database.execute(f"SELECT {_LISTED} FROM runs {where} ORDER BY unit, age, id", given)
+            listed = [(*row[:3], str(lies_at(row[3], self._home)), *row[4:]) for row in rows]
+            if unit and not listed:
+                raise self._no_unit(unit)
+        numbers: dict[str, Any] = dict.fromkeys(("age", "exponent", "transition_speed"), pl.Float64)
+        names = ["run", "unit", "age", "log", *_LISTED.split(", ")[4:]]
+        kinds = dict.fromkeys(names, pl.String) | numbers | {"run": pl.Int64, "dwells": pl.Int64}
+        return pl.DataFrame(listed, schema=kinds, orient="row")
+
+    def _no_unit(self, unit: str) -> ParameterError:
+        known = [row[0] for row in self._database.execute("SELECT DISTINCT unit FROM runs ORDER BY unit")]
+        near = meant(unit, known)
+        way = f"did you mean '{near}'?" if near else "'hersey campaign list' names them"
+        return ParameterError(f"{self.path.name} has no unit '{unit}': {way}")
+
+    def points(self, run: int) -> SteadyPoints:
+        """Return the steady points of a run, whole as they were added; the log's rows are not kept.
+
+        Raises
+        ------
+        ParameterError
+            If there is no such run.
+        """
+        columns = ", ".join(f'"{name}"' for name in COLUMNS)
+        reduction = self._of_run("reduction", run)
+        with told(self.path):
+            dwells = self._database.execute(
+                f"SELECT {columns} FROM dwells WHERE run_id = ? ORDER BY number", (run,)
+            )
+            return points_of(reduction, dwells)
+
+    def fit(self, run: int) -> dict[str, Any] | None:
+        """Return the fit of a run, as `DampingSurface.to_dict` gave it when it was added; None if none fits.
+
+        Raises
+        ------
+        ParameterError
+            If there is no such run.
+        """
+        kept = self._of_run("fit", run)
+        return None if kept is None else json.loads(kept)
+
+    def settings(self, run: int) -> dict[str, Any]:
+        """Return how the log of a run was read.
+
+        Raises
+        ------
+        ParameterError
+            If there is no such run.
+        """
+        kept: dict[str, Any] = json.loads(self._of_run("settings", run))
+        return kept
+
+    def _of_run(self, column: str, run: int) -> Any:
+        with told(self.path):
+            row = self._database.execute(f"SELECT {column} FROM runs WHERE id = ?", (run,)).fetchone()
+        if row is None:
+            raise ParameterError(f"{self.path.name} has no run {run}: 'hersey campaign list' names them")
+        return row[0]
+
+    def dwells(self) -> pl.DataFrame:
+        """Return a row per dwell of every run: ``run_id``, ``unit``, ``age``, ``log``, and all in SI.
+
+        The age is in `age_unit`; its column, and those of the dwells, carry their units.
+        """
+        import polars as pl
+
+        kinds = {"INTEGER": pl.Int64, "REAL": pl.Float64, "TEXT": pl.String}
+        columns = ", ".join(f'd."{name}"' for name in COLUMNS)
+        with told(self.path):
+            rows = self._database.execute(
+                f"SELECT r.id, {columns} FROM runs r JOIN dwells d ON d.run_id = r.id "
+                "ORDER BY r.unit, r.age, r.id, d.number"
+            ).fetchall()
+        schema = {"run_id": pl.Int64()} | {name: kinds[kind]() for name, kind in COLUMNS.items()}
+        dwells = pl.DataFrame(rows, schema=schema, orient="row")
+        of = self.runs().select(pl.col("run").alias("run_id"), "unit", "age", "log")
+        joined = of.join(dwells, on="run_id", how="inner", maintain_order="left_right")
+        units = {"start": "s", "end": "s", "load": "N", "tare": "N m"}
+        for name, si in (("speed", "rad/s"), ("torque", "N m"), ("temperature", "K")):
+            units |= {name: si, f"{name}_error": si}
+        new = {name: f"{name.replace('_', ' ')} ({si})" for name, si in units.items()}
+        return joined.rename({**new, "age": f"age ({self.age_unit or 'unit'})"})
+
+    def export(self, suffix: str) -> bytes:
+        """Return `dwells` as a file of the kind that ``.parquet`` or ``.csv`` names.
+
+        Raises
+        ------
+        OutputError
+            If it is another kind.
+        """
+        import io
+
+        content = io.BytesIO()
+        if suffix == ".parquet":
+            self.dwells().write_parquet(content)
+        elif suffix == ".csv":
+            self.dwells().write_csv(content)
+        else:
+            raise OutputError(f"a campaign is exported as .parquet or .csv, not as '{suffix}'")
+        return content.getvalue()
+
+    def check(self, progress: Callable[[int, int], None] | None = None) -> Findings:
+        """Check the file, that each log is there and unchanged, the order of the ages, and the fits."""
+        with told(self.path):
+            return check(self._database, self._home, progress)
+
+    def summary(self) -> str:
+        """Return a line for the whole, and one for each unit."""
+        runs = self.runs()
+        lines = [f"{self.path.name}: {runs.height} runs of {runs['unit'].n_unique()} units"]
+        for (unit,), of in runs.group_by("unit", maintain_order=True):
+            first, last = Age(of["age"][0], self.age_unit), Age(of["age"][-1], self.age_unit)
+            failed = int((of["no_fit"] != "").sum())
+            ages = f"at {first}" if first == last else f"{first.value:.10g} to {last}"
+            text = f"{unit}: {of.height} run{'s' * (of.height > 1)}, {ages}, {of['dwells'].sum()} dwells"
+            lines.append(text + (f", {failed} without a fit" if failed else ""))
+        return "\n".join(lines)
+
+    def to_dict(self, unit: str = "") -> dict[str, Any]:
+        """Return file, unit of the ages, and the runs of a unit or of all, as JSON can hold them."""
+        return {"file": str(self.path), "age_unit": self.age_unit, "runs": self.runs(unit).to_dicts()}
+
+    def to_frame(self) -> pl.DataFrame:
+        """Return `runs`."""
+        return self.runs()
+
+    def __repr__(self) -> str:
+        """Return file and count on one line."""
+        return f"<Campaign: {self.path.name}, {len(self)} runs>"

@@ -1,0 +1,209 @@
+"""What is kept of a run: its steady points whole, the fit, where its log lies, and how it was read."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from dataclasses import dataclass, field, fields, is_dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hersey.damping.dwells import Rejection, SteadyPoints
+from hersey.damping.estimate import Estimate
+from hersey.damping.rest import RestOfDrive
+from hersey.errors import HerseyError, ParameterError
+from hersey.log.means import MeansTable
+from hersey.log.sensors import Sensors
+from hersey.log.torque_log import Channel, Correction, Effect, LogFile, TorqueLog
+
+if TYPE_CHECKING:
+    from hersey.damping.surface import DampingSurface
+
+#: Columns of steady points, as they stand in the file, with their types there.
+COLUMNS = {
+    "run": "INTEGER",
+    "start": "REAL",
+    "end": "REAL",
+    "speed": "REAL",
+    "speed_error": "REAL",
+    "torque": "REAL",
+    "torque_error": "REAL",
+    "temperature": "REAL",
+    "temperature_error": "REAL",
+    "rows": "INTEGER",
+    "effective_rows": "REAL",
+    "settling_rows": "INTEGER",
+    "approach": "TEXT",
+    "load": "REAL",
+    "tare": "REAL",
+}
+#: Records that are written and read back, by name.
+_RECORDS = {
+    kind.__name__: kind
+    for kind in (Channel, Correction, Effect, Estimate, LogFile, Rejection, RestOfDrive, Sensors)
+}
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One run as it is kept, before it has a unit and an age.
+
+    ``dwells`` has a row per dwell with the columns of `COLUMNS`; ``reduction`` is what else `SteadyPoints`
+    holds, ``fit`` the fitted surface (None where ``no_fit`` says why there is none), ``settings`` how the log
+    was read: JSON each. ``written`` is when the log was last written to, s since 1970.
+    """
+
+    path: str
+    sha256: str
+    written: float | None
+    version: str
+    settings: str
+    reduction: str
+    fit: str | None
+    no_fit: str
+    dwells: list[list[Any]] = field(repr=False)
+
+
+def entry_of(
+    points: SteadyPoints,
+    path: str | Path,
+    *,
+    fit: DampingSurface | None = None,
+    temperature_scale: str = "degC",
+    settings: dict[str, Any] | None = None,
+) -> Entry:
+    """Return what is kept of the steady points of one log.
+
+    Parameters
+    ----------
+    points
+        Of one log in one file.
+    path
+        The file; its hash is that of the bytes that were read.
+    fit
+        Its damping surface; fitted here if left out. Where no law fits, the reason is kept.
+    temperature_scale
+        As `hersey.fit` takes it.
+    settings
+        How the log was read, as JSON can hold it.
+
+    Raises
+    ------
+    ParameterError
+        If the points are of several files.
+    """
+    from hersey import _core
+    from hersey.damping.fit import fit as fitted
+
+    path = Path(path)
+    if len(points.log.files) != 1:
+        names = ", ".join(file.name for file in points.log.files)
+        raise ParameterError(f"a run of a campaign is one log, and these are several: {names}: add each")
+    no_fit = ""
+    if fit is None:
+        try:
+            fit = fitted(points, temperature_scale=temperature_scale)
+        except HerseyError as error:
+            no_fit = str(error)
+    try:
+        written: float | None = path.stat().st_mtime
+    except OSError:
+        written = None
+    return Entry(
+        path=str(path.absolute()),
+        sha256=points.log.files[0].sha256,
+        written=written,
+        version=_core.VERSION,
+        settings=json.dumps(settings or {}, sort_keys=True),
+        reduction=json.dumps(_plain(_reduction(points))),
+        fit=None if fit is None else json.dumps(fit.to_dict()),
+        no_fit=no_fit,
+        dwells=[list(row) for row in points.table.select(list(COLUMNS)).rows()],
+    )
+
+
+def points_of(reduction: str, dwells: Iterable[tuple[Any, ...]]) -> SteadyPoints:
+    """Return the steady points of a run as they were added; no rows of the log come with them."""
+    import polars as pl
+
+    kinds = {"INTEGER": pl.Int64, "REAL": pl.Float64, "TEXT": pl.String}
+    schema = {name: kinds[kind]() for name, kind in COLUMNS.items()}
+    held = _restored(json.loads(reduction))
+    log = (_KeptMeans if held.pop("means") else _KeptLog)(**held.pop("log"))
+    return SteadyPoints(pl.DataFrame(list(dwells), schema=schema, orient="row"), log=log, **held)
+
+
+@dataclass(frozen=True, repr=False)
+class _KeptLog(TorqueLog):
+    """A log of which only its files, corrections and sensors are kept."""
+
+    kept_rows: int = 0
+    thermal: bool = False
+
+    @property
+    def rows(self) -> int:
+        return self.kept_rows
+
+    @property
+    def has_temperature(self) -> bool:
+        return self.thermal
+
+
+@dataclass(frozen=True, repr=False)
+class _KeptMeans(MeansTable):
+    """A table of means of which only its files and sensors are kept."""
+
+    kept_rows: int = 0
+    thermal: bool = False
+
+    @property
+    def rows(self) -> int:
+        return self.kept_rows
+
+    @property
+    def has_temperature(self) -> bool:
+        return self.thermal
+
+
+def _reduction(points: SteadyPoints) -> dict[str, Any]:
+    log, means = points.log, isinstance(points.log, MeansTable)
+    about = {
+        "runs": (),
+        "files": log.files,
+        "corrections": log.corrections,
+        "sensors": log.sensors,
+        "kept_rows": log.rows,
+        "thermal": log.has_temperature,
+    }
+    if isinstance(log, MeansTable):
+        about |= {"means": (), "stated_errors": log.stated_errors}
+    names = ("rejected", "tare", "standing_torque", "tare_errors", "notes", "rest", "rest_errors")
+    return {"means": means, "log": about} | {name: getattr(points, name) for name in names}
+
+
+def _plain(value: Any) -> Any:
+    """A value as JSON, records by their names, so that `_restored` gives it back with every digit."""
+    if is_dataclass(value) and not isinstance(value, type):
+        return {"kind": type(value).__name__} | {
+            f.name: _plain(getattr(value, f.name)) for f in fields(value)
+        }
+    if isinstance(value, dict):
+        return {name: _plain(item) for name, item in value.items()}
+    if isinstance(value, np.ndarray):
+        return {"array": value.tolist(), "shape": list(value.shape)}
+    if isinstance(value, tuple | list):
+        return [_plain(item) for item in value]
+    return value.item() if isinstance(value, np.generic) else value
+
+
+def _restored(value: Any) -> Any:
+    if isinstance(value, list):
+        return tuple(_restored(item) for item in value)
+    if not isinstance(value, dict):
+        return value
+    if "shape" in value:
+        return np.array(value["array"], dtype=float).reshape(value["shape"])
+    inside = {name: _restored(item) for name, item in value.items()}
+    return _RECORDS[inside.pop("kind")](**inside) if "kind" in inside else inside

@@ -1,0 +1,236 @@
+"""The file of a campaign: SQLite in WAL mode, each change one transaction that is on the disk when it ends.
+
+The application's number and the version of the schema stand in the file's header, written with the schema in
+one transaction: a file that was left half-made is empty, and the next writer makes it.
+"""
+
+from __future__ import annotations
+
+import os
+import sqlite3
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from hersey.errors import HerseyError, MissingFileError, OutputError, ParameterError
+from hersey.life.campaign.kept import COLUMNS
+
+#: End of the name of a campaign.
+SUFFIX = ".hersey"
+#: What stands in the header: "HrSy", and the version of the schema.
+APPLICATION = 0x48725379
+VERSION = 1
+#: Time that a writer waits for another, s.
+PATIENCE = 30.0
+_AGAIN = 0.02
+_SCHEMA = f"""
+CREATE TABLE campaign (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
+CREATE TABLE runs (
+    id INTEGER PRIMARY KEY AUTOINCREMENT,
+    unit TEXT NOT NULL,
+    age REAL NOT NULL CHECK (age >= 0),
+    path NOT NULL,
+    sha256 TEXT NOT NULL UNIQUE,
+    written REAL,
+    added TEXT NOT NULL,
+    version TEXT NOT NULL,
+    settings TEXT NOT NULL,
+    reduction TEXT NOT NULL,
+    fit TEXT,
+    no_fit TEXT NOT NULL,
+    dwells INTEGER NOT NULL,
+    exponent REAL,
+    transition_speed REAL
+);
+CREATE INDEX runs_of_a_unit ON runs (unit, age);
+CREATE INDEX runs_of_a_file ON runs (path);
+CREATE TABLE dwells (
+    run_id INTEGER NOT NULL REFERENCES runs (id) ON DELETE CASCADE,
+    number INTEGER NOT NULL,
+    {", ".join(f'"{name}" {kind}' for name, kind in COLUMNS.items())},
+    PRIMARY KEY (run_id, number)
+) WITHOUT ROWID;
+"""
+#: What brings a file of each older version to the next, inside one transaction.
+MIGRATIONS: dict[int, Callable[[sqlite3.Connection], None]] = {}
+
+
+def open_store(
+    path: Path, *, create: bool = False, write: bool = True, wait: float = PATIENCE
+) -> sqlite3.Connection:
+    """Open a campaign, or make it; bring one of an older version up to date where it may be written.
+
+    Raises
+    ------
+    MissingFileError
+        If there is none, or it cannot be read.
+    ParameterError
+        If it is no campaign, or of a newer version.
+    OutputError
+        If it cannot be written.
+    """
+    refuse_no_place(path, create)
+    with told(path):
+        database = _connected(path, create=create, write=write, wait=wait)
+        try:
+            if create:
+                _made(database, path, wait)
+            _brought_up_to_date(database, path, write)
+        except BaseException:
+            database.close()
+            raise
+        return database
+
+
+def refuse_no_place(path: Path, create: bool) -> None:
+    """Refuse a path at which there is no campaign, or none can be made.
+
+    Raises
+    ------
+    HerseyError
+        Naming the way out.
+    """
+    if path.exists():
+        if not path.is_file():
+            raise ParameterError(f"{path} is no file: name the campaign's file, as life{SUFFIX}")
+        return
+    if not create:
+        raise MissingFileError(
+            f"{path}: there is no such campaign: hersey campaign add {path.name} LOG makes one"
+        )
+    if path.suffix != SUFFIX:
+        raise ParameterError(
+            f"{path}: the name of a new campaign ends in {SUFFIX}, and comes before the logs"
+        )
+    if not path.parent.is_dir():
+        raise OutputError(f"{path}: there is no directory {path.parent}")
+
+
+def _connected(path: Path, *, create: bool, write: bool, wait: float) -> sqlite3.Connection:
+    mode = "rwc" if create else "rw" if write else "ro"
+    place = path.absolute().as_uri()
+    database = sqlite3.connect(f"{place}?mode={mode}", uri=True, timeout=wait, isolation_level=None)
+    try:
+        database.execute("SELECT count(*) FROM sqlite_master").fetchone()
+    except sqlite3.OperationalError:
+        # In a folder that cannot be written none writes: without an unfinished log the file is all there is.
+        database.close()
+        if write or os.access(path.parent, os.W_OK) or path.with_name(f"{path.name}-wal").exists():
+            raise
+        database = sqlite3.connect(f"{place}?immutable=1", uri=True, isolation_level=None)
+    database.execute("PRAGMA synchronous = FULL")
+    database.execute("PRAGMA foreign_keys = ON")
+    return database
+
+
+def _made(database: sqlite3.Connection, path: Path, wait: float) -> None:
+    """Give an empty file its schema; of several who do so at once one does it."""
+    if not _is_empty(database):
+        return
+    until = time.monotonic() + wait
+    while True:  # the change of mode does not wait for others by itself
+        try:
+            database.execute("PRAGMA journal_mode = WAL")
+            break
+        except sqlite3.OperationalError:
+            if time.monotonic() > until:
+                raise
+            time.sleep(_AGAIN)
+    with transaction(database, path):
+        if not _is_empty(database):
+            return
+        for statement in _SCHEMA.split(";"):
+            database.execute(statement)
+        database.execute(f"PRAGMA application_id = {APPLICATION}")
+        database.execute(f"PRAGMA user_version = {VERSION}")
+
+
+def _is_empty(database: sqlite3.Connection) -> bool:
+    tables: int = database.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]
+    return tables == 0 and not _header(database, "application_id")
+
+
+def _header(database: sqlite3.Connection, name: str) -> int:
+    return int(database.execute(f"PRAGMA {name}").fetchone()[0])
+
+
+def _brought_up_to_date(database: sqlite3.Connection, path: Path, write: bool) -> None:
+    if _header(database, "application_id") != APPLICATION:
+        raise _no_campaign(path)
+    version = _header(database, "user_version")
+    if version > VERSION:
+        raise ParameterError(
+            f"{path.name} is a campaign of a newer hersey (version {version} of the file, this one knows "
+            f"{VERSION}): use that hersey, or update this one"
+        )
+    if version == VERSION:
+        return
+    if not write:
+        raise ParameterError(
+            f"{path.name} is a campaign of an older hersey (version {version} of the file): the next 'hersey "
+            f"campaign add {path.name} LOG' brings it up to date"
+        )
+    with transaction(database, path):
+        for old in range(_header(database, "user_version"), VERSION):
+            if old not in MIGRATIONS:
+                raise ParameterError(
+                    f"{path.name} is a campaign of version {old}, which this hersey cannot bring up to "
+                    "date: add the logs to a new one"
+                )
+            MIGRATIONS[old](database)
+            database.execute(f"PRAGMA user_version = {old + 1}")
+
+
+def _no_campaign(path: Path) -> HerseyError:
+    return ParameterError(f"{path.name} is no campaign: name the file that 'hersey campaign add' made")
+
+
+@contextmanager
+def transaction(database: sqlite3.Connection, path: Path) -> Iterator[None]:
+    """Make all changes inside or none; other writers wait meanwhile."""
+    with told(path):
+        database.execute("BEGIN IMMEDIATE")
+        try:
+            yield
+            database.execute("COMMIT")
+        except BaseException:
+            with suppress(sqlite3.Error):  # which may have rolled back by itself
+                database.execute("ROLLBACK")
+            raise
+
+
+@contextmanager
+def told(path: Path) -> Iterator[None]:
+    """Say in one line what SQLite could not do, and how to mend it."""
+    try:
+        yield
+    except sqlite3.Error as error:
+        raise _said(path, error) from None
+
+
+def _said(path: Path, error: sqlite3.Error) -> HerseyError:
+    code = getattr(error, "sqlite_errorcode", 0) & 0xFF
+    if code == sqlite3.SQLITE_NOTADB:
+        return _no_campaign(path)
+    if code in (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED):
+        return OutputError(
+            f"{path.name} is held by another program that writes to it: wait until it is done, then repeat"
+        )
+    if code == sqlite3.SQLITE_FULL:
+        return OutputError(
+            f"{path.name}: the disk is full: make room, then repeat; what was added before stays"
+        )
+    if code == sqlite3.SQLITE_IOERR:
+        return OutputError(
+            f"{path.name} cannot be written or read ({error}): see that the disk has room and is sound, then "
+            "repeat; what was added before stays"
+        )
+    if code in (sqlite3.SQLITE_READONLY, sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_PERM):
+        return OutputError(
+            f"{path.name} cannot be opened for this ({error}): see who may write it and its "
+            "folder, or copy it"
+        )
+    return ParameterError(
+        f"{path.name} is damaged ({error}): take it from a backup, or add the logs to a new one"
+    )

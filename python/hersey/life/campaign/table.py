@@ -1,0 +1,70 @@
+"""A table of runs: each row names a log, its unit and its age."""
+
+from __future__ import annotations
+
+import csv
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from hersey.errors import ChannelError, HerseyError, UnreadableLogError
+from hersey.files.text import read_text
+from hersey.life.age import Age
+
+_HEADING = re.compile(r"\s*(.*?)\s*(?:[\[(]\s*(.*?)\s*[\])])?\s*")
+_NEEDED = ("log", "unit", "age")
+
+
+@dataclass(frozen=True)
+class RunToAdd:
+    """A row of the table: the log's path (whole), its unit and age."""
+
+    log: Path
+    unit: str
+    age: Age
+
+
+def read_runs(path: str | Path) -> list[RunToAdd]:
+    """Read a table of runs: columns ``log``, ``unit`` and ``age``, separated by commas, semicolons or tabs.
+
+    The unit of the age stands in each cell (``120000 pages``) or in the heading (``age [pages]``). Paths are
+    from the table's folder.
+
+    Raises
+    ------
+    HerseyError
+        If a column or a cell is missing or says no age, naming file, line and column.
+    """
+    path = Path(path)
+    lines = read_text(path).removeprefix("\ufeff").splitlines()
+    head = lines[0] if lines else ""
+    separator = max(",;\t", key=head.count)
+    rows = list(csv.reader(lines, delimiter=separator))
+    headings = [_HEADING.fullmatch(cell) for cell in (rows[0] if rows else [])]
+    names = [match[1].casefold() if match else "" for match in headings]
+    for name in _NEEDED:
+        if names.count(name) != 1:
+            what = "no column" if name not in names else "more than one column"
+            raise ChannelError(
+                f"{path.name}: {what} '{name}': its first line must name log, unit and age, as "
+                "'log,unit,age [pages]'"
+            )
+    at = {name: names.index(name) for name in _NEEDED}
+    heading = headings[at["age"]]
+    in_head = (heading and heading[2]) or ""
+    found = []
+    for number, row in enumerate(rows[1:], 2):
+        if not any(cell.strip() for cell in row):
+            continue
+        cells = {name: row[i].strip() if i < len(row) else "" for name, i in at.items()}
+        for name, cell in cells.items():
+            if not cell:
+                raise UnreadableLogError(f"{path.name}, line {number}: column '{name}' is empty: fill it in")
+        try:
+            age = Age.parse(cells["age"], in_head)
+        except HerseyError as error:
+            raise error.within(f"{path.name}, line {number}, column 'age'") from None
+        found.append(RunToAdd(path.absolute().parent / cells["log"], cells["unit"], age))
+    if not found:
+        raise UnreadableLogError(f"{path.name} names no run: write a line for each below the headings")
+    return found
