@@ -76,7 +76,7 @@ def may_write_folder(folder: Path, force: bool, flag: str = "--figures") -> None
         if folder.exists() and not folder.is_dir():
             raise OutputError(f"{folder} is a file: {flag} needs a directory")
         if folder.is_dir() and any(map(_counts, folder.iterdir())) and not force:
-            raise OutputError(f"{folder} is not empty: say --force to write the figures into it")
+            raise OutputError(f"{folder} is not empty: say --force to write into it")
         if not folder.parent.is_dir():
             raise OutputError(f"{folder}: there is no directory {folder.parent}")
     except OSError as error:

@@ -1,17 +1,17 @@
-"""A synthetic log with a known truth: ``hersey testbench``."""
+"""A synthetic log, or a campaign of units that age, with a known truth: ``hersey testbench``."""
 
 from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from hersey.cli.options import (
     Force,
 )
-from hersey.cli.outputs import may_write
+from hersey.cli.outputs import may_write, may_write_folder
 from hersey.cli.progress import bar, working
 from hersey.cli.terminal import say
 from hersey.errors import OutputError, ParameterError
@@ -21,7 +21,7 @@ LARGEST_LOG = 4e9
 
 
 def testbench(
-    out: Annotated[Path, typer.Option("--out", help="The log to write.")] = Path("log.csv"),
+    out: Annotated[Path | None, typer.Option("--out", help="The log to write; log.csv if not given.")] = None,
     truth: Annotated[
         Path | None, typer.Option("--truth", metavar="JSON", help="Also write the truth.")
     ] = None,
@@ -29,12 +29,35 @@ def testbench(
     size: Annotated[
         str, typer.Option("--size", help="Least size of the log, as '1 GB': sampled faster.")
     ] = "",
+    units: Annotated[
+        int | None,
+        typer.Option("--units", help="Write a campaign of so many units that age.", min=1, max=1000),
+    ] = None,
+    ages: Annotated[str, typer.Option("--ages", help="Of a campaign, as '0, 50, 100 kpages'.")] = "",
+    out_dir: Annotated[
+        Path | None,
+        typer.Option("--out-dir", metavar="FOLDER", help="Of a campaign: runs.csv, truth.json, logs."),
+    ] = None,
+    machine: Annotated[
+        Path | None,
+        typer.Option(
+            "--machine", metavar="TOML", help="That ages in a campaign; without it that of the example."
+        ),
+    ] = None,
     force: Force = False,
 ) -> None:
     """Write a log of the virtual test stand: synthetic, with a known truth, for tests and for learning.
 
+    With --units, a campaign: tables of means of units that age, at the ages given.
+
     Example: [bold]hersey testbench --out log.csv --truth truth.json --seed 7[/bold]
     """
+    campaign = {"--units": units, "--ages": ages, "--out-dir": out_dir}
+    if any(campaign.values()) or machine is not None:
+        own = {"--out": out, "--truth": truth, "--size": size}
+        _write_campaign(campaign, [flag for flag, given in own.items() if given], machine, seed, force)
+        return
+    out = out or Path("log.csv")
     for path in (out, truth):
         if path is not None:
             may_write(path, force)
@@ -59,6 +82,41 @@ def testbench(
     if truth is not None:
         write_atomically(truth, json.dumps(document, indent=1) + "\n", overwrite=True)
     say(f"synthetic log (seed {seed}): {out}")
+
+
+def _write_campaign(
+    given: dict[str, Any], stray: list[str], machine: Path | None, seed: int, force: bool
+) -> None:
+    lacking = [flag for flag, value in given.items() if not value]
+    if lacking:
+        raise ParameterError(
+            f"a campaign needs {lacking[0]} too: --units 8 --ages '0, 50, 100 kpages' --out-dir campaign"
+        )
+    if stray:
+        raise ParameterError(f"{stray[0]} is of a single log: a campaign is written into --out-dir")
+    folder: Path = given["--out-dir"]
+    may_write_folder(folder, force, flag="--out-dir")
+
+    from hersey import testbench as stand
+    from hersey.files.writing import write_all
+    from hersey.machine.machine import read_machine
+
+    ages = stand.ages_of(given["--ages"])
+    drive, rest = stand.example_drive()
+    if machine is not None:
+        drive = read_machine(machine)
+        if drive.rest is None:
+            raise ParameterError(f"{machine}: the drive takes something beside the film: state [rest]")
+        rest = drive.rest
+    population = stand.population(drive, rest, units=given["--units"], seed=seed)
+    with bar("ageing", "units") as progress:
+        files = stand.VirtualCampaign(population, ages, seed).files(progress)
+    try:
+        folder.mkdir(exist_ok=True)
+    except OSError as error:
+        raise OutputError(f"{folder} cannot be written: {error.strerror}") from None
+    write_all({folder / name: text.encode() for name, text in files.items()}, overwrite=force)
+    say(f"synthetic campaign (seed {seed}), {len(files) - 2} runs of {given['--units']} units: {folder}")
 
 
 def _write_long(path: Path, size: int, seed: int) -> None:

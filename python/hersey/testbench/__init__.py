@@ -4,9 +4,15 @@
 truth     the damping surface behind a log, and how it varies
 physical  the truth made of film, contact and the rest of the drive
 stand     the stand, its sensors and disturbances; the log it writes
+ageing    units whose oil goes and whose faces wear, with their truth
+campaign  the runs of such units at some ages, as files
+drive     the shipped example's drive, which ages if none is given
 ========  ===============================================================
 """
 
+from hersey.testbench.ageing import AgedTruth, Ageing, Unit, population
+from hersey.testbench.campaign import VirtualCampaign, ages_of
+from hersey.testbench.drive import example_drive
 from hersey.testbench.physical import PhysicalTruth
 from hersey.testbench.stand import COLUMNS, Stand, VirtualLog, long_log, run
 from hersey.testbench.truth import RPM, StribeckTruth, ThermalTruth, Truth
@@ -14,12 +20,19 @@ from hersey.testbench.truth import RPM, StribeckTruth, ThermalTruth, Truth
 __all__ = [
     "COLUMNS",
     "RPM",
+    "AgedTruth",
+    "Ageing",
     "PhysicalTruth",
     "Stand",
     "StribeckTruth",
     "ThermalTruth",
     "Truth",
+    "Unit",
+    "VirtualCampaign",
     "VirtualLog",
+    "ages_of",
+    "example_drive",
     "long_log",
+    "population",
     "run",
 ]
