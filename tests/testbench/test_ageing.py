@@ -24,10 +24,10 @@ from hersey.testbench import (
     Unit,
     VirtualCampaign,
     ages_of,
-    example_drive,
     population,
 )
 from hersey.testbench.campaign import Corners
+from hersey.testbench.drive import example_drive
 from hersey.units import ZERO_CELSIUS
 from tests.cli.command import run
 from tests.conftest import ROOT
@@ -131,14 +131,14 @@ def test_what_ages_moves_the_way_it_must(drive: tuple[Machine, RestOfDrive]) -> 
     ages = (0.0, 5e4, 1e5, 2e5)
     cold, hot = (np.array(13.3), np.array(60.0)), (np.array(1.0), np.array(180.0))
     moved = {
-        "evaporation": (3e-6, cold, 1.0),
-        "side_flow": (1e5, cold, 1.0),
-        "thickening": (5e-6, cold, 1.0),
-        "rest_growth": (2e-6, cold, 1.0),
-        "boundary_growth": (2e-6, hot, 1.0),
-        "roughening": (2e-6, hot, 1.0),
+        "evaporation": (3e-6, cold),
+        "side_flow": (1e5, cold),
+        "thickening": (5e-6, cold),
+        "rest_growth": (2e-6, cold),
+        "boundary_growth": (2e-6, hot),
+        "roughening": (2e-6, hot),
     }
-    for name, (rate, at, _) in moved.items():
+    for name, (rate, at) in moved.items():
         one = unit(drive, supply=2e-5, **{name: rate})
         assert np.all(np.diff([float(one.at(age).torque(*at)) for age in ages]) > 0), name
     transitions = {

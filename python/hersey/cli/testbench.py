@@ -100,9 +100,10 @@ def _write_campaign(
     from hersey import testbench as stand
     from hersey.files.writing import write_all
     from hersey.machine.machine import read_machine
+    from hersey.testbench.drive import example_drive
 
     ages = stand.ages_of(given["--ages"])
-    drive, rest = stand.example_drive()
+    drive, rest = example_drive()
     if machine is not None:
         drive = read_machine(machine)
         if drive.rest is None:

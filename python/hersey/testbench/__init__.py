@@ -12,7 +12,6 @@ drive     the shipped example's drive, which ages if none is given
 
 from hersey.testbench.ageing import AgedTruth, Ageing, Unit, population
 from hersey.testbench.campaign import VirtualCampaign, ages_of
-from hersey.testbench.drive import example_drive
 from hersey.testbench.physical import PhysicalTruth
 from hersey.testbench.stand import COLUMNS, Stand, VirtualLog, long_log, run
 from hersey.testbench.truth import RPM, StribeckTruth, ThermalTruth, Truth
@@ -31,7 +30,6 @@ __all__ = [
     "VirtualCampaign",
     "VirtualLog",
     "ages_of",
-    "example_drive",
     "long_log",
     "population",
     "run",

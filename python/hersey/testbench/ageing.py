@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -23,10 +23,12 @@ from hersey.errors import ParameterError
 from hersey.lubrication.film import film_thickness
 from hersey.lubrication.mixed import MixedContact
 from hersey.lubrication.mixed_drag import MixedDrag
-from hersey.machine.machine import Machine
 from hersey.motion.drag import DragTable
 from hersey.testbench.physical import PhysicalTruth
 from hersey.units import ZERO_CELSIUS
+
+if TYPE_CHECKING:
+    from hersey.machine.machine import Machine
 
 #: Rounds the corner between flooded and starved, as `film_thickness` has it.
 _SHARPNESS = 3.0

@@ -7,19 +7,21 @@ import re
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from hersey import _core
 from hersey.errors import ParameterError
-from hersey.machine.machine import Machine
 from hersey.result import json_value
 from hersey.spelling import printable
 from hersey.testbench.ageing import AgedTruth, Unit
 from hersey.testbench.stand import PREAMBLE, Stand
 from hersey.testbench.truth import RPM
 from hersey.units import celsius
+
+if TYPE_CHECKING:
+    from hersey.machine.machine import Machine
 
 #: The stand of a campaign: from a cold morning to the setpoint, dwells that repeat within 1 %.
 STAND = Stand(temperatures_degC=(60.0, 90.0, 120.0, 150.0, 180.0), repeatability=0.01)
