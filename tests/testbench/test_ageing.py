@@ -218,6 +218,13 @@ def test_the_shipped_units(told: dict[str, object], drive: tuple[Machine, RestOf
     turn = one.at(units[5]["ends"]["stick-slip range"]).transition_speed(np.array(180.0))
     slow = Corners.of(*(drive[0], campaign.stand)).slow[0]
     assert float(turn) == pytest.approx(slow, rel=1e-3)
+    for kept, of in zip(units, campaign.units, strict=True):
+        for name, excess in Corners.of(of.machine, campaign.stand).ends().items():
+            end = kept["ends"][name]
+            if end is None:
+                assert excess(of.at(170e3)) < 0
+            else:
+                assert excess(of.at(end - 10.0)) < 0 < excess(of.at(end + 10.0))
     again = replace(campaign, units=campaign.units[:1], ages=(35e3,)).files()["U1-35000.csv"].splitlines()
     there = (LIFE / "U1-35000.csv").read_text().splitlines()
     assert again[:2] == there[:2]
