@@ -126,7 +126,7 @@ def _add_each(
         else:
             done(settled)
     with bar("adding", unit="runs") as progress:
-        read = entries(reading, ((run.log, settings) for run, settings in new), machine)
+        read = entries(reading, [(run.log, settings) for run, settings in new], machine)
         for number, ((run, _), result) in enumerate(zip(new, read, strict=True), 1):
             try:
                 if isinstance(result, HerseyError):

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 from collections import deque
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import asdict, fields
 from pathlib import Path
@@ -20,8 +20,8 @@ from hersey.files.reading import hash_of
 from hersey.life.campaign import Entry, entry_of
 from hersey.processes.child import Child, FailedError, LostError
 
-#: Processes that read, and runs that are read ahead of the one that is added.
-_PROCESSES, _AHEAD = 2, 6
+#: Processes that read, runs that are read ahead of the one that is added, and those that are read here.
+_PROCESSES, _AHEAD, _FEW = 2, 6, 8
 
 
 def settings_of(reading: Reading, log: Path, machine: Path | None) -> str:
@@ -58,9 +58,16 @@ def answer(request: dict[str, Any], _payload: bytes) -> tuple[dict[str, Any], by
 
 
 def entries(
-    reading: Reading, logs: Iterable[tuple[Path, str]], machine: Path | None
+    reading: Reading, logs: Sequence[tuple[Path, str]], machine: Path | None
 ) -> Iterator[Entry | HerseyError]:
-    """Read logs, each with its settings, several at a time; yield what is kept of each, or why it is not."""
+    """Read logs, each with its settings, many several at a time; yield what is kept of each, or why not."""
+    if len(logs) < _FEW:
+        for log, settings in logs:
+            try:
+                yield entry(reading, log, machine, settings)
+            except HerseyError as error:
+                yield error
+        return
     children: SimpleQueue[Child] = SimpleQueue()
     for _ in range(_PROCESSES):
         children.put(Child(Path(__file__)))

@@ -99,6 +99,8 @@ def check(
 def _lost(path: Path, sha256: str) -> tuple[str, str] | None:
     """What became of a log, or None if it is as it was."""
     try:
+        if not path.exists():  # said here, where a lot of them may be gone
+            raise MissingFileError
         now = hash_of(path)
     except MissingFileError:
         return "log missing", f"is no longer at {path}: put it back; its dwells stay"

@@ -1,0 +1,136 @@
+"""``hersey campaign`` as it is typed: runs, tables of runs, and mistakes."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import polars as pl
+import pytest
+
+import hersey
+from hersey.cli import campaign_reading
+from hersey.cli.options import Reading
+from hersey.life.campaign import Entry
+from tests.cli.command import Done, run
+from tests.life.test_campaign import means
+
+F12 = ("--unit", "F12", "--age", "1000 pages")
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    for number in range(4):
+        means(tmp_path / f"{number}.csv", 5.0 + number)
+    return tmp_path
+
+
+def typed(folder: Path, *arguments: str) -> Done:
+    done = run("campaign", *arguments, cwd=folder)
+    assert "Traceback" not in done.stderr
+    return done
+
+
+def test_runs_are_added_listed_shown_checked_and_exported(folder: Path) -> None:
+    done = typed(folder, "add", "life.hersey", "0.csv", "1.csv", *F12)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.startswith("0.csv: added: run 1, F12 at 1000 pages, 10 dwells\n1.csv: added: run 2")
+    assert "already there: run 1" in typed(folder, "add", "life.hersey", "0.csv", *F12).stdout
+    assert typed(folder, "list", "life.hersey").stdout == (
+        "life.hersey: 2 runs of 1 units\nF12: 2 runs, at 1000 pages, 20 dwells\n"
+    )
+    shown = typed(folder, "show", "life.hersey", "F12").stdout.splitlines()
+    assert len(shown) == 2
+    assert "exponent" in shown[0]
+    listed = json.loads(typed(folder, "list", "life.hersey", "--json").stdout)
+    assert [each["log"] for each in listed["runs"]] == [str(folder / "0.csv"), str(folder / "1.csv")]
+    assert json.loads(typed(folder, "show", "life.hersey", "F12", "--json").stdout)["runs"] == listed["runs"]
+    assert typed(folder, "check", "life.hersey").stdout == "2 runs: all as it should be\n"
+    (folder / "0.csv").unlink()
+    done = typed(folder, "check", "life.hersey", "--json")
+    assert done.returncode == 1
+    assert [each["kind"] for each in json.loads(done.stdout)["findings"]] == ["log missing"]
+    assert (
+        typed(folder, "export", "life.hersey", "--out", "dwells.parquet").stdout == "dwells: dwells.parquet\n"
+    )
+    assert pl.read_parquet(folder / "dwells.parquet").height == 20
+
+
+def test_hundreds_are_read_in_processes_of_their_own(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Here three in one process."""
+    monkeypatch.setattr(campaign_reading, "_FEW", 0)
+    monkeypatch.setattr(campaign_reading, "_PROCESSES", 1)
+    (folder / "broken.csv").write_text("no log at all\n")
+    logs = [(folder / name, '{"a": 1}') for name in ("0.csv", "broken.csv", "1.csv")]
+    first, broken, last = campaign_reading.entries(Reading(), logs, None)
+    assert first == campaign_reading.entry(Reading(), *logs[0][:1], None, logs[0][1])
+    assert "broken.csv" in str(broken)
+    assert isinstance(last, Entry)
+    assert last.path == str(folder / "1.csv")
+
+
+def test_a_table_of_runs_leaves_out_what_fails_and_tells_it(folder: Path) -> None:
+    (folder / "broken.csv").write_text("no log at all\n")
+    rows = ["0.csv;F12;0", "1.csv;F12;1000", "broken.csv;F13;0", "none.csv;F13;5", "2.csv;F13;2e3"]
+    (folder / "runs.csv").write_text("log;unit;age [pages]\n" + "\n".join(rows) + "\n")
+    done = typed(folder, "add", "life.hersey", "--table", "runs.csv", "--isothermal")
+    assert done.returncode == 1
+    assert done.stdout == "life.hersey: 3 added, 2 failed\n"
+    assert "broken.csv: " in done.stderr
+    assert "none.csv: there is no such file" in done.stderr
+    again = typed(folder, "add", "life.hersey", "--table", "runs.csv", "--isothermal")
+    assert again.stdout == "life.hersey: 3 already there, 2 failed\n"
+    with hersey.Campaign.open(folder / "life.hersey") as campaign:
+        assert campaign.runs()["age"].to_list() == [0.0, 1000.0, 2000.0]
+        assert campaign.settings(1)["reading"] == {"isothermal": True}
+
+
+def test_what_is_read_beside_the_log_is_kept(folder: Path) -> None:
+    (folder / "hersey.toml").write_text('[torque]\nunit = "mN*m"\n')
+    assert typed(folder, "add", "life.hersey", "0.csv", *F12).returncode == 0
+    with hersey.Campaign.open(folder / "life.hersey") as campaign:
+        assert len(campaign.settings(1)["files"]["mapping"]["sha256"]) == 64
+    (folder / "hersey.toml").write_text('# other\n[torque]\nunit = "mN*m"\n')
+    done = typed(folder, "add", "life.hersey", "0.csv", *F12)
+    assert (done.returncode, "read in another way: say --force" in done.stderr) == (2, True)
+
+
+@pytest.mark.parametrize(
+    ("table", "said"),
+    [
+        ("", "no column 'log'"),
+        ("log,unit\n0.csv,F1\n", "no column 'age'"),
+        ("log,unit,age,age\n", "more than one column 'age'"),
+        ("log,unit,age\n0.csv,F1,5\n", "line 2, column 'age': age '5' has no unit"),
+        ("log,unit,age [h]\n0.csv,F1,5\n1.csv,,6\n", "line 3: column 'unit' is empty"),
+        ("log,unit,age [h]\n0.csv,F1,-5\n", "it must be 0 (new) or greater"),
+        ("log,unit,age [h]\n", "names no run"),
+    ],
+)
+def test_a_table_with_a_mistake_is_refused_whole(folder: Path, table: str, said: str) -> None:
+    (folder / "runs.csv").write_text(table)
+    done = typed(folder, "add", "life.hersey", "--table", "runs.csv")
+    assert done.returncode == 2
+    assert said in done.stderr
+    assert not (folder / "life.hersey").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["add", "life.hersey", "0.csv"], "add --unit F12"),
+        (["add", "life.hersey", "0.csv", "--unit", "F12"], "add --age '120000 pages'"),
+        (["add", "life.hersey", *F12], "give either RUN..."),
+        (["add", "life.hersey", "--table", "0.csv", *F12], "stand in the table"),
+        (["add", "0.csv", "1.csv", *F12], "0.csv is no campaign"),
+        (["add", "life.hersey", "none.csv", *F12], "there is no such file"),
+        (["add", "life.hersey", "0.csv", "none.csv", *F12], "there is no such file"),
+        (["list", "life.hersey"], "there is no such campaign"),
+        (["export", "life.hersey", "--out", "x.xlsx"], "ends in .parquet or .csv"),
+    ],
+)
+def test_a_mistake_is_one_line_and_leaves_nothing(folder: Path, arguments: list[str], said: str) -> None:
+    done = typed(folder, *arguments)
+    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
+    assert said in done.stderr
+    assert not list(folder.glob("life*"))

@@ -1,0 +1,51 @@
+"""An age: a number and what it counts."""
+
+from __future__ import annotations
+
+import pytest
+
+from hersey.errors import ParameterError, UnitError
+from hersey.life.age import Age
+
+
+@pytest.mark.parametrize(
+    ("text", "value", "unit"),
+    [
+        ("120000 pages", 120000.0, "pages"),
+        ("2e6cycles", 2e6, "cycles"),
+        (" 310 h ", 310.0, "h"),
+        ("0 pages", 0.0, "pages"),
+        ("1 A4-page", 1.0, "A4-page"),
+    ],
+)
+def test_an_age_is_read(text: str, value: float, unit: str) -> None:
+    assert Age.parse(text) == Age(value, unit)
+
+
+def test_a_bare_number_takes_the_unit_of_the_heading() -> None:
+    assert Age.parse("7", "pages") == Age(7.0, "pages")
+    assert Age.parse("7 h", "pages") == Age(7.0, "h")
+
+
+@pytest.mark.parametrize(
+    "text", ["", "pages", "-1 pages", "1e999 h", "12,000 pages", "1.2.3 h", "nan h", "inf h"]
+)
+def test_what_is_no_age_is_refused(text: str) -> None:
+    with pytest.raises(ParameterError):
+        Age.parse(text)
+
+
+@pytest.mark.parametrize("text", ["120000", "5 %", "5 pages per day", "5 /h", "5 " + 60 * "p", "5 \x1b[2J"])
+def test_an_age_without_a_unit_that_is_a_word_is_refused(text: str) -> None:
+    with pytest.raises(UnitError):
+        Age.parse(text)
+
+
+def test_times_are_converted_and_other_words_are_not() -> None:
+    assert Age.parse("90 min").as_unit("h") == Age(1.5, "h")
+    assert Age.parse("1 day").as_unit("h") == Age(24.0, "h")
+    assert Age.parse("1 page").as_unit("pages") == Age(1.0, "pages")
+    assert Age.parse("310 h").as_unit("h").value == 310.0
+    for one, other in (("5 pages", "h"), ("5 h", "pages"), ("5 pages", "prints"), ("5 cycles", "pages")):
+        with pytest.raises(UnitError, match=f"give it in {other}"):
+            Age.parse(one).as_unit(other)
