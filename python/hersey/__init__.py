@@ -20,6 +20,7 @@ verdict         what exponents and film say together
 identification  the cycles of a trace, and the drive behind them
 stability       hysteresis, disturbances, the operating map, drive profiles, warm-ups
 life            runs of many units at many ages, fatigue, populations: what ends a drive, and when
+life            what grows with age, and when it reaches its limit
 document        the analysis document: the contract with the page
 charts          one chart per result
 report          the page

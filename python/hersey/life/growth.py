@@ -1,0 +1,509 @@
+"""The growth of a positive indicator over units, and the ages at which it reaches a limit.
+
+The laws of `growth_laws` are fitted to the logarithm of the indicator over all units together, each with its
+own level and rate, and weighed by their evidence; nothing hangs on one law alone unless the data say so.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy import special
+
+from hersey.arrays import FloatArray, numbers_of
+from hersey.errors import InsufficientDataError, ParameterError
+from hersey.life.growth_laws import LAWS, Law
+from hersey.life.growth_posterior import Points, Posterior, Units, drawn_units, new_units, posterior
+from hersey.result import Result, json_record
+
+if TYPE_CHECKING:
+    import polars as pl
+
+#: Confidence of every interval of an age: what life tests are planned for.
+CONFIDENCE = 0.9
+#: Weight from which a law is named.
+NAMED = 0.9
+#: Draws behind every interval, and units drawn of the population for each.
+_DRAWS, _POPULATION = 3000, 256
+#: No value is taken as known better than this, relative.
+_RESOLUTION = 1e-4
+#: Up to so many units tell little of how units differ; share of draws from which "never" is worth a word.
+_FEW, _SAID = 3, 0.05
+
+
+@dataclass(frozen=True)
+class Interval:
+    """A number with its 90 % interval; infinite where it is never reached."""
+
+    value: float
+    low: float
+    high: float
+
+    def __str__(self) -> str:
+        """Return value and limits with sensible digits."""
+        value, low, high = (_number(v) for v in (self.value, self.low, self.high))
+        return f"{value} [{low}, {high}]"
+
+
+@dataclass(frozen=True)
+class AgeAtLimit:
+    """The age at which one unit, or a share of the population, reaches a limit."""
+
+    unit: str
+    age: Interval
+    never: float  #: share of draws that never reach it
+    last: float  #: greatest age of its data; NaN for the population
+    passed: float  #: share of draws that have reached it by then
+
+    def __str__(self) -> str:
+        """Return the age in words."""
+        words = f"{self.unit}: {self.age}"
+        if self.passed > 0.5:
+            words += f", passed already (last seen at {_number(self.last)})"
+        if self.never > _SAID:
+            words += f", never in {self.never:.0%} of the draws"
+        return words
+
+
+@dataclass(frozen=True, repr=False)
+class AgesAtLimit(Result):
+    """The ages at which units and population reach a limit."""
+
+    quantity: str
+    age_unit: str
+    limit: float
+    units: tuple[AgeAtLimit, ...]
+    b10: AgeAtLimit  #: a tenth of new units has reached it
+    b50: AgeAtLimit
+    notes: tuple[str, ...]
+
+    def summary(self) -> str:
+        """Return the ages as text."""
+        unit = f" ({self.age_unit})" if self.age_unit else ""
+        lines = [f"age{unit} at which {self.quantity} reaches {self.limit:.4g}, with 90 % intervals"]
+        lines += [f"  {each}" for each in (*self.units, self.b10, self.b50)]
+        return "\n".join([*lines, *(f"- {note}" for note in self.notes)])
+
+    def headline(self) -> str:
+        """Return the age of half the population."""
+        return f"half of new units reach {self.quantity} = {self.limit:.4g} at {self.b50.age} {self.age_unit}"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the ages; None for what is never reached."""
+        return json_record(vars(self))
+
+    def to_frame(self) -> pl.DataFrame:
+        """Return one row per unit, then the population; infinite where it is never reached."""
+        import polars as pl
+
+        rows = [*self.units, self.b10, self.b50]
+        unit = self.age_unit or "1"
+        return pl.DataFrame(
+            {
+                "unit": [row.unit for row in rows],
+                f"age ({unit})": [row.age.value for row in rows],
+                f"age low ({unit})": [row.age.low for row in rows],
+                f"age high ({unit})": [row.age.high for row in rows],
+                "never (1)": [row.never for row in rows],
+                f"last age ({unit})": [row.last for row in rows],
+            }
+        )
+
+
+@dataclass(frozen=True)
+class GrowthCurves:
+    """The indicator of each unit without the scatter of runs: median and 90 % band, (units, ages)."""
+
+    units: tuple[str, ...]
+    age: FloatArray
+    median: FloatArray
+    low: FloatArray
+    high: FloatArray
+
+
+@dataclass(frozen=True, repr=False)
+class Growth(Result):
+    """The growth of an indicator over units.
+
+    ``weights`` are those of the laws, and sum to 1; ``parameters`` those of each law: the median new unit
+    (``level``), growth of the median unit per age (``rate``; the whole of it for a saturating law), the
+    spreads between units and the scatter of runs (standard deviations of the logarithm), and the shape.
+    """
+
+    quantity: str
+    age_unit: str
+    units: tuple[str, ...]
+    runs: tuple[int, ...]  #: of each unit
+    last_age: tuple[float, ...]
+    weights: dict[str, float]
+    parameters: dict[str, dict[str, Interval]]
+    effective: (
+        float  #: how many independent draws the posterior is worth, of the least sampled law that counts
+    )
+    notes: tuple[str, ...]
+    _of_units: tuple[Units, ...] = field(repr=False)
+    _of_population: tuple[Units, ...] = field(repr=False)
+    _scale: tuple[float, float] = field(repr=False)  #: greatest age; mean logarithm of the value
+
+    @property
+    def law(self) -> str | None:
+        """The law that the data name, or None where they cannot tell."""
+        name = max(self.weights, key=lambda each: self.weights[each])
+        return name if self.weights[name] >= NAMED else None
+
+    def summary(self) -> str:
+        """Return the growth as text."""
+        unit = f" {self.age_unit}" if self.age_unit else ""
+        heaviest = sorted(self.weights, key=lambda name: -self.weights[name])
+        lines = [
+            self.headline(),
+            f"{len(self.units)} units, {sum(self.runs)} runs, up to {max(self.last_age):.6g}{unit}",
+            "weights of the laws: " + ", ".join(f"{name} {self.weights[name]:.2f}" for name in heaviest),
+        ]
+        for name in heaviest:
+            if self.weights[name] >= 0.1:
+                told = ", ".join(f"{k} {v}" for k, v in self.parameters[name].items())
+                lines.append(f"  {name}: {told}")
+        return "\n".join([*lines, *(f"- {note}" for note in self.notes)])
+
+    def headline(self) -> str:
+        """Return the law that the data name."""
+        if self.law == "constant":
+            return f"{self.quantity} does not grow"
+        if self.law:
+            formula = next(law.formula for law in LAWS if law.name == self.law)
+            return f"growth of {self.quantity}: {self.law}, {formula}"
+        near = [name for name, weight in self.weights.items() if weight >= 0.05]
+        return f"growth of {self.quantity}: cannot tell which law ({', '.join(near)})"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return what was found, ages and values in the units given."""
+        told = {name: value for name, value in vars(self).items() if not name.startswith("_")}
+        return json_record({**told, "law": self.law})
+
+    def to_frame(self) -> pl.DataFrame:
+        """Return the parameters of each law with its weight."""
+        import polars as pl
+
+        rows = [
+            (law, self.weights[law], name, each.value, each.low, each.high)
+            for law, named in self.parameters.items()
+            for name, each in named.items()
+        ]
+        names = ("law", "weight (1)", "parameter", "value (given)", "low (given)", "high (given)")
+        return pl.DataFrame(rows, schema=names, orient="row")
+
+    def at(self, age: ArrayLike) -> GrowthCurves:
+        """Return the indicator of each unit at ages, without the scatter of runs.
+
+        Parameters
+        ----------
+        age
+            One age or more, in the unit of the data.
+
+        Raises
+        ------
+        ParameterError
+            If an age is negative or no number.
+        """
+        ages = np.atleast_1d(numbers_of("age", age)).ravel()
+        if not (np.isfinite(ages) & (ages >= 0.0)).all():
+            raise ParameterError("an age is negative or no number: ages are counted from the new unit")
+        scaled = ages / self._scale[0]
+        drawn = [
+            units.level[..., None]
+            + units.law.log_growth(units.size[..., None], scaled, units.shape[..., None])
+            for units in self._of_units
+        ]
+        low, median, high = np.exp(_quantiles(np.concatenate(drawn)) + self._scale[1])
+        return GrowthCurves(self.units, ages, median, low, high)
+
+    def reaches(self, limit: float) -> AgesAtLimit:
+        """Return the ages at which each unit, and a tenth and half of new units, reach a limit.
+
+        A unit that has passed the limit already is told by the same draws; one that begins above it
+        has age 0.
+
+        Parameters
+        ----------
+        limit
+            In the unit of the values, positive.
+
+        Raises
+        ------
+        ParameterError
+            If the limit is not positive.
+        """
+        if not (math.isfinite(limit) and limit > 0.0):
+            raise ParameterError(f"a limit of {limit} cannot be reached: it must be positive", value=limit)
+        level = math.log(limit) - self._scale[1]
+        ages = np.concatenate([_ages(units, level) for units in self._of_units]) * self._scale[0]
+        low, median, high = _quantiles(ages)
+        told = tuple(
+            AgeAtLimit(
+                name,
+                Interval(float(median[i]), float(low[i]), float(high[i])),
+                float(np.isinf(ages[:, i]).mean()),
+                self.last_age[i],
+                float((ages[:, i] <= self.last_age[i]).mean()),
+            )
+            for i, name in enumerate(self.units)
+        )
+        new = np.concatenate([_ages(units, level) for units in self._of_population]) * self._scale[0]
+        new.sort(axis=1)
+        b10, b50 = (_share_of_units(new, share) for share in (0.1, 0.5))
+        return AgesAtLimit(self.quantity, self.age_unit, limit, told, b10, b50, self.notes)
+
+
+def _share_of_units(ages: FloatArray, share: float) -> AgeAtLimit:
+    """Age that a share of new units has reached, ``ages`` being sorted along the units."""
+    reached = ages[:, math.ceil(share * ages.shape[1]) - 1]
+    low, median, high = _quantiles(reached)
+    interval = Interval(float(median), float(low), float(high))
+    return AgeAtLimit(f"B{share * 100:.0f}", interval, float(np.isinf(reached).mean()), math.nan, 0.0)
+
+
+def _ages(units: Units, level: float) -> FloatArray:
+    """Ages, in the greatest age, at which drawn units reach a level."""
+    above = np.maximum(level - units.level, 0.0)
+    with np.errstate(over="ignore"):
+        return np.where(above > 0.0, units.law.age(units.size, above, units.shape), 0.0)
+
+
+def _quantiles(values: FloatArray) -> FloatArray:
+    """Lower end, median and upper end over the draws; infinite numbers are numbers."""
+    ends = [0.5 - CONFIDENCE / 2, 0.5, 0.5 + CONFIDENCE / 2]
+    return np.asarray(np.quantile(values, ends, axis=0, method="inverted_cdf"))
+
+
+def _number(value: float) -> str:
+    return "never" if math.isinf(value) else f"{value:.4g}"
+
+
+def fit_growth(
+    unit: Sequence[object],
+    age: ArrayLike,
+    value: ArrayLike,
+    error: ArrayLike = 0.0,
+    *,
+    quantity: str = "value",
+    age_unit: str = "",
+    laws: Sequence[str] | None = None,
+    seed: int = 0,
+) -> Growth:
+    """Fit the growth of a positive indicator over units.
+
+    Priors, all weak: ln(r T) of the median unit N(-0.5, 2^2), T being the greatest age (ln s of a saturating
+    law); standard deviations between units half-normal of scale 1 (ln of level and rate); scatter of runs
+    half-normal of scale 0.1; ln(tau/T) N(-0.5, 1); c N(0.5, 1). That it grows is as probable beforehand as
+    that it does not; the laws of growth share that equally.
+
+    Parameters
+    ----------
+    unit
+        Name of the unit of each run.
+    age
+        Age of each run since the unit was new, in any one unit; shape (runs,).
+    value
+        The indicator, positive, in any one unit; shape (runs,).
+    error
+        Relative standard error of each value, of the fit of that run; one number or shape (runs,).
+    quantity, age_unit
+        How to call the indicator and the unit of age.
+    laws
+        Names of those to choose from; all of `growth_laws.LAWS` by default.
+    seed
+        Of the draws: the same data and seed give the same result.
+
+    Raises
+    ------
+    ParameterError
+        If a value is not positive, an age negative, an error negative, or any of them no number.
+    InsufficientDataError
+        If no unit was seen at two ages.
+
+    Examples
+    --------
+    >>> growth = fit_growth(["A"] * 4 + ["B"] * 4, [0, 10, 20, 30] * 2,
+    ...                     [1, 1.2, 1.4, 1.6, 1.1, 1.4, 1.7, 2.0], 0.005, laws=["linear"])
+    >>> [round(each.age.value) for each in growth.reaches(2.0).units]
+    [50, 30]
+    """
+    chosen = _chosen(laws)
+    names, columns = _checked(unit, age, value, error)
+    units = tuple(dict.fromkeys(names))
+    points, scale = _points(names, units, *columns)
+    random = np.random.default_rng(seed)
+    found = [posterior(law, points, random) for law in chosen]
+    evidence = np.array([each.log_evidence for each in found]) + _beforehand(chosen)
+    weights = np.exp(evidence - special.logsumexp(evidence))
+    draws = _resampled(found, weights, random)
+    normals = _spread_normals()
+    last = tuple(float(row.max() * scale[0]) for row in points.age)
+    runs = tuple(int(n) for n in points.given.sum(axis=1))
+    return Growth(
+        quantity=quantity,
+        age_unit=age_unit,
+        units=units,
+        runs=runs,
+        last_age=last,
+        weights={law.name: float(w) for law, w in zip(chosen, weights, strict=True)},
+        parameters={each.law.name: _parameters(each, scale) for each in found},
+        effective=min(each.effective for each, w in zip(found, weights, strict=True) if w > 0.05),
+        notes=_notes(runs, points),
+        _of_units=tuple(drawn_units(each, points, shared, random) for each, shared in draws),
+        _of_population=tuple(new_units(each.law, shared, normals) for each, shared in draws),
+        _scale=scale,
+    )
+
+
+def _chosen(laws: Sequence[str] | None) -> list[Law]:
+    known = {law.name: law for law in LAWS}
+    if laws is None:
+        return list(LAWS)
+    for name in laws:
+        if name not in known:
+            raise ParameterError(f"no law of growth is called {name!r}; there are {', '.join(known)}")
+    if not laws:
+        raise ParameterError(f"name one law of growth or more: {', '.join(known)}")
+    return [known[name] for name in dict.fromkeys(laws)]
+
+
+def _beforehand(laws: list[Law]) -> FloatArray:
+    """Log prior probabilities of laws, up to a constant."""
+    growing = sum(law.grows for law in laws)
+    return np.array([-math.log(growing) if law.grows else 0.0 for law in laws])
+
+
+def _checked(
+    unit: Sequence[object], age: ArrayLike, value: ArrayLike, error: ArrayLike
+) -> tuple[list[str], list[FloatArray]]:
+    names = [str(each).strip() for each in ([unit] if isinstance(unit, str) else unit)]
+    columns = [np.atleast_1d(numbers_of(*each)) for each in (("age", age), ("value", value))]
+    columns.append(numbers_of("error", error))
+    if columns[2].ndim == 0:
+        columns[2] = np.full(len(names), float(columns[2]))
+    for name, column in zip(("age", "value", "error"), columns, strict=True):
+        if column.shape != (len(names),):
+            raise ParameterError(f"{len(names)} units are named, but {name} has the shape {column.shape}")
+    rules = (("age", "negative"), ("value", "not positive"), ("error", "negative"))
+    for (name, fault), column in zip(rules, columns, strict=True):
+        for i in np.flatnonzero(~np.isfinite(column)):
+            raise ParameterError(f"{name} of run {i + 1} (unit {names[i]!r}) is no number", index=int(i))
+        bad = column <= 0.0 if name == "value" else column < 0.0
+        for i in np.flatnonzero(bad):
+            raise ParameterError(
+                f"{name} of run {i + 1} (unit {names[i]!r}) is {fault}: {column[i]:g}",
+                quantity=name,
+                value=float(column[i]),
+                limit=0.0,
+                index=int(i),
+            )
+    if "" in names:
+        raise ParameterError(f"run {names.index('') + 1} names no unit", index=names.index(""))
+    ages: dict[str, set[float]] = {}
+    for name, t in zip(names, columns[0].tolist(), strict=True):
+        ages.setdefault(name, set()).add(t)
+    if max(len(each) for each in ages.values()) < 2:
+        raise InsufficientDataError(
+            "no unit was seen at two ages, so nothing tells its growth: add runs at another age"
+        )
+    return names, columns
+
+
+def _points(
+    names: list[str], units: tuple[str, ...], age: FloatArray, value: FloatArray, error: FloatArray
+) -> tuple[Points, tuple[float, float]]:
+    """Runs as rows of units, filled up, in scaled ages and logarithms less their mean; and both scales."""
+    rows = [np.flatnonzero(np.array(names) == each) for each in units]
+    longest = max(row.size for row in rows)
+    given = np.zeros((len(units), longest), dtype=bool)
+    filled = np.zeros((3, len(units), longest))
+    logs, greatest = np.log(value), float(age.max())
+    middle = float(logs.mean())
+    for i, row in enumerate(rows):
+        given[i, : row.size] = True
+        ordered = row[np.argsort(age[row], kind="stable")]
+        filled[:, i, : row.size] = age[ordered] / greatest, logs[ordered] - middle, error[ordered] ** 2
+    return Points(filled[0], filled[1], filled[2] + _RESOLUTION**2, given), (greatest, middle)
+
+
+def _resampled(
+    found: list[Posterior], weights: FloatArray, random: np.random.Generator
+) -> list[tuple[Posterior, FloatArray]]:
+    """Equally probable draws over all laws (systematic resampling); laws without any are left out."""
+    every = np.concatenate([each.weight * w for each, w in zip(found, weights, strict=True)])
+    steps = (np.arange(_DRAWS) + random.random()) / _DRAWS
+    index = np.minimum(np.searchsorted(np.cumsum(every) / every.sum(), steps), every.size - 1)
+    ends = np.cumsum([0, *(len(each.shared) for each in found)])
+    draws = []
+    for each, begin, end in zip(found, ends, ends[1:], strict=False):
+        own = index[(index >= begin) & (index < end)] - begin
+        if own.size:
+            draws.append((each, each.shared[own]))
+    return draws
+
+
+def _spread_normals() -> FloatArray:
+    """Pairs of standard normal numbers that fill the plane evenly (Roberts' sequence)."""
+    steps = np.arange(1, _POPULATION + 1) * np.array([[0.7548776662466927], [0.5698402909980532]])
+    return np.asarray(special.ndtri((0.5 + steps) % 1.0))
+
+
+def _parameters(found: Posterior, scale: tuple[float, float]) -> dict[str, Interval]:
+    """Medians and 90 % intervals of what all units share, in the units given."""
+    shared, law = found.shared, found.law
+    named = {"level": np.exp(shared[:, 0] + scale[1]), "spread of levels": np.exp(shared[:, 1])}
+    if law.grows:
+        per_age = 1.0 if law.name == "saturating" else scale[0]
+        named["rate"] = np.exp(shared[:, 3]) / per_age
+        named["spread of rates"] = np.exp(shared[:, 4])
+    if law.shape:
+        saturating = law.name == "saturating"
+        named["tau" if saturating else "c"] = np.exp(shared[:, 5]) * scale[0] if saturating else shared[:, 5]
+    named["scatter of runs"] = np.exp(shared[:, 2])
+    return {name: _weighed(values, found.weight) for name, values in named.items()}
+
+
+def _weighed(values: FloatArray, weight: FloatArray) -> Interval:
+    order = np.argsort(values)
+    steps = np.cumsum(weight[order])
+    ends = np.searchsorted(steps, [0.5, 0.5 - CONFIDENCE / 2, 0.5 + CONFIDENCE / 2])
+    return Interval(*(float(values[order[min(i, values.size - 1)]]) for i in ends))
+
+
+def _notes(runs: tuple[int, ...], points: Points) -> tuple[str, ...]:
+    notes = []
+    if len(runs) == 1:
+        notes.append(
+            "one unit tells nothing of how units differ: B10 and B50 hang on the prior of the spread"
+        )
+    elif len(runs) <= _FEW:
+        notes.append(
+            f"{len(runs)} units tell little of how units differ: B10 and B50 lean on the prior of the spread"
+        )
+    once = sum(np.unique(age[given]).size < 2 for age, given in zip(points.age, points.given, strict=True))
+    if once:
+        notes.append(f"{once} of the units were seen at one age only: their growth is that of the others")
+    if _falls(points):
+        notes.append("values fall with age: no law of growth does; give the reciprocal of what falls")
+    return tuple(notes)
+
+
+def _falls(points: Points) -> bool:
+    """Whether straight lines through the units, with one slope, fall by three standard errors."""
+    number = points.given.sum(axis=1, keepdims=True)
+    age, value = (
+        (each - (each * points.given).sum(axis=1, keepdims=True) / number) * points.given
+        for each in (points.age, points.value)
+    )
+    square = (age**2).sum()
+    slope = (age * value).sum() / square
+    left = ((value - slope * age) ** 2 * points.given).sum() / max(number.sum() - len(number) - 1, 1)
+    least = (points.variance * points.given).sum() / number.sum()
+    return bool(slope < -3.0 * math.sqrt(max(left, least) / square))

@@ -1,0 +1,110 @@
+"""How a positive indicator may grow with age: its logarithm over that of the new unit, ln G.
+
+Each law has a size x = ln(r T) of its unit (ln s of a saturating one) and may have a shape that all units
+share. Ages are in T, the greatest age of the data. Side flow thins a layer as h = (h0^-2 + K t)^(-1/2), and
+torque goes as 1/h (van Zoelen, Venner, Lugt, Proc. IMechE J 223 (2009) 541); evaporation at a steady rate
+thins it as h0 - e t, which is the curved law at c = -1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from hersey.arrays import FloatArray
+
+#: Greatest size: beyond it growth is as good as infinite.
+_GREATEST = 30.0
+#: Least value under a logarithm: where a layer has dried out, the indicator is as good as infinite.
+_DRY = 1e-12
+#: Curvature below which the curved law is taken as exponential.
+_STRAIGHT = 1e-5
+
+Form = Callable[[FloatArray, FloatArray, FloatArray], FloatArray]
+
+
+class Law(NamedTuple):
+    """A law of growth; its functions take size, age and shape, which broadcast."""
+
+    name: str
+    formula: str
+    log_growth: Form  #: ln G
+    slope: Form  #: derivative of ln G by the size
+    age: Form  #: age at which ln G is the second argument; infinite where it never is
+    shape: tuple[str, float, float] | None = None  #: name, mean and standard deviation of its prior
+    grows: bool = True
+
+
+def _rise(x: FloatArray, t: FloatArray) -> FloatArray:
+    return np.exp(np.minimum(x, _GREATEST)) * t
+
+
+def _share(z: FloatArray) -> FloatArray:
+    return z / (1.0 + z)
+
+
+def _full(t: FloatArray, a: FloatArray) -> FloatArray:
+    """How much of a saturating growth has come."""
+    return -np.expm1(-t * np.exp(-a))
+
+
+def _saturating_age(x: FloatArray, y: FloatArray, a: FloatArray) -> FloatArray:
+    left = 1.0 - np.expm1(y) * np.exp(-x)
+    return np.where(left > 0.0, -np.exp(a) * np.log(np.where(left > 0.0, left, 1.0)), np.inf)
+
+
+def _curved(x: FloatArray, t: FloatArray, c: FloatArray) -> FloatArray:
+    z = _rise(x, t)
+    bent = np.where(np.abs(c) < _STRAIGHT, _STRAIGHT, c)
+    return np.log(np.maximum(1.0 + bent * z, _DRY)) / bent
+
+
+def _curved_slope(x: FloatArray, t: FloatArray, c: FloatArray) -> FloatArray:
+    z = _rise(x, t)
+    return z / np.maximum(1.0 + c * z, _DRY)
+
+
+def _curved_age(x: FloatArray, y: FloatArray, c: FloatArray) -> FloatArray:
+    bent = np.where(np.abs(c) < _STRAIGHT, _STRAIGHT, c)
+    return np.expm1(bent * y) / bent * np.exp(-x)
+
+
+def _never(x: FloatArray, y: FloatArray, _: FloatArray) -> FloatArray:
+    return np.where(np.asarray(y) > 0.0, np.inf, 0.0) + 0.0 * x
+
+
+LAWS = (
+    Law("constant", "1", lambda x, t, _: 0.0 * (x + t), lambda x, t, _: 0.0 * (x + t), _never, grows=False),
+    Law(
+        "side flow",
+        "sqrt(1 + r t)",
+        lambda x, t, _: 0.5 * np.log1p(_rise(x, t)),
+        lambda x, t, _: 0.5 * _share(_rise(x, t)),
+        lambda x, y, _: np.expm1(2.0 * y) * np.exp(-x),
+    ),
+    Law(
+        "linear",
+        "1 + r t",
+        lambda x, t, _: np.log1p(_rise(x, t)),
+        lambda x, t, _: _share(_rise(x, t)),
+        lambda x, y, _: np.expm1(y) * np.exp(-x),
+    ),
+    Law(
+        "exponential",
+        "exp(r t)",
+        lambda x, t, _: _rise(x, t),
+        lambda x, t, _: _rise(x, t),
+        lambda x, y, _: y * np.exp(-x),
+    ),
+    Law(
+        "saturating",
+        "1 + s (1 - exp(-t/tau))",
+        lambda x, t, a: np.log1p(_rise(x, _full(t, a))),
+        lambda x, t, a: _share(_rise(x, _full(t, a))),
+        _saturating_age,
+        ("ln(tau/T)", -0.5, 1.0),
+    ),
+    Law("curved", "(1 + c r t)^(1/c)", _curved, _curved_slope, _curved_age, ("c", 0.5, 1.0)),
+)

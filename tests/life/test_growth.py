@@ -1,0 +1,250 @@
+"""The growth of an indicator: known truth, limits in closed form, invariances, refusals."""
+
+from __future__ import annotations
+
+import json
+import math
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from hersey.errors import InsufficientDataError, ParameterError
+from hersey.life import growth as growth_module
+from hersey.life import growth_posterior
+from hersey.life.growth import Growth, fit_growth
+from hersey.life.growth_laws import LAWS
+from hersey.life.growth_posterior import Points, _likelihood
+
+LAW = {law.name: law for law in LAWS}
+ZERO = np.zeros(1)
+
+
+def logs(
+    name: str, *, units: int = 6, ages: int = 8, noise: float = 0.01, seed: int = 3, reach: float = 1.0
+) -> tuple[list[str], np.ndarray, np.ndarray, np.ndarray]:
+    """Units, ages to 600, values, and the true age of each unit at the value 2, formulas written out anew."""
+    random = np.random.default_rng(seed)
+    rate = reach * np.exp(random.normal(0.0, 0.2, units)) / 1000.0
+    level = np.exp(random.normal(0.0, 0.05, units))
+    t = np.tile(np.linspace(0.0, 600.0, ages), (units, 1))
+    r, need = rate[:, None], 2.0 / level
+    grown, true = {
+        "constant": (1.0 + 0.0 * t, np.full(units, np.inf)),
+        "linear": (1.0 + r * t, (need - 1.0) / rate),
+        "exponential": (np.exp(r * t), np.log(need) / rate),
+        "side flow": (np.sqrt(1.0 + r * t), (need**2 - 1.0) / rate),
+        "saturating": (1.0 + 1000.0 * r * (1.0 - np.exp(-t / 150.0)), np.full(units, np.nan)),
+    }[name]
+    value = level[:, None] * grown * np.exp(random.normal(0.0, noise, t.shape))
+    names = [f"F{i + 1}" for i in range(units) for _ in range(ages)]
+    return names, t.ravel(), value.ravel(), true
+
+
+@pytest.fixture(autouse=True)
+def fewer_draws(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A third of the draws: what they would tell better is the matter of the benchmark."""
+    monkeypatch.setattr(growth_posterior, "_ROUNDS", (100, 100, 100, 200))
+    monkeypatch.setattr(growth_posterior, "_MOST", 2.0)
+    monkeypatch.setattr(growth_module, "_DRAWS", 1000)
+
+
+@pytest.mark.parametrize(("name", "reach"), [("linear", 1.5), ("exponential", 1.0), ("side flow", 6.0)])
+def test_a_known_truth_is_found(name: str, reach: float) -> None:
+    unit, age, value, true = logs(name, reach=reach)
+    growth = fit_growth(unit, age, value, 0.002)
+    assert growth.effective > 100
+    assert growth.weights[name] + growth.weights["curved"] > 0.8
+    assert growth.law in {name, None}
+    told = growth.reaches(2.0).units
+    held = [each.age.low <= t <= each.age.high for each, t in zip(told, true, strict=True)]
+    assert sum(held) >= 5
+    for each, t in zip(told, true, strict=True):
+        assert each.age.value == pytest.approx(t, rel=0.12)
+        assert each.age.high - each.age.low < 0.5 * t
+        assert each.never < 0.05
+
+
+def test_what_saturates_is_called_saturating_and_may_never_reach() -> None:
+    unit, age, value, _ = logs("saturating", reach=0.6)
+    growth = fit_growth(unit, age, value, 0.002)
+    assert growth.law == "saturating"
+    assert growth.parameters["saturating"]["tau"].value == pytest.approx(150.0, rel=0.15)
+    far = growth.reaches(4.0)
+    assert all(each.never > 0.9 and math.isinf(each.age.value) for each in far.units)
+    assert "never" in str(far.units[0])
+    assert growth.reaches(4.0).to_dict()["units"][0]["age"]["high"] is None
+
+
+def test_what_does_not_grow_is_told_not_to() -> None:
+    unit, age, value, _ = logs("constant", noise=0.02)
+    growth = fit_growth(unit, age, value, 0.002, quantity="torque")
+    assert growth.law == "constant"
+    assert growth.headline() == "torque does not grow"
+    assert all(each.never > 0.9 for each in growth.reaches(2.0).units)
+
+
+def test_exact_lines_through_few_points_are_followed() -> None:
+    """Without scatter the age is that of the formula, whatever the priors."""
+    unit = [name for name in "ABCDEF" for _ in range(4)]
+    age = np.tile([0.0, 10.0, 20.0, 30.0], 6)
+    rate = np.repeat([0.02, 0.025, 0.03, 0.02, 0.028, 0.022], 4)
+    growth = fit_growth(unit, age, 5.0 * (1.0 + rate * age), 0.0, laws=["linear"])
+    for each, r in zip(growth.reaches(10.0).units, rate[::4], strict=True):
+        assert each.age.value == pytest.approx(1.0 / r, rel=2e-3)
+    curves = growth.at([0.0, 30.0])
+    assert curves.median == pytest.approx(5.0 * (1.0 + rate[::4, None] * curves.age), rel=1e-3)
+    assert (curves.low < curves.median).all()
+    assert (curves.median < curves.high).all()
+
+
+def test_a_unit_past_the_limit_is_told_by_the_same_draws() -> None:
+    unit, age, value, _ = logs("linear", reach=1.5)
+    growth = growth_of(unit, age, value)
+    told = growth.reaches(1.5)
+    assert all(each.passed > 0.99 for each in told.units if each.age.high < 600.0)
+    assert "passed already" in told.summary()
+    assert growth.reaches(0.5).units[0].age.value == 0.0
+
+
+def growth_of(*columns: Any, **choices: Any) -> Growth:
+    return fit_growth(*columns, 0.002, laws=["linear"], **choices)
+
+
+@cache
+def _plain(name: str) -> Growth:
+    unit, age, value, _ = logs(name, units=3, ages=5)
+    return fit_growth(unit, age, value, 0.002, laws=["linear", "saturating"])
+
+
+@settings(max_examples=4, deadline=None)
+@given(
+    of_age=st.floats(1e-6, 1e6), of_value=st.floats(1e-6, 1e6), name=st.sampled_from(["linear", "saturating"])
+)
+def test_units_of_age_and_value_do_not_matter(of_age: float, of_value: float, name: str) -> None:
+    unit, age, value, _ = logs(name, units=3, ages=5)
+    plain = _plain(name)
+    scaled = fit_growth(unit, age * of_age, value * of_value, 0.002, laws=["linear", "saturating"])
+    assert scaled.weights == pytest.approx(plain.weights, rel=1e-3, abs=1e-4)
+    for a, b in zip(plain.reaches(1.7).units, scaled.reaches(1.7 * of_value).units, strict=True):
+        assert b.age.value == pytest.approx(a.age.value * of_age, rel=0.01)
+
+
+def test_same_input_same_bits_whatever_the_order() -> None:
+    unit, age, value, _ = logs("linear", units=3, ages=5)
+    once, again = (growth_of(unit, age, value, seed=5).reaches(2.0) for _ in range(2))
+    assert once == again
+    order = np.concatenate([np.arange(5)[::-1], 5 + np.arange(10)[::-1]])
+    turned = growth_of([unit[i] for i in order], age[order], value[order]).reaches(2.0)
+    plain = growth_of(unit, age, value).reaches(2.0)
+    found = {each.unit: each.age.value for each in turned.units}
+    assert {each.unit: each.age.value for each in plain.units} == pytest.approx(found, rel=0.02)
+
+
+@pytest.mark.parametrize("count", [1, 2])
+def test_few_units_are_wide_and_say_so(count: int) -> None:
+    unit, age, value, _ = logs("linear", units=count, ages=4, reach=1.5)
+    few = fit_growth(unit, age, value, 0.002)
+    assert f"{'one unit' if count == 1 else '2 units'} tell" in few.notes[0]
+    b10 = few.reaches(2.0).b10.age
+    assert b10.high > 2.0 * b10.low
+    assert few.law is None
+    assert "cannot tell" in few.headline()
+
+
+def test_values_that_fall_are_told() -> None:
+    unit, age, value, _ = logs("linear", reach=1.0)
+    assert any("fall with age" in note for note in growth_of(unit, age, 1.0 / value).notes)
+
+
+@pytest.mark.parametrize("law", LAWS, ids=[law.name for law in LAWS])
+def test_a_law_and_its_age_are_inverses_and_its_slope_is_its_own(law: Any) -> None:
+    if not law.grows:
+        assert np.isinf(law.age(ZERO, np.array([0.1]), ZERO))
+        return
+    x, t = np.array([-0.4]), np.array([0.7])
+    for shape in [np.array([c]) for c in ((-0.8, 0.0, 0.5) if law.shape else (0.0,))]:
+        y = law.log_growth(x, t, shape)
+        assert law.age(x, y, shape) == pytest.approx(t, rel=1e-6)
+        up, down = (law.log_growth(x + d, t, shape) for d in (1e-5, -1e-5))
+        assert law.slope(x, t, shape) == pytest.approx((up - down) / 2e-5, rel=1e-4)
+
+
+def test_the_curved_law_holds_the_others() -> None:
+    x, t = np.array([-0.4]), np.linspace(0.1, 2.0, 5)
+    for c, name in ((1.0, "linear"), (0.0, "exponential")):
+        curved = LAW["curved"].log_growth(x, t, np.array([c]))
+        assert curved == pytest.approx(LAW[name].log_growth(x, t, ZERO), rel=1e-4)
+    drying = LAW["curved"].log_growth(np.zeros(1), np.array([0.5]), np.array([-1.0]))
+    assert drying == pytest.approx(math.log(1.0 / (1.0 - 0.5)))
+
+
+def test_units_are_integrated_out_exactly() -> None:
+    """Against a plain sum over level and size of one unit."""
+    age, value = np.array([[0.0, 0.4, 1.0]]), np.array([[0.02, 0.2, 0.55]])
+    points = Points(age, value, np.full((1, 3), 0.02**2), np.ones((1, 3), dtype=bool))
+    shared = np.array([[0.05, math.log(0.3), math.log(0.03), -0.6, math.log(0.5)]])
+    found = _likelihood(LAW["linear"], points, shared, np.array([-0.5]))[0]
+    level, size = np.linspace(-1.5, 1.6, 1201), np.linspace(-4.0, 3.0, 1401)
+    left = value[0] - np.log1p(np.exp(size)[:, None] * age[0])[None] - level[:, None, None]
+    variance = 0.02**2 + 0.03**2
+    density = np.exp(-0.5 * (left**2).sum(axis=2) / variance) / (2 * math.pi * variance) ** 1.5
+    density *= np.exp(-0.5 * ((level - 0.05) / 0.3) ** 2)[:, None] / (0.3 * math.sqrt(2 * math.pi))
+    density *= np.exp(-0.5 * ((size + 0.6) / 0.5) ** 2) / (0.5 * math.sqrt(2 * math.pi))
+    total = density.sum() * (level[1] - level[0]) * (size[1] - size[0])
+    assert found == pytest.approx(math.log(total), abs=1e-5)
+
+
+def test_the_result_answers() -> None:
+    unit, age, value, _ = logs("linear", units=3, ages=5)
+    growth = growth_of(unit, age, value, quantity="torque", age_unit="h")
+    told = growth.reaches(2.0)
+    for result in (growth, told):
+        plain = result.to_dict()
+        assert json.loads(json.dumps(plain, allow_nan=False)) == plain
+        assert "\n" not in repr(result)
+    assert growth.to_frame().height == 5
+    assert told.to_frame()["age (h)"].to_list()[:3] == [each.age.value for each in told.units]
+    assert "torque reaches 2" in told.summary()
+    assert growth.runs == (5, 5, 5)
+
+
+@pytest.mark.parametrize(
+    ("columns", "says"),
+    [
+        ((["A", "A"], [0, 1], [1, 0]), r"value of run 2 \(unit 'A'\) is not positive: 0"),
+        ((["A", "A"], [-1, 1], [1, 2]), r"age of run 1 \(unit 'A'\) is negative: -1"),
+        ((["A", "A"], [0, 1], [1, np.nan]), r"value of run 2 \(unit 'A'\) is no number"),
+        ((["A", "A"], [0, 1], [1, 2], [0.1, -0.1]), r"error of run 2 \(unit 'A'\) is negative"),
+        ((["A", "A"], [0, 1, 2], [1, 2]), r"2 units are named, but age has the shape \(3,\)"),
+        ((["A", " "], [0, 1], [1, 2]), "run 2 names no unit"),
+        ((["A", "A"], [0, 1], ["a", "b"]), "value is not a number"),
+    ],
+)
+def test_bad_input_is_named(columns: Any, says: str) -> None:
+    with pytest.raises(ParameterError, match=says):
+        fit_growth(*columns)
+
+
+def test_other_refusals() -> None:
+    with pytest.raises(InsufficientDataError, match="no unit was seen at two ages"):
+        fit_growth(["A", "B", "B"], [1.0, 2.0, 2.0], [1.0, 2.0, 2.1])
+    with pytest.raises(ParameterError, match="no law of growth is called 'cubic'"):
+        fit_growth(["A", "A"], [0, 1], [1, 2], laws=["cubic"])
+    growth = growth_of(["A", "A", "A"], [0, 1, 2], [1, 1.5, 2])
+    for limit in (0.0, math.nan, math.inf):
+        with pytest.raises(ParameterError, match="positive"):
+            growth.reaches(limit)
+    with pytest.raises(ParameterError, match="negative or no number"):
+        growth.at([-1.0])
+
+
+def test_priors_are_those_of_the_docstring() -> None:
+    text = fit_growth.__doc__ or ""
+    mean, deviation = growth_posterior.RATE_PRIOR
+    assert f"N({mean:g}, {deviation:g}^2)" in text
+    assert f"half-normal of scale {growth_posterior.RATE_SPREAD:g}" in text
+    assert f"half-normal of scale {growth_posterior.RUN_SCATTER:g}" in text
