@@ -19,100 +19,28 @@ from hersey.arrays import FloatArray, numbers_of
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.life.growth_laws import LAWS, Law
 from hersey.life.growth_posterior import Points, Posterior, Units, drawn_units, new_units, posterior
+from hersey.life.limit_ages import (
+    CONFIDENCE,
+    AgeAtLimit,
+    AgesAtLimit,
+    Interval,
+    ages_of,
+    quantiles,
+    share_of_units,
+)
 from hersey.result import Result, json_record
 
 if TYPE_CHECKING:
     import polars as pl
 
-#: Confidence of every interval of an age: what life tests are planned for.
-CONFIDENCE = 0.9
 #: Weight from which a law is named.
 NAMED = 0.9
-#: Draws behind every interval, and units drawn of the population for each.
-_DRAWS, _POPULATION = 3000, 256
+#: Draws behind every interval.
+_DRAWS = 3000
 #: No value is taken as known better than this, relative.
 _RESOLUTION = 1e-4
-#: Up to so many units tell little of how units differ; share of draws from which "never" is worth a word.
-_FEW, _SAID = 3, 0.05
-
-
-@dataclass(frozen=True)
-class Interval:
-    """A number with its 90 % interval; infinite where it is never reached."""
-
-    value: float
-    low: float
-    high: float
-
-    def __str__(self) -> str:
-        """Return value and limits with sensible digits."""
-        value, low, high = (_number(v) for v in (self.value, self.low, self.high))
-        return f"{value} [{low}, {high}]"
-
-
-@dataclass(frozen=True)
-class AgeAtLimit:
-    """The age at which one unit, or a share of the population, reaches a limit."""
-
-    unit: str
-    age: Interval
-    never: float  #: share of draws that never reach it
-    last: float  #: greatest age of its data; NaN for the population
-    passed: float  #: share of draws that have reached it by then
-
-    def __str__(self) -> str:
-        """Return the age in words."""
-        words = f"{self.unit}: {self.age}"
-        if self.passed > 0.5:
-            words += f", passed already (last seen at {_number(self.last)})"
-        if self.never > _SAID:
-            words += f", never in {self.never:.0%} of the draws"
-        return words
-
-
-@dataclass(frozen=True, repr=False)
-class AgesAtLimit(Result):
-    """The ages at which units and population reach a limit."""
-
-    quantity: str
-    age_unit: str
-    limit: float
-    units: tuple[AgeAtLimit, ...]
-    b10: AgeAtLimit  #: a tenth of new units has reached it
-    b50: AgeAtLimit
-    notes: tuple[str, ...]
-
-    def summary(self) -> str:
-        """Return the ages as text."""
-        unit = f" ({self.age_unit})" if self.age_unit else ""
-        lines = [f"age{unit} at which {self.quantity} reaches {self.limit:.4g}, with 90 % intervals"]
-        lines += [f"  {each}" for each in (*self.units, self.b10, self.b50)]
-        return "\n".join([*lines, *(f"- {note}" for note in self.notes)])
-
-    def headline(self) -> str:
-        """Return the age of half the population."""
-        return f"half of new units reach {self.quantity} = {self.limit:.4g} at {self.b50.age} {self.age_unit}"
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the ages; None for what is never reached."""
-        return json_record(vars(self))
-
-    def to_frame(self) -> pl.DataFrame:
-        """Return one row per unit, then the population; infinite where it is never reached."""
-        import polars as pl
-
-        rows = [*self.units, self.b10, self.b50]
-        unit = self.age_unit or "1"
-        return pl.DataFrame(
-            {
-                "unit": [row.unit for row in rows],
-                f"age ({unit})": [row.age.value for row in rows],
-                f"age low ({unit})": [row.age.low for row in rows],
-                f"age high ({unit})": [row.age.high for row in rows],
-                "never (1)": [row.never for row in rows],
-                f"last age ({unit})": [row.last for row in rows],
-            }
-        )
+#: Up to so many units tell little of how units differ.
+_FEW = 3
 
 
 @dataclass(frozen=True)
@@ -220,7 +148,7 @@ class Growth(Result):
             + units.law.log_growth(units.size[..., None], scaled, units.shape[..., None])
             for units in self._of_units
         ]
-        low, median, high = np.exp(_quantiles(np.concatenate(drawn)) + self._scale[1])
+        low, median, high = np.exp(quantiles(np.concatenate(drawn)) + self._scale[1])
         return GrowthCurves(self.units, ages, median, low, high)
 
     def reaches(self, limit: float) -> AgesAtLimit:
@@ -242,8 +170,8 @@ class Growth(Result):
         if not (math.isfinite(limit) and limit > 0.0):
             raise ParameterError(f"a limit of {limit} cannot be reached: it must be positive", value=limit)
         level = math.log(limit) - self._scale[1]
-        ages = np.concatenate([_ages(units, level) for units in self._of_units]) * self._scale[0]
-        low, median, high = _quantiles(ages)
+        ages = np.concatenate([ages_of(units, level) for units in self._of_units]) * self._scale[0]
+        low, median, high = quantiles(ages)
         told = tuple(
             AgeAtLimit(
                 name,
@@ -254,35 +182,10 @@ class Growth(Result):
             )
             for i, name in enumerate(self.units)
         )
-        new = np.concatenate([_ages(units, level) for units in self._of_population]) * self._scale[0]
+        new = np.concatenate([ages_of(units, level) for units in self._of_population]) * self._scale[0]
         new.sort(axis=1)
-        b10, b50 = (_share_of_units(new, share) for share in (0.1, 0.5))
+        b10, b50 = (share_of_units(new, share) for share in (0.1, 0.5))
         return AgesAtLimit(self.quantity, self.age_unit, limit, told, b10, b50, self.notes)
-
-
-def _share_of_units(ages: FloatArray, share: float) -> AgeAtLimit:
-    """Age that a share of new units has reached, ``ages`` being sorted along the units."""
-    reached = ages[:, math.ceil(share * ages.shape[1]) - 1]
-    low, median, high = _quantiles(reached)
-    interval = Interval(float(median), float(low), float(high))
-    return AgeAtLimit(f"B{share * 100:.0f}", interval, float(np.isinf(reached).mean()), math.nan, 0.0)
-
-
-def _ages(units: Units, level: float) -> FloatArray:
-    """Ages, in the greatest age, at which drawn units reach a level."""
-    above = np.maximum(level - units.level, 0.0)
-    with np.errstate(over="ignore"):
-        return np.where(above > 0.0, units.law.age(units.size, above, units.shape), 0.0)
-
-
-def _quantiles(values: FloatArray) -> FloatArray:
-    """Lower end, median and upper end over the draws; infinite numbers are numbers."""
-    ends = [0.5 - CONFIDENCE / 2, 0.5, 0.5 + CONFIDENCE / 2]
-    return np.asarray(np.quantile(values, ends, axis=0, method="inverted_cdf"))
-
-
-def _number(value: float) -> str:
-    return "never" if math.isinf(value) else f"{value:.4g}"
 
 
 def fit_growth(
@@ -343,7 +246,6 @@ def fit_growth(
     evidence = np.array([each.log_evidence for each in found]) + _beforehand(chosen)
     weights = np.exp(evidence - special.logsumexp(evidence))
     draws = _resampled(found, weights, random)
-    normals = _spread_normals()
     last = tuple(float(row.max() * scale[0]) for row in points.age)
     runs = tuple(int(n) for n in points.given.sum(axis=1))
     return Growth(
@@ -357,7 +259,7 @@ def fit_growth(
         effective=min(each.effective for each, w in zip(found, weights, strict=True) if w > 0.05),
         notes=_notes(runs, points),
         _of_units=tuple(drawn_units(each, points, shared, random) for each, shared in draws),
-        _of_population=tuple(new_units(each.law, shared, normals) for each, shared in draws),
+        _of_population=tuple(new_units(each.law, shared) for each, shared in draws),
         _scale=scale,
     )
 
@@ -447,12 +349,6 @@ def _resampled(
         if own.size:
             draws.append((each, each.shared[own]))
     return draws
-
-
-def _spread_normals() -> FloatArray:
-    """Pairs of standard normal numbers that fill the plane evenly (Roberts' sequence)."""
-    steps = np.arange(1, _POPULATION + 1) * np.array([[0.7548776662466927], [0.5698402909980532]])
-    return np.asarray(special.ndtri((0.5 + steps) % 1.0))
 
 
 def _parameters(found: Posterior, scale: tuple[float, float]) -> dict[str, Interval]:

@@ -37,6 +37,8 @@ _KNOWN = (0.02, 0.1)
 #: Numbers held at a time.
 _AT_ONCE = 400_000
 _LEAST = 1e-300
+#: Units drawn of the population for each draw of what they share.
+_POPULATION = 256
 #: Log density that stands for none where slopes are taken.
 _NOTHING = -1e6
 
@@ -374,8 +376,15 @@ def _drawn(density: FloatArray, nodes: FloatArray, uniform: FloatArray) -> Float
     return np.asarray(left + share * (nodes[..., 1] - nodes[..., 0]))
 
 
-def new_units(law: Law, shared: FloatArray, normals: FloatArray) -> Units:
-    """Return units of the population for each draw of what they share; ``normals`` is (2, units)."""
+def _spread_normals() -> FloatArray:
+    """Pairs of standard normal numbers that fill the plane evenly (Roberts' sequence)."""
+    steps = np.arange(1, _POPULATION + 1) * np.array([[0.7548776662466927], [0.5698402909980532]])
+    return np.asarray(special.ndtri((0.5 + steps) % 1.0))
+
+
+def new_units(law: Law, shared: FloatArray) -> Units:
+    """Return units of the population for each draw of what they share."""
+    normals = _spread_normals()
     level = shared[:, :1] + np.exp(shared[:, 1:2]) * normals[0]
     size = shared[:, 3:4] + np.exp(shared[:, 4:5]) * normals[1] if law.grows else np.zeros_like(level)
     return Units(law, level, size, _shape(law, shared)[:, None])

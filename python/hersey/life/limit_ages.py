@@ -1,0 +1,125 @@
+"""The age at which units, and shares of the population, reach a limit."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hersey.arrays import FloatArray
+from hersey.life.growth_posterior import Units
+from hersey.result import Result, json_record
+
+if TYPE_CHECKING:
+    import polars as pl
+
+#: Confidence of every interval of an age: what life tests are planned for.
+CONFIDENCE = 0.9
+#: Share of draws from which "never" is worth a word.
+_SAID = 0.05
+
+
+@dataclass(frozen=True)
+class Interval:
+    """A number with its 90 % interval; infinite where it is never reached."""
+
+    value: float
+    low: float
+    high: float
+
+    def __str__(self) -> str:
+        """Return value and limits with sensible digits."""
+        value, low, high = (_number(v) for v in (self.value, self.low, self.high))
+        return f"{value} [{low}, {high}]"
+
+
+@dataclass(frozen=True)
+class AgeAtLimit:
+    """The age at which one unit, or a share of the population, reaches a limit."""
+
+    unit: str
+    age: Interval
+    never: float  #: share of draws that never reach it
+    last: float  #: greatest age of its data; NaN for the population
+    passed: float  #: share of draws that have reached it by then
+
+    def __str__(self) -> str:
+        """Return the age in words."""
+        words = f"{self.unit}: {self.age}"
+        if self.passed > 0.5:
+            words += f", passed already (last seen at {_number(self.last)})"
+        if self.never > _SAID:
+            words += f", never in {self.never:.0%} of the draws"
+        return words
+
+
+@dataclass(frozen=True, repr=False)
+class AgesAtLimit(Result):
+    """The ages at which units and population reach a limit."""
+
+    quantity: str
+    age_unit: str
+    limit: float
+    units: tuple[AgeAtLimit, ...]
+    b10: AgeAtLimit  #: a tenth of new units has reached it
+    b50: AgeAtLimit
+    notes: tuple[str, ...]
+
+    def summary(self) -> str:
+        """Return the ages as text."""
+        unit = f" ({self.age_unit})" if self.age_unit else ""
+        lines = [f"age{unit} at which {self.quantity} reaches {self.limit:.4g}, with 90 % intervals"]
+        lines += [f"  {each}" for each in (*self.units, self.b10, self.b50)]
+        return "\n".join([*lines, *(f"- {note}" for note in self.notes)])
+
+    def headline(self) -> str:
+        """Return the age of half the population."""
+        return f"half of new units reach {self.quantity} = {self.limit:.4g} at {self.b50.age} {self.age_unit}"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the ages; None for what is never reached."""
+        return json_record(vars(self))
+
+    def to_frame(self) -> pl.DataFrame:
+        """Return one row per unit, then the population; infinite where it is never reached."""
+        import polars as pl
+
+        rows = [*self.units, self.b10, self.b50]
+        unit = self.age_unit or "1"
+        return pl.DataFrame(
+            {
+                "unit": [row.unit for row in rows],
+                f"age ({unit})": [row.age.value for row in rows],
+                f"age low ({unit})": [row.age.low for row in rows],
+                f"age high ({unit})": [row.age.high for row in rows],
+                "never (1)": [row.never for row in rows],
+                f"last age ({unit})": [row.last for row in rows],
+            }
+        )
+
+
+def share_of_units(ages: FloatArray, share: float) -> AgeAtLimit:
+    """Age that a share of new units has reached, ``ages`` being sorted along the units."""
+    reached = ages[:, math.ceil(share * ages.shape[1]) - 1]
+    low, median, high = quantiles(reached)
+    interval = Interval(float(median), float(low), float(high))
+    return AgeAtLimit(f"B{share * 100:.0f}", interval, float(np.isinf(reached).mean()), math.nan, 0.0)
+
+
+def ages_of(units: Units, level: float) -> FloatArray:
+    """Ages, in the greatest age, at which drawn units reach a level."""
+    above = np.maximum(level - units.level, 0.0)
+    with np.errstate(over="ignore"):
+        return np.where(above > 0.0, units.law.age(units.size, above, units.shape), 0.0)
+
+
+def quantiles(values: FloatArray) -> FloatArray:
+    """Lower end, median and upper end over the draws; infinite numbers are numbers."""
+    ends = [0.5 - CONFIDENCE / 2, 0.5, 0.5 + CONFIDENCE / 2]
+    return np.asarray(np.quantile(values, ends, axis=0, method="inverted_cdf"))
+
+
+def _number(value: float) -> str:
+    return "never" if math.isinf(value) else f"{value:.4g}"
