@@ -17,7 +17,8 @@ from typing import Any
 from hersey.cli.options import Reading
 from hersey.errors import HerseyError, UnreadableLogError
 from hersey.files.reading import hash_of
-from hersey.life.campaign import Entry, entry_of
+from hersey.life.campaign import Entry
+from hersey.life.campaign.kept import entry_of
 from hersey.processes.child import Child, FailedError, LostError
 
 #: Processes that read, runs that are read ahead of the one that is added, and those that are read here.

@@ -1,7 +1,8 @@
 """The file of a life test: steady points and fits of many runs of many units, in one SQLite file.
 
 =======  ==========================================================================
-kept     what is kept of a run, and how it is written and read back
+entry    a run as it is kept: its dwells, and all else as text
+kept     what is kept of a run, from its steady points and back
 store    the file: its schema and version, opening, transactions, what can go wrong
 adding   which runs are new, there already, changed or under another unit
 table    a table of runs: log, unit and age in each row
@@ -15,8 +16,8 @@ killed at any moment; writers wait for each other.
 
 from hersey.life.campaign.adding import Added
 from hersey.life.campaign.checks import Finding, Findings
+from hersey.life.campaign.entry import Entry
 from hersey.life.campaign.file import Campaign
-from hersey.life.campaign.kept import Entry, entry_of
 from hersey.life.campaign.table import RunToAdd, read_runs
 
-__all__ = ["Added", "Campaign", "Entry", "Finding", "Findings", "RunToAdd", "entry_of", "read_runs"]
+__all__ = ["Added", "Campaign", "Entry", "Finding", "Findings", "RunToAdd", "read_runs"]

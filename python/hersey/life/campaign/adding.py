@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from hersey.errors import ParameterError
 from hersey.life.age import Age
-from hersey.life.campaign.kept import COLUMNS, Entry
+from hersey.life.campaign.entry import COLUMNS, Entry
 from hersey.spelling import printable
 
 if TYPE_CHECKING:

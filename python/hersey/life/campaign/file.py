@@ -9,18 +9,18 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
-from hersey.damping.dwells import SteadyPoints
 from hersey.errors import OutputError, ParameterError
 from hersey.life.age import Age
 from hersey.life.campaign.adding import Added, add_entry, age_unit, is_there, lies_at
 from hersey.life.campaign.checks import Findings, check
-from hersey.life.campaign.kept import COLUMNS, Entry, entry_of, points_of
+from hersey.life.campaign.entry import COLUMNS, Entry
 from hersey.life.campaign.store import PATIENCE, open_store, refuse_no_place, told, transaction
 from hersey.spelling import meant
 
 if TYPE_CHECKING:
     import polars as pl
 
+    from hersey.damping.dwells import SteadyPoints
     from hersey.damping.surface import DampingSurface
 
 #: Columns of the list of runs.
@@ -142,6 +142,8 @@ class Campaign:
             If the file cannot be written.
         """
         parsed = Age.parse(age) if isinstance(age, str) else age
+        from hersey.life.campaign.kept import entry_of
+
         entry = entry_of(points, log, fit=fit, settings=settings)
         return self.add_entries([(entry, unit, parsed)], force=force)[0]
 
@@ -194,6 +196,8 @@ class Campaign:
         ParameterError
             If there is no such run.
         """
+        from hersey.life.campaign.kept import points_of
+
         columns = ", ".join(f'"{name}"' for name in COLUMNS)
         reduction = self._of_run("reduction", run)
         with told(self.path):

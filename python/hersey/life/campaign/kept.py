@@ -1,10 +1,10 @@
-"""What is kept of a run: its steady points whole, the fit, where its log lies, and how it was read."""
+"""What is kept of a run, from its steady points and back: whole, with the fit, and how they were read."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Iterable
-from dataclasses import dataclass, field, fields, is_dataclass
+from dataclasses import dataclass, fields, is_dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +14,7 @@ from hersey.damping.dwells import Rejection, SteadyPoints
 from hersey.damping.estimate import Estimate
 from hersey.damping.rest import RestOfDrive
 from hersey.errors import HerseyError, ParameterError
+from hersey.life.campaign.entry import COLUMNS, Entry
 from hersey.log.means import MeansTable
 from hersey.log.sensors import Sensors
 from hersey.log.torque_log import Channel, Correction, Effect, LogFile, TorqueLog
@@ -21,49 +22,11 @@ from hersey.log.torque_log import Channel, Correction, Effect, LogFile, TorqueLo
 if TYPE_CHECKING:
     from hersey.damping.surface import DampingSurface
 
-#: Columns of steady points, as they stand in the file, with their types there.
-COLUMNS = {
-    "run": "INTEGER",
-    "start": "REAL",
-    "end": "REAL",
-    "speed": "REAL",
-    "speed_error": "REAL",
-    "torque": "REAL",
-    "torque_error": "REAL",
-    "temperature": "REAL",
-    "temperature_error": "REAL",
-    "rows": "INTEGER",
-    "effective_rows": "REAL",
-    "settling_rows": "INTEGER",
-    "approach": "TEXT",
-    "load": "REAL",
-    "tare": "REAL",
-}
 #: Records that are written and read back, by name.
 _RECORDS = {
     kind.__name__: kind
     for kind in (Channel, Correction, Effect, Estimate, LogFile, Rejection, RestOfDrive, Sensors)
 }
-
-
-@dataclass(frozen=True)
-class Entry:
-    """One run as it is kept, before it has a unit and an age.
-
-    ``dwells`` has a row per dwell with the columns of `COLUMNS`; ``reduction`` is what else `SteadyPoints`
-    holds, ``fit`` the fitted surface (None where ``no_fit`` says why there is none), ``settings`` how the log
-    was read: JSON each. ``written`` is when the log was last written to, s since 1970.
-    """
-
-    path: str
-    sha256: str
-    written: float | None
-    version: str
-    settings: str
-    reduction: str
-    fit: str | None
-    no_fit: str
-    dwells: list[list[Any]] = field(repr=False)
 
 
 def entry_of(

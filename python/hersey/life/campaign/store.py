@@ -14,7 +14,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from hersey.errors import HerseyError, MissingFileError, OutputError, ParameterError
-from hersey.life.campaign.kept import COLUMNS
+from hersey.life.campaign.entry import COLUMNS
 
 #: End of the name of a campaign.
 SUFFIX = ".hersey"
