@@ -4,7 +4,7 @@
 //! The suite runs some hundred; `make fuzz` runs many more.
 
 use hersey_core::drag::{Closure, Drag, Rest, SpeedLaw, Strengthening, TemperatureLaw};
-use hersey_core::lubrication::mixed::{MixedLaw, Sharing};
+use hersey_core::lubrication::mixed::MixedLaw;
 use hersey_core::lubrication::viscosity;
 use hersey_core::motion::{
     Drive, Drivetrain, HeatBalance, Heater, Integrator, Schedule, Start, System, simulate,
@@ -17,16 +17,10 @@ mod random;
 
 use random::Random;
 
-const SHARING: Sharing = Sharing {
-    reference: 0.02,
-    film_exponent: 0.6,
-    load_exponent: 0.2,
-    stiffness: 1000.0,
-    boundary: 30.0,
-    shear: 1.0,
-    rolling: 0.1,
-    rolling_exponent: 0.6,
-};
+#[path = "common/sharing.rs"]
+mod sharing;
+
+use sharing::SHARING;
 
 /// Temperature at which the laws are given, K.
 const REFERENCE: f64 = 373.0;

@@ -3,23 +3,17 @@
 use hersey_core::Error;
 use hersey_core::Work;
 use hersey_core::drag::{Closure, Drag, Rest, SpeedLaw, TemperatureLaw};
-use hersey_core::lubrication::mixed::{MixedLaw, Sharing};
+use hersey_core::lubrication::mixed::MixedLaw;
 use hersey_core::lubrication::viscosity;
 use hersey_core::motion::{
     Drive, Drivetrain, HeatBalance, Heater, Integrator, Schedule, Start, System, Trajectory,
     simulate,
 };
 
-const SHARING: Sharing = Sharing {
-    reference: 0.02,
-    film_exponent: 0.6,
-    load_exponent: 0.2,
-    stiffness: 1000.0,
-    boundary: 30.0,
-    shear: 1.0,
-    rolling: 0.1,
-    rolling_exponent: 0.6,
-};
+#[path = "common/sharing.rs"]
+mod sharing;
+
+use sharing::SHARING;
 
 fn train() -> Drivetrain {
     Drivetrain::new(1000.0, 1.0).unwrap()

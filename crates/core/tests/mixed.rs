@@ -9,16 +9,10 @@ fn close(value: f64, reference: f64, tolerance: f64) {
     assert!((value / reference - 1.0).abs() <= tolerance, "{value} is not {reference}");
 }
 
-const SHARING: Sharing = Sharing {
-    reference: 0.02,
-    film_exponent: 0.6,
-    load_exponent: 0.2,
-    stiffness: 1000.0,
-    boundary: 30.0,
-    shear: 1.0,
-    rolling: 0.1,
-    rolling_exponent: 0.6,
-};
+#[path = "common/sharing.rs"]
+mod sharing;
+
+use sharing::SHARING;
 
 /// (lambda, F, F') with 30 digits from parabolic cylinder functions:
 /// `F = Gamma(7/2)/sqrt(2 pi) exp(-lambda^2/4) D_(-7/2)(lambda)`; checked there against the integral.

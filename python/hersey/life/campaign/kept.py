@@ -99,8 +99,8 @@ def points_of(reduction: str, dwells: Iterable[tuple[Any, ...]]) -> SteadyPoints
 
 
 @dataclass(frozen=True, repr=False)
-class _KeptLog(TorqueLog):
-    """A log of which only its files, corrections and sensors are kept."""
+class _WithoutRows:
+    """What is known of rows that are not kept."""
 
     kept_rows: int = 0
     thermal: bool = False
@@ -115,19 +115,13 @@ class _KeptLog(TorqueLog):
 
 
 @dataclass(frozen=True, repr=False)
-class _KeptMeans(MeansTable):
+class _KeptLog(_WithoutRows, TorqueLog):
+    """A log of which only its files, corrections and sensors are kept."""
+
+
+@dataclass(frozen=True, repr=False)
+class _KeptMeans(_WithoutRows, MeansTable):
     """A table of means of which only its files and sensors are kept."""
-
-    kept_rows: int = 0
-    thermal: bool = False
-
-    @property
-    def rows(self) -> int:
-        return self.kept_rows
-
-    @property
-    def has_temperature(self) -> bool:
-        return self.thermal
 
 
 def _reduction(points: SteadyPoints) -> dict[str, Any]:
