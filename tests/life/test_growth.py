@@ -18,6 +18,7 @@ from hersey.life import growth_posterior
 from hersey.life.growth import Growth, fit_growth
 from hersey.life.growth_laws import LAWS
 from hersey.life.growth_posterior import Points, _likelihood
+from hersey.life.limit_ages import quantiles
 
 LAW = {law.name: law for law in LAWS}
 ZERO = np.zeros(1)
@@ -248,3 +249,9 @@ def test_priors_are_those_of_the_docstring() -> None:
     assert f"N({mean:g}, {deviation:g}^2)" in text
     assert f"half-normal of scale {growth_posterior.RATE_SPREAD:g}" in text
     assert f"half-normal of scale {growth_posterior.RUN_SCATTER:g}" in text
+
+
+def test_the_ends_of_an_age_hold_nine_draws_in_ten() -> None:
+    low, median, high = quantiles(np.append(np.arange(1.0, 1000.0), np.inf))
+    assert (low, median, high) == (50.0, 500.0, 950.0)
+    assert np.isinf(quantiles(np.full(10, np.inf))).all()
