@@ -1,0 +1,65 @@
+"""An indicator: one way to fail, as a positive number of each run that grows toward a limit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hersey.arrays import FloatArray
+from hersey.errors import ParameterError
+
+
+@dataclass(frozen=True, repr=False)
+class Runs:
+    """The runs of a campaign, by unit and age: their numbers in the file, units, and ages in ``age_unit``."""
+
+    run: tuple[int, ...]
+    unit: tuple[str, ...]
+    age: FloatArray
+    age_unit: str
+
+    @property
+    def units(self) -> tuple[str, ...]:
+        """The units, each once, in the order of the runs."""
+        return tuple(dict.fromkeys(self.unit))
+
+
+@dataclass(frozen=True, repr=False)
+class Indicator:
+    """One way to fail.
+
+    ``value`` is positive, NaN where a run does not tell it, and grows toward ``limit``, both in ``si``; one
+    that ``accumulates`` is a rate per age, and the limit is that of its integral from age 0. ``error`` is its
+    relative standard error; ``limit_error`` that of the limit and of the sensor, common to all runs. ``kind``
+    is the failure in two or three words, ``name`` tells it from others of its kind.
+    """
+
+    name: str
+    kind: str
+    si: str
+    limit: float
+    value: FloatArray
+    error: FloatArray
+    limit_error: float = 0.0
+    accumulates: bool = False
+    notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Check the numbers."""
+        told = np.isfinite(self.value)
+        if not (np.isfinite(self.limit) and self.limit > 0.0):
+            raise ParameterError(f"the limit of {self.name} is {self.limit:g}: it must be positive")
+        if self.value.shape != self.error.shape or np.any(self.value[told] <= 0.0):
+            raise ParameterError(f"{self.name} must be positive and have an error for each run")
+        if np.any(~(self.error[told] >= 0.0)):
+            raise ParameterError(f"an error of {self.name} is negative or no number")
+
+
+@dataclass(frozen=True, repr=False)
+class Indicators:
+    """Runs and the ways to fail that they tell; ``unsaid``: those that they cannot, and why."""
+
+    runs: Runs
+    each: tuple[Indicator, ...]
+    unsaid: tuple[str, ...] = ()
