@@ -6,15 +6,16 @@ from vl-convert and inlined, so the file works offline and nothing foreign is ke
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from importlib import resources
 from typing import Any
 
 from hersey.charts.analysis import charts
 from hersey.charts.page import page
 from hersey.charts.render import specification_of
+from hersey.charts.style import Chart
 from hersey.document.parts import Analysis
 
-_STATIC = ("html", "css", "js")
 # Samples that only the charts need: the page carries them once.
 _DRAWN: Any = {
     "timeline": True,
@@ -24,14 +25,16 @@ _DRAWN: Any = {
 
 
 def render(document: Analysis) -> str:
-    """Return the page as HTML text."""
+    """Return the page of a log as HTML text."""
+    shown = document.model_dump(mode="json", exclude=_DRAWN)
+    return drawn("page", "hersey report", shown, charts(document))
+
+
+def drawn(name: str, title: str, document: Mapping[str, Any], charts: Mapping[str, Chart]) -> str:
+    """Return a page as HTML text: what the script ``static/NAME.js`` shows of a document, with its charts."""
     static = resources.files("hersey.report") / "static"
-    body, style, script = ((static / f"page.{kind}").read_text(encoding="utf-8") for kind in _STATIC)
-    specifications = {name: specification_of(chart) for name, chart in charts(document).items()}
-    return page(
-        title="hersey report",
-        style=style,
-        body=body,
-        data={"document": document.model_dump(mode="json", exclude=_DRAWN), "charts": specifications},
-        script=script,
-    )
+    files = ("page.html", "page.css", "drawing.js", f"{name}.js")
+    body, style, drawing, script = ((static / file).read_text(encoding="utf-8") for file in files)
+    specifications = {key: specification_of(chart) for key, chart in charts.items()}
+    data = {"document": document, "charts": specifications}
+    return page(title=title, style=style, body=body, data=data, script=f"{drawing}\n{script}")
