@@ -229,6 +229,20 @@ def test_export_has_a_row_per_dwell(campaign: Campaign, run_csv: Path, tmp_path:
         campaign.export(".xlsx")
 
 
+def test_dwells_say_what_was_taken_off_as_the_rest(campaign: Campaign) -> None:
+    hot = [380.0, 380.0, 420.0, 420.0]
+    table = {"speed [rad/s]": [1, 2, 4, -8], "torque [N*m]": [5, 6, 7, -8], "temperature [K]": hot}
+    rest = hersey.RestOfDrive.stated(
+        constant=1.0, per_speed=0.1, temperature_slope=-0.01, reference_temperature=400.0
+    )
+    whole = hersey.SteadyPoints.from_table(table)
+    for age, points in (("0 pages", whole), ("5 pages", whole.without(rest))):
+        campaign.add_entries([(replace(entry_of(points, f"{age}.csv"), sha256=age), "F12", Age.parse(age))])
+    dwells = campaign.dwells()
+    assert dwells["rest (N m)"].to_list() == pytest.approx([0.0] * 4 + [1.32, 1.44, 1.12, -1.44])
+    assert (dwells["torque (N m)"] + dwells["rest (N m)"]).to_list() == pytest.approx([5, 6, 7, -8] * 2)
+
+
 def test_two_hold_it_at_once_and_one_waits_then_is_told(campaign: Campaign) -> None:
     with Campaign.open(campaign.path, wait=0.05) as other:
         campaign._database.execute("BEGIN IMMEDIATE")

@@ -238,9 +238,12 @@ class Campaign:
     def dwells(self) -> pl.DataFrame:
         """Return a row per dwell of every run: ``run_id``, ``unit``, ``age``, ``log``, and all in SI.
 
-        The age is in `age_unit`; its column, and those of the dwells, carry their units.
+        The age is in `age_unit`; its column, and those of the dwells, carry their units. ``rest`` is what was
+        taken off the torque as that of the rest of the drive, 0 if nothing was.
         """
         import polars as pl
+
+        from hersey.life.campaign.kept import rests_of
 
         kinds = {"INTEGER": pl.Int64, "REAL": pl.Float64, "TEXT": pl.String}
         columns = ", ".join(f'd."{name}"' for name in COLUMNS)
@@ -249,11 +252,13 @@ class Campaign:
                 f"SELECT r.id, {columns} FROM runs r JOIN dwells d ON d.run_id = r.id "
                 "ORDER BY r.unit, r.age, r.id, d.number"
             ).fetchall()
+            reductions = self._database.execute("SELECT id, reduction FROM runs").fetchall()
         schema = {"run_id": pl.Int64()} | {name: kinds[kind]() for name, kind in COLUMNS.items()}
         dwells = pl.DataFrame(rows, schema=schema, orient="row")
+        dwells = dwells.with_columns(pl.Series("rest", rests_of(dwells, reductions)))
         of = self.runs().select(pl.col("run").alias("run_id"), "unit", "age", "log")
         joined = of.join(dwells, on="run_id", how="inner", maintain_order="left_right")
-        units = {"start": "s", "end": "s", "load": "N", "tare": "N m"}
+        units = {"start": "s", "end": "s", "load": "N", "tare": "N m", "rest": "N m"}
         for name, si in (("speed", "rad/s"), ("torque", "N m"), ("temperature", "K")):
             units |= {name: si, f"{name}_error": si}
         new = {name: f"{name.replace('_', ' ')} ({si})" for name, si in units.items()}

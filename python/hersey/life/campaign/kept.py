@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from hersey.arrays import FloatArray
 from hersey.damping.dwells import Rejection, SteadyPoints
 from hersey.damping.estimate import Estimate
 from hersey.damping.rest import RestOfDrive
@@ -20,6 +21,8 @@ from hersey.log.sensors import Sensors
 from hersey.log.torque_log import Channel, Correction, Effect, LogFile, TorqueLog
 
 if TYPE_CHECKING:
+    import polars as pl
+
     from hersey.damping.surface import DampingSurface
 
 #: Records that are written and read back, by name.
@@ -96,6 +99,26 @@ def points_of(reduction: str, dwells: Iterable[tuple[Any, ...]]) -> SteadyPoints
     held = _restored(json.loads(reduction))
     log = (_KeptMeans if held.pop("means") else _KeptLog)(**held.pop("log"))
     return SteadyPoints(pl.DataFrame(list(dwells), schema=schema, orient="row"), log=log, **held)
+
+
+def rests_of(dwells: pl.DataFrame, reductions: Iterable[tuple[int, str]]) -> FloatArray:
+    """Return what was taken off as the rest of the drive of each dwell, N m with its sign; shape (dwells,).
+
+    ``dwells`` holds ``run_id``, ``speed`` and ``temperature`` in SI; ``reductions`` go with the runs.
+    """
+    import polars as pl
+
+    runs_with: dict[str, list[int]] = {}
+    for run, reduction in reductions:
+        if (rest := json.loads(reduction)["rest"]) is not None:
+            runs_with.setdefault(json.dumps(rest), []).append(run)
+    taken = np.zeros(dwells.height)
+    speed, kelvin = (dwells[name].cast(pl.Float64).to_numpy() for name in ("speed", "temperature"))
+    for text, runs in runs_with.items():
+        rest, of = _restored(json.loads(text)), np.isin(dwells["run_id"].to_numpy(), runs)
+        thermal = bool(np.isfinite(kelvin[of]).all())
+        taken[of] = rest.torque(speed[of], kelvin[of] if thermal else None)
+    return taken
 
 
 @dataclass(frozen=True, repr=False)
