@@ -32,7 +32,8 @@ class Indicator:
     ``value`` is positive, NaN where a run does not tell it, and grows toward ``limit``, both in ``si``; one
     that ``accumulates`` is a rate per age, and the limit is that of its integral from age 0. ``error`` is its
     relative standard error; ``limit_error`` that of the limit and of the sensor, common to all runs. ``kind``
-    is the failure in two or three words, ``name`` tells it from others of its kind.
+    is the failure in two or three words, ``name`` tells it from others of its kind. A ``sign`` comes early,
+    and a unit that reaches its limit has not ended.
     """
 
     name: str
@@ -43,6 +44,7 @@ class Indicator:
     error: FloatArray
     limit_error: float = 0.0
     accumulates: bool = False
+    sign: bool = False
     notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
