@@ -1,0 +1,331 @@
+"""The torque of a run between its dwells, and a little beyond, without a law.
+
+ln torque over ln speed and temperature is a quadratic trend that costs nothing, a smooth deviation from it
+and the noise of the dwells (universal kriging, Matheron 1969; Rasmussen and Williams, Gaussian Processes,
+2006, 2.7 and 4.2 with nu = 5/2). A power law of both does not hold of an aged drive, cold starved and hot
+flooded; here the dwells beside a point say what holds there, and the error how far they do. How much and over
+what lengths torque deviates from its trend is shared by all runs of a campaign: no run of few dwells tells
+it.
+
+The torque is that of the belt alone where the rest of the drive is known: above a large rest its logarithm is
+flat at one end and steep at the other, and no trend goes on from there. Noise may then be as large as torque
+itself; so the logarithm is taken about the smooth torque, not about that of the dwell, until they agree.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from scipy import linalg, optimize
+
+from hersey.arrays import BoolArray, FloatArray
+from hersey.errors import InsufficientDataError, ParameterError
+
+#: Kelvin that count as much as one unit of ln speed, where the search of the kernel starts.
+_WARMTH = 50.0
+#: Levels this close are one: logarithm of speed, K.
+_SAME_SPEED, _SAME_TEMPERATURE = 0.02, 3.0
+#: Dwells beyond the terms of the trend, which tell deviations and noise.
+_TO_SPARE = 1
+#: Fewest dwells of a run that tell its torque.
+FEWEST = 4
+#: Runs from which the kernel is told, and dwells of each, at most.
+_RUNS, _DWELLS = 24, 60
+#: Where the search of the kernel starts, how far it is known, and where it stays: logarithms of the
+#: deviation, of the lengths in ln speed and temperature (in `_WARMTH`), and of the scatter of dwells.
+_START, _KNOWN = np.log([0.5, 2.0, 2.0, 0.005]), np.array([2.0, 1.5, 1.5, 2.0])
+_WITHIN = list(zip(np.log([1e-3, 0.2, 0.2, 1e-4]), np.log([20.0, 30.0, 30.0, 1.0]), strict=True))
+#: The logarithm is taken about the smooth torque until it moves by no more than this, in so many rounds; the
+#: longest step of a round.
+_SETTLED, _ROUNDS, _STEP = 1e-3, 12, 1.0
+
+
+@dataclass(frozen=True)
+class RunDwells:
+    """The dwells of a run: arrays of shape (dwells,).
+
+    ``speed`` in rad/s, positive; ``temperature`` in K (NaN throughout where none was recorded). ``torque`` in
+    N m is that of the belt alone so far as the rest of the drive is known, ``whole`` with that rest, both in
+    the sense of rotation; ``error`` is the standard error of either.
+    """
+
+    speed: FloatArray
+    temperature: FloatArray
+    torque: FloatArray
+    whole: FloatArray
+    error: FloatArray
+
+
+@dataclass(frozen=True)
+class Kernel:
+    """How torque deviates from its trend, the same for all runs of a campaign.
+
+    ``deviation`` is relative, ``speed_length`` in ln speed, ``temperature_length`` in K; ``scatter`` is what
+    dwells scatter beyond their stated errors, relative to the whole torque.
+    """
+
+    deviation: float
+    speed_length: float
+    temperature_length: float
+    scatter: float
+
+    def covariance(self, steps: FloatArray, warmths: FloatArray) -> FloatArray:
+        """Return the covariance of deviations, so many steps of ln speed and kelvin apart."""
+        squares = (steps / self.speed_length) ** 2 + (warmths / self.temperature_length) ** 2
+        away = np.sqrt(5.0 * squares)
+        return np.asarray(self.deviation**2 * (1.0 + away + 5.0 / 3.0 * squares) * np.exp(-away))
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """Torque of the belt at points: arrays of shape (points,).
+
+    ``torque`` in N m is the median, ``error`` its relative standard error, without the scatter of a dwell;
+    both NaN at a temperature of which the run does not tell. ``outside`` marks points that dwells do not
+    enclose; they are ``factor`` times as fast as the nearest dwell, and ``kelvin`` warmer.
+    """
+
+    torque: FloatArray
+    error: FloatArray
+    outside: BoolArray
+    factor: FloatArray
+    kelvin: FloatArray
+
+
+class _Solved(NamedTuple):
+    """The roots of the covariances of dwells and of the trend, weights of the trend, and what is whitened."""
+
+    root: FloatArray
+    inner: FloatArray
+    weights: FloatArray
+    trend: FloatArray
+    left: FloatArray
+    settled: FloatArray  #: ln torque at the dwells, smooth
+
+
+class _Layout:
+    """Where the dwells of a run lie, and the trend that they can tell."""
+
+    def __init__(self, dwells: RunDwells) -> None:
+        self.dwells = dwells
+        self.thermal = bool(np.isfinite(dwells.temperature).all())
+        self.log_speed, self.heat = np.log(dwells.speed), self.heats(dwells.temperature)
+        self._origin = float(np.mean(self.log_speed)), float(np.mean(self.heat))
+        self.steps = self.log_speed[:, None] - self.log_speed
+        self.warmths = self.heat[:, None] - self.heat
+        self._terms = self._told()
+        self.trend = self.trend_at(self.log_speed, self.heat)
+        while np.linalg.matrix_rank(self.trend, tol=1e-6) < self.trend.shape[1]:
+            self._terms = self._terms[:-1]
+            self.trend = self.trend[:, :-1]
+
+    def heats(self, temperature: FloatArray) -> FloatArray:
+        """Temperatures, K; all the same where the run recorded none."""
+        return np.asarray(temperature if self.thermal else np.zeros_like(temperature))
+
+    @property
+    def varied(self) -> bool:
+        """Whether the trend has a term of temperature."""
+        return 2 in self._terms
+
+    def trend_at(self, log_speed: FloatArray, heat: FloatArray) -> FloatArray:
+        """Terms 1, u, T, u T, u^2, T^2 so far as they are told, shape (points, terms)."""
+        u, t = log_speed - self._origin[0], (heat - self._origin[1]) / _WARMTH
+        return np.stack([np.ones_like(u), u, t, u * t, u * u, t * t], axis=1)[:, self._terms]
+
+    def _told(self) -> list[int]:
+        speeds, heats = _levels(self.log_speed, _SAME_SPEED), _levels(self.heat, _SAME_TEMPERATURE)
+        has = [True, speeds > 1, heats > 1, min(speeds, heats) > 1, speeds > 2, heats > 2]
+        return [term for term in range(6) if has[term]][: max(self.log_speed.size - _TO_SPARE, 1)]
+
+    def first(self) -> FloatArray:
+        """Ln torque of the dwells, those lost in noise at the size of that noise."""
+        least = np.maximum(self.dwells.error, 1e-3 * np.abs(self.dwells.whole))
+        return np.log(np.maximum(self.dwells.torque, least))
+
+    def solved(self, kernel: Kernel, about: FloatArray, deviations: FloatArray) -> _Solved:
+        """The surface with ln torque taken about values of the dwells; ``deviations``: their covariance."""
+        torque = np.exp(about)
+        noise = (self.dwells.error**2 + (kernel.scatter * self.dwells.whole) ** 2) / torque**2
+        value = about + np.clip(self.dwells.torque / torque - 1.0, -_STEP, _STEP)
+        covariance = deviations + np.diag(noise)
+        root = linalg.cholesky(covariance, lower=True, overwrite_a=True, check_finite=False)
+        both = _forward(root, np.column_stack([self.trend, value]))
+        trend = both[:, :-1]
+        inner = linalg.cholesky(trend.T @ trend, lower=True, check_finite=False)
+        weights = linalg.cho_solve((inner, True), trend.T @ both[:, -1], check_finite=False)
+        left = both[:, -1] - trend @ weights
+        pulled = linalg.solve_triangular(root, left, lower=True, trans="T", check_finite=False)
+        return _Solved(root, inner, weights, trend, left, value - noise * pulled)
+
+    def settled(self, kernel: Kernel) -> _Solved:
+        """The surface about itself."""
+        deviations = kernel.covariance(self.steps, self.warmths)
+        solved = self.solved(kernel, about := self.first(), deviations)
+        for _ in range(_ROUNDS):
+            if float(np.max(np.abs(solved.settled - about))) < _SETTLED:
+                break
+            about = about + np.clip(solved.settled - about, -_STEP, _STEP)
+            solved = self.solved(kernel, about, deviations)
+        return solved
+
+    def misfit(self, kernel: Kernel, about: FloatArray) -> float:
+        """Twice the negative restricted log-likelihood, but for a constant (Patterson and Thompson 1971)."""
+        solved = self.solved(kernel, about, kernel.covariance(self.steps, self.warmths))
+        size = np.log(np.diag(solved.root)).sum() + np.log(np.diag(solved.inner)).sum()
+        return float(2.0 * size + solved.left @ solved.left)
+
+
+class TorqueSurface:
+    """The torque of the belt of one run, from its dwells and the kernel of the campaign.
+
+    Raises
+    ------
+    InsufficientDataError
+        If there are fewer than four dwells.
+    """
+
+    def __init__(self, dwells: RunDwells, kernel: Kernel) -> None:
+        """Solve for the deviations at the dwells."""
+        if dwells.speed.size < FEWEST:
+            raise InsufficientDataError(
+                f"{dwells.speed.size} dwells: torque between them asks for {FEWEST} at the least"
+            )
+        self.dwells, self.kernel = dwells, kernel
+        self._layout = _Layout(dwells)
+        self._solved = self._layout.settled(kernel)
+
+    def tells(self, temperature: float) -> bool:
+        """Return whether the run tells of a temperature, K.
+
+        One of a single temperature, or of too few dwells to tell what temperature does, tells only of what
+        it recorded; one without temperature is taken to have been at that which is asked for.
+        """
+        if self._layout.varied or not self._layout.thermal:
+            return True
+        heats = self.dwells.temperature
+        return bool(heats.min() - _SAME_TEMPERATURE <= temperature <= heats.max() + _SAME_TEMPERATURE)
+
+    def at(self, speed: FloatArray, temperature: FloatArray) -> Prediction:
+        """Return the torque at points: speeds in rad/s and temperatures in K, shape (points,)."""
+        speed, temperature = np.broadcast_arrays(np.asarray(speed, float), np.asarray(temperature, float))
+        mean, across, basis = self._told(speed, temperature)
+        variance = self.kernel.deviation**2 - np.sum(across**2, axis=0) + np.sum(basis**2, axis=0)
+        known = np.array([self.tells(float(each)) for each in temperature])
+        return Prediction(
+            np.where(known, np.exp(mean), np.nan),
+            np.where(known, np.sqrt(np.maximum(variance, 0.0)), np.nan),
+            *self._nearest(speed, temperature),
+        )
+
+    def curve(
+        self, speed: FloatArray, temperature: float, draws: int, seed: int
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return the torque against speed (rad/s, shape (speeds,)) at a temperature in K, in N m.
+
+        The median, shape (speeds,), and joint draws, (draws, speeds).
+
+        Raises
+        ------
+        ParameterError
+            If the run does not tell of this temperature.
+        """
+        if not self.tells(temperature):
+            raise ParameterError(
+                f"the run is of other temperatures, and does not tell of {temperature:.6g} K"
+            )
+        speed = np.asarray(speed, float)
+        mean, across, basis = self._told(speed, np.full_like(speed, temperature))
+        steps = np.log(speed)[:, None] - np.log(speed)
+        covariance = self.kernel.covariance(steps, np.zeros(())) - across.T @ across + basis.T @ basis
+        # Of neighbours on a fine grid all is known but for rounding: no root by Cholesky.
+        spread, axes = np.linalg.eigh(covariance)
+        normal = np.random.default_rng(seed).standard_normal((draws, speed.size))
+        return np.exp(mean), np.exp(mean + normal @ (np.sqrt(np.maximum(spread, 0.0)) * axes).T)
+
+    def _told(self, speed: FloatArray, temperature: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Mean of ln torque at points; what dwells take from its variance, and what the trend adds: roots."""
+        layout, solved = self._layout, self._solved
+        at, heat = np.log(speed), layout.heats(temperature)
+        apart = self.kernel.covariance(layout.log_speed[:, None] - at, layout.heat[:, None] - heat)
+        across = _forward(solved.root, apart)
+        trend = layout.trend_at(at, heat)
+        basis = _forward(solved.inner, trend.T - solved.trend.T @ across)
+        return trend @ solved.weights + across.T @ solved.left, across, basis
+
+    def _nearest(
+        self, speed: FloatArray, temperature: FloatArray
+    ) -> tuple[BoolArray, FloatArray, FloatArray]:
+        """Whether dwells do not enclose points, and how they lie to the nearest."""
+        layout = self._layout
+        step = np.log(speed)[:, None] - layout.log_speed
+        warmth = layout.heats(temperature)[:, None] - layout.heat
+        sides = [
+            np.any((side * step >= -_SAME_SPEED) & (other * warmth >= -_SAME_TEMPERATURE), axis=1)
+            for side in (1, -1)
+            for other in (1, -1)
+        ]
+        far = (step / self.kernel.speed_length) ** 2 + (warmth / self.kernel.temperature_length) ** 2
+        nearest = np.arange(far.shape[0]), np.argmin(far, axis=1)
+        return ~np.all(sides, axis=0), np.exp(step[nearest]), warmth[nearest]
+
+
+def shared_kernel(runs: Sequence[RunDwells]) -> Kernel:
+    """Return the kernel of a campaign by the restricted likelihood of its runs together.
+
+    Of many runs some tell it, spread evenly over those given: give them by unit and age.
+
+    Raises
+    ------
+    InsufficientDataError
+        If no run has enough dwells.
+    """
+    told = [run for run in runs if run.speed.size >= FEWEST]
+    if not told:
+        raise InsufficientDataError(f"no run has {FEWEST} dwells: torque between them cannot be told")
+    layouts = [_Layout(_thinned(told[i])) for i in _evenly(len(told), _RUNS)]
+    logarithms = _START
+    for tolerance in (1e-4, 1e-7):  # that about which logarithms are taken hangs on the kernel, a little
+        abouts = [layout.settled(_kernel(logarithms)).settled for layout in layouts]
+        logarithms = _likeliest(layouts, abouts, logarithms, tolerance)
+    return _kernel(logarithms)
+
+
+def _likeliest(
+    layouts: list[_Layout], abouts: list[FloatArray], start: FloatArray, tolerance: float
+) -> FloatArray:
+    def misfit(logarithms: FloatArray) -> float:
+        # Weak knowledge keeps what no run tells where it was, as the length in temperature of runs of one.
+        beside = float(np.sum(((logarithms - _START) / _KNOWN) ** 2))
+        kernel = _kernel(logarithms)
+        return beside + sum(map(lambda layout, about: layout.misfit(kernel, about), layouts, abouts))
+
+    found = optimize.minimize(misfit, start, method="L-BFGS-B", bounds=_WITHIN, options={"ftol": tolerance})
+    return np.asarray(found.x)
+
+
+def _kernel(logarithms: FloatArray) -> Kernel:
+    deviation, speed, heat, scatter = np.exp(logarithms).tolist()
+    return Kernel(deviation, speed, heat * _WARMTH, scatter)
+
+
+def _thinned(run: RunDwells) -> RunDwells:
+    keep = _evenly(run.speed.size, _DWELLS)
+    return RunDwells(*(values[keep] for values in vars(run).values()))
+
+
+def _evenly(count: int, most: int) -> list[int]:
+    """Places of so many at most, evenly spread."""
+    return sorted({round(place) for place in np.linspace(0, count - 1, min(count, most)).tolist()})
+
+
+def _levels(values: FloatArray, apart: float) -> int:
+    """How many levels there are, neighbours closer than ``apart`` being one."""
+    return 1 + int(np.count_nonzero(np.diff(np.sort(values)) > apart))
+
+
+def _forward(root: FloatArray, right: FloatArray) -> FloatArray:
+    return np.asarray(linalg.solve_triangular(root, right, lower=True, check_finite=False))
