@@ -5,6 +5,9 @@ age               an age with its unit: pages, hours, cycles
 campaign          the file of a life test: units, ages, their steady points and fits
 indicator         one way to fail: a number of each run against a limit
 torque_surface    the torque of a run between its dwells, without a law
+run_dwells        the runs of a campaign with their dwells, as a torque surface takes them
+corners           the states at which a drive that ages fails first
+indicators        from the runs of a campaign to each way to fail
 growth_laws       how an indicator may grow with age
 growth_posterior  how far units, spread and law are known: draws and evidence
 limit_ages        the ages at which units and population reach a limit

@@ -21,7 +21,9 @@ if TYPE_CHECKING:
     import polars as pl
 
     from hersey.damping.dwells import SteadyPoints
+    from hersey.damping.rest import RestOfDrive
     from hersey.damping.surface import DampingSurface
+    from hersey.log.sensors import Sensors
 
 #: Columns of the list of runs.
 _LISTED = "id, unit, age, path, sha256, dwells, exponent, transition_speed, no_fit, version, added"
@@ -205,6 +207,14 @@ class Campaign:
                 f"SELECT {columns} FROM dwells WHERE run_id = ? ORDER BY number", (run,)
             )
             return points_of(reduction, dwells)
+
+    def drives(self) -> dict[int, tuple[RestOfDrive | None, Sensors]]:
+        """Return what was taken off the torque of each run as rest of the drive, and its sensors, by run."""
+        from hersey.life.campaign.kept import drive_of
+
+        with told(self.path):
+            rows = self._database.execute("SELECT id, reduction FROM runs")
+            return {number: drive_of(reduction) for number, reduction in rows}
 
     def fit(self, run: int) -> dict[str, Any] | None:
         """Return the fit of a run, as `DampingSurface.to_dict` gave it when it was added; None if none fits.

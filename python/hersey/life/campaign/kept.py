@@ -121,6 +121,12 @@ def rests_of(dwells: pl.DataFrame, reductions: Iterable[tuple[int, str]]) -> Flo
     return taken
 
 
+def drive_of(reduction: str) -> tuple[RestOfDrive | None, Sensors]:
+    """Return the rest of the drive that was taken off a run, and its sensors."""
+    held = json.loads(reduction)
+    return _restored(held["rest"]), _restored(held["log"]["sensors"])
+
+
 @dataclass(frozen=True, repr=False)
 class _WithoutRows:
     """What is known of rows that are not kept."""

@@ -1,0 +1,55 @@
+"""The states of a machine at which a drive that ages fails first: its points, and two corners of its use."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from hersey.units import celsius, rpm
+
+if TYPE_CHECKING:
+    from hersey.life.run_dwells import CampaignRuns
+    from hersey.machine import Machine
+
+
+@dataclass(frozen=True)
+class State:
+    """Speed of the roll (rad/s) and temperature (K; None: not recorded) at which a drive is asked.
+
+    ``origin`` says where both are from.
+    """
+
+    name: str
+    speed: float
+    temperature: float | None
+    origin: str
+
+    def __str__(self) -> str:
+        """Return it in words."""
+        at = "" if self.temperature is None else f" and {celsius(self.temperature):.4g} degC"
+        return f"{self.name}: {rpm(self.speed):.4g} rpm{at} ({self.origin})"
+
+
+def corners(machine: Machine, runs: CampaignRuns) -> tuple[State, State] | None:
+    """Return the cold fast and the hot slow corner of the machine's use; None if no run has a dwell.
+
+    Fastest and slowest are those of ``[[points]]``; without these the speed of ``[limits]``, else what all
+    units recorded. Coldest is that of ``[life]``, else the coldest that all units recorded; hottest that of
+    the points, else the hottest that all units recorded.
+    """
+    slowest, fastest = runs.shared("speed", least=True), runs.shared("speed", least=False)
+    if slowest is None or fastest is None:
+        return None
+    coldest, hottest = runs.shared("temperature", least=True), runs.shared("temperature", least=False)
+    cold_from = hot_from = "that all units recorded" if coldest is not None else ""
+    slow_from = fast_from = "slowest and fastest that all units recorded"
+    if machine.limits.speed is not None:
+        fastest, fast_from = machine.limits.speed / machine.roll_radius, "[limits] speed"
+    if machine.points:
+        speeds = [point.speed / machine.roll_radius for point in machine.points]
+        slowest, fastest, slow_from, fast_from = min(speeds), max(speeds), "[[points]]", "[[points]]"
+        hottest, hot_from = max(point.temperature for point in machine.points), ""
+    return (
+        State("cold and fast", fastest, coldest, ", ".join(filter(None, (fast_from, cold_from)))),
+        State("hot and slow", slowest, hottest, ", ".join(filter(None, (slow_from, hot_from)))),
+    )
