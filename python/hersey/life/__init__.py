@@ -12,7 +12,10 @@ growth_laws       how an indicator may grow with age
 growth_posterior  how far units, spread and law are known: draws and evidence
 limit_ages        the ages at which units and population reach a limit
 growth            the growth of an indicator over units
-fatigue           cycles of torque counted, and the damage that they do to a part
+joined            draws of several ways to fail side by side
+next_run          what to measure next, and how far it would narrow an interval
 population        ages at failure over many units: Weibull law, B10 and B50
+ending            what ends each unit, and when
+fatigue           cycles of torque counted, and the damage that they do to a part
 ================  =====================================================================
 """

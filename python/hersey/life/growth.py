@@ -21,10 +21,11 @@ from hersey.life.growth_laws import LAWS, Law
 from hersey.life.growth_posterior import Points, Posterior, Units, drawn_units, new_units, posterior
 from hersey.life.limit_ages import (
     CONFIDENCE,
-    AgeAtLimit,
     AgesAtLimit,
     Interval,
+    age_at_limit,
     ages_of,
+    ages_of_sum,
     quantiles,
     share_of_units,
 )
@@ -39,6 +40,8 @@ NAMED = 0.9
 _DRAWS = 3000
 #: No value is taken as known better than this, relative.
 _RESOLUTION = 1e-4
+#: Draws, about, behind the middle of a curve.
+_OF_MIDDLE = 100
 #: Up to so many units tell little of how units differ.
 _FEW = 3
 
@@ -76,7 +79,9 @@ class Growth(Result):
     notes: tuple[str, ...]
     _of_units: tuple[Units, ...] = field(repr=False)
     _of_population: tuple[Units, ...] = field(repr=False)
+    _points: Points = field(repr=False)
     _scale: tuple[float, float] = field(repr=False)  #: greatest age; mean logarithm of the value
+    seed: int = 0
 
     @property
     def law(self) -> str | None:
@@ -151,7 +156,7 @@ class Growth(Result):
         low, median, high = np.exp(quantiles(np.concatenate(drawn)) + self._scale[1])
         return GrowthCurves(self.units, ages, median, low, high)
 
-    def reaches(self, limit: float) -> AgesAtLimit:
+    def reaches(self, limit: float, *, limit_error: float = 0.0, accumulates: bool = False) -> AgesAtLimit:
         """Return the ages at which each unit, and a tenth and half of new units, reach a limit.
 
         A unit that has passed the limit already is told by the same draws; one that begins above it
@@ -160,32 +165,74 @@ class Growth(Result):
         Parameters
         ----------
         limit
-            In the unit of the values, positive.
+            In the unit of the values, positive; of an indicator that accumulates, times the unit of age.
+        limit_error
+            Relative standard error of the limit and of the sensor, common to all runs.
+        accumulates
+            Whether the limit is that of the integral of the values from age 0.
 
         Raises
         ------
         ParameterError
-            If the limit is not positive.
+            If the limit is not positive, or its error negative.
+        """
+        ages, new = self.drawn_ages(limit, limit_error=limit_error, accumulates=accumulates)
+        told = tuple(age_at_limit(name, ages[:, i], self.last_age[i]) for i, name in enumerate(self.units))
+        new.sort(axis=1)
+        b10, b50 = (share_of_units(new, share) for share in (0.1, 0.5))
+        quantity = f"the sum of {self.quantity} over age" if accumulates else self.quantity
+        return AgesAtLimit(quantity, self.age_unit, limit, told, b10, b50, self.notes)
+
+    def drawn_ages(
+        self, limit: float, *, limit_error: float = 0.0, accumulates: bool = False
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return equally probable ages at a limit, of the units and of new units: (draws, units) each.
+
+        A row holds all units under one draw of what they share and of the limit. Arguments are those of
+        `reaches`.
         """
         if not (math.isfinite(limit) and limit > 0.0):
             raise ParameterError(f"a limit of {limit} cannot be reached: it must be positive", value=limit)
-        level = math.log(limit) - self._scale[1]
-        ages = np.concatenate([ages_of(units, level) for units in self._of_units]) * self._scale[0]
-        low, median, high = quantiles(ages)
-        told = tuple(
-            AgeAtLimit(
-                name,
-                Interval(float(median[i]), float(low[i]), float(high[i])),
-                float(np.isinf(ages[:, i]).mean()),
-                self.last_age[i],
-                float((ages[:, i] <= self.last_age[i]).mean()),
-            )
-            for i, name in enumerate(self.units)
-        )
-        new = np.concatenate([ages_of(units, level) for units in self._of_population]) * self._scale[0]
-        new.sort(axis=1)
-        b10, b50 = (share_of_units(new, share) for share in (0.1, 0.5))
-        return AgesAtLimit(self.quantity, self.age_unit, limit, told, b10, b50, self.notes)
+        if not (math.isfinite(limit_error) and limit_error >= 0.0):
+            raise ParameterError(f"the error of the limit is {limit_error}: it must not be negative")
+        level = math.log(limit) - self._scale[1] - (math.log(self._scale[0]) if accumulates else 0.0)
+        count = sum(len(units.shape) for units in self._of_units)
+        normals = np.random.default_rng([self.seed, 1]).standard_normal((count, 1))
+        levels = level + limit_error * normals
+        ages = ages_of_sum if accumulates else ages_of
+        found = []
+        for drawn in (self._of_units, self._of_population):
+            ends = np.cumsum([0, *(len(units.shape) for units in drawn)])
+            parts = [ages(u, levels[a:b]) for u, a, b in zip(drawn, ends, ends[1:], strict=False)]
+            found.append(np.concatenate(parts) * self._scale[0])
+        return found[0], found[1]
+
+    def drawn_values(self, unit: int, age: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return logarithms of the indicator of a unit at ages, (draws, ages), and the scatter of runs.
+
+        The draws are those of `drawn_ages`, in the same order; the scatter has the shape (draws, 1).
+        """
+        scaled = age / self._scale[0]
+        values = [
+            u.level[:, unit, None] + u.law.log_growth(u.size[:, unit, None], scaled, u.shape)
+            for u in self._of_units
+        ]
+        return np.concatenate(values) + self._scale[1], np.concatenate([u.scatter for u in self._of_units])
+
+    def residuals(self) -> FloatArray:
+        """Return what the growth leaves of the logarithms of the runs, in the order given."""
+        every = sum(len(units.shape) for units in self._of_units)
+        step = max(1, every // _OF_MIDDLE)
+        total, number = np.zeros(self._points.value.shape), 0
+        for units in self._of_units:
+            for i in range(0, len(units.shape), step):
+                shape = units.shape[i, :, None]
+                total += units.level[i][:, None] + units.law.log_growth(
+                    units.size[i][:, None], self._points.age, shape
+                )
+                number += 1
+        left = self._points.value - total / number
+        return np.asarray(left[self._points.place[0], self._points.place[1]])
 
 
 def fit_growth(
@@ -260,7 +307,9 @@ def fit_growth(
         notes=_notes(runs, points),
         _of_units=tuple(drawn_units(each, points, shared, random) for each, shared in draws),
         _of_population=tuple(new_units(each.law, shared) for each, shared in draws),
+        _points=points,
         _scale=scale,
+        seed=seed,
     )
 
 
@@ -322,17 +371,22 @@ def _points(
     names: list[str], units: tuple[str, ...], age: FloatArray, value: FloatArray, error: FloatArray
 ) -> tuple[Points, tuple[float, float]]:
     """Runs as rows of units, filled up, in scaled ages and logarithms less their mean; and both scales."""
-    rows = [np.flatnonzero(np.array(names) == each) for each in units]
+    of_unit: dict[str, list[int]] = {each: [] for each in units}
+    for i, name in enumerate(names):
+        of_unit[name].append(i)
+    rows = [np.array(each) for each in of_unit.values()]
     longest = max(row.size for row in rows)
     given = np.zeros((len(units), longest), dtype=bool)
     filled = np.zeros((3, len(units), longest))
     logs, greatest = np.log(value), float(age.max())
     middle = float(logs.mean())
+    place = np.zeros((2, value.size), dtype=np.intp)
     for i, row in enumerate(rows):
         given[i, : row.size] = True
         ordered = row[np.argsort(age[row], kind="stable")]
         filled[:, i, : row.size] = age[ordered] / greatest, logs[ordered] - middle, error[ordered] ** 2
-    return Points(filled[0], filled[1], filled[2] + _RESOLUTION**2, given), (greatest, middle)
+        place[0, ordered], place[1, ordered] = i, np.arange(row.size)
+    return Points(filled[0], filled[1], filled[2] + _RESOLUTION**2, given, place), (greatest, middle)
 
 
 def _resampled(

@@ -10,12 +10,12 @@ the law.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy import special
 
-from hersey.arrays import BoolArray, FloatArray
+from hersey.arrays import BoolArray, FloatArray, IntArray
 from hersey.life.growth_laws import Law
 
 #: Priors: mean and standard deviation of m1 = E ln(r T); scales of the half-normal spreads. m0 is flat.
@@ -51,6 +51,9 @@ class Points:
     value: FloatArray
     variance: FloatArray  #: of the stated errors
     given: BoolArray
+    place: IntArray = field(
+        default_factory=lambda: np.zeros((2, 0), dtype=np.intp)
+    )  #: row and column of each run
 
 
 @dataclass(frozen=True)
@@ -77,6 +80,7 @@ class Units:
     level: FloatArray  #: ln y0
     size: FloatArray
     shape: FloatArray  #: (draws, 1)
+    scatter: FloatArray  #: of runs, (draws, 1)
 
 
 def _shape(law: Law, shared: FloatArray) -> FloatArray:
@@ -358,7 +362,11 @@ def drawn_units(found: Posterior, points: Points, shared: FloatArray, random: np
         normals = random.standard_normal(size.shape)
         levels.append(part[:, :1] + first[..., 0] / total[..., 0] + normals / np.sqrt(total[..., 0]))
         sizes.append(size)
-    return Units(law, np.concatenate(levels), np.concatenate(sizes), _shape(law, shared)[:, None])
+    return _units(law, np.concatenate(levels), np.concatenate(sizes), shared)
+
+
+def _units(law: Law, level: FloatArray, size: FloatArray, shared: FloatArray) -> Units:
+    return Units(law, level, size, _shape(law, shared)[:, None], np.exp(shared[:, 2:3]))
 
 
 def _drawn(density: FloatArray, nodes: FloatArray, uniform: FloatArray) -> FloatArray:
@@ -387,4 +395,4 @@ def new_units(law: Law, shared: FloatArray) -> Units:
     normals = _spread_normals()
     level = shared[:, :1] + np.exp(shared[:, 1:2]) * normals[0]
     size = shared[:, 3:4] + np.exp(shared[:, 4:5]) * normals[1] if law.grows else np.zeros_like(level)
-    return Units(law, level, size, _shape(law, shared)[:, None])
+    return _units(law, level, size, shared)

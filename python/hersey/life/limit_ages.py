@@ -19,6 +19,10 @@ if TYPE_CHECKING:
 CONFIDENCE = 0.9
 #: Share of draws from which "never" is worth a word.
 _SAID = 0.05
+#: Integrals over age: places and weights, turns of the search and where it ends, the greatest logarithm.
+_NODES, _HEIGHTS = np.polynomial.legendre.leggauss(8)
+_PLACES, _PARTS = 0.5 * (1.0 + _NODES), 0.5 * _HEIGHTS
+_TURNS, _SETTLED, _STEEPEST, _HUGE = 60, 3e-3, 3.0, 300.0
 
 
 @dataclass(frozen=True)
@@ -47,12 +51,13 @@ class AgeAtLimit:
 
     def __str__(self) -> str:
         """Return the age in words."""
-        words = f"{self.unit}: {self.age}"
-        if self.passed > 0.5:
-            words += f", passed already (last seen at {_number(self.last)})"
-        if self.never > _SAID:
-            words += f", never in {self.never:.0%} of the draws"
-        return words
+        return f"{self.unit}: {self.age}{self.remark}"
+
+    @property
+    def remark(self) -> str:
+        """Whether it has passed already, or may never come, to be put behind the age."""
+        words = f", passed already (last seen at {_number(self.last)})" if self.passed > 0.5 else ""
+        return words + (f", never in {self.never:.0%} of the draws" if self.never > _SAID else "")
 
 
 @dataclass(frozen=True, repr=False)
@@ -100,19 +105,52 @@ class AgesAtLimit(Result):
         )
 
 
+def age_at_limit(name: str, ages: FloatArray, last: float = math.nan) -> AgeAtLimit:
+    """Return what equally probable ages tell of a unit that was last seen at ``last``."""
+    low, median, high = (float(each) for each in quantiles(ages))
+    never, passed = float(np.isinf(ages).mean()), float((ages <= last).mean())
+    return AgeAtLimit(name, Interval(median, low, high), never, last, passed)
+
+
 def share_of_units(ages: FloatArray, share: float) -> AgeAtLimit:
     """Age that a share of new units has reached, ``ages`` being sorted along the units."""
-    reached = ages[:, math.ceil(share * ages.shape[1]) - 1]
-    low, median, high = quantiles(reached)
-    interval = Interval(float(median), float(low), float(high))
-    return AgeAtLimit(f"B{share * 100:.0f}", interval, float(np.isinf(reached).mean()), math.nan, 0.0)
+    return age_at_limit(f"B{share * 100:.0f}", ages[:, math.ceil(share * ages.shape[1]) - 1])
 
 
-def ages_of(units: Units, level: float) -> FloatArray:
-    """Ages, in the greatest age, at which drawn units reach a level."""
+def ages_of(units: Units, level: FloatArray) -> FloatArray:
+    """Ages, in the greatest age, at which drawn units reach a level (logarithm), shape (draws, 1)."""
     above = np.maximum(level - units.level, 0.0)
     with np.errstate(over="ignore"):
         return np.where(above > 0.0, units.law.age(units.size, above, units.shape), 0.0)
+
+
+def ages_of_sum(units: Units, level: FloatArray) -> FloatArray:
+    """Ages at which the integral of the indicator from age 0 reaches a level (logarithm), as in `ages_of`.
+
+    Newton's method in the logarithms of integral and age, kept between ends by halving.
+    """
+    need = level - units.level
+    size, shape, goal = (np.broadcast_to(x, need.shape).ravel() for x in (units.size, units.shape, need))
+    # What grows has got there before a constant would; its integral is no steeper than the age itself.
+    high, low = goal.copy(), np.full(goal.shape, -np.inf)
+    at, open_ = high.copy(), np.arange(goal.size)
+    for _ in range(_TURNS):
+        x, a, t = size[open_], shape[open_], at[open_]
+        with np.errstate(over="ignore"):
+            grown = units.law.log_growth(x[:, None], np.exp(t)[:, None] * _PLACES, a[:, None])
+            end = np.minimum(units.law.log_growth(x, np.exp(t), a), _HUGE)
+        sum_ = np.log(np.exp(np.minimum(grown, _HUGE)) @ _PARTS)
+        left = goal[open_] - t - sum_
+        high[open_] = np.where(left < 0.0, t, high[open_])
+        low[open_] = np.where(left < 0.0, low[open_], t)
+        step = t + left / np.exp(np.clip(end - sum_, 0.0, _STEEPEST))
+        halved = np.where(np.isfinite(low[open_]), 0.5 * (low[open_] + high[open_]), high[open_] - 1.0)
+        inside = (step > low[open_]) & (step < high[open_])
+        at[open_] = np.where(inside, step, halved)
+        open_ = open_[(np.abs(left) > _SETTLED) & (high[open_] - low[open_] > _SETTLED)]
+        if not open_.size:
+            break
+    return np.exp(at).reshape(need.shape)
 
 
 def quantiles(values: FloatArray) -> FloatArray:
@@ -122,4 +160,5 @@ def quantiles(values: FloatArray) -> FloatArray:
 
 
 def _number(value: float) -> str:
-    return "never" if math.isinf(value) else f"{value:.4g}"
+    """Four digits, those of pages without a power of ten."""
+    return "never" if math.isinf(value) else f"{float(f'{value:.4g}'):.10g}"

@@ -1,0 +1,482 @@
+"""What ends each unit, and when: the growth of every indicator against its limit, side by side."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hersey.arrays import FloatArray, IntArray
+from hersey.errors import HerseyError, InsufficientDataError
+from hersey.life.growth import Growth, fit_growth
+from hersey.life.indicator import Indicator, Indicators
+from hersey.life.joined import correlations, order_by, ranks_of
+from hersey.life.limit_ages import (
+    CONFIDENCE,
+    AgeAtLimit,
+    AgesAtLimit,
+    Interval,
+    age_at_limit,
+    quantiles,
+    share_of_units,
+)
+from hersey.life.next_run import HORIZON, NextRun, candidate_ages, width, width_after_unit, widths_after
+from hersey.life.population import Population, weibull
+from hersey.result import Result, json_record, json_value
+
+if TYPE_CHECKING:
+    import polars as pl
+
+#: Ways are named until they hold so much of the probability of being first.
+NAMED = 0.9
+#: What is said of a unit from so many times the age at which it was last seen on.
+FAR = 3.0
+#: Places of the curve of the population.
+_PLACES = 81
+#: Units, of the widest intervals, for which a further run is weighed; advice that the summary gives.
+_WEIGHED, _ADVISED = 24, 3
+#: An interval whose ends differ by this factor tells the order of an age, no more.
+_WIDE = 2.0
+#: Up to so many units tell little of how units differ.
+_FEW = 3
+#: Rows that a summary shows.
+_SHOWN = 24
+NEVER = "none"
+
+
+@dataclass(frozen=True, repr=False)
+class Mode:
+    """One way to fail: the growth of its indicator and the ages at its limit, of all units."""
+
+    name: str
+    kind: str
+    si: str
+    limit: float
+    sign: bool  #: an early sign, which ends no unit
+    growth: Growth
+    ages: AgesAtLimit
+    notes: tuple[str, ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return what was found."""
+        kept = ("name", "kind", "si", "limit", "sign", "notes")
+        told = {name: getattr(self, name) for name in kept}
+        return json_record({**told, "growth": self.growth.to_dict(), "ages": self.ages.to_dict()})
+
+
+@dataclass(frozen=True)
+class UnitEnd:
+    """What ends a unit, and when."""
+
+    unit: str
+    age: AgeAtLimit  #: of the first of all ways
+    first: dict[str, float]  #: probability of each way to be the first; the rest is that none comes
+
+    @property
+    def named(self) -> tuple[str, ...]:
+        """The ways that must be named: the fewest that hold 90 % of the probability that any comes."""
+        order = sorted(self.first, key=lambda name: -self.first[name])
+        total, found = sum(self.first.values()), 0.0
+        names = []
+        for name in order:
+            if found >= NAMED * total:
+                break
+            names.append(name)
+            found += self.first[name]
+        return tuple(names)
+
+    def __str__(self) -> str:
+        """Return it in words."""
+        ways = " or ".join(f"{name} ({self.first[name]:.0%})" for name in self.named) or "no way told"
+        return f"{self.unit}: {self.age.age} by {ways}{self.age.remark}"
+
+
+@dataclass(frozen=True)
+class ShareEnded:
+    """Share of new units that have ended at an age: median and 90 % band over the draws."""
+
+    age: FloatArray
+    median: FloatArray
+    low: FloatArray
+    high: FloatArray
+
+
+@dataclass(frozen=True, repr=False)
+class Endings(Result):
+    """What ends each unit and the population, and when; ages in ``age_unit``."""
+
+    age_unit: str
+    modes: tuple[Mode, ...]
+    units: tuple[UnitEnd, ...]
+    b10: AgeAtLimit  #: a tenth of new units has ended, by whichever way
+    b50: AgeAtLimit
+    shares: dict[str, Interval]  #: of new units that each way ends
+    curve: ShareEnded
+    next_runs: tuple[NextRun, ...]  #: what narrows most first
+    together: tuple[str, ...]  #: ways whose runs scatter together
+    notes: tuple[str, ...]  #: what cannot be told, and what rests on priors
+    unsaid: tuple[str, ...]  #: ways that are not judged, and why
+    seed: int = 0
+
+    @property
+    def ending(self) -> tuple[Mode, ...]:
+        """The ways that end a unit: all but the early signs."""
+        return tuple(mode for mode in self.modes if not mode.sign)
+
+    @cached_property
+    def population(self) -> Population:
+        """The units that have ended by now at their ages as estimated, the others as not failed."""
+        seen = [each for each in self.units if each.age.last > 0.0]
+        failed = np.array([each.age.passed > 0.5 for each in seen])
+        last = np.array([each.age.last for each in seen])
+        ages = np.where(failed, np.minimum([each.age.age.value for each in seen], last), last)
+        return weibull(
+            np.maximum(ages, 1e-6 * last.max()), failed, unit=self.age_unit, level=CONFIDENCE, seed=self.seed
+        )
+
+    def summary(self) -> str:
+        """Return units, population, what cannot be told and what to measure next as text."""
+        unit = f" {self.age_unit}" if self.age_unit else ""
+        lines = [self.headline(), f"age of the first end{unit and f' ({unit.strip()})'}, 90 % intervals"]
+        lines += [f"  {each}" for each in self.units[:_SHOWN]]
+        if len(self.units) > _SHOWN:
+            lines.append(f"  and {len(self.units) - _SHOWN} more units")
+        lines += [f"  {self.b10}", f"  {self.b50}"]
+        shares = ", ".join(f"{name} {each.value:.0%}" for name, each in self.shares.items())
+        lines += [f"share of new units that each ends: {shares}", "each way by itself"]
+        for mode in self.modes:
+            sign = " (an early sign: it ends no unit)" if mode.sign else ""
+            lines.append(f"  {mode.name}{sign}: {mode.ages.b50}")
+        lines += [f"not judged: {each}" for each in self.unsaid]
+        lines += [f"- {each}" for each in self.notes]
+        return "\n".join([*lines, *(f"next: {each}" for each in self.advice)])
+
+    def headline(self) -> str:
+        """Return when half of new units have ended, and by what."""
+        unit = f" {self.age_unit}" if self.age_unit else ""
+        likely = max(self.shares, key=lambda name: self.shares[name].value)
+        return f"half of new units have ended at {self.b50.age}{unit}, most by {likely}"
+
+    @property
+    def advice(self) -> tuple[str, ...]:
+        """What to measure next, in words."""
+        return tuple(each.words(self.age_unit) for each in self.next_runs[:_ADVISED])
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return what was found; None for what is never reached."""
+        kept = ("age_unit", "b10", "b50", "shares", "curve", "together", "notes", "unsaid", "seed")
+        units = [{**json_value(each), "named": list(each.named)} for each in self.units]
+        runs = [{**json_value(each), "narrowing": each.narrowing} for each in self.next_runs]
+        return json_record(
+            {
+                **{name: getattr(self, name) for name in kept},
+                "modes": [mode.to_dict() for mode in self.modes],
+                "units": units,
+                "next_runs": runs,
+                "advice": self.advice,
+                "population": self.population.to_dict(),
+            }
+        )
+
+    def to_frame(self) -> pl.DataFrame:
+        """Return one row per unit and way, and of the first of all; infinite where it is never reached."""
+        import polars as pl
+
+        rows: list[tuple[AgeAtLimit, str, float]] = []
+        for i, end in enumerate(self.units):
+            rows += [
+                (mode.ages.units[i], mode.name, end.first.get(mode.name, math.nan)) for mode in self.modes
+            ]
+            rows.append((end.age, "first of all", math.nan))
+        rows += [(each, "first of all", math.nan) for each in (self.b10, self.b50)]
+        unit = self.age_unit or "1"
+        return pl.DataFrame(
+            {
+                "unit": [age.unit for age, _, _ in rows],
+                "way": [name for _, name, _ in rows],
+                f"age ({unit})": [age.age.value for age, _, _ in rows],
+                f"age low ({unit})": [age.age.low for age, _, _ in rows],
+                f"age high ({unit})": [age.age.high for age, _, _ in rows],
+                "first (1)": [first for _, _, first in rows],
+                "never (1)": [age.never for age, _, _ in rows],
+                "passed (1)": [age.passed for age, _, _ in rows],
+                f"last age ({unit})": [age.last for age, _, _ in rows],
+            }
+        )
+
+
+@dataclass(frozen=True)
+class _Fitted:
+    """A mode with its draws: ages of all units and of new ones, and where its runs stand."""
+
+    mode: Mode
+    ages: FloatArray
+    new: FloatArray
+    residuals: FloatArray  #: per run of the campaign, NaN where it does not tell it
+    row: dict[str, int]  #: of each unit that the growth knows
+    error: float  #: of a run, typically
+
+
+def endings(
+    indicators: Indicators, *, seed: int = 0, progress: Callable[[int, int], None] | None = None
+) -> Endings:
+    """Return what ends each unit, and when, from the indicators of the runs.
+
+    The growth of each indicator is fitted over all units (`fit_growth`), and its draws give the ages at its
+    limit. Ways to fail are independent, given their growth, save where the runs of two scatter together:
+    there the draws of a unit move together by the correlation of the runs, and new units by that of the ages
+    of units.
+
+    Parameters
+    ----------
+    indicators
+        Of `Indicators`; those that cannot be fitted are named in ``unsaid`` with the reason.
+    seed
+        Of the draws: the same data and seed give the same result.
+    progress
+        Called with indicators done and indicators in all.
+
+    Raises
+    ------
+    InsufficientDataError
+        If no indicator that ends a unit can be fitted; the message names the reasons.
+    """
+    fitted, unsaid = [], list(indicators.unsaid)
+    for i, each in enumerate(indicators.each):
+        try:
+            fitted.append(_fitted(indicators, each, seed + i))
+        except HerseyError as error:
+            unsaid.append(f"{each.name}: {error}")
+        if progress:
+            progress(i + 1, len(indicators.each))
+    ending = [each for each in fitted if not each.mode.sign]
+    if not ending:
+        why = "; ".join(unsaid) or "no indicator was given"
+        raise InsufficientDataError(f"nothing that ends a unit can be followed: {why}")
+    random = np.random.default_rng([seed, 2])
+    of_runs = correlations([each.residuals for each in ending])
+    names, last = indicators.runs.units, _last_ages(indicators)
+    units, picks = _units(ending, of_runs, names, last, random)
+    new = _population(ending, of_runs, random)
+    greatest = float(indicators.runs.age.max())
+    first = np.sort(new.min(axis=0), axis=1)
+    b10, b50 = (share_of_units(first, share) for share in (0.1, 0.5))
+    runs = [*_again(ending, units, picks, of_runs, greatest, random), *_one_more(first, greatest, random)]
+    modes = tuple(each.mode for each in fitted)
+    return Endings(
+        age_unit=indicators.runs.age_unit,
+        modes=modes,
+        units=units,
+        b10=b10,
+        b50=b50,
+        shares=_shares(ending, new),
+        curve=_curve(first, greatest),
+        next_runs=tuple(sorted(runs, key=lambda each: -each.narrowing)),
+        together=_together(ending, of_runs),
+        notes=_notes(fitted, units, of_runs),
+        unsaid=tuple(unsaid),
+        seed=seed,
+    )
+
+
+def _last_ages(indicators: Indicators) -> dict[str, float]:
+    last: dict[str, float] = {}
+    for unit, age in zip(indicators.runs.unit, indicators.runs.age.tolist(), strict=True):
+        last[unit] = max(age, last.get(unit, 0.0))
+    return last
+
+
+def _fitted(indicators: Indicators, each: Indicator, seed: int) -> _Fitted:
+    runs = indicators.runs
+    told = np.flatnonzero(np.isfinite(each.value))
+    if not told.size:
+        raise InsufficientDataError("no run tells it")
+    growth = fit_growth(
+        [runs.unit[i] for i in told],
+        runs.age[told],
+        each.value[told],
+        each.error[told],
+        quantity=each.name,
+        age_unit=runs.age_unit,
+        seed=seed,
+    )
+    known, new = growth.drawn_ages(each.limit, limit_error=each.limit_error, accumulates=each.accumulates)
+    row = {name: i for i, name in enumerate(growth.units)}
+    last = _last_ages(indicators)
+    # A unit of which no run tells this is one more of the population.
+    spare = iter(np.random.default_rng([seed, 3]).permutation(new.shape[1]).tolist() * len(last))
+    ages = np.stack([known[:, row[n]] if n in row else new[:, next(spare)] for n in last], axis=1)
+    notes = [*each.notes, *growth.notes]
+    missing = [name for name in last if name not in row]
+    if missing:
+        notes.append(f"no run of {_listed(missing)} tells it: taken as any new unit")
+    ordered = np.sort(new, axis=1)
+    quantity = f"the sum of {each.name} over age" if each.accumulates else each.name
+    at_limit = AgesAtLimit(
+        quantity,
+        runs.age_unit,
+        each.limit,
+        tuple(age_at_limit(name, ages[:, i], last[name]) for i, name in enumerate(last)),
+        share_of_units(ordered, 0.1),
+        share_of_units(ordered, 0.5),
+        tuple(notes),
+    )
+    residuals = np.full(runs.age.size, np.nan)
+    residuals[told] = growth.residuals()
+    sign = bool(getattr(each, "sign", False))
+    mode = Mode(each.name, each.kind, each.si, each.limit, sign, growth, at_limit, tuple(notes))
+    return _Fitted(mode, ages, new, residuals, row, float(np.median(each.error[told])))
+
+
+def _units(
+    ending: Sequence[_Fitted],
+    of_runs: FloatArray,
+    names: Sequence[str],
+    last: dict[str, float],
+    random: np.random.Generator,
+) -> tuple[tuple[UnitEnd, ...], list[tuple[IntArray, FloatArray]]]:
+    """The first end of each unit; and which draws of each way stand together, with their first ages."""
+    found, picks = [], []
+    for i, name in enumerate(names):
+        keys = np.stack([each.ages[:, i] for each in ending], axis=1)
+        order = order_by(keys, ranks_of(len(keys), of_runs, random))
+        joint = np.take_along_axis(keys, order, axis=0)
+        first = joint.min(axis=1)
+        shares = {e.mode.name: float(s) for e, s in zip(ending, _firsts(joint.T), strict=True)}
+        found.append(UnitEnd(name, age_at_limit(name, first, last[name]), shares))
+        picks.append((order, first))
+    return tuple(found), picks
+
+
+def _firsts(ages: FloatArray) -> FloatArray:
+    """Share in which each row is the least of all, ties shared; less than 1 in all where none comes."""
+    least = (ages == ages.min(axis=0)) & np.isfinite(ages)
+    count = np.maximum(least.sum(axis=0), 1)
+    return np.asarray((least / count).reshape(len(ages), -1).mean(axis=1))
+
+
+def _population(ending: Sequence[_Fitted], of_runs: FloatArray, random: np.random.Generator) -> FloatArray:
+    """Ages of new units at each limit, (ways, draws, units), units side by side."""
+    logs = [np.log(np.clip([a.age.value for a in each.mode.ages.units], 1e-9, 1e300)) for each in ending]
+    of_units = correlations(logs)
+    middle = np.stack([np.median(each.new, axis=1) for each in ending], axis=1)
+    order = order_by(middle, ranks_of(len(middle), of_runs, random))
+    ranks = ranks_of(ending[0].new.shape[1], of_units, random)
+    return np.stack([np.sort(each.new[order[:, m]], axis=1)[:, ranks[:, m]] for m, each in enumerate(ending)])
+
+
+def _shares(ending: Sequence[_Fitted], new: FloatArray) -> dict[str, Interval]:
+    first = new.min(axis=0)
+    found = {}
+    for each, ages in zip(ending, new, strict=True):
+        low, median, high = quantiles(((ages == first) & np.isfinite(ages)).mean(axis=1))
+        found[each.mode.name] = Interval(float(median), float(low), float(high))
+    return found
+
+
+def _curve(first: FloatArray, greatest: float) -> ShareEnded:
+    """Share ended against age, up to where most have ended or three times the age followed."""
+    most = quantiles(first[:, math.ceil(0.95 * first.shape[1]) - 1])[1]
+    end = float(np.clip(most, greatest, max(FAR * greatest, 1e-300)))
+    ages = np.linspace(0.0, end, _PLACES)
+    shares = np.stack([(first <= age).mean(axis=1) for age in ages], axis=1)
+    low, median, high = quantiles(shares)
+    return ShareEnded(ages, median, low, high)
+
+
+def _again(
+    ending: Sequence[_Fitted],
+    units: Sequence[UnitEnd],
+    picks: Sequence[tuple[IntArray, FloatArray]],
+    of_runs: FloatArray,
+    greatest: float,
+    random: np.random.Generator,
+) -> list[NextRun]:
+    """How far one more run of each unit would narrow the interval of its end."""
+    open_ = [i for i, each in enumerate(units) if each.age.passed <= 0.5]
+    spans = {i: width(np.minimum(picks[i][1], HORIZON * greatest)) for i in open_}
+    open_.sort(key=lambda i: -spans[i])
+    found = []
+    for i in sorted(open_[:_WEIGHED]):
+        order, first = picks[i]
+        capped = np.minimum(first, HORIZON * greatest)
+        ages = candidate_ages(units[i].age.last, float(np.median(capped)))
+        telling = [m for m, each in enumerate(ending) if units[i].unit in each.row]
+        if not (ages.size and telling):
+            continue
+        values, errors = [], []
+        for m in telling:
+            each = ending[m]
+            value, scatter = each.mode.growth.drawn_values(each.row[units[i].unit], ages)
+            values.append(value[order[:, m]])
+            errors.append(np.hypot(scatter, each.error)[order[:, m]])
+        among = of_runs[np.ix_(telling, telling)]
+        after = widths_after(capped, values, errors, among, random)
+        runs = zip(ages.tolist(), after.tolist(), strict=True)
+        found += [NextRun(units[i].unit, age, spans[i], each) for age, each in runs]
+    return found
+
+
+def _one_more(first: FloatArray, greatest: float, random: np.random.Generator) -> list[NextRun]:
+    """How far a new unit, followed to its end, would narrow the interval of B10."""
+    capped = np.clip(first, 1e-6 * greatest, HORIZON * greatest)
+    b10 = capped[:, math.ceil(0.1 * first.shape[1]) - 1]
+    age = float(np.median(capped))
+    return [NextRun(None, age, width(b10), width_after_unit(b10, capped, random))]
+
+
+def _together(ending: Sequence[_Fitted], of_runs: FloatArray) -> tuple[str, ...]:
+    return tuple(
+        f"{ending[j].mode.name} and {ending[i].mode.name} ({of_runs[i, j]:.2f})"
+        for i in range(len(ending))
+        for j in range(i)
+        if abs(of_runs[i, j]) > 0.5
+    )
+
+
+def _notes(fitted: Sequence[_Fitted], units: Sequence[UnitEnd], of_runs: FloatArray) -> tuple[str, ...]:
+    """What cannot be told, and what rests on priors."""
+    notes = []
+    ending = [each for each in fitted if not each.mode.sign]
+    unnamed = [each.mode.name for each in ending if each.mode.growth.law is None]
+    if unnamed:
+        notes.append(
+            f"which law of growth holds is not told for {_listed(unnamed)}: ages later than the last runs "
+            "are taken over all laws that remain"
+        )
+    if len(units) == 1:
+        notes.append("one unit tells nothing of how units differ: B10, B50 and the shares rest on the prior")
+    elif len(units) <= _FEW:
+        notes.append(
+            f"{len(units)} units tell little of how units differ: B10, B50 and the shares lean on the "
+            "prior of the spread"
+        )
+    passed = [each.unit for each in units if each.age.passed > 0.5]
+    if passed:
+        notes.append(f"{_listed(passed)} reached a limit already, at the age told, before last seen")
+    near = [each.unit for each in units if len(each.named) > 1]
+    if near:
+        notes.append(f"which way comes first is not told for {_listed(near)}: all that remain are named")
+    wide = [each.unit for each in units if each.age.age.high > _WIDE * max(each.age.age.low, 1e-300)]
+    if wide:
+        notes.append(f"the end of {_listed(wide)} is not told within a factor of {_WIDE:g}")
+    far = [each.unit for each in units if each.age.age.value > FAR * each.age.last]
+    if far:
+        notes.append(
+            f"the end of {_listed(far)} lies beyond {FAR:g} times the age followed: read it as not "
+            "soon, no more"
+        )
+    together = _together(ending, of_runs)
+    if together:
+        notes.append(f"runs scatter together, so draws move together: {', '.join(together)}")
+    notes += [f"{each.mode.name}: {note}" for each in fitted for note in each.mode.notes]
+    return tuple(notes)
+
+
+def _listed(names: Sequence[str], most: int = 8) -> str:
+    more = f" and {len(names) - most} more" if len(names) > most else ""
+    return ", ".join(names[:most]) + more

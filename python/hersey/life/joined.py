@@ -1,0 +1,46 @@
+"""Draws of several ways to fail set side by side, so that those whose runs scatter together move together."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from hersey.arrays import FloatArray, IntArray
+
+#: Pairs below which a correlation is not counted.
+_LEAST = 5
+#: Least eigenvalue of a matrix of correlations.
+_FLOOR = 1e-6
+
+
+def correlations(columns: Sequence[FloatArray]) -> FloatArray:
+    """Return correlations of columns over the rows that two of them tell; 0 where chance may make them.
+
+    A correlation counts from two standard errors of none, 2 / sqrt(pairs). The matrix is positive definite.
+    """
+    found = np.eye(len(columns))
+    for i, one in enumerate(columns):
+        for j, other in enumerate(columns[:i]):
+            both = np.isfinite(one) & np.isfinite(other)
+            number = int(both.sum())
+            if number < _LEAST or min(one[both].std(), other[both].std()) <= 0.0:
+                continue
+            value = float(np.corrcoef(one[both], other[both])[0, 1])
+            found[i, j] = found[j, i] = value if abs(value) > 2.0 / math.sqrt(number) else 0.0
+    values, vectors = np.linalg.eigh(found)
+    mended = (vectors * np.maximum(values, _FLOOR)) @ vectors.T
+    scale = np.sqrt(np.diag(mended))
+    return np.asarray(mended / np.outer(scale, scale))
+
+
+def ranks_of(count: int, correlation: FloatArray, random: np.random.Generator) -> IntArray:
+    """Return ranks of ``count`` normal draws with this correlation, one column for each of its rows."""
+    normals = random.standard_normal((count, len(correlation))) @ np.linalg.cholesky(correlation).T
+    return np.asarray(np.argsort(np.argsort(normals, axis=0), axis=0))
+
+
+def order_by(keys: FloatArray, ranks: IntArray) -> IntArray:
+    """Return the draws of each column of ``keys`` in the order in which their keys have these ranks."""
+    return np.asarray(np.take_along_axis(np.argsort(keys, axis=0, kind="stable"), ranks, axis=0))

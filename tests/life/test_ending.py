@@ -1,0 +1,224 @@
+"""What ends units: truths in closed form, which way is first, what cannot be told."""
+
+from __future__ import annotations
+
+import json
+import math
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+from hersey.errors import InsufficientDataError, ParameterError
+from hersey.life import growth as growth_module
+from hersey.life import growth_posterior, joined, next_run
+from hersey.life.ending import Endings, endings
+from hersey.life.growth import fit_growth
+from hersey.life.indicator import Indicator, Indicators, Runs
+
+UNITS, AGES = 6, np.linspace(0.0, 600.0, 7)
+RATE = np.array([0.0008, 0.0009, 0.0010, 0.0011, 0.0012, 0.0030])
+AGE = np.tile(AGES, UNITS)
+NAMES = tuple(f"F{i + 1}" for i in range(UNITS) for _ in AGES)
+
+
+def indicator(name: str, value: np.ndarray, limit: float, seed: int = 1, **more: Any) -> Indicator:
+    """With 1 % of noise."""
+    noise = np.random.default_rng(seed).normal(0.0, 0.01, value.shape)
+    return Indicator(name, name, "1", limit, value * np.exp(noise), np.full(value.shape, 0.003), **more)
+
+
+def linear(rate: np.ndarray, ages: np.ndarray = AGES) -> np.ndarray:
+    return np.asarray(1.0 + rate[:, None] * ages).ravel()
+
+
+def of(*each: Indicator, names: tuple[str, ...] = NAMES, age: np.ndarray = AGE, **more: Any) -> Indicators:
+    return Indicators(Runs(tuple(range(1, len(names) + 1)), names, age, "pages"), each, **more)
+
+
+def fewer(patch: pytest.MonkeyPatch) -> None:
+    """A third of the draws: what they would tell better is the matter of the benchmark."""
+    patch.setattr(growth_posterior, "_ROUNDS", (100, 100, 100, 200))
+    patch.setattr(growth_posterior, "_MOST", 2.0)
+    patch.setattr(growth_posterior, "_POPULATION", 64)
+    patch.setattr(growth_module, "_DRAWS", 1000)
+
+
+@pytest.fixture(autouse=True)
+def fewer_draws(monkeypatch: pytest.MonkeyPatch) -> None:
+    fewer(monkeypatch)
+
+
+@cache
+def told() -> Endings:
+    """Torque reaches 2 at 1 / rate, film 3 at 2.2 / rate, in F1 at 1 / rate too; a sign at 0.3 / rate."""
+    film = RATE / 1.1
+    film[0] = 2.0 * RATE[0]
+    torque = indicator("torque", linear(RATE), 2.0)
+    other = indicator("film", linear(film), 3.0, seed=2)
+    early = indicator("noise", linear(RATE), 1.3, seed=3)
+    untold = indicator("grip", np.where(AGE == 0.0, 1.0, np.nan), 2.0)
+    object.__setattr__(early, "sign", True)
+    return endings(of(torque, other, early, untold, unsaid=("heat: no table [motor]",)))
+
+
+def test_the_first_end_is_found_with_its_way() -> None:
+    for end, rate in zip(told().units[1:], RATE[1:], strict=True):
+        assert end.named == ("torque",)
+        assert end.age.age.low <= 1.02 / rate
+        assert end.age.age.high >= 0.98 / rate
+        assert end.age.age.value == pytest.approx(1.0 / rate, rel=0.1)
+    assert told().b50.age.value == pytest.approx(1.0 / np.median(RATE), rel=0.35)
+
+
+def test_where_two_ways_are_near_both_are_named() -> None:
+    first = told().units[0]
+    assert set(first.named) == {"torque", "film"}
+    assert sum(first.first.values()) == pytest.approx(1.0)
+    assert "which way comes first is not told for F1" in " ".join(told().notes)
+
+
+def test_an_early_sign_ends_no_unit() -> None:
+    assert [mode.name for mode in told().modes] == ["torque", "film", "noise"]
+    assert [mode.name for mode in told().ending] == ["torque", "film"]
+    assert all("noise" not in end.first for end in told().units)
+    assert "noise (an early sign: it ends no unit)" in told().summary()
+
+
+def test_what_has_passed_is_said_and_fails_in_the_weibull_plot() -> None:
+    assert told().units[5].age.passed > 0.9
+    assert "F6 reached a limit already" in " ".join(told().notes)
+    assert "passed already" in str(told().units[5])
+    population = told().population
+    assert population.failed.tolist() == [True, False, False, False, False, False]
+    assert population.ages[0] == pytest.approx(1.0 / RATE[5], rel=0.05)
+    assert population.ages[1:] == pytest.approx(600.0)
+
+
+def test_what_cannot_be_judged_keeps_its_reason() -> None:
+    assert told().unsaid[0] == "heat: no table [motor]"
+    assert told().unsaid[1].startswith("grip: no unit was seen at two ages")
+    with pytest.raises(InsufficientDataError, match="grip: no run tells it"):
+        endings(of(indicator("grip", np.full(AGE.size, np.nan), 2.0)))
+
+
+def test_the_result_is_whole_and_the_same_again() -> None:
+    plain = told().to_dict()
+    assert json.loads(json.dumps(plain, allow_nan=False)) == plain
+    frame = told().to_frame()
+    assert frame.height == UNITS * 4 + 2
+    assert frame["age (pages)"][0] == told().modes[0].ages.units[0].age.value
+    curve = told().curve
+    assert (np.diff(curve.median) >= 0.0).all()
+    assert (curve.low <= curve.median).all()
+    assert (curve.median <= curve.high).all()
+    assert np.interp(told().b50.age.value, curve.age, curve.median) == pytest.approx(0.5, abs=0.05)
+
+
+def test_the_same_data_and_seed_give_the_same_ends() -> None:
+    few = of(indicator("torque", linear(RATE[:2]), 2.0), names=NAMES[:14], age=AGE[:14])
+    calls: list[tuple[int, int]] = []
+    once = endings(few, seed=4, progress=lambda done, every: calls.append((done, every)))
+    assert once.to_dict() == endings(few, seed=4).to_dict()
+    assert calls == [(1, 1)]
+    assert "2 units tell little of how units differ" in " ".join(once.notes)
+
+
+def test_a_unit_that_tells_nothing_is_one_of_the_others() -> None:
+    value = linear(RATE[:4])
+    value[-7:] = np.nan
+    found = endings(of(indicator("torque", value, 2.0), names=NAMES[:28], age=AGE[:28]))
+    assert "no run of F4 tells it: taken as any new unit" in found.summary()
+    wide, narrow = (found.units[i].age.age for i in (3, 0))
+    assert wide.high / wide.low > 1.5 * narrow.high / narrow.low
+
+
+def test_far_and_wide_ends_are_said() -> None:
+    """Two units that have hardly begun to grow: neither law nor spread nor age is told."""
+    names, age = ("A",) * 4 + ("B",) * 4, np.tile([0.0, 10.0, 20.0, 30.0], 2)
+    value = linear(np.array([0.002, 0.003]), age[:4])
+    notes = " ".join(endings(of(indicator("torque", value, 2.0), names=names, age=age)).notes)
+    assert "which law of growth holds is not told for torque" in notes
+    assert "the end of A, B is not told within a factor of 2" in notes
+    assert "beyond 3 times the age followed" in notes
+
+
+def test_what_accumulates_is_summed_over_age() -> None:
+    """1e-3 (1 + r t) sums to 1e-3 (t + r t^2 / 2); the limit 2 is reached at the root of that."""
+    growth = fit_growth(NAMES, AGE, 1e-3 * linear(RATE), 1e-3, laws=["linear"])
+    for each, r in zip(growth.reaches(2.0, accumulates=True).units, RATE, strict=True):
+        assert each.age.value == pytest.approx((math.sqrt(1.0 + 4000.0 * r) - 1.0) / r, rel=1e-3)
+    steady = fit_growth(["A"] * 3, [0, 1, 2], [0.5] * 3, 1e-3, laws=["constant"])
+    assert steady.reaches(3.0, accumulates=True).units[0].age.value == pytest.approx(6.0, rel=1e-3)
+
+
+@pytest.mark.parametrize("law", [law.name for law in growth_module.LAWS])
+def test_the_integral_of_each_law_is_that_of_its_curve(law: str) -> None:
+    """Summed anew by the trapezium rule, also where a layer dries out soon after."""
+    units = growth_posterior.Units(
+        *(next(each for each in growth_module.LAWS if each.name == law), np.zeros((4, 3))),
+        np.array([[-2.0, 0.0, 1.0]] * 4),
+        *(np.array([[-0.9], [-0.3], [0.1], [1.0]]), np.ones((4, 1))),
+    )
+    found = growth_module.ages_of_sum(units, np.full((4, 1), math.log(1.7)))
+    for i, j in np.ndindex(found.shape):
+        t = np.linspace(0.0, found[i, j], 20_001)
+        x, a = units.size[i, j], units.shape[i, 0]
+        path = np.exp(units.law.log_growth(np.array(x), t, np.array(a)))
+        # Within 1e-3 of the age, however steeply the sum rises there.
+        assert np.trapezoid(path, t) == pytest.approx(1.7, abs=1e-3 * max(1.0, path[-1] * found[i, j]))
+
+
+def test_a_limit_that_is_known_badly_widens_the_age() -> None:
+    growth = fit_growth(NAMES, AGE, linear(RATE), 1e-3, laws=["linear"])
+    sharp, vague = (growth.reaches(2.0, limit_error=e).units[2].age for e in (0.0, 0.05))
+    # d ln t / d ln limit is 2 / (2 - 1) on a line from 1: 10 % of 1000, times 2 x 1.645.
+    assert vague.high - vague.low == pytest.approx(329.0, rel=0.1)
+    assert sharp.high - sharp.low < 0.2 * (vague.high - vague.low)
+    with pytest.raises(ParameterError, match="must not be negative"):
+        growth.reaches(2.0, limit_error=-1.0)
+
+
+def test_runs_that_scatter_together_move_together() -> None:
+    random = np.random.default_rng(0)
+    one, other = random.standard_normal((2, 400))
+    third = 0.8 * one + 0.6 * other
+    found = joined.correlations([one, other, np.where(np.arange(400) < 300, third, np.nan)])
+    assert found[0, 1] == pytest.approx(0.0, abs=0.01)
+    assert found[0, 2] == pytest.approx(0.8, abs=0.05)
+    keys = random.exponential(size=(4000, 3))
+    order = joined.order_by(keys, joined.ranks_of(4000, found, random))
+    joint = np.take_along_axis(keys, order, axis=0)
+    assert np.corrcoef(np.log(joint).T)[0, 2] == pytest.approx(0.75, abs=0.08)
+    assert np.sort(joint, axis=0) == pytest.approx(np.sort(keys, axis=0))
+
+
+def test_a_run_narrows_as_the_normal_law_says() -> None:
+    """An age known to 100, read with an error of 100: sqrt(1/2) of the interval is left, twice sqrt(1/3)."""
+    random = np.random.default_rng(0)
+    age = 1000.0 + 100.0 * random.standard_normal(20_000)
+    value = np.stack([age, 0.0 * age], axis=1)
+    error = np.full((age.size, 1), 100.0)
+    before = next_run.width(age)
+    assert before == pytest.approx(329.0, rel=0.03)
+    once = next_run.widths_after(age, [value], [error], np.eye(1), random)
+    assert once == pytest.approx([before * math.sqrt(0.5), before], rel=0.05)
+    twice = next_run.widths_after(age, [value, value], [error, error], np.eye(2), random)
+    assert twice[0] == pytest.approx(before * math.sqrt(1.0 / 3.0), rel=0.05)
+    together = np.array([[1.0, 0.9999], [0.9999, 1.0]])
+    same = next_run.widths_after(age, [value, value], [error, error], together, random)
+    assert same[0] == pytest.approx(before * math.sqrt(0.5), rel=0.06)
+
+
+def test_what_to_measure_next_is_said() -> None:
+    runs = told().next_runs
+    assert all(runs[i].narrowing >= runs[i + 1].narrowing for i in range(len(runs) - 1))
+    assert all(0.0 < run.after < 1.1 * run.before for run in runs)
+    assert not [run for run in runs if run.unit == "F6"]
+    of_f1 = sorted((run for run in runs if run.unit == "F1"), key=lambda run: run.age)
+    assert len(of_f1) == 3
+    assert of_f1[-1].after < of_f1[0].after
+    assert "again at" in told().advice[0]
+    assert "the interval of its end narrows from" in told().advice[0]
+    assert any(run.unit is None for run in runs)
