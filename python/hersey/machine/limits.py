@@ -7,7 +7,7 @@ from typing import Annotated
 
 from pydantic.dataclasses import dataclass
 
-from hersey.files.toml import Quantity, Table, Text
+from hersey.files.toml import Quantity, Share, Table, Text
 from hersey.motion.simulation import Drivetrain
 
 _Speed = Annotated[float, Quantity("belt speed", 1e-6, 1e3)]
@@ -53,8 +53,12 @@ class Limits(Table):
 
 @dataclass(frozen=True)
 class OperatingPoint(Table):
-    """A named state of the machine: belt speed (m/s) and temperature (K)."""
+    """A named state of the machine: belt speed (m/s) and temperature (K).
+
+    ``share`` is that of the running time; None for all points alike.
+    """
 
     name: Text
     speed: _Speed
     temperature: Annotated[float, Quantity("temperature", 150.0, 1000.0)]
+    share: Share | None = None

@@ -22,6 +22,7 @@ from hersey.lubrication.contact import Contact
 from hersey.lubrication.lubricant import Lubricant
 from hersey.lubrication.mixed import Asperities, BoundaryFriction, MixedContact, mixed_contact
 from hersey.lubrication.mixed_drag import MixedDrag
+from hersey.machine.duty import GearTable, LifeTable, refuse_other_than_all
 from hersey.machine.heat import HeatTable
 from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.nip import ContactTable, LubricantTable
@@ -48,7 +49,8 @@ class Machine:
     ``sensors`` are those of its logs, so far as a log's own mapping states no errors of them. ``rest`` is
     what the drive takes besides the film, ``heat`` what makes its temperature, from a cold start.
     ``asperities`` and ``boundary`` share the load with the film; ``static_friction`` is that of a belt at
-    rest (None: e times the drag at the stick speed).
+    rest (None: e times the drag at the stick speed). ``life`` and ``gear`` say how it is used, and what a
+    life test asks of it.
     """
 
     stiffness: float
@@ -67,6 +69,8 @@ class Machine:
     asperities: Asperities | None = None
     boundary: BoundaryFriction | None = None
     static_friction: float | None = None
+    life: LifeTable = field(default_factory=LifeTable)
+    gear: GearTable | None = None
 
     @property
     def mixed(self) -> MixedContact | None:
@@ -178,6 +182,8 @@ class _MachineFile(Table):
     asperities: AsperitiesTable | None = None
     boundary: BoundaryTable | None = None
     heat: HeatTable | None = None
+    life: LifeTable = field(default_factory=LifeTable)
+    gear: GearTable | None = None
 
 
 def read_machine(path: str | Path) -> Machine:
@@ -187,6 +193,7 @@ def read_machine(path: str | Path) -> Machine:
     ``[sensors.torque]``, ``[sensors.speed]`` and ``[sensors.temperature]`` with the errors of a mapping, and
     ``[rest]``, numbers or a log beside the file, and ``[heat]``. ``[asperities]`` and ``[boundary]`` say what
     shares the load with the film; they need each other, ``[contact]`` with a roughness, and ``[lubricant]``.
+    ``[life]`` and ``[gear]`` say how it is used, and what a life test asks of it.
 
     Every value is a string such as ``"11 N/mm"``; an uncertainty is ``"10 %"`` or ``"0.1 mm/s to 1 mm/s"``
     (see `Uncertainty`).
@@ -221,6 +228,12 @@ def read_machine(path: str | Path) -> Machine:
     if tables.boundary is not None:
         with naming(f"{path.name}: [boundary]"):
             boundary = tables.boundary.boundary()
+    with naming(f"{path.name}: points"):
+        refuse_other_than_all(tables.points)
+    gear = None
+    if tables.gear is not None:
+        with naming(f"{path.name}: [gear]"):
+            gear = tables.gear.gear(path)
     if tables.heat is not None:
         with naming(f"{path.name}: [heat]"):
             heat = tables.heat.heat()
@@ -237,6 +250,8 @@ def read_machine(path: str | Path) -> Machine:
         boundary=boundary,
         static_friction=None if tables.boundary is None else tables.boundary.static_friction,
         heat=heat,
+        life=tables.life,
+        gear=gear,
     )
     with naming(path.name):
         _ = machine.mixed  # what it lacks is said here, with the file

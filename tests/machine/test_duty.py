@@ -1,0 +1,120 @@
+"""The tables [life] and [gear], and shares of the points: values, and files with one mistake each."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from hersey.errors import HerseyError
+from hersey.machine import Machine, read_machine
+
+TEXT = """
+[drivetrain]
+stiffness = "11 N/mm"
+mass = "11 kg"
+roll_radius = "15 mm"
+stick_speed = "3 mm/s"
+
+[life]
+coldest = "15 degC"
+travel = "300 mm"
+energy = "10 J"
+continuous_torque = "0.5 N*m"
+
+[gear]
+torque = "3 N*m"
+cycles = 1e6
+slope = 7
+second_slope = "haibach"
+endurance = "1 N*m"
+ultimate = "20 N*m"
+ratio = 3.5
+starts = "20 per 1000 pages"
+cold_starts = "10 %"
+damage = 0.5
+duty = "duty.csv"
+duty_age = "1200 pages"
+
+[[points]]
+name = "full"
+speed = "200 mm/s"
+temperature = "180 degC"
+share = "60 %"
+
+[[points]]
+name = "thick"
+speed = "45 mm/s"
+temperature = "180 degC"
+share = "40 %"
+"""
+
+
+def read(folder: Path, old: str = "", new: str = "") -> Machine:
+    assert old in TEXT
+    (folder / "duty.csv").write_text("")
+    path = folder / "machine.toml"
+    path.write_text(TEXT.replace(old, new) if old else TEXT)
+    return read_machine(path)
+
+
+def test_values_in_si(tmp_path: Path) -> None:
+    machine = read(tmp_path)
+    assert vars(machine.life) == pytest.approx(
+        {"coldest": 288.15, "travel": 0.3, "energy": 10.0, "continuous_torque": 0.5}
+    )
+    gear = machine.gear
+    assert gear is not None
+    assert (gear.torque, gear.cycles, gear.slope, gear.second_slope) == (3.0, 1e6, 7.0, "haibach")
+    assert (gear.endurance, gear.ultimate, gear.ratio, gear.damage) == (1.0, 20.0, 3.5, 0.5)
+    assert (gear.starts, gear.cold_starts, gear.duty_age) == ((20.0, "1000 pages"), 0.1, "1200 pages")
+    assert gear.duty == str(tmp_path / "duty.csv")
+    assert [point.share for point in machine.points] == [0.6, 0.4]
+
+
+def test_nothing_is_needed(tmp_path: Path) -> None:
+    path = tmp_path / "machine.toml"
+    path.write_text(TEXT.partition("[life]")[0])
+    machine = read_machine(path)
+    assert set(vars(machine.life).values()) == {None}
+    assert machine.gear is None
+
+
+def test_starts_of_one_page(tmp_path: Path) -> None:
+    gear = read(tmp_path, '"20 per 1000 pages"', '"0.02 per page"').gear
+    assert gear is not None
+    assert gear.starts == (0.02, "1 page")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ('"15 degC"', '"15 mm"', "life.coldest: unit 'mm' is not a unit of temperature"),
+        ('"300 mm"', "300", 'life.travel is 300: write a string with its unit, such as "300 mm"'),
+        ('"10 J"', '"-10 J"', "life.energy is -10 J: it must be greater than 0"),
+        ('"10 J"', '"10 N"', "life.energy: unit 'N' is not a unit of energy"),
+        ("coldest", "cold", "[life] has no key 'cold': coldest"),
+        ("slope = 7\n", "", "[gear] lacks 'slope'"),
+        ("slope = 7", "slope = -7", "gear.slope is -7: it must be greater than 0"),
+        ('"haibach"', '"miner"', "gear.second_slope is 'miner': write a number such as 9, or 'haibach'"),
+        ("20 per 1000", "20 x 1000", "gear.starts is '20 x 1000 pages': write how many in what age"),
+        ("20 per", "0 per", "gear.starts is '0 per 1000 pages': write how many in what age"),
+        ('"10 %"', '"110 %"', "[gear]: cold_starts are 110 %: no more than 100 % can be cold"),
+        ('starts = "20 per 1000 pages"\ncold', "cold", "[gear] has cold_starts without a number of starts"),
+        ('duty = "duty.csv"\n', "", '[gear] has a duty_age without a log: add duty = "duty.csv"'),
+        (
+            'duty_age = "1200 pages"',
+            "",
+            '[gear] has a duty without the age it took: add duty_age = "1200 pages"',
+        ),
+        ('"1200 pages"', '"1200"', "gear.duty_age is '1200': write a number and what it counts"),
+        ("duty.csv", "other.csv", "[gear] names the log other.csv, and there is no such file beside it"),
+        ('"40 %"', '"30 %"', "points: the shares sum up to 90 %: they are to make 100 %"),
+        ('share = "40 %"', "", "points: 'thick' lacks a share, and others have one: state all, or none"),
+        ('"40 %"', "0.4", "points 2.share is 0.4: write a share such as '20 %'"),
+    ],
+)
+def test_a_mistake_is_told_with_its_key(tmp_path: Path, old: str, new: str, told: str) -> None:
+    with pytest.raises(HerseyError) as raised:
+        read(tmp_path, old, new)
+    assert str(raised.value).startswith(f"machine.toml: {told}")
