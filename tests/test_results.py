@@ -12,6 +12,7 @@ import altair as alt
 import numpy as np
 import polars as pl
 import pytest
+from benchmarks.drift import other, table
 
 import hersey
 from hersey import testbench
@@ -20,6 +21,7 @@ from hersey.document.parts import (
     ComparisonPart,
     CyclesPart,
     DesignPart,
+    DriftPart,
     DrivePart,
     FilmPart,
     FitPart,
@@ -163,6 +165,7 @@ RESULTS: dict[str, tuple[Callable[[], Any], type[Part]]] = {
         lambda: hersey.weibull([4.0, 6.0, 7.0, 9.0], [True, True, False, True], unit="h"),
         PopulationPart,
     ),
+    "Drift": (lambda: hersey.fit_drift(table(other("lubricant", 1, units=2, logs=3))), DriftPart),
     "ModelComparison": (models, ModelsPart),
     "LogComparison": (lambda: hersey.compare(points(), points()), ComparisonPart),
     "TestDesign": (lambda: hersey.design(models(), count=1), DesignPart),

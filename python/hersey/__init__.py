@@ -54,6 +54,7 @@ if TYPE_CHECKING:
     from hersey.identification import CycleRecord, IdentifiedDrive, cycles, identify
     from hersey.inspection import Inspection, inspect
     from hersey.life.campaign import Campaign
+    from hersey.life.drift import Drift, fit_drift
     from hersey.life.fatigue import (
         RainflowCycles,
         SNCurve,
@@ -147,6 +148,7 @@ _HOMES = {
     "life.fatigue": (
         "RainflowCycles SNCurve damage_rate life_of miner_damage rainflow_cycles stick_slip_damage_rate"
     ),
+    "life.drift": "Drift fit_drift",
     "life.population": "BLife Population weibull",
     "life.campaign": "Campaign",
 }
@@ -164,6 +166,7 @@ __all__ = [
     "Disturbance",
     "Drag",
     "DragTable",
+    "Drift",
     "Drivetrain",
     "Estimate",
     "Film",
@@ -212,6 +215,7 @@ __all__ = [
     "drag_torque",
     "film_thickness",
     "fit",
+    "fit_drift",
     "hersey_collapse",
     "hysteresis",
     "hysteresis_sweep",

@@ -11,6 +11,7 @@ from typing import Any
 import altair as alt
 import numpy as np
 import pytest
+from benchmarks.drift import other, table
 
 import hersey
 from hersey import Drag, Drivetrain
@@ -153,6 +154,7 @@ MADE: dict[str, Callable[[], Any]] = {
     "Plan": plan,
     "WarmUp": warm_up,
     "Population": lambda: hersey.weibull([4.0, 6.0, 7.0, 9.0], [True, True, False, True], unit="h"),
+    "Drift": lambda: hersey.fit_drift(table(other("lubricant", 1, units=2, logs=3))),
 }
 
 
@@ -183,7 +185,7 @@ def layers(name: str) -> Iterator[list[dict[str, Any]]]:
             values = part.get("data", {}).get("values", []) if isinstance(part.get("data"), dict) else []
             if values:
                 yield values
-            for key in ("layer", "vconcat"):
+            for key in ("layer", "vconcat", "hconcat"):
                 for inner in part.get(key, []):
                     yield from walk(inner)
 
@@ -421,3 +423,14 @@ def test_a_motion_with_temperature_as_a_state_shows_it() -> None:
     assert [row["value"] for row in panel if row["body"] == "roll"] == pytest.approx(
         run.roll_temperature - 273.15
     )
+
+
+def test_drift_shows_each_unit_as_far_as_it_was_followed() -> None:
+    drift = result_of("Drift")
+    units = [rows for rows in layers("Drift") if "unit" in rows[0]]
+    assert len(units) == len(drift.quantities)
+    level = [row for row in units[0] if row["unit"] == drift.units[1]]
+    assert level[-1]["age"] == drift.last_age[1]
+    assert [row["value"] for row in level] == pytest.approx(1e3 * drift.quantities[0].curves[1])
+    band = next(rows for rows in layers("Drift") if "low" in rows[0])
+    assert all(row["low"] < row["value"] < row["high"] for row in band)

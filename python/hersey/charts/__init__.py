@@ -24,6 +24,7 @@ operating_map  the operating map
 plan           a drive profile and the motion
 warm_up        speed, drag and temperatures of a warm-up
 weibull        share failed against age
+drift          what moved with age, a panel per quantity
 =============  ====================================================
 """
 
@@ -63,6 +64,7 @@ CHARTS = {
     "Plan": ("plan", "plan_chart"),
     "WarmUp": ("warm_up", "warm_up_chart"),
     "Population": ("weibull", "weibull_chart"),
+    "Drift": ("drift", "drift_chart"),
 }
 
 

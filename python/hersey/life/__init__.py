@@ -14,6 +14,13 @@ limit_ages        the ages at which units and population reach a limit
 growth            the growth of an indicator over units
 joined            draws of several ways to fail side by side
 next_run          what to measure next, and how far it would narrow an interval
+aged_torque       the torque of a drive at an age, by its parts
+units_with_age    values of runs that change with age, differently in each unit
+drift_fit         the joint fit of all runs
+drift_quantities  what moved with age, in numbers
+drift_readings    what a drift points to
+drift             what moved with age, and what it points to
+fatigue           cycles of torque counted, and the damage that they do to a part
 population        ages at failure over many units: Weibull law, B10 and B50
 ending            what ends each unit, and when
 fatigue           cycles of torque counted, and the damage that they do to a part

@@ -11,6 +11,7 @@ carried     what carries the torque of the drive
 motion      trajectories, cycles, sweeps
 stability   bands, maps, plans, warm-ups
 life        ages at failure
+drift       what moved with age
 models      candidates, comparisons of logs, designs
 inspection  what a log holds
 campaign    runs of many units at many ages
@@ -24,6 +25,7 @@ from hersey.document.parts.analysis import Analysis
 from hersey.document.parts.campaign import CampaignPart
 from hersey.document.parts.carried import CarriedPart
 from hersey.document.parts.cycles import CyclesPart, DrivePart
+from hersey.document.parts.drift import DriftPart
 from hersey.document.parts.figures import FiguresPart
 from hersey.document.parts.film import FilmPart, FilmPoint, FilmStatesPart, MeasuredFilmPart, VerdictPart
 from hersey.document.parts.fit import (
@@ -101,6 +103,7 @@ __all__ = [
     "CyclesPart",
     "DesignPart",
     "DisturbancePart",
+    "DriftPart",
     "DrivePart",
     "FiguresPart",
     "FilmPart",

@@ -1,0 +1,76 @@
+"""What moved with age: a panel per quantity, units as thin lines, all of them as a line with its band."""
+
+from __future__ import annotations
+
+import altair as alt
+import numpy as np
+
+from hersey.charts.style import BLUE, INK, WIDTH, Chart, plot, rows_of, tip
+from hersey.life.drift import Drift
+from hersey.life.drift_quantities import Quantity
+
+#: Units drawn at the most; of more, so many at even places in their order.
+_DRAWN = 60
+_COLUMNS, _GAP, _AXIS, _HEIGHT = 2, 18, 52, 170
+#: How a quantity is shown: factor from its SI unit, and unit.
+_SHOWN = {
+    "rad/s": (60.0 / (2.0 * np.pi), "rpm"),
+    "J/mol": (1e-3, "kJ/mol"),
+    "N m": (1e3, "mN·m"),
+    "1": (1.0, "1"),
+}
+
+
+def drift_chart(drift: Drift) -> Chart:
+    """Return each quantity against age; a unit ends where it was last seen."""
+    count = len(drift.units)
+    chosen = np.unique(np.linspace(0, count - 1, min(count, _DRAWN)).round().astype(int))
+    panels = [_panel(drift, each, chosen.tolist()) for each in drift.quantities]
+    rows = [alt.hconcat(*panels[i : i + _COLUMNS], spacing=_GAP) for i in range(0, len(panels), _COLUMNS)]
+    some = "" if len(chosen) == count else f" ({len(chosen)} of {count})"
+    words = f"thin: units{some}; thick, with 90 % band: all units"
+    title = alt.Title("Drift", subtitle=[drift.headline(), words])
+    stacked: Chart = alt.vconcat(*rows, spacing=14, title=title)
+    return stacked
+
+
+def _panel(drift: Drift, quantity: Quantity, chosen: list[int]) -> Chart:
+    scale, unit = _SHOWN[quantity.si]
+    x = alt.X("age:Q", title=f"Age ({drift.age_unit or 'as given'})", axis=alt.Axis(format="~s", tickCount=5))
+    title = f"{_capital(quantity.name)} ({unit})"
+    y = alt.Y(
+        "value:Q", title=title, scale=alt.Scale(zero=False), axis=alt.Axis(minExtent=_AXIS, tickCount=5)
+    )
+    low, middle, high = scale * quantity.band
+    seen = np.isfinite(middle) & np.isfinite(low) & np.isfinite(high)
+    band = plot(rows_of(age=drift.ages[seen], value=middle[seen], low=low[seen], high=high[seen]))
+    tips = [tip("age", "age"), tip("value", quantity.name), tip("low", "from"), tip("high", "to")]
+    layers = [
+        band.mark_area(color=BLUE, opacity=0.18).encode(x=x, y=alt.Y("low:Q", title=title), y2="high:Q"),
+        _lines(drift, quantity, chosen, scale).encode(
+            x=x,
+            y=y,
+            detail="unit:N",
+            tooltip=[alt.Tooltip("unit:N"), tip("age", "age"), tip("value", quantity.name)],
+        ),
+        band.mark_line(color=BLUE, strokeWidth=2.5).encode(x=x, y=y, tooltip=tips),
+    ]
+    heading = alt.Title(quantity.where, fontSize=11, fontWeight="normal", anchor="start")
+    width = (WIDTH - _GAP - _AXIS) // _COLUMNS
+    panel: Chart = alt.layer(*layers, title=heading, width=width, height=_HEIGHT)
+    return panel
+
+
+def _lines(drift: Drift, quantity: Quantity, chosen: list[int], scale: float) -> alt.Chart:
+    rows = []
+    for i in chosen:
+        ages = np.append(drift.ages[drift.ages < drift.last_age[i]], drift.last_age[i])
+        values = scale * np.interp(ages, drift.ages, quantity.curves[i])
+        seen = np.isfinite(values)
+        rows += rows_of(unit=[drift.units[i]] * int(seen.sum()), age=ages[seen], value=values[seen])
+    chart: alt.Chart = plot(rows).mark_line(color=INK, strokeWidth=0.8, opacity=0.55)
+    return chart
+
+
+def _capital(words: str) -> str:
+    return words[:1].upper() + words[1:]

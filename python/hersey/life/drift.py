@@ -1,0 +1,301 @@
+"""Drift: what of the torque of a drive moved with age, in each unit and over all, and what that points to.
+
+All runs of all units are fitted together (`drift_fit`): one law of the torque (`aged_torque`), the values
+of each unit when new and their change with age, and how units and runs scatter about that. Quantities that
+anyone can read off a Stribeck curve follow with their intervals; a reading of the change is evidence.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hersey.arrays import FloatArray
+from hersey.errors import InsufficientDataError, ParameterError
+from hersey.life.aged_torque import OWN
+from hersey.life.campaign import Campaign
+from hersey.life.drift_fit import Dwells, Fitted, fit
+from hersey.life.drift_quantities import Quantity, quantities_of
+from hersey.life.drift_readings import Change, Reading, read
+from hersey.result import Result, json_record, json_value
+from hersey.units import celsius, rpm
+
+if TYPE_CHECKING:
+    import polars as pl
+
+#: Up to so many units tell little of how units differ.
+_FEW = 3
+
+
+@dataclass(frozen=True, repr=False)
+class Drift(Result):
+    """What moved with age, and what it points to.
+
+    ``reading`` is that of the units together, ``readings`` that of each; `Reading.sets` holds more than one
+    where the data cannot tell them apart.
+    """
+
+    units: tuple[str, ...]
+    age_unit: str
+    oldest: float
+    last_age: tuple[float, ...]  #: of each unit
+    runs: int
+    dwells: int
+    quantities: tuple[Quantity, ...]
+    reading: Reading
+    readings: tuple[Reading, ...]
+    ages: FloatArray
+    scatter: float  #: of dwells beyond their stated errors, relative
+    notes: tuple[str, ...]
+    fitted: Fitted = field(repr=False)
+
+    def __getitem__(self, name: str) -> Quantity:
+        """Return a quantity by its name."""
+        return next(each for each in self.quantities if each.name == name)
+
+    def headline(self) -> str:
+        """Return what the drift points to."""
+        return f"{len(self.units)} units up to {self._age(self.oldest)}: {_pointed(self.reading)}"
+
+    def summary(self) -> str:
+        """Return what moved, and the readings, as text."""
+        lines = [
+            self.headline(),
+            f"{self.runs} runs, {self.dwells} dwells; changes up to then, with 90 % intervals:",
+            *(f"  {each}" for each in self.quantities),
+            *(_evidence(each) for each in self.reading.sure),
+        ]
+        if len(self.reading.sets) > 1:
+            lines.append("These readings cannot be told apart:")
+            lines += [f"  {_listed(each) or 'nothing moved'}" for each in self.reading.sets]
+        lines += self._of_units()
+        if any(self.reading.sets):
+            lines.append(
+                "A reading says what would do this, and is no proof: something else may do the same."
+            )
+        return "\n".join([*lines, *(f"- {note}" for note in self.notes)])
+
+    def _of_units(self) -> list[str]:
+        """A line for each thing that is said of units."""
+        if len(self.units) == 1:
+            return []
+        told: dict[str, list[str]] = {}
+        for unit, reading in zip(self.units, self.readings, strict=True):
+            told.setdefault(_of_one(reading), []).append(unit)
+        lines = []
+        for words, units in sorted(told.items(), key=lambda each: -len(each[1])):
+            named = ", ".join(units[:_NAMED]) + f" and {len(units) - _NAMED} more" * (len(units) > _NAMED)
+            lines.append(f"  {named}: {words}")
+        return ["Unit by unit:", *lines]
+
+    def _age(self, age: float) -> str:
+        return f"{age:.6g} {self.age_unit}".strip()
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return what moved and what it points to, in SI."""
+        told = {name: value for name, value in vars(self).items() if name != "fitted"}
+        readings = [
+            {"unit": unit, "sets": json_value(reading.sets)}
+            for unit, reading in zip(self.units, self.readings, strict=True)
+        ]
+        return json_record(
+            {
+                **told,
+                "reading": {"sets": json_value(self.reading.sets)},
+                "readings": readings,
+                "headline": self.headline(),
+            }
+        )
+
+    def to_frame(self) -> pl.DataFrame:
+        """Return the change of each quantity, of all units (empty name) and of each."""
+        import polars as pl
+
+        rows = [
+            (unit, each.name, each.where, each.si, each.relative, change.value, change.low, change.high)
+            for each in self.quantities
+            for unit, change in zip(("", *self.units), (each.change, *each.units), strict=True)
+        ]
+        names = ("unit", "quantity", "where", "si", "relative", "change (si)", "low (si)", "high (si)")
+        return pl.DataFrame(rows, schema=names, orient="row")
+
+
+#: How many units are named in a line.
+_NAMED = 12
+#: What each ageing would do, told beside its reading.
+_WOULD = {
+    "lubricant": "a viscosity that grows shifts torque to lower speeds, that of least torque with it",
+    "film": "a layer of oil that shrinks brings the damping exponent toward 0 where it is cold and fast, and "
+    "leaves the slow and hot alone",
+    "contact": "faces that wear move torque where it is hot and slow, and the speed of least torque with it",
+    "load or grip": "a load moves torque at all speeds and temperatures alike",
+    "rest of the drive": "bearings and gears move torque by as much at all temperatures",
+    "temperature law": "another lubricant, or a sensor of temperature that drifts, does so",
+}
+
+
+def _listed(changes: tuple[Change, ...]) -> str:
+    words = [each.words for each in changes]
+    return words[0] if len(words) == 1 else ", ".join(words[:-1]) + f" and {words[-1]}" if words else ""
+
+
+def _pointed(reading: Reading) -> str:
+    """What a reading points to, in a clause."""
+    if not any(reading.sets):
+        return "nothing moved with age beyond the errors"
+    if len(reading.sets) == 1:
+        return f"the drift points to {_listed(reading.sure)}"
+    if () in reading.sets:
+        return "whether anything moved with age cannot be told"
+    if reading.sure:
+        return f"the drift points to {_listed(reading.sure)}; what else moved cannot be told apart"
+    return "something moved with age; what it is cannot be told apart"
+
+
+def _of_one(reading: Reading) -> str:
+    """What is said of a unit."""
+    perhaps = {each.words: None for every in reading.sets for each in every if each not in reading.sure}
+    for each in reading.sure:
+        perhaps.pop(each.words, None)
+    words = _listed(reading.sure) or "nothing for sure" * bool(perhaps) or "nothing"
+    return words + f"; perhaps {', '.join(perhaps)}" * bool(perhaps)
+
+
+def _evidence(change: Change) -> str:
+    where = f"at {rpm(change.speed):.3g} rpm" + (
+        "" if change.temperature is None else f", {celsius(change.temperature):.0f} degC"
+    )
+    mean, low, high = (f"{1e3 * each:+.3g}" for each in (change.torque, change.low, change.high))
+    return f"Points to {change.words}: {mean} mN m [{low}, {high}] {where}; {_WOULD[change.name]}."
+
+
+def fit_drift(runs: Campaign | pl.DataFrame) -> Drift:
+    """Fit all runs of all units together and tell what moved with age.
+
+    Parameters
+    ----------
+    runs
+        A campaign, or a table as `Campaign.dwells` returns it: a row per dwell with ``run_id``, ``unit``,
+        ``age (...)``, ``speed (rad/s)``, ``torque (N m)``, ``torque error (N m)`` and ``temperature (K)``.
+
+    Raises
+    ------
+    ParameterError
+        If a column is missing, or a number is not one.
+    InsufficientDataError
+        If no unit was seen at two ages.
+    """
+    table = runs.dwells() if isinstance(runs, Campaign) else runs
+    age_name = next((name for name in table.columns if name.startswith("age (")), "")
+    dwells, units, oldest = _dwells_of(table, age_name)
+    found = fit(dwells)
+    quantities, ages = quantities_of(found, oldest)
+    own, solved = len(OWN), found.solved
+    shared = solved.common[2 * own :]
+    together = read(
+        found.scales,
+        shared,
+        solved.mean[None, :own],
+        solved.mean[None, own:],
+        solved.mean_covariance[None, own:, own:],
+    )[0]
+    each = read(
+        found.scales,
+        shared,
+        solved.unit[:, :own],
+        solved.unit[:, own:],
+        solved.unit_covariance[:, own:, own:],
+    )
+    return Drift(
+        units=units,
+        age_unit=age_name.removeprefix("age (").removesuffix(")"),
+        oldest=oldest,
+        last_age=tuple(float(oldest * dwells.age[dwells.unit == u].max()) for u in range(len(units))),
+        runs=int(dwells.age.size),
+        dwells=int(dwells.given.sum()),
+        quantities=quantities,
+        reading=together,
+        readings=tuple(each),
+        ages=ages,
+        scatter=found.scatter,
+        notes=_notes(found, dwells, units),
+        fitted=found,
+    )
+
+
+def _dwells_of(table: pl.DataFrame, age_name: str) -> tuple[Dwells, tuple[str, ...], float]:
+    """The dwells as rows of runs, by unit and age; names of units; the oldest age."""
+    needed = ("run_id", "unit", "speed (rad/s)", "torque (N m)", "torque error (N m)", "temperature (K)")
+    missing = [name for name in needed if name not in table.columns] + ["age (...)"] * (not age_name)
+    if missing:
+        raise ParameterError(
+            f"the table of dwells has no column {', '.join(map(repr, missing))}: take Campaign.dwells()"
+        )
+    table = table.sort("unit", age_name, "run_id", maintain_order=True)
+    numbers = {name: table[name].cast(float).fill_null(np.nan).to_numpy() for name in (age_name, *needed[2:])}
+    speed, torque, error, temperature = (numbers[name] for name in needed[2:])
+    for name, column in numbers.items():
+        fine = np.isfinite(column) | (np.isnan(column) & (name == "temperature (K)"))
+        for i in np.flatnonzero(~fine):
+            raise ParameterError(f"{name} of dwell {i + 1} (run {table['run_id'][int(i)]}) is no number")
+    torque, speed = torque * np.sign(speed), np.abs(speed)
+    for i in np.flatnonzero(speed == 0.0):
+        raise ParameterError(f"speed of dwell {i + 1} (run {table['run_id'][int(i)]}) is 0: leave it out")
+    unknown = np.isnan(temperature)
+    if unknown.any() and not unknown.all():
+        run = table["run_id"][int(np.flatnonzero(unknown)[0])]
+        raise ParameterError(
+            f"run {run} has dwells without a temperature, others have one: leave out the one or the other"
+        )
+    if not table.height:
+        raise InsufficientDataError("there is no dwell: add runs to the campaign")
+    run_ids, unit_names = table["run_id"].to_numpy(), table["unit"].cast(str).to_list()
+    first = np.flatnonzero(np.r_[True, run_ids[1:] != run_ids[:-1]])
+    counts = np.diff(np.r_[first, run_ids.size])
+    row, column = np.repeat(np.arange(first.size), counts), np.arange(run_ids.size) - np.repeat(first, counts)
+    given = np.zeros((first.size, int(counts.max())), dtype=bool)
+    given[row, column] = True
+
+    def filled(values: FloatArray) -> FloatArray:
+        rows = np.repeat(values[first][:, None], given.shape[1], axis=1)
+        rows[row, column] = values
+        return rows
+
+    age = numbers[age_name][first]
+    of_run = [unit_names[i] for i in first.tolist()]
+    units = tuple(dict.fromkeys(of_run))
+    place = np.array([units.index(name) for name in units])[np.searchsorted(units, of_run)]
+    seen = [np.unique(age[place == u]).size for u in range(len(units))] if len(units) < 4 else None
+    twice = np.unique(np.stack([place, age]), axis=1).shape[1] > len(units) if seen is None else max(seen) > 1
+    if not twice:
+        raise InsufficientDataError(
+            "no unit was seen at two ages, so nothing tells what moved: add runs at another age"
+        )
+    oldest = float(age.max())
+    dwells = Dwells(
+        filled(speed), filled(temperature), filled(torque), filled(error), given, age / oldest, place
+    )
+    return dwells, units, oldest
+
+
+def _notes(found: Fitted, dwells: Dwells, units: tuple[str, ...]) -> tuple[str, ...]:
+    notes = []
+    if not found.scales.thermal:
+        notes.append(
+            "Temperatures tell nothing here: level, viscosity and the rest of the drive are told apart by "
+            "the shape over speed alone. Record dwells at several temperatures."
+        )
+    if len(units) == 1:
+        notes.append("One unit tells nothing of how units differ: the intervals are those of this unit.")
+    elif len(units) <= _FEW:
+        notes.append(f"{len(units)} units tell little of how units differ: the intervals over all are wide.")
+    ages = np.unique(np.stack([dwells.unit, dwells.age]), axis=1)[0]
+    alone = [units[int(u)] for u in np.flatnonzero(np.bincount(ages.astype(int)) < 2)]
+    if alone:
+        named = ", ".join(alone[:_NAMED]) + " and more" * (len(alone) > _NAMED)
+        notes.append(f"Seen at one age alone, so that what is said of them rests on the others: {named}.")
+    if not found.settled:
+        notes.append("The fit did not settle: take the numbers with care.")
+    return tuple(notes)

@@ -1,0 +1,144 @@
+"""The joint fit of all runs of all units: one law, values of each run, their change with age, and spreads."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hersey.arrays import BoolArray, FloatArray
+from hersey.life.aged_torque import OWN, Scales, expected, parts, told
+from hersey.life.units_with_age import Solved, Spread, Told, solve
+
+#: No torque is taken as known better than this, relative.
+_RESOLUTION = 2e-3
+#: Steps at the most, and the change of ln of a spread or of a value (in its deviation) at which they end.
+_STEPS, _SETTLED = 150, 2e-3
+#: Factor on the logarithm of a step of the spreads, which are slow by themselves.
+_HASTE = 1.7
+_NIL = 1e-6
+#: Prior of the population's start: means and deviations, in the order of `OWN`.
+_START = np.array([0.5, 0.0, 0.0, -1.5, -1.0, 0.0])
+_START_DEVIATION = np.array([1.0, _NIL, _NIL, 1.5, 1.5, _NIL])
+#: Deviation of the prior of its change up to the oldest run.
+_CHANGE_DEVIATION = np.array([1.0, 1.0, 0.3, 3.0, 2.0, 1.0])
+#: Usual spreads of units in start and in change, and of runs.
+_OF_START = np.array([0.01, 0.02, 0.01, 0.1, 0.1, 0.02])
+_OF_CHANGE = np.array([0.01, 0.02, 0.01, 0.1, 0.1, 0.02])
+_OF_RUNS = np.array([0.002, 0.005, 0.003, 0.03, 0.03, 0.005])
+
+
+@dataclass(frozen=True, repr=False)
+class Dwells:
+    """Dwells of runs as rows, filled up with dwells that ``given`` marks as none; runs by unit and age."""
+
+    speed: FloatArray
+    temperature: FloatArray
+    torque: FloatArray
+    error: FloatArray
+    given: BoolArray
+    age: FloatArray  #: of each run, over the greatest
+    unit: np.ndarray  #: its place, ascending
+
+
+@dataclass(frozen=True, repr=False)
+class Fitted:
+    """The fit: posterior, scales, and the scatter of dwells beyond their errors (relative)."""
+
+    solved: Solved
+    scales: Scales
+    spread: Spread
+    scatter: float
+    settled: bool
+    steps: int
+
+
+def fit(dwells: Dwells) -> Fitted:
+    """Return the joint fit, by Gauss-Newton steps that also renew the spreads."""
+    scales = _scales(dwells)
+    place = scales.places(np.where(dwells.given, dwells.temperature, dwells.temperature[:, :1]))
+    target = dwells.torque / scales.torque
+    size = np.where(dwells.given, np.abs(target), 1.0)
+    error = np.hypot(dwells.error / scales.torque, _RESOLUTION * size)
+    can = told(scales)
+    prior = _prior(scales, can)
+    shared = expected(scales)[0]
+    population = prior[0][: 2 * len(OWN)].copy()
+    usual = Spread(
+        np.where(np.tile(can, 2), np.concatenate([_OF_START, _OF_CHANGE]), _NIL) ** 2,
+        np.where(can, _OF_RUNS, _NIL) ** 2,
+    )
+    spread = Spread(9.0 * usual.units, 9.0 * usual.runs)
+    values = np.broadcast_to(population[: len(OWN)], (dwells.age.size, len(OWN))).copy()
+    scatter = 0.01
+    common = np.concatenate([population, shared])
+    settled = False
+    for step in range(1, _STEPS + 1):
+        now = parts(scales, dwells.speed, place, values, common[2 * len(OWN) :])
+        residual = np.where(dwells.given, target - now.torque, 0.0)
+        scatter = _scatter(residual, error, size, dwells)
+        weight = dwells.given / (error**2 + (scatter * size) ** 2)
+        slopes = np.concatenate([now.own, now.shared], axis=-1)
+        pseudo = residual + np.einsum("rdj,rj->rd", now.own, values) + now.shared @ common[2 * len(OWN) :]
+        weighted = slopes * weight[..., None]
+        information = Told(
+            weighted.swapaxes(1, 2) @ slopes, (weighted.swapaxes(1, 2) @ pseudo[..., None])[..., 0]
+        )
+        solved = solve(information, dwells.age, dwells.unit, spread, usual, prior)
+        step_size = min(1.0, 0.3 + 0.1 * step)
+        moved = np.abs(solved.run - values) / _CHANGE_DEVIATION
+        values = _within(values + step_size * (solved.run - values))
+        common = common + step_size * (solved.common - common)
+        renewed = solved.spread
+        spread = Spread(
+            spread.units * (renewed.units / spread.units) ** _HASTE,
+            spread.runs * (renewed.runs / spread.runs) ** _HASTE,
+        )
+        change = max(float(moved.max()), 0.0)
+        if step > 10 and change < _SETTLED:
+            settled = True
+            break
+    return Fitted(solved, scales, spread, scatter, settled, step)
+
+
+def _within(values: FloatArray) -> FloatArray:
+    """Values kept where the law has a sense."""
+    low = np.array([-3.0, -4.0, -0.6, -9.0, -9.0, -3.0])
+    high = np.array([10.0, 4.0, 0.6, 9.0, 6.0, 3.0])
+    return np.clip(values, low, high)
+
+
+def _scales(dwells: Dwells) -> Scales:
+    given = dwells.given
+    return Scales.of(dwells.speed[given], dwells.temperature[given], dwells.torque[given])
+
+
+def _prior(scales: Scales, can: BoolArray) -> tuple[FloatArray, FloatArray]:
+    mean, deviation = expected(scales)
+    return (
+        np.concatenate([_START, np.zeros(len(OWN)), mean]),
+        np.concatenate(
+            [
+                np.where(can, _START_DEVIATION, _NIL),
+                np.where(can, _CHANGE_DEVIATION, _NIL),
+                deviation,
+            ]
+        ),
+    )
+
+
+def _scatter(residual: FloatArray, error: FloatArray, size: FloatArray, dwells: Dwells) -> float:
+    """Relative scatter that brings the mean square of residuals over errors to one, by bisection."""
+    count = float(dwells.given.sum())
+    free = max(count - len(OWN) * dwells.age.size * 0.5, 0.3 * count)
+
+    def excess(scatter: float) -> float:
+        return float((residual**2 / (error**2 + (scatter * size) ** 2)).sum()) - free
+
+    if excess(0.0) <= 0.0:
+        return 0.0
+    low, high = 0.0, 1.0
+    for _ in range(40):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if excess(middle) > 0.0 else (low, middle)
+    return high

@@ -1,0 +1,91 @@
+"""Drift: each ageing read rightly from two independent sources, derivatives, refusals."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import polars as pl
+import pytest
+from benchmarks.drift import other, said, stand, table
+
+from hersey.errors import InsufficientDataError, ParameterError
+from hersey.life.aged_torque import OWN, Scales, expected, parts
+from hersey.life.drift import Drift, fit_drift
+from hersey.testbench import Ageing, population
+from hersey.testbench.drive import example_drive
+
+
+@cache
+def drift_of(source: str, kind: str, units: int = 8) -> Drift:
+    return fit_drift(table((stand if source == "stand" else other)(kind, 2, units)))
+
+
+@pytest.mark.parametrize(
+    ("kind", "name"),
+    [
+        ("nothing", "nothing"),
+        ("lubricant", "lubricant"),
+        ("film", "film"),
+        ("roughness", "contact"),
+        ("boundary friction", "contact"),
+        ("rest of the drive", "rest of the drive"),
+    ],
+)
+def test_what_ages_alone_is_read(kind: str, name: str) -> None:
+    assert said(drift_of("stand", kind).reading) == name
+
+
+@pytest.mark.parametrize("kind", ["nothing", "lubricant", "rest of the drive"])
+def test_what_ages_in_a_drive_of_other_laws_is_read(kind: str) -> None:
+    assert said(drift_of("other", kind).reading) == kind
+
+
+def test_the_rest_that_grows_is_told_in_newton_metres() -> None:
+    drift = drift_of("stand", "rest of the drive")
+    units = population(*example_drive(), ageing=Ageing(rest_growth=1e-6), units=8, seed=2)
+    told = drift["rest of the drive"]
+    true = [1e3 * 0.18 * 170e3 * unit.ageing.rest_growth for unit in units]
+    found = np.array([[1e3 * each.low, 1e3 * each.high] for each in told.units])
+    assert np.sum((found[:, 0] < true) & (true < found[:, 1])) >= 6
+    assert told.moved
+    assert not drift["speed of least torque"].moved
+
+
+def test_thicker_oil_moves_the_speed_of_least_torque_down_and_a_starved_film_the_exponent_up() -> None:
+    assert drift_of("stand", "lubricant")["speed of least torque"].change.high < 0.0
+    assert drift_of("stand", "film")["exponent, cold and fast"].change.low > 0.0
+    assert drift_of("stand", "roughness")["speed of least torque"].change.low > 0.0
+
+
+def test_derivatives_are_those_of_the_law() -> None:
+    random = np.random.default_rng(1)
+    speed, kelvin = np.exp(random.uniform(-0.7, 2.7, (3, 20))), random.uniform(333.0, 453.0, (3, 20))
+    scales = Scales.of(speed, kelvin, np.full(3, 0.2))
+    place = scales.places(kelvin)
+    own = np.array([1.0, 0.1, 0.05, -0.3, -0.3, 0.1]) + 0.1 * random.standard_normal((3, len(OWN)))
+    shared = expected(scales)[0] + 0.05
+    exact = parts(scales, speed, place, own, shared)
+    for j in range(len(OWN)):
+        step = 1e-6 * np.eye(len(OWN))[j]
+        above, below = (parts(scales, speed, place, own + s * step, shared).torque for s in (1, -1))
+        assert (above - below) / 2e-6 == pytest.approx(exact.own[..., j], abs=1e-8)
+    for j in range(shared.size):
+        step = 1e-6 * np.eye(shared.size)[j]
+        above, below = (parts(scales, speed, place, own, shared + s * step).torque for s in (1, -1))
+        assert (above - below) / 2e-6 == pytest.approx(exact.shared[..., j], abs=1e-8)
+
+
+def test_what_cannot_be_fitted_says_why() -> None:
+    runs = table(stand("nothing", 2, 1))
+    with pytest.raises(InsufficientDataError, match="two ages"):
+        fit_drift(runs.filter(pl.col("age (h)") == 0.0))
+    with pytest.raises(ParameterError, match="no column 'temperature"):
+        fit_drift(runs.drop("temperature (K)"))
+    missing = pl.when(pl.int_range(pl.len()) == 3).then(None).otherwise(pl.col("temperature (K)"))
+    with pytest.raises(ParameterError, match="run 1 has dwells without a temperature"):
+        fit_drift(runs.with_columns(missing.alias("temperature (K)")))
+    with pytest.raises(ParameterError, match=r"speed of dwell 1 .* is 0"):
+        fit_drift(runs.with_columns(pl.lit(0.0).alias("speed (rad/s)")))
+    with pytest.raises(InsufficientDataError, match="no dwell"):
+        fit_drift(runs.clear())
