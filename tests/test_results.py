@@ -23,6 +23,7 @@ from hersey.document.parts import (
     DesignPart,
     DriftPart,
     DrivePart,
+    FilmLifePart,
     FilmPart,
     FitPart,
     InspectionPart,
@@ -45,6 +46,7 @@ from hersey.document.parts import (
 from hersey.result import LINE, Result, json_value, table_of
 from hersey.verdict.evidence import verdict
 from tests.conftest import ROOT
+from tests.life import shipped
 
 BENCH = ROOT / "examples" / "bench.csv"
 TRAIN = hersey.Drivetrain(1000, 1)
@@ -161,6 +163,7 @@ RESULTS: dict[str, tuple[Callable[[], Any], type[Part]]] = {
     "OperatingMap": (map_, MapPart),
     "Plan": (plan, PlanPart),
     "WarmUp": (warm_up, WarmUpPart),
+    "FilmLife": (lambda: shipped.film(1), FilmLifePart),
     "Population": (
         lambda: hersey.weibull([4.0, 6.0, 7.0, 9.0], [True, True, False, True], unit="h"),
         PopulationPart,

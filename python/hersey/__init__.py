@@ -55,6 +55,7 @@ if TYPE_CHECKING:
     from hersey.inspection import Inspection, inspect
     from hersey.life.campaign import Campaign
     from hersey.life.drift import Drift, fit_drift
+    from hersey.life.depletion import FilmLife, film_life
     from hersey.life.fatigue import (
         RainflowCycles,
         SNCurve,
@@ -151,6 +152,7 @@ _HOMES = {
     "life.drift": "Drift fit_drift",
     "life.population": "BLife Population weibull",
     "life.campaign": "Campaign",
+    "life.depletion": "FilmLife film_life",
 }
 _HOME_OF = {name: module for module, names in _HOMES.items() for name in names.split()}
 
@@ -170,6 +172,7 @@ __all__ = [
     "Drivetrain",
     "Estimate",
     "Film",
+    "FilmLife",
     "HeatBalance",
     "HerseyError",
     "HysteresisBand",
@@ -213,6 +216,7 @@ __all__ = [
     "design",
     "disturbance",
     "drag_torque",
+    "film_life",
     "film_thickness",
     "fit",
     "fit_drift",

@@ -23,6 +23,7 @@ from hersey.machine.machine import read_machine
 from hersey.motion.drag import Drag as AnyDrag
 from tests.charts.test_charts import titles
 from tests.conftest import ROOT
+from tests.life import shipped
 
 RPM = 2 * np.pi / 60
 EXAMPLES = ROOT / "examples"
@@ -155,6 +156,7 @@ MADE: dict[str, Callable[[], Any]] = {
     "WarmUp": warm_up,
     "Population": lambda: hersey.weibull([4.0, 6.0, 7.0, 9.0], [True, True, False, True], unit="h"),
     "Drift": lambda: hersey.fit_drift(table(other("lubricant", 1, units=2, logs=3))),
+    "FilmLife": lambda: shipped.film(1),
 }
 
 
@@ -388,6 +390,18 @@ def test_a_warm_up_shows_its_course_and_its_temperatures() -> None:
     assert [row["value"] for row in rows[-1] if row["body"] == "film"] == pytest.approx(
         warm.film_temperature - 273.15
     )
+
+
+def test_the_film_of_a_unit_stands_over_its_layer() -> None:
+    film = result_of("FilmLife")
+    curve, _, _, points = [rows for rows in layers("FilmLife") if {"unit", "value", "low"} <= set(rows[0])][
+        :4
+    ]
+    assert {row["unit"] for row in curve} == {row["unit"] for row in points} == set(film.runs.units)
+    assert [row["age"] for row in points] == film.runs.age.tolist()
+    layer = next(rows for rows in layers("FilmLife") if "need" in rows[0])
+    assert layer[0]["need"] == pytest.approx(1e6 * film.needs[0][0, 0])
+    assert layer[0]["value"] > layer[0]["need"]
 
 
 def test_failures_stand_at_their_ranks_and_other_units_on_the_axis() -> None:

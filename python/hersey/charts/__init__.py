@@ -25,6 +25,7 @@ plan           a drive profile and the motion
 warm_up        speed, drag and temperatures of a warm-up
 weibull        share failed against age
 drift          what moved with age, a panel per quantity
+film_life      the film of units that age, and the layer of oil that feeds it
 =============  ====================================================
 """
 
@@ -65,6 +66,7 @@ CHARTS = {
     "WarmUp": ("warm_up", "warm_up_chart"),
     "Population": ("weibull", "weibull_chart"),
     "Drift": ("drift", "drift_chart"),
+    "FilmLife": ("film_life", "film_life_chart"),
 }
 
 

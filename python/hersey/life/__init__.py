@@ -24,5 +24,10 @@ fatigue           cycles of torque counted, and the damage that they do to a par
 population        ages at failure over many units: Weibull law, B10 and B50
 ending            what ends each unit, and when
 fatigue           cycles of torque counted, and the damage that they do to a part
+filled_dwells     the dwells of all runs as arrays
+starved_drag      torque against viscosity, rest of the drive and layer of oil
+layer             the layer of oil and the viscosity that each run tells
+depletion_law     how the layer thins over ages and units: draws
+depletion         the film through life, the oil that is left, and when it starves
 ================  =====================================================================
 """

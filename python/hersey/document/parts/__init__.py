@@ -12,6 +12,7 @@ motion      trajectories, cycles, sweeps
 stability   bands, maps, plans, warm-ups
 life        ages at failure
 drift       what moved with age
+film_life   the film of units that age
 models      candidates, comparisons of logs, designs
 inspection  what a log holds
 campaign    runs of many units at many ages
@@ -28,6 +29,7 @@ from hersey.document.parts.cycles import CyclesPart, DrivePart
 from hersey.document.parts.drift import DriftPart
 from hersey.document.parts.figures import FiguresPart
 from hersey.document.parts.film import FilmPart, FilmPoint, FilmStatesPart, MeasuredFilmPart, VerdictPart
+from hersey.document.parts.film_life import FilmLifePart
 from hersey.document.parts.fit import (
     BranchPart,
     Cell,
@@ -106,6 +108,7 @@ __all__ = [
     "DriftPart",
     "DrivePart",
     "FiguresPart",
+    "FilmLifePart",
     "FilmPart",
     "FilmPoint",
     "FilmStatesPart",

@@ -1,0 +1,153 @@
+"""The film through life: film over flooded, and the layer of oil against what the film needs."""
+
+from __future__ import annotations
+
+from typing import cast
+
+import altair as alt
+import numpy as np
+
+from hersey.arrays import BoolArray
+from hersey.charts.style import BLUE, INK, ORANGE, WIDTH, Chart, level, plot, ramp, rows_of, tip
+from hersey.life.depletion import STARVED, FilmLife, Told
+
+#: Units drawn by themselves, in rows of so many, and the size of each.
+_SHOWN, _ACROSS = 8, 4
+#: Up to so many units have a colour of their own in the legend.
+_NAMED = 24
+_SMALL = 150
+_HEIGHT = 260
+#: Curves go so far beyond the last run of any unit.
+_BEYOND = 2.0
+#: Room above the greatest layer.
+_ROOM = 1.5
+#: A micrometre in metres.
+_MICRO = 1e-6
+
+
+def film_life_chart(film: FilmLife) -> Chart:
+    """Return the film over a flooded one of all units over the layers of those that starve first."""
+    ages = film.ages <= _BEYOND * float(film.runs.age.max())
+    if ages.sum() < 2:
+        ages[:] = True
+    names = [each.unit for each in film.starves[0].units]
+    soonest = sorted(range(len(names)), key=lambda k: film.starves[0].units[k].age.value)
+    chosen = sorted(soonest[:_SHOWN])
+    chart = alt.vconcat(_over_flooded(film, ages, names), _layers(film, ages, names, chosen), spacing=24)
+    return cast("Chart", chart.resolve_scale(color="independent"))
+
+
+def _age(film: FilmLife, ages: BoolArray, *, ticks: int) -> alt.X:
+    return alt.X(
+        "age:Q",
+        title=f"Age ({film.runs.age_unit or 'as given'})",
+        scale=alt.Scale(domain=[0.0, float(film.ages[ages].max())], nice=False),
+        axis=alt.Axis(format="~s", tickCount=ticks),
+    )
+
+
+def _over_flooded(film: FilmLife, ages: BoolArray, names: list[str]) -> Chart:
+    curve, read = film.curves[0], film.film[0]
+    rows = [
+        row
+        for k, name in enumerate(names)
+        for row in rows_of(
+            age=film.ages[ages],
+            value=curve.value[k, ages],
+            low=curve.low[k, ages],
+            high=curve.high[k, ages],
+            unit=[name] * int(ages.sum()),
+        )
+    ]
+    x = _age(film, ages, ticks=8)
+    y = alt.Y("value:Q", title="Film over flooded (1)", scale=alt.Scale(domain=[0.0, 1.05], nice=False))
+    legend = (
+        alt.Legend(title=None, orient="bottom-left", columns=4, symbolOpacity=1)
+        if len(names) <= _NAMED
+        else None
+    )
+    colour = alt.Color("unit:N", scale=alt.Scale(domain=names, range=ramp(len(names))), legend=legend)
+    tips = [alt.Tooltip("unit:N"), tip("age", "age"), tip("value", "film over flooded")]
+    chart = plot(rows)
+    band = chart.mark_area(opacity=0.08, clip=True).encode(
+        x=x, y=alt.Y("low:Q", title="Film over flooded (1)"), y2="high:Q", color=colour
+    )
+    line = chart.mark_line(strokeWidth=2, clip=True).encode(x=x, y=y, color=colour, tooltip=tips)
+    points = plot(_runs(film, read, most=1.0)).mark_point(filled=True, size=40, opacity=1, clip=True)
+    bars = plot(_runs(film, read, most=1.0)).mark_rule(strokeWidth=1, clip=True)
+    title = alt.Title(
+        f"Film at {film.points[0]}, over that of a flooded inlet at the same viscosity",
+        subtitle=[
+            film.headline(),
+            "points: single runs; lines and bands: law over all units; 90 % intervals",
+        ],
+    )
+    return alt.layer(
+        band,
+        line,
+        bars.encode(x=x, y=alt.Y("low:Q"), y2="high:Q", color=colour),
+        points.encode(x=x, y=y, color=colour, tooltip=tips),
+        *level(STARVED, "starved below"),
+        title=title,
+        width=WIDTH,
+        height=_HEIGHT,
+    )
+
+
+def _runs(
+    film: FilmLife, read: Told, *, most: float, unit: str = "", factor: float = 1.0
+) -> list[dict[str, object]]:
+    """Rows of the runs that tell something, of one unit or of all; ends that are not told at ``most``."""
+    chosen = [
+        i
+        for i, name in enumerate(film.runs.unit)
+        if np.isfinite(read.value[i]) and (not unit or name == unit)
+    ]
+    return rows_of(
+        age=film.runs.age[chosen],
+        value=np.minimum(factor * read.value[chosen], most),
+        low=np.maximum(factor * read.low[chosen], 0.0),
+        high=np.minimum(factor * read.high[chosen], most),
+        unit=[film.runs.unit[i] for i in chosen],
+    )
+
+
+def _layers(film: FilmLife, ages: BoolArray, names: list[str], chosen: list[int]) -> Chart:
+    most = _ROOM * float(np.max(film.layers.value[chosen][:, ages])) / _MICRO
+    each = [_layer(film, ages, names[k], k, most, first=i % _ACROSS == 0) for i, k in enumerate(chosen)]
+    lines = [alt.hconcat(*each[i : i + _ACROSS], spacing=14) for i in range(0, len(each), _ACROSS)]
+    more = f"; the {len(chosen)} units that starve first" if len(chosen) < len(names) else ""
+    title = alt.Title(
+        f"Layer of oil against what the film needs{more}",
+        subtitle=(
+            f"blue: layer; orange: flooded film at {film.points[0].name}, thicker as the oil thickens; "
+            "where they meet the film starves"
+        ),
+    )
+    return alt.vconcat(*lines, spacing=10, title=title)
+
+
+def _layer(film: FilmLife, ages: BoolArray, name: str, k: int, most: float, *, first: bool) -> Chart:
+    rows = rows_of(
+        age=film.ages[ages],
+        value=film.layers.value[k, ages] / _MICRO,
+        low=np.minimum(film.layers.low[k, ages] / _MICRO, most),
+        high=np.minimum(film.layers.high[k, ages] / _MICRO, most),
+        need=film.needs[0][k, ages] / _MICRO,
+    )
+    x = _age(film, ages, ticks=3)
+    scale = alt.Scale(domain=[0.0, most], nice=False)
+    y = alt.Y("value:Q", title="Layer (µm)" if first else None, scale=scale)
+    tips = [tip("age", "age"), tip("value", "layer (µm)"), tip("need", "flooded film (µm)")]
+    chart = plot(rows)
+    seen = plot(_runs(film, film.layer, most=most, unit=name, factor=1.0 / _MICRO))
+    return alt.layer(
+        chart.mark_area(color=BLUE, opacity=0.15, clip=True).encode(x=x, y=alt.Y("low:Q"), y2="high:Q"),
+        chart.mark_line(color=BLUE, strokeWidth=2, clip=True).encode(x=x, y=y, tooltip=tips),
+        chart.mark_line(color=ORANGE, strokeWidth=2, clip=True).encode(x=x, y=alt.Y("need:Q"), tooltip=tips),
+        seen.mark_rule(color=INK, strokeWidth=1, clip=True).encode(x=x, y=alt.Y("low:Q"), y2="high:Q"),
+        seen.mark_point(color=INK, filled=True, size=25, opacity=1, clip=True).encode(x=x, y=y),
+        title=alt.Title(name, fontSize=12),
+        width=_SMALL,
+        height=_SMALL * 0.8,
+    )

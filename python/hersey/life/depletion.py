@@ -1,0 +1,519 @@
+"""The film through life: how thick against a flooded one, what oil is left, and when a unit starves.
+
+What each run tells stands in `layer`, the law over ages and units in `depletion_law`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hersey.arrays import BoolArray, FloatArray, IntArray
+from hersey.errors import InsufficientDataError, ParameterError
+from hersey.life.depletion_law import Depletion, fit_depletion
+from hersey.life.filled_dwells import FilledDwells, filled_dwells, runs_of
+from hersey.life.indicator import Indicator, Indicators, Runs
+from hersey.life.layer import Layers, layers
+from hersey.life.limit_ages import (
+    AgeAtLimit,
+    AgesAtLimit,
+    Interval,
+    quantiles,
+    share_of_units,
+)
+from hersey.life.starved_drag import USUAL_SHARPNESS, Flooded, cubic, film_of, film_share, flooded
+from hersey.result import Result, json_record
+from hersey.units import celsius, rpm, takes_si
+
+if TYPE_CHECKING:
+    import polars as pl
+
+    from hersey.life.campaign import Campaign
+    from hersey.machine.machine import Machine
+
+#: Film over flooded below which it is starved: the layer is then thinner than the flooded film.
+STARVED = 2.0 ** (-1.0 / USUAL_SHARPNESS)
+#: Ages looked at, over the greatest of the data; past the last it counts as never.
+_AGES = np.concatenate([[0.0], np.geomspace(3e-3, 10.0, 240)])
+#: Ages of the curves, over the greatest of the data.
+_CURVES = np.linspace(0.0, 2.5, 51)
+#: Standard errors in half of a 90 % interval; those in the 95 % at which uncertainties are stated.
+_TO_90, _TO_95 = 1.645, 1.96
+#: New units drawn for B10 and B50, of each draw of what units share.
+_NEW = 40
+#: Scatter over the stated errors from which the law does not describe a run.
+_BAD = 2.0
+_NAMED = 4
+
+
+@dataclass(frozen=True)
+class FilmPoint:
+    """A state at which the film is told: speed of the roll (rad/s) and temperature (K)."""
+
+    name: str
+    speed: float
+    temperature: float
+
+    def __str__(self) -> str:
+        """Return name, speed and temperature."""
+        return f"{self.name} ({rpm(self.speed):.4g} rpm, {celsius(self.temperature):.4g} degC)"
+
+
+@dataclass(frozen=True)
+class Told:
+    """Something that runs or units tell, with 90 % intervals; an end is infinite where it is not told."""
+
+    value: FloatArray
+    low: FloatArray
+    high: FloatArray
+
+
+@dataclass(frozen=True)
+class OilLeft:
+    """The oil in the layer of a unit, m^3: new, when last seen, and what the film then needs."""
+
+    unit: str
+    new: Interval
+    last: Interval
+    needed: Interval
+
+
+@dataclass(frozen=True, repr=False)
+class FilmLife(Result):
+    """The film through life.
+
+    ``points`` are the fastest operating point and the cold corner. Of each run: ``film`` over that of a
+    flooded inlet at the same viscosity and speed, (points, runs); ``layer`` of oil on the inlet side (m),
+    ``viscosity`` over that of the lubricant, both but for ``systematic``, a factor common to all runs; NaN
+    where a run has no dwells. Of each unit: ``curves`` of the film, (points, units, ages), and of the layer,
+    and of what it ``needs`` to be at each point, (units, ages), at ``ages``; ``starves`` at each point.
+    """
+
+    runs: Runs
+    points: tuple[FilmPoint, ...]
+    film: tuple[Told, ...]
+    layer: Told
+    viscosity: Told
+    systematic: float
+    scatter: FloatArray  #: of the dwells of each run about the law, over their errors
+    ages: FloatArray
+    curves: tuple[Told, ...]
+    layers: Told
+    needs: tuple[FloatArray, ...]
+    starves: tuple[AgesAtLimit, ...]
+    law: dict[str, Interval]  #: of the median unit: K (1/(m^2 age)), e and g (1/age)
+    oil: tuple[OilLeft, ...]
+    track: float
+    notes: tuple[str, ...]
+    _starvation: Indicator = field(repr=False)
+
+    def starved(self, point: int = 0) -> BoolArray:
+        """Return which runs are starved at a point, their whole interval below the limit."""
+        return np.asarray(self.film[point].high < STARVED)
+
+    def headline(self) -> str:
+        """Return how many units starve at the fastest operating point, and when the next ones do."""
+        last = _last_runs(self.runs)
+        starved = [self.runs.unit[i] for i in last if self.starved()[i]]
+        text = f"{len(starved)} of {len(last)} units starve of oil at {self.points[0].name}"
+        b50 = self.starves[0].b50.age
+        return f"{text}; half of new units at {b50} {self.runs.age_unit}"
+
+    def summary(self) -> str:
+        """Return film, layer and ages of each unit as text."""
+        unit = self.runs.age_unit
+        lines = [self.headline()]
+        lines += [
+            "film over that of a flooded inlet, same viscosity and speed, when last seen; starved below "
+            f"{STARVED:.2f}"
+        ]
+        for i in _last_runs(self.runs):
+            films = ", ".join(
+                f"{_told(each, i, 1.0, 1.0)} at {point.name}"
+                for each, point in zip(self.film, self.points, strict=True)
+            )
+            name, age = self.runs.unit[i], self.runs.age[i]
+            lines.append(f"  {name} at {age:.6g}: {films}; layer {_told(self.layer, i, 1e6)} um")
+        lines += [f"  {point}" for point in self.points]
+        for point, ages in zip(self.points, self.starves, strict=True):
+            lines.append(f"age ({unit}) at which the layer is thinner than the flooded film, {point.name}")
+            if all(each.age.value == 0.0 for each in ages.units):
+                lines.append("  all units: from the new unit on")
+            else:
+                lines += [f"  {each}" for each in (*ages.units, ages.b10, ages.b50)]
+        lines.append(
+            f"oil of the layer, mm^3, on a track of {1e3 * self.track:.4g} mm: new, when last seen, and what "
+            f"the film then needs at {self.points[0].name}"
+        )
+        lines += [f"  {_volumes(each)}" for each in self.oil]
+        lines.append(
+            f"law dh/dt = -K h^3/2 - e h, viscosity exp(g t); median unit, per {unit}: "
+            + ", ".join(f"{name} {each}" for name, each in self.law.items())
+        )
+        return "\n".join([*lines, *(f"- {note}" for note in self.notes)])
+
+    def with_starvation(self, indicators: Indicators) -> Indicators:
+        """Return indicators of the same runs with starvation among them.
+
+        Raises
+        ------
+        ParameterError
+            If they are of other runs.
+        """
+        if indicators.runs.run != self.runs.run:
+            raise ParameterError("the indicators are of other runs than the film")
+        return replace(indicators, each=(*indicators.each, self._starvation))
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return all of it, in SI; ages in the unit of the campaign; None for what is not told."""
+        told = {name: value for name, value in vars(self).items() if not name.startswith("_")}
+        starves = [each.to_dict() for each in self.starves]
+        return json_record({**told, "starves": starves, "starved": self.starved()})
+
+    def to_frame(self) -> pl.DataFrame:
+        """Return one row per run; infinite where an end is not told."""
+        import polars as pl
+
+        columns: dict[str, Any] = {
+            "run": list(self.runs.run),
+            "unit": list(self.runs.unit),
+            f"age ({self.runs.age_unit or '1'})": self.runs.age,
+        }
+        of = [(f"film over flooded, {p.name} (1)", f) for p, f in zip(self.points, self.film, strict=True)]
+        for name, told in (*of, ("layer (m)", self.layer), ("viscosity over new oil (1)", self.viscosity)):
+            word, _, unit = name.rpartition(" ")
+            columns |= {name: told.value, f"{word} low {unit}": told.low, f"{word} high {unit}": told.high}
+        return pl.DataFrame(columns)
+
+
+@takes_si(cold="temperature", track="length")
+def film_life(
+    campaign: Campaign,
+    machine: Machine,
+    *,
+    cold: float | None = None,
+    track: float | None = None,
+    side_flow: float | None = None,
+    evaporation: float | None = None,
+    seed: int = 0,
+) -> FilmLife:
+    """Return the film of the units of a campaign through their life.
+
+    Each run is fitted by the torque of film, asperities and rest of the drive, with viscosity, layer of oil,
+    rest, roughness and boundary friction free (`layer`); layer and viscosity of all runs then follow the law
+    of `depletion_law`, units differing.
+
+    Parameters
+    ----------
+    campaign
+        Dwells at several speeds and temperatures tell most: cold and fast ones see the layer, hot ones the
+        level.
+    machine
+        Contact and lubricant; asperities and boundary friction if stated; operating points.
+    cold
+        Temperature of the cold corner, K; the coldest that all units recorded if left out.
+    track
+        Length of the track that carries the layer, m, by which it becomes an amount; the roll's circumference
+        if left out.
+    side_flow, evaporation
+        K in 1/(m^2 age) and e in 1/age, in the campaign's unit of age, where they are known; fitted if left
+        out.
+    seed
+        Of the draws behind the law.
+
+    Raises
+    ------
+    ParameterError
+        If the machine lacks contact or lubricant, or a value is impossible.
+    InsufficientDataError
+        If no dwell has a temperature.
+    """
+    for name, value in (("side_flow", side_flow), ("evaporation", evaporation)):
+        if value is not None and not 0.0 <= value < np.inf:
+            raise ParameterError(f"{name} is {value:g}: it must not be negative")
+    if track is not None and not 0.0 < track < np.inf:
+        raise ParameterError(f"track is {track:g} m: it must be positive")
+    read = _read(campaign, machine, cold)
+    runs = read.runs
+    names = list(dict.fromkeys(runs.unit[i] for i in read.told))
+    unit = np.array([names.index(runs.unit[i]) for i in read.told])
+    age = runs.age[read.told]
+    found = fit_depletion(read.layers, unit, age, side_flow=side_flow, evaporation=evaporation, seed=seed)
+    ages = _CURVES * found.greatest_age
+    last = np.array([age[unit == k].max() for k in range(len(names))])
+    length = machine.roll_radius * 2.0 * np.pi if track is None else track
+    area = length * film_of(machine)[0].length
+    curves = [_curves(found, point, ages, len(names)) for point in read.flooded]
+    notes = (*read.notes, *_law_notes(age, unit, runs.age_unit, machine))
+    return FilmLife(
+        runs=runs,
+        points=read.points,
+        film=tuple(read.film(point) for point in read.flooded),
+        layer=read.spread(*(np.exp(each) for each in read.layers.thickness())),
+        viscosity=read.viscosity(),
+        systematic=_systematic(machine, read),
+        scatter=read.of_all(read.layers.scatter),
+        ages=ages,
+        curves=tuple(film for film, _ in curves),
+        layers=_of_units(found, lambda own: found.layer(own, ages)),
+        needs=tuple(need for _, need in curves),
+        starves=tuple(
+            _starves(found, point, state, names, last, runs.age_unit, notes)
+            for point, state in zip(read.flooded, read.points, strict=True)
+        ),
+        law=_law(found),
+        oil=tuple(
+            _oil(found, k, name, float(last[k]), read.flooded[0], area) for k, name in enumerate(names)
+        ),
+        track=length,
+        notes=notes,
+        _starvation=read.indicator(),
+    )
+
+
+def starvation_indicator(campaign: Campaign, machine: Machine) -> Indicator:
+    """Return starvation as a way to fail: flooded film over layer at the fastest operating point, limit 1.
+
+    It needs a machine with contact and lubricant, and dwells at several speeds and temperatures: the layer is
+    seen where it is thinner than a flooded film or near it, cold and fast. A run all of whose dwells are
+    flooded tells a lower bound of the layer alone, which a number with an error cannot hold: there the value
+    is NaN, as for a run without dwells. `film_life` uses those, too.
+
+    Raises
+    ------
+    ParameterError, InsufficientDataError
+        As `film_life`.
+    """
+    return _read(campaign, machine, None).indicator()
+
+
+@dataclass(frozen=True)
+class _Read:
+    """What the runs of a campaign tell; ``told`` are the places of those that have dwells."""
+
+    runs: Runs
+    told: IntArray
+    layers: Layers
+    points: tuple[FilmPoint, ...]
+    flooded: tuple[Flooded, ...]
+    notes: tuple[str, ...]
+
+    def of_all(self, values: FloatArray) -> FloatArray:
+        """Values of all runs, NaN where one has no dwells."""
+        every = np.full(len(self.runs.run), np.nan)
+        every[self.told] = values
+        return every
+
+    def spread(self, *ends: FloatArray) -> Told:
+        return Told(*(self.of_all(each) for each in ends))
+
+    def film(self, point: Flooded) -> Told:
+        sharpness = USUAL_SHARPNESS * float(np.exp(self.layers.common[1]))
+        return self.spread(*(film_share(each, sharpness) for each in self.layers.interval(point)))
+
+    def viscosity(self) -> Told:
+        """Factor on viscosity at the middle temperature, with the error that the layer gives it."""
+        found = self.layers
+        value, error = np.empty(len(found.best)), np.empty(len(found.best))
+        for i, place in enumerate(found.place):
+            weight = np.exp(-0.5 * found.deviance[i]) * np.gradient(place)
+            weight /= weight.sum()
+            value[i] = np.interp(found.best[i], place, found.viscosity[i])
+            away = found.viscosity[i] - value[i]
+            error[i] = np.sqrt(weight @ (away**2 + found.viscosity_error[i] ** 2))
+        return self.spread(*(np.exp(value + reach * error) for reach in (0.0, -_TO_90, _TO_90)))
+
+    def indicator(self) -> Indicator:
+        best, low, high = self.layers.interval(self.flooded[0])
+        seen = np.isfinite(low) & np.isfinite(high)
+        value = np.where(seen, np.exp(-best), np.nan)
+        error = np.where(seen, np.where(seen, high - low, 0.0) / (2.0 * _TO_90), np.nan)
+        return Indicator(
+            name=f"flooded film over layer, {self.points[0].name}",
+            kind="starvation",
+            si="1",
+            limit=1.0,
+            value=self.of_all(value),
+            error=self.of_all(error),
+            notes=(
+                f"the film starves where the layer of oil is thinner than a flooded film at {self.points[0]}",
+                *self.notes,
+            ),
+        )
+
+
+def _read(campaign: Campaign, machine: Machine, cold: float | None) -> _Read:
+    contact, lubricant = film_of(machine)
+    runs = runs_of(campaign)
+    if not runs.run:
+        raise InsufficientDataError(f"{campaign.path.name} holds no run: add logs first")
+    dwells, told = filled_dwells(campaign, runs)
+    points = _points(machine, dwells, [runs.unit[i] for i in told], cold)
+    found = layers(dwells, machine, speed=points[1].speed, kelvin=points[1].temperature)
+    films = tuple(
+        flooded(contact, lubricant, np.array([point.speed]), np.array([point.temperature]))
+        for point in points
+    )
+    return _Read(runs, told, found, points, films, _notes(runs, told, found))
+
+
+def _points(
+    machine: Machine, dwells: FilledDwells, units: list[str], cold: float | None
+) -> tuple[FilmPoint, FilmPoint]:
+    """The fastest operating point, and its speed at the coldest temperature that all units recorded."""
+    coldest: dict[str, float] = {}
+    for unit, kelvin in zip(units, dwells.kelvin.min(axis=1).tolist(), strict=True):
+        coldest[unit] = min(kelvin, coldest.get(unit, kelvin))
+    if machine.points:
+        fastest = max(machine.points, key=lambda point: point.speed)
+        state = FilmPoint(fastest.name, fastest.speed / machine.roll_radius, fastest.temperature)
+    else:
+        state = FilmPoint("fastest and hottest dwells", float(dwells.speed.max()), float(dwells.kelvin.max()))
+    return state, FilmPoint("the cold corner", state.speed, max(coldest.values()) if cold is None else cold)
+
+
+def _notes(runs: Runs, told: IntArray, found: Layers) -> tuple[str, ...]:
+    _, _, high = found.interval()
+    notes = []
+    unseen = int(np.count_nonzero(~np.isfinite(high)))
+    if unseen:
+        notes.append(
+            f"{unseen} of {len(told)} runs show no starvation at all: of their layer they tell a lower bound"
+        )
+    bad = [f"{runs.unit[told[i]]} at {runs.age[told[i]]:.6g}" for i in np.flatnonzero(found.scatter > _BAD)]
+    if bad:
+        more = " and others" if len(bad) > _NAMED else ""
+        notes.append(
+            f"dwells of {', '.join(bad[:_NAMED])}{more} scatter about the law by more than {_BAD:g} times "
+            "their errors: nip, lubricant or load are not those of the machine's file"
+        )
+    return tuple(notes)
+
+
+def _law_notes(age: FloatArray, unit: IntArray, age_unit: str, machine: Machine) -> list[str]:
+    notes = []
+    if len(np.unique(age)) < 2:
+        notes.append(f"all runs are of one age ({age_unit}): nothing tells how the layer thins")
+    elif max(len(np.unique(age[unit == k])) for k in np.unique(unit)) < 3:
+        notes.append("no unit was seen at three ages: side flow and evaporation cannot be told apart")
+    if machine.asperities is None:
+        notes.append(
+            "the machine's file states no asperities: dwells with a film below four times the roughness are "
+            "left out"
+        )
+    notes.append(
+        "thicker oil moves torque at all dwells, a thin layer at cold and fast ones: a nip that widens with "
+        "age would be read as thicker oil"
+    )
+    return notes
+
+
+def _systematic(machine: Machine, read: _Read) -> float:
+    """Factor (90 %) by which all layers may be off: the nip's width is taken for viscosity."""
+    contact, _ = film_of(machine)
+    if contact.nip_uncertainty is None:
+        return 1.0
+    point = read.flooded[0]
+    level = cubic(point.shear, np.zeros(()))[1].item()
+    film = cubic(point.film, np.zeros(()))[1].item()
+    return float(np.exp(_TO_90 / _TO_95 * np.log1p(contact.nip_uncertainty) * film / max(level, 0.1)))
+
+
+def _of_units(found: Depletion, of: Any) -> Told:
+    """Median and 90 % ends of exp of a function of what a unit has, (units, ages)."""
+    each = [np.exp(quantiles(of(found.units[:, k]))) for k in range(found.units.shape[1])]
+    low, middle, high = np.moveaxis(np.array(each), 1, 0)
+    return Told(middle, low, high)
+
+
+def _curves(found: Depletion, point: Flooded, ages: FloatArray, units: int) -> tuple[Told, FloatArray]:
+    over = _of_units(found, lambda own: np.log(film_share(found.over_flooded(own, ages, point))))
+    needs = np.empty((units, ages.size))
+    for k in range(units):
+        own = found.units[:, k]
+        needs[k] = np.exp(np.median(found.layer(own, ages) - found.over_flooded(own, ages, point), axis=0))
+    return over, needs
+
+
+def _ages_below(found: Depletion, own: FloatArray, point: Flooded) -> FloatArray:
+    """Ages at which layers of draws (..., 5) are first as thin as the flooded film; infinite where never."""
+    ages = _AGES * found.greatest_age
+    above = found.over_flooded(own, ages, point)
+    below = above <= 0.0
+    first = np.argmax(below, axis=-1)
+    before = np.maximum(first - 1, 0)
+    high = np.take_along_axis(above, before[..., None], -1)[..., 0]
+    low = np.take_along_axis(above, first[..., None], -1)[..., 0]
+    share = np.where(first > 0, high / np.where(high > low, high - low, 1.0), 0.0)
+    met = ages[before] + share * (ages[first] - ages[before])
+    return np.asarray(np.where(below.any(axis=-1), met, np.inf))
+
+
+def _starves(
+    found: Depletion,
+    point: Flooded,
+    state: FilmPoint,
+    names: list[str],
+    last: FloatArray,
+    age_unit: str,
+    notes: tuple[str, ...],
+) -> AgesAtLimit:
+    told = []
+    for k, name in enumerate(names):
+        ages = _ages_below(found, found.units[:, k], point)
+        low, middle, high = quantiles(ages).tolist()
+        passed = float((ages <= last[k]).mean())
+        interval = Interval(middle, low, high)
+        told.append(AgeAtLimit(name, interval, float(np.isinf(ages).mean()), float(last[k]), passed))
+    some = np.linspace(0, len(found.mean) - 1, min(len(found.mean), 400)).astype(np.intp)
+    normals = np.random.default_rng(0).standard_normal((some.size, _NEW, found.mean.shape[1]))
+    new = found.mean[some, None] + found.spread[some, None] * normals
+    ages = np.sort(_ages_below(found, new, point), axis=1)
+    quantity = f"the flooded film over the layer at {state.name}"
+    b10, b50 = share_of_units(ages, 0.1), share_of_units(ages, 0.5)
+    return AgesAtLimit(quantity, age_unit, 1.0, tuple(told), b10, b50, notes)
+
+
+def _interval(draws: FloatArray) -> Interval:
+    low, middle, high = quantiles(draws).tolist()
+    return Interval(middle, low, high)
+
+
+def _law(found: Depletion) -> dict[str, Interval]:
+    return {name: _interval(draws) for name, draws in zip("Keg", found.rate(found.mean), strict=True)}
+
+
+def _oil(found: Depletion, k: int, name: str, last: float, point: Flooded, area: float) -> OilLeft:
+    own, ages = found.units[:, k], np.array([0.0, last])
+    layer = found.layer(own, ages)
+    needed = layer - found.over_flooded(own, ages, point)
+    new, now, needs = (_interval(area * np.exp(each)) for each in (layer[:, 0], layer[:, 1], needed[:, 1]))
+    return OilLeft(name, new, now, needs)
+
+
+def _last_runs(runs: Runs) -> list[int]:
+    """The oldest run of each unit."""
+    last: dict[str, int] = {}
+    for i, (unit, age) in enumerate(zip(runs.unit, runs.age, strict=True)):
+        if unit not in last or age >= runs.age[last[unit]]:
+            last[unit] = i
+    return list(last.values())
+
+
+def _told(told: Told, i: int, factor: float, most: float = np.inf) -> str:
+    value, low, high = (factor * float(each[i]) for each in (told.value, told.low, told.high))
+    if np.isnan(value):
+        return "not told"
+    if np.isinf(high) or (np.isfinite(most) and high >= most - 1e-3 and value > 0.99):
+        return f"above {low:.3g}"
+    return f"{value:.3g} [{low:.3g}, {high:.3g}]"
+
+
+def _volumes(oil: OilLeft) -> str:
+    new, last, needed = (
+        f"{1e9 * each.value:.3g} [{1e9 * each.low:.3g}, {1e9 * each.high:.3g}]"
+        for each in (oil.new, oil.last, oil.needed)
+    )
+    return f"{oil.unit}: {new}, {last}, {needed}"

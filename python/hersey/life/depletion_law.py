@@ -1,0 +1,326 @@
+"""How the layer of oil of units thins with age, and how their oil thickens: all units fitted together.
+
+The layer flows aside out of the track, in proportion to its cube, and evaporates in proportion to itself:
+``dh/dt = -K h^3/2 - e h``. With ``u = h^-2`` that is linear, ``du/dt = K + 2 e u``, so
+
+    h^-2 = h0^-2 exp(2 e t) + K (exp(2 e t) - 1)/(2 e).
+
+K alone is the side flow of van Zoelen, Venner and Lugt (Proc. IMechE J 223 (2009) 541). Viscosity grows as
+``exp(g t)``. Each unit has its own layer when new, rate of loss then (``K h0^2/2 + e``), share of evaporation
+in it, viscosity when new, and g: normal over the units in their logarithms (logit of the share; g itself),
+with unknown means and spreads. What a run tells of layer and viscosity enters as its likelihood, so a run
+that tells but a lower bound says just that.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy import special
+
+from hersey.arrays import FloatArray, IntArray
+from hersey.life.layer import DRY, FLOODED, Layers
+from hersey.life.starved_drag import Flooded, cubic
+
+#: What a unit has, in this order: ln(h0/h), ln of the rate of loss when new times T, logit of the share of
+#: evaporation in it, ln of the factor on viscosity when new, g T; T is the greatest age, h the flooded film
+#: at the reference.
+LAYER_NEW, LOSS, EVAPORATED, VISCOSITY_NEW, THICKENING = range(5)
+_NUMBERS = 5
+#: Means over units, beforehand: mean and standard deviation; spreads over units: scale of a half-normal.
+_MEAN = np.array([0.0, -0.5, 0.0, 0.0, 0.2])
+_MEAN_DEVIATION = np.array([2.0, 1.5, 1.5, 1.0, 0.7])
+_SPREAD = np.array([0.5, 0.7, 0.7, 0.2, 0.5])
+#: Scatter of layer and viscosity of runs about the law, beyond their own errors (ln).
+_SCATTER = 0.02
+#: Walkers, steps of which the first are dropped, and draws kept; for few units, and for so many that they
+#: tell the spread over units by their number.
+_FEW_UNITS, _MANY_UNITS = (64, 500, 200, 2000), (16, 600, 250, 400)
+_MANY = 60
+#: Steps from one cull of walkers to the next, while they still search.
+_CULL = 8
+#: Steps of the grid on which likelihoods and spreads are held.
+_GRID, _SPREADS = 281, 40
+
+
+@dataclass(frozen=True)
+class Depletion:
+    """Draws of what units have, (draws, units, 5), and of units in general: means and spreads, (draws, 5)."""
+
+    units: FloatArray
+    mean: FloatArray
+    spread: FloatArray
+    greatest_age: float
+    reference: Flooded
+    warmth: float
+    rates: Rates
+
+    def layer(self, units: FloatArray, age: FloatArray) -> FloatArray:
+        """Return ln of the layer (m) of draws (..., 5) at ages in any unit; shape (..., ages)."""
+        own = units[..., None, :]
+        scaled = np.asarray(age) / self.greatest_age
+        return _scale(self.reference) + log_layer(own, scaled, self.rates)
+
+    def rate(self, units: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return K (1/(m^2 age)), e and g (1/age) of draws (..., 5)."""
+        side_flow, evaporation = self.rates.of(units)
+        square = np.exp(2.0 * _scale(self.reference))
+        each = (side_flow / square, evaporation, units[..., THICKENING])
+        return tuple(rate / self.greatest_age for rate in each)  # type: ignore[return-value]
+
+    def viscosity(self, units: FloatArray, age: FloatArray) -> FloatArray:
+        """Return ln of the factor on viscosity of draws (..., 5) at ages; shape (..., ages)."""
+        scaled = np.asarray(age) / self.greatest_age
+        return units[..., VISCOSITY_NEW, None] + units[..., THICKENING, None] * scaled
+
+    def over_flooded(self, units: FloatArray, age: FloatArray, point: Flooded) -> FloatArray:
+        """Return ln of the layer over the flooded film at a point, of draws (..., 5) at ages."""
+        at = self.viscosity(units, age) + self.warmth * point.steep.item()
+        return self.layer(units, age) - cubic(point.film.reshape(4), at)[0]
+
+
+@dataclass(frozen=True)
+class Rates:
+    """The rates of side flow and evaporation in h and T, where known; None where units have their own.
+
+    Where one is known, the loss of a unit is that by the other.
+    """
+
+    side_flow: float | None = None
+    evaporation: float | None = None
+
+    def of(self, own: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return K T h^2 and e T of what units have, (..., 5)."""
+        loss = np.exp(np.minimum(own[..., LOSS], 50.0))
+        flows = 2.0 * np.exp(-2.0 * own[..., LAYER_NEW]) * loss
+        if self.side_flow is not None:
+            own_evaporation = loss if self.evaporation is None else np.full_like(loss, self.evaporation)
+            return np.full_like(loss, self.side_flow), own_evaporation
+        if self.evaporation is not None:
+            return flows, np.full_like(loss, self.evaporation)
+        evaporated = special.expit(own[..., EVAPORATED])
+        return flows * (1.0 - evaporated), loss * evaporated
+
+    @property
+    def free(self) -> IntArray:
+        """What units have of their own."""
+        unknown = (self.side_flow is None) + (self.evaporation is None)
+        fixed = {2: (), 1: (EVAPORATED,), 0: (LOSS, EVAPORATED)}[unknown]
+        return np.array([k for k in range(_NUMBERS) if k not in fixed])
+
+
+def log_layer(own: FloatArray, age: FloatArray, rates: Rates) -> FloatArray:
+    """Return ln of the layer over h, of what units have (..., 5), at ages over T."""
+    side_flow, evaporation = rates.of(own)
+    # Beyond exp(100) of it a layer is gone, whatever the number.
+    lost = np.minimum(2.0 * evaporation * age, 100.0)
+    mean = np.where(lost > 1e-9, np.expm1(lost) / np.where(lost > 1e-9, lost, 1.0), 1.0)
+    with np.errstate(divide="ignore"):
+        flowed = np.log(side_flow * age * mean)
+    return np.asarray(-0.5 * np.logaddexp(lost - 2.0 * own[..., LAYER_NEW], flowed))
+
+
+@dataclass(frozen=True)
+class _Told:
+    """What runs tell on an even grid of places: (runs, grid); runs of a unit stand together."""
+
+    loss: FloatArray
+    viscosity: FloatArray
+    weight: FloatArray
+    unit: IntArray
+    age: FloatArray
+    reference: Flooded
+    warmth: float
+    scale: float
+    rates: Rates
+
+    @cached_property
+    def first(self) -> IntArray:
+        """First run of each unit."""
+        return np.flatnonzero(np.diff(self.unit, prepend=-1))
+
+    def log_likelihood(self, own: FloatArray) -> FloatArray:
+        """Return that of units, (walkers, units), at what they have, (walkers, units, 5)."""
+        each = own[:, self.unit]
+        thick = each[..., VISCOSITY_NEW] + each[..., THICKENING] * self.age
+        at = np.clip(thick, -3.0, 5.0) + self.warmth * self.reference.steep.item()
+        film = cubic(self.reference.film.reshape(4), at)[0]
+        place = self.scale + log_layer(each, self.age, self.rates) - film
+        step = np.clip((place - DRY) * ((_GRID - 1) / (FLOODED - DRY)), 0.0, _GRID - 1.000001)
+        index = step.astype(np.intp)
+        share = step - index
+        runs = np.arange(self.age.size)
+        loss, viscosity, weight = (
+            table[runs, index] * (1.0 - share) + table[runs, index + 1] * share
+            for table in (self.loss, self.viscosity, self.weight)
+        )
+        # A layer beyond the table is thinner than any torque of these runs bears.
+        beyond = np.minimum(place - DRY, 0.0)
+        log = -0.5 * (loss**2 + (thick - viscosity) ** 2 * weight) + 100.0 * beyond
+        return np.asarray(np.add.reduceat(log, self.first, axis=1))
+
+
+def _told(layers: Layers, unit: IntArray, age: FloatArray, warmth: float, rates: Rates) -> _Told:
+    grid = np.linspace(DRY, FLOODED, _GRID)
+    loss, viscosity, weight = (np.empty((len(age), _GRID)) for _ in range(3))
+    low, high = layers.interval(level=0.68)[1:]
+    width = np.clip(np.where(np.isfinite(high - low), 0.5 * (high - low), 0.5), 1e-3, None)
+    error = np.hypot(layers.viscosity_error, _SCATTER)
+    for i, place in enumerate(layers.place):
+        root = np.sqrt(np.maximum(layers.deviance[i], 0.0)) * np.sign(place - layers.best[i])
+        root = np.maximum.accumulate(root)
+        # Beyond the places that were looked at the root goes on as a straight line.
+        edge = np.interp(grid, place, root) + np.minimum(grid - place[0], 0.0) / width[i]
+        loss[i] = edge * (width[i] / np.hypot(width[i], _SCATTER))
+        viscosity[i] = np.interp(grid, place, layers.viscosity[i])
+        weight[i] = np.interp(grid, place, error[i]) ** -2
+    reference = layers.reference
+    return _Told(loss, viscosity, weight, unit, age, reference, warmth, _scale(reference), rates)
+
+
+def _scale(reference: Flooded) -> float:
+    """Logarithm of the flooded film of new oil at the reference, m."""
+    return float(cubic(reference.film, np.zeros(()))[0].item())
+
+
+def fit_depletion(
+    layers: Layers,
+    unit: IntArray,
+    age: FloatArray,
+    *,
+    side_flow: float | None = None,
+    evaporation: float | None = None,
+    seed: int = 0,
+) -> Depletion:
+    """Fit the law to what runs tell, all units together.
+
+    Walkers move by differences of others (ter Braak, Stat. Comput. 16 (2006) 239), means and spreads are
+    drawn given the units. Priors, all weak, in T (the greatest age) and h (the flooded film at the
+    reference): means over units ln(h0/h) N(0, 2^2), ln(K T h^2) N(0, 2^2), ln(e T) N(-1.5, 1.5^2), ln
+    viscosity factor N(0, 1), g T N(0.2, 0.7^2); spreads half-normal of 0.5, 0.7, 0.7, 0.2, 0.5.
+
+    Parameters
+    ----------
+    layers
+        What the runs tell.
+    unit, age
+        Of each run: number of its unit from 0 on, ascending, and age in any one unit.
+    side_flow, evaporation
+        K in 1/(m^2 age) and e in 1/age, where they are known: the same for all units. Fitted if left out.
+    seed
+        Of the draws.
+    """
+    greatest = float(age.max()) or 1.0
+    units = int(unit.max()) + 1
+    walkers, steps, dropped, many = _FEW_UNITS if units < _MANY else _MANY_UNITS
+    warmth = float(layers.common[0])
+    square = np.exp(2.0 * _scale(layers.reference))
+    rates = Rates(
+        None if side_flow is None else side_flow * greatest * square,
+        None if evaporation is None else evaporation * greatest,
+    )
+    told = _told(layers, unit, age / greatest, warmth, rates)
+    random = np.random.default_rng(seed)
+    free = rates.free
+    own, mean, spread = _begin(layers, told, (walkers, units), random)
+    density = told.log_likelihood(own)
+    half_way = walkers // 2
+    kept: list[tuple[FloatArray, FloatArray, FloatArray]] = []
+    thin = max(1, (steps - dropped) * walkers // many)
+    for step in range(steps):
+        for moved in (slice(0, half_way), slice(half_way, walkers)):
+            others = np.delete(np.arange(walkers), moved)
+            tried, bias = _tried(own, mean, spread, moved, others, free, random)
+            found = told.log_likelihood(tried)
+            gain = found - density[moved] + bias
+            taken = np.log(random.random(gain.shape)) < gain
+            own[moved] = np.where(taken[..., None], tried, own[moved])
+            density[moved] = np.where(taken, found, density[moved])
+        if step < dropped // 2 and step % _CULL == 0:
+            _culled(own, density, mean, spread, free)
+        _share(own, mean, spread, free, random)
+        if step >= dropped and step % thin == 0:
+            kept.append((own.copy(), mean.copy(), spread.copy()))
+    draws = [np.concatenate(each) for each in zip(*kept, strict=True)]
+    return Depletion(draws[0], draws[1], draws[2], greatest, layers.reference, warmth, rates)
+
+
+def _begin(
+    layers: Layers, told: _Told, shape: tuple[int, int], random: np.random.Generator
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Walkers spread about what the youngest run of each unit tells."""
+    best, _, _ = layers.thickness()
+    own = np.empty((*shape, _NUMBERS))
+    for k, runs in enumerate(np.split(np.arange(told.age.size), told.first[1:])):
+        young = runs[np.argmin(told.age[runs])]
+        own[:, k, LAYER_NEW] = min(best[young] - told.scale, 1.5)
+        own[:, k, VISCOSITY_NEW] = np.interp(layers.best[young], layers.place[young], layers.viscosity[young])
+    own[..., LOSS], own[..., EVAPORATED], own[..., THICKENING] = 0.0, 0.0, 0.3
+    own += random.standard_normal(own.shape) * np.array([0.1, 0.3, 1.0, 0.05, 0.1])
+    mean = own.mean(axis=1)
+    return own, mean, np.tile(_SPREAD, (shape[0], 1))
+
+
+def _tried(
+    own: FloatArray,
+    mean: FloatArray,
+    spread: FloatArray,
+    moved: slice,
+    others: IntArray,
+    free: IntArray,
+    random: np.random.Generator,
+) -> tuple[FloatArray, FloatArray]:
+    """What walkers try, and what their prior adds to the odds of taking it."""
+    here = own[moved]
+    tried = here.copy()
+    if random.random() < 0.25:  # one number anew from those of all units: then the likelihood alone decides
+        k = free[random.integers(free.size)]
+        drawn = random.standard_normal(here.shape[:2])
+        tried[..., k] = mean[moved, None, k] + spread[moved, None, k] * drawn
+        return tried, np.zeros(here.shape[:2])
+    one, other = random.integers(others.size, size=(2, len(here)))
+    some = random.random((*here.shape[:2], free.size)) < 0.7
+    stride = 1.0 if random.random() < 0.1 else 2.38 / np.sqrt(2.0 * 0.7 * free.size)
+    difference = own[others[one]][..., free] - own[others[other]][..., free]
+    noise = 1e-3 * random.standard_normal(difference.shape)
+    tried[..., free] += np.where(some, stride * difference + noise, 0.0)
+    before = ((here - mean[moved, None]) / spread[moved, None]) ** 2
+    after = ((tried - mean[moved, None]) / spread[moved, None]) ** 2
+    return tried, 0.5 * (before - after)[..., free].sum(axis=-1)
+
+
+def _culled(
+    own: FloatArray, density: FloatArray, mean: FloatArray, spread: FloatArray, free: IntArray
+) -> None:
+    """Put the worse half of the walkers of each unit where the better half is, while they still search."""
+    prior = -0.5 * (((own - mean[:, None]) / spread[:, None])[..., free] ** 2).sum(axis=-1)
+    order = np.argsort(density + prior, axis=0)
+    half = len(own) // 2
+    # Each half moves by differences within the other, so both get walkers of every quality.
+    worse, better = order[:half], order[half : 2 * half]
+    unit = np.arange(own.shape[1])
+    own[worse, unit], density[worse, unit] = own[better, unit], density[better, unit]
+
+
+def _share(
+    own: FloatArray, mean: FloatArray, spread: FloatArray, free: IntArray, random: np.random.Generator
+) -> None:
+    """Draw means and spreads over units, given the units."""
+    units = own.shape[1]
+    precision = units / spread[:, free] ** 2 + _MEAN_DEVIATION[free] ** -2
+    pulled = own[..., free].sum(axis=1) / spread[:, free] ** 2 + _MEAN[free] * _MEAN_DEVIATION[free] ** -2
+    mean[:, free] = pulled / precision + random.standard_normal(pulled.shape) / np.sqrt(precision)
+    square = ((own[..., free] - mean[:, None, free]) ** 2).sum(axis=1)[..., None]
+    # On an even grid of ln spread; the last spread of the density is that of the grid.
+    grid = np.log(_SPREAD[free])[:, None] + np.linspace(np.log(0.02), np.log(4.0), _SPREADS)
+    log = (1.0 - units) * grid - 0.5 * square * np.exp(-2.0 * grid)
+    log = log - 0.5 * np.exp(2.0 * grid) / _SPREAD[free, None] ** 2
+    heights = np.cumsum(np.exp(log - log.max(axis=-1, keepdims=True)), axis=-1)
+    target = random.random(heights.shape[:2]) * heights[..., -1]
+    index = np.minimum((heights < target[..., None]).sum(axis=-1), _SPREADS - 1)
+    jitter = (random.random(index.shape) - 0.5) * (grid[0, 1] - grid[0, 0])
+    spread[:, free] = np.exp(
+        np.take_along_axis(np.broadcast_to(grid, heights.shape), index[..., None], -1)[..., 0] + jitter
+    )

@@ -1,0 +1,73 @@
+"""The dwells of all runs of a campaign as rows filled up, for what is computed over all of them at once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hersey.arrays import BoolArray, FloatArray, IntArray
+from hersey.errors import InsufficientDataError
+from hersey.life.indicator import Runs
+
+if TYPE_CHECKING:
+    from hersey.life.campaign import Campaign
+
+
+@dataclass(frozen=True)
+class FilledDwells:
+    """Dwells of runs, shape (runs, dwells): speed (rad/s), temperature (K), torque and its error (N m).
+
+    Speed and torque without sign; ``given`` says which are dwells, the others fill a row up.
+    """
+
+    speed: FloatArray
+    kelvin: FloatArray
+    torque: FloatArray
+    error: FloatArray
+    given: BoolArray
+
+    def rows(self, chosen: slice | IntArray) -> FilledDwells:
+        """Return some of the runs."""
+        return FilledDwells(**{name: values[chosen] for name, values in vars(self).items()})
+
+
+def runs_of(campaign: Campaign) -> Runs:
+    """Return the runs of a campaign, by unit and age."""
+    table = campaign.runs()
+    age = table["age"].to_numpy().astype(float)
+    return Runs(tuple(table["run"].to_list()), tuple(table["unit"].to_list()), age, campaign.age_unit)
+
+
+def filled_dwells(campaign: Campaign, runs: Runs) -> tuple[FilledDwells, IntArray]:
+    """Return the dwells of a campaign that have a temperature, and the places in ``runs`` of their runs.
+
+    Raises
+    ------
+    InsufficientDataError
+        If no dwell has one.
+    """
+    table = campaign.dwells()
+    names = ("speed (rad/s)", "temperature (K)", "torque (N m)", "torque error (N m)")
+    columns = np.abs(
+        np.column_stack([table[name].cast(float).fill_null(np.nan).to_numpy() for name in names])
+    )
+    columns[:, 3] = np.nan_to_num(columns[:, 3])
+    told = np.isfinite(columns).all(axis=1) & (columns[:, 0] > 0.0) & (columns[:, 2] > 0.0)
+    if not told.any():
+        raise InsufficientDataError(
+            "no dwell of the campaign has a temperature and a torque: the film needs both, so record them"
+        )
+    place = {run: i for i, run in enumerate(runs.run)}
+    of = np.array([place[run] for run in table["run_id"].to_list()])[told]
+    columns = columns[told]
+    with_dwells, first, row, count = np.unique(of, return_index=True, return_inverse=True, return_counts=True)
+    ordered = np.argsort(row, kind="stable")
+    column = np.empty_like(row)
+    column[ordered] = np.arange(row.size) - np.repeat(np.cumsum(count) - count, count)
+    filled = np.repeat(columns[first][:, None], count.max(), axis=1)
+    given = np.zeros(filled.shape[:2], dtype=bool)
+    filled[row, column], given[row, column] = columns, True
+    speed, kelvin, torque, error = np.moveaxis(filled, 2, 0)
+    return FilledDwells(speed, kelvin, torque, error, given), with_dwells

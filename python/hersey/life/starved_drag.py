@@ -1,0 +1,183 @@
+"""Torque of dwells where the film may lack oil, against viscosity, rest of the drive and layer of oil.
+
+For a layer r times as thick as the film of a flooded inlet the film is ``r/(1 + r^g)^(1/g)`` of the flooded
+one (Damiens, Venner, Cann, Lubrecht, J. Tribol. 126 (2004) 105): its shear goes as the inverse, its rolling
+part as the third power, as `Film` has it. All runs are computed at once: arrays of shape (runs, dwells).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from hersey import _core
+from hersey.arrays import FloatArray, pointwise
+from hersey.errors import ParameterError
+from hersey.lubrication.contact import Contact
+from hersey.lubrication.film import film_thickness
+from hersey.lubrication.film_temperature import film_temperature
+from hersey.lubrication.lubricant import Lubricant
+from hersey.lubrication.mixed import MixedContact
+from hersey.machine.machine import Machine
+
+#: Rounds the corner between flooded and starved, as `film_thickness` has it.
+USUAL_SHARPNESS = 3.0
+#: ln of the factor on viscosity at which the flooded film is computed; a cubic goes through them.
+_NODES = np.array([-1.0, 0.2, 1.4, 2.6])
+_TO_POWERS = np.linalg.inv(np.vander(_NODES, increasing=True))
+#: ln of film over roughness at which the share of the asperities is tabled.
+_TABLE = np.linspace(np.log(0.02), np.log(60.0), 600)
+#: What is free in a run, in this order, with the index of each.
+VISCOSITY, CONSTANT, PER_SPEED, PER_KELVIN, ROUGHNESS, BOUNDARY, WARMTH, SHARPNESS, ROLLING, LAYER = range(10)
+FREE = LAYER + 1
+
+
+@dataclass(frozen=True)
+class Flooded:
+    """The film of a flooded inlet at dwells, as cubics in ln of the factor on viscosity, lowest power first.
+
+    Each of shape (4, *dwells): ``shear`` is ln of its torque (N m), ``rolled`` rolling over shear, ``film``
+    ln of its thickness (m). ``steep`` is ln viscosity there over that at the middle temperature, over that
+    between the ends of the lubricant's data.
+    """
+
+    shear: FloatArray
+    rolled: FloatArray
+    film: FloatArray
+    steep: FloatArray
+
+
+def flooded(contact: Contact, lubricant: Lubricant, speed: FloatArray, kelvin: FloatArray) -> Flooded:
+    """Return the flooded film at speeds of the roll (rad/s, not 0) and temperatures as read (K)."""
+    inside = film_temperature(contact, lubricant, speed=speed, temperature=kelvin)
+    shear, rolled, film = [], [], []
+    for node in np.exp(_NODES).tolist():
+        # All laws know viscosity and speed by their product alone.
+        state = film_thickness(
+            replace(contact, supply=None), lubricant, speed=node * speed, temperature=inside
+        )
+        shear.append(np.log(state.shear))
+        rolled.append(state.rolling / state.shear)
+        film.append(np.log(state.central * state.factor))
+    cold, hot = lubricant.temperature_range
+    middle = 2.0 * cold * hot / (cold + hot)
+    viscosity = np.log(lubricant.viscosity(np.array([cold, middle, hot])))
+    steep = (np.log(lubricant.viscosity(inside)) - viscosity[1]) / (viscosity[0] - viscosity[2])
+    of_torque, of_rolling, of_film = (
+        np.tensordot(_TO_POWERS, np.array(each), axes=1) for each in (shear, rolled, film)
+    )
+    return Flooded(of_torque, of_rolling, of_film, steep)
+
+
+def cubic(powers: FloatArray, at: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return a cubic and its slope."""
+    value = powers[0] + at * (powers[1] + at * (powers[2] + at * powers[3]))
+    slope = powers[1] + at * (2.0 * powers[2] + at * 3.0 * powers[3])
+    return value, slope
+
+
+def film_share(layer: FloatArray, sharpness: float | FloatArray = USUAL_SHARPNESS) -> FloatArray:
+    """Return the film over the flooded one, from ln of the layer over the flooded film."""
+    return np.asarray(np.exp(-np.logaddexp(0.0, -sharpness * layer) / sharpness))
+
+
+@dataclass(frozen=True)
+class SharedLoad:
+    """What asperities do to torque, against ln of the film alone over the roughness."""
+
+    boundary: FloatArray  #: their torque, N m
+    shear: FloatArray  #: shear of the film over that of the film alone
+
+    @classmethod
+    def of(cls, mixed: MixedContact, kelvin: float) -> SharedLoad:
+        """Return the tables of a contact, its boundary friction that of a temperature, K."""
+        product = mixed.reference * np.exp(_TABLE / mixed.film_exponent)
+        state = pointwise(_core.mixed_contact, product, *mixed.numbers(np.asarray(kelvin)))
+        alone = mixed.shear * np.exp(_TABLE * (1.0 / mixed.film_exponent - 1.0))
+        return cls(np.asarray(state.boundary) * mixed.lever, np.asarray(state.shear) / alone)
+
+
+@dataclass(frozen=True)
+class StarvedDrag:
+    """Torque of dwells against what is free (see `VISCOSITY` and the others), and its slopes."""
+
+    speed: FloatArray
+    warm: FloatArray  #: K above the middle of the dwells
+    flooded: Flooded
+    reference: Flooded  #: of one point, shape (4, 1, 1): that of the layer
+    roughness: float | None
+    shared: SharedLoad | None
+
+    def torque(self, free: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return torque (runs, dwells), N m, and its slopes (runs, dwells, free) at what is free (runs, 10).
+
+        Free are ln of the factor on viscosity at the middle temperature; the rest of the drive (N m, N m
+        s/rad, N m/K); ln of the factors on roughness and on boundary friction; the change of ln viscosity
+        from the hot to the cold end; ln of the factors on the sharpness of starvation and on the rolling
+        part; and ln of the layer over the flooded film at the reference.
+        """
+        column = free.T[:, :, None]
+        at = column[VISCOSITY] + column[WARMTH] * self.flooded.steep
+        there = column[VISCOSITY] + column[WARMTH] * self.reference.steep
+        film, by_film = cubic(self.flooded.film, at)
+        least, by_least = cubic(self.reference.film, there)
+        layer = column[LAYER] + least - film
+        sharpness = USUAL_SHARPNESS * np.exp(column[SHARPNESS])
+        share = film_share(layer, sharpness)
+        by_layer = 1.0 - share**sharpness
+        shear, by_shear = cubic(self.flooded.shear, at)
+        rolled, by_rolled = cubic(self.flooded.rolled, at)
+        sheared = np.exp(shear) / share
+        thinned = np.exp(shear + column[ROLLING]) * share**3
+        rolling = thinned * rolled
+        touching, by_touching, by_shrunk = (np.zeros_like(share) for _ in range(3))
+        if self.shared is not None and self.roughness is not None:
+            ratio = film + np.log(share) - np.log(self.roughness) - column[ROUGHNESS]
+            harder = np.exp(column[BOUNDARY])
+            touching, by_touching = (harder * each for each in _tabled(self.shared.boundary, ratio))
+            shrunk, by_shrunk = _tabled(self.shared.shear, ratio)
+            by_shrunk = sheared * by_shrunk
+            sheared = sheared * shrunk
+        rest = column[CONSTANT] + column[PER_SPEED] * self.speed + column[PER_KELVIN] * self.warm
+        # By ln film over roughness, ln share of the film, and ln viscosity with the layer held.
+        of_ratio = by_touching + by_shrunk
+        of_share = 3.0 * rolling - sheared + of_ratio
+        of_layer = of_share * by_layer
+        straight = (sheared + rolling) * by_shear + thinned * by_rolled + of_ratio * by_film
+        slopes = np.empty((*share.shape, FREE))
+        slopes[..., VISCOSITY] = straight + of_layer * (by_least - by_film)
+        slopes[..., CONSTANT], slopes[..., PER_SPEED], slopes[..., PER_KELVIN] = 1.0, self.speed, self.warm
+        slopes[..., ROUGHNESS], slopes[..., BOUNDARY] = -of_ratio, touching
+        slopes[..., WARMTH] = straight * self.flooded.steep + of_layer * (
+            by_least * self.reference.steep - by_film * self.flooded.steep
+        )
+        slopes[..., SHARPNESS] = of_share * (layer * by_layer - np.log(share))
+        slopes[..., ROLLING] = rolling
+        slopes[..., LAYER] = of_layer
+        return sheared + rolling + touching + rest, slopes
+
+
+def _tabled(table: FloatArray, at: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """A tabled function and its slope, linear between the points and level beyond."""
+    step = float(_TABLE[1] - _TABLE[0])
+    place = np.clip((at - _TABLE[0]) / step, 0.0, _TABLE.size - 1.001)
+    index = place.astype(np.intp)
+    low, high = table[index], table[index + 1]
+    slope = (high - low) / step
+    return low + (place - index) * (high - low), slope
+
+
+def film_of(machine: Machine) -> tuple[Contact, Lubricant]:
+    """Return contact and lubricant of a machine.
+
+    Raises
+    ------
+    ParameterError
+        If one is missing.
+    """
+    if machine.contact is None or machine.lubricant is None:
+        raise ParameterError(
+            "the film needs the nip and what is in it: state [contact] and [lubricant] in the machine's file"
+        )
+    return machine.contact, machine.lubricant

@@ -1,0 +1,71 @@
+"""The shipped campaign as film and layer are read from it, its logs neither read nor fitted as runs."""
+
+from __future__ import annotations
+
+import json
+from functools import cache
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import polars as pl
+
+import hersey
+from hersey.machine.machine import Machine, read_machine
+from hersey.testbench.stand import RPM
+from hersey.units import ZERO_CELSIUS
+from tests.conftest import ROOT
+
+FOLDER = ROOT / "examples" / "life"
+
+
+@cache
+def machine() -> Machine:
+    """The machine of the shipped campaign."""
+    return read_machine(ROOT / "examples" / "machine.toml")
+
+
+@cache
+def truth() -> list[dict[str, Any]]:
+    """The truth of each unit."""
+    units: list[dict[str, Any]] = json.loads((FOLDER / "truth.json").read_text())["units"]
+    return units
+
+
+@cache
+def film(units: int = 8) -> hersey.FilmLife:
+    """The film of some of the shipped units."""
+    return hersey.film_life(campaign(units), machine())
+
+
+def campaign(units: int = 8) -> hersey.Campaign:
+    """What a campaign of some of the shipped units answers."""
+    listed = pl.read_csv(FOLDER / "runs.csv").with_row_index("run", offset=1)
+    listed = listed.filter(pl.col("unit").is_in([f"U{k}" for k in range(1, units + 1)]))
+    listed = listed.with_columns(
+        pl.col("age").str.extract(r"(\d+)").cast(float), pl.col("run").cast(pl.Int64)
+    )
+    rest = machine().rest
+    assert rest is not None
+    frames = []
+    for row in listed.iter_rows(named=True):
+        log = pl.read_csv(FOLDER / row["log"], comment_prefix="#")
+        speed = log["speed [rpm]"].cast(float).to_numpy() * RPM
+        kelvin = log["temperature [degC]"].cast(float).to_numpy() + ZERO_CELSIUS
+        frames.append(
+            pl.DataFrame(
+                {
+                    "run_id": [row["run"]] * log.height,
+                    "speed (rad/s)": speed,
+                    "temperature (K)": kelvin,
+                    "torque (N m)": log["torque [N*m]"].to_numpy() - rest.torque(speed, kelvin),
+                    "torque error (N m)": log["torque error [N*m]"].to_numpy(),
+                }
+            )
+        )
+    dwells = pl.concat(frames)
+    stub: Any = SimpleNamespace(
+        path=Path("life.hersey"), age_unit="pages", runs=lambda: listed, dwells=lambda: dwells
+    )
+    answer: hersey.Campaign = stub
+    return answer

@@ -1,0 +1,215 @@
+"""The layer of oil of runs, its law over ages, and when units starve: held against known truth."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from hersey.arrays import FloatArray
+from hersey.errors import InsufficientDataError, ParameterError
+from hersey.life.depletion import STARVED, film_life, starvation_indicator
+from hersey.life.depletion_law import Rates, log_layer
+from hersey.life.filled_dwells import FilledDwells, filled_dwells, runs_of
+from hersey.life.indicator import Indicators, Runs
+from hersey.life.layer import Layers, layers
+from hersey.life.starved_drag import FREE, LAYER, VISCOSITY, SharedLoad, StarvedDrag, cubic, film_of, flooded
+from hersey.lubrication.film import film_thickness
+from hersey.testbench import population
+from hersey.testbench.ageing import Ageing
+from hersey.testbench.drive import example_drive
+from hersey.testbench.stand import RPM
+from hersey.units import ZERO_CELSIUS
+from tests.life import shipped
+
+#: Speed (rad/s) and temperature (K) of the cold corner.
+COLD = (40.0 / 3.0, 60.0 + ZERO_CELSIUS)
+AGES = np.array([0.0, 60e3, 120e3, 170e3])
+
+
+def grid() -> tuple[FloatArray, FloatArray]:
+    """Speeds and temperatures of a stand, fewer than the shipped ones."""
+    speeds = np.array([7.0, 14.0, 30.0, 65.0, 140.0, 140.0, 65.0, 30.0, 14.0]) * RPM
+    heats = np.array([60.0, 90.0, 120.0, 150.0, 180.0]) + ZERO_CELSIUS
+    return np.tile(speeds, heats.size), np.repeat(heats, speeds.size)
+
+
+def read(ageing: Ageing, seed: int) -> tuple[Layers, FloatArray]:
+    """What runs of fresh units tell, and ln of their layer over the flooded film at the cold corner."""
+    machine, rest = example_drive()
+    speed, kelvin = grid()
+    random = np.random.default_rng(seed)
+    torque, error, truth = [], [], []
+    for unit in population(machine, rest, ageing=ageing, units=6, seed=seed):
+        for age in AGES:
+            aged = unit.at(float(age))
+            whole = aged.torque(speed, kelvin - ZERO_CELSIUS)
+            error.append(0.01 * whole)
+            torque.append(whole + error[-1] * random.standard_normal(whole.size) - rest.torque(speed))
+            share = aged.starvation(np.array(COLD[0]), np.array(COLD[1] - ZERO_CELSIUS))
+            truth.append(np.inf if aged.supply is None else -np.log(share**-3 - 1.0) / 3.0)
+    rows = [np.tile(each, (len(torque), 1)) for each in (speed, kelvin)]
+    given = np.array(error) < 0.01
+    dwells = FilledDwells(rows[0], rows[1], np.array(torque), np.array(error), given)
+    return layers(dwells, machine, speed=COLD[0], kelvin=COLD[1]), np.array(truth)
+
+
+def test_the_law_is_that_of_the_film_with_this_supply() -> None:
+    contact, lubricant = film_of(shipped.machine())
+    speed, kelvin = (each[None] for each in grid())
+    reference = flooded(contact, lubricant, np.array([[COLD[0]]]), np.array([[COLD[1]]]))
+    drag = StarvedDrag(speed, 0.0 * kelvin, flooded(contact, lubricant, speed, kelvin), reference, None, None)
+    free = np.zeros((1, FREE))
+    supply = 6e-6
+    free[0, LAYER] = np.log(supply) - cubic(reference.film, np.zeros(()))[0].item()
+    expected = film_thickness(contact, lubricant, speed=speed, temperature=kelvin, supply=supply).torque
+    assert drag.torque(free)[0] == pytest.approx(expected, rel=8e-3)  # heat in the inlet
+    # Thicker oil: as much faster, the same layer.
+    free[0, VISCOSITY], free[0, LAYER] = np.log(1.3), free[0, LAYER] - 0.6 * np.log(1.3)
+    faster = film_thickness(contact, lubricant, speed=1.3 * speed, temperature=kelvin, supply=supply).torque
+    assert drag.torque(free)[0] == pytest.approx(faster, rel=8e-3)
+
+
+def test_slopes_are_those_of_the_torque() -> None:
+    machine = shipped.machine()
+    contact, lubricant = film_of(machine)
+    mixed = machine.mixed
+    assert mixed is not None
+    speed, kelvin = (each[None] for each in grid())
+    reference = flooded(contact, lubricant, np.array([[COLD[0]]]), np.array([[COLD[1]]]))
+    film = flooded(contact, lubricant, speed, kelvin)
+    drag = StarvedDrag(speed, kelvin - 390.0, film, reference, contact.roughness, SharedLoad.of(mixed, 390.0))
+    free = np.array([[0.3, 0.01, 1e-3, 1e-5, 0.2, 0.1, 0.1, 0.1, 0.2, -0.5]])
+    slopes = drag.torque(free)[1]
+    for k in range(FREE):
+        step = 1e-6 * np.eye(FREE)[k]
+        numeric = (drag.torque(free + step)[0] - drag.torque(free - step)[0]) / 2e-6
+        assert slopes[..., k] == pytest.approx(numeric, rel=1e-5, abs=1e-8)
+
+
+def test_intervals_of_the_layer_hold_the_truth() -> None:
+    held = []
+    for seed in (31, 32):
+        told, truth = read(Ageing(), seed)
+        _, low, high = told.interval()
+        held += list((low <= truth) & (truth <= high))
+        assert np.abs(np.median(told.best - truth)) < 0.05
+    assert 0.83 <= np.mean(held) <= 1.0
+
+
+def test_a_flooded_unit_is_not_called_starved() -> None:
+    told, _ = read(Ageing(supply=None, side_flow=0.0, evaporation=0.0), 33)
+    _, low, high = told.interval()
+    assert np.mean(high < 0.0) <= 0.02
+    assert np.mean(np.isinf(high)) > 0.85
+    assert np.all(np.isfinite(low))  # of its layer a lower bound is told
+
+
+def test_a_wrong_viscosity_of_the_file_is_not_starvation() -> None:
+    """The ratio of layer to flooded film stays; only the level moves."""
+    lubricant = shipped.machine().lubricant
+    assert lubricant is not None
+    campaign = shipped.campaign(1)
+    runs = runs_of(campaign)
+    dwells, _ = filled_dwells(campaign, runs)
+    off = replace(
+        shipped.machine(),
+        lubricant=replace(
+            lubricant, points=tuple((kelvin, 1.2 * value) for kelvin, value in lubricant.points)
+        ),
+    )
+    right = layers(dwells, shipped.machine(), speed=COLD[0], kelvin=COLD[1])
+    wrong = layers(dwells, off, speed=COLD[0], kelvin=COLD[1])
+    assert wrong.interval()[0] == pytest.approx(right.interval()[0], abs=0.02)
+    level = [np.interp(each.best[0], each.place[0], each.viscosity[0]) for each in (wrong, right)]
+    assert level[0] - level[1] == pytest.approx(-np.log(1.2), abs=0.03)
+
+
+def test_the_layer_follows_its_law() -> None:
+    h0, side_flow, evaporation = 2.0, 0.3, 0.7
+    loss = side_flow * h0**2 / 2 + evaporation
+    share = evaporation / loss
+    own = np.array([np.log(h0), np.log(loss), np.log(share / (1 - share)), 0.0, 0.0])
+    ages = np.array([0.0, 0.5, 1.0, 2.0])
+    layer = np.exp(log_layer(own, ages, Rates()))
+    assert layer[0] == pytest.approx(2.0)
+    for age, here in zip(ages[1:], layer[1:], strict=True):
+        near = np.exp(log_layer(own, np.array([age - 1e-5, age + 1e-5]), Rates()))
+        assert (near[1] - near[0]) / 2e-5 == pytest.approx(-0.15 * here**3 - 0.7 * here, rel=1e-6)
+    alone = np.exp(log_layer(own, ages, Rates(side_flow, 0.0)))
+    assert alone == pytest.approx((0.25 + 0.3 * ages) ** -0.5)
+    steady = np.exp(log_layer(own, ages, Rates(0.0, evaporation)))
+    assert steady == pytest.approx(2.0 * np.exp(-0.7 * ages))
+
+
+def test_the_shipped_units_starve_when_they_do() -> None:
+    film = shipped.film()
+    misses = 0
+    for told, unit in zip(film.starves[0].units, shipped.truth(), strict=True):
+        age = unit["ends"]["starvation"]
+        misses += not told.age.low <= age <= told.age.high
+        assert told.age.value == pytest.approx(age, rel=0.08)
+        assert told.age.high < 1.6 * told.age.low
+    assert misses <= 1
+    supply = [run["supply"] for unit in shipped.truth() for run in unit["runs"]]
+    held = (film.layer.low <= supply) & (supply <= film.layer.high)
+    assert 0.83 <= held.mean() <= 1.0
+    over = [run["film over flooded, hot and fast"] for unit in shipped.truth() for run in unit["runs"]]
+    held = (film.film[0].low - 2e-3 <= over) & (over <= film.film[0].high + 2e-3)
+    assert held.mean() >= 0.85
+    assert [film.runs.unit[i] for i in np.flatnonzero(film.starved())] == ["U4"]
+    assert "1 of 8 units starve" in film.headline()
+
+
+def test_what_a_result_says() -> None:
+    film = shipped.film()
+    text = film.summary()
+    assert "U4 at 170000: 0.7" in text
+    assert "the cold corner (127.3 rpm, 60 degC)" in text
+    assert f"starved below {STARVED:.2f}" in text
+    oil = film.oil[3]
+    assert oil.new.value > oil.last.value
+    assert oil.last.value == pytest.approx(oil.needed.value, rel=0.3)  # it starves at about that age
+    volume = 20e-6 * film.track * 0.22
+    assert oil.new.low < volume < oil.new.high
+
+
+def test_starvation_is_an_indicator() -> None:
+    film = shipped.film()
+    none = Indicators(film.runs, ())
+    (told,) = film.with_starvation(none).each
+    assert told.kind == "starvation"
+    assert told.limit == 1.0
+    assert told.value[23] > 1.0  # U4 at 170,000 pages
+    assert np.nanmax(told.value[:18]) < 1.0
+    with pytest.raises(ParameterError, match="other runs"):
+        film.with_starvation(Indicators(Runs((1,), ("A",), np.zeros(1), "h"), ()))
+
+
+def test_a_flooded_run_tells_no_indicator() -> None:
+    campaign = shipped.campaign(1)
+    hot = campaign.dwells().filter(campaign.dwells()["temperature (K)"] > 440.0)
+    campaign.dwells = lambda: hot  # type: ignore[method-assign]
+    told = starvation_indicator(campaign, shipped.machine())
+    assert np.isnan(told.value).any()
+
+
+def test_bad_input_is_told() -> None:
+    campaign, machine = shipped.campaign(1), shipped.machine()
+    with pytest.raises(ParameterError, match=r"\[contact\] and \[lubricant\]"):
+        film_life(campaign, replace(machine, contact=None))
+    with pytest.raises(ParameterError, match="evaporation is -1"):
+        film_life(campaign, machine, evaporation=-1.0)
+    with pytest.raises(ParameterError, match="track is 0 m"):
+        film_life(campaign, machine, track=0.0)
+    cold = campaign.dwells().with_columns(campaign.dwells()["temperature (K)"] * float("nan"))
+    campaign.dwells = lambda: cold  # type: ignore[method-assign]
+    with pytest.raises(InsufficientDataError, match="temperature"):
+        film_life(campaign, machine)
+
+
+def test_given_numbers_of_the_law_are_kept() -> None:
+    film = film_life(shipped.campaign(2), shipped.machine(), side_flow=2e4, evaporation=1e-6)
+    assert film.law["K"].value == pytest.approx(2e4)
+    assert film.law["e"].low == pytest.approx(1e-6)
