@@ -88,6 +88,12 @@ def test_a_new_unit_is_the_physical_truth_of_its_machine(drive: tuple[Machine, R
     assert flooded.transition_speed(LEVEL) == pytest.approx(truth.transition_speed(LEVEL), rel=1e-4)
 
 
+def test_the_drag_of_an_old_unit_has_its_rest(drive: tuple[Machine, RestOfDrive]) -> None:
+    old, speed = population(*drive, units=1, seed=3)[0].at(150e3), np.array([1.0, 5.0, 13.0])
+    force = old.drag(180.0, 0.015, 3e-4).force(speed * 0.015)
+    assert force * 0.015 == pytest.approx(old.torque(speed, np.array(180.0)), rel=1e-3)
+
+
 def test_side_flow_and_evaporation_are_their_closed_forms() -> None:
     ages, h0, k, e = (0.0, 1e4, 3e5), 20e-6, 1e5, 3e-6
     flow = replace(STILL, supply=h0, side_flow=k)

@@ -18,7 +18,7 @@ import numpy as np
 
 from hersey import _core
 from hersey.arrays import FloatArray, pointwise
-from hersey.damping.rest import RestOfDrive
+from hersey.damping.rest import RestOfDrive, with_rest
 from hersey.errors import ParameterError
 from hersey.lubrication.film import film_thickness
 from hersey.lubrication.mixed import MixedContact
@@ -122,10 +122,10 @@ class AgedTruth(PhysicalTruth):
         """Return the drag of the belt at a temperature in degC, radius in m and stick speed in m/s."""
         if self.supply is None and self.thickening == 1.0:
             return super().drag(temperature, roll_radius, stick_speed)
-        rest = self.rest.at_the_belt(roll_radius, temperature + ZERO_CELSIUS)
         force = self.contact_torque(_SPEEDS, np.asarray(temperature)) / roll_radius
         speeds = tuple((_SPEEDS * roll_radius).tolist())
-        return DragTable(speeds, tuple(force.tolist()), stick_speed=stick_speed, **rest)  # type: ignore[arg-type]
+        contact = DragTable(speeds, tuple(force.tolist()), stick_speed=stick_speed)
+        return with_rest(contact, self.rest, roll_radius, temperature + ZERO_CELSIUS)
 
     def to_dict(self) -> dict[str, Any]:
         """Return what it is made of as plain data, in SI."""
