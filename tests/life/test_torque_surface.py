@@ -151,6 +151,6 @@ def test_too_few_dwells_are_refused() -> None:
     speed = np.array([1.0, 2.0, 3.0])
     run = power_law(speed, np.full(3, 400.0), 0)
     with pytest.raises(InsufficientDataError, match="3 dwells"):
-        TorqueSurface(run, Kernel(0.1, 1.0, 50.0, 0.01))
+        TorqueSurface(run, Kernel(0.1, 1.0, 50.0, 0.01, 0.01))
     with pytest.raises(InsufficientDataError, match="no run has 4 dwells"):
         shared_kernel([run])

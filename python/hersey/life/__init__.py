@@ -7,6 +7,9 @@ indicator         one way to fail: a number of each run against a limit
 torque_surface    the torque of a run between its dwells, without a law
 run_dwells        the runs of a campaign with their dwells, as a torque surface takes them
 corners           the states at which a drive that ages fails first
+at_states         what the runs of a campaign say of some states: torque, and its curve
+sticking          speeds of stick-slip against those of the points
+gear_fatigue      the damage of a gear per age
 indicators        from the runs of a campaign to each way to fail
 growth_laws       how an indicator may grow with age
 growth_posterior  how far units, spread and law are known: draws and evidence

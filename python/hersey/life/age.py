@@ -87,6 +87,11 @@ def refuse_no_unit(unit: str) -> None:
         raise UnitError(f"unit '{unit[:40]}' of an age must be one word: {_WAY_OUT}")
 
 
+def one_of(unit: str) -> str:
+    """Return the unit of one: ``page`` of ``pages``."""
+    return unit.removesuffix("s") if _seconds(unit) is None else unit
+
+
 def _seconds(unit: str) -> float | None:
     """Seconds of one unit, or None if it is no time."""
     try:

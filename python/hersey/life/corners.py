@@ -30,6 +30,14 @@ class State:
         return f"{self.name}: {rpm(self.speed):.4g} rpm{at} ({self.origin})"
 
 
+def point_states(machine: Machine) -> tuple[State, ...]:
+    """Return the operating points of a machine."""
+    return tuple(
+        State(point.name, point.speed / machine.roll_radius, point.temperature, "[[points]]")
+        for point in machine.points
+    )
+
+
 def corners(machine: Machine, runs: CampaignRuns) -> tuple[State, State] | None:
     """Return the cold fast and the hot slow corner of the machine's use; None if no run has a dwell.
 

@@ -11,13 +11,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hersey.arrays import BoolArray, FloatArray
+from hersey.arrays import FloatArray
 from hersey.errors import InsufficientDataError
-from hersey.life.age import Age
-from hersey.life.corners import State, corners
+from hersey.life.age import one_of
+from hersey.life.at_states import AtStates, at_states
+from hersey.life.corners import State, corners, point_states
+from hersey.life.gear_fatigue import gear_fatigue, running_time, shares_of
 from hersey.life.indicator import Indicator, Indicators
 from hersey.life.run_dwells import CampaignRuns, read_runs_of
-from hersey.life.torque_surface import Kernel, TorqueSurface, shared_kernel
+from hersey.life.sticking import DRAWN_RUNS, folds, static_force, stick_speed_at, transitions
 
 if TYPE_CHECKING:
     from hersey.life.campaign import Campaign
@@ -25,8 +27,11 @@ if TYPE_CHECKING:
 
 #: Standard deviations that enclose 95 % of a normal distribution on either side.
 _DEVIATIONS = 1.96
-#: Runs that a note names.
-_NAMED = 3
+#: Places of the states: the corners, rest, and from there on the points.
+_COLD, _SLOW, _STILL, _POINTS = 0, 1, 2, slice(3, None)
+
+#: Indicators, and what cannot be said.
+_Found = tuple[list[Indicator], list[str]]
 
 
 def indicators_of(campaign: Campaign, machine: Machine) -> Indicators:
@@ -36,85 +41,33 @@ def indicators_of(campaign: Campaign, machine: Machine) -> Indicators:
     ------
     InsufficientDataError
         If the campaign has no run, or none with dwells enough.
+    ParameterError, UnitError
+        If [gear] states no curve, or an age in another unit than the campaign's.
     """
     runs = read_runs_of(campaign, machine.rest)
-    states = corners(machine, runs)
-    if states is None:
+    ends = corners(machine, runs)
+    if ends is None:
         raise InsufficientDataError(
-            f"{campaign.path.name} has no run with dwells: add logs, or look at 'check'"
+            f"{campaign.path.name} has no run with dwells: add logs with 'hersey campaign add'"
         )
-    kernel = shared_kernel([dwells for _, dwells, _ in runs.told()])
-    told = _at_states(runs, kernel, states)
-    each, unsaid = _motor_torque(told, machine, _torque_gain(machine, runs))
-    return Indicators(runs.runs, tuple(each), (*unsaid, *runs.notes))
-
-
-@dataclass(frozen=True)
-class _AtStates:
-    """Torque of the belt alone and of the whole drive (N m) at each state, with relative errors.
-
-    Arrays of shape (runs, states), NaN where a run does not tell.
-    """
-
-    runs: CampaignRuns
-    states: tuple[State, ...]
-    belt: FloatArray
-    belt_error: FloatArray
-    whole: FloatArray
-    whole_error: FloatArray
-    outside: BoolArray
-    factor: FloatArray
-    kelvin: FloatArray
-
-    def notes(self, state: int) -> tuple[str, ...]:
-        """What the state is, and which runs do not tell it or only beyond their dwells."""
-        known = np.isfinite(self.whole[:, state])
-        notes = [str(self.states[state])]
-        beyond = np.flatnonzero(known & self.outside[:, state]).tolist()
-        if beyond:
-            far = [f"{self._run(run)}, {self._away(run, state)}" for run in beyond[:_NAMED]]
-            notes.append(
-                f"extrapolated in {len(beyond)} of {known.size} runs, whose dwells do not enclose it "
-                f"(not recorded there, or stalled): {'; '.join(far)}" + _more(beyond)
-            )
-        silent = np.flatnonzero(self.runs.enough & ~known).tolist()
-        if silent:
-            named = ", ".join(self._run(run) for run in silent[:_NAMED])
-            notes.append(f"not told by {len(silent)} runs of other temperatures: {named}" + _more(silent))
-        return tuple(notes)
-
-    def _run(self, run: int) -> str:
-        of = self.runs.runs
-        return f"{of.unit[run]} at {Age(float(of.age[run]), of.age_unit)}"
-
-    def _away(self, run: int, state: int) -> str:
-        factor, kelvin = float(self.factor[run, state]), float(self.kelvin[run, state])
-        parts = [f"{factor:.3g} times the speed"] if abs(factor - 1.0) > 0.02 else []
-        if abs(kelvin) > 1.0:
-            parts.append(f"{abs(kelvin):.3g} K {'warmer' if kelvin > 0 else 'colder'}")
-        return f"{' and '.join(parts) or 'just beside'} than the nearest dwell".replace(
-            "speed than", "speed of"
-        )
-
-
-def _more(places: list[int]) -> str:
-    return "; and more" if len(places) > _NAMED else ""
-
-
-def _at_states(runs: CampaignRuns, kernel: Kernel, states: tuple[State, ...]) -> _AtStates:
-    shape = (len(runs.dwells), len(states))
-    belt, belt_error, whole, whole_error, factor, kelvin = (np.full(shape, np.nan) for _ in range(6))
-    outside = np.zeros(shape, dtype=bool)
-    speed = np.array([state.speed for state in states])
-    heat = np.array([np.nan if state.temperature is None else state.temperature for state in states])
-    for place, dwells, rest in runs.told():
-        at = TorqueSurface(dwells, kernel).at(speed, heat)
-        beside = 0.0 if rest is None else rest.torque(speed, heat if np.isfinite(heat).all() else None)
-        belt[place], belt_error[place] = at.torque, at.error
-        whole[place] = at.torque + beside
-        whole_error[place] = at.error * at.torque / whole[place]
-        outside[place], factor[place], kelvin[place] = at.outside, at.factor, at.kelvin
-    return _AtStates(runs, states, belt, belt_error, whole, whole_error, outside, factor, kelvin)
+    hottest = ends[_SLOW].temperature
+    still = State(
+        "at rest, hot", stick_speed_at(machine, hottest) / machine.roll_radius, hottest, "stick speed"
+    )
+    states = (*ends, still, *point_states(machine))
+    heats = tuple(dict.fromkeys(point.temperature for point in machine.points))
+    told = at_states(runs, states, heats, drawn=DRAWN_RUNS)
+    asked = _Asked(told, machine, _torque_gain(machine, runs))
+    found: list[_Found] = [
+        asked.motor_torque(),
+        asked.grip(),
+        asked.stick_slip(),
+        gear_fatigue(told, machine, _COLD, _POINTS, asked.gain),
+        asked.continuous_torque(),
+        asked.energy(),
+    ]
+    each = tuple(indicator for indicators, _ in found for indicator in indicators)
+    return Indicators(runs.runs, each, (*(line for _, lines in found for line in lines), *runs.notes))
 
 
 def _torque_gain(machine: Machine, runs: CampaignRuns) -> float:
@@ -125,20 +78,124 @@ def _torque_gain(machine: Machine, runs: CampaignRuns) -> float:
     return max(gains) / _DEVIATIONS
 
 
-def _motor_torque(told: _AtStates, machine: Machine, limit_error: float) -> tuple[list[Indicator], list[str]]:
-    limit = machine.limits.motor_torque
-    if limit is None:
-        return [], ['the torque of the motor: [limits] lacks motor_torque = "1 N*m"']
-    return [
-        Indicator(
-            f"motor torque, {state.name}",
-            "motor torque",
-            "N m",
+@dataclass(frozen=True)
+class _Asked:
+    """What the runs say of all states, against the limits; ``gain`` is an error common to all torques."""
+
+    told: AtStates
+    machine: Machine
+    gain: float
+
+    def motor_torque(self) -> _Found:
+        limit = self.machine.limits.motor_torque
+        if limit is None:
+            return [], ['motor torque: add [limits] motor_torque = "1 N*m"']
+        return [self._whole("motor torque", limit, place) for place in (_COLD, _SLOW)], []
+
+    def _whole(self, kind: str, limit: float, place: int) -> Indicator:
+        told = self.told
+        return self._torque(
+            f"{kind}, {told.states[place].name}",
+            kind,
             limit,
             told.whole[:, place],
             told.whole_error[:, place],
-            limit_error,
-            notes=told.notes(place),
+            place,
         )
-        for place, state in enumerate(told.states)
-    ], []
+
+    def _torque(
+        self,
+        name: str,
+        kind: str,
+        limit: float,
+        value: FloatArray,
+        error: FloatArray,
+        place: int,
+        *notes: str,
+    ) -> Indicator:
+        return Indicator(
+            name, kind, "N m", limit, value, error, self.gain, notes=(*self.told.notes(place), *notes)
+        )
+
+    def grip(self) -> _Found:
+        """The belt alone against what the roll bears before it slips: cold and fast, and from rest."""
+        grip = self.machine.limits.grip
+        if grip is None:
+            stated = self.machine.limits
+            lacks = [
+                f"{name} = {such}"
+                for name, such, value in (
+                    ("roll_friction", "0.6", stated.roll_friction),
+                    ("nip_load", '"300 N"', stated.nip_load),
+                )
+                if value is None
+            ]
+            return [], [f"grip of the roll: add [limits] {' and '.join(lacks)}"]
+        told, limit = self.told, grip * self.machine.roll_radius
+        known = [rest is not None for rest in told.runs.rests]
+        notes = (
+            () if all(known) else ("all torque counts as the belt's, and the roll carries less: add [rest]",)
+        )
+        cold = told.belt[:, _COLD], told.belt_error[:, _COLD]
+        from_rest, how = self._breakaway()
+        return [
+            self._torque("grip, cold and fast", "grip", limit, *cold, _COLD, *notes),
+            self._torque(
+                "grip, from rest", "grip", limit, from_rest, told.belt_error[:, _STILL], _STILL, how, *notes
+            ),
+        ], []
+
+    def _breakaway(self) -> tuple[FloatArray, str]:
+        """Torque at which a belt at rest breaks away, and how it is told."""
+        told = self.told
+        drag = told.belt[:, _STILL]
+        static = static_force(self.machine)
+        if static is None:
+            return np.e * drag, "a belt at rest bears e times its drag at the stick speed (Eq. 29)"
+        age = told.runs.runs.age
+        known = np.isfinite(drag)
+        young = known & (age == age[known].min(initial=np.inf))
+        new = float(np.median(drag[young])) if young.any() else np.nan
+        return (
+            static * self.machine.roll_radius * drag / new,
+            "static friction as stated for the youngest runs, grown as the drag at the stick speed",
+        )
+
+    def stick_slip(self) -> _Found:
+        if not self.machine.points:
+            return [], ["stick-slip at a used operating point: add [[points]] with speed and temperature"]
+        signs, unsaid = folds(self.told, self.machine)
+        return [*transitions(self.told, self.machine), *signs], unsaid
+
+    def continuous_torque(self) -> _Found:
+        limit = self.machine.life.continuous_torque
+        if limit is None:
+            return [], ['heat of the motor: add [life] continuous_torque = "0.5 N*m"']
+        if not self.machine.points:
+            return [], ["heat of the motor: add [[points]] with speed and temperature, and share"]
+        squares = self.told.whole[:, _POINTS] ** 2 * shares_of(self.machine)
+        return [self._over_points("continuous torque", "motor heat", "N m", limit, squares, 0.5)], []
+
+    def energy(self) -> _Found:
+        limit, unit = self.machine.life.energy, one_of(self.told.runs.runs.age_unit)
+        if limit is None:
+            return [], [f'energy per {unit}: add [life] energy = "10 J"']
+        time = running_time(self.machine, self.told.runs.runs.age_unit)
+        if time is None:
+            lacks = 'travel = "300 mm"' if self.machine.points else "[[points]] with speed and temperature"
+            return [], [f"energy per {unit}: add {'[life] ' * bool(self.machine.points)}{lacks}"]
+        if not self.machine.points:
+            return [], [f"energy per {unit}: add [[points]] with speed and temperature, and share"]
+        speeds = np.array([state.speed for state in self.told.states[_POINTS]])
+        work = self.told.whole[:, _POINTS] * speeds * time * shares_of(self.machine)
+        return [self._over_points(f"energy per {unit}", "energy", "J", limit, work, 1.0)], []
+
+    def _over_points(
+        self, name: str, kind: str, si: str, limit: float, parts: FloatArray, power: float
+    ) -> Indicator:
+        """A sum over the points to a power; their errors are taken to go together."""
+        total = parts.sum(axis=1)
+        error = (parts / total[:, None] * self.told.whole_error[:, _POINTS]).sum(axis=1)
+        alike = all(point.share is None for point in self.machine.points)
+        notes = ("all points count alike: state a share in [[points]]",) if alike else ()
+        return Indicator(name, kind, si, limit, total**power, error, self.gain, notes=notes)

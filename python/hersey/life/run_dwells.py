@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hersey.arrays import BoolArray, FloatArray, IntArray
+from hersey.life.age import Age
 from hersey.life.indicator import Runs
 from hersey.life.torque_surface import FEWEST, RunDwells
 
@@ -37,6 +38,10 @@ class CampaignRuns:
     def enough(self) -> BoolArray:
         """Which runs have dwells enough for a torque between them."""
         return np.array([dwells.speed.size >= FEWEST for dwells in self.dwells])
+
+    def name(self, place: int) -> str:
+        """Return unit and age of a run."""
+        return f"{self.runs.unit[place]} at {Age(float(self.runs.age[place]), self.runs.age_unit)}"
 
     def told(self) -> Iterator[tuple[int, RunDwells, RestOfDrive | None]]:
         """Place, dwells and rest of each run that has enough of them."""

@@ -2,10 +2,10 @@
 
 ln torque over ln speed and temperature is a quadratic trend that costs nothing, a smooth deviation from it
 and the noise of the dwells (universal kriging, Matheron 1969; Rasmussen and Williams, Gaussian Processes,
-2006, 2.7 and 4.2 with nu = 5/2). A power law of both does not hold of an aged drive, cold starved and hot
-flooded; here the dwells beside a point say what holds there, and the error how far they do. How much and over
-what lengths torque deviates from its trend is shared by all runs of a campaign: no run of few dwells tells
-it.
+2006, 2.7; 4.2 with nu = 3/2, as the least torque is a bend). A power law of both does not hold of an aged
+drive, cold starved and hot flooded; here the dwells beside a point say what holds there, and the error how
+far they do. How much and over what lengths torque deviates from its trend is shared by all runs of a
+campaign: no run of few dwells tells it.
 
 The torque is that of the belt alone where the rest of the drive is known: above a large rest its logarithm is
 flat at one end and steep at the other, and no trend goes on from there. Noise may then be as large as torque
@@ -34,10 +34,12 @@ _TO_SPARE = 1
 FEWEST = 4
 #: Runs from which the kernel is told, and dwells of each, at most.
 _RUNS, _DWELLS = 24, 60
-#: Where the search of the kernel starts, how far it is known, and where it stays: logarithms of the
-#: deviation, of the lengths in ln speed and temperature (in `_WARMTH`), and of the scatter of dwells.
-_START, _KNOWN = np.log([0.5, 2.0, 2.0, 0.005]), np.array([2.0, 1.5, 1.5, 2.0])
-_WITHIN = list(zip(np.log([1e-3, 0.2, 0.2, 1e-4]), np.log([20.0, 30.0, 30.0, 1.0]), strict=True))
+#: Where the search of the kernel starts, how far that is known, and where it stays: logarithms of deviation,
+#: lengths (of temperature in `_WARMTH`) and scatter, and the tilt in 1/`_WARMTH`.
+_START = np.array([*np.log([0.5, 2.0, 2.0, 0.005]), 0.5])
+_KNOWN = np.array([2.0, 1.5, 1.5, 2.0, 1.0])
+_LOW = np.array([*np.log([1e-3, 0.2, 0.2, 1e-4]), -3.0])
+_HIGH = np.array([*np.log([20.0, 30.0, 30.0, 1.0]), 3.0])
 #: The logarithm is taken about the smooth torque until it moves by no more than this, in so many rounds; the
 #: longest step of a round.
 _SETTLED, _ROUNDS, _STEP = 1e-3, 12, 1.0
@@ -63,20 +65,22 @@ class RunDwells:
 class Kernel:
     """How torque deviates from its trend, the same for all runs of a campaign.
 
-    ``deviation`` is relative, ``speed_length`` in ln speed, ``temperature_length`` in K; ``scatter`` is what
+    ``deviation`` is relative, ``speed_length`` in ln speed, ``temperature_length`` in K. What is at one speed
+    lies faster by ``tilt`` (1/K) in ln speed where it is warmer, as viscosity is less. ``scatter`` is what
     dwells scatter beyond their stated errors, relative to the whole torque.
     """
 
     deviation: float
     speed_length: float
     temperature_length: float
+    tilt: float
     scatter: float
 
     def covariance(self, steps: FloatArray, warmths: FloatArray) -> FloatArray:
         """Return the covariance of deviations, so many steps of ln speed and kelvin apart."""
-        squares = (steps / self.speed_length) ** 2 + (warmths / self.temperature_length) ** 2
-        away = np.sqrt(5.0 * squares)
-        return np.asarray(self.deviation**2 * (1.0 + away + 5.0 / 3.0 * squares) * np.exp(-away))
+        along = np.sqrt(3.0) * np.abs(steps - self.tilt * warmths) / self.speed_length
+        across = np.sqrt(3.0) * np.abs(warmths) / self.temperature_length
+        return np.asarray(self.deviation**2 * (1.0 + along) * (1.0 + across) * np.exp(-along - across))
 
 
 @dataclass(frozen=True)
@@ -241,10 +245,15 @@ class TorqueSurface:
         mean, across, basis = self._told(speed, np.full_like(speed, temperature))
         steps = np.log(speed)[:, None] - np.log(speed)
         covariance = self.kernel.covariance(steps, np.zeros(())) - across.T @ across + basis.T @ basis
-        # Of neighbours on a fine grid all is known but for rounding: no root by Cholesky.
-        spread, axes = np.linalg.eigh(covariance)
+        # Of neighbours on a fine grid nearly all is known: without a little more there is no root.
+        covariance[np.diag_indices_from(covariance)] += 1e-10 * (1.0 + self.kernel.deviation**2)
+        try:
+            root = linalg.cholesky(covariance, lower=True, check_finite=False)
+        except linalg.LinAlgError:
+            spread, axes = np.linalg.eigh(covariance)
+            root = np.sqrt(np.maximum(spread, 0.0)) * axes
         normal = np.random.default_rng(seed).standard_normal((draws, speed.size))
-        return np.exp(mean), np.exp(mean + normal @ (np.sqrt(np.maximum(spread, 0.0)) * axes).T)
+        return np.exp(mean), np.exp(mean + normal @ root.T)
 
     def _told(self, speed: FloatArray, temperature: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Mean of ln torque at points; what dwells take from its variance, and what the trend adds: roots."""
@@ -287,29 +296,35 @@ def shared_kernel(runs: Sequence[RunDwells]) -> Kernel:
     if not told:
         raise InsufficientDataError(f"no run has {FEWEST} dwells: torque between them cannot be told")
     layouts = [_Layout(_thinned(told[i])) for i in _evenly(len(told), _RUNS)]
-    logarithms = _START
+    numbers = _START
     for tolerance in (1e-4, 1e-7):  # that about which logarithms are taken hangs on the kernel, a little
-        abouts = [layout.settled(_kernel(logarithms)).settled for layout in layouts]
-        logarithms = _likeliest(layouts, abouts, logarithms, tolerance)
-    return _kernel(logarithms)
+        abouts = [layout.settled(_kernel(numbers)).settled for layout in layouts]
+        numbers = _likeliest(layouts, abouts, numbers, tolerance)
+    return _kernel(numbers)
 
 
 def _likeliest(
     layouts: list[_Layout], abouts: list[FloatArray], start: FloatArray, tolerance: float
 ) -> FloatArray:
-    def misfit(logarithms: FloatArray) -> float:
+    def misfit(numbers: FloatArray) -> float:
         # Weak knowledge keeps what no run tells where it was, as the length in temperature of runs of one.
-        beside = float(np.sum(((logarithms - _START) / _KNOWN) ** 2))
-        kernel = _kernel(logarithms)
+        beside = float(np.sum(((numbers - _START) / _KNOWN) ** 2))
+        kernel = _kernel(numbers)
         return beside + sum(map(lambda layout, about: layout.misfit(kernel, about), layouts, abouts))
 
-    found = optimize.minimize(misfit, start, method="L-BFGS-B", bounds=_WITHIN, options={"ftol": tolerance})
+    found = optimize.minimize(
+        misfit,
+        start,
+        method="L-BFGS-B",
+        bounds=list(zip(_LOW, _HIGH, strict=True)),
+        options={"ftol": tolerance},
+    )
     return np.asarray(found.x)
 
 
-def _kernel(logarithms: FloatArray) -> Kernel:
-    deviation, speed, heat, scatter = np.exp(logarithms).tolist()
-    return Kernel(deviation, speed, heat * _WARMTH, scatter)
+def _kernel(numbers: FloatArray) -> Kernel:
+    deviation, speed, heat, scatter = np.exp(numbers[:4]).tolist()
+    return Kernel(deviation, speed, heat * _WARMTH, float(numbers[4]) / _WARMTH, scatter)
 
 
 def _thinned(run: RunDwells) -> RunDwells:

@@ -1,0 +1,170 @@
+"""What the runs of a campaign say of some states: torque there, and its curve against speed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from hersey.arrays import BoolArray, FloatArray, IntArray
+from hersey.life.corners import State
+from hersey.life.run_dwells import CampaignRuns
+from hersey.life.torque_surface import TorqueSurface, shared_kernel
+
+#: Runs that a note names.
+_NAMED = 3
+#: Factor beyond the slowest and the fastest dwell of a run up to which its curve is asked; what rounds off.
+_NEAR, _SLIP = 1.25, 0.999
+#: Steps of the curve in ln speed, its points at the least, and how many draws tell an error.
+_GRID, _FEWEST_SPEEDS, _DRAWS = 0.08, 24, 32
+
+
+@dataclass(frozen=True)
+class Curves:
+    """Torque of the belt against speed at one temperature (K; None where no run recorded any), of all runs.
+
+    ``speed`` in rad/s, shape (speeds,); ``torque`` in N m, (runs, speeds), NaN where a run does not tell:
+    beyond its dwells and what lies near them. ``least`` is the speed of least torque, (runs,), NaN where it
+    lies at no speed between, and ``error`` its relative standard error; ``drawn`` are joint draws of some
+    runs, (draws, speeds) each. ``below`` and ``above`` mark runs whose torque is least at their slow or fast
+    end.
+    """
+
+    temperature: float | None
+    speed: FloatArray
+    torque: FloatArray
+    least: FloatArray
+    error: FloatArray
+    below: BoolArray
+    above: BoolArray
+    drawn: dict[int, FloatArray]
+
+
+@dataclass(frozen=True)
+class AtStates:
+    """Torque of the belt alone and of the whole drive (N m) at each state, with relative errors.
+
+    Arrays of shape (runs, states), NaN where a run does not tell. Where the rest of the drive is not known
+    both torques are that of the whole. ``curves`` are those at the temperatures asked for.
+    """
+
+    runs: CampaignRuns
+    states: tuple[State, ...]
+    belt: FloatArray
+    belt_error: FloatArray
+    whole: FloatArray
+    whole_error: FloatArray
+    outside: BoolArray
+    factor: FloatArray
+    kelvin: FloatArray
+    curves: tuple[Curves, ...] = ()
+
+    def notes(self, state: int) -> tuple[str, ...]:
+        """What the state is, and which runs do not tell it or only beyond their dwells."""
+        known = np.isfinite(self.whole[:, state])
+        notes = [str(self.states[state])]
+        beyond = np.flatnonzero(known & self.outside[:, state]).tolist()
+        if beyond:
+            far = [f"{self.runs.name(run)}, {self._away(run, state)}" for run in beyond[:_NAMED]]
+            notes.append(
+                f"extrapolated in {len(beyond)} of {known.size} runs, whose dwells do not enclose it "
+                f"(not recorded there, or stalled): {'; '.join(far)}" + _more(beyond)
+            )
+        silent = np.flatnonzero(self.runs.enough & ~known).tolist()
+        if silent:
+            named = ", ".join(self.runs.name(run) for run in silent[:_NAMED])
+            notes.append(f"not told by {len(silent)} runs of other temperatures: {named}" + _more(silent))
+        return tuple(notes)
+
+    def _away(self, run: int, state: int) -> str:
+        factor, kelvin = float(self.factor[run, state]), float(self.kelvin[run, state])
+        parts = [f"{factor:.3g} times the speed"] if abs(factor - 1.0) > 0.02 else []
+        if abs(kelvin) > 1.0:
+            parts.append(f"{abs(kelvin):.3g} K {'warmer' if kelvin > 0 else 'colder'}")
+        return f"{' and '.join(parts) or 'just beside'} than the nearest dwell".replace(
+            "speed than", "speed of"
+        )
+
+
+def _more(places: list[int]) -> str:
+    return "; and more" if len(places) > _NAMED else ""
+
+
+def at_states(
+    runs: CampaignRuns, states: Sequence[State], temperatures: Sequence[float | None] = (), *, drawn: int = 0
+) -> AtStates:
+    """Return what the runs say of states, and of the curve at temperatures (K) with the draws of some runs.
+
+    Raises
+    ------
+    InsufficientDataError
+        If no run has dwells enough.
+    """
+    kernel = shared_kernel([dwells for _, dwells, _ in runs.told()])
+    shape = (len(runs.dwells), len(states))
+    belt, belt_error, whole, whole_error, factor, kelvin = (np.full(shape, np.nan) for _ in range(6))
+    outside = np.zeros(shape, dtype=bool)
+    speed = np.array([state.speed for state in states])
+    heat = np.array([np.nan if state.temperature is None else state.temperature for state in states])
+    told = np.flatnonzero(runs.enough)
+    some = set(told[np.linspace(0, told.size - 1, min(drawn, told.size)).round().astype(int)].tolist())
+    curves = [_empty(runs, temperature) for temperature in temperatures]
+    for place, dwells, rest in runs.told():
+        surface = TorqueSurface(dwells, kernel)
+        at = surface.at(speed, heat)
+        thermal = np.isfinite(dwells.temperature).all() and np.isfinite(heat).all()
+        beside = 0.0 if rest is None else rest.torque(speed, heat if thermal else None)
+        belt[place], belt_error[place] = at.torque, at.error
+        whole[place] = at.torque + beside
+        whole_error[place] = at.error * at.torque / whole[place]
+        outside[place], factor[place], kelvin[place] = at.outside, at.factor, at.kelvin
+        for curve in curves:
+            _trace(curve, place, surface, keep=place in some)
+    return AtStates(
+        runs, tuple(states), belt, belt_error, whole, whole_error, outside, factor, kelvin, tuple(curves)
+    )
+
+
+def _empty(runs: CampaignRuns, temperature: float | None) -> Curves:
+    speeds = np.concatenate([dwells.speed for _, dwells, _ in runs.told()])
+    low, high = float(speeds.min()) / _NEAR, float(speeds.max()) * _NEAR
+    grid = np.geomspace(low, high, max(int(np.log(high / low) / _GRID), _FEWEST_SPEEDS))
+    count = len(runs.dwells)
+    nothing = np.full(count, np.nan)
+    none = np.zeros(count, dtype=bool)
+    torque = np.full((count, grid.size), np.nan)
+    return Curves(temperature, grid, torque, nothing, nothing.copy(), none, none.copy(), {})
+
+
+def _trace(curves: Curves, place: int, surface: TorqueSurface, *, keep: bool) -> None:
+    """Fill in the curve of a run."""
+    own = surface.dwells.speed
+    near = (curves.speed >= own.min() / _NEAR * _SLIP) & (curves.speed <= own.max() * _NEAR / _SLIP)
+    temperature = np.nan if curves.temperature is None else curves.temperature
+    if np.count_nonzero(near) < 3 or not surface.tells(temperature):
+        return
+    median, drawn = surface.curve(curves.speed[near], temperature, _DRAWS, seed=0)
+    curves.torque[place, near] = median
+    if keep:
+        of_all = np.full((_DRAWS, curves.speed.size), np.nan)
+        of_all[:, near] = drawn
+        curves.drawn[place] = of_all
+    at = np.log(curves.speed[near])
+    least, where = _least(at, np.vstack([median, drawn]))
+    curves.below[place], curves.above[place] = where[0] == 0, where[0] == at.size - 1
+    if not (curves.below[place] or curves.above[place]):
+        curves.least[place] = np.exp(least[0])
+        curves.error[place] = float(np.sqrt(np.mean((least[1:] - least[0]) ** 2)))
+
+
+def _least(at: FloatArray, torque: FloatArray) -> tuple[FloatArray, IntArray]:
+    """Where curves are least, by a parabola through three points of ln torque; and the nearest point."""
+    logs = np.log(torque)
+    where = np.argmin(logs, axis=1)
+    middle = np.clip(where, 1, at.size - 2)[:, None]
+    before, here, after = (np.take_along_axis(logs, middle + step, axis=1)[:, 0] for step in (-1, 0, 1))
+    bend = before - 2.0 * here + after
+    step = np.clip(0.5 * (before - after) / np.where(bend > 0, bend, np.inf), -0.5, 0.5)
+    inside = where == middle[:, 0]
+    return at[where] + np.where(inside, step, 0.0) * (at[1] - at[0]), where

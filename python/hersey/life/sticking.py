@@ -1,0 +1,211 @@
+"""Stick-slip at the points of a machine: two speeds that its runs tell, against that of the point.
+
+Torque of the belt is least at the transition; slower than that it falls with speed, and a belt that slides
+steadily begins to stick of itself. So a point whose speed the transition reaches is at its end. Between the
+transition and V*, the fold above it, a belt that slides goes on sliding, and one that starts from rest
+sticks: that comes earlier, some machines are new within it, and it hangs on stiffness, mass and stick speed.
+It is followed as a sign.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hersey.arrays import FloatArray
+from hersey.damping.rest import with_rest
+from hersey.damping.surface import WITH_TRANSITION
+from hersey.errors import ParameterError, UnfinishedError
+from hersey.life.at_states import AtStates, Curves
+from hersey.life.indicator import Indicator
+from hersey.motion.drag import DragTable
+from hersey.stability.hysteresis import hysteresis
+from hersey.units import celsius
+
+if TYPE_CHECKING:
+    from hersey.damping.rest import RestOfDrive
+    from hersey.machine import Machine
+    from hersey.motion.simulation import Drivetrain
+
+#: Runs whose fold is sought at the most, those whose draws tell its error, and draws of each.
+MOST_FOLDS, DRAWN_RUNS, _DRAWS = 24, 3, 3
+#: Work and tolerance of a fold: of thousands, one that takes long is left out.
+_STEPS, _TOLERANCE = 5e4, 1e-8
+#: Folds of draws that tell an error.
+_FEWEST = 5
+#: Standard deviations that enclose 95 % of a normal distribution on either side.
+_DEVIATIONS = 1.96
+
+
+def curve_at(told: AtStates, temperature: float | None) -> Curves:
+    """Return the curves at a temperature that was asked for."""
+    return next(curves for curves in told.curves if curves.temperature == temperature)
+
+
+def transitions(told: AtStates, machine: Machine) -> list[Indicator]:
+    """Return the speed of least torque at each point of the machine (m/s), against that of the point."""
+    found = []
+    for point in machine.points:
+        curves = curve_at(told, point.temperature)
+        speed = curves.least * machine.roll_radius
+        found.append(
+            Indicator(
+                f"stick-slip, {point.name}",
+                "stick-slip",
+                "m/s",
+                point.speed,
+                speed,
+                np.where(np.isfinite(speed), curves.error, np.nan),
+                _speed_gain(told, machine),
+                notes=(
+                    f"speed of least torque at {celsius(point.temperature):.4g} degC",
+                    *_notes(told, curves),
+                ),
+            )
+        )
+    return found
+
+
+def folds(told: AtStates, machine: Machine) -> tuple[list[Indicator], list[str]]:
+    """Return V* at each point of the machine (m/s), against its speed; and why there is none."""
+    found, unsaid = [], []
+    by_temperature = {point.temperature: point.name for point in machine.points}
+    for temperature, name in by_temperature.items():
+        curves = curve_at(told, temperature)
+        falling = np.flatnonzero(np.isfinite(curves.least))
+        most = min(falling.size, MOST_FOLDS)
+        chosen = falling[np.linspace(0, falling.size - 1, most).round().astype(int)].tolist()
+        speed = np.full(curves.least.shape, np.nan)
+        for place in chosen:
+            speed[place] = _fold(machine.train, drag_of(told, curves, place, machine))
+        error = _error(told, curves, machine) if np.isfinite(speed).any() else None
+        if error is None:
+            unsaid.append(f"stick-slip from rest at {name}: no V* can be told from these dwells")
+            continue
+        beside = f"V* of {np.isfinite(speed).sum()} of {speed.size} runs, of {MOST_FOLDS} at the most"
+        errors = np.where(np.isfinite(speed), error, np.nan)
+        common = np.hypot(
+            _speed_gain(told, machine), _of_machine(told, curves, machine, chosen[len(chosen) // 2])
+        )
+        found += [
+            Indicator(
+                f"stick-slip from rest, {point.name}",
+                "stick-slip from rest",
+                "m/s",
+                point.speed,
+                speed,
+                errors,
+                float(common),
+                sign=True,
+                notes=(
+                    f"{beside}; its error is the middle one of {len(curves.drawn)} runs",
+                    *_notes(told, curves),
+                ),
+            )
+            for point in machine.points
+            if point.temperature == temperature
+        ]
+    return found, unsaid
+
+
+def drag_of(
+    told: AtStates, curves: Curves, place: int, machine: Machine, torque: FloatArray | None = None
+) -> DragTable | None:
+    """Return the drag of the belt of a run, or by another curve of it; None where it falls nowhere.
+
+    Below the slowest dwell it goes on as between the slowest two points.
+    """
+    own = curves.torque[place] if torque is None else torque
+    known = np.isfinite(own)
+    rest: RestOfDrive | None = told.runs.rests[place]
+    try:
+        drag = DragTable(
+            tuple((curves.speed[known] * machine.roll_radius).tolist()),
+            tuple((own[known] / machine.roll_radius).tolist()),
+            stick_speed_at(machine, curves.temperature),
+            static_force=static_force(machine),
+        )
+        return drag if rest is None else with_rest(drag, rest, machine.roll_radius, curves.temperature)
+    except ParameterError:  # no transition above the stick speed, or it slides harder than it rests
+        return None
+
+
+def static_force(machine: Machine) -> float | None:
+    """Return the drag of a belt at rest as the machine states it, N; None if it does not."""
+    if machine.static_friction is None or machine.limits.nip_load is None:
+        return None
+    return machine.static_friction * machine.limits.nip_load
+
+
+def stick_speed_at(machine: Machine, temperature: float | None) -> float:
+    """Return the stick speed (m/s) at a temperature (K): it moves as 1/viscosity, where that is known."""
+    stated = machine.stick_speed_temperature
+    if stated is None or temperature is None or machine.lubricant is None:
+        return machine.stick_speed
+    if machine.stick_speed_rule != WITH_TRANSITION:
+        return machine.stick_speed
+    there, here = machine.lubricant.viscosity([stated, temperature])
+    return float(machine.stick_speed * there / here)
+
+
+def _fold(train: Drivetrain, drag: DragTable | None) -> float:
+    if drag is None:
+        return np.nan
+    try:
+        band = hysteresis(train, drag, sensitivity=False, tolerance=_TOLERANCE, most_steps=_STEPS)
+    except (UnfinishedError, ParameterError):
+        return np.nan
+    return band.upper if 0.0 < band.upper < np.inf else np.nan
+
+
+def _error(told: AtStates, curves: Curves, machine: Machine) -> float | None:
+    """Relative standard error of a fold: the middle one of some runs; None if it cannot be told."""
+    errors, count = [], 0
+    for place, drawn in curves.drawn.items():
+        values = [
+            _fold(machine.train, drag_of(told, curves, place, machine, each)) for each in drawn[:_DRAWS]
+        ]
+        logs = np.log(np.array(values)[np.isfinite(values)])
+        count += logs.size
+        if logs.size > 1:
+            errors.append(float(logs.std(ddof=1)))
+    return float(np.median(errors)) if count >= _FEWEST and errors else None
+
+
+def _of_machine(told: AtStates, curves: Curves, machine: Machine, place: int) -> float:
+    """Relative standard error of all folds together, by what the machine states of its own numbers."""
+    at = _fold(machine.train, drag_of(told, curves, place, machine))
+    squares = 0.0
+    for name in ("stiffness", "mass", "stick_speed"):
+        if name not in machine.uncertainty:
+            continue
+        drawn = machine.uncertainty[name].draw(np.random.default_rng(0), getattr(machine, name), 200)
+        by: dict[str, Any] = {name: float(getattr(machine, name) * np.exp(np.log(drawn).std()))}
+        wider = replace(machine, **by)
+        moved = _fold(wider.train, drag_of(told, curves, place, wider))
+        squares += np.nan_to_num(np.log(moved / at)) ** 2
+    return float(np.sqrt(squares))
+
+
+def _speed_gain(told: AtStates, machine: Machine) -> float:
+    gains = [sensors.speed_gain for sensors in told.runs.sensors]
+    return (machine.sensors.speed_gain if "speed" in machine.sensors.stated else max(gains)) / _DEVIATIONS
+
+
+def _notes(told: AtStates, curves: Curves) -> tuple[str, ...]:
+    """Which runs do not tell the transition, and what is taken for the belt's torque."""
+    enough = told.runs.enough
+    below, above = int(curves.below.sum()), int(curves.above.sum())
+    notes = []
+    if below:
+        notes.append(f"not told by {below} of {enough.size} runs: torque is least slower than they recorded")
+    if above:
+        notes.append(f"not told by {above} of {enough.size} runs: torque falls as far as they recorded")
+    silent = int(np.count_nonzero(enough & ~np.isfinite(curves.torque).any(axis=1)))
+    if silent:
+        notes.append(f"not told by {silent} of {enough.size} runs, of other temperatures")
+    if any(rest is None for rest in told.runs.rests):
+        notes.append("least of all torque together: the rest of the drive is not known (add [rest])")
+    return tuple(notes)
