@@ -78,12 +78,19 @@ def _crossing(path: np.ndarray, limit: float) -> float:
     return float(_CLOCK[i - 1] + share * (_CLOCK[1] - _CLOCK[0]))
 
 
-def campaign(seed: int, units: int = 8, logs: int = 10, laws: tuple[str, ...] | None = None) -> Outcome:
+def campaign(
+    seed: int,
+    units: int = 8,
+    logs: int = 10,
+    laws: tuple[str, ...] | None = None,
+    only: str | None = None,
+) -> Outcome:
     """Draw a campaign, fit it, and say what its intervals hold."""
     from hersey.life.growth import fit_growth
 
     random = np.random.default_rng([seed, 14])
     truth = str(random.choice(TRUTHS))
+    truth = only or truth
     spread, between, noise = random.uniform(0.1, 0.4), random.uniform(0.05, 0.15), random.uniform(0.01, 0.03)
     limit = random.uniform(1.6, 2.5)
     own = {
@@ -189,11 +196,12 @@ def main() -> None:
     parser.add_argument("--units", type=int, default=8)
     parser.add_argument("--logs", type=int, default=10)
     parser.add_argument("--laws", help="names, separated by commas")
+    parser.add_argument("--only", choices=TRUTHS, help="this truth alone")
     parser.add_argument("--processes", type=int, default=2)
     given = parser.parse_args()
     os.environ.setdefault("OMP_NUM_THREADS", "1")
     laws = tuple(given.laws.split(",")) if given.laws else None
-    one = partial(campaign, units=given.units, logs=given.logs, laws=laws)
+    one = partial(campaign, units=given.units, logs=given.logs, laws=laws, only=given.only)
     seeds = range(given.first, given.first + given.campaigns)
     with ProcessPoolExecutor(given.processes) as pool:
         outcomes = list(pool.map(one, seeds, chunksize=5))

@@ -156,18 +156,18 @@ def test_what_accumulates_is_summed_over_age() -> None:
 @pytest.mark.parametrize("law", [law.name for law in growth_module.LAWS])
 def test_the_integral_of_each_law_is_that_of_its_curve(law: str) -> None:
     """Summed anew by the trapezium rule, also where a layer dries out soon after."""
+    found_law = next(each for each in growth_module.LAWS if each.name == law)
+    shapes = np.array([[[-0.9], [-0.3], [0.1], [1.0]]] * len(found_law.shapes)).reshape(-1, 4, 1)
     units = growth_posterior.Units(
-        *(next(each for each in growth_module.LAWS if each.name == law), np.zeros((4, 3))),
-        np.array([[-2.0, 0.0, 1.0]] * 4),
-        *(np.array([[-0.9], [-0.3], [0.1], [1.0]]), np.ones((4, 1))),
+        found_law, np.zeros((4, 3)), np.array([[-2.0, 0.0, 1.0]] * 4), shapes, np.ones((4, 1))
     )
     found = growth_module.ages_of_sum(units, np.full((4, 1), math.log(1.7)))
     for i, j in np.ndindex(found.shape):
         t = np.linspace(0.0, found[i, j], 20_001)
-        x, a = units.size[i, j], units.shape[i, 0]
-        path = np.exp(units.law.log_growth(np.array(x), t, np.array(a)))
-        # Within 1e-3 of the age, however steeply the sum rises there.
-        assert np.trapezoid(path, t) == pytest.approx(1.7, abs=1e-3 * max(1.0, path[-1] * found[i, j]))
+        x, a = units.size[i, j], units.shape[:, i]
+        path = np.exp(units.law.log_growth(np.array(x), t, a))
+        # Within 2e-3 of the age, however steeply the sum rises there.
+        assert np.trapezoid(path, t) == pytest.approx(1.7, abs=2e-3 * max(1.0, path[-1] * found[i, j]))
 
 
 def test_a_limit_that_is_known_badly_widens_the_age() -> None:

@@ -11,6 +11,7 @@ at_states         what the runs of a campaign say of some states: torque, and it
 sticking          speeds of stick-slip against those of the points
 gear_fatigue      the damage of a gear per age
 indicators        from the runs of a campaign to each way to fail
+drying            a layer that side flow and evaporation thin at once
 growth_laws       how an indicator may grow with age
 growth_posterior  how far units, spread and law are known: draws and evidence
 limit_ages        the ages at which units and population reach a limit

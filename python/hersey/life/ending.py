@@ -36,7 +36,7 @@ NAMED = 0.9
 #: What is said of a unit from so many times the age at which it was last seen on.
 FAR = 3.0
 #: Places of the curve of the population.
-_PLACES = 81
+_PLACES = 121
 #: Units, of the widest intervals, for which a further run is weighed; advice that the summary gives.
 _WEIGHED, _ADVISED = 24, 3
 #: An interval whose ends differ by this factor tells the order of an age, no more.
@@ -324,6 +324,7 @@ def _fitted(indicators: Indicators, each: Indicator, seed: int) -> _Fitted:
         share_of_units(ordered, 0.1),
         share_of_units(ordered, 0.5),
         tuple(notes),
+        each.accumulates,
     )
     residuals = np.full(runs.age.size, np.nan)
     residuals[told] = growth.residuals()
@@ -379,12 +380,9 @@ def _shares(ending: Sequence[_Fitted], new: FloatArray) -> dict[str, Interval]:
 
 
 def _curve(first: FloatArray, greatest: float) -> ShareEnded:
-    """Share ended against age, up to where most have ended or three times the age followed."""
-    most = quantiles(first[:, math.ceil(0.95 * first.shape[1]) - 1])[1]
-    end = float(np.clip(most, greatest, max(FAR * greatest, 1e-300)))
-    ages = np.linspace(0.0, end, _PLACES)
-    shares = np.stack([(first <= age).mean(axis=1) for age in ages], axis=1)
-    low, median, high = quantiles(shares)
+    """Share ended against age, up to where ages are no more than told to be late."""
+    ages = np.linspace(0.0, FAR * greatest, _PLACES)
+    low, median, high = quantiles(np.stack([(first <= age).mean(axis=1) for age in ages], axis=1))
     return ShareEnded(ages, median, low, high)
 
 

@@ -181,7 +181,7 @@ class Growth(Result):
         new.sort(axis=1)
         b10, b50 = (share_of_units(new, share) for share in (0.1, 0.5))
         quantity = f"the sum of {self.quantity} over age" if accumulates else self.quantity
-        return AgesAtLimit(quantity, self.age_unit, limit, told, b10, b50, self.notes)
+        return AgesAtLimit(quantity, self.age_unit, limit, told, b10, b50, self.notes, accumulates)
 
     def drawn_ages(
         self, limit: float, *, limit_error: float = 0.0, accumulates: bool = False
@@ -196,13 +196,13 @@ class Growth(Result):
         if not (math.isfinite(limit_error) and limit_error >= 0.0):
             raise ParameterError(f"the error of the limit is {limit_error}: it must not be negative")
         level = math.log(limit) - self._scale[1] - (math.log(self._scale[0]) if accumulates else 0.0)
-        count = sum(len(units.shape) for units in self._of_units)
+        count = sum(len(units.scatter) for units in self._of_units)
         normals = np.random.default_rng([self.seed, 1]).standard_normal((count, 1))
         levels = level + limit_error * normals
         ages = ages_of_sum if accumulates else ages_of
         found = []
         for drawn in (self._of_units, self._of_population):
-            ends = np.cumsum([0, *(len(units.shape) for units in drawn)])
+            ends = np.cumsum([0, *(len(units.scatter) for units in drawn)])
             parts = [ages(u, levels[a:b]) for u, a, b in zip(drawn, ends, ends[1:], strict=False)]
             found.append(np.concatenate(parts) * self._scale[0])
         return found[0], found[1]
@@ -219,14 +219,22 @@ class Growth(Result):
         ]
         return np.concatenate(values) + self._scale[1], np.concatenate([u.scatter for u in self._of_units])
 
+    def runs_of_units(self) -> list[tuple[FloatArray, FloatArray]]:
+        """Return ages and values of the runs of each unit, ascending in age, in the units given."""
+        points, (greatest, middle) = self._points, self._scale
+        return [
+            (age[given] * greatest, np.exp(value[given] + middle))
+            for age, value, given in zip(points.age, points.value, points.given, strict=True)
+        ]
+
     def residuals(self) -> FloatArray:
         """Return what the growth leaves of the logarithms of the runs, in the order given."""
-        every = sum(len(units.shape) for units in self._of_units)
+        every = sum(len(units.scatter) for units in self._of_units)
         step = max(1, every // _OF_MIDDLE)
         total, number = np.zeros(self._points.value.shape), 0
         for units in self._of_units:
-            for i in range(0, len(units.shape), step):
-                shape = units.shape[i, :, None]
+            for i in range(0, len(units.scatter), step):
+                shape = units.shape[:, i, :, None]
                 total += units.level[i][:, None] + units.law.log_growth(
                     units.size[i][:, None], self._points.age, shape
                 )
@@ -413,9 +421,14 @@ def _parameters(found: Posterior, scale: tuple[float, float]) -> dict[str, Inter
         per_age = 1.0 if law.name == "saturating" else scale[0]
         named["rate"] = np.exp(shared[:, 3]) / per_age
         named["spread of rates"] = np.exp(shared[:, 4])
-    if law.shape:
-        saturating = law.name == "saturating"
-        named["tau" if saturating else "c"] = np.exp(shared[:, 5]) * scale[0] if saturating else shared[:, 5]
+    for i, (name, _, _) in enumerate(law.shapes, 5):
+        own = shared[:, i]
+        if name.startswith("logit "):
+            named[name.removeprefix("logit ")] = special.expit(own)
+        elif name == "ln(tau/T)":
+            named["tau"] = np.exp(own) * scale[0]
+        else:
+            named[name] = own
     named["scatter of runs"] = np.exp(shared[:, 2])
     return {name: _weighed(values, found.weight) for name, values in named.items()}
 

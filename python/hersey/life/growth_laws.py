@@ -12,8 +12,10 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
+from scipy import special
 
 from hersey.arrays import FloatArray
+from hersey.life.drying import dried, dried_age, dried_slope
 
 #: Greatest size: beyond it growth is as good as infinite.
 _GREATEST = 30.0
@@ -26,19 +28,19 @@ Form = Callable[[FloatArray, FloatArray, FloatArray], FloatArray]
 
 
 class Law(NamedTuple):
-    """A law of growth; its functions take size, age and shape, which broadcast."""
+    """A law of growth; its functions take size, age and shapes, which broadcast from the second axis on."""
 
     name: str
     formula: str
     log_growth: Form  #: ln G
     slope: Form  #: derivative of ln G by the size
     age: Form  #: age at which ln G is the second argument; infinite where it never is
-    shape: tuple[str, float, float] | None = None  #: name, mean and standard deviation of its prior
+    shapes: tuple[tuple[str, float, float], ...] = ()  #: name, mean and standard deviation of each prior
     grows: bool = True
 
 
 def _rise(x: FloatArray, t: FloatArray) -> FloatArray:
-    return np.exp(np.minimum(x, _GREATEST)) * t
+    return np.asarray(np.exp(np.minimum(x, _GREATEST)) * t)
 
 
 def _share(z: FloatArray) -> FloatArray:
@@ -47,28 +49,48 @@ def _share(z: FloatArray) -> FloatArray:
 
 def _full(t: FloatArray, a: FloatArray) -> FloatArray:
     """How much of a saturating growth has come."""
-    return -np.expm1(-t * np.exp(-a))
+    return np.asarray(-np.expm1(-t * np.exp(-a[0])))
 
 
 def _saturating_age(x: FloatArray, y: FloatArray, a: FloatArray) -> FloatArray:
     left = 1.0 - np.expm1(y) * np.exp(-x)
-    return np.where(left > 0.0, -np.exp(a) * np.log(np.where(left > 0.0, left, 1.0)), np.inf)
+    return np.where(left > 0.0, -np.exp(a[0]) * np.log(np.where(left > 0.0, left, 1.0)), np.inf)
 
 
-def _curved(x: FloatArray, t: FloatArray, c: FloatArray) -> FloatArray:
-    z = _rise(x, t)
-    bent = np.where(np.abs(c) < _STRAIGHT, _STRAIGHT, c)
+def _bent(a: FloatArray) -> FloatArray:
+    return np.asarray(np.where(np.abs(a[0]) < _STRAIGHT, _STRAIGHT, a[0]))
+
+
+def _curved(x: FloatArray, t: FloatArray, a: FloatArray) -> FloatArray:
+    z, bent = _rise(x, t), _bent(a)
     return np.log(np.maximum(1.0 + bent * z, _DRY)) / bent
 
 
-def _curved_slope(x: FloatArray, t: FloatArray, c: FloatArray) -> FloatArray:
+def _curved_slope(x: FloatArray, t: FloatArray, a: FloatArray) -> FloatArray:
     z = _rise(x, t)
-    return z / np.maximum(1.0 + c * z, _DRY)
+    return np.asarray(z / np.maximum(1.0 + a[0] * z, _DRY))
 
 
-def _curved_age(x: FloatArray, y: FloatArray, c: FloatArray) -> FloatArray:
-    bent = np.where(np.abs(c) < _STRAIGHT, _STRAIGHT, c)
+def _curved_age(x: FloatArray, y: FloatArray, a: FloatArray) -> FloatArray:
+    bent = _bent(a)
     return np.expm1(bent * y) / bent * np.exp(-x)
+
+
+def _rested(law: Law) -> Law:
+    """The law of a drag of which a share p grows so and the rest stays; logit p is the last shape."""
+
+    def log_growth(x: FloatArray, t: FloatArray, a: FloatArray) -> FloatArray:
+        return np.asarray(np.log1p(special.expit(a[-1]) * np.expm1(law.log_growth(x, t, a))))
+
+    def slope(x: FloatArray, t: FloatArray, a: FloatArray) -> FloatArray:
+        share, grown = special.expit(a[-1]), np.exp(law.log_growth(x, t, a))
+        part = share * grown / (1.0 + share * (grown - 1.0))
+        return np.asarray(part * law.slope(x, t, a))
+
+    def age(x: FloatArray, y: FloatArray, a: FloatArray) -> FloatArray:
+        return law.age(x, np.log1p(np.expm1(y) / special.expit(a[-1])), a)
+
+    return Law(law.name, law.formula, log_growth, slope, age, (*law.shapes, ("logit p", 1.0, 1.0)))
 
 
 def _never(x: FloatArray, y: FloatArray, _: FloatArray) -> FloatArray:
@@ -104,7 +126,17 @@ LAWS = (
         lambda x, t, a: np.log1p(_rise(x, _full(t, a))),
         lambda x, t, a: _share(_rise(x, _full(t, a))),
         _saturating_age,
-        ("ln(tau/T)", -0.5, 1.0),
+        (("ln(tau/T)", 0.3, 1.0),),
     ),
-    Law("curved", "(1 + c r t)^(1/c)", _curved, _curved_slope, _curved_age, ("c", 0.5, 1.0)),
+    Law("curved", "(1 + c r t)^(1/c)", _curved, _curved_slope, _curved_age, (("c", 0.5, 1.0),)),
+    _rested(
+        Law(
+            "drying film",
+            "1 - p + p/h, h' = -r ((1 - q) h^3 + q)",
+            dried,
+            dried_slope,
+            dried_age,
+            (("logit q", -1.0, 1.5),),
+        )
+    ),
 )

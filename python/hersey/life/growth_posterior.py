@@ -2,7 +2,7 @@
 
 Of unit u at age t: ln y = ln y0_u + ln G(t; x_u) + e, e ~ N(0, s^2 + sigma^2), ln y0_u ~ N(m0, t0^2), and
 x_u ~ N(m1, t1^2), s being the stated error. ln y0_u integrates out in closed form, x_u on a grid round its
-mode. What all units share, (m0, t0, sigma, m1, t1, shape), is drawn from t distributions fitted to its
+mode. What all units share, (m0, t0, sigma, m1, t1, shapes), is drawn from t distributions fitted to its
 posterior and weighed (Cornuet et al., Scand. J. Stat. 39 (2012) 798); the mean weight is the evidence of
 the law.
 """
@@ -35,7 +35,7 @@ _STEPS, _STRIDE = 25, 2.0
 #: How well m0 and m1 are known at best, about.
 _KNOWN = (0.02, 0.1)
 #: Numbers held at a time.
-_AT_ONCE = 400_000
+_AT_ONCE = 20_000
 _LEAST = 1e-300
 #: Units drawn of the population for each draw of what they share.
 _POPULATION = 256
@@ -61,7 +61,7 @@ class Posterior:
     """Weighed draws of what all units share, under one law."""
 
     law: Law
-    shared: FloatArray  #: columns m0, ln t0, ln sigma, m1, ln t1, shape (as far as the law has them)
+    shared: FloatArray  #: columns m0, ln t0, ln sigma, m1, ln t1, shapes (as far as the law has them)
     weight: FloatArray  #: sums to 1
     log_evidence: float
     sizes: FloatArray  #: of each unit at the mode: where searches for it begin
@@ -79,12 +79,13 @@ class Units:
     law: Law
     level: FloatArray  #: ln y0
     size: FloatArray
-    shape: FloatArray  #: (draws, 1)
+    shape: FloatArray  #: (shapes, draws, 1)
     scatter: FloatArray  #: of runs, (draws, 1)
 
 
 def _shape(law: Law, shared: FloatArray) -> FloatArray:
-    return shared[:, 5] if law.shape else np.zeros(len(shared))
+    """Shapes of the law, (shapes, draws)."""
+    return shared[:, 5 : 5 + len(law.shapes)].T
 
 
 def _weights(points: Points, shared: FloatArray) -> FloatArray:
@@ -99,7 +100,7 @@ def _fit_of(
 
     ``size`` is (draws, units, nodes).
     """
-    shape = _shape(law, shared)[:, None, None, None]
+    shape = _shape(law, shared)[:, :, None, None, None]
     growth = law.log_growth(size[..., None], points.age[None, :, None, :], shape)
     left = points.value[None, :, None, :] - growth - shared[:, 0][:, None, None, None]
     first = (left @ weight[..., None])[..., 0]
@@ -121,7 +122,7 @@ def _modes(
 ) -> tuple[FloatArray, FloatArray]:
     """Most probable size of each unit, and its width (Gauss-Newton), (draws, units)."""
     mean, precision = shared[:, 3][:, None], np.exp(-2.0 * shared[:, 4])[:, None]
-    shape = _shape(law, shared)[:, None, None]
+    shape = _shape(law, shared)[:, :, None, None]
     total = weight.sum(axis=2) + np.exp(-2.0 * shared[:, 1])[:, None]
     size = np.broadcast_to(start, weight.shape[:2]).copy()
     for turn in range(_POLISH + 1):
@@ -205,16 +206,16 @@ def _log_posterior(
     sane = near & np.asarray((np.abs(shared[:, 1:3]) < 20.0).all(axis=1))
     if law.grows:
         sane &= np.asarray((np.abs(shared[:, 3:5]) < 20.0).all(axis=1))
-    if law.shape:
-        sane &= np.abs(shared[:, 5] - law.shape[1]) < 6.0 * law.shape[2]
+    for i, (_, mean, deviation) in enumerate(law.shapes, 5):
+        sane &= np.abs(shared[:, i] - mean) < 6.0 * deviation
     held = shared[sane]
     if not len(held):
         return total
     density = _half_normal(held[:, 1], LEVEL_SPREAD) + _half_normal(held[:, 2], RUN_SCATTER)
     if law.grows:
         density += _normal(held[:, 3], *RATE_PRIOR) + _half_normal(held[:, 4], RATE_SPREAD)
-    if law.shape:
-        density += _normal(held[:, 5], *law.shape[1:])
+    for i, (_, mean, deviation) in enumerate(law.shapes, 5):
+        density += _normal(held[:, i], mean, deviation)
     total[sane] = density + jacobian[sane] + _likelihood(law, points, held, start)
     return np.where(np.isfinite(total), total, -np.inf)
 
@@ -237,9 +238,7 @@ def _first_guess(law: Law, points: Points) -> tuple[FloatArray, FloatArray]:
     guess = [level.mean(), math.log(spread), math.log(min(scatter, 0.3))]
     if law.grows:
         guess += [size.mean(), math.log(max(float(np.std(size)), 0.1))]
-    if law.shape:
-        guess.append(law.shape[1])
-    return np.array(guess), size
+    return np.array([*guess, *(mean for _, mean, _ in law.shapes)]), size
 
 
 def _derivatives(
@@ -366,7 +365,7 @@ def drawn_units(found: Posterior, points: Points, shared: FloatArray, random: np
 
 
 def _units(law: Law, level: FloatArray, size: FloatArray, shared: FloatArray) -> Units:
-    return Units(law, level, size, _shape(law, shared)[:, None], np.exp(shared[:, 2:3]))
+    return Units(law, level, size, _shape(law, shared)[:, :, None], np.exp(shared[:, 2:3]))
 
 
 def _drawn(density: FloatArray, nodes: FloatArray, uniform: FloatArray) -> FloatArray:

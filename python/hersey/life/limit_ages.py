@@ -71,6 +71,7 @@ class AgesAtLimit(Result):
     b10: AgeAtLimit  #: a tenth of new units has reached it
     b50: AgeAtLimit
     notes: tuple[str, ...]
+    accumulates: bool = False  #: the limit is that of the integral over age
 
     def summary(self) -> str:
         """Return the ages as text."""
@@ -130,14 +131,15 @@ def ages_of_sum(units: Units, level: FloatArray) -> FloatArray:
     Newton's method in the logarithms of integral and age, kept between ends by halving.
     """
     need = level - units.level
-    size, shape, goal = (np.broadcast_to(x, need.shape).ravel() for x in (units.size, units.shape, need))
+    size, goal = (np.broadcast_to(x, need.shape).ravel() for x in (units.size, need))
+    shape = np.broadcast_to(units.shape, (len(units.shape), *need.shape)).reshape(len(units.shape), need.size)
     # What grows has got there before a constant would; its integral is no steeper than the age itself.
     high, low = goal.copy(), np.full(goal.shape, -np.inf)
     at, open_ = high.copy(), np.arange(goal.size)
     for _ in range(_TURNS):
-        x, a, t = size[open_], shape[open_], at[open_]
+        x, a, t = size[open_], shape[:, open_], at[open_]
         with np.errstate(over="ignore"):
-            grown = units.law.log_growth(x[:, None], np.exp(t)[:, None] * _PLACES, a[:, None])
+            grown = units.law.log_growth(x[:, None], np.exp(t)[:, None] * _PLACES, a[:, :, None])
             end = np.minimum(units.law.log_growth(x, np.exp(t), a), _HUGE)
         sum_ = np.log(np.exp(np.minimum(grown, _HUGE)) @ _PARTS)
         left = goal[open_] - t - sum_
