@@ -17,15 +17,18 @@ from benchmarks.drift import other, table
 import hersey
 from hersey import testbench
 from hersey.document.parts import (
+    AgesPart,
     BandPart,
     ComparisonPart,
     CyclesPart,
     DesignPart,
     DriftPart,
     DrivePart,
+    EndingsPart,
     FilmLifePart,
     FilmPart,
     FitPart,
+    GrowthPart,
     InspectionPart,
     LogPart,
     MapPart,
@@ -146,6 +149,21 @@ def judged() -> Any:
     return verdict(measured(), surface(), contact, lubricant, hersey.regime(points(), surface()))
 
 
+@cache
+def growth() -> hersey.Growth:
+    return hersey.fit_growth(
+        ["A"] * 3 + ["B"] * 3, [0, 1, 2] * 2, [1, 1.2, 1.4, 1, 1.3, 1.6], laws=["linear"]
+    )
+
+
+@cache
+def ends() -> hersey.Endings:
+    runs = hersey.Runs(tuple(range(6)), ("A",) * 3 + ("B",) * 3, np.array([0.0, 1.0, 2.0] * 2), "h")
+    torque = np.array([1, 1.2, 1.4, 1, 1.3, 1.6])
+    indicator = hersey.Indicator("torque", "motor torque", "N m", 2.0, torque, np.full(6, 0.01))
+    return hersey.endings(hersey.Indicators(runs, (indicator,)))
+
+
 #: How each result is made, and the part of the document that holds it.
 RESULTS: dict[str, tuple[Callable[[], Any], type[Part]]] = {
     "TorqueLog": (log, LogPart),
@@ -169,6 +187,9 @@ RESULTS: dict[str, tuple[Callable[[], Any], type[Part]]] = {
         PopulationPart,
     ),
     "Drift": (lambda: hersey.fit_drift(table(other("lubricant", 1, units=2, logs=3))), DriftPart),
+    "Growth": (growth, GrowthPart),
+    "AgesAtLimit": (lambda: growth().reaches(2.0), AgesPart),
+    "Endings": (ends, EndingsPart),
     "ModelComparison": (models, ModelsPart),
     "LogComparison": (lambda: hersey.compare(points(), points()), ComparisonPart),
     "TestDesign": (lambda: hersey.design(models(), count=1), DesignPart),

@@ -20,7 +20,6 @@ verdict         what exponents and film say together
 identification  the cycles of a trace, and the drive behind them
 stability       hysteresis, disturbances, the operating map, drive profiles, warm-ups
 life            runs of many units at many ages, fatigue, populations: what ends a drive, and when
-life            what grows with age, and when it reaches its limit
 document        the analysis document: the contract with the page
 charts          one chart per result
 report          the page
@@ -54,8 +53,9 @@ if TYPE_CHECKING:
     from hersey.identification import CycleRecord, IdentifiedDrive, cycles, identify
     from hersey.inspection import Inspection, inspect
     from hersey.life.campaign import Campaign
-    from hersey.life.drift import Drift, fit_drift
     from hersey.life.depletion import FilmLife, film_life
+    from hersey.life.drift import Drift, fit_drift
+    from hersey.life.ending import Endings, endings
     from hersey.life.fatigue import (
         RainflowCycles,
         SNCurve,
@@ -65,6 +65,9 @@ if TYPE_CHECKING:
         rainflow_cycles,
         stick_slip_damage_rate,
     )
+    from hersey.life.growth import Growth, fit_growth
+    from hersey.life.indicator import Indicator, Indicators, Runs
+    from hersey.life.limit_ages import AgesAtLimit
     from hersey.life.population import BLife, Population, weibull
     from hersey.log import TorqueLog, memory_limit, read
     from hersey.log.mapping import read_with_mapping
@@ -150,6 +153,10 @@ _HOMES = {
         "RainflowCycles SNCurve damage_rate life_of miner_damage rainflow_cycles stick_slip_damage_rate"
     ),
     "life.drift": "Drift fit_drift",
+    "life.growth": "Growth fit_growth",
+    "life.limit_ages": "AgesAtLimit",
+    "life.indicator": "Indicator Indicators Runs",
+    "life.ending": "Endings endings",
     "life.population": "BLife Population weibull",
     "life.campaign": "Campaign",
     "life.depletion": "FilmLife film_life",
@@ -157,6 +164,7 @@ _HOMES = {
 _HOME_OF = {name: module for module, names in _HOMES.items() for name in names.split()}
 
 __all__ = [
+    "AgesAtLimit",
     "Asperities",
     "BLife",
     "BoundaryFriction",
@@ -170,13 +178,17 @@ __all__ = [
     "DragTable",
     "Drift",
     "Drivetrain",
+    "Endings",
     "Estimate",
     "Film",
     "FilmLife",
+    "Growth",
     "HeatBalance",
     "HerseyError",
     "HysteresisBand",
     "IdentifiedDrive",
+    "Indicator",
+    "Indicators",
     "Inspection",
     "Limits",
     "LineContactSolution",
@@ -195,6 +207,7 @@ __all__ = [
     "RainflowCycles",
     "Regime",
     "RestOfDrive",
+    "Runs",
     "SNCurve",
     "SafeStep",
     "Schedule",
@@ -216,10 +229,12 @@ __all__ = [
     "design",
     "disturbance",
     "drag_torque",
+    "endings",
     "film_life",
     "film_thickness",
     "fit",
     "fit_drift",
+    "fit_growth",
     "hersey_collapse",
     "hysteresis",
     "hysteresis_sweep",

@@ -21,6 +21,7 @@ from hersey.damping.candidates.observations import Observations
 from hersey.errors import ParameterError
 from hersey.machine.machine import read_machine
 from hersey.motion.drag import Drag as AnyDrag
+from tests import test_results
 from tests.charts.test_charts import titles
 from tests.conftest import ROOT
 from tests.life import shipped
@@ -157,6 +158,9 @@ MADE: dict[str, Callable[[], Any]] = {
     "Population": lambda: hersey.weibull([4.0, 6.0, 7.0, 9.0], [True, True, False, True], unit="h"),
     "Drift": lambda: hersey.fit_drift(table(other("lubricant", 1, units=2, logs=3))),
     "FilmLife": lambda: shipped.film(1),
+    "Growth": lambda: test_results.growth(),
+    "AgesAtLimit": lambda: test_results.growth().reaches(2.0),
+    "Endings": lambda: test_results.ends(),
 }
 
 

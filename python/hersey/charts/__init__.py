@@ -26,6 +26,8 @@ warm_up        speed, drag and temperatures of a warm-up
 weibull        share failed against age
 drift          what moved with age, a panel per quantity
 film_life      the film of units that age, and the layer of oil that feeds it
+growth         growth with age, and the ages at a limit
+endings        ways to fail against age
 =============  ====================================================
 """
 
@@ -67,6 +69,9 @@ CHARTS = {
     "Population": ("weibull", "weibull_chart"),
     "Drift": ("drift", "drift_chart"),
     "FilmLife": ("film_life", "film_life_chart"),
+    "Growth": ("growth", "growth_chart"),
+    "AgesAtLimit": ("growth", "ages_chart"),
+    "Endings": ("endings", "endings_chart"),
 }
 
 

@@ -16,7 +16,7 @@ from hersey.units import celsius
 WIDTH, HEIGHT = 680, 340
 #: Ink for words and rules, the first and the second colour of lines.
 INK, BLUE, ORANGE = "#333", "#1f4e9c", "#d9730d"
-_SHAPES = ("circle", "square", "triangle-up", "diamond", "cross", "triangle-down")
+SHAPES = ("circle", "square", "triangle-up", "diamond", "cross", "triangle-down")
 Row = dict[str, Any]
 #: A pale rim around words, so that lines do not run through them.
 RIM: Row = {"color": "white", "stroke": "white", "strokeWidth": 3.5, "strokeJoin": "round"}
@@ -52,7 +52,7 @@ def temperature_channels(
     """Return colour by lightness and shape of the field ``level``, so that temperatures survive greyscale."""
     levels = sorted({temperature_name(t) for t in kelvin})
     named = alt.Legend(title="°C", symbolOpacity=1, orient=orient) if legend else None
-    shapes = [_SHAPES[i % len(_SHAPES)] for i in range(len(levels))]
+    shapes = [SHAPES[i % len(SHAPES)] for i in range(len(levels))]
     return (
         alt.Color("level:N", scale=alt.Scale(domain=levels, range=ramp(len(levels))), legend=named),
         alt.Shape("level:N", scale=alt.Scale(domain=levels, range=shapes), legend=named),

@@ -27,7 +27,6 @@ drift             what moved with age, and what it points to
 fatigue           cycles of torque counted, and the damage that they do to a part
 population        ages at failure over many units: Weibull law, B10 and B50
 ending            what ends each unit, and when
-fatigue           cycles of torque counted, and the damage that they do to a part
 filled_dwells     the dwells of all runs as arrays
 starved_drag      torque against viscosity, rest of the drive and layer of oil
 layer             the layer of oil and the viscosity that each run tells

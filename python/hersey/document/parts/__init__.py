@@ -13,6 +13,7 @@ stability   bands, maps, plans, warm-ups
 life        ages at failure
 drift       what moved with age
 film_life   the film of units that age
+ending      growth of indicators, and what ends units
 models      candidates, comparisons of logs, designs
 inspection  what a log holds
 campaign    runs of many units at many ages
@@ -27,6 +28,7 @@ from hersey.document.parts.campaign import CampaignPart
 from hersey.document.parts.carried import CarriedPart
 from hersey.document.parts.cycles import CyclesPart, DrivePart
 from hersey.document.parts.drift import DriftPart
+from hersey.document.parts.ending import AgesPart, EndingsPart, GrowthPart
 from hersey.document.parts.figures import FiguresPart
 from hersey.document.parts.film import FilmPart, FilmPoint, FilmStatesPart, MeasuredFilmPart, VerdictPart
 from hersey.document.parts.film_life import FilmLifePart
@@ -92,6 +94,7 @@ PRINTED: dict[str, type[Part]] = {
 __all__ = [
     "PRINTED",
     "SCHEMA_VERSION",
+    "AgesPart",
     "Analysis",
     "BandPart",
     "BranchPart",
@@ -107,6 +110,7 @@ __all__ = [
     "DisturbancePart",
     "DriftPart",
     "DrivePart",
+    "EndingsPart",
     "FiguresPart",
     "FilmLifePart",
     "FilmPart",
@@ -114,6 +118,7 @@ __all__ = [
     "FilmStatesPart",
     "FitDocument",
     "FitPart",
+    "GrowthPart",
     "HypothesisPart",
     "InputFile",
     "InspectionPart",

@@ -1,0 +1,139 @@
+"""Ways to fail against age: what ends each unit, and the share of units that has ended."""
+
+from __future__ import annotations
+
+import math
+
+import altair as alt
+
+from hersey.charts.growth import age_axis, axis_end
+from hersey.charts.style import BLUE, INK, SHAPES, WIDTH, Chart, Row, plot, ramp, rows_of, tip
+from hersey.life.ending import Endings
+
+#: Units shown; pixels of each way in the row of a unit, and of the share ended.
+_SHOWN, _STEP, _GAP, _SHARES = 24, 9, 14, 200
+
+
+def endings_chart(endings: Endings) -> Chart:
+    """Return what ends each unit, a row each, above the share of new units that has ended.
+
+    A mark with its 90 % interval for each way, that which is most probably first filled; of many units those
+    that end first are shown.
+    """
+    greatest = max(each.age.last for each in endings.units)
+    shown = sorted(endings.units, key=lambda each: each.age.age.value)[:_SHOWN]
+    names = {each.unit for each in shown}
+    order = [each.unit for each in endings.units if each.unit in names]
+    medians = [age.age.value for mode in endings.modes for age in mode.ages.units if age.unit in names]
+    end = axis_end(greatest, medians)
+    scale = alt.Scale(domain=[0.0, end], nice=False)
+    return alt.vconcat(
+        _units(endings, order, end, scale),
+        _share(endings, scale),
+        title=alt.Title("Ways to fail against age", subtitle=_heading(endings)),
+        spacing=16,
+    )
+
+
+def _heading(endings: Endings) -> list[str]:
+    words = [
+        endings.headline(),
+        "marks: medians with 90 % intervals, filled: most probably the first; upright ticks: age last seen",
+    ]
+    if len(endings.units) > _SHOWN:
+        words.append(f"{_SHOWN} of {len(endings.units)} units are shown, those that end first")
+    return words
+
+
+def _units(endings: Endings, order: list[str], end: float, scale: alt.Scale) -> Chart:
+    named = [mode.name + (" (early sign)" if mode.sign else "") for mode in endings.modes]
+    likely = {each.unit: max(each.first, key=lambda name: each.first[name]) for each in endings.units}
+    rows: list[Row] = []
+    for name, mode in zip(named, endings.modes, strict=True):
+        for told in mode.ages.units:
+            if told.unit in order and told.age.low < end:
+                inside = told.age.value <= end
+                first = likely[told.unit] == mode.name
+                rows.append(
+                    {
+                        "unit": told.unit,
+                        "way": name,
+                        "age": told.age.value if inside else None,
+                        "low": told.age.low,
+                        "high": min(told.age.high, end),
+                        "to": told.age.high if math.isfinite(told.age.high) else None,
+                        "first": name if first and inside else None,
+                    }
+                )
+    last = [{"unit": each.unit, "last": each.age.last} for each in endings.units if each.unit in order]
+    y = alt.Y("unit:N", title=None, sort=order, scale=alt.Scale(domain=order))
+    apart = alt.YOffset("way:N", sort=named, scale=alt.Scale(domain=named, paddingOuter=0.5))
+    legend = alt.Legend(title=None, orient="top", columns=3, labelLimit=400, symbolOpacity=1)
+    shades = alt.Scale(domain=named, range=ramp(len(named)))
+    shapes = alt.Scale(domain=named, range=[SHAPES[i % len(SHAPES)] for i in range(len(named))])
+    colour, shape = (
+        alt.Color("way:N", scale=shades, legend=legend),
+        alt.Shape("way:N", scale=shapes, legend=legend),
+    )
+    tips = ["unit:N", "way:N", tip("age", "age"), tip("low", "from"), tip("to", "to")]
+    unit = endings.age_unit
+    base = plot(rows).encode(y=y, yOffset=apart)
+    x = age_axis("age", unit, scale)
+    layers = [
+        plot(last)
+        .mark_tick(color=INK, thickness=2, size=_row(len(named)) - 6)
+        .encode(y=y, x=age_axis("last", unit, scale)),
+        base.mark_rule(strokeWidth=2, clip=True).encode(
+            x=age_axis("low", unit, scale), x2="high:Q", color=colour
+        ),
+        base.mark_point(fill="white", opacity=1, size=52, strokeWidth=1.6, clip=True).encode(
+            x=x, color=colour, shape=shape, tooltip=tips
+        ),
+        base.transform_filter("datum.first != null")
+        .mark_point(filled=True, opacity=1, size=60, clip=True)
+        .encode(x=x, color=colour, shape=shape, tooltip=tips),
+    ]
+    return alt.layer(*layers, width=WIDTH, height=_row(len(named)) * len(order))
+
+
+def _row(ways: int) -> int:
+    """Pixels of the row of a unit."""
+    return _STEP * ways + _GAP
+
+
+def _share(endings: Endings, scale: alt.Scale) -> Chart:
+    """Share ended of new units as foretold, and the units that have ended at their median ranks."""
+    curve, unit = endings.curve, endings.age_unit
+    rows = rows_of(age=curve.age, median=100 * curve.median, low=100 * curve.low, high=100 * curve.high)
+    shares = alt.Scale(domain=[0, 100])
+    y = alt.Y("median:Q", title="Share ended (%)", scale=shares)
+    x = age_axis("age", unit, scale)
+    tips = [tip("age", "age"), tip("median", "share ended (%)"), tip("low", "from"), tip("high", "to")]
+    band = plot(rows).mark_area(color=BLUE, opacity=0.18, clip=True)
+    layers: list[alt.Chart] = [
+        band.encode(x=x, y=alt.Y("low:Q", title="Share ended (%)", scale=shares), y2="high:Q"),
+        plot(rows).mark_line(color=BLUE, strokeWidth=2, clip=True).encode(x=x, y=y, tooltip=tips),
+    ]
+    population = endings.population
+    ages, ranks = population.median_ranks
+    if len(ages):
+        points = plot(rows_of(age=ages, share=100 * ranks)).mark_point(
+            color=INK, filled=True, opacity=1, size=50
+        )
+        seen = [tip("age", "age"), tip("share", "median rank (%)")]
+        layers.append(
+            points.encode(x=x, y=alt.Y("share:Q", title="Share ended (%)", scale=shares), tooltip=seen)
+        )
+    others = population.ages[~population.failed]
+    if others.size:
+        ticks = plot(rows_of(age=others)).mark_rule(color=INK, strokeWidth=2)
+        layers.append(
+            ticks.encode(x=x, y=alt.value(_SHARES - 14), y2=alt.value(_SHARES), tooltip=[tip("age", "age")])
+        )
+    words = (
+        "line and band: new units as foretold, 90 %; points: units that have ended, at median ranks; "
+        "ticks: the others"
+    )
+    return alt.layer(
+        *layers, width=WIDTH, height=_SHARES, title=alt.Title("New units", subtitle=words, fontSize=13)
+    )

@@ -1,0 +1,165 @@
+"""Growth of an indicator with age: runs, median and band of each unit, and the ages at a limit."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import altair as alt
+import numpy as np
+
+from hersey.charts.style import BLUE, HEIGHT, INK, ORANGE, WIDTH, Chart, Row, plot, rows_of, tip
+from hersey.life.growth import Growth
+from hersey.life.limit_ages import AgeAtLimit, AgesAtLimit
+
+#: Units shown, panels in a row, and pixels of each where there are several.
+_SHOWN, _COLUMNS, _GAP, _HEIGHT = 12, 4, 58, 150
+_POINTS = 61
+#: How far the axis of ages goes, in the greatest age; and beyond the last median.
+_FARTHEST, _BEYOND = 3.0, 1.2
+#: Room above the axis of values, and the ratio of its ends from which it is logarithmic.
+_FREE, _STEEP = 1.1, 10.0
+
+
+class _Axes(NamedTuple):
+    """What all panels share."""
+
+    width: int
+    height: int
+    age: alt.Scale
+    value: alt.Scale
+    end: float
+
+
+def growth_chart(growth: Growth, *, ages: AgesAtLimit | None = None) -> Chart:
+    """Return the growth of each unit, one panel for each; with ``ages`` also where it reaches the limit.
+
+    Of many units the first are shown.
+    """
+    count = min(len(growth.units), _SHOWN)
+    told = {each.unit: each for each in ages.units} if ages else {}
+    known = [told[unit] for unit in growth.units[:count] if unit in told]
+    end = axis_end(max(growth.last_age), [each.age.value for each in known])
+    at = np.linspace(0.0, end, _POINTS)
+    curves, runs = growth.at(at), growth.runs_of_units()
+    line = ages.limit if ages and not ages.accumulates else None
+    columns = min(count, _COLUMNS)
+    values = np.concatenate([value for _, value in runs[:count]])
+    top = _FREE * max(float(values.max()), line or float(curves.median[:count, -1].min()))
+    steep = top > _STEEP * float(values.min())
+    bottom = float(values.min()) / _FREE if steep else 0.0
+    axes = _Axes(
+        WIDTH if count == 1 else (WIDTH - _GAP * (columns - 1)) // columns,
+        HEIGHT if count == 1 else _HEIGHT,
+        alt.Scale(domain=[0.0, end], nice=False),
+        alt.Scale(domain=[bottom, top], nice=not steep, type="log" if steep else "linear"),
+        end,
+    )
+    panels = []
+    for i, unit in enumerate(growth.units[:count]):
+        band = rows_of(age=at, median=curves.median[i], low=curves.low[i], high=curves.high[i])
+        layers = _curve(growth, band, rows_of(age=runs[i][0], value=runs[i][1]), axes)
+        if line is not None:
+            layers.append(plot([{"value": line}]).mark_rule(color=INK, strokeDash=[4, 3]).encode(y="value:Q"))
+        if unit in told:
+            layers += _age(told[unit], line if line is not None else top / _FREE, axes)
+        panels.append(
+            alt.layer(*layers, title=alt.Title(unit, fontSize=12), width=axes.width, height=axes.height)
+        )
+    rows = [alt.hconcat(*panels[i : i + columns], spacing=12) for i in range(0, count, columns)]
+    title = alt.Title(f"Growth of {growth.quantity}", subtitle=_heading(growth, ages))
+    return alt.vconcat(*rows, title=title, spacing=10)
+
+
+def axis_end(last: float, medians: list[float]) -> float:
+    """Return where the axis of ages ends: beyond the medians, but near what was followed."""
+    finite = [each for each in medians if math.isfinite(each)]
+    farthest = _FARTHEST * last if last > 0.0 else max([1.0, *finite])
+    return float(min(_BEYOND * max([last, *finite]), farthest)) or 1.0
+
+
+def age_axis(field: str, age_unit: str, scale: alt.Scale, count: int = 8) -> alt.X:
+    """Return an axis of ages."""
+    title = f"Age ({age_unit or 'as given'})"
+    axis = alt.Axis(labelExpr="format(datum.value, '~s')", tickCount=count, labelOverlap=True)
+    return alt.X(f"{field}:Q", title=title, scale=scale, axis=axis)
+
+
+def _curve(growth: Growth, band: list[Row], runs: list[Row], axes: _Axes) -> list[alt.Chart]:
+    x = age_axis("age", growth.age_unit, axes.age, 8 if axes.height == HEIGHT else 3)
+    title = f"{growth.quantity[:1].upper()}{growth.quantity[1:]}" if axes.height == HEIGHT else None
+    axis = alt.Axis(format=".3~g", tickCount=5)
+    low, median, value = (
+        alt.Y(f"{name}:Q", title=title, scale=axes.value, axis=axis) for name in ("low", "median", "value")
+    )
+    tips = [tip("age", "age"), tip("median", "median"), tip("low", "from"), tip("high", "to")]
+    area = plot(band).mark_area(color=BLUE, opacity=0.18, clip=True).encode(x=x, y=low, y2="high:Q")
+    line = plot(band).mark_line(color=BLUE, strokeWidth=2, clip=True)
+    points = plot(runs).mark_point(color=INK, filled=True, opacity=1, size=28)
+    seen = [tip("age", "age"), tip("value", "run")]
+    return [area, line.encode(x=x, y=median, tooltip=tips), points.encode(x=x, y=value, tooltip=seen)]
+
+
+def _age(told: AgeAtLimit, height: float, axes: _Axes) -> list[alt.Chart]:
+    """The interval of the age, as far as it lies within the axis, and its median."""
+    span = {"low": told.age.low, "high": min(told.age.high, axes.end), "value": height}
+    mark = {**span, "age": told.age.value}
+    tips = [tip("age", "age at the limit"), tip("low", "from"), tip("high", "to")]
+    y = alt.Y("value:Q", scale=axes.value, title=None)
+    layers = []
+    if told.age.low < axes.end:
+        rule = plot([span]).mark_rule(color=ORANGE, strokeWidth=4, clip=True)
+        layers.append(rule.encode(x=alt.X("low:Q", scale=axes.age), x2="high:Q", y=y))
+    if told.age.value < axes.end:
+        point = plot([mark]).mark_point(
+            color=ORANGE, fill="white", shape="diamond", size=70, opacity=1, strokeWidth=2
+        )
+        layers.append(point.encode(x=alt.X("age:Q", scale=axes.age), y=y, tooltip=tips))
+    return layers
+
+
+def _heading(growth: Growth, ages: AgesAtLimit | None) -> list[str]:
+    words = ["points: runs; lines and bands: each unit without the scatter of runs, 90 %"]
+    if ages:
+        where = (
+            "at the dashed limit" if not ages.accumulates else "at which its sum over age reaches the limit"
+        )
+        words.append(f"diamonds: the age {where}, with its 90 % interval")
+    if len(growth.units) > _SHOWN:
+        words.append(f"{_SHOWN} of {len(growth.units)} units are shown")
+    return [growth.headline(), *words]
+
+
+def ages_chart(ages: AgesAtLimit) -> Chart:
+    """Return the age at a limit of each unit, and of a tenth and half of new units, with 90 % intervals."""
+    shown = [*ages.units[: 2 * _SHOWN], ages.b10, ages.b50]
+    last = max(each.last for each in ages.units)
+    end = axis_end(last, [each.age.value for each in shown])
+    scale = alt.Scale(domain=[0.0, end], nice=False)
+    rows = [
+        {
+            "unit": each.unit,
+            "age": each.age.value if math.isfinite(each.age.value) else None,
+            "low": min(each.age.low, end),
+            "high": min(each.age.high, end),
+            "last": None if math.isnan(each.last) else each.last,
+        }
+        for each in shown
+    ]
+    base = plot(rows).encode(y=alt.Y("unit:N", title=None, sort=[each.unit for each in shown]))
+    tips = ["unit:N", tip("age", "age"), tip("low", "from"), tip("high", "to"), tip("last", "last seen")]
+    spans = base.mark_rule(color=BLUE, strokeWidth=2)
+    points = base.mark_point(color=BLUE, filled=True, opacity=1, size=70, clip=True)
+    ticks = base.mark_tick(color=INK, thickness=2, size=14)
+    words = "points: medians with 90 % intervals; upright ticks: age last seen"
+    if len(ages.units) > 2 * _SHOWN:
+        words += f"; {2 * _SHOWN} of {len(ages.units)} units are shown"
+    title = alt.Title(f"Age at which {ages.quantity} reaches {ages.limit:.4g}", subtitle=words)
+    return alt.layer(
+        spans.encode(x=age_axis("low", ages.age_unit, scale), x2="high:Q"),
+        points.encode(x=age_axis("age", ages.age_unit, scale), tooltip=tips),
+        ticks.encode(x=age_axis("last", ages.age_unit, scale)),
+        title=title,
+        width=WIDTH,
+        height=24 * len(rows),
+    )
