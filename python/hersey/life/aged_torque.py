@@ -3,15 +3,15 @@
 In the product p of viscosity and speed (logarithms, about the middle of the data):
 
     torque = rest (1 + k w) + film + contact
-    film = e^(F + L + (1 - n) p) (1 + e^(S + 3 n (p - p_c)))^(1/3)
+    film = e^(F + L + (1 - n) p) (1 + e^(S + g n (p - p_c)))^(1/g)
     contact = e^(F + A - K (e^(n (p - p_s) + C) - 1))
     p = ln w + (1 + b) viscosity(T)
 
 The film goes as the product to the power n, and starves where the layer of oil is thinner than a flooded
-film: h/h_ff = (1 + (h_ff/h_oil)^3)^(-1/3), Chevalier and others, J. Tribol. 126 (2004) 105. The contact fades
+film: h/h_ff = (1 + (h_ff/h_oil)^g)^(-1/g), Chevalier and others, J. Tribol. 126 (2004) 105. The contact fades
 with the film over the roughness. p_c is the cold and fast corner of the data, p_s the hot and slow one. All
-runs share F, n, K, k and the viscosity; a run has its own rest, L, b, S, A and C. In those ageing is linear:
-thicker oil, say, moves L by 1 - n, S by 3 n and C by n.
+runs share F, n, K, k, g and the viscosity; a run has its own rest, L, b, S, A and C. In those ageing is
+linear: thicker oil, say, moves L by 1 - n, S by g n and C by n.
 """
 
 from __future__ import annotations
@@ -26,14 +26,20 @@ from hersey.arrays import BoolArray, FloatArray
 OWN = ("rest", "film", "temperature law", "starvation", "contact", "cover")
 REST, FILM, LAW, STARVATION, CONTACT, COVER = range(len(OWN))
 #: What all runs share.
-SHARED = ("level", "film exponent", "slope of viscosity", "bend of viscosity", "rest by speed", "fading")
-LEVEL, EXPONENT, SLOPE, BEND, PER_SPEED, FADING = range(len(SHARED))
+SHARED = (
+    "level",
+    "film exponent",
+    "slope of viscosity",
+    "bend of viscosity",
+    "rest by speed",
+    "fading",
+    "sharpness",
+)
+LEVEL, EXPONENT, SLOPE, BEND, PER_SPEED, FADING, SHARPNESS = range(len(SHARED))
 #: Activation energy of the viscosity that is expected before the data speak, J/mol, and the gas constant.
 _ENERGY, _GAS = 40e3, 8.314462618
 #: Range of 1/T (1/K) from which temperatures tell anything: some 5 K at 400 K.
 _LEAST_RANGE = 3e-5
-#: Sharpness of the corner between flooded and starved.
-_SHARP = 3.0
 #: Greatest exponent that is raised to: beyond it a part is gone or has lost all sense.
 _FAR = 30.0
 
@@ -118,37 +124,45 @@ def parts(scales: Scales, speed: FloatArray, place: FloatArray, own: FloatArray,
         Shape (`SHARED`).
     """
     rest, thick, law, starved, touch, cover = np.moveaxis(own, -1, 0)[..., None]
-    level, exponent, slope, bend, per_speed, fading = shared
+    level, exponent, slope, bend, per_speed, fading, log_sharp = shared
+    sharp = np.exp(log_sharp)
     viscosity = slope * place + bend * place**2
     d_cold, d_hot = np.array([0.5, 0.25]), np.array([-0.5, 0.25])
     product = scales.speeds(speed) + (1.0 + law) * viscosity
     above = product - scales.reach - d_cold @ shared[[SLOPE, BEND]]
     beyond = product + scales.reach - d_hot @ shared[[SLOPE, BEND]]
     # Film, and how far it is starved.
-    over = np.exp(np.minimum(starved + _SHARP * exponent * above, _FAR))
+    over = np.exp(np.minimum(starved + sharp * exponent * above, _FAR))
     film = np.exp(np.minimum(level + thick + (1.0 - exponent) * product, _FAR)) * (1.0 + over) ** (
-        1.0 / _SHARP
+        1.0 / sharp
     )
-    thinned = film * over / (_SHARP * (1.0 + over))  # d film / d starvation
+    thinned = film * over / (sharp * (1.0 + over))  # d film / d starvation
     # Contact: fades as the film grows over the roughness.
     steep = np.exp(fading)
     covered = steep * np.exp(np.minimum(exponent * beyond + cover, _FAR))
     contact = np.exp(np.clip(level + touch + steep - covered, -_FAR, _FAR))
     fall = -contact * covered  # d contact / d cover
-    by_product = film * (1.0 - exponent) + thinned * _SHARP * exponent + fall * exponent
+    by_product = film * (1.0 - exponent) + thinned * sharp * exponent + fall * exponent
     still = 1.0 + per_speed * speed / scales.speed[1]
     d_own = np.stack([still + 0.0 * product, film, by_product * viscosity, thinned, contact, fall], axis=-1)
     d_viscosity = (
         (by_product * (1.0 + law))[..., None]
         * np.stack([place + 0.0 * product, place**2 + 0.0 * product], -1)
-        - (thinned * _SHARP * exponent)[..., None] * d_cold
+        - (thinned * sharp * exponent)[..., None] * d_cold
         - (fall * exponent)[..., None] * d_hot
     )
     d_shared = np.concatenate(
         [
-            np.stack([film + contact, -film * product + thinned * _SHARP * above + fall * beyond], axis=-1),
+            np.stack([film + contact, -film * product + thinned * sharp * above + fall * beyond], axis=-1),
             d_viscosity,
-            np.stack([rest * speed / scales.speed[1], contact * steep + fall], axis=-1),
+            np.stack(
+                [
+                    rest * speed / scales.speed[1],
+                    contact * steep + fall,
+                    thinned * sharp * exponent * above - film * np.log1p(over) / sharp,
+                ],
+                axis=-1,
+            ),
         ],
         axis=-1,
     )
@@ -158,12 +172,13 @@ def parts(scales: Scales, speed: FloatArray, place: FloatArray, own: FloatArray,
 def expected(scales: Scales) -> tuple[FloatArray, FloatArray]:
     """Return means and deviations of what is expected of the shared values before the data speak.
 
-    Film exponent 0.6 +- 0.08; viscosity of some 40 kJ/mol within a half; the rest much alike at all speeds.
+    Film exponent 0.6 +- 0.08; viscosity of some 40 kJ/mol within a half; the rest much alike at all speeds;
+    sharpness of starvation 3, within 2 and 5.
     """
     nil = 1e-6
-    mean = np.array([np.log(0.2), 0.6, scales.viscosity_range, 0.0, 0.0, np.log(3.0)])
+    mean = np.array([np.log(0.2), 0.6, scales.viscosity_range, 0.0, 0.0, np.log(3.0), np.log(3.0)])
     deviation = np.array(
-        [3.0, 0.08, 0.5 * scales.viscosity_range + nil, 0.25 * scales.viscosity_range + nil, 0.2, 0.7]
+        [3.0, 0.08, 0.5 * scales.viscosity_range + nil, 0.25 * scales.viscosity_range + nil, 0.2, 0.7, 0.3]
     )
     return mean, deviation
 

@@ -156,7 +156,7 @@ def _pointed(reading: Reading) -> str:
 
 def _of_one(reading: Reading) -> str:
     """What is said of a unit."""
-    perhaps = {each.words: None for every in reading.sets for each in every if each not in reading.sure}
+    perhaps = {each.words: None for every in reading.sets for each in every}
     for each in reading.sure:
         perhaps.pop(each.words, None)
     words = _listed(reading.sure) or "nothing for sure" * bool(perhaps) or "nothing"

@@ -8,7 +8,7 @@ as the best, with other names, cannot be told apart.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
@@ -22,6 +22,7 @@ from hersey.life.aged_torque import (
     LAW,
     OWN,
     REST,
+    SHARPNESS,
     STARVATION,
     Scales,
     parts,
@@ -53,8 +54,8 @@ _DEAR = {LOADED: 2.0}
 _NEAR = 4.6
 #: Of a 90 % interval.
 NORMAL = 1.645
-#: Part of the greatest change of torque that the law may get wrong in each direction.
-_LAW_ERROR = 0.03
+#: Part of the typical change of torque that the law may get wrong in each direction.
+_LAW_ERROR = 0.06
 #: Least part of the greatest change of torque, and of torque, that is named.
 _LEAST_PART, _LEAST_CHANGE = 0.05, 0.003
 
@@ -93,12 +94,13 @@ class Reading:
 
     @property
     def sure(self) -> tuple[Change, ...]:
-        """What all sets have: it is pointed to whichever of them holds."""
-        common = [
-            each
-            for each in self.sets[0]
-            if all(any(o.name == each.name and o.grows == each.grows for o in other) for other in self.sets)
-        ]
+        """What all sets have, with the interval that covers those of all: it is pointed to in any case."""
+        common = []
+        for each in self.sets[0]:
+            alike = [o for one in self.sets for o in one if (o.name, o.grows) == (each.name, each.grows)]
+            if len(alike) == len(self.sets):
+                ends = min(o.low for o in alike), max(o.high for o in alike)
+                common.append(replace(each, low=ends[0], high=ends[1]))
         return tuple(common)
 
     @property
@@ -109,10 +111,10 @@ class Reading:
 
 def directions(shared: FloatArray) -> list[tuple[str, FloatArray]]:
     """Return how each ageing moves the values of a run, with its name; contact has two."""
-    exponent = shared[EXPONENT]
+    exponent, sharp = shared[EXPONENT], np.exp(shared[SHARPNESS])
     found = []
     for name, moved in (
-        (THICKER, {FILM: 1.0 - exponent, STARVATION: 3.0 * exponent, COVER: exponent}),
+        (THICKER, {FILM: 1.0 - exponent, STARVATION: sharp * exponent, COVER: exponent}),
         (STARVED, {STARVATION: 1.0}),
         (TOUCHING, {CONTACT: 1.0}),
         (TOUCHING, {COVER: -1.0}),
@@ -148,8 +150,8 @@ def read(
     middle = parts(scales, speed, place, new + 0.5 * change, shared)
     relative = middle.own / middle.torque[..., None]
     # The law is no truth: by this much it may mistake one value for another.
-    greatest = np.abs(relative @ change[..., None])[..., 0].max(axis=1, keepdims=True)
-    blur = _LAW_ERROR * greatest / np.maximum(np.abs(relative).max(axis=1), 1e-6)
+    typical = np.sqrt(((relative @ change[..., None])[..., 0] ** 2).mean(axis=1, keepdims=True))
+    blur = _LAW_ERROR * typical / np.maximum(np.abs(relative).max(axis=1), 1e-6)
     weight = np.linalg.inv(covariance + blur[:, :, None] ** 2 * np.eye(len(OWN)))
     every = directions(shared)
     # With many units chance does more.
