@@ -5,7 +5,7 @@ SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
 SOURCES := $(shell find crates -name '*.rs' -o -name Cargo.toml) Cargo.toml pyproject.toml
 
-.PHONY: help build demo test quick lint format typecheck test-rust test-python browser lowest fuzz fuzz-read benchmark \
+.PHONY: help build demo demo-life test quick lint format typecheck test-rust test-python browser lowest fuzz fuzz-read benchmark \
   mutants mutants-python mutants-rust clean
 .DEFAULT_GOAL := help
 
@@ -29,6 +29,13 @@ demo: build ## run the main job on the shipped log
 	mkdir -p build/demo
 	$(BIN)/hersey report examples/bench.csv --machine examples/machine.toml --tare standing \
 	  --out build/demo/report.html --figures build/demo/figures --force
+
+demo-life: build ## follow the shipped life test of eight units to what ends them
+	mkdir -p build/demo-life
+	$(BIN)/hersey campaign add build/demo-life/life.hersey --table examples/life/runs.csv --means \
+	  --machine examples/machine.toml
+	$(BIN)/hersey life build/demo-life/life.hersey --machine examples/machine.toml \
+	  --out build/demo-life/life.html --figures build/demo-life/figures --force
 
 test: lint typecheck test-rust test-python ## everything: lint, types, Rust and Python tests, the page in a browser
 

@@ -52,6 +52,7 @@ if TYPE_CHECKING:
     from hersey.errors import HerseyError
     from hersey.identification import CycleRecord, IdentifiedDrive, cycles, identify
     from hersey.inspection import Inspection, inspect
+    from hersey.life.ageing_maps import AgeingMaps
     from hersey.life.campaign import Campaign
     from hersey.life.depletion import FilmLife, film_life
     from hersey.life.drift import Drift, fit_drift
@@ -65,8 +66,10 @@ if TYPE_CHECKING:
         rainflow_cycles,
         stick_slip_damage_rate,
     )
+    from hersey.life.following import LifeTest, follow
     from hersey.life.growth import Growth, fit_growth
     from hersey.life.indicator import Indicator, Indicators, Runs
+    from hersey.life.indicators import indicators_of
     from hersey.life.limit_ages import AgesAtLimit
     from hersey.life.population import BLife, Population, weibull
     from hersey.log import TorqueLog, memory_limit, read
@@ -157,6 +160,9 @@ _HOMES = {
     "life.limit_ages": "AgesAtLimit",
     "life.indicator": "Indicator Indicators Runs",
     "life.ending": "Endings endings",
+    "life.indicators": "indicators_of",
+    "life.following": "LifeTest follow",
+    "life.ageing_maps": "AgeingMaps",
     "life.population": "BLife Population weibull",
     "life.campaign": "Campaign",
     "life.depletion": "FilmLife film_life",
@@ -164,6 +170,7 @@ _HOMES = {
 _HOME_OF = {name: module for module, names in _HOMES.items() for name in names.split()}
 
 __all__ = [
+    "AgeingMaps",
     "AgesAtLimit",
     "Asperities",
     "BLife",
@@ -190,6 +197,7 @@ __all__ = [
     "Indicator",
     "Indicators",
     "Inspection",
+    "LifeTest",
     "Limits",
     "LineContactSolution",
     "LogComparison",
@@ -235,10 +243,12 @@ __all__ = [
     "fit",
     "fit_drift",
     "fit_growth",
+    "follow",
     "hersey_collapse",
     "hysteresis",
     "hysteresis_sweep",
     "identify",
+    "indicators_of",
     "inspect",
     "life_of",
     "measured_film",

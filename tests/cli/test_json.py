@@ -35,6 +35,7 @@ ARGUMENTS: dict[str, list[str]] = {
     "design": [BENCH, *TARE, "--count", "1"],
     "compare": [BENCH, BENCH, *TARE],
     "campaign": ["check", "CAMPAIGN"],
+    "life": ["LIFE", "--machine", MACHINE],
     "cycles": [TRACE, "--drive-speed", "20 mm/s", "--identify", "--closures", "retained"],
     "film": [MACHINE, "--log", BENCH, *TARE],
     "simulate": ["--check"],

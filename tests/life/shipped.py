@@ -1,4 +1,4 @@
-"""The shipped campaign as film and layer are read from it, its logs neither read nor fitted as runs."""
+"""The shipped campaign as it is followed, its logs neither read nor fitted as runs."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from typing import Any
 import polars as pl
 
 import hersey
+from hersey.log.sensors import Sensors
 from hersey.machine.machine import Machine, read_machine
 from hersey.testbench.stand import RPM
 from hersey.units import ZERO_CELSIUS
@@ -63,9 +64,15 @@ def campaign(units: int = 8) -> hersey.Campaign:
                 }
             )
         )
-    dwells = pl.concat(frames)
+    of_runs = listed.select(pl.col("run").alias("run_id"), "unit", pl.col("age").alias("age (pages)"))
+    dwells = pl.concat(frames).join(of_runs, on="run_id", maintain_order="left")
+    drives = {run: (rest, Sensors()) for run in listed["run"]}
     stub: Any = SimpleNamespace(
-        path=Path("life.hersey"), age_unit="pages", runs=lambda: listed, dwells=lambda: dwells
+        path=Path("life.hersey"),
+        age_unit="pages",
+        runs=lambda: listed,
+        dwells=lambda: dwells,
+        drives=lambda: drives,
     )
     answer: hersey.Campaign = stub
     return answer

@@ -24,6 +24,8 @@ operating_map  the operating map
 plan           a drive profile and the motion
 warm_up        speed, drag and temperatures of a warm-up
 weibull        share failed against age
+ageing_maps    the operating map of a unit when new, now and at its end
+life           the charts of a life test, in the order of its page
 drift          what moved with age, a panel per quantity
 film_life      the film of units that age, and the layer of oil that feeds it
 growth         growth with age, and the ages at a limit
@@ -67,6 +69,8 @@ CHARTS = {
     "Plan": ("plan", "plan_chart"),
     "WarmUp": ("warm_up", "warm_up_chart"),
     "Population": ("weibull", "weibull_chart"),
+    "AgeingMaps": ("ageing_maps", "ageing_maps_chart"),
+    "LifeTest": ("life", "life_chart"),
     "Drift": ("drift", "drift_chart"),
     "FilmLife": ("film_life", "film_life_chart"),
     "Growth": ("growth", "growth_chart"),

@@ -11,11 +11,10 @@ from pathlib import Path
 import altair as alt
 import numpy as np
 
-from hersey.charts import FIGURES
 from hersey.charts.carried import carried_chart
 from hersey.charts.film import regime_chart
 from hersey.charts.regime import exponent_chart, exponent_row
-from hersey.charts.render import picture
+from hersey.charts.render import write_pictures
 from hersey.charts.style import (
     HEIGHT,
     INK,
@@ -33,7 +32,6 @@ from hersey.charts.style import (
 )
 from hersey.charts.transition import transition_chart
 from hersey.document.parts import Analysis, Point, Series
-from hersey.files.writing import write_all
 from hersey.units import celsius, rpm
 
 #: Cells of a surface overlap a little: seams would shine through otherwise.
@@ -252,14 +250,7 @@ def timeline_temperature(document: Analysis) -> Chart | None:
 
 def write_figures(document: Analysis, folder: Path) -> list[Path]:
     """Write every chart as SVG, PNG and PDF and return the paths; all are drawn before one is written."""
-    pictures = {
-        folder / f"{name}{suffix}": picture(chart, suffix)
-        for name, chart in charts(document).items()
-        for suffix in FIGURES
-    }
-    folder.mkdir(parents=True, exist_ok=True)
-    write_all(pictures, overwrite=True)
-    return list(pictures)
+    return write_pictures(charts(document), folder)
 
 
 def _torque_unit(document: Analysis) -> tuple[float, str]:

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
-from hersey.charts import PICTURES
+from hersey.charts import FIGURES, PICTURES
 from hersey.charts.page import page
 from hersey.charts.style import Chart, Row
 from hersey.charts.vega import drawn
 from hersey.errors import OutputError
+from hersey.files.writing import write_all
 
 #: Longest text in a chart, pixels: names may have any length, and pictures would grow with them.
 _LONGEST = 1500
@@ -46,6 +49,18 @@ def picture(chart: Chart, suffix: str) -> bytes:
     if suffix == ".html":
         return _page(specification).encode()
     return drawn(specification, suffix.removeprefix("."))
+
+
+def write_pictures(charts: Mapping[str, Chart], folder: Path) -> list[Path]:
+    """Write every chart as SVG, PNG and PDF and return the paths; all are drawn before one is written."""
+    pictures = {
+        folder / f"{name}{suffix}": picture(chart, suffix)
+        for name, chart in charts.items()
+        for suffix in FIGURES
+    }
+    folder.mkdir(parents=True, exist_ok=True)
+    write_all(pictures, overwrite=True)
+    return list(pictures)
 
 
 def specification_of(chart: Chart) -> Row:

@@ -8,14 +8,22 @@ from contextlib import contextmanager
 
 
 @contextmanager
-def working(what: str) -> Iterator[None]:
-    """Show a spinner on a terminal."""
+def steps() -> Iterator[Callable[[str], None]]:
+    """Show a spinner with the step that is said, on a terminal."""
     if not sys.stderr.isatty():
-        yield
+        yield lambda _what: None
         return
     from rich.console import Console
 
-    with Console(stderr=True).status(what):
+    with Console(stderr=True).status("") as status:
+        yield status.update
+
+
+@contextmanager
+def working(what: str) -> Iterator[None]:
+    """Show a spinner on a terminal."""
+    with steps() as step:
+        step(what)
         yield
 
 

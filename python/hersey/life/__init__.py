@@ -32,5 +32,7 @@ starved_drag      torque against viscosity, rest of the drive and layer of oil
 layer             the layer of oil and the viscosity that each run tells
 depletion_law     how the layer thins over ages and units: draws
 depletion         the film through life, the oil that is left, and when it starves
+ageing_maps       the operating map of a unit when new, now and at its end
+following         a life test followed, in one answer
 ================  =====================================================================
 """

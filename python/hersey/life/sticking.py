@@ -119,17 +119,44 @@ def drag_of(
     """
     own = curves.torque[place] if torque is None else torque
     known = np.isfinite(own)
-    rest: RestOfDrive | None = told.runs.rests[place]
+    speed = curves.speed[known] * machine.roll_radius
+    return belt_drag(machine, told.runs.rests[place], speed, own[known], curves.temperature)
+
+
+def belt_drag(
+    machine: Machine,
+    rest: RestOfDrive | None,
+    speed: FloatArray,
+    torque: FloatArray,
+    temperature: float | None,
+) -> DragTable | None:
+    """Return the drag of a belt from its torque (N m) at speeds (m/s at the belt) and a temperature (K).
+
+    None where it falls nowhere above the stick speed.
+    """
+    if int(np.argmin(torque)) == 0:
+        return None
     try:
         drag = DragTable(
-            tuple((curves.speed[known] * machine.roll_radius).tolist()),
-            tuple((own[known] / machine.roll_radius).tolist()),
-            stick_speed_at(machine, curves.temperature),
+            tuple(speed.tolist()),
+            tuple((torque / machine.roll_radius).tolist()),
+            stick_speed_at(machine, temperature),
             static_force=static_force(machine),
         )
-        return drag if rest is None else with_rest(drag, rest, machine.roll_radius, curves.temperature)
+        return drag if rest is None else with_rest(drag, rest, machine.roll_radius, temperature)
     except ParameterError:  # no transition above the stick speed, or it slides harder than it rests
         return None
+
+
+def edges(train: Drivetrain, drag: DragTable | None) -> tuple[float, float]:
+    """Return transition and V* (m/s) of a drag, NaN where there is none or its search takes long."""
+    if drag is None:
+        return np.nan, np.nan
+    try:
+        band = hysteresis(train, drag, sensitivity=False, tolerance=_TOLERANCE, most_steps=_STEPS)
+    except (UnfinishedError, ParameterError):
+        return float(drag.speeds[int(np.argmin(drag.forces))]), np.nan
+    return band.transition, band.upper if 0.0 < band.upper < np.inf else np.nan
 
 
 def static_force(machine: Machine) -> float | None:
@@ -151,13 +178,7 @@ def stick_speed_at(machine: Machine, temperature: float | None) -> float:
 
 
 def _fold(train: Drivetrain, drag: DragTable | None) -> float:
-    if drag is None:
-        return np.nan
-    try:
-        band = hysteresis(train, drag, sensitivity=False, tolerance=_TOLERANCE, most_steps=_STEPS)
-    except (UnfinishedError, ParameterError):
-        return np.nan
-    return band.upper if 0.0 < band.upper < np.inf else np.nan
+    return edges(train, drag)[1]
 
 
 def _error(told: AtStates, curves: Curves, machine: Machine) -> float | None:

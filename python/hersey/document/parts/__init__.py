@@ -14,6 +14,8 @@ life        ages at failure
 drift       what moved with age
 film_life   the film of units that age
 ending      growth of indicators, and what ends units
+ageing_maps the maps of a unit through its life
+life_test   a life test followed: all of these
 models      candidates, comparisons of logs, designs
 inspection  what a log holds
 campaign    runs of many units at many ages
@@ -23,6 +25,7 @@ analysis    the whole document
 ==========  ==================================================
 """
 
+from hersey.document.parts.ageing_maps import AgeingMapsPart
 from hersey.document.parts.analysis import Analysis
 from hersey.document.parts.campaign import CampaignPart
 from hersey.document.parts.carried import CarriedPart
@@ -46,6 +49,7 @@ from hersey.document.parts.fit import (
 )
 from hersey.document.parts.inspection import InspectionPart
 from hersey.document.parts.life import PopulationPart
+from hersey.document.parts.life_test import LifeTestPart
 from hersey.document.parts.log import (
     ChannelUse,
     InputFile,
@@ -80,6 +84,7 @@ PRINTED: dict[str, type[Part]] = {
     "design": DesignPart,
     "compare": ComparisonPart,
     "campaign": CampaignPart,
+    "life": LifeTestPart,
     "cycles": CyclesPart,
     "film": FilmPart,
     "simulate": StickSlipPart,
@@ -94,6 +99,7 @@ PRINTED: dict[str, type[Part]] = {
 __all__ = [
     "PRINTED",
     "SCHEMA_VERSION",
+    "AgeingMapsPart",
     "AgesPart",
     "Analysis",
     "BandPart",
@@ -123,6 +129,7 @@ __all__ = [
     "InputFile",
     "InspectionPart",
     "Interval",
+    "LifeTestPart",
     "LogPart",
     "MapPart",
     "MeasuredFilmPart",

@@ -9,8 +9,10 @@ async function section(each) {
   add(report, "h2", each.title).id = each.name;
   for (const text of each.text) add(report, "p", text);
   for (const name of each.charts) await chart(report, name);
-  if (each.table) table(report, each.table.heads, each.table.rows, each.table.numeric);
-  list(report, each.notes, "soft");
+  for (const { title, heads, rows, numeric } of each.tables) {
+    table(title ? fold(report, title) : report, heads, rows, numeric);
+  }
+  if (each.notes.length) list(each.notes.length > 4 ? fold(report, "more in words") : report, each.notes, "soft");
 }
 async function main() {
   document.title = `hersey: ${data.title}`;

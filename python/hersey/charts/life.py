@@ -1,0 +1,43 @@
+"""The charts of a life test, by name, in the order of its page."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from hersey.charts import chart_of
+from hersey.charts.render import write_pictures
+from hersey.charts.style import Chart, unchecked
+
+if TYPE_CHECKING:
+    from hersey.life.following import LifeTest
+
+#: Ways to fail whose growth is drawn, the likeliest first.
+_GROWN = 3
+
+
+def life_charts(answer: LifeTest) -> dict[str, Chart]:
+    """Return the charts of a life test."""
+    found = answer.endings
+    likely = sorted(
+        found.modes, key=lambda mode: -found.shares[mode.name].value if mode.name in found.shares else 1.0
+    )
+    with unchecked():
+        made = {"ends": chart_of(found)}
+        for number, mode in enumerate(likely[:_GROWN], 1):
+            made[f"growth_{number}"] = chart_of(mode.growth, ages=mode.ages)
+        for name in ("drift", "film", "maps"):
+            if (part := getattr(answer, name)) is not None:
+                made[name] = chart_of(part)
+        made["population"] = chart_of(found.population)
+    return made
+
+
+def life_chart(answer: LifeTest) -> Chart:
+    """Return the chart of what ends each unit."""
+    return chart_of(answer.endings)
+
+
+def write_life_figures(answer: LifeTest, folder: Path) -> list[Path]:
+    """Write every chart as SVG, PNG and PDF and return the paths; all are drawn before one is written."""
+    return write_pictures(life_charts(answer), folder)

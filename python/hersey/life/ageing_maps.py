@@ -1,0 +1,232 @@
+"""The operating map of a unit when new, as last seen, and when it ends.
+
+Torque between the dwells of a run is that of its `TorqueSurface`, without a law. To the end it is carried on
+by a clock, the growth of the torque that its own growth law tells: at each speed and temperature ln torque
+went with ln of the clock over the ages seen, and goes on so.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hersey.arrays import FloatArray, one_thread
+from hersey.errors import InsufficientDataError, ParameterError
+from hersey.life.age import Age
+from hersey.life.run_dwells import read_runs_of
+from hersey.life.sticking import belt_drag, edges
+from hersey.life.torque_surface import RunDwells, TorqueSurface, shared_kernel
+from hersey.result import Result, json_record
+from hersey.spelling import meant
+from hersey.units import celsius
+
+if TYPE_CHECKING:
+    import polars as pl
+
+    from hersey.life.campaign import Campaign
+    from hersey.life.ending import Endings, UnitEnd
+    from hersey.machine.limits import OperatingPoint
+    from hersey.machine.machine import Machine
+
+#: Temperatures and speeds of each map.
+TEMPERATURES, SPEEDS = 21, 61
+#: Kind of the mode whose growth is the clock.
+CLOCK = "motor torque"
+#: Temperatures (K) that are one, and how far beyond the dwells an operating point is drawn.
+_APART, _BESIDE = 5.0, 10.0
+
+
+@dataclass(frozen=True, repr=False)
+class AgeingMaps(Result):
+    """The map of one unit at some ages.
+
+    ``when`` says in a word what each age is. ``temperature`` (K, shape (n,)) and ``speed`` (m/s at the belt,
+    shape (m,)) span the maps; ``torque`` (N m, shape (ages, n, m)) is that at the roll. Slower than
+    ``transition`` (m/s, shape (ages, n); 0 where torque falls nowhere) the belt cannot run smoothly, up to
+    ``upper`` the past decides. Beyond ``torque_limit`` (N m; None: not stated) the motor stops.
+    """
+
+    unit: str
+    age_unit: str
+    ages: FloatArray
+    when: tuple[str, ...]
+    temperature: FloatArray
+    speed: FloatArray
+    torque: FloatArray
+    transition: FloatArray
+    upper: FloatArray
+    torque_limit: float | None
+    points: tuple[OperatingPoint, ...]
+    notes: tuple[str, ...] = ()
+
+    @property
+    def names(self) -> list[str]:
+        """Return what each map is called, as "now, 170000 pages"."""
+        ages = (str(Age(float(f"{age:.3g}"), self.age_unit)) for age in self.ages.tolist())
+        return [f"{word}, {age}" for word, age in zip(self.when, ages, strict=True)]
+
+    def state(self, index: int, point: OperatingPoint) -> str:
+        """Return what the belt does at an operating point in one of the maps, in a word or two."""
+        column = int(np.argmin(np.abs(self.temperature - point.temperature)))
+        torque = float(
+            np.exp(np.interp(np.log(point.speed), np.log(self.speed), np.log(self.torque[index, column])))
+        )
+        if self.torque_limit is not None and torque > self.torque_limit:
+            return "motor stops"
+        if point.speed < self.transition[index, column]:
+            return "stick-slip"
+        return "depends on the past" if point.speed < self.upper[index, column] else "smooth"
+
+    def headline(self) -> str:
+        """Return the unit and its ages."""
+        return f"maps of {self.unit}: {'; '.join(self.names)}"
+
+    def summary(self) -> str:
+        """Return what the belt does at each operating point at each age."""
+        lines = [self.headline()]
+        for point in self.points:
+            if self.temperature[0] <= point.temperature <= self.temperature[-1]:
+                states = (f"{when} {self.state(i, point)}" for i, when in enumerate(self.when))
+                at = f"{1e3 * point.speed:.3g} mm/s at {celsius(point.temperature):.3g} degC"
+                lines.append(f"  {point.name}, {at}: {', '.join(states)}")
+        return "\n".join([*lines, *(f"- {note}" for note in self.notes)])
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the maps as JSON can hold them, in SI."""
+        return json_record(vars(self))
+
+    def to_frame(self) -> pl.DataFrame:
+        """Return one row per age and temperature."""
+        import polars as pl
+
+        ages, columns = self.transition.shape
+        return pl.DataFrame(
+            {
+                f"age ({self.age_unit or '1'})": np.repeat(self.ages, columns),
+                "when": [word for word in self.when for _ in range(columns)],
+                "temperature (K)": np.tile(self.temperature, ages),
+                "transition (m/s)": self.transition.ravel(),
+                "upper (m/s)": self.upper.ravel(),
+                "least torque (N m)": self.torque.min(axis=2).ravel(),
+            }
+        )
+
+
+def carried_on(log_torque: FloatArray, clock: FloatArray, to: float) -> FloatArray:
+    """Return ln torque (runs, ...) carried on to where the clock stands at ``to``, in proportion to it.
+
+    ``clock`` has a value for each run. From the last run on, by the slope of least squares over all runs.
+    """
+    away = clock - clock.mean()
+    square = float(away @ away)
+    if square == 0.0:
+        return np.asarray(log_torque[-1])
+    slope = np.tensordot(away, log_torque, axes=(0, 0)) / square
+    return np.asarray(log_torque[-1] + slope * (to - clock[-1]))
+
+
+@one_thread()
+def ageing_maps(campaign: Campaign, machine: Machine, found: Endings, *, unit: str = "") -> AgeingMaps:
+    """Return the maps of a unit when new, as last seen and, if it has not ended yet, at its end.
+
+    Parameters
+    ----------
+    campaign, machine
+        Whose unit it is, and what drives it.
+    found
+        What ends the units, and when.
+    unit
+        Its name; the unit that ends next if left out.
+
+    Raises
+    ------
+    ParameterError
+        If there is no such unit.
+    InsufficientDataError
+        If its runs do not tell torque against temperature.
+    """
+    end = _chosen(found, unit)
+    runs = read_runs_of(campaign, machine.rest)
+    own = [
+        (age, dwells, rest)
+        for (i, dwells, rest), age in ((told, runs.runs.age[told[0]]) for told in runs.told())
+        if runs.runs.unit[i] == end.unit
+    ]
+    if not own or any(not np.ptp(dwells.temperature) > _APART for _, dwells, _ in own):
+        raise InsufficientDataError(f"the runs of {end.unit} do not tell torque against temperature")
+    kernel = shared_kernel([dwells for _, dwells, _ in runs.told()])
+    hot, speed = _grid(own[0][1], machine)
+    rolls = speed / machine.roll_radius
+    belts = np.log([_torques(TorqueSurface(dwells, kernel), hot, rolls) for _, dwells, _ in own])
+    ages = np.array([age for age, _, _ in own])
+    shown = [(ages[0], "new" if ages[0] == 0.0 else "first", belts[0], own[0][2])]
+    if ages[-1] > ages[0]:
+        shown.append((ages[-1], "now", belts[-1], own[-1][2]))
+    notes = ["torque between the dwells, without a law"]
+    last = end.age.age.value
+    if ages[0] < ages[-1] < last < np.inf:
+        clock = _clock(found, end.unit, np.append(ages, last))
+        shown.append((last, "end", carried_on(belts, clock[:-1], float(clock[-1])), own[-1][2]))
+        notes.append("end: torque carried on as it grew, at the middle of the interval of that age")
+    wholes, found_edges = [], []
+    for _, _, belt, rest in shown:
+        beside = (
+            np.zeros_like(belt) if rest is None else np.array([rest.torque(rolls, t) for t in hot.tolist()])
+        )
+        wholes.append(np.exp(belt) + beside)
+        rows = zip(np.exp(belt), hot.tolist(), strict=True)
+        found_edges.append([edges(machine.train, belt_drag(machine, rest, speed, row, t)) for row, t in rows])
+    transition, upper = np.moveaxis(np.nan_to_num(np.array(found_edges)), -1, 0)
+    return AgeingMaps(
+        unit=end.unit,
+        age_unit=found.age_unit,
+        ages=np.array([age for age, _, _, _ in shown]),
+        when=tuple(word for _, word, _, _ in shown),
+        temperature=hot,
+        speed=speed,
+        torque=np.array(wholes),
+        transition=transition,
+        upper=np.maximum(upper, transition),
+        torque_limit=machine.limits.motor_torque,
+        points=machine.points,
+        notes=tuple(notes),
+    )
+
+
+def _chosen(found: Endings, unit: str) -> UnitEnd:
+    """The unit of that name; else the one that ends next, or first if all have ended."""
+    if unit:
+        for each in found.units:
+            if each.unit == unit:
+                return each
+        near = meant(unit, [each.unit for each in found.units])
+        way = f"did you mean '{near}'?" if near else "'hersey campaign list' names them"
+        raise ParameterError(f"the campaign has no unit '{unit}': {way}")
+    coming = [each for each in found.units if each.age.passed <= 0.5]
+    return min(coming or found.units, key=lambda each: each.age.age.value)
+
+
+def _clock(found: Endings, unit: str, ages: FloatArray) -> FloatArray:
+    """How far a unit has aged at ages: ln of the growth of its torque, or the ages where none is told."""
+    for mode in found.modes:
+        if mode.kind == CLOCK and unit in mode.growth.units:
+            return np.asarray(np.log(mode.growth.at(ages).median[mode.growth.units.index(unit)]))
+    return ages
+
+
+def _grid(dwells: RunDwells, machine: Machine) -> tuple[FloatArray, FloatArray]:
+    """Temperatures (K) and speeds (m/s at the belt) that span dwells and the operating points beside them."""
+    low, high = float(dwells.temperature.min()), float(dwells.temperature.max())
+    points = [
+        each.temperature for each in machine.points if low - _BESIDE < each.temperature < high + _BESIDE
+    ]
+    slow, fast = (float(v) * machine.roll_radius for v in (dwells.speed.min(), dwells.speed.max()))
+    return np.linspace(min(low, *points), max(high, *points), TEMPERATURES), np.geomspace(slow, fast, SPEEDS)
+
+
+def _torques(surface: TorqueSurface, hot: FloatArray, speed: FloatArray) -> FloatArray:
+    """Torque of the belt alone (N m) at temperatures and speeds (rad/s), shape (temperatures, speeds)."""
+    kelvin, rolls = np.meshgrid(hot, speed, indexing="ij")
+    return surface.at(rolls.ravel(), kelvin.ravel()).torque.reshape(kelvin.shape)

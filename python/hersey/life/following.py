@@ -1,0 +1,119 @@
+"""A life test followed: what moved, how thick the film is, what ends each unit and when, in one answer."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from hersey.arrays import one_thread
+from hersey.errors import HerseyError
+from hersey.life.ageing_maps import AgeingMaps, ageing_maps
+from hersey.life.depletion import FilmLife, film_life
+from hersey.life.drift import Drift, fit_drift
+from hersey.life.ending import Endings, endings
+from hersey.life.indicator import Indicators
+from hersey.life.indicators import indicators_of
+from hersey.result import Result
+
+if TYPE_CHECKING:
+    import polars as pl
+
+    from hersey.life.campaign import Campaign
+    from hersey.machine.machine import Machine
+
+#: Says which step is begun.
+Step = Callable[[str], None]
+
+
+@dataclass(frozen=True, repr=False)
+class LifeTest(Result):
+    """A life test followed; what cannot be told is None, and ``unsaid`` says why."""
+
+    name: str
+    indicators: Indicators
+    endings: Endings
+    drift: Drift | None
+    film: FilmLife | None
+    maps: AgeingMaps | None
+    unsaid: tuple[str, ...]
+    seed: int
+
+    def headline(self) -> str:
+        """Return what ends the units, and when."""
+        return self.endings.headline()
+
+    def summary(self) -> str:
+        """Return the answer as text: what ends the units, what moved, the film, what is not told."""
+        parts = [self.endings.summary()]
+        parts += [each.summary() for each in (self.drift, self.film, self.maps) if each is not None]
+        parts += [f"- {line}" for line in self.unsaid]
+        return "\n".join(parts)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return all parts as JSON can hold them, in SI; ages in the unit of the campaign."""
+        parts = {name: getattr(self, name) for name in ("drift", "film", "maps")}
+        told = {name: None if part is None else part.to_dict() for name, part in parts.items()}
+        return {
+            "file": self.name,
+            "endings": self.endings.to_dict(),
+            **told,
+            "unsaid": list(self.unsaid),
+            "seed": self.seed,
+        }
+
+    def to_frame(self) -> pl.DataFrame:
+        """Return the ages of `Endings`."""
+        return self.endings.to_frame()
+
+
+@one_thread()
+def follow(
+    campaign: Campaign, machine: Machine, *, seed: int = 0, unit: str = "", step: Step | None = None
+) -> LifeTest:
+    """Follow the units of a campaign to what ends them.
+
+    Parameters
+    ----------
+    campaign
+        Of one run or more; more ages and units tell more.
+    machine
+        Its limits and operating points say what ends a unit; contact and lubricant make the film.
+    seed
+        Of all draws.
+    unit
+        Whose maps are drawn; the one that ends next if left out.
+    step
+        Called with what is begun.
+
+    Raises
+    ------
+    InsufficientDataError
+        If no indicator can be told of any run.
+    ParameterError
+        If the campaign has no such unit.
+    """
+    said = step or (lambda _text: None)
+    unsaid: list[str] = []
+
+    def tried(text: str, make: Callable[[], Any]) -> Any:
+        said(text)
+        try:
+            return make()
+        except HerseyError as error:
+            unsaid.append(f"{text}: {error}")
+            return None
+
+    said("torque at the limits")
+    indicators = indicators_of(campaign, machine)
+    film = tried("film through life", lambda: film_life(campaign, machine))
+    if film is not None:
+        indicators = film.with_starvation(indicators)
+    said("growth and what ends the units")
+    found = endings(indicators, seed=seed)
+    drift = tried("drift", lambda: fit_drift(campaign.dwells()))
+    maps = tried(
+        "maps at new, now and the end",
+        lambda: ageing_maps(campaign, machine, found, unit=unit),
+    )
+    return LifeTest(campaign.path.name, indicators, found, drift, film, maps, tuple(unsaid), seed)
