@@ -18,7 +18,7 @@ from scipy import special
 from hersey.arrays import FloatArray, numbers_of
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.life.growth_laws import LAWS, Law
-from hersey.life.growth_posterior import Points, Posterior, Units, drawn_units, new_units, posterior
+from hersey.life.growth_posterior import Points, Posterior, Units, drawn_units, new_units, peaks, posterior
 from hersey.life.limit_ages import (
     CONFIDENCE,
     AgesAtLimit,
@@ -36,8 +36,8 @@ if TYPE_CHECKING:
 
 #: Weight from which a law is named.
 NAMED = 0.9
-#: Draws behind every interval.
-_DRAWS = 3000
+#: Draws behind every interval; of more than so many units.
+_DRAWS, _OF_MANY, _MANY = 2000, 1000, 100
 #: No value is taken as known better than this, relative.
 _RESOLUTION = 1e-4
 #: Draws, about, behind the middle of a curve.
@@ -297,10 +297,15 @@ def fit_growth(
     units = tuple(dict.fromkeys(names))
     points, scale = _points(names, units, *columns)
     random = np.random.default_rng(seed)
-    found = [posterior(law, points, random) for law in chosen]
-    evidence = np.array([each.log_evidence for each in found]) + _beforehand(chosen)
+    found = [posterior(peak, points, random) for peak in peaks(chosen, points)]
+    before = dict(zip((law.name for law in chosen), _beforehand(chosen), strict=True))
+    evidence = np.array([each.log_evidence + before[each.law.name] for each in found])
     weights = np.exp(evidence - special.logsumexp(evidence))
-    draws = _resampled(found, weights, random)
+    by_law = {law.name: 0.0 for law in chosen} | {
+        each.law.name: float(w) for each, w in zip(found, weights, strict=True)
+    }
+    count = _DRAWS if len(units) <= _MANY else min(_DRAWS, _OF_MANY)
+    draws = _resampled(found, weights, count, random)
     last = tuple(float(row.max() * scale[0]) for row in points.age)
     runs = tuple(int(n) for n in points.given.sum(axis=1))
     return Growth(
@@ -309,7 +314,7 @@ def fit_growth(
         units=units,
         runs=runs,
         last_age=last,
-        weights={law.name: float(w) for law, w in zip(chosen, weights, strict=True)},
+        weights=by_law,
         parameters={each.law.name: _parameters(each, scale) for each in found},
         effective=min(each.effective for each, w in zip(found, weights, strict=True) if w > 0.05),
         notes=_notes(runs, points),
@@ -398,11 +403,11 @@ def _points(
 
 
 def _resampled(
-    found: list[Posterior], weights: FloatArray, random: np.random.Generator
+    found: list[Posterior], weights: FloatArray, count: int, random: np.random.Generator
 ) -> list[tuple[Posterior, FloatArray]]:
     """Equally probable draws over all laws (systematic resampling); laws without any are left out."""
     every = np.concatenate([each.weight * w for each, w in zip(found, weights, strict=True)])
-    steps = (np.arange(_DRAWS) + random.random()) / _DRAWS
+    steps = (np.arange(count) + random.random()) / count
     index = np.minimum(np.searchsorted(np.cumsum(every) / every.sum(), steps), every.size - 1)
     ends = np.cumsum([0, *(len(each.shared) for each in found)])
     draws = []

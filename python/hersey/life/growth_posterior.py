@@ -23,10 +23,14 @@ RATE_PRIOR = (-0.5, 2.0)
 LEVEL_SPREAD, RATE_SPREAD, RUN_SCATTER = 1.0, 1.0, 0.1
 #: Nodes of the grid over the size of a unit: to each side and apart, in its standard deviations.
 _NODES = np.arange(-6.0, 7.0)
-_FINE = np.linspace(-5.0, 5.0, 41)
-_POLISH = 7
-#: Draws of each round of the importance sampling for 80 runs; more for fewer, up to so many times.
-_ROUNDS, _USUAL, _MOST = (250, 250, 300, 600), 80, 3.0
+_FINE = np.linspace(-5.0, 5.0, 26)
+#: Steps to the mode of a unit at the most, and how near it they end: the grid need not stand right on it.
+_POLISH, _NEAR = 7, 0.2
+#: Draws of each round of the importance sampling for 80 runs; more for fewer runs and fewer for more, within
+#: these factors; the last round again, so often at the most, while they are worth too few.
+_ROUNDS, _USUAL, _LEAST_SHARE, _MOST, _WORTH, _AGAIN = (250, 250, 300, 600), 80, 0.35, 3.0, 100.0, 3
+#: Units whose mode is sought before that of all; how much worse a law may fit to be drawn from at all.
+_FIRST, _HOPELESS = 40, 25.0
 #: Its t distributions: degrees of freedom, number in later rounds; widths of the first and of later ones in
 #: standard deviations.
 _FREEDOM, _KERNELS, _WIDE, _BANDWIDTH = 4.0, 100, 1.5, 0.6
@@ -54,6 +58,12 @@ class Points:
     place: IntArray = field(
         default_factory=lambda: np.zeros((2, 0), dtype=np.intp)
     )  #: row and column of each run
+
+    def part(self, units: int) -> Points:
+        """The first units alone."""
+        return Points(
+            self.age[:units], self.value[:units], self.variance[:units], self.given[:units], self.place
+        )
 
 
 @dataclass(frozen=True)
@@ -134,7 +144,10 @@ def _modes(
         curvature = (weighed * slope).sum(axis=2) - across**2 / total + precision
         if turn < _POLISH:
             pull = (weighed * left).sum(axis=2) - across * (weight * left).sum(axis=2) / total
-            size += np.clip((pull - precision * (size - mean)) / curvature, -1.0, 1.0)
+            step = np.clip((pull - precision * (size - mean)) / curvature, -1.0, 1.0)
+            size += step
+            if (step**2 * curvature).max() < _NEAR**2:
+                break
     return size, 1.0 / np.sqrt(curvature)
 
 
@@ -263,37 +276,75 @@ def _derivatives(
     return (up - down) / (2 * step), (vectors / np.maximum(np.abs(values), 0.3)) @ vectors.T
 
 
-def _peak(law: Law, points: Points) -> tuple[FloatArray, FloatArray]:
-    """Mode of what all share, and the sizes of units there."""
-    at, sizes = _first_guess(law, points)
+def _climbed(law: Law, points: Points, at: FloatArray, sizes: FloatArray) -> tuple[FloatArray, FloatArray]:
     fractions = np.array([1.0, 0.5, 0.2, 0.05, 0.01, 0.0])
     for _ in range(_STEPS):
+        if law.grows:
+            one = at[None]
+            sizes = _modes(law, points, one, _weights(points, one), sizes)[0][0]
         gradient, covariance = _derivatives(law, points, at, None, sizes)
         step = covariance @ gradient
         step *= min(1.0, _STRIDE / max(np.abs(step).max(), _LEAST))
         tried = at + fractions[:, None] * step
         best = int(np.argmax(_log_posterior(law, points, tried, None, sizes)))
         at = tried[best]
-        if law.grows:
-            one = at[None]
-            sizes = _modes(law, points, one, _weights(points, one), sizes)[0][0]
         if np.abs(fractions[best] * step).max() < 0.05:
             break
     return at, sizes
 
 
-def posterior(law: Law, points: Points, random: np.random.Generator) -> Posterior:
-    """Return weighed draws of what all units share under a law."""
-    peak, sizes = _peak(law, points)
-    middle = peak[[0, 3]] if law.grows else peak[:1]
-    mode = peak.copy()
+@dataclass(frozen=True)
+class Peak:
+    """The mode of what all units share under a law."""
+
+    law: Law
+    at: FloatArray
+    mode: FloatArray  #: the same in coordinates round the middle
+    covariance: FloatArray
+    middle: FloatArray
+    sizes: FloatArray
+    log_evidence: float  #: by a normal law round the mode
+
+
+def peaks(laws: list[Law], points: Points) -> list[Peak]:
+    """Return the modes of the laws that need be drawn from: the others fit hopelessly worse.
+
+    Those of the first units come before those of all: they tell where to begin, and what need not be tried.
+    """
+    few = points.part(_FIRST)
+    guesses = [_first_guess(law, few) for law in laws]
+    found = _hopeful([_peak_of(law, few, *guess) for law, guess in zip(laws, guesses, strict=True)])
+    if len(few.value) == len(points.value):
+        return found
+    sizes = {each.law.name: _first_guess(each.law, points)[1] for each in found}
+    return _hopeful([_peak_of(each.law, points, each.at, sizes[each.law.name]) for each in found])
+
+
+def _hopeful(found: list[Peak]) -> list[Peak]:
+    best = max(each.log_evidence for each in found)
+    return [each for each in found if each.log_evidence > best - _HOPELESS]
+
+
+def _peak_of(law: Law, points: Points, guess: FloatArray, sizes: FloatArray) -> Peak:
+    at, sizes = _climbed(law, points, guess, sizes)
+    middle = at[[0, 3]] if law.grows else at[:1]
+    mode = at.copy()
     mode[[0, 3] if law.grows else [0]] = 0.0
     _, covariance = _derivatives(law, points, mode, middle, sizes)
-    more = min(max(1.0, _USUAL / points.value.size), _MOST)
-    spots, density = np.empty((0, mode.size)), np.empty(0)
+    height = float(_log_posterior(law, points, mode[None], middle, sizes)[0])
+    width = 0.5 * (np.linalg.slogdet(covariance)[1] + mode.size * math.log(2.0 * math.pi))
+    return Peak(law, at, mode, covariance, middle, sizes, height + float(width))
+
+
+def posterior(peak: Peak, points: Points, random: np.random.Generator) -> Posterior:
+    """Return weighed draws of what all units share under a law."""
+    law, middle, sizes = peak.law, peak.middle, peak.sizes
+    more = float(np.clip(_USUAL / points.value.size, _LEAST_SHARE, _MOST))
+    spots, density = np.empty((0, peak.mode.size)), np.empty(0)
     proposed: list[tuple[int, _Kernels]] = []
-    kernels = _Kernels(mode[None], _WIDE**2 * covariance)
-    for count in (round(more * number) for number in _ROUNDS):
+    kernels = _Kernels(peak.mode[None], _WIDE**2 * peak.covariance)
+    for turn in range(len(_ROUNDS) + _AGAIN):
+        count = round(more * _ROUNDS[min(turn, len(_ROUNDS) - 1)])
         draws = kernels.drawn(count, random)
         spots = np.concatenate([spots, draws])
         density = np.concatenate([density, _log_posterior(law, points, draws, middle, sizes)])
@@ -301,6 +352,8 @@ def posterior(law: Law, points: Points, random: np.random.Generator) -> Posterio
         of_all = [math.log(number) + each.log_density(spots) for number, each in proposed]
         logs = density - special.logsumexp(of_all, axis=0)
         weight = np.exp(logs - special.logsumexp(logs))
+        if turn + 1 >= len(_ROUNDS) and 1.0 / np.sum(weight**2) > _WORTH:
+            break
         kernels = _round_draws(spots, weight, random)
     kept = weight > 0.0
     shared, _ = _told(law, spots[kept], middle, len(points.value))
