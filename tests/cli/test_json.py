@@ -20,6 +20,7 @@ from hersey.document.saved_fit import read_fit
 from hersey.paper_figures.figure import Claim, OwnFigure, Verdict
 from tests.cli.command import run
 from tests.conftest import ROOT
+from tests.life import shipped
 
 EXAMPLES = ROOT / "examples"
 BENCH = str(EXAMPLES / "bench.csv")
@@ -89,6 +90,7 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
         campaign.add(points, log=BENCH, unit="F12", age="120000 pages")
     own = {
         "CAMPAIGN": str(folder / "life.hersey"),
+        "LIFE": str(shipped.write(folder / "units.hersey")),
         "FIGURES": str(folder / "figures"),
         "STRONG": str(folder / "strong.toml"),
     }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from types import SimpleNamespace
@@ -11,6 +12,9 @@ from typing import Any
 import polars as pl
 
 import hersey
+from hersey.life.age import Age
+from hersey.life.campaign import Entry
+from hersey.life.campaign.kept import entry_of
 from hersey.log.sensors import Sensors
 from hersey.machine.machine import Machine, read_machine
 from hersey.testbench.stand import RPM
@@ -76,3 +80,39 @@ def campaign(units: int = 8) -> hersey.Campaign:
     )
     answer: hersey.Campaign = stub
     return answer
+
+
+@cache
+def _sample() -> Entry:
+    """What is kept of some run, which lends the rest to others."""
+    table = {"speed [rpm]": [10, 20, 40, 80], "torque [mN*m]": [5.0, 5.6, 6.3, 7.2]}
+    return entry_of(hersey.SteadyPoints.from_table(table, isothermal=True), "sample.csv")
+
+
+def add(
+    campaign: hersey.Campaign, unit: str, age: float, rows: list[tuple[float, float, float, float]]
+) -> None:
+    """Add a run without reading or fitting it: rows of speed (rad/s), torque and its error (N m), and K."""
+    number = len(campaign)
+    dwells = [
+        [0, 0.0, 0.0, speed, 0.0, torque, error, heat, 0.0, 1, 1.0, 0, "", None, 0.0]
+        for speed, torque, error, heat in rows
+    ]
+    path = str(Path(f"log{number}.csv").absolute())
+    entry = replace(_sample(), sha256=f"{number:064x}", path=path, dwells=dwells)
+    campaign.add_entries([(entry, unit, Age(age, "pages"))])
+
+
+def write(path: Path, units: int = 2) -> Path:
+    """Write a campaign of the dwells of some of the shipped units, whole torques, every second dwell."""
+    whole = campaign(units)
+    rest = machine().rest
+    assert rest is not None
+    with hersey.Campaign.create(path) as written:
+        names = ("speed (rad/s)", "torque (N m)", "torque error (N m)", "temperature (K)")
+        for (unit, age), dwells in whole.dwells().group_by("unit", "age (pages)", maintain_order=True):
+            speed, torque, error, kelvin = (dwells[name].to_numpy()[::2] for name in names)
+            torque = torque + rest.torque(speed, kelvin)
+            rows = zip(*(each.tolist() for each in (speed, torque, error, kelvin)), strict=True)
+            add(written, str(unit), float(age), list(rows))  # type: ignore[arg-type]
+    return path

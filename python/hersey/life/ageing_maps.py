@@ -59,6 +59,7 @@ class AgeingMaps(Result):
     upper: FloatArray
     torque_limit: float | None
     points: tuple[OperatingPoint, ...]
+    roll_radius: float
     notes: tuple[str, ...] = ()
 
     @property
@@ -191,6 +192,7 @@ def ageing_maps(campaign: Campaign, machine: Machine, found: Endings, *, unit: s
         upper=np.maximum(upper, transition),
         torque_limit=machine.limits.motor_torque,
         points=machine.points,
+        roll_radius=machine.roll_radius,
         notes=tuple(notes),
     )
 

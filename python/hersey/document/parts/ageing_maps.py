@@ -13,6 +13,7 @@ class MapPoint(Part):
     name: str
     speed: float
     temperature: float
+    share: float | None = Field(description="of the use; null where none is stated")
 
 
 class AgeingMapsPart(Part):
@@ -29,4 +30,5 @@ class AgeingMapsPart(Part):
     upper: list[Holed] = Field(description="V*, below which the past decides; null beyond the search")
     torque_limit: float | None
     points: list[MapPoint]
+    roll_radius: float = Field(description="m")
     notes: list[str]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pydantic import Field
 
+from hersey.document.parts.ending import AgesPart, SpanPart
 from hersey.document.parts.part import Holed, Numbers, Part
 
 
@@ -32,43 +33,13 @@ class ToldPart(Part):
     high: Holed | list[Holed]
 
 
-class LifeIntervalPart(Part):
-    """A number with its 90 % interval; null for what is infinite or not told."""
-
-    value: float | None
-    low: float | None
-    high: float | None
-
-
-class UnitAgePart(Part):
-    """The age at which a unit, or a share of new ones, reaches a limit; null for never."""
-
-    unit: str
-    age: LifeIntervalPart
-    never: float
-    last: float | None
-    passed: float
-
-
-class AgesAtLimitPart(Part):
-    """The ages at which units and population reach a limit."""
-
-    quantity: str
-    age_unit: str
-    limit: float
-    units: list[UnitAgePart]
-    b10: UnitAgePart
-    b50: UnitAgePart
-    notes: list[str]
-
-
 class OilLeftPart(Part):
     """Oil in the layer of a unit, m^3: new, when last seen, and what the film then needs."""
 
     unit: str
-    new: LifeIntervalPart
-    last: LifeIntervalPart
-    needed: LifeIntervalPart
+    new: SpanPart
+    last: SpanPart
+    needed: SpanPart
 
 
 class FilmLifePart(Part):
@@ -85,9 +56,9 @@ class FilmLifePart(Part):
     curves: list[ToldPart] = Field(description="film over flooded at each point, shape (units, ages)")
     layers: ToldPart = Field(description="m, shape (units, ages)")
     needs: list[list[Numbers]] = Field(description="flooded film at each point, m, shape (units, ages)")
-    starves: list[AgesAtLimitPart]
+    starves: list[AgesPart]
     starved: list[bool] = Field(description="at the fastest operating point, shape (runs,)")
-    law: dict[str, LifeIntervalPart] = Field(description="K in 1/(m^2 age), e and g in 1/age")
+    law: dict[str, SpanPart] = Field(description="K in 1/(m^2 age), e and g in 1/age")
     oil: list[OilLeftPart]
     track: float
     notes: list[str]
