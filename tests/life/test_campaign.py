@@ -15,6 +15,7 @@ from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
+import numpy as np
 import polars as pl
 import pytest
 
@@ -66,6 +67,20 @@ def campaign(tmp_path: Path) -> Iterator[Campaign]:
 def add(campaign: Campaign, run_csv: Path, unit: str = "F12", age: str = "1000 pages", **more: bool) -> str:
     points = hersey.SteadyPoints.from_table(run_csv)
     return campaign.add(points, log=run_csv, unit=unit, age=age, **more).outcome
+
+
+def test_the_numbers_for_computing_are_those_of_the_dwells(campaign: Campaign, run_csv: Path) -> None:
+    add(campaign, run_csv)
+    campaign.add_entries([(another(1), "F13", Age(0.0, "pages"))])
+    of_run, numbers = campaign.measured()
+    dwells = campaign.dwells().sort("run_id", maintain_order=True)
+    names = ("speed (rad/s)", "temperature (K)", "torque (N m)", "torque error (N m)")
+    assert of_run.tolist() == dwells["run_id"].to_list()
+    for column, name in zip(numbers.T, names, strict=True):
+        assert np.array_equal(column, dwells[name].cast(float).fill_null(np.nan), equal_nan=True), name
+    rests = campaign.drives()
+    assert set(rests) == set(of_run.tolist())
+    assert rests[1][0] is None
 
 
 def test_points_come_back_whole(campaign: Campaign, points: hersey.SteadyPoints, bench_csv: Path) -> None:

@@ -268,7 +268,10 @@ def test_runs_that_do_not_tell_are_named(tmp_path: Path) -> None:
         found = indicators_of(opened, machine(motor_torque=1.0))
     each = named(found, "motor torque, cold and fast")
     assert np.isnan(each.value).tolist() == [False, True, True, False]
-    assert any("not told by 1 runs of other temperatures: A at 2 pages" in note for note in each.notes)
+    assert any(
+        "not told by 1 of 4 runs, of other temperatures or lost in noise: A at 2 pages" in note
+        for note in each.notes
+    )
     assert any("fewer than 4 dwells" in line and line.endswith(": 2") for line in found.unsaid)
     assert any("left out: 1 of run 4" in line for line in found.unsaid)
 

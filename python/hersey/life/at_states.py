@@ -74,7 +74,11 @@ class AtStates:
         silent = np.flatnonzero(self.runs.enough & ~known).tolist()
         if silent:
             named = ", ".join(self.runs.name(run) for run in silent[:_NAMED])
-            notes.append(f"not told by {len(silent)} runs of other temperatures: {named}" + _more(silent))
+            notes.append(
+                f"not told by {len(silent)} of {known.size} runs, of other temperatures or lost in noise: "
+                + named
+                + _more(silent)
+            )
         return tuple(notes)
 
     def _away(self, run: int, state: int) -> str:
@@ -110,13 +114,18 @@ def at_states(
     told = np.flatnonzero(runs.enough)
     some = set(told[np.linspace(0, told.size - 1, min(drawn, told.size)).round().astype(int)].tolist())
     curves = [_empty(runs, temperature) for temperature in temperatures]
+    rests: dict[tuple[int, bool], FloatArray] = {}  # by object: runs of the same rest share it
     for place, dwells, rest in runs.told():
         surface = TorqueSurface(dwells, kernel)
         at = surface.at(speed, heat)
-        thermal = np.isfinite(dwells.temperature).all() and np.isfinite(heat).all()
-        beside = 0.0 if rest is None else rest.torque(speed, heat if thermal else None)
+        thermal = bool(np.isfinite(dwells.temperature).all() and np.isfinite(heat).all())
+        if (which := (id(rest), thermal)) not in rests:
+            at_rest = 0.0 if rest is None else rest.torque(speed, heat if thermal else None)
+            rests[which] = np.zeros(speed.shape) + at_rest
+        beside = rests[which]
         belt[place], belt_error[place] = at.torque, at.error
-        whole[place] = at.torque + beside
+        together = at.torque + beside
+        whole[place] = np.where(together > 0.0, together, np.nan)  # a rest fitted below nothing
         whole_error[place] = at.error * at.torque / whole[place]
         outside[place], factor[place], kelvin[place] = at.outside, at.factor, at.kelvin
         for curve in curves:

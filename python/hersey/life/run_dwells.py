@@ -68,22 +68,21 @@ class CampaignRuns:
 
 def read_runs_of(campaign: Campaign, rest: RestOfDrive | None = None) -> CampaignRuns:
     """Return the runs of a campaign; ``rest`` is taken off those of which none was taken off before."""
-    listed, dwells, drives = campaign.runs(), campaign.dwells(), campaign.drives()
+    listed, drives = campaign.runs(), campaign.drives()
     numbers = tuple(listed["run"].to_list())
     runs = Runs(numbers, tuple(listed["unit"].to_list()), listed["age"].to_numpy(), campaign.age_unit)
-    names = ("speed (rad/s)", "temperature (K)", "torque (N m)", "torque error (N m)")
-    table = np.column_stack([dwells[name].cast(float).fill_null(np.nan).to_numpy() for name in names])
-    rows = _stretches(dwells["run_id"].to_numpy())
-    none = np.empty((0, len(names)))
-    each, rests, unused = [], [], []
+    of_run, table = campaign.measured()
+    beside = _rest_of(of_run, table, {number: drives[number][0] or rest for number in numbers})
+    rows = _stretches(of_run)
+    each, unused = [], []
     for number in numbers:
-        taken = drives[number][0]
-        of = table[rows[number]] if number in rows else none
-        usable = np.isfinite(of[:, [0, 2]]).all(axis=1) & (of[:, 0] != 0.0)
+        own = rows.get(number, slice(0))
+        usable = np.isfinite(table[own][:, [0, 2]]).all(axis=1) & (table[own, 0] != 0.0)
         if not usable.all():
             unused.append(f"{np.count_nonzero(~usable)} of run {number}")
-        each.append(_dwells(of[usable], taken, rest))
-        rests.append(taken or rest)
+        off = beside[own][usable]
+        each.append(_dwells(table[own][usable], off, was_off=drives[number][0] is not None))
+    rests = [drives[number][0] or rest for number in numbers]
     notes = [f"dwells that do not turn are left out: {', '.join(unused)}"] if unused else []
     few = [str(number) for number, of in zip(numbers, each, strict=True) if of.speed.size < FEWEST]
     if few:
@@ -102,12 +101,26 @@ def _stretches(of_run: IntArray) -> dict[int, slice]:
     return {int(of_run[start]): slice(start, end) for start, end in zip(starts, ends, strict=True)}
 
 
-def _dwells(rows: FloatArray, taken: RestOfDrive | None, known: RestOfDrive | None) -> RunDwells:
-    """Dwells in the sense of rotation; ``taken`` is put back on for the whole, ``known`` taken off."""
+def _rest_of(of_run: IntArray, table: FloatArray, rests: dict[int, RestOfDrive | None]) -> FloatArray:
+    """Torque of the rest of the drive at each dwell, N m; where no temperature is, that of its reference."""
+    beside = np.zeros(of_run.size)
+    runs_with: dict[int, list[int]] = {}
+    for number, rest in rests.items():
+        runs_with.setdefault(id(rest), []).append(number)
+    thermal = np.isfinite(table[:, 1])
+    for numbers in runs_with.values():
+        if (rest := rests[numbers[0]]) is None:
+            continue
+        of_rest = np.isin(of_run, numbers)
+        for some, heat in ((of_rest & thermal, table[:, 1]), (of_rest & ~thermal, None)):
+            beside[some] = rest.torque(table[some, 0], None if heat is None else heat[some])
+    return beside
+
+
+def _dwells(rows: FloatArray, rest: FloatArray, *, was_off: bool) -> RunDwells:
+    """Dwells in the sense of rotation, and the torque of the ``rest`` that is, or was, taken off them."""
     speed, temperature, torque, error = rows.T
-    heat = temperature if np.isfinite(temperature).all() else None
-    whole = torque if taken is None else torque + taken.torque(speed, heat)
-    belt = torque if taken is not None or known is None else torque - known.torque(speed, heat)
+    belt, whole = (torque, torque + rest) if was_off else (torque - rest, torque)
     sense = np.sign(speed)
-    heats = temperature if heat is not None else np.full(speed.shape, np.nan)
+    heats = temperature if np.isfinite(temperature).all() else np.full(speed.shape, np.nan)
     return RunDwells(np.abs(speed), heats, sense * belt, sense * whole, np.nan_to_num(error))

@@ -40,6 +40,10 @@ _START = np.array([*np.log([0.5, 2.0, 2.0, 0.005]), 0.5])
 _KNOWN = np.array([2.0, 1.5, 1.5, 2.0, 1.0])
 _LOW = np.array([*np.log([1e-3, 0.2, 0.2, 1e-4]), -3.0])
 _HIGH = np.array([*np.log([20.0, 30.0, 30.0, 1.0]), 3.0])
+#: Variance of ln torque below which no dwell is believed: rounding of large covariances.
+_FLOOR = 1e-9
+#: Relative standard error from which on a torque is not told.
+_LOST = 2.0
 #: The logarithm is taken about the smooth torque until it moves by no more than this, in so many rounds; the
 #: longest step of a round.
 _SETTLED, _ROUNDS, _STEP = 1e-3, 12, 1.0
@@ -88,8 +92,9 @@ class Prediction:
     """Torque of the belt at points: arrays of shape (points,).
 
     ``torque`` in N m is the median, ``error`` its relative standard error, without the scatter of a dwell;
-    both NaN at a temperature of which the run does not tell. ``outside`` marks points that dwells do not
-    enclose; they are ``factor`` times as fast as the nearest dwell, and ``kelvin`` warmer.
+    both NaN at a temperature of which the run does not tell, and where the error is beyond all use.
+    ``outside`` marks points that dwells do not enclose; they are ``factor`` times as fast as the nearest
+    dwell, and ``kelvin`` warmer.
     """
 
     torque: FloatArray
@@ -152,17 +157,17 @@ class _Layout:
 
     def solved(self, kernel: Kernel, about: FloatArray, deviations: FloatArray) -> _Solved:
         """The surface with ln torque taken about values of the dwells; ``deviations``: their covariance."""
-        torque = np.exp(about)
-        noise = (self.dwells.error**2 + (kernel.scatter * self.dwells.whole) ** 2) / torque**2
+        torque = _torque(about)
+        noise = (self.dwells.error**2 + (kernel.scatter * self.dwells.whole) ** 2) / torque**2 + _FLOOR
         value = about + np.clip(self.dwells.torque / torque - 1.0, -_STEP, _STEP)
         covariance = deviations + np.diag(noise)
-        root = linalg.cholesky(covariance, lower=True, overwrite_a=True, check_finite=False)
+        root = _root(covariance)
         both = _forward(root, np.column_stack([self.trend, value]))
         trend = both[:, :-1]
-        inner = linalg.cholesky(trend.T @ trend, lower=True, check_finite=False)
-        weights = linalg.cho_solve((inner, True), trend.T @ both[:, -1], check_finite=False)
+        inner = _root(trend.T @ trend)
+        weights = _backward(inner, _forward(inner, trend.T @ both[:, -1]))
         left = both[:, -1] - trend @ weights
-        pulled = linalg.solve_triangular(root, left, lower=True, trans="T", check_finite=False)
+        pulled = _backward(root, left)
         return _Solved(root, inner, weights, trend, left, value - noise * pulled)
 
     def settled(self, kernel: Kernel) -> _Solved:
@@ -218,10 +223,11 @@ class TorqueSurface:
         speed, temperature = np.broadcast_arrays(np.asarray(speed, float), np.asarray(temperature, float))
         mean, across, basis = self._told(speed, temperature)
         variance = self.kernel.deviation**2 - np.sum(across**2, axis=0) + np.sum(basis**2, axis=0)
-        known = np.array([self.tells(float(each)) for each in temperature])
+        error = np.sqrt(np.maximum(variance, 0.0))
+        known = np.array([self.tells(float(each)) for each in temperature]) & (error < _LOST)
         return Prediction(
-            np.where(known, np.exp(mean), np.nan),
-            np.where(known, np.sqrt(np.maximum(variance, 0.0)), np.nan),
+            np.where(known, _torque(mean), np.nan),
+            np.where(known, error, np.nan),
             *self._nearest(speed, temperature),
         )
 
@@ -248,12 +254,12 @@ class TorqueSurface:
         # Of neighbours on a fine grid nearly all is known: without a little more there is no root.
         covariance[np.diag_indices_from(covariance)] += 1e-10 * (1.0 + self.kernel.deviation**2)
         try:
-            root = linalg.cholesky(covariance, lower=True, check_finite=False)
+            root = _root(covariance)
         except linalg.LinAlgError:
             spread, axes = np.linalg.eigh(covariance)
             root = np.sqrt(np.maximum(spread, 0.0)) * axes
         normal = np.random.default_rng(seed).standard_normal((draws, speed.size))
-        return np.exp(mean), np.exp(mean + normal @ root.T)
+        return _torque(mean), _torque(mean + normal @ root.T)
 
     def _told(self, speed: FloatArray, temperature: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Mean of ln torque at points; what dwells take from its variance, and what the trend adds: roots."""
@@ -337,10 +343,27 @@ def _evenly(count: int, most: int) -> list[int]:
     return sorted({round(place) for place in np.linspace(0, count - 1, min(count, most)).tolist()})
 
 
+def _torque(logarithm: FloatArray) -> FloatArray:
+    """Torque of its logarithm, a number also where nothing is known of it."""
+    return np.asarray(np.exp(np.clip(logarithm, -60.0, 60.0)))
+
+
 def _levels(values: FloatArray, apart: float) -> int:
     """How many levels there are, neighbours closer than ``apart`` being one."""
     return 1 + int(np.count_nonzero(np.diff(np.sort(values)) > apart))
 
 
+# SciPy's own doors to these take longer than the work on a hundred dwells.
+def _root(covariance: FloatArray) -> FloatArray:
+    root, failed = linalg.lapack.dpotrf(covariance.T, lower=1, clean=1)
+    if failed:
+        raise linalg.LinAlgError("a covariance is not positive")
+    return np.asarray(root)
+
+
 def _forward(root: FloatArray, right: FloatArray) -> FloatArray:
-    return np.asarray(linalg.solve_triangular(root, right, lower=True, check_finite=False))
+    return np.asarray(linalg.lapack.dtrtrs(root, right, lower=1)[0])
+
+
+def _backward(root: FloatArray, right: FloatArray) -> FloatArray:
+    return np.asarray(linalg.lapack.dtrtrs(root, right, lower=1, trans=1)[0])

@@ -20,11 +20,14 @@ from hersey.spelling import meant
 if TYPE_CHECKING:
     import polars as pl
 
+    from hersey.arrays import FloatArray, IntArray
     from hersey.damping.dwells import SteadyPoints
     from hersey.damping.rest import RestOfDrive
     from hersey.damping.surface import DampingSurface
     from hersey.log.sensors import Sensors
 
+#: Dwells that are read at once.
+_AT_ONCE = 100_000
 #: Columns of the list of runs.
 _LISTED = "id, unit, age, path, sha256, dwells, exponent, transition_speed, no_fit, version, added"
 
@@ -209,12 +212,16 @@ class Campaign:
             return points_of(reduction, dwells)
 
     def drives(self) -> dict[int, tuple[RestOfDrive | None, Sensors]]:
-        """Return what was taken off the torque of each run as rest of the drive, and its sensors, by run."""
+        """Return what was taken off the torque of each run as rest of the drive, and its sensors, by run.
+
+        Runs of the same rest share one object.
+        """
         from hersey.life.campaign.kept import drive_of
 
         with told(self.path):
             rows = self._database.execute("SELECT id, reduction FROM runs")
-            return {number: drive_of(reduction) for number, reduction in rows}
+            same: dict[str, tuple[RestOfDrive | None, Sensors]] = {}
+            return {number: drive_of(reduction, same) for number, reduction in rows}
 
     def fit(self, run: int) -> dict[str, Any] | None:
         """Return the fit of a run, as `DampingSurface.to_dict` gave it when it was added; None if none fits.
@@ -273,6 +280,24 @@ class Campaign:
             units |= {name: si, f"{name}_error": si}
         new = {name: f"{name.replace('_', ' ')} ({si})" for name, si in units.items()}
         return joined.rename({**new, "age": f"age ({self.age_unit or 'unit'})"})
+
+    def measured(self) -> tuple[IntArray, FloatArray]:
+        """Return the numbers of every dwell, for computing: the fewest columns that a torque is told by.
+
+        Number of the run, shape (dwells,), those of one run one after the other; speed (rad/s), temperature
+        (K), torque and its error (N m), shape (dwells, 4), NaN where nothing was recorded.
+        """
+        import numpy as np
+
+        with told(self.path):
+            rows = self._database.execute(
+                "SELECT run_id, speed, temperature, torque, torque_error FROM dwells ORDER BY run_id, number"
+            )
+            parts = [np.empty((0, 5))]
+            while some := rows.fetchmany(_AT_ONCE):
+                parts.append(np.array(some, dtype=float))
+        numbers = np.concatenate(parts)
+        return numbers[:, 0].astype(np.intp), numbers[:, 1:]
 
     def export(self, suffix: str) -> bytes:
         """Return `dwells` as a file of the kind that ``.parquet`` or ``.csv`` names.

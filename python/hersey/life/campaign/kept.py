@@ -121,10 +121,16 @@ def rests_of(dwells: pl.DataFrame, reductions: Iterable[tuple[int, str]]) -> Flo
     return taken
 
 
-def drive_of(reduction: str) -> tuple[RestOfDrive | None, Sensors]:
-    """Return the rest of the drive that was taken off a run, and its sensors."""
+def drive_of(
+    reduction: str, same: dict[str, tuple[RestOfDrive | None, Sensors]]
+) -> tuple[RestOfDrive | None, Sensors]:
+    """Return the rest of the drive that was taken off a run, and its sensors; ``same``: those met before."""
     held = json.loads(reduction)
-    return _restored(held["rest"]), _restored(held["log"]["sensors"])
+    both = [held["rest"], held["log"]["sensors"]]
+    key = json.dumps(both)
+    if key not in same:
+        same[key] = _restored(both)
+    return same[key]
 
 
 @dataclass(frozen=True, repr=False)
