@@ -17,7 +17,7 @@ from hersey.testbench.drive import example_drive
 
 
 @cache
-def drift_of(source: str, kind: str, units: int = 8) -> Drift:
+def drift_of(source: str, kind: str, units: int = 4) -> Drift:
     return fit_drift(table((stand if source == "stand" else other)(kind, 2, units)))
 
 
@@ -43,11 +43,11 @@ def test_what_ages_in_a_drive_of_other_laws_is_read(kind: str) -> None:
 
 def test_the_rest_that_grows_is_told_in_newton_metres() -> None:
     drift = drift_of("stand", "rest of the drive")
-    units = population(*example_drive(), ageing=Ageing(rest_growth=1e-6), units=8, seed=2)
+    units = population(*example_drive(), ageing=Ageing(rest_growth=1e-6), units=4, seed=2)
     told = drift["rest of the drive"]
     true = [1e3 * 0.18 * 170e3 * unit.ageing.rest_growth for unit in units]
     found = np.array([[1e3 * each.low, 1e3 * each.high] for each in told.units])
-    assert np.sum((found[:, 0] < true) & (true < found[:, 1])) >= 6
+    assert np.sum((found[:, 0] < true) & (true < found[:, 1])) >= 3
     assert told.moved
     assert not drift["speed of least torque"].moved
 

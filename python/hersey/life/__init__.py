@@ -24,6 +24,7 @@ drift_fit         the joint fit of all runs
 drift_quantities  what moved with age, in numbers
 drift_readings    what a drift points to
 drift             what moved with age, and what it points to
+record_blocks     a continuous record as a few values with their errors
 fatigue           cycles of torque counted, and the damage that they do to a part
 population        ages at failure over many units: Weibull law, B10 and B50
 ending            what ends each unit, and when

@@ -25,6 +25,8 @@ from hersey.units import celsius, rpm
 if TYPE_CHECKING:
     import polars as pl
 
+#: Ratio of the fastest to the slowest speed from which speeds tell anything.
+_APART = 1.5
 #: Up to so many units tell little of how units differ.
 _FEW = 3
 
@@ -251,6 +253,11 @@ def _dwells_of(table: pl.DataFrame, age_name: str) -> tuple[Dwells, tuple[str, .
         )
     if not table.height:
         raise InsufficientDataError("there is no dwell: add runs to the campaign")
+    if speed.max() < _APART * speed.min():
+        raise InsufficientDataError(
+            "all dwells have one speed, so nothing tells level, exponent and film apart: record dwells at "
+            "several speeds, or follow the torque itself with hersey.life.growth.fit_growth"
+        )
     run_ids, unit_names = table["run_id"].to_numpy(), table["unit"].cast(str).to_list()
     first = np.flatnonzero(np.r_[True, run_ids[1:] != run_ids[:-1]])
     counts = np.diff(np.r_[first, run_ids.size])
@@ -285,7 +292,8 @@ def _notes(found: Fitted, dwells: Dwells, units: tuple[str, ...]) -> tuple[str, 
     if not found.scales.thermal:
         notes.append(
             "Temperatures tell nothing here: level, viscosity and the rest of the drive are told apart by "
-            "the shape over speed alone. Record dwells at several temperatures."
+            "the shape over speed alone, and contact that recedes may be a lubricant that thickens. Record "
+            "dwells at several temperatures."
         )
     if len(units) == 1:
         notes.append("One unit tells nothing of how units differ: the intervals are those of this unit.")

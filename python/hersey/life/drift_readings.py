@@ -54,8 +54,9 @@ _DEAR = {LOADED: 2.0}
 _NEAR = 4.6
 #: Of a 90 % interval.
 NORMAL = 1.645
-#: Part of the typical change of torque that the law may get wrong in each direction.
-_LAW_ERROR = 0.06
+#: Part of the typical change of torque that the law may get wrong in each direction; more so where no
+#: temperatures tell film and rest apart.
+_LAW_ERROR, _WITHOUT_TEMPERATURES = 0.06, 0.2
 #: Least part of the greatest change of torque, and of torque, that is named.
 _LEAST_PART, _LEAST_CHANGE = 0.05, 0.003
 
@@ -151,7 +152,8 @@ def read(
     relative = middle.own / middle.torque[..., None]
     # The law is no truth: by this much it may mistake one value for another.
     typical = np.sqrt(((relative @ change[..., None])[..., 0] ** 2).mean(axis=1, keepdims=True))
-    blur = _LAW_ERROR * typical / np.maximum(np.abs(relative).max(axis=1), 1e-6)
+    wrong = _LAW_ERROR if scales.thermal else _WITHOUT_TEMPERATURES
+    blur = wrong * typical / np.maximum(np.abs(relative).max(axis=1), 1e-6)
     weight = np.linalg.inv(covariance + blur[:, :, None] ** 2 * np.eye(len(OWN)))
     every = directions(shared)
     # With many units chance does more.
