@@ -6,6 +6,7 @@ import json
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from types import SimpleNamespace
 from typing import Any
 
@@ -15,7 +16,6 @@ import hersey
 from hersey.life.age import Age
 from hersey.life.campaign import Entry
 from hersey.life.campaign.kept import entry_of
-from hersey.log.sensors import Sensors
 from hersey.machine.machine import Machine, read_machine
 from hersey.testbench.stand import RPM
 from hersey.units import ZERO_CELSIUS
@@ -70,13 +70,8 @@ def campaign(units: int = 8) -> hersey.Campaign:
         )
     of_runs = listed.select(pl.col("run").alias("run_id"), "unit", pl.col("age").alias("age (pages)"))
     dwells = pl.concat(frames).join(of_runs, on="run_id", maintain_order="left")
-    drives = {run: (rest, Sensors()) for run in listed["run"]}
     stub: Any = SimpleNamespace(
-        path=Path("life.hersey"),
-        age_unit="pages",
-        runs=lambda: listed,
-        dwells=lambda: dwells,
-        drives=lambda: drives,
+        path=Path("life.hersey"), age_unit="pages", runs=lambda: listed, dwells=lambda: dwells
     )
     answer: hersey.Campaign = stub
     return answer
@@ -101,6 +96,15 @@ def add(
     path = str(Path(f"log{number}.csv").absolute())
     entry = replace(_sample(), sha256=f"{number:064x}", path=path, dwells=dwells)
     campaign.add_entries([(entry, unit, Age(age, "pages"))])
+
+
+_FOLDER = TemporaryDirectory()
+
+
+@cache
+def opened(units: int = 2) -> hersey.Campaign:
+    """A campaign in a file, of some of the shipped units."""
+    return hersey.Campaign.open(write(Path(_FOLDER.name) / f"life-{units}.hersey", units), write=False)
 
 
 def write(path: Path, units: int = 2) -> Path:

@@ -31,7 +31,7 @@ def told(unit: str, age: float, passed: float = 0.0) -> Any:
 
 @cache
 def maps() -> AgeingMaps:
-    return ageing_maps(shipped.campaign(1), shipped.machine(), told("U1", 230e3))
+    return ageing_maps(shipped.opened(1), shipped.machine(), told("U1", 230e3))
 
 
 def test_what_grows_with_the_clock_is_carried_on_with_it() -> None:
@@ -43,7 +43,7 @@ def test_what_grows_with_the_clock_is_carried_on_with_it() -> None:
 
 
 def test_the_maps_are_those_of_the_truth() -> None:
-    """Torque within 3 % where dwells are, the transition within 15 %, both those of the belt and its drive."""
+    """Torque within 1 % for the most part, 8 % at the corners; the transition within 15 %."""
     unit = population(*example_drive(), units=1, seed=3)[0]
     found = maps()
     assert found.when == ("new", "now", "end")
@@ -52,7 +52,9 @@ def test_the_maps_are_those_of_the_truth() -> None:
         truth = unit.at(age)
         kelvin, rolls = np.meshgrid(found.temperature, found.speed / found.roll_radius, indexing="ij")
         exact = truth.torque(rolls, kelvin - ZERO_CELSIUS)
-        assert np.abs(found.torque[index] / exact - 1.0).max() < 0.03
+        off = np.abs(found.torque[index] / exact - 1.0)
+        assert np.median(off) < 0.01
+        assert off.max() < 0.08
         hot = truth.transition_speed(found.temperature[-3:] - ZERO_CELSIUS) * found.roll_radius
         assert found.transition[index, -3:] == pytest.approx(hot, rel=0.15)
     end = unit.at(230e3).torque(np.array(40.0 / 3.0), np.array(60.0))
@@ -77,15 +79,15 @@ def test_a_state_is_that_of_its_region() -> None:
 
 
 def test_a_unit_that_has_ended_has_no_end_ahead() -> None:
-    found = ageing_maps(shipped.campaign(1), shipped.machine(), told("U1", 150e3, passed=1.0))
+    found = ageing_maps(shipped.opened(1), shipped.machine(), told("U1", 150e3, passed=1.0))
     assert found.when == ("new", "now")
 
 
 def test_what_cannot_be_drawn_is_told() -> None:
     with pytest.raises(ParameterError, match="no unit 'U11': did you mean 'U1'"):
-        ageing_maps(shipped.campaign(1), shipped.machine(), told("U1", 230e3), unit="U11")
+        ageing_maps(shipped.opened(1), shipped.machine(), told("U1", 230e3), unit="U11")
     with pytest.raises(InsufficientDataError, match="runs of U7 do not tell torque"):
-        ageing_maps(shipped.campaign(1), shipped.machine(), told("U7", 230e3))
+        ageing_maps(shipped.opened(1), shipped.machine(), told("U7", 230e3))
 
 
 def test_it_says_what_the_points_meet() -> None:

@@ -1,0 +1,68 @@
+"""A life test followed to one answer and one page: the shipped campaign."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import pytest
+
+import hersey
+from hersey.errors import InsufficientDataError
+from hersey.life.following import LifeTest, follow
+from hersey.report.life_page import render_life
+from tests.life import shipped
+
+
+@cache
+def answer() -> LifeTest:
+    return follow(shipped.opened(2), shipped.machine())
+
+
+def test_the_answer_holds_all_parts() -> None:
+    found = answer()
+    kinds = {mode.kind for mode in found.endings.modes}
+    assert {"motor torque", "grip", "stick-slip", "starvation"} <= kinds
+    assert found.drift is not None
+    assert found.film is not None
+    assert found.maps is not None
+    assert found.maps.unit == "U1"  # the first to end
+    text = found.summary()
+    assert text.startswith(found.headline())
+    assert "continuous_torque" in text  # what is not judged, and which key would
+
+
+def test_both_units_end_by_the_torque_of_the_motor() -> None:
+    """Truth: 239,000 and 305,000 pages, cold and fast; starvation follows 14 % later."""
+    for end, truth in zip(answer().endings.units, (239e3, 305e3), strict=True):
+        assert "motor torque, cold and fast" in end.named
+        assert end.age.age.value == pytest.approx(truth, rel=0.15)
+
+
+def test_the_same_seed_gives_the_same_bits() -> None:
+    again = follow(shipped.opened(2), shipped.machine())
+    assert again.to_dict() == answer().to_dict()
+
+
+def test_what_cannot_be_told_is_said() -> None:
+    bare = hersey.Machine(
+        stiffness=11e3,
+        mass=11.0,
+        roll_radius=15e-3,
+        stick_speed=3e-3,
+        limits=hersey.Limits(motor_torque=1.0),
+    )
+    found = follow(shipped.opened(1), bare)
+    assert found.film is None
+    assert any("film through life" in line for line in found.unsaid)
+    with pytest.raises(InsufficientDataError, match="nothing that ends a unit"):
+        follow(shipped.opened(1), hersey.Machine(11e3, 11.0, 15e-3, 3e-3))
+
+
+def test_the_page_holds_the_answer() -> None:
+    runs = shipped.opened(2).runs()
+    page = render_life(answer(), runs, "hersey life <life.hersey>")
+    assert page.startswith("<!doctype html>")
+    assert "\\u003clife.hersey\\u003e" in page
+    assert '"What ends each unit, and when"' in page
+    for name in ("ends", "growth_1", "maps", "film", "drift", "population"):
+        assert f'"{name}"' in page
