@@ -154,3 +154,30 @@ def test_too_few_dwells_are_refused() -> None:
         TorqueSurface(run, Kernel(0.1, 1.0, 50.0, 0.01, 0.01))
     with pytest.raises(InsufficientDataError, match="no run has 4 dwells"):
         shared_kernel([run])
+
+
+def test_it_is_universal_kriging() -> None:
+    """Mean and variance are those of the textbook's one linear system, [[K, F], [F', 0]]."""
+    kernel = Kernel(0.4, 1.5, 60.0, 0.01, 0.003)
+    grid = np.meshgrid(np.geomspace(1.0, 20.0, 6), [350.0, 380.0, 420.0, 450.0])
+    run = power_law(grid[0].ravel(), grid[1].ravel(), 0)
+    at = np.array([2.5, 13.0, 40.0]), np.array([365.0, 430.0, 480.0])
+    told = TorqueSurface(run, kernel).at(*at)
+
+    def terms(speed: FloatArray, heat: FloatArray) -> FloatArray:
+        u, t = np.log(speed) - 1.5, (heat - 400.0) / 50.0
+        return np.stack([np.ones_like(u), u, t, u * t, u * u, t * t], axis=1)
+
+    def between(ours: tuple[FloatArray, ...], theirs: tuple[FloatArray, ...]) -> FloatArray:
+        return kernel.covariance(np.log(ours[0])[:, None] - np.log(theirs[0]), ours[1][:, None] - theirs[1])
+
+    here = run.speed, run.temperature
+    noise = (run.error / run.torque) ** 2 + kernel.scatter**2
+    trend = terms(*here)
+    system = np.block([[between(here, here) + np.diag(noise), trend], [trend.T, np.zeros((6, 6))]])
+    right = np.vstack([between(here, at), terms(*at).T])
+    weights = np.linalg.solve(system, right)
+    assert np.log(told.torque) == pytest.approx(weights[:24].T @ np.log(run.torque), abs=1e-3)
+    variance = kernel.deviation**2 - np.sum(weights * right, axis=0)
+    assert told.error == pytest.approx(np.sqrt(variance), rel=1e-2)
+    assert told.error[2] > 0.3  # far beyond the dwells the trend adds as much as the deviation
