@@ -15,6 +15,7 @@ import pytest
 
 from hersey.cli.application import VERBS
 from tests.conftest import ROOT
+from tests.life import shipped
 
 EXAMPLES = ROOT / "examples"
 BENCH = [str(EXAMPLES / "bench.csv"), "--tare", "standing"]
@@ -34,6 +35,7 @@ TYPED: dict[str, tuple[list[str], float]] = {
     "warmup": ([MACHINE, *BENCH, "--target", "200 mm/s", "--from", "20 degC", "--out", "w.csv"], 3.0),
     "compare": ([*BENCH, BENCH[0], "--json"], 2.5),
     "campaign": (["add", "life.hersey", *BENCH, "--unit", "F12", "--age", "120000 pages"], 2.0),
+    "life": (["units.hersey", "--machine", MACHINE, "--out", "l.html", "--figures", "pictures"], 6.0),
     "design": (BENCH, 2.0),
     "cycles": ([str(EXAMPLES / "stick-slip.csv"), "--drive-speed", "20 mm/s", "--identify"], 3.0),
     "simulate": (["--csv", "s.csv", "--duration", "3000"], 1.0),
@@ -56,6 +58,8 @@ def test_every_verb_is_tried() -> None:
 @pytest.mark.parametrize("moment", range(2))
 def test_ctrl_c_ends_a_command(verb: str, moment: int, tmp_path: Path) -> None:
     typed, lasts = TYPED[verb]
+    if verb == "life":
+        shipped.write(tmp_path / "units.hersey", 1)
     process = subprocess.Popen(
         [sys.executable, "-c", READY, verb, *typed],
         cwd=tmp_path,

@@ -73,6 +73,7 @@ TYPED: dict[str, list[list[str]]] = {
         ["add", f"{IN_FILE}.hersey", LOG, "--unit", "F12", "--age", f"1 {HOSTILE}"],
         ["list", LOG],
     ],
+    "life": [[f"{IN_FILE}-units.hersey", "--machine", BROKEN], [LOG, "--machine", MACHINE]],
     "design": [[LOG], [LOG, "--speed", HOSTILE]],
     "cycles": [
         [TRACE, "--value", f"force {IN_CELL}", "--drive-speed", "20 mm/s"],
@@ -88,7 +89,7 @@ TYPED: dict[str, list[list[str]]] = {
 
 
 #: Verbs of which only refusals are typed here: what they print otherwise holds no name.
-REFUSED = {"map", "plan", "warmup", "simulate", "sweep", "hysteresis", "figures"}
+REFUSED = {"life", "map", "plan", "warmup", "simulate", "sweep", "hysteresis", "figures"}
 
 
 def test_every_verb_is_typed() -> None:

@@ -107,6 +107,12 @@ def opened(units: int = 2) -> hersey.Campaign:
     return hersey.Campaign.open(write(Path(_FOLDER.name) / f"life-{units}.hersey", units), write=False)
 
 
+@cache
+def followed(units: int = 2) -> hersey.LifeTest:
+    """What ends some of the shipped units, and when."""
+    return hersey.follow(opened(units), machine())
+
+
 def write(path: Path, units: int = 2) -> Path:
     """Write a campaign of the dwells of some of the shipped units, whole torques, every second dwell."""
     whole = campaign(units)

@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-from functools import cache
-
 import pytest
 
 import hersey
 from hersey.errors import InsufficientDataError
-from hersey.life.following import LifeTest, follow
+from hersey.life.following import follow
 from hersey.report.life_page import render_life
 from tests.life import shipped
 
 
-@cache
-def answer() -> LifeTest:
-    return follow(shipped.opened(2), shipped.machine())
+def answer() -> hersey.LifeTest:
+    return shipped.followed(2)
 
 
 def test_the_answer_holds_all_parts() -> None:

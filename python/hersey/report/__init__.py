@@ -1,7 +1,8 @@
-"""The page: one self-contained HTML file.
+"""Pages: each one self-contained HTML file.
 
-======  =====================================
-page    document and charts put into the page
-static  its HTML, CSS and script
-======  =====================================
+=========  ========================================
+page       document and charts of a log in the page
+life_page  those of a life test
+static     HTML, CSS and scripts
+=========  ========================================
 """
