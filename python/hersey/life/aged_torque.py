@@ -111,8 +111,16 @@ class Parts:
         return self.rest + self.film + self.contact
 
 
-def parts(scales: Scales, speed: FloatArray, place: FloatArray, own: FloatArray, shared: FloatArray) -> Parts:
-    """Return the torque of runs and its derivatives.
+def parts(
+    scales: Scales,
+    speed: FloatArray,
+    place: FloatArray,
+    own: FloatArray,
+    shared: FloatArray,
+    *,
+    slopes: bool = True,
+) -> Parts:
+    """Return the torque of runs, and its derivatives unless no ``slopes`` are wanted.
 
     Parameters
     ----------
@@ -136,14 +144,17 @@ def parts(scales: Scales, speed: FloatArray, place: FloatArray, own: FloatArray,
     film = np.exp(np.minimum(level + thick + (1.0 - exponent) * product, _FAR)) * (1.0 + over) ** (
         1.0 / sharp
     )
-    thinned = film * over / (sharp * (1.0 + over))  # d film / d starvation
     # Contact: fades as the film grows over the roughness.
     steep = np.exp(fading)
     covered = steep * np.exp(np.minimum(exponent * beyond + cover, _FAR))
     contact = np.exp(np.clip(level + touch + steep - covered, -_FAR, _FAR))
+    still = 1.0 + per_speed * speed / scales.speed[1]
+    if not slopes:
+        none = np.empty(0)
+        return Parts(rest * still, film, contact, none, none)
+    thinned = film * over / (sharp * (1.0 + over))  # d film / d starvation
     fall = -contact * covered  # d contact / d cover
     by_product = film * (1.0 - exponent) + thinned * sharp * exponent + fall * exponent
-    still = 1.0 + per_speed * speed / scales.speed[1]
     d_own = np.stack([still + 0.0 * product, film, by_product * viscosity, thinned, contact, fall], axis=-1)
     d_viscosity = (
         (by_product * (1.0 + law))[..., None]

@@ -84,7 +84,7 @@ def _kinds(scales: Scales, shared: FloatArray) -> list[_Kind]:
 
     def drag(own: FloatArray, speed: float, place: float, step: float = 0.0) -> FloatArray:
         """Logarithm of the torque without the rest."""
-        at = parts(scales, np.array([speed * np.exp(step)]), np.array([place]), own, shared)
+        at = parts(scales, np.array([speed * np.exp(step)]), np.array([place]), own, shared, slopes=False)
         return np.asarray(np.log(np.maximum(at.film + at.contact, 1e-12) * scales.torque)[..., 0])
 
     def exponent(own: FloatArray, speed: float, place: float) -> FloatArray:
@@ -98,7 +98,7 @@ def _kinds(scales: Scales, shared: FloatArray) -> list[_Kind]:
     def least(own: FloatArray) -> FloatArray:
         """Logarithm of the speed of least torque of film and contact; NaN unless it lies near the data."""
         speeds = np.exp(np.arange(np.log(slow / 3.0), np.log(fast * 3.0), _FINE))
-        at = parts(scales, speeds, np.full(speeds.shape, -0.5 * scales.thermal), own, shared)
+        at = parts(scales, speeds, np.full(speeds.shape, -0.5 * scales.thermal), own, shared, slopes=False)
         curve = at.film + at.contact
         i = np.clip(curve.argmin(axis=-1), 1, speeds.size - 2)
         left, centre, right = (np.take_along_axis(curve, (i + k)[..., None], -1)[..., 0] for k in (-1, 0, 1))
@@ -107,7 +107,7 @@ def _kinds(scales: Scales, shared: FloatArray) -> list[_Kind]:
         return np.asarray(np.where(np.abs(off) <= 1.0, np.log(speeds[i]) + off * _FINE, np.nan))
 
     def rest(own: FloatArray) -> FloatArray:
-        at = parts(scales, np.array([middle]), np.zeros(1), own, shared)
+        at = parts(scales, np.array([middle]), np.zeros(1), own, shared, slopes=False)
         return np.asarray(at.rest[..., 0] * scales.torque)
 
     hot, cold = (f", {celsius(1.0 / each):.0f} degC" * scales.thermal for each in scales.inverse)

@@ -220,12 +220,12 @@ def _named(
 ) -> tuple[Change, ...]:
     """The ageings of a set with what they do to torque; those that do next to nothing are left out."""
     speed, place = states(scales)
-    before = parts(scales, speed, place, new, shared).torque
+    before = parts(scales, speed, place, new, shared, slopes=False).torque
     found = []
     for name in dict.fromkeys(each for each, _ in chosen):
         at = [i for i, (each, _) in enumerate(chosen) if each == name]
         step = sum(amount[i] * chosen[i][1] for i in at)
-        effect = parts(scales, speed, place, new + step, shared).torque - before
+        effect = parts(scales, speed, place, new + step, shared, slopes=False).torque - before
         state = {THICKER: -1, STARVED: -1, OTHER: speed.size // 2}.get(
             name, int(np.argmax(np.abs(effect / before)))
         )
