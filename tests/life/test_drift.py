@@ -76,6 +76,22 @@ def test_derivatives_are_those_of_the_law() -> None:
         assert (above - below) / 2e-6 == pytest.approx(exact.shared[..., j], abs=1e-8)
 
 
+def test_without_stated_errors_their_scatter_tells_them() -> None:
+    runs = table(stand("roughness", 2, 3)).with_columns(pl.lit(None, pl.Float64).alias("torque error (N m)"))
+    drift = fit_drift(runs)
+    assert said(drift.reading) == "contact"
+    assert drift.scatter == pytest.approx(0.01, rel=0.1)
+
+
+def test_without_temperatures_it_says_what_cannot_be_told() -> None:
+    runs = table(stand("roughness", 2, 3))
+    hot = runs.filter(pl.col("temperature (K)") > 450.0)
+    drift = fit_drift(hot.with_columns(pl.lit(None, pl.Float64).alias("temperature (K)")))
+    assert "Temperatures tell nothing here" in drift.summary()
+    assert "temperature law" not in [each.name for each in drift.quantities]
+    assert drift["speed of least torque"].change.low > 0.0
+
+
 def test_what_cannot_be_fitted_says_why() -> None:
     runs = table(stand("nothing", 2, 1))
     with pytest.raises(InsufficientDataError, match="two ages"):
@@ -87,5 +103,7 @@ def test_what_cannot_be_fitted_says_why() -> None:
         fit_drift(runs.with_columns(missing.alias("temperature (K)")))
     with pytest.raises(ParameterError, match=r"speed of dwell 1 .* is 0"):
         fit_drift(runs.with_columns(pl.lit(0.0).alias("speed (rad/s)")))
+    with pytest.raises(ParameterError, match=r"torque \(N m\) of dwell 1 \(run 1\) is no number"):
+        fit_drift(runs.with_columns(pl.lit(np.inf).alias("torque (N m)")))
     with pytest.raises(InsufficientDataError, match="no dwell"):
         fit_drift(runs.clear())

@@ -238,10 +238,12 @@ def _dwells_of(table: pl.DataFrame, age_name: str) -> tuple[Dwells, tuple[str, .
     table = table.sort("unit", age_name, "run_id", maintain_order=True)
     numbers = {name: table[name].cast(float).fill_null(np.nan).to_numpy() for name in (age_name, *needed[2:])}
     speed, torque, error, temperature = (numbers[name] for name in needed[2:])
+    # Where no error is stated the scatter of the dwells tells it; a temperature may be unknown in all.
+    may_lack = ("torque error (N m)", "temperature (K)")
     for name, column in numbers.items():
-        fine = np.isfinite(column) | (np.isnan(column) & (name == "temperature (K)"))
-        for i in np.flatnonzero(~fine):
+        for i in np.flatnonzero(~np.isfinite(column) & ~(np.isnan(column) & (name in may_lack))):
             raise ParameterError(f"{name} of dwell {i + 1} (run {table['run_id'][int(i)]}) is no number")
+    error = np.nan_to_num(error)
     torque, speed = torque * np.sign(speed), np.abs(speed)
     for i in np.flatnonzero(speed == 0.0):
         raise ParameterError(f"speed of dwell {i + 1} (run {table['run_id'][int(i)]}) is 0: leave it out")
