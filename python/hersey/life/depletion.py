@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 #: Film over flooded below which it is starved: the layer is then thinner than the flooded film.
 STARVED = 2.0 ** (-1.0 / USUAL_SHARPNESS)
 #: Ages looked at, over the greatest of the data; past the last it counts as never.
-_AGES = np.concatenate([[0.0], np.geomspace(3e-3, 10.0, 240)])
+_AGES = np.concatenate([[0.0], np.geomspace(3e-3, 10.0, 110)])
 #: Ages of the curves, over the greatest of the data.
 _CURVES = np.linspace(0.0, 2.5, 51)
 #: Standard errors in half of a 90 % interval; those in the 95 % at which uncertainties are stated.
@@ -84,16 +84,18 @@ class OilLeft:
 class FilmLife(Result):
     """The film through life.
 
-    ``points`` are the fastest operating point and the cold corner. Of each run: ``film`` over that of a
-    flooded inlet at the same viscosity and speed, (points, runs); ``layer`` of oil on the inlet side (m),
-    ``viscosity`` over that of the lubricant, both but for ``systematic``, a factor common to all runs; NaN
-    where a run has no dwells. Of each unit: ``curves`` of the film, (points, units, ages), and of the layer,
-    and of what it ``needs`` to be at each point, (units, ages), at ``ages``; ``starves`` at each point.
+    ``points`` are the fastest operating point and the cold corner. Of each run, (points, runs): ``film`` over
+    that of a flooded inlet at the same viscosity and speed, and its ``thickness`` (m); and the ``layer`` of
+    oil on the inlet side (m), and ``viscosity`` over that of the lubricant. Lengths are right but for
+    ``systematic``, a factor common to all runs; NaN where a run has no dwells. Of each unit at ``ages``:
+    ``curves`` of the film over flooded, ``layers``, and what a layer ``needs`` to be; ``starves`` at each
+    point.
     """
 
     runs: Runs
     points: tuple[FilmPoint, ...]
     film: tuple[Told, ...]
+    thickness: tuple[Told, ...]
     layer: Told
     viscosity: Told
     systematic: float
@@ -131,8 +133,8 @@ class FilmLife(Result):
         ]
         for i in _last_runs(self.runs):
             films = ", ".join(
-                f"{_told(each, i, 1.0, 1.0)} at {point.name}"
-                for each, point in zip(self.film, self.points, strict=True)
+                f"{_told(each, i, 1.0, 1.0)} at {point.name} ({1e6 * float(film.value[i]):.3g} um)"
+                for each, film, point in zip(self.film, self.thickness, self.points, strict=True)
             )
             name, age = self.runs.unit[i], self.runs.age[i]
             lines.append(f"  {name} at {age:.6g}: {films}; layer {_told(self.layer, i, 1e6)} um")
@@ -182,6 +184,7 @@ class FilmLife(Result):
             f"age ({self.runs.age_unit or '1'})": self.runs.age,
         }
         of = [(f"film over flooded, {p.name} (1)", f) for p, f in zip(self.points, self.film, strict=True)]
+        of += [(f"film, {p.name} (m)", f) for p, f in zip(self.points, self.thickness, strict=True)]
         for name, told in (*of, ("layer (m)", self.layer), ("viscosity over new oil (1)", self.viscosity)):
             word, _, unit = name.rpartition(" ")
             columns |= {name: told.value, f"{word} low {unit}": told.low, f"{word} high {unit}": told.high}
@@ -251,6 +254,9 @@ def film_life(
         runs=runs,
         points=read.points,
         film=tuple(read.film(point) for point in read.flooded),
+        thickness=tuple(
+            read.spread(*(np.exp(each) for each in read.layers.film(point))) for point in read.flooded
+        ),
         layer=read.spread(*(np.exp(each) for each in read.layers.thickness())),
         viscosity=read.viscosity(),
         systematic=_systematic(machine, read),

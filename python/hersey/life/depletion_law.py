@@ -37,7 +37,7 @@ _SPREAD = np.array([0.5, 0.7, 0.7, 0.2, 0.5])
 _SCATTER = 0.02
 #: Walkers, steps of which the first are dropped, and draws kept; for few units, and for so many that they
 #: tell the spread over units by their number.
-_FEW_UNITS, _MANY_UNITS = (64, 500, 200, 2000), (16, 600, 250, 400)
+_FEW_UNITS, _MANY_UNITS = (64, 500, 200, 2000), (16, 320, 120, 240)
 _MANY = 60
 #: Steps from one cull of walkers to the next, while they still search.
 _CULL = 8
@@ -113,22 +113,26 @@ class Rates:
 
 def log_layer(own: FloatArray, age: FloatArray, rates: Rates) -> FloatArray:
     """Return ln of the layer over h, of what units have (..., 5), at ages over T."""
-    side_flow, evaporation = rates.of(own)
+    return _thinned(np.exp(-2.0 * own[..., LAYER_NEW]), *rates.of(own), age)
+
+
+def _thinned(new: FloatArray, side_flow: FloatArray, evaporation: FloatArray, age: FloatArray) -> FloatArray:
+    """Ln of the layer, from that of the new unit to the power -2 and the rates."""
     # Beyond exp(100) of it a layer is gone, whatever the number.
     lost = np.minimum(2.0 * evaporation * age, 100.0)
-    mean = np.where(lost > 1e-9, np.expm1(lost) / np.where(lost > 1e-9, lost, 1.0), 1.0)
-    with np.errstate(divide="ignore"):
-        flowed = np.log(side_flow * age * mean)
-    return np.asarray(-0.5 * np.logaddexp(lost - 2.0 * own[..., LAYER_NEW], flowed))
+    grown = np.expm1(lost)
+    mean = np.where(lost > 1e-9, grown / np.where(lost > 1e-9, lost, 1.0), 1.0)
+    return np.asarray(-0.5 * np.log(new * (1.0 + grown) + side_flow * age * mean))
 
 
 @dataclass(frozen=True)
 class _Told:
-    """What runs tell on an even grid of places: (runs, grid); runs of a unit stand together."""
+    """What runs tell on an even grid of places; runs of a unit stand together.
 
-    loss: FloatArray
-    viscosity: FloatArray
-    weight: FloatArray
+    ``table`` holds the root of the deviance, ln of the factor on viscosity and its weight, (runs, grid, 3).
+    """
+
+    table: FloatArray
     unit: IntArray
     age: FloatArray
     reference: Flooded
@@ -141,21 +145,28 @@ class _Told:
         """First run of each unit."""
         return np.flatnonzero(np.diff(self.unit, prepend=-1))
 
+    @cached_property
+    def _flat(self) -> FloatArray:
+        return self.table.reshape(-1, 3)
+
+    @cached_property
+    def _rows(self) -> IntArray:
+        return np.arange(self.age.size) * _GRID
+
     def log_likelihood(self, own: FloatArray) -> FloatArray:
         """Return that of units, (walkers, units), at what they have, (walkers, units, 5)."""
-        each = own[:, self.unit]
-        thick = each[..., VISCOSITY_NEW] + each[..., THICKENING] * self.age
+        side_flow, evaporation = (rate[:, self.unit] for rate in self.rates.of(own))
+        new = np.exp(-2.0 * own[..., LAYER_NEW])[:, self.unit]
+        layer = _thinned(new, side_flow, evaporation, self.age)
+        thick = own[:, self.unit, VISCOSITY_NEW] + own[:, self.unit, THICKENING] * self.age
         at = np.clip(thick, -3.0, 5.0) + self.warmth * self.reference.steep.item()
-        film = cubic(self.reference.film.reshape(4), at)[0]
-        place = self.scale + log_layer(each, self.age, self.rates) - film
+        place = self.scale + layer - cubic(self.reference.film.reshape(4), at)[0]
         step = np.clip((place - DRY) * ((_GRID - 1) / (FLOODED - DRY)), 0.0, _GRID - 1.000001)
         index = step.astype(np.intp)
-        share = step - index
-        runs = np.arange(self.age.size)
-        loss, viscosity, weight = (
-            table[runs, index] * (1.0 - share) + table[runs, index + 1] * share
-            for table in (self.loss, self.viscosity, self.weight)
-        )
+        share = (step - index)[..., None]
+        rows = index + self._rows
+        told = self._flat[rows] * (1.0 - share) + self._flat[rows + 1] * share
+        loss, viscosity, weight = told[..., 0], told[..., 1], told[..., 2]
         # A layer beyond the table is thinner than any torque of these runs bears.
         beyond = np.minimum(place - DRY, 0.0)
         log = -0.5 * (loss**2 + (thick - viscosity) ** 2 * weight) + 100.0 * beyond
@@ -164,7 +175,7 @@ class _Told:
 
 def _told(layers: Layers, unit: IntArray, age: FloatArray, warmth: float, rates: Rates) -> _Told:
     grid = np.linspace(DRY, FLOODED, _GRID)
-    loss, viscosity, weight = (np.empty((len(age), _GRID)) for _ in range(3))
+    table = np.empty((len(age), _GRID, 3))
     low, high = layers.interval(level=0.68)[1:]
     width = np.clip(np.where(np.isfinite(high - low), 0.5 * (high - low), 0.5), 1e-3, None)
     error = np.hypot(layers.viscosity_error, _SCATTER)
@@ -173,11 +184,11 @@ def _told(layers: Layers, unit: IntArray, age: FloatArray, warmth: float, rates:
         root = np.maximum.accumulate(root)
         # Beyond the places that were looked at the root goes on as a straight line.
         edge = np.interp(grid, place, root) + np.minimum(grid - place[0], 0.0) / width[i]
-        loss[i] = edge * (width[i] / np.hypot(width[i], _SCATTER))
-        viscosity[i] = np.interp(grid, place, layers.viscosity[i])
-        weight[i] = np.interp(grid, place, error[i]) ** -2
+        table[i, :, 0] = edge * (width[i] / np.hypot(width[i], _SCATTER))
+        table[i, :, 1] = np.interp(grid, place, layers.viscosity[i])
+        table[i, :, 2] = np.interp(grid, place, error[i]) ** -2
     reference = layers.reference
-    return _Told(loss, viscosity, weight, unit, age, reference, warmth, _scale(reference), rates)
+    return _Told(table, unit, age, reference, warmth, _scale(reference), rates)
 
 
 def _scale(reference: Flooded) -> float:

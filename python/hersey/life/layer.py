@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
 
 import numpy as np
 from scipy import stats
@@ -29,10 +30,12 @@ from hersey.life.starved_drag import (
     VISCOSITY,
     WARMTH,
     Flooded,
+    FloodedTable,
     SharedLoad,
     StarvedDrag,
     cubic,
     film_of,
+    film_share,
     flooded,
 )
 from hersey.machine.machine import Machine
@@ -40,8 +43,8 @@ from hersey.machine.machine import Machine
 #: ln of the layer over the flooded film at the reference from which on nothing starves, and the least.
 FLOODED, DRY = 3.0, -4.0
 #: Layers from which the search begins, and its steps.
-_STARTS = (1.0, 0.3, -0.2, -0.7, -1.2, -1.8, -2.6)
-_STEPS = 15
+_STARTS = (1.0, 0.2, -0.5, -1.1, -1.8, -2.6)
+_STEPS = 12
 #: Where the likelihood of a run is looked at, in its standard errors from the most likely layer; the last
 #: place is that of a flooded contact.
 _PLACES = np.array([-6.0, -4.0, -3.0, -2.0, -1.5, -1.0, -0.5, 0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0])
@@ -61,14 +64,14 @@ _COMMON = slice(WARMTH, LAYER)
 _SHARP, _ROLLED = 0.35, 0.3
 _FROM_RUN_TO_RUN = np.array([0.03, 0.1, 0.1])
 _TELLING = 120
-#: Ends of the three: sharpness from 2 to 5 was fitted to rolling contacts.
+#: Ends of the three; films of rolling contacts had a sharpness of 2 to 5.
 _COMMON_ENDS = np.array(
-    [[-0.5, np.log(2.0 / USUAL_SHARPNESS), -0.6], [0.5, np.log(5.0 / USUAL_SHARPNESS), 0.6]]
+    [[-0.5, np.log(1.5 / USUAL_SHARPNESS), -0.6], [0.5, np.log(6.5 / USUAL_SHARPNESS), 0.6]]
 )
 #: Share by which viscosity may be off (95 %), where the lubricant does not state it.
 _UNSTATED = 0.2
-#: Standard errors in the 95 % that an uncertainty is stated at.
-_DEVIATIONS = 1.96
+#: Standard errors in the 95 % that an uncertainty is stated at, and in 90 %.
+_DEVIATIONS, _TO_90 = 1.96, 1.645
 #: Film over roughness below which asperities that the machine does not describe may touch.
 _APART = 4.0
 
@@ -118,6 +121,17 @@ class Layers:
             extra = np.abs(slope * (self.reference.steep - point.steep)[0]) * self.warmth_error
         return self._ends(shift, extra, level)
 
+    def film(self, point: Flooded, level: float = 0.9) -> tuple[FloatArray, ...]:
+        """Return the most likely ln of the film (m) at a point, and its interval."""
+        full, error = self.film_at(point)
+        layer = self.place + self.film_at(self.reference)[0] - full
+        sharpness = USUAL_SHARPNESS * float(np.exp(self.common[1]))
+        film = full + np.log(film_share(layer, sharpness))
+        best, low, high = self._ends(film - self.place, error, level)
+        # However thick the layer, the film is the flooded one.
+        most = film[:, -1] + _TO_90 * error[:, -1]
+        return best, low, np.where(np.isfinite(high), high, most)
+
     def thickness(self, level: float = 0.9) -> tuple[FloatArray, ...]:
         """Return the most likely ln of the layer (m), and its interval; infinite as `interval`."""
         film, error = self.film_at(self.reference)
@@ -166,10 +180,12 @@ def layers(dwells: FilledDwells, machine: Machine, *, speed: float, kelvin: floa
     uncertainty = _UNSTATED if lubricant.uncertainty is None else lubricant.uncertainty
     beforehand = _Common(np.zeros(3), np.diag([_warmth(uncertainty), _SHARP, _ROLLED]) ** 2)
 
+    table = FloodedTable(contact, lubricant, dwells.speed[dwells.given], dwells.kelvin[dwells.given])
+
     def searches(rows: Iterable[slice], common: _Common) -> Iterator[_Search]:
         for chosen in rows:
             some = dwells.rows(chosen)
-            film = flooded(contact, lubricant, some.speed, some.kelvin)
+            film = table.at(some.speed, some.kelvin)
             if shared is None and contact.roughness is not None:
                 some = replace(some, given=_on_film(some.given, film, contact.roughness))
             law = StarvedDrag(some.speed, some.kelvin - middle, film, reference, contact.roughness, shared)
@@ -209,7 +225,7 @@ def _told(searches: Iterable[_Search], about: FloatArray, beforehand: _Common) -
     known = np.linalg.inv(beforehand.covariance)
     total, moment = known.copy(), known @ beforehand.mean
     for search in searches:
-        free, cost, curvature = search.searched()
+        free, cost, curvature = search.searched(2 * _STEPS)
         stretch = np.maximum(cost / search.freedom, 1.0)
         marginal = np.linalg.inv(np.linalg.inv(curvature)[:, _COMMON, _COMMON])
         prior = search.prior[:, _COMMON, _COMMON]
@@ -296,7 +312,7 @@ class _Search:
         # What is common to all runs costs none of one.
         return np.asarray(np.maximum(self.dwells.given.sum(axis=1) - FREE + 3.0, 1.0))
 
-    def searched(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def searched(self, steps: int = _STEPS) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return what is most likely from any start, its squares and their curvature."""
         free = self.start(0.0)
         cost = np.full(len(free), np.inf)
@@ -304,9 +320,9 @@ class _Search:
             trial, found, _ = self.settled(self.start(layer), steps=2, layer=False)
             free = np.where((found < cost)[:, None], trial, free)
             cost = np.minimum(found, cost)
-        return self.settled(free, steps=_STEPS, layer=True)
+        return self.settled(free, steps=steps, layer=True)
 
-    @property
+    @cached_property
     def _weight(self) -> FloatArray:
         dwells = self.dwells
         greatest = np.where(dwells.given, dwells.torque, 0.0).max(axis=1, keepdims=True)
@@ -324,13 +340,12 @@ class _Search:
         torque, slopes = self.drag.torque(free)
         weight = self._weight
         left = weight * (self.dwells.torque - torque)
-        slopes *= weight[..., None]
+        slopes *= weight[:, None]
         away = self.mean - free
         pulled = np.matmul(self.prior, away[..., None])[..., 0]
         square = (left**2).sum(axis=1) + (away * pulled).sum(axis=1)
-        across = slopes.transpose(0, 2, 1)
-        gradient = np.matmul(across, left[..., None])[..., 0] + pulled
-        return square, gradient, np.matmul(across, slopes) + self.prior
+        gradient = np.matmul(slopes, left[..., None])[..., 0] + pulled
+        return square, gradient, np.matmul(slopes, slopes.transpose(0, 2, 1)) + self.prior
 
     def settled(
         self, free: FloatArray, *, steps: int, layer: bool

@@ -26,8 +26,12 @@ USUAL_SHARPNESS = 3.0
 #: ln of the factor on viscosity at which the flooded film is computed; a cubic goes through them.
 _NODES = np.array([-1.0, 0.2, 1.4, 2.6])
 _TO_POWERS = np.linalg.inv(np.vander(_NODES, increasing=True))
+#: Speeds, and temperatures, of the grid on which the film of many dwells is computed.
+_ALONG = 24
 #: ln of film over roughness at which the share of the asperities is tabled.
 _TABLE = np.linspace(np.log(0.02), np.log(60.0), 600)
+#: Least layer, as sharpness times its ln over the flooded film.
+_THINNEST = -60.0
 #: What is free in a run, in this order, with the index of each.
 VISCOSITY, CONSTANT, PER_SPEED, PER_KELVIN, ROUGHNESS, BOUNDARY, WARMTH, SHARPNESS, ROLLING, LAYER = range(10)
 FREE = LAYER + 1
@@ -70,6 +74,28 @@ def flooded(contact: Contact, lubricant: Lubricant, speed: FloatArray, kelvin: F
     return Flooded(of_torque, of_rolling, of_film, steep)
 
 
+class FloodedTable:
+    """The flooded film over the speeds and temperatures of many dwells, by splines through a grid of them."""
+
+    def __init__(self, contact: Contact, lubricant: Lubricant, speed: FloatArray, kelvin: FloatArray) -> None:
+        """Compute the film on a grid that spans speeds (rad/s) and temperatures (K)."""
+        ends = np.log(speed.min()) - 0.01, np.log(speed.max()) + 0.01
+        self._speed = np.linspace(*ends, _ALONG)
+        self._kelvin = np.linspace(kelvin.min() - 0.1, kelvin.max() + 0.1, _ALONG)
+        at = flooded(contact, lubricant, *np.meshgrid(np.exp(self._speed), self._kelvin, indexing="ij"))
+        self._tables = np.concatenate([at.shear, at.rolled, at.film, at.steep[None]])
+
+    def at(self, speed: FloatArray, kelvin: FloatArray) -> Flooded:
+        """Return the film at dwells inside."""
+        from scipy.interpolate import RectBivariateSpline
+
+        where = np.log(speed), kelvin
+        each = np.array(
+            [RectBivariateSpline(self._speed, self._kelvin, table).ev(*where) for table in self._tables]
+        )
+        return Flooded(each[:4], each[4:8], each[8:12], each[12])
+
+
 def cubic(powers: FloatArray, at: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return a cubic and its slope."""
     value = powers[0] + at * (powers[1] + at * (powers[2] + at * powers[3]))
@@ -86,8 +112,7 @@ def film_share(layer: FloatArray, sharpness: float | FloatArray = USUAL_SHARPNES
 class SharedLoad:
     """What asperities do to torque, against ln of the film alone over the roughness."""
 
-    boundary: FloatArray  #: their torque, N m
-    shear: FloatArray  #: shear of the film over that of the film alone
+    table: FloatArray  #: their torque (N m), and shear of the film over that of the film alone
 
     @classmethod
     def of(cls, mixed: MixedContact, kelvin: float) -> SharedLoad:
@@ -95,7 +120,16 @@ class SharedLoad:
         product = mixed.reference * np.exp(_TABLE / mixed.film_exponent)
         state = pointwise(_core.mixed_contact, product, *mixed.numbers(np.asarray(kelvin)))
         alone = mixed.shear * np.exp(_TABLE * (1.0 / mixed.film_exponent - 1.0))
-        return cls(np.asarray(state.boundary) * mixed.lever, np.asarray(state.shear) / alone)
+        return cls(np.array([np.asarray(state.boundary) * mixed.lever, np.asarray(state.shear) / alone]))
+
+    def at(self, ratio: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return both and their slopes, (2, ...), linear between the points and level beyond."""
+        step = float(_TABLE[1] - _TABLE[0])
+        place = np.clip((ratio - _TABLE[0]) / step, 0.0, _TABLE.size - 1.001)
+        index = place.astype(np.intp)
+        low = self.table[:, index]
+        rise = self.table[:, index + 1] - low
+        return low + (place - index) * rise, rise / step
 
 
 @dataclass(frozen=True)
@@ -110,7 +144,7 @@ class StarvedDrag:
     shared: SharedLoad | None
 
     def torque(self, free: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return torque (runs, dwells), N m, and its slopes (runs, dwells, free) at what is free (runs, 10).
+        """Return torque (runs, dwells), N m, and its slopes (runs, free, dwells) at what is free (runs, 10).
 
         Free are ln of the factor on viscosity at the middle temperature; the rest of the drive (N m, N m
         s/rad, N m/K); ln of the factors on roughness and on boundary friction; the change of ln viscosity
@@ -124,48 +158,40 @@ class StarvedDrag:
         least, by_least = cubic(self.reference.film, there)
         layer = column[LAYER] + least - film
         sharpness = USUAL_SHARPNESS * np.exp(column[SHARPNESS])
-        share = film_share(layer, sharpness)
-        by_layer = 1.0 - share**sharpness
+        odds = np.exp(-np.maximum(sharpness * layer, _THINNEST))
+        log_share = -np.log1p(odds) / sharpness
+        by_layer = odds / (1.0 + odds)
+        share = np.exp(log_share)
         shear, by_shear = cubic(self.flooded.shear, at)
         rolled, by_rolled = cubic(self.flooded.rolled, at)
-        sheared = np.exp(shear) / share
-        thinned = np.exp(shear + column[ROLLING]) * share**3
+        flowing = np.exp(shear)
+        sheared = flowing / share
+        thinned = flowing * np.exp(column[ROLLING]) * share * share * share
         rolling = thinned * rolled
-        touching, by_touching, by_shrunk = (np.zeros_like(share) for _ in range(3))
+        touching, of_ratio = np.zeros_like(share), np.zeros_like(share)
         if self.shared is not None and self.roughness is not None:
-            ratio = film + np.log(share) - np.log(self.roughness) - column[ROUGHNESS]
+            ratio = film + log_share - (np.log(self.roughness) + column[ROUGHNESS])
+            values, steps = self.shared.at(ratio)
             harder = np.exp(column[BOUNDARY])
-            touching, by_touching = (harder * each for each in _tabled(self.shared.boundary, ratio))
-            shrunk, by_shrunk = _tabled(self.shared.shear, ratio)
-            by_shrunk = sheared * by_shrunk
-            sheared = sheared * shrunk
+            touching = harder * values[0]
+            of_ratio = harder * steps[0] + sheared * steps[1]
+            sheared = sheared * values[1]
         rest = column[CONSTANT] + column[PER_SPEED] * self.speed + column[PER_KELVIN] * self.warm
         # By ln film over roughness, ln share of the film, and ln viscosity with the layer held.
-        of_ratio = by_touching + by_shrunk
         of_share = 3.0 * rolling - sheared + of_ratio
         of_layer = of_share * by_layer
         straight = (sheared + rolling) * by_shear + thinned * by_rolled + of_ratio * by_film
-        slopes = np.empty((*share.shape, FREE))
-        slopes[..., VISCOSITY] = straight + of_layer * (by_least - by_film)
-        slopes[..., CONSTANT], slopes[..., PER_SPEED], slopes[..., PER_KELVIN] = 1.0, self.speed, self.warm
-        slopes[..., ROUGHNESS], slopes[..., BOUNDARY] = -of_ratio, touching
-        slopes[..., WARMTH] = straight * self.flooded.steep + of_layer * (
+        slopes = np.empty((share.shape[0], FREE, share.shape[1]))
+        slopes[:, VISCOSITY] = straight + of_layer * (by_least - by_film)
+        slopes[:, CONSTANT], slopes[:, PER_SPEED], slopes[:, PER_KELVIN] = 1.0, self.speed, self.warm
+        slopes[:, ROUGHNESS], slopes[:, BOUNDARY] = -of_ratio, touching
+        slopes[:, WARMTH] = straight * self.flooded.steep + of_layer * (
             by_least * self.reference.steep - by_film * self.flooded.steep
         )
-        slopes[..., SHARPNESS] = of_share * (layer * by_layer - np.log(share))
-        slopes[..., ROLLING] = rolling
-        slopes[..., LAYER] = of_layer
+        slopes[:, SHARPNESS] = of_share * (layer * by_layer - log_share)
+        slopes[:, ROLLING] = rolling
+        slopes[:, LAYER] = of_layer
         return sheared + rolling + touching + rest, slopes
-
-
-def _tabled(table: FloatArray, at: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """A tabled function and its slope, linear between the points and level beyond."""
-    step = float(_TABLE[1] - _TABLE[0])
-    place = np.clip((at - _TABLE[0]) / step, 0.0, _TABLE.size - 1.001)
-    index = place.astype(np.intp)
-    low, high = table[index], table[index + 1]
-    slope = (high - low) / step
-    return low + (place - index) * (high - low), slope
 
 
 def film_of(machine: Machine) -> tuple[Contact, Lubricant]:

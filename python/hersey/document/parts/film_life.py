@@ -48,6 +48,7 @@ class FilmLifePart(Part):
     runs: RunsPart
     points: list[FilmPointPart] = Field(description="fastest operating point, cold corner")
     film: list[ToldPart] = Field(description="over that of a flooded inlet, at each point, shape (runs,)")
+    thickness: list[ToldPart] = Field(description="of the film at each point, m, shape (runs,)")
     layer: ToldPart = Field(description="of oil on the inlet side, m, shape (runs,)")
     viscosity: ToldPart = Field(description="over that of the lubricant, shape (runs,)")
     systematic: float = Field(description="factor by which all layers may be off together")
