@@ -24,32 +24,38 @@ def endings_chart(endings: Endings) -> Chart:
     shown = sorted(endings.units, key=lambda each: each.age.age.value)[:_SHOWN]
     names = {each.unit for each in shown}
     order = [each.unit for each in endings.units if each.unit in names]
-    medians = [age.age.value for mode in endings.modes for age in mode.ages.units if age.unit in names]
-    end = axis_end(greatest, medians)
+    medians = [each.age.age.value for each in shown]
+    end = axis_end(greatest, [*medians, endings.b50.age.value])
     scale = alt.Scale(domain=[0.0, end], nice=False)
     return alt.vconcat(
         _units(endings, order, end, scale),
         _share(endings, scale),
-        title=alt.Title("Ways to fail against age", subtitle=_heading(endings)),
+        title=alt.Title("Ways to fail against age", subtitle=_heading(endings, end)),
         spacing=16,
     )
 
 
-def _heading(endings: Endings) -> list[str]:
+def _heading(endings: Endings, end: float) -> list[str]:
     words = [
         endings.headline(),
         "marks: medians with 90 % intervals, filled: most probably the first; upright ticks: age last seen",
     ]
+    far = [mode.name for mode in endings.modes if all(each.age.low >= end for each in mode.ages.units)]
+    if far:
+        words.append(f"beyond the axis in all units: {'; '.join(far)}")
     if len(endings.units) > _SHOWN:
         words.append(f"{_SHOWN} of {len(endings.units)} units are shown, those that end first")
     return words
 
 
 def _units(endings: Endings, order: list[str], end: float, scale: alt.Scale) -> Chart:
-    named = [mode.name + (" (early sign)" if mode.sign else "") for mode in endings.modes]
+    seen = [
+        mode for mode in endings.modes if any(a.unit in order and a.age.low < end for a in mode.ages.units)
+    ]
+    named = [mode.name + (" (early sign)" if mode.sign else "") for mode in seen]
     likely = {each.unit: max(each.first, key=lambda name: each.first[name]) for each in endings.units}
     rows: list[Row] = []
-    for name, mode in zip(named, endings.modes, strict=True):
+    for name, mode in zip(named, seen, strict=True):
         for told in mode.ages.units:
             if told.unit in order and told.age.low < end:
                 inside = told.age.value <= end
@@ -86,11 +92,11 @@ def _units(endings: Endings, order: list[str], end: float, scale: alt.Scale) -> 
         base.mark_rule(strokeWidth=2, clip=True).encode(
             x=age_axis("low", unit, scale), x2="high:Q", color=colour
         ),
-        base.mark_point(fill="white", opacity=1, size=52, strokeWidth=1.6, clip=True).encode(
+        base.mark_point(fill="white", opacity=1, size=52, strokeWidth=1.6).encode(
             x=x, color=colour, shape=shape, tooltip=tips
         ),
         base.transform_filter("datum.first != null")
-        .mark_point(filled=True, opacity=1, size=60, clip=True)
+        .mark_point(filled=True, opacity=1, size=60)
         .encode(x=x, color=colour, shape=shape, tooltip=tips),
     ]
     return alt.layer(*layers, width=WIDTH, height=_row(len(named)) * len(order))

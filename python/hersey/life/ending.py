@@ -440,7 +440,8 @@ def _notes(fitted: Sequence[_Fitted], units: Sequence[UnitEnd], of_runs: FloatAr
     """What cannot be told, and what rests on priors."""
     notes = []
     ending = [each for each in fitted if not each.mode.sign]
-    unnamed = [each.mode.name for each in ending if each.mode.growth.law is None]
+    named = {name for each in units for name in each.named}
+    unnamed = [e.mode.name for e in ending if e.mode.growth.law is None and e.mode.name in named]
     if unnamed:
         notes.append(
             f"which law of growth holds is not told for {_listed(unnamed)}: ages later than the last runs "
@@ -471,7 +472,9 @@ def _notes(fitted: Sequence[_Fitted], units: Sequence[UnitEnd], of_runs: FloatAr
     together = _together(ending, of_runs)
     if together:
         notes.append(f"runs scatter together, so draws move together: {', '.join(together)}")
-    notes += [f"{each.mode.name}: {note}" for each in fitted for note in each.mode.notes]
+    notes += [
+        f"{each.mode.name}: {note}" for each in ending for note in each.mode.notes if each.mode.name in named
+    ]
     return tuple(notes)
 
 

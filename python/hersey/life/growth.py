@@ -258,7 +258,8 @@ def fit_growth(
 
     Priors, all weak: ln(r T) of the median unit N(-0.5, 2^2), T being the greatest age (ln s of a saturating
     law); standard deviations between units half-normal of scale 1 (ln of level and rate); scatter of runs
-    half-normal of scale 0.1; ln(tau/T) N(-0.5, 1); c N(0.5, 1). That it grows is as probable beforehand as
+    half-normal of scale 0.1; ln(tau/T) N(0.3, 1); c N(0.5, 1); logit q
+    N(-1, 1.5^2); logit p N(1, 1). That it grows is as probable beforehand as
     that it does not; the laws of growth share that equally.
 
     Parameters
