@@ -225,7 +225,8 @@ def _grid(dwells: RunDwells, machine: Machine) -> tuple[FloatArray, FloatArray]:
         each.temperature for each in machine.points if low - _BESIDE < each.temperature < high + _BESIDE
     ]
     slow, fast = (float(v) * machine.roll_radius for v in (dwells.speed.min(), dwells.speed.max()))
-    return np.linspace(min([low, *points]), max([high, *points]), TEMPERATURES), np.geomspace(slow, fast, SPEEDS)
+    hot = np.linspace(min([low, *points]), max([high, *points]), TEMPERATURES)
+    return hot, np.geomspace(slow, fast, SPEEDS)
 
 
 def _torques(surface: TorqueSurface, hot: FloatArray, speed: FloatArray) -> FloatArray:

@@ -6,7 +6,7 @@ the note names, and its error grows where the dwells do not enclose that state.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -137,12 +137,14 @@ class _Asked:
             () if all(known) else ("all torque counts as the belt's, and the roll carries less: add [rest]",)
         )
         cold = told.belt[:, _COLD], told.belt_error[:, _COLD]
-        from_rest, how = self._breakaway()
+        breakaway, how = self._breakaway()
+        error = told.belt_error[:, _STILL]
+        from_rest = self._torque("grip, from rest", "grip", limit, breakaway, error, _STILL, how, *notes)
+        # Nobody measured the factor of Eq. 29: it warns, and ends no unit.
+        told_by_rule = static_force(self.machine) is None
         return [
             self._torque("grip, cold and fast", "grip", limit, *cold, _COLD, *notes),
-            self._torque(
-                "grip, from rest", "grip", limit, from_rest, told.belt_error[:, _STILL], _STILL, how, *notes
-            ),
+            replace(from_rest, sign=told_by_rule),
         ], []
 
     def _breakaway(self) -> tuple[FloatArray, str]:
