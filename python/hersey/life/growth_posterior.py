@@ -28,7 +28,7 @@ _FINE = np.linspace(-5.0, 5.0, 26)
 _POLISH, _NEAR = 7, 0.2
 #: Draws of each round of the importance sampling for 80 runs; more for fewer runs and fewer for more, within
 #: these factors; the last round again, so often at the most, while they are worth too few.
-_ROUNDS, _USUAL, _LEAST_SHARE, _MOST, _WORTH, _AGAIN = (250, 250, 300, 600), 80, 0.35, 3.0, 100.0, 3
+_ROUNDS, _USUAL, _LEAST_SHARE, _MOST, _WORTH, _AGAIN = (250, 250, 300, 600), 80, 0.25, 3.0, 100.0, 3
 #: Units whose mode is sought before that of all; how much worse a law may fit to be drawn from at all.
 _FIRST, _HOPELESS = 40, 25.0
 #: Its t distributions: degrees of freedom, number in later rounds; widths of the first and of later ones in
