@@ -76,6 +76,13 @@ def test_derivatives_are_those_of_the_law() -> None:
         assert (above - below) / 2e-6 == pytest.approx(exact.shared[..., j], abs=1e-8)
 
 
+def test_many_units_are_read_as_few_are() -> None:
+    runs = table(other("film and rest", 1, units=64, logs=4)).filter(pl.int_range(pl.len()) % 2 == 0)
+    drift = fit_drift(runs)
+    assert drift.fitted.settled
+    assert said(drift.reading) == "film+rest of the drive"
+
+
 def test_without_stated_errors_their_scatter_tells_them() -> None:
     runs = table(stand("roughness", 2, 3)).with_columns(pl.lit(None, pl.Float64).alias("torque error (N m)"))
     drift = fit_drift(runs)

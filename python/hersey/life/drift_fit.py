@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -12,10 +12,17 @@ from hersey.life.units_with_age import Solved, Spread, Told, solve
 
 #: No torque is taken as known better than this, relative.
 _RESOLUTION = 2e-3
+#: More units than these begin where a fit to half as many ends.
+_MANY = 60
+#: First steps, in which the spreads stay.
+_FIRST = 5
 #: Steps at the most, and the change of ln of a spread or of a value (in its deviation) at which they end.
 _STEPS, _SETTLED = 150, 2e-3
 #: Factor on the logarithm of a step of the spreads, which are slow by themselves.
 _HASTE = 1.7
+#: Longest step of a run's values, and how many deviations of the prior a shared value may stray: where one
+#: law cannot hold for all units, steps would lead out of all sense.
+_LONGEST, _FURTHEST = 1.0, 4.0
 _NIL = 1e-6
 #: Prior of the population's start: means and deviations, in the order of `OWN`.
 _START = np.array([0.5, 0.0, 0.0, -1.5, -1.0, 0.0])
@@ -54,48 +61,64 @@ class Fitted:
 
 
 def fit(dwells: Dwells) -> Fitted:
-    """Return the joint fit, by Gauss-Newton steps that also renew the spreads."""
-    scales = _scales(dwells)
+    """Return the joint fit; that of many units begins where that of some of them ends."""
+    scales, units = _scales(dwells), int(dwells.unit[-1]) + 1
+    if units <= _MANY:
+        return _fitted(dwells, scales, None)
+    some = np.linspace(0, units - 1, _MANY // 2).round().astype(int)
+    chosen = np.isin(dwells.unit, some)
+    part = Dwells(*(getattr(dwells, each.name)[chosen] for each in fields(Dwells)))
+    return _fitted(
+        dwells, scales, _fitted(replace(part, unit=np.searchsorted(some, part.unit)), scales, None)
+    )
+
+
+def _fitted(dwells: Dwells, scales: Scales, begun: Fitted | None) -> Fitted:
+    """The joint fit, by Gauss-Newton steps that also renew the spreads."""
     place = scales.places(np.where(dwells.given, dwells.temperature, dwells.temperature[:, :1]))
     target = dwells.torque / scales.torque
     size = np.where(dwells.given, np.abs(target), 1.0)
     error = np.hypot(dwells.error / scales.torque, _RESOLUTION * size)
     can = told(scales)
     prior = _prior(scales, can)
-    shared = expected(scales)[0]
-    population = prior[0][: 2 * len(OWN)].copy()
+    common = prior[0].copy() if begun is None else begun.solved.common.copy()
     usual = Spread(
         np.where(np.tile(can, 2), np.concatenate([_OF_START, _OF_CHANGE]), _NIL) ** 2,
         np.where(can, _OF_RUNS, _NIL) ** 2,
     )
-    spread = Spread(9.0 * usual.units, 9.0 * usual.runs)
-    values = np.broadcast_to(population[: len(OWN)], (dwells.age.size, len(OWN))).copy()
-    scatter = 0.01
-    common = np.concatenate([population, shared])
+    spread = Spread(9.0 * usual.units, 9.0 * usual.runs) if begun is None else begun.spread
+    own = len(OWN)
+    values = common[:own] + dwells.age[:, None] * common[own : 2 * own]
+    shared_at = slice(2 * own, None)
+    bounds = [prior[0][shared_at] + sign * _FURTHEST * prior[1][shared_at] for sign in (-1.0, 1.0)]
+    longest = np.maximum(np.minimum(0.5 * prior[1], _LONGEST), _NIL)
     settled = False
     for step in range(1, _STEPS + 1):
-        now = parts(scales, dwells.speed, place, values, common[2 * len(OWN) :])
+        now = parts(scales, dwells.speed, place, values, common[shared_at])
         residual = np.where(dwells.given, target - now.torque, 0.0)
         scatter = _scatter(residual, error, size, dwells)
         weight = dwells.given / (error**2 + (scatter * size) ** 2)
         slopes = np.concatenate([now.own, now.shared], axis=-1)
-        pseudo = residual + np.einsum("rdj,rj->rd", now.own, values) + now.shared @ common[2 * len(OWN) :]
+        pseudo = residual + np.einsum("rdj,rj->rd", now.own, values) + now.shared @ common[shared_at]
         weighted = slopes * weight[..., None]
         information = Told(
             weighted.swapaxes(1, 2) @ slopes, (weighted.swapaxes(1, 2) @ pseudo[..., None])[..., 0]
         )
         solved = solve(information, dwells.age, dwells.unit, spread, usual, prior)
-        step_size = min(1.0, 0.3 + 0.1 * step)
+        # One length for all: runs follow the shared values with which they were solved.
+        ahead = solved.common - common
+        length = min(1.0, 0.3 + 0.1 * step, float(np.min(longest / np.maximum(np.abs(ahead), longest))))
         moved = np.abs(solved.run - values) / _CHANGE_DEVIATION
-        values = _within(values + step_size * (solved.run - values))
-        common = common + step_size * (solved.common - common)
-        renewed = solved.spread
-        spread = Spread(
-            spread.units * (renewed.units / spread.units) ** _HASTE,
-            spread.runs * (renewed.runs / spread.runs) ** _HASTE,
-        )
-        change = max(float(moved.max()), 0.0)
-        if step > 10 and change < _SETTLED:
+        values = _within(values + length * np.clip(solved.run - values, -_LONGEST, _LONGEST))
+        common = common + length * ahead
+        common[shared_at] = np.clip(common[shared_at], *bounds)
+        if step > _FIRST or begun is not None:  # before that residuals are those of the start
+            renewed = solved.spread
+            spread = Spread(
+                spread.units * (renewed.units / spread.units) ** _HASTE,
+                spread.runs * (renewed.runs / spread.runs) ** _HASTE,
+            )
+        if step > 2 * _FIRST and float(np.quantile(moved.max(axis=1), 0.99)) < _SETTLED:
             settled = True
             break
     return Fitted(solved, scales, spread, scatter, settled, step)
