@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hersey.arrays import FloatArray
+from hersey.arrays import FloatArray, one_thread
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.life.aged_torque import OWN
 from hersey.life.campaign import Campaign
@@ -173,6 +173,7 @@ def _evidence(change: Change) -> str:
     return f"Points to {change.words}: {mean} mN m [{low}, {high}] {where}; {_WOULD[change.name]}."
 
 
+@one_thread()
 def fit_drift(runs: Campaign | pl.DataFrame) -> Drift:
     """Fit all runs of all units together and tell what moved with age.
 

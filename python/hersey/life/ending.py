@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hersey.arrays import FloatArray, IntArray
+from hersey.arrays import FloatArray, IntArray, one_thread
 from hersey.errors import HerseyError, InsufficientDataError
 from hersey.life.growth import Growth, fit_growth
 from hersey.life.indicator import Indicator, Indicators
@@ -158,6 +158,10 @@ class Endings(Result):
     def headline(self) -> str:
         """Return when half of new units have ended, and by what."""
         unit = f" {self.age_unit}" if self.age_unit else ""
+        if len(self.units) < _FEW:
+            first = min(self.units, key=lambda each: each.age.age.value)
+            by = " or ".join(first.named) or "no way told"
+            return f"{first.unit} ends at {first.age.age}{unit} by {by}"
         likely = max(self.shares, key=lambda name: self.shares[name].value)
         return f"half of new units have ended at {self.b50.age}{unit}, most by {likely}"
 
@@ -221,6 +225,7 @@ class _Fitted:
     error: float  #: of a run, typically
 
 
+@one_thread()
 def endings(
     indicators: Indicators, *, seed: int = 0, progress: Callable[[int, int], None] | None = None
 ) -> Endings:
@@ -308,11 +313,16 @@ def _fitted(indicators: Indicators, each: Indicator, seed: int) -> _Fitted:
     row = {name: i for i, name in enumerate(growth.units)}
     last = _last_ages(indicators)
     # A unit of which no run tells this is one more of the population.
-    spare = iter(np.random.default_rng([seed, 3]).permutation(new.shape[1]).tolist() * len(last))
+    random = np.random.default_rng([seed, 3])
+    spare = iter(random.permutation(new.shape[1]).tolist() * len(last))
     ages = np.stack([known[:, row[n]] if n in row else new[:, next(spare)] for n in last], axis=1)
+    if each.own_ages is not None:
+        columns = random.integers(each.own_ages.new.shape[1], size=new.shape[1])
+        ages, new = (_as_many(own, len(known)) for own in (each.own_ages.known, each.own_ages.new))
+        new = new[:, columns]
     notes = [*each.notes, *growth.notes]
     missing = [name for name in last if name not in row]
-    if missing:
+    if missing and each.own_ages is None:
         notes.append(f"no run of {_listed(missing)} tells it: taken as any new unit")
     ordered = np.sort(new, axis=1)
     quantity = f"the sum of {each.name} over age" if each.accumulates else each.name
@@ -331,6 +341,11 @@ def _fitted(indicators: Indicators, each: Indicator, seed: int) -> _Fitted:
     sign = bool(getattr(each, "sign", False))
     mode = Mode(each.name, each.kind, each.si, each.limit, sign, growth, at_limit, tuple(notes))
     return _Fitted(mode, ages, new, residuals, row, float(np.median(each.error[told])))
+
+
+def _as_many(draws: FloatArray, count: int) -> FloatArray:
+    """So many of equally probable draws, evenly."""
+    return draws[np.linspace(0, len(draws) - 1, count).astype(np.intp)]
 
 
 def _units(

@@ -15,17 +15,21 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import special
 
-from hersey.arrays import FloatArray, numbers_of
+from hersey.arrays import FloatArray, numbers_of, one_thread
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.life.growth_laws import LAWS, Law
 from hersey.life.growth_posterior import Points, Posterior, Units, drawn_units, new_units, peaks, posterior
 from hersey.life.limit_ages import (
+    BEYOND,
+    BEYOND_SUM,
     CONFIDENCE,
     AgesAtLimit,
     Interval,
     age_at_limit,
     ages_of,
     ages_of_sum,
+    carried_beyond,
+    heavy_tailed,
     quantiles,
     share_of_units,
 )
@@ -205,7 +209,14 @@ class Growth(Result):
             ends = np.cumsum([0, *(len(units.scatter) for units in drawn)])
             parts = [ages(u, levels[a:b]) for u, a, b in zip(drawn, ends, ends[1:], strict=False)]
             found.append(np.concatenate(parts) * self._scale[0])
-        return found[0], found[1]
+        known, new = found
+        random, last = np.random.default_rng([self.seed, 4]), np.array(self.last_age)
+        common = heavy_tailed(random, (count, 1))
+        share = BEYOND_SUM if accumulates else BEYOND
+        return (
+            carried_beyond(known, last, share, common, heavy_tailed(random, known.shape)),
+            carried_beyond(new, np.array(last.max()), share, common, heavy_tailed(random, new.shape)),
+        )
 
     def drawn_values(self, unit: int, age: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return logarithms of the indicator of a unit at ages, (draws, ages), and the scatter of runs.
@@ -243,6 +254,7 @@ class Growth(Result):
         return np.asarray(left[self._points.place[0], self._points.place[1]])
 
 
+@one_thread()
 def fit_growth(
     unit: Sequence[object],
     age: ArrayLike,

@@ -26,6 +26,18 @@ class Runs:
 
 
 @dataclass(frozen=True, repr=False)
+class OwnAges:
+    """Ages at the limit by a law of the indicator's own, equally probable draws.
+
+    ``known`` are those of `Runs.units`, shape (draws, units), ``new`` of new units, (draws, new units); a row
+    holds all under one draw of what they share.
+    """
+
+    known: FloatArray
+    new: FloatArray
+
+
+@dataclass(frozen=True, repr=False)
 class Indicator:
     """One way to fail.
 
@@ -33,7 +45,8 @@ class Indicator:
     that ``accumulates`` is a rate per age, and the limit is that of its integral from age 0. ``error`` is its
     relative standard error; ``limit_error`` that of the limit and of the sensor, common to all runs. ``kind``
     is the failure in two or three words, ``name`` tells it from others of its kind. A ``sign`` comes early,
-    and a unit that reaches its limit has not ended.
+    and a unit that reaches its limit has not ended. Where ``own_ages`` are told they stand in the place of
+    those of a law of growth.
     """
 
     name: str
@@ -45,6 +58,7 @@ class Indicator:
     limit_error: float = 0.0
     accumulates: bool = False
     sign: bool = False
+    own_ages: OwnAges | None = None
     notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:

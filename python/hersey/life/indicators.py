@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hersey.arrays import FloatArray
+from hersey.arrays import FloatArray, one_thread
 from hersey.errors import InsufficientDataError
 from hersey.life.age import one_of
 from hersey.life.at_states import AtStates, at_states
@@ -34,6 +34,7 @@ _COLD, _SLOW, _STILL, _POINTS = 0, 1, 2, slice(3, None)
 _Found = tuple[list[Indicator], list[str]]
 
 
+@one_thread()
 def indicators_of(campaign: Campaign, machine: Machine) -> Indicators:
     """Return what the runs of a campaign say of each way to fail whose limit the machine states.
 

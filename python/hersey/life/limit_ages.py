@@ -17,6 +17,10 @@ if TYPE_CHECKING:
 
 #: Confidence of every interval of an age: what life tests are planned for.
 CONFIDENCE = 0.9
+#: A law is fitted up to the last run. Growth is a sum of processes, and the time from there to a limit was
+#: off by so much (logarithm) in campaigns of a generator of its own (`benchmarks/life.py`), most of it in
+#: common to the units; more for what accumulates, where a rate is a power of what grows.
+BEYOND, BEYOND_SUM, _OWN = 0.10, 0.20, 0.3
 #: Share of draws from which "never" is worth a word.
 _SAID = 0.05
 #: Integrals over age: places and weights, turns of the search and where it ends, the greatest logarithm.
@@ -56,7 +60,7 @@ class AgeAtLimit:
     @property
     def remark(self) -> str:
         """Whether it has passed already, or may never come, to be put behind the age."""
-        words = f", passed already (last seen at {_number(self.last)})" if self.passed > 0.5 else ""
+        words = f", passed already (last seen at {self.last:.10g})" if self.passed > 0.5 else ""
         return words + (f", never in {self.never:.0%} of the draws" if self.never > _SAID else "")
 
 
@@ -155,6 +159,31 @@ def ages_of_sum(units: Units, level: FloatArray) -> FloatArray:
     return np.exp(at).reshape(need.shape)
 
 
+def heavy_tailed(random: np.random.Generator, shape: tuple[int, ...]) -> FloatArray:
+    """Draws of Student's t of four degrees of freedom, none beyond five."""
+    return np.clip(random.standard_t(4.0, shape), -5.0, 5.0)
+
+
+def carried_beyond(
+    ages: FloatArray, last: FloatArray, share: float, common: FloatArray, own: FloatArray
+) -> FloatArray:
+    """Return ages, those past the last run moved by what no law fitted up to there can know of beyond.
+
+    Parameters
+    ----------
+    ages
+        (draws, units); infinite ones stay.
+    last
+        Ages of the last runs, (units,).
+    share
+        Standard deviation of the logarithm of the time from the last run on.
+    common, own
+        Of a draw, (draws, 1), and of a unit in it, (draws, units), the smaller part.
+    """
+    factor = np.exp(share * (common + _OWN * own))
+    return np.asarray(np.where(ages > last, last + (ages - last) * factor, ages))
+
+
 def quantiles(values: FloatArray) -> FloatArray:
     """Lower end, median and upper end over the draws; infinite numbers are numbers."""
     ends = [0.5 - CONFIDENCE / 2, 0.5, 0.5 + CONFIDENCE / 2]
@@ -162,5 +191,5 @@ def quantiles(values: FloatArray) -> FloatArray:
 
 
 def _number(value: float) -> str:
-    """Four digits, those of pages without a power of ten."""
-    return "never" if math.isinf(value) else f"{float(f'{value:.4g}'):.10g}"
+    """Three digits, those of pages without a power of ten."""
+    return "never" if math.isinf(value) else f"{float(f'{value:.3g}'):.10g}"
