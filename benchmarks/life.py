@@ -276,7 +276,7 @@ def _held(ages: list[Told]) -> list[str]:
     true, low, high = (np.array([getattr(each, name) for each in ages]) for name in ("true", "low", "high"))
     inside = (low <= true) & (true <= high)
     with np.errstate(invalid="ignore"):
-        width = np.median(np.where(np.isfinite(high), (high - low) / true, np.inf))
+        width = np.median(np.where(np.isfinite(high), (high - low) / np.maximum(true, 1e-9), np.inf))
     return [
         str(len(ages)),
         f"{inside.mean():.0%}",
