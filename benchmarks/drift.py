@@ -23,7 +23,7 @@ from functools import partial
 
 import numpy as np
 
-#: What ages in each kind of campaign, by the names of `hersey.life.drift_readings`.
+#: What ages in each kind of campaign, by the names of `hersey.life.drift.readings`.
 AGEINGS = {
     "nothing": (),
     "lubricant": ("lubricant",),

@@ -86,7 +86,7 @@ def campaign(
     only: str | None = None,
 ) -> Outcome:
     """Draw a campaign, fit it, and say what its intervals hold."""
-    from hersey.life.growth import fit_growth
+    from hersey.life.growth.fit import fit_growth
 
     random = np.random.default_rng([seed, 14])
     truth = str(random.choice(TRUTHS))

@@ -224,9 +224,9 @@ class Outcome:
 
 def campaign(seed: int, folder: Path) -> Outcome:
     """Draw a campaign, ask hersey what ends its units, and set it beside the truth."""
-    from hersey.life.depletion import film_life
-    from hersey.life.ending import endings
-    from hersey.life.indicators import indicators_of
+    from hersey.life.ending.endings import endings
+    from hersey.life.film.through_life import film_life
+    from hersey.life.indicators.telling import indicators_of
     from hersey.machine.machine import read_machine
 
     world, random = draw(seed), np.random.default_rng([seed, 77])

@@ -17,8 +17,8 @@ from pathlib import Path
 import numpy as np
 
 from hersey.arrays import BoolArray, FloatArray
-from hersey.life.filled_dwells import FilledDwells
-from hersey.life.layer import layers
+from hersey.life.film.filled_dwells import FilledDwells
+from hersey.life.film.layer import layers
 from hersey.machine.machine import read_machine
 
 MACHINE = Path(__file__).parents[1] / "examples" / "machine.toml"

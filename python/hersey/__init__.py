@@ -54,9 +54,8 @@ if TYPE_CHECKING:
     from hersey.inspection import Inspection, inspect
     from hersey.life.ageing_maps import AgeingMaps
     from hersey.life.campaign import Campaign
-    from hersey.life.depletion import FilmLife, film_life
-    from hersey.life.drift import Drift, fit_drift
-    from hersey.life.ending import Endings, endings
+    from hersey.life.drift.result import Drift, fit_drift
+    from hersey.life.ending.endings import Endings, endings
     from hersey.life.fatigue import (
         RainflowCycles,
         SNCurve,
@@ -66,11 +65,12 @@ if TYPE_CHECKING:
         rainflow_cycles,
         stick_slip_damage_rate,
     )
+    from hersey.life.film.through_life import FilmLife, film_life
     from hersey.life.following import LifeTest, follow
-    from hersey.life.growth import Growth, fit_growth
+    from hersey.life.growth.fit import Growth, fit_growth
+    from hersey.life.growth.limit_ages import AgesAtLimit
     from hersey.life.indicator import Indicator, Indicators, Runs
-    from hersey.life.indicators import indicators_of
-    from hersey.life.limit_ages import AgesAtLimit
+    from hersey.life.indicators.telling import indicators_of
     from hersey.life.population import BLife, Population, weibull
     from hersey.log import TorqueLog, memory_limit, read
     from hersey.log.mapping import read_with_mapping
@@ -155,17 +155,17 @@ _HOMES = {
     "life.fatigue": (
         "RainflowCycles SNCurve damage_rate life_of miner_damage rainflow_cycles stick_slip_damage_rate"
     ),
-    "life.drift": "Drift fit_drift",
-    "life.growth": "Growth fit_growth",
-    "life.limit_ages": "AgesAtLimit",
+    "life.drift.result": "Drift fit_drift",
+    "life.growth.fit": "Growth fit_growth",
+    "life.growth.limit_ages": "AgesAtLimit",
     "life.indicator": "Indicator Indicators Runs",
-    "life.ending": "Endings endings",
-    "life.indicators": "indicators_of",
+    "life.ending.endings": "Endings endings",
+    "life.indicators.telling": "indicators_of",
     "life.following": "LifeTest follow",
     "life.ageing_maps": "AgeingMaps",
     "life.population": "BLife Population weibull",
     "life.campaign": "Campaign",
-    "life.depletion": "FilmLife film_life",
+    "life.film.through_life": "FilmLife film_life",
 }
 _HOME_OF = {name: module for module, names in _HOMES.items() for name in names.split()}
 

@@ -13,7 +13,7 @@ import pytest
 import hersey
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.life.ageing_maps import AgeingMaps, ageing_maps, carried_on
-from hersey.life.limit_ages import AgeAtLimit, Interval
+from hersey.life.growth.limit_ages import AgeAtLimit, Interval
 from hersey.machine.limits import OperatingPoint
 from hersey.testbench import population
 from hersey.testbench.drive import example_drive

@@ -9,12 +9,21 @@ import pytest
 
 from hersey.arrays import FloatArray
 from hersey.errors import InsufficientDataError, ParameterError
-from hersey.life.depletion import STARVED, film_life, starvation_indicator
-from hersey.life.depletion_law import Rates, log_layer
-from hersey.life.filled_dwells import FilledDwells, filled_dwells, runs_of
+from hersey.life.film.depletion_law import Rates, log_layer
+from hersey.life.film.filled_dwells import FilledDwells, filled_dwells, runs_of
+from hersey.life.film.layer import Layers, layers
+from hersey.life.film.starved_drag import (
+    FREE,
+    LAYER,
+    VISCOSITY,
+    SharedLoad,
+    StarvedDrag,
+    cubic,
+    film_of,
+    flooded,
+)
+from hersey.life.film.through_life import STARVED, film_life, starvation_indicator
 from hersey.life.indicator import Indicators, Runs
-from hersey.life.layer import Layers, layers
-from hersey.life.starved_drag import FREE, LAYER, VISCOSITY, SharedLoad, StarvedDrag, cubic, film_of, flooded
 from hersey.lubrication.film import film_thickness
 from hersey.testbench import population
 from hersey.testbench.ageing import Ageing

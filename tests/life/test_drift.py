@@ -10,8 +10,8 @@ import pytest
 from benchmarks.drift import other, said, stand, table
 
 from hersey.errors import InsufficientDataError, ParameterError
-from hersey.life.aged_torque import OWN, Scales, expected, parts
-from hersey.life.drift import Drift, fit_drift
+from hersey.life.drift.aged_torque import OWN, Scales, expected, parts
+from hersey.life.drift.result import Drift, fit_drift
 from hersey.testbench import Ageing, population
 from hersey.testbench.drive import example_drive
 

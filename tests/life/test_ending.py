@@ -11,10 +11,11 @@ import numpy as np
 import pytest
 
 from hersey.errors import InsufficientDataError, ParameterError
-from hersey.life import growth as growth_module
-from hersey.life import growth_posterior, joined, next_run
-from hersey.life.ending import Endings, endings
-from hersey.life.growth import fit_growth
+from hersey.life.ending import joined, next_run
+from hersey.life.ending.endings import Endings, endings
+from hersey.life.growth import fit as growth_module
+from hersey.life.growth import posterior as growth_posterior
+from hersey.life.growth.fit import fit_growth
 from hersey.life.indicator import Indicator, Indicators, Runs
 
 UNITS, AGES = 6, np.linspace(0.0, 600.0, 7)

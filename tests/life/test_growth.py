@@ -13,12 +13,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hersey.errors import InsufficientDataError, ParameterError
-from hersey.life import growth as growth_module
-from hersey.life import growth_posterior
-from hersey.life.growth import Growth, fit_growth
-from hersey.life.growth_laws import LAWS
-from hersey.life.growth_posterior import Points, _likelihood
-from hersey.life.limit_ages import quantiles
+from hersey.life.growth import fit as growth_module
+from hersey.life.growth import posterior as growth_posterior
+from hersey.life.growth.fit import Growth, fit_growth
+from hersey.life.growth.laws import LAWS
+from hersey.life.growth.limit_ages import quantiles
+from hersey.life.growth.posterior import Points, _likelihood
 
 LAW = {law.name: law for law in LAWS}
 ZERO = np.zeros(1)

@@ -7,7 +7,7 @@ import pytest
 from scipy.signal import lfilter
 
 from hersey.errors import InsufficientDataError, ParameterError
-from hersey.life.record_blocks import blocks_of_record
+from hersey.life.growth.record_blocks import blocks_of_record
 
 TIME = np.arange(3600.0)
 

@@ -10,7 +10,7 @@ import pytest
 
 from hersey.arrays import FloatArray
 from hersey.errors import InsufficientDataError, ParameterError
-from hersey.life.torque_surface import Kernel, RunDwells, TorqueSurface, shared_kernel
+from hersey.life.indicators.torque_surface import Kernel, RunDwells, TorqueSurface, shared_kernel
 from hersey.testbench import population
 from hersey.testbench.ageing import AgedTruth
 from hersey.testbench.campaign import STAND

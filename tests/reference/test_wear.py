@@ -13,11 +13,11 @@ import pytest
 
 import hersey
 from hersey.errors import InsufficientDataError
-from hersey.life import growth as growth_module
-from hersey.life import growth_posterior
-from hersey.life.drift import fit_drift
-from hersey.life.growth import fit_growth
-from hersey.life.record_blocks import Blocks, blocks_of_record
+from hersey.life.drift.result import fit_drift
+from hersey.life.growth import fit as growth_module
+from hersey.life.growth import posterior as growth_posterior
+from hersey.life.growth.fit import fit_growth
+from hersey.life.growth.record_blocks import Blocks, blocks_of_record
 from tests.conftest import shared
 
 

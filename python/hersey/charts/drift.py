@@ -6,8 +6,8 @@ import altair as alt
 import numpy as np
 
 from hersey.charts.style import BLUE, INK, WIDTH, Chart, plot, rows_of, tip
-from hersey.life.drift import Drift
-from hersey.life.drift_quantities import Quantity
+from hersey.life.drift.quantities import Quantity
+from hersey.life.drift.result import Drift
 
 #: Units drawn at the most; of more, so many at even places in their order.
 _DRAWN = 60

@@ -8,7 +8,7 @@ import altair as alt
 
 from hersey.charts.growth import age_axis, axis_end
 from hersey.charts.style import BLUE, INK, SHAPES, WIDTH, Chart, Row, plot, ramp, rows_of, tip
-from hersey.life.ending import Endings
+from hersey.life.ending.endings import Endings
 
 #: Units shown; pixels of each way in the row of a unit, and of the share ended.
 _SHOWN, _STEP, _GAP, _SHARES = 24, 9, 14, 200

@@ -9,7 +9,7 @@ import numpy as np
 
 from hersey.arrays import BoolArray
 from hersey.charts.style import BLUE, INK, ORANGE, WIDTH, Chart, level, plot, ramp, rows_of, tip
-from hersey.life.depletion import STARVED, FilmLife, Told
+from hersey.life.film.through_life import STARVED, FilmLife, Told
 
 #: Units drawn by themselves, in rows of so many, and the size of each.
 _SHOWN, _ACROSS = 8, 4

@@ -9,8 +9,8 @@ import altair as alt
 import numpy as np
 
 from hersey.charts.style import BLUE, HEIGHT, INK, ORANGE, WIDTH, Chart, Row, plot, rows_of, tip
-from hersey.life.growth import Growth
-from hersey.life.limit_ages import AgeAtLimit, AgesAtLimit
+from hersey.life.growth.fit import Growth
+from hersey.life.growth.limit_ages import AgeAtLimit, AgesAtLimit
 
 #: Units shown, panels in a row, and pixels of each where there are several.
 _SHOWN, _COLUMNS, _GAP, _HEIGHT = 12, 4, 58, 150

@@ -15,9 +15,9 @@ import numpy as np
 from hersey.arrays import FloatArray, one_thread
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.life.age import Age
-from hersey.life.run_dwells import read_runs_of
-from hersey.life.sticking import belt_drag, edges
-from hersey.life.torque_surface import RunDwells, TorqueSurface, shared_kernel
+from hersey.life.indicators.run_dwells import read_runs_of
+from hersey.life.indicators.sticking import belt_drag, edges
+from hersey.life.indicators.torque_surface import RunDwells, TorqueSurface, shared_kernel
 from hersey.result import Result, json_record
 from hersey.spelling import meant
 from hersey.units import celsius
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     import polars as pl
 
     from hersey.life.campaign import Campaign
-    from hersey.life.ending import Endings, UnitEnd
+    from hersey.life.ending.endings import Endings, UnitEnd
     from hersey.machine.limits import OperatingPoint
     from hersey.machine.machine import Machine
 

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 from hersey.arrays import one_thread
 from hersey.errors import HerseyError
 from hersey.life.ageing_maps import AgeingMaps, ageing_maps
-from hersey.life.depletion import FilmLife, film_life
-from hersey.life.drift import Drift, fit_drift
-from hersey.life.ending import Endings, endings
+from hersey.life.drift.result import Drift, fit_drift
+from hersey.life.ending.endings import Endings, endings
+from hersey.life.film.through_life import FilmLife, film_life
 from hersey.life.indicator import Indicators
-from hersey.life.indicators import indicators_of
+from hersey.life.indicators.telling import indicators_of
 from hersey.result import Result
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ from hersey.report.page import drawn
 if TYPE_CHECKING:
     import polars as pl
 
-    from hersey.life.ending import Endings, UnitEnd
+    from hersey.life.ending.endings import Endings, UnitEnd
     from hersey.life.following import LifeTest
     from hersey.result import Result
 

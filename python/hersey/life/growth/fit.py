@@ -1,6 +1,6 @@
 """The growth of a positive indicator over units, and the ages at which it reaches a limit.
 
-The laws of `growth_laws` are fitted to the logarithm of the indicator over all units together, each with its
+The laws of `laws` are fitted to the logarithm of the indicator over all units together, each with its
 own level and rate, and weighed by their evidence; nothing hangs on one law alone unless the data say so.
 """
 
@@ -17,9 +17,8 @@ from scipy import special
 
 from hersey.arrays import FloatArray, numbers_of, one_thread
 from hersey.errors import InsufficientDataError, ParameterError
-from hersey.life.growth_laws import LAWS, Law
-from hersey.life.growth_posterior import Points, Posterior, Units, drawn_units, new_units, peaks, posterior
-from hersey.life.limit_ages import (
+from hersey.life.growth.laws import LAWS, Law
+from hersey.life.growth.limit_ages import (
     BEYOND,
     BEYOND_SUM,
     CONFIDENCE,
@@ -33,6 +32,7 @@ from hersey.life.limit_ages import (
     quantiles,
     share_of_units,
 )
+from hersey.life.growth.posterior import Points, Posterior, Units, drawn_units, new_units, peaks, posterior
 from hersey.result import Result, json_record
 
 if TYPE_CHECKING:
@@ -287,7 +287,7 @@ def fit_growth(
     quantity, age_unit
         How to call the indicator and the unit of age.
     laws
-        Names of those to choose from; all of `growth_laws.LAWS` by default.
+        Names of those to choose from; all of `laws.LAWS` by default.
     seed
         Of the draws: the same data and seed give the same result.
 

@@ -15,7 +15,7 @@ import numpy as np
 from scipy import special
 
 from hersey.arrays import FloatArray
-from hersey.life.drying import dried, dried_age, dried_slope
+from hersey.life.growth.drying import dried, dried_age, dried_slope
 
 #: Greatest size: beyond it growth is as good as infinite.
 _GREATEST = 30.0

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.life.growth_posterior import Units
+from hersey.life.growth.posterior import Units
 from hersey.result import Result, json_record
 
 if TYPE_CHECKING:

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from hersey.arrays import BoolArray, FloatArray, IntArray
-from hersey.life.corners import State
-from hersey.life.run_dwells import CampaignRuns
-from hersey.life.torque_surface import TorqueSurface, shared_kernel
+from hersey.life.indicators.corners import State
+from hersey.life.indicators.run_dwells import CampaignRuns
+from hersey.life.indicators.torque_surface import TorqueSurface, shared_kernel
 
 #: Runs that a note names.
 _NAMED = 3

@@ -14,7 +14,7 @@ from itertools import combinations
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.life.aged_torque import (
+from hersey.life.drift.aged_torque import (
     CONTACT,
     COVER,
     EXPONENT,

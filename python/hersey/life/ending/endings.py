@@ -12,10 +12,17 @@ import numpy as np
 
 from hersey.arrays import FloatArray, IntArray, one_thread
 from hersey.errors import HerseyError, InsufficientDataError
-from hersey.life.growth import Growth, fit_growth
-from hersey.life.indicator import Indicator, Indicators
-from hersey.life.joined import correlations, order_by, ranks_of
-from hersey.life.limit_ages import (
+from hersey.life.ending.joined import correlations, order_by, ranks_of
+from hersey.life.ending.next_run import (
+    HORIZON,
+    NextRun,
+    candidate_ages,
+    width,
+    width_after_unit,
+    widths_after,
+)
+from hersey.life.growth.fit import Growth, fit_growth
+from hersey.life.growth.limit_ages import (
     CONFIDENCE,
     AgeAtLimit,
     AgesAtLimit,
@@ -24,7 +31,7 @@ from hersey.life.limit_ages import (
     quantiles,
     share_of_units,
 )
-from hersey.life.next_run import HORIZON, NextRun, candidate_ages, width, width_after_unit, widths_after
+from hersey.life.indicator import Indicator, Indicators
 from hersey.life.population import Population, weibull
 from hersey.result import Result, json_record, json_value
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.life.limit_ages import CONFIDENCE
+from hersey.life.growth.limit_ages import CONFIDENCE
 
 #: New runs drawn for each candidate.
 _RUNS = 64

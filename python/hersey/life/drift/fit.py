@@ -7,8 +7,8 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 from hersey.arrays import BoolArray, FloatArray
-from hersey.life.aged_torque import OWN, Scales, expected, parts, told
-from hersey.life.units_with_age import Solved, Spread, Told, solve
+from hersey.life.drift.aged_torque import OWN, Scales, expected, parts, told
+from hersey.life.drift.units_with_age import Solved, Spread, Told, solve
 
 #: No torque is taken as known better than this, relative.
 _RESOLUTION = 2e-3

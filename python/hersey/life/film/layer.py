@@ -17,8 +17,8 @@ import numpy as np
 from scipy import stats
 
 from hersey.arrays import BoolArray, FloatArray
-from hersey.life.filled_dwells import FilledDwells
-from hersey.life.starved_drag import (
+from hersey.life.film.filled_dwells import FilledDwells
+from hersey.life.film.starved_drag import (
     BOUNDARY,
     CONSTANT,
     FREE,

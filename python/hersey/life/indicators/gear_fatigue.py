@@ -15,10 +15,10 @@ from hersey.arrays import FloatArray
 from hersey.errors import HerseyError, UnfinishedError, UnitError
 from hersey.files.toml import naming
 from hersey.life.age import Age, one_of
-from hersey.life.at_states import AtStates
 from hersey.life.fatigue import RainflowCycles, SNCurve, rainflow_cycles, stick_slip_damage_rate
 from hersey.life.indicator import Indicator
-from hersey.life.sticking import MOST_FOLDS, curve_at, drag_of
+from hersey.life.indicators.at_states import AtStates
+from hersey.life.indicators.sticking import MOST_FOLDS, curve_at, drag_of
 from hersey.log.mapping import read_with_mapping
 from hersey.motion.simulation import stick_slip
 

@@ -18,8 +18,8 @@ from hersey.arrays import FloatArray
 from hersey.damping.rest import with_rest
 from hersey.damping.surface import WITH_TRANSITION
 from hersey.errors import ParameterError, UnfinishedError
-from hersey.life.at_states import AtStates, Curves
 from hersey.life.indicator import Indicator
+from hersey.life.indicators.at_states import AtStates, Curves
 from hersey.motion.drag import DragTable
 from hersey.stability.hysteresis import hysteresis
 from hersey.units import celsius

@@ -12,9 +12,9 @@ import numpy as np
 from scipy import stats
 
 from hersey.arrays import FloatArray
-from hersey.life.aged_torque import OWN, Scales, parts
-from hersey.life.drift_fit import Fitted
-from hersey.life.limit_ages import CONFIDENCE, Interval
+from hersey.life.drift.aged_torque import OWN, Scales, parts
+from hersey.life.drift.fit import Fitted
+from hersey.life.growth.limit_ages import CONFIDENCE, Interval
 from hersey.units import celsius, rpm
 
 #: Ages at which the curves of a chart are drawn.

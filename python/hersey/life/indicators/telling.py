@@ -14,12 +14,12 @@ import numpy as np
 from hersey.arrays import FloatArray, one_thread
 from hersey.errors import InsufficientDataError
 from hersey.life.age import one_of
-from hersey.life.at_states import AtStates, at_states
-from hersey.life.corners import State, corners, point_states
-from hersey.life.gear_fatigue import gear_fatigue, running_time, shares_of
 from hersey.life.indicator import Indicator, Indicators
-from hersey.life.run_dwells import CampaignRuns, read_runs_of
-from hersey.life.sticking import DRAWN_RUNS, folds, static_force, stick_speed_at, transitions
+from hersey.life.indicators.at_states import AtStates, at_states
+from hersey.life.indicators.corners import State, corners, point_states
+from hersey.life.indicators.gear_fatigue import gear_fatigue, running_time, shares_of
+from hersey.life.indicators.run_dwells import CampaignRuns, read_runs_of
+from hersey.life.indicators.sticking import DRAWN_RUNS, folds, static_force, stick_speed_at, transitions
 
 if TYPE_CHECKING:
     from hersey.life.campaign import Campaign

@@ -12,18 +12,18 @@ import numpy as np
 
 from hersey.arrays import BoolArray, FloatArray, IntArray, one_thread
 from hersey.errors import InsufficientDataError, ParameterError
-from hersey.life.depletion_law import Depletion, fit_depletion
-from hersey.life.filled_dwells import FilledDwells, filled_dwells, runs_of
-from hersey.life.indicator import Indicator, Indicators, OwnAges, Runs
-from hersey.life.layer import Layers, layers
-from hersey.life.limit_ages import (
+from hersey.life.film.depletion_law import Depletion, fit_depletion
+from hersey.life.film.filled_dwells import FilledDwells, filled_dwells, runs_of
+from hersey.life.film.layer import Layers, layers
+from hersey.life.film.starved_drag import USUAL_SHARPNESS, Flooded, cubic, film_of, film_share, flooded
+from hersey.life.growth.limit_ages import (
     AgesAtLimit,
     Interval,
     age_at_limit,
     quantiles,
     share_of_units,
 )
-from hersey.life.starved_drag import USUAL_SHARPNESS, Flooded, cubic, film_of, film_share, flooded
+from hersey.life.indicator import Indicator, Indicators, OwnAges, Runs
 from hersey.result import Result, json_record
 from hersey.units import celsius, rpm, takes_si
 

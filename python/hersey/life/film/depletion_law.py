@@ -21,8 +21,8 @@ import numpy as np
 from scipy import special
 
 from hersey.arrays import FloatArray, IntArray
-from hersey.life.layer import DRY, FLOODED, Layers
-from hersey.life.starved_drag import Flooded, cubic
+from hersey.life.film.layer import DRY, FLOODED, Layers
+from hersey.life.film.starved_drag import Flooded, cubic
 
 #: What a unit has, in this order: ln(h0/h), ln of the rate of loss when new times T, logit of the share of
 #: evaporation in it, ln of the factor on viscosity when new, g T; T is the greatest age, h the flooded film

@@ -12,7 +12,7 @@ import numpy as np
 from hersey.arrays import BoolArray, FloatArray, IntArray
 from hersey.life.age import Age
 from hersey.life.indicator import Runs
-from hersey.life.torque_surface import FEWEST, RunDwells
+from hersey.life.indicators.torque_surface import FEWEST, RunDwells
 
 if TYPE_CHECKING:
     from hersey.damping.rest import RestOfDrive

@@ -1,6 +1,6 @@
 """Drift: what of the torque of a drive moved with age, in each unit and over all, and what that points to.
 
-All runs of all units are fitted together (`drift_fit`): one law of the torque (`aged_torque`), the values
+All runs of all units are fitted together (`fit`): one law of the torque (`aged_torque`), the values
 of each unit when new and their change with age, and how units and runs scatter about that. Quantities that
 anyone can read off a Stribeck curve follow with their intervals; a reading of the change is evidence.
 """
@@ -14,11 +14,11 @@ import numpy as np
 
 from hersey.arrays import FloatArray, one_thread
 from hersey.errors import InsufficientDataError, ParameterError
-from hersey.life.aged_torque import OWN
 from hersey.life.campaign import Campaign
-from hersey.life.drift_fit import Dwells, Fitted, fit
-from hersey.life.drift_quantities import Quantity, quantities_of
-from hersey.life.drift_readings import Change, Reading, read
+from hersey.life.drift.aged_torque import OWN
+from hersey.life.drift.fit import Dwells, Fitted, fit
+from hersey.life.drift.quantities import Quantity, quantities_of
+from hersey.life.drift.readings import Change, Reading, read
 from hersey.result import Result, json_record, json_value
 from hersey.units import celsius, rpm
 
@@ -259,7 +259,7 @@ def _dwells_of(table: pl.DataFrame, age_name: str) -> tuple[Dwells, tuple[str, .
     if speed.max() < _APART * speed.min():
         raise InsufficientDataError(
             "all dwells have one speed, so nothing tells level, exponent and film apart: record dwells at "
-            "several speeds, or follow the torque itself with hersey.life.growth.fit_growth"
+            "several speeds, or follow the torque itself with hersey.life.growth.fit.fit_growth"
         )
     run_ids, unit_names = table["run_id"].to_numpy(), table["unit"].cast(str).to_list()
     first = np.flatnonzero(np.r_[True, run_ids[1:] != run_ids[:-1]])

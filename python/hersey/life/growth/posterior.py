@@ -16,7 +16,7 @@ import numpy as np
 from scipy import special
 
 from hersey.arrays import BoolArray, FloatArray, IntArray
-from hersey.life.growth_laws import Law
+from hersey.life.growth.laws import Law
 
 #: Priors: mean and standard deviation of m1 = E ln(r T); scales of the half-normal spreads. m0 is flat.
 RATE_PRIOR = (-0.5, 2.0)

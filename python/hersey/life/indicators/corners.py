@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from hersey.units import celsius, rpm
 
 if TYPE_CHECKING:
-    from hersey.life.run_dwells import CampaignRuns
+    from hersey.life.indicators.run_dwells import CampaignRuns
     from hersey.machine import Machine
 
 

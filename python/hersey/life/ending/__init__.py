@@ -1,0 +1,8 @@
+"""What ends each unit, and when: every indicator against its limit.
+
+========  =============================================================
+joined    draws of several ways to fail side by side
+next_run  what to measure next, and how far it would narrow an interval
+endings   `endings`: the first end of each unit, and of the population
+========  =============================================================
+"""

@@ -1,0 +1,10 @@
+"""The film through life: the layer of oil that runs tell, how it thins, and when it starves.
+
+=============  ===============================================================
+filled_dwells  the dwells of all runs as arrays
+starved_drag   torque against viscosity, rest of the drive and layer of oil
+layer          the layer of oil and the viscosity that each run tells
+depletion_law  how the layer thins over ages and units: draws
+through_life   `film_life`: film, oil that is left, ages at which units starve
+=============  ===============================================================
+"""

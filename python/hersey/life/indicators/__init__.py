@@ -1,0 +1,12 @@
+"""From the runs of a campaign to indicators: what each run says of each way to fail.
+
+==============  ========================================================================
+run_dwells      the runs of a campaign with their dwells, as a torque surface takes them
+torque_surface  the torque of a run between its dwells, without a law
+corners         the states at which a drive that ages fails first
+at_states       what the runs say of some states: torque, and its curve
+sticking        speeds of stick-slip against those of the points
+gear_fatigue    the damage of a gear per age
+telling         `indicators_of`: all ways to fail whose limits the machine states
+==============  ========================================================================
+"""
