@@ -145,6 +145,29 @@ def test_far_and_wide_ends_are_said() -> None:
     assert "beyond 3 times the age followed" in notes
 
 
+@pytest.fixture
+def laws_hold_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As if a law held beyond the last run as it did up to there."""
+    monkeypatch.setattr(growth_module, "BEYOND", 0.0)
+    monkeypatch.setattr(growth_module, "BEYOND_SUM", 0.0)
+
+
+def test_beyond_the_last_run_a_law_is_less_sure() -> None:
+    """Half of the time from there on within t4 of 0.1 sqrt(1 + 0.3^2): 90 % within a factor of 1.25."""
+    growth = fit_growth(NAMES, AGE, linear(RATE), 1e-4, laws=["linear"])
+    for each, r in zip(growth.reaches(2.0).units, RATE, strict=True):
+        left = 1.0 / r - each.last
+        if left > 0.0:
+            assert each.age.value == pytest.approx(1.0 / r, rel=0.01)
+            assert each.age.high - each.last == pytest.approx(1.25 * left, rel=0.05)
+            assert each.age.low - each.last == pytest.approx(left / 1.25, rel=0.05)
+        else:
+            assert each.age.high - each.age.low < 0.01 / r
+    curves = growth.at([1.5 * AGE.max()])
+    assert (curves.high > 1.05 * curves.low).all()
+
+
+@pytest.mark.usefixtures("laws_hold_on")
 def test_what_accumulates_is_summed_over_age() -> None:
     """1e-3 (1 + r t) sums to 1e-3 (t + r t^2 / 2); the limit 2 is reached at the root of that."""
     growth = fit_growth(NAMES, AGE, 1e-3 * linear(RATE), 1e-3, laws=["linear"])
@@ -171,6 +194,7 @@ def test_the_integral_of_each_law_is_that_of_its_curve(law: str) -> None:
         assert np.trapezoid(path, t) == pytest.approx(1.7, abs=2e-3 * max(1.0, path[-1] * found[i, j]))
 
 
+@pytest.mark.usefixtures("laws_hold_on")
 def test_a_limit_that_is_known_badly_widens_the_age() -> None:
     growth = fit_growth(NAMES, AGE, linear(RATE), 1e-3, laws=["linear"])
     sharp, vague = (growth.reaches(2.0, limit_error=e).units[2].age for e in (0.0, 0.05))

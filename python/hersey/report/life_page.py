@@ -14,7 +14,7 @@ from hersey.report.page import drawn
 if TYPE_CHECKING:
     import polars as pl
 
-    from hersey.life.ending.endings import Endings, UnitEnd
+    from hersey.life.ending.endings import Endings
     from hersey.life.following import LifeTest
     from hersey.result import Result
 
@@ -68,17 +68,13 @@ def _verdict(found: Endings) -> list[str]:
     coming = [each for each in order if each.age.passed <= 0.5]
     unit = f" {found.age_unit}" if found.age_unit else ""
     if ended:
-        named = "; ".join(f"{each.unit} at {each.age.age}{unit} by {_ways(each)}" for each in ended[:_NAMED])
+        named = "; ".join(f"{each.unit} at {each.age.age}{unit} by {each.ways}" for each in ended[:_NAMED])
         more = f"; and {len(ended) - _NAMED} more" if len(ended) > _NAMED else ""
         lines.append(f"At a limit already: {named}{more}.")
     if coming:
         first = coming[0]
-        lines.append(f"Next: {first.unit} at {first.age.age}{unit} by {_ways(first)}.")
+        lines.append(f"Next: {first.unit} at {first.age.age}{unit} by {first.ways}.")
     return [*lines, *(f"To know more, {advice}." for advice in found.advice[:1])]
-
-
-def _ways(end: UnitEnd) -> str:
-    return " or ".join(f"{name} ({end.first[name]:.0%})" for name in end.named) or "no way told"
 
 
 def _section(
@@ -128,7 +124,7 @@ def _first(found: Endings) -> dict[str, Any]:
     """The first end of each unit."""
     unit = f" ({found.age_unit})" if found.age_unit else ""
     rows = [
-        [each.unit, f"{each.age.last:.6g}", str(each.age.age), _ways(each)] for each in found.units[:_SHOWN]
+        [each.unit, f"{each.age.last:.6g}", str(each.age.age), each.ways] for each in found.units[:_SHOWN]
     ]
     heads = ["unit", f"last seen{unit}", f"first end{unit}", "by"]
     return {"title": "", "heads": heads, "rows": rows, "numeric": [1]}

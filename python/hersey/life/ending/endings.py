@@ -40,6 +40,8 @@ if TYPE_CHECKING:
 
 #: Ways are named until they hold so much of the probability of being first.
 NAMED = 0.9
+#: A way is named from this probability on, and where its age is so little later than the first.
+MENTIONED, NEAR = 0.05, 1.15
 #: What is said of a unit from so many times the age at which it was last seen on.
 FAR = 3.0
 #: Places of the curve of the population.
@@ -82,24 +84,34 @@ class UnitEnd:
     unit: str
     age: AgeAtLimit  #: of the first of all ways
     first: dict[str, float]  #: probability of each way to be the first; the rest is that none comes
+    near: tuple[str, ...]  #: ways whose own age, the middle one, is up to 15 % later than the first
 
     @property
     def named(self) -> tuple[str, ...]:
-        """The ways that must be named: the fewest that hold 90 % of the probability that any comes."""
+        """The ways that must be named, the likeliest first.
+
+        The fewest that hold 90 % of the probability that any comes, each that has 5 % of it, and those near.
+        """
         order = sorted(self.first, key=lambda name: -self.first[name])
         total, found = sum(self.first.values()), 0.0
         names = []
         for name in order:
-            if found >= NAMED * total:
-                break
-            names.append(name)
+            if found < NAMED * total or self.first[name] >= MENTIONED * total > 0.0 or name in self.near:
+                names.append(name)
             found += self.first[name]
         return tuple(names)
 
+    @property
+    def ways(self) -> str:
+        """The ways in words."""
+        likely = [name for name in self.named if self.first[name] >= MENTIONED]
+        text = " or ".join(f"{name} ({self.first[name]:.0%})" for name in likely) or "no way told"
+        behind = [name for name in self.named if name not in likely]
+        return text + (f", close behind {' and '.join(behind)}" if behind else "")
+
     def __str__(self) -> str:
         """Return it in words."""
-        ways = " or ".join(f"{name} ({self.first[name]:.0%})" for name in self.named) or "no way told"
-        return f"{self.unit}: {self.age.age} by {ways}{self.age.remark}"
+        return f"{self.age} by {self.ways}"
 
 
 @dataclass(frozen=True)
@@ -370,7 +382,10 @@ def _units(
         joint = np.take_along_axis(keys, order, axis=0)
         first = joint.min(axis=1)
         shares = {e.mode.name: float(s) for e, s in zip(ending, _firsts(joint.T), strict=True)}
-        found.append(UnitEnd(name, age_at_limit(name, first, last[name]), shares))
+        end = age_at_limit(name, first, last[name])
+        middle = {e.mode.name: float(np.median(e.ages[:, i])) for e in ending}
+        near = tuple(way for way, age in middle.items() if age <= NEAR * end.age.value < np.inf)
+        found.append(UnitEnd(name, end, shares, near))
         picks.append((order, first))
     return tuple(found), picks
 

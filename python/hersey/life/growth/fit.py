@@ -27,8 +27,8 @@ from hersey.life.growth.limit_ages import (
     age_at_limit,
     ages_of,
     ages_of_sum,
-    carried_beyond,
-    heavy_tailed,
+    beyond,
+    later,
     quantiles,
     share_of_units,
 )
@@ -151,12 +151,13 @@ class Growth(Result):
         ages = np.atleast_1d(numbers_of("age", age)).ravel()
         if not (np.isfinite(ages) & (ages >= 0.0)).all():
             raise ParameterError("an age is negative or no number: ages are counted from the new unit")
-        scaled = ages / self._scale[0]
-        drawn = [
-            units.level[..., None]
-            + units.law.log_growth(units.size[..., None], scaled, units.shape[..., None])
-            for units in self._of_units
-        ]
+        factors, last = self._beyond(BEYOND)[0], np.array(self.last_age)
+        begin, drawn = 0, []
+        for units in self._of_units:
+            factor = factors[begin : (begin := begin + len(units.scatter)), :, None]
+            scaled = later(ages, last[:, None], 1.0 / factor) / self._scale[0]
+            grown = units.law.log_growth(units.size[..., None], scaled, units.shape[..., None])
+            drawn.append(units.level[..., None] + grown)
         low, median, high = np.exp(quantiles(np.concatenate(drawn)) + self._scale[1])
         return GrowthCurves(self.units, ages, median, low, high)
 
@@ -209,25 +210,28 @@ class Growth(Result):
             ends = np.cumsum([0, *(len(units.scatter) for units in drawn)])
             parts = [ages(u, levels[a:b]) for u, a, b in zip(drawn, ends, ends[1:], strict=False)]
             found.append(np.concatenate(parts) * self._scale[0])
-        known, new = found
-        random, last = np.random.default_rng([self.seed, 4]), np.array(self.last_age)
-        common = heavy_tailed(random, (count, 1))
-        share = BEYOND_SUM if accumulates else BEYOND
-        return (
-            carried_beyond(known, last, share, common, heavy_tailed(random, known.shape)),
-            carried_beyond(new, np.array(last.max()), share, common, heavy_tailed(random, new.shape)),
-        )
+        last = np.array(self.last_age)
+        of_units, of_new = self._beyond(BEYOND_SUM if accumulates else BEYOND)
+        return later(found[0], last, of_units), later(found[1], last.max(), of_new)
+
+    def _beyond(self, share: float) -> tuple[FloatArray, FloatArray]:
+        """How much longer than by its law each unit, and each new one, may take beyond the last run."""
+        draws = sum(len(units.scatter) for units in self._of_units)
+        widths = len(self.units), self._of_population[0].level.shape[1]
+        known, new = beyond(np.random.default_rng([self.seed, 4]), share, draws, *widths)
+        return known, new
 
     def drawn_values(self, unit: int, age: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return logarithms of the indicator of a unit at ages, (draws, ages), and the scatter of runs.
 
         The draws are those of `drawn_ages`, in the same order; the scatter has the shape (draws, 1).
         """
-        scaled = age / self._scale[0]
-        values = [
-            u.level[:, unit, None] + u.law.log_growth(u.size[:, unit, None], scaled, u.shape)
-            for u in self._of_units
-        ]
+        factors = self._beyond(BEYOND)[0][:, unit, None]
+        begin, values = 0, []
+        for u in self._of_units:
+            factor = factors[begin : (begin := begin + len(u.scatter))]
+            scaled = later(age, np.array(self.last_age[unit]), 1.0 / factor) / self._scale[0]
+            values.append(u.level[:, unit, None] + u.law.log_growth(u.size[:, unit, None], scaled, u.shape))
         return np.concatenate(values) + self._scale[1], np.concatenate([u.scatter for u in self._of_units])
 
     def runs_of_units(self) -> list[tuple[FloatArray, FloatArray]]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from scipy import special
 
 from hersey.arrays import FloatArray
 from hersey.life.growth.posterior import Units
@@ -159,29 +160,27 @@ def ages_of_sum(units: Units, level: FloatArray) -> FloatArray:
     return np.exp(at).reshape(need.shape)
 
 
-def heavy_tailed(random: np.random.Generator, shape: tuple[int, ...]) -> FloatArray:
-    """Draws of Student's t of four degrees of freedom, none beyond five."""
-    return np.clip(random.standard_t(4.0, shape), -5.0, 5.0)
+def heavy_tailed(random: np.random.Generator, shape: tuple[int, int]) -> FloatArray:
+    """Draws of Student's t of four degrees of freedom, none beyond five, evenly spread in each column."""
+    ranks = random.permuted(np.tile(np.arange(shape[0])[:, None], (1, shape[1])), axis=0)
+    return np.asarray(np.clip(special.stdtrit(4.0, (ranks + 0.5) / shape[0]), -5.0, 5.0))
 
 
-def carried_beyond(
-    ages: FloatArray, last: FloatArray, share: float, common: FloatArray, own: FloatArray
-) -> FloatArray:
-    """Return ages, those past the last run moved by what no law fitted up to there can know of beyond.
+def beyond(random: np.random.Generator, share: float, *columns: int) -> tuple[FloatArray, ...]:
+    """Return how much longer than by its law growth may take beyond the last run: factors on that time.
 
-    Parameters
-    ----------
-    ages
-        (draws, units); infinite ones stay.
-    last
-        Ages of the last runs, (units,).
-    share
-        Standard deviation of the logarithm of the time from the last run on.
-    common, own
-        Of a draw, (draws, 1), and of a unit in it, (draws, units), the smaller part.
+    One array of equally probable draws for each number of ``columns``; ``share`` is the standard deviation of
+    their logarithm, most of it in common to a row, over all arrays. ``columns`` begins with the draws.
     """
-    factor = np.exp(share * (common + _OWN * own))
-    return np.asarray(np.where(ages > last, last + (ages - last) * factor, ages))
+    draws, *widths = columns
+    common = heavy_tailed(random, (draws, 1))
+    return tuple(np.exp(share * (common + _OWN * heavy_tailed(random, (draws, each)))) for each in widths)
+
+
+def later(ages: FloatArray, last: FloatArray, factor: FloatArray) -> FloatArray:
+    """Return ages with the time from the last run on times a factor; infinite ones stay."""
+    with np.errstate(invalid="ignore"):
+        return np.asarray(np.where(ages > last, last + (ages - last) * factor, ages))
 
 
 def quantiles(values: FloatArray) -> FloatArray:
