@@ -109,8 +109,9 @@ def opened(units: int = 2) -> hersey.Campaign:
 
 @cache
 def followed(units: int = 2) -> hersey.LifeTest:
-    """What ends some of the shipped units, and when."""
-    return hersey.follow(opened(units), machine())
+    """What ends some of the shipped units, and when; of few ways, which is quicker."""
+    few = replace(machine(), limits=hersey.Limits(motor_torque=1.0), points=machine().points[:1])
+    return hersey.follow(opened(units), few)
 
 
 def write(path: Path, units: int = 2) -> Path:
