@@ -181,7 +181,7 @@ def way_of(name: str, point: str = "thick paper") -> str | None:
         return None if point not in name else "fold" if "rest" in name or "fold" in name else "stick"
     if "grip" in name:
         return None if "rest" in name else "grip"
-    words = {"layer": "starve", "gear": "gear", "continuous": "continuous", "energy": "energy"}
+    words = {"starvation": "starve", "gear": "gear", "continuous": "continuous", "energy": "energy"}
     return next((way for word, way in words.items() if word in name), None)
 
 
