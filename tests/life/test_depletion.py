@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
+import polars as pl
 import pytest
 
 from hersey.arrays import FloatArray
@@ -198,7 +200,7 @@ def test_starvation_is_an_indicator() -> None:
 
 def test_a_flooded_run_tells_no_indicator() -> None:
     campaign = shipped.campaign(1)
-    hot = campaign.dwells().filter(campaign.dwells()["temperature (K)"] > 440.0)
+    hot = campaign.dwells().filter(campaign.dwells()["temperature (K)"] > 420.0)
     campaign.dwells = lambda: hot  # type: ignore[method-assign]
     told = starvation_indicator(campaign, shipped.machine())
     assert np.isnan(told.value).any()
@@ -222,3 +224,27 @@ def test_given_numbers_of_the_law_are_kept() -> None:
     film = film_life(shipped.campaign(2), shipped.machine(), side_flow=2e4, evaporation=1e-6)
     assert film.law["K"].value == pytest.approx(2e4)
     assert film.law["e"].low == pytest.approx(1e-6)
+
+
+@pytest.mark.parametrize(
+    ("kept", "said"),
+    [
+        (pl.col("temperature (K)") < 335.0, "one temperature cannot tell"),
+        (pl.col("run_id") == 1, "no unit was seen at two ages"),
+    ],
+)
+def test_what_the_dwells_do_not_tell_is_said(kept: pl.Expr, said: str) -> None:
+    whole = shipped.campaign(2)
+    runs, dwells = whole.runs(), whole.dwells().filter(kept)
+    some = SimpleNamespace(path=whole.path, age_unit="pages", runs=lambda: runs, dwells=lambda: dwells)
+    with pytest.raises(InsufficientDataError, match=said):
+        film_life(some, shipped.machine())  # type: ignore[arg-type]
+
+
+def test_a_film_that_is_not_that_of_the_file_is_not_told() -> None:
+    whole = shipped.campaign(1)
+    runs, dwells = whole.runs(), whole.dwells()
+    slow = dwells.with_columns(pl.col("torque (N m)") * (1.0 + 5.0 * (pl.col("speed (rad/s)") > 5.0)))
+    some = SimpleNamespace(path=whole.path, age_unit="pages", runs=lambda: runs, dwells=lambda: slow)
+    with pytest.raises(InsufficientDataError, match="are not those of the machine's file"):
+        film_life(some, shipped.machine())  # type: ignore[arg-type]

@@ -114,3 +114,9 @@ def test_what_cannot_be_fitted_says_why() -> None:
         fit_drift(runs.with_columns(pl.lit(np.inf).alias("torque (N m)")))
     with pytest.raises(InsufficientDataError, match="no dwell"):
         fit_drift(runs.clear())
+
+
+def test_too_few_dwells_tell_no_drift() -> None:
+    few = table(other("lubricant", 1, units=2, logs=3)).group_by("run_id", maintain_order=True).head(2)
+    with pytest.raises(InsufficientDataError, match="fewer than 4 dwells"):
+        fit_drift(few)

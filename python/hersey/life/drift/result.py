@@ -31,6 +31,10 @@ _APART = 1.5
 _FEW = 3
 
 
+#: Dwells that most runs must have.
+_FEWEST = 4
+
+
 @dataclass(frozen=True, repr=False)
 class Drift(Result):
     """What moved with age, and what it points to.
@@ -259,12 +263,17 @@ def _dwells_of(table: pl.DataFrame, age_name: str) -> tuple[Dwells, tuple[str, .
     if speed.max() < _APART * speed.min():
         raise InsufficientDataError(
             "all dwells have one speed, so nothing tells level, exponent and film apart: record dwells at "
-            "several speeds, or follow the torque itself with hersey.life.growth.fit.fit_growth"
+            "several speeds, or follow the torque itself with hersey.fit_growth"
         )
     run_ids, unit_names = table["run_id"].to_numpy(), table["unit"].cast(str).to_list()
     first = np.flatnonzero(np.r_[True, run_ids[1:] != run_ids[:-1]])
     counts = np.diff(np.r_[first, run_ids.size])
     row, column = np.repeat(np.arange(first.size), counts), np.arange(run_ids.size) - np.repeat(first, counts)
+    if np.median(counts) < _FEWEST:
+        raise InsufficientDataError(
+            f"most runs have fewer than {_FEWEST} dwells, so nothing tells level, exponent and film apart: "
+            "record dwells at several speeds, or follow the torque itself with hersey.fit_growth"
+        )
     given = np.zeros((first.size, int(counts.max())), dtype=bool)
     given[row, column] = True
 

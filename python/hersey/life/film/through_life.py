@@ -44,6 +44,8 @@ _TO_90, _TO_95 = 1.645, 1.96
 #: How far the law of film and starvation may be off, ln of layer over film, in common to all units: what
 #: films by other laws showed (`benchmarks/life.py`).
 _LAW = 0.06
+#: Dwells of a run, and kelvin between its coldest and hottest, from which it tells a film.
+_FEWEST, _WARMTH = 6, 10.0
 #: New units drawn for B10 and B50, of each draw of what units share.
 _NEW = 40
 #: Scatter over the stated errors from which the law does not describe a run.
@@ -247,6 +249,10 @@ def film_life(
     names = list(dict.fromkeys(runs.unit[i] for i in read.told))
     unit = np.array([names.index(runs.unit[i]) for i in read.told])
     age = runs.age[read.told]
+    if max(np.unique(age[unit == k]).size for k in range(len(names))) < 2:
+        raise InsufficientDataError(
+            "no unit was seen at two ages, so nothing tells how its oil thins: add runs at another age"
+        )
     found = fit_depletion(read.layers, unit, age, side_flow=side_flow, evaporation=evaporation, seed=seed)
     ages = _CURVES * found.greatest_age
     last = np.array([age[unit == k].max() for k in range(len(names))])
@@ -254,7 +260,7 @@ def film_life(
     area = length * film_of(machine)[0].length
     starving = [_starving(found, point, len(names)) for point in read.flooded]
     curves = [_curves(found, point, ages, len(names)) for point in read.flooded]
-    notes = (*read.notes, *_law_notes(age, unit, runs.age_unit, machine))
+    notes = (*read.notes, *_law_notes(age, unit, machine))
     return FilmLife(
         runs=runs,
         points=read.points,
@@ -362,13 +368,32 @@ def _read(campaign: Campaign, machine: Machine, cold: float | None) -> _Read:
     if not runs.run:
         raise InsufficientDataError(f"{campaign.path.name} holds no run: add logs first")
     dwells, told = filled_dwells(campaign, runs)
+    heats = np.where(dwells.given, dwells.kelvin, np.nan)
+    telling = dwells.given.sum(axis=1) >= _FEWEST
+    telling &= np.nanmax(heats, axis=1) - np.nanmin(heats, axis=1) >= _WARMTH
+    if not telling.any():
+        raise InsufficientDataError(
+            f"no run has {_FEWEST} dwells over {_WARMTH:g} K or more: one temperature cannot tell a thin "
+            "layer of oil from a thick oil, so record cold and hot ones"
+        )
+    dwells, told = dwells.rows(np.flatnonzero(telling)), told[telling]
     points = _points(machine, dwells, [runs.unit[i] for i in told], cold)
     found = layers(dwells, machine, speed=points[1].speed, kelvin=points[1].temperature)
     films = tuple(
         flooded(contact, lubricant, np.array([point.speed]), np.array([point.temperature]))
         for point in points
     )
-    return _Read(runs, told, found, points, films, _notes(runs, told, found))
+    if np.median(found.scatter) > _BAD:
+        raise InsufficientDataError(
+            f"the dwells of most runs scatter about the law of the film by more than {_BAD:g} times their "
+            f"errors ({np.median(found.scatter):.3g} in the middle): nip, lubricant or load are not those of "
+            "the machine's file"
+        )
+    notes = _notes(runs, told, found)
+    if not telling.all():
+        left = f"{np.count_nonzero(~telling)} of {telling.size} runs have too few dwells or one temperature"
+        notes = (f"{left}: they tell no film", *notes)
+    return _Read(runs, told, found, points, films, notes)
 
 
 def _points(
@@ -404,11 +429,9 @@ def _notes(runs: Runs, told: IntArray, found: Layers) -> tuple[str, ...]:
     return tuple(notes)
 
 
-def _law_notes(age: FloatArray, unit: IntArray, age_unit: str, machine: Machine) -> list[str]:
+def _law_notes(age: FloatArray, unit: IntArray, machine: Machine) -> list[str]:
     notes = []
-    if len(np.unique(age)) < 2:
-        notes.append(f"all runs are of one age ({age_unit}): nothing tells how the layer thins")
-    elif max(len(np.unique(age[unit == k])) for k in np.unique(unit)) < 3:
+    if max(len(np.unique(age[unit == k])) for k in np.unique(unit)) < 3:
         notes.append("no unit was seen at three ages: side flow and evaporation cannot be told apart")
     if machine.asperities is None:
         notes.append(
