@@ -17,6 +17,7 @@ from benchmarks.drift import other, table
 import hersey
 from hersey import testbench
 from hersey.document.parts import (
+    AgeingMapsPart,
     AgesPart,
     BandPart,
     ComparisonPart,
@@ -30,6 +31,7 @@ from hersey.document.parts import (
     FitPart,
     GrowthPart,
     InspectionPart,
+    LifeTestPart,
     LogPart,
     MapPart,
     MeasuredFilmPart,
@@ -49,7 +51,7 @@ from hersey.document.parts import (
 from hersey.result import LINE, Result, json_value, table_of
 from hersey.verdict.evidence import verdict
 from tests.conftest import ROOT
-from tests.life import shipped
+from tests.life import shipped, test_ageing_maps
 
 BENCH = ROOT / "examples" / "bench.csv"
 TRAIN = hersey.Drivetrain(1000, 1)
@@ -182,6 +184,8 @@ RESULTS: dict[str, tuple[Callable[[], Any], type[Part]]] = {
     "Plan": (plan, PlanPart),
     "WarmUp": (warm_up, WarmUpPart),
     "FilmLife": (lambda: shipped.film(1), FilmLifePart),
+    "AgeingMaps": (test_ageing_maps.maps, AgeingMapsPart),
+    "LifeTest": (lambda: shipped.followed(2), LifeTestPart),
     "Population": (
         lambda: hersey.weibull([4.0, 6.0, 7.0, 9.0], [True, True, False, True], unit="h"),
         PopulationPart,

@@ -31,10 +31,10 @@ class _Axes(NamedTuple):
     end: float
 
 
-def growth_chart(growth: Growth, *, ages: AgesAtLimit | None = None) -> Chart:
+def growth_chart(growth: Growth, *, ages: AgesAtLimit | None = None, si: str = "") -> Chart:
     """Return the growth of each unit, one panel for each; with ``ages`` also where it reaches the limit.
 
-    Of many units the first are shown.
+    Of many units the first are shown. ``si`` is the unit of the values.
     """
     count = min(len(growth.units), _SHOWN)
     told = {each.unit: each for each in ages.units} if ages else {}
@@ -58,7 +58,8 @@ def growth_chart(growth: Growth, *, ages: AgesAtLimit | None = None) -> Chart:
     panels = []
     for i, unit in enumerate(growth.units[:count]):
         band = rows_of(age=at, median=curves.median[i], low=curves.low[i], high=curves.high[i])
-        layers = _curve(growth, band, rows_of(age=runs[i][0], value=runs[i][1]), axes)
+        title = _values(growth, si, short=count > 1) if i % columns == 0 else None
+        layers = _curve(growth, band, rows_of(age=runs[i][0], value=runs[i][1]), axes, title)
         if line is not None:
             layers.append(plot([{"value": line}]).mark_rule(color=INK, strokeDash=[4, 3]).encode(y="value:Q"))
         if unit in told:
@@ -67,8 +68,15 @@ def growth_chart(growth: Growth, *, ages: AgesAtLimit | None = None) -> Chart:
             alt.layer(*layers, title=alt.Title(unit, fontSize=12), width=axes.width, height=axes.height)
         )
     rows = [alt.hconcat(*panels[i : i + columns], spacing=12) for i in range(0, count, columns)]
-    title = alt.Title(f"Growth of {growth.quantity}", subtitle=_heading(growth, ages))
-    return alt.vconcat(*rows, title=title, spacing=10)
+    heading = f"Growth of {growth.quantity}" + (f" ({si.replace(' ', '·')})" if si else "")
+    return alt.vconcat(*rows, title=alt.Title(heading, subtitle=_heading(growth, ages)), spacing=10)
+
+
+def _values(growth: Growth, si: str, *, short: bool) -> str:
+    """The title of the axis of values."""
+    unit = si.replace(" ", "·")
+    name = "Value" if short else f"{growth.quantity[:1].upper()}{growth.quantity[1:]}"
+    return f"{name} ({unit or 'as given'})"
 
 
 def axis_end(last: float, medians: list[float]) -> float:
@@ -85,9 +93,10 @@ def age_axis(field: str, age_unit: str, scale: alt.Scale, count: int = 8) -> alt
     return alt.X(f"{field}:Q", title=title, scale=scale, axis=axis)
 
 
-def _curve(growth: Growth, band: list[Row], runs: list[Row], axes: _Axes) -> list[alt.Chart]:
+def _curve(
+    growth: Growth, band: list[Row], runs: list[Row], axes: _Axes, title: str | None
+) -> list[alt.Chart]:
     x = age_axis("age", growth.age_unit, axes.age, 8 if axes.height == HEIGHT else 3)
-    title = f"{growth.quantity[:1].upper()}{growth.quantity[1:]}" if axes.height == HEIGHT else None
     axis = alt.Axis(format=".3~g", tickCount=5)
     low, median, value = (
         alt.Y(f"{name}:Q", title=title, scale=axes.value, axis=axis) for name in ("low", "median", "value")
