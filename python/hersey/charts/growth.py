@@ -57,13 +57,18 @@ def growth_chart(growth: Growth, *, ages: AgesAtLimit | None = None, si: str = "
     )
     panels = []
     for i, unit in enumerate(growth.units[:count]):
-        band = rows_of(age=at, median=curves.median[i], low=curves.low[i], high=curves.high[i])
+        # Far above the axis a drawing would overflow.
+        low, median, high = (
+            np.minimum(each[i], 10.0 * top) for each in (curves.low, curves.median, curves.high)
+        )
+        band = rows_of(age=at, median=median, low=low, high=high)
         title = _values(growth, si, short=count > 1) if i % columns == 0 else None
         layers = _curve(growth, band, rows_of(age=runs[i][0], value=runs[i][1]), axes, title)
         if line is not None:
-            layers.append(plot([{"value": line}]).mark_rule(color=INK, strokeDash=[4, 3]).encode(y="value:Q"))
+            rule = plot([{"value": line}]).mark_rule(color=INK, strokeDash=[4, 3])
+            layers.append(rule.encode(y=alt.Y("value:Q", title=title)))
         if unit in told:
-            layers += _age(told[unit], line if line is not None else top / _FREE, axes)
+            layers += _age(told[unit], line if line is not None else top / _FREE, axes, title)
         panels.append(
             alt.layer(*layers, title=alt.Title(unit, fontSize=12), width=axes.width, height=axes.height)
         )
@@ -109,12 +114,12 @@ def _curve(
     return [area, line.encode(x=x, y=median, tooltip=tips), points.encode(x=x, y=value, tooltip=seen)]
 
 
-def _age(told: AgeAtLimit, height: float, axes: _Axes) -> list[alt.Chart]:
+def _age(told: AgeAtLimit, height: float, axes: _Axes, title: str | None) -> list[alt.Chart]:
     """The interval of the age, as far as it lies within the axis, and its median."""
     span = {"low": told.age.low, "high": min(told.age.high, axes.end), "value": height}
     mark = {**span, "age": told.age.value}
     tips = [tip("age", "age at the limit"), tip("low", "from"), tip("high", "to")]
-    y = alt.Y("value:Q", scale=axes.value, title=None)
+    y = alt.Y("value:Q", scale=axes.value, title=title)
     layers = []
     if told.age.low < axes.end:
         rule = plot([span]).mark_rule(color=ORANGE, strokeWidth=4, clip=True)

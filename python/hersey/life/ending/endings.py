@@ -165,11 +165,17 @@ class Endings(Result):
         if len(self.units) > _SHOWN:
             lines.append(f"  and {len(self.units) - _SHOWN} more units")
         lines += [f"  {self.b10}", f"  {self.b50}"]
-        shares = ", ".join(f"{name} {each.value:.0%}" for name, each in self.shares.items())
+        ordered = sorted(self.shares.items(), key=lambda item: -item[1].value)
+        shares = ", ".join(f"{name} {each.value:.0%}" for name, each in ordered if each.value >= 0.005)
         lines += [f"share of new units that each ends: {shares}", "each way by itself"]
+        soon = FAR * max(each.age.last for each in self.units)
+        far = [mode.name for mode in self.modes if mode.ages.b50.age.low > soon]
         for mode in self.modes:
             sign = " (an early sign: it ends no unit)" if mode.sign else ""
-            lines.append(f"  {mode.name}{sign}: {mode.ages.b50}")
+            if mode.name not in far:
+                lines.append(f"  {mode.name}{sign}: {mode.ages.b50}")
+        if far:
+            lines.append(f"  half of new units later than {FAR:g} times the age followed: {'; '.join(far)}")
         lines += [f"not judged: {each}" for each in self.unsaid]
         lines += [f"- {each}" for each in self.notes]
         return "\n".join([*lines, *(f"next: {each}" for each in self.advice)])
