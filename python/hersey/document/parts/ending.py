@@ -74,7 +74,7 @@ class UnitEndPart(Part):
     unit: str
     age: AgePart = Field(description="of the first of all ways")
     first: dict[str, float] = Field(description="probability of each way to be the first")
-    near: list[str] = Field(description="ways whose own age is up to 15 % later than the first")
+    near: list[str] = Field(description="ways whose own age is up to 25 % later than the first")
     named: list[str] = Field(description="the ways that must be named, the likeliest first")
 
 

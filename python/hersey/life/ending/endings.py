@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 #: Ways are named until they hold so much of the probability of being first.
 NAMED = 0.9
 #: A way is named from this probability on, and where its age is so little later than the first.
-MENTIONED, NEAR = 0.05, 1.15
+MENTIONED, NEAR = 0.05, 1.25
 #: What is said of a unit from so many times the age at which it was last seen on.
 FAR = 3.0
 #: Places of the curve of the population.
@@ -84,7 +84,7 @@ class UnitEnd:
     unit: str
     age: AgeAtLimit  #: of the first of all ways
     first: dict[str, float]  #: probability of each way to be the first; the rest is that none comes
-    near: tuple[str, ...]  #: ways whose own age, the middle one, is up to 15 % later than the first
+    near: tuple[str, ...]  #: ways whose own age, the middle one, is up to 25 % later than the first
 
     @property
     def named(self) -> tuple[str, ...]:

@@ -21,7 +21,7 @@ CONFIDENCE = 0.9
 #: A law is fitted up to the last run. Growth is a sum of processes, and the time from there to a limit was
 #: off by so much (logarithm) in campaigns of a generator of its own (`benchmarks/life.py`), most of it in
 #: common to the units; more for what accumulates, where a rate is a power of what grows.
-BEYOND, BEYOND_SUM, _OWN = 0.10, 0.20, 0.3
+BEYOND, BEYOND_SUM, _OWN = 0.10, 0.15, 0.3
 #: Share of draws from which "never" is worth a word.
 _SAID = 0.05
 #: Integrals over age: places and weights, turns of the search and where it ends, the greatest logarithm.
