@@ -58,7 +58,7 @@ test-rust: ## tests of the core
 	cargo test --release --quiet --package hersey-core
 
 test-python: build browser ## tests of the package and the page
-	$(BIN)/python -m pytest -n auto --dist worksteal
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --dist worksteal
 
 quick: build ## the tests of the package that take a moment, while working
 	$(BIN)/python -m pytest -n auto --dist worksteal -m "not slow" --ignore tests/browser

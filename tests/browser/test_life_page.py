@@ -24,7 +24,7 @@ def test_it_draws_without_errors_and_without_network(opened: Opened) -> None:
 
 def test_it_says_what_ends_the_units(opened: Opened) -> None:
     verdict = opened.page.inner_text("#verdict")
-    assert "Half of new units have ended at" in verdict
+    assert "U1 ends at" in verdict  # two units do not tell what half of new ones do
     assert "Next: U1 at" in verdict
     assert opened.page.inner_text("#command") == "hersey life <life.hersey>"
     titles = opened.page.locator("h2").all_inner_texts()

@@ -15,6 +15,7 @@ from hersey.cli.application import VERBS
 from tests.cli.command import run, start
 from tests.cli.test_json import figure
 from tests.conftest import ROOT
+from tests.life import shipped
 
 
 def example(*command: str) -> str:
@@ -31,6 +32,8 @@ def test_the_example_in_the_help_works_as_typed(
 ) -> None:
     """All but the simulations of the paper's figures, which have tests of their own."""
     monkeypatch.setattr("hersey.paper_figures.all_figures", lambda: [figure()])
+    if command == ("life",):
+        shipped.write(examples_here / "life.hersey", 1)
     typed = shlex.split(example(*command))
     result = run(*typed[1:], cwd=examples_here)
     assert result.returncode == 0, result.stderr

@@ -62,6 +62,8 @@ def test_a_map_and_a_plan_never_replace_what_they_read(bench_csv: Path, tmp_path
         "cycles none.csv --figure kept.svg",
         "sweep none.toml --out kept.csv",
         "campaign export none.hersey --out kept.csv",
+        "life none.hersey --machine none.toml --out kept.html",
+        "life none.hersey --machine none.toml --figures kept",
         "simulate --mass -1 --csv kept.csv",
         "simulate --mass -1 --figure kept.svg",
         "warmup none.toml none.csv --target 1 --out kept.csv",

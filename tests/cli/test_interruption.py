@@ -105,6 +105,8 @@ def is_whole(path: Path) -> bool:
         ".parquet": lambda: content.endswith(b"PAR1"),
         ".json": lambda: bool(json.loads(content)),
         ".hersey": lambda: content.startswith(b"SQLite format 3\0") or not content,
+        ".hersey-wal": lambda: True,  # SQLite's own, whole or mended at the next opening
+        ".hersey-shm": lambda: True,
         ".md": lambda: content.endswith(b"\n"),
     }
     return ends[path.suffix]()

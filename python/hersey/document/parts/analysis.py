@@ -16,6 +16,7 @@ from hersey.document.parts.figures import FiguresPart
 from hersey.document.parts.film import FilmPart
 from hersey.document.parts.fit import FitPart, RegimePart
 from hersey.document.parts.inspection import InspectionPart
+from hersey.document.parts.life_test import LifeTestPart
 from hersey.document.parts.log import InputFile, Point, Quality, Timeline
 from hersey.document.parts.models import ComparisonPart, DesignPart, ModelsPart
 from hersey.document.parts.motion import SimulationPart, StickSlipPart, SweepPart
@@ -45,6 +46,7 @@ class Analysis(Part):
     models: ModelsPart | None = None
     compare: ComparisonPart | None = None
     campaign: CampaignPart | None = None
+    life: LifeTestPart | None = None
     design: DesignPart | None = None
     cycles: CyclesPart | None = None
     motion: StickSlipPart | None = None

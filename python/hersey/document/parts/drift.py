@@ -16,14 +16,13 @@ class MovedPart(Part):
 
 
 class QuantityPart(Part):
-    """Something of the drag, in ``si``: when new, and its change up to the oldest age.
-
-    ``relative``: the change is that of the ratio to the value when new, less 1; otherwise the difference.
-    """
+    """Something of the drag, in ``si``: when new, and its change up to the oldest age."""
 
     name: str
     si: str
-    relative: bool
+    relative: bool = Field(
+        description="whether the change is that of the ratio to the value when new, less 1, or the difference"
+    )
     where: str
     new: float | None
     change: MovedPart
