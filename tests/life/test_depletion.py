@@ -12,7 +12,7 @@ import pytest
 from hersey.arrays import FloatArray
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.life.film.depletion_law import Rates, log_layer
-from hersey.life.film.filled_dwells import FilledDwells, filled_dwells, runs_of
+from hersey.life.film.filled_dwells import FilledDwells, filled_dwells
 from hersey.life.film.layer import Layers, layers
 from hersey.life.film.starved_drag import (
     FREE,
@@ -122,7 +122,7 @@ def test_a_wrong_viscosity_of_the_file_is_not_starvation() -> None:
     lubricant = shipped.machine().lubricant
     assert lubricant is not None
     campaign = shipped.campaign(1)
-    runs = runs_of(campaign)
+    runs = Runs.of(campaign)
     dwells, _ = filled_dwells(campaign, runs)
     off = replace(
         shipped.machine(),

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.errors import ParameterError
+
+if TYPE_CHECKING:
+    from hersey.life.campaign import Campaign
 
 
 @dataclass(frozen=True, repr=False)
@@ -18,6 +22,13 @@ class Runs:
     unit: tuple[str, ...]
     age: FloatArray
     age_unit: str
+
+    @classmethod
+    def of(cls, campaign: Campaign) -> Runs:
+        """Return the runs of a campaign."""
+        table = campaign.runs()
+        age = table["age"].to_numpy().astype(float)
+        return cls(tuple(table["run"].to_list()), tuple(table["unit"].to_list()), age, campaign.age_unit)
 
     @property
     def units(self) -> tuple[str, ...]:

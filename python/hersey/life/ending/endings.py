@@ -363,8 +363,7 @@ def _fitted(indicators: Indicators, each: Indicator, seed: int) -> _Fitted:
     )
     residuals = np.full(runs.age.size, np.nan)
     residuals[told] = growth.residuals()
-    sign = bool(getattr(each, "sign", False))
-    mode = Mode(each.name, each.kind, each.si, each.limit, sign, growth, at_limit, tuple(notes))
+    mode = Mode(each.name, each.kind, each.si, each.limit, each.sign, growth, at_limit, tuple(notes))
     return _Fitted(mode, ages, new, residuals, row, float(np.median(each.error[told])))
 
 

@@ -33,13 +33,6 @@ class FilledDwells:
         return FilledDwells(**{name: values[chosen] for name, values in vars(self).items()})
 
 
-def runs_of(campaign: Campaign) -> Runs:
-    """Return the runs of a campaign, by unit and age."""
-    table = campaign.runs()
-    age = table["age"].to_numpy().astype(float)
-    return Runs(tuple(table["run"].to_list()), tuple(table["unit"].to_list()), age, campaign.age_unit)
-
-
 def filled_dwells(campaign: Campaign, runs: Runs) -> tuple[FilledDwells, IntArray]:
     """Return the dwells of a campaign that have a temperature, and the places in ``runs`` of their runs.
 

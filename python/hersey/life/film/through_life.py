@@ -13,7 +13,7 @@ import numpy as np
 from hersey.arrays import BoolArray, FloatArray, IntArray, one_thread
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.life.film.depletion_law import Depletion, fit_depletion
-from hersey.life.film.filled_dwells import FilledDwells, filled_dwells, runs_of
+from hersey.life.film.filled_dwells import FilledDwells, filled_dwells
 from hersey.life.film.layer import Layers, layers
 from hersey.life.film.starved_drag import USUAL_SHARPNESS, Flooded, cubic, film_of, film_share, flooded
 from hersey.life.growth.limit_ages import (
@@ -364,7 +364,7 @@ class _Read:
 
 def _read(campaign: Campaign, machine: Machine, cold: float | None) -> _Read:
     contact, lubricant = film_of(machine)
-    runs = runs_of(campaign)
+    runs = Runs.of(campaign)
     if not runs.run:
         raise InsufficientDataError(f"{campaign.path.name} holds no run: add logs first")
     dwells, told = filled_dwells(campaign, runs)

@@ -68,9 +68,8 @@ class CampaignRuns:
 
 def read_runs_of(campaign: Campaign, rest: RestOfDrive | None = None) -> CampaignRuns:
     """Return the runs of a campaign; ``rest`` is taken off those of which none was taken off before."""
-    listed, drives = campaign.runs(), campaign.drives()
-    numbers = tuple(listed["run"].to_list())
-    runs = Runs(numbers, tuple(listed["unit"].to_list()), listed["age"].to_numpy(), campaign.age_unit)
+    runs, drives = Runs.of(campaign), campaign.drives()
+    numbers = runs.run
     of_run, table = campaign.measured()
     beside = _rest_of(of_run, table, {number: drives[number][0] or rest for number in numbers})
     rows = _stretches(of_run)
