@@ -11,6 +11,7 @@ import pytest
 
 from hersey.arrays import FloatArray
 from hersey.errors import InsufficientDataError, ParameterError
+from hersey.life.film import through_life
 from hersey.life.film.depletion_law import Rates, log_layer
 from hersey.life.film.filled_dwells import FilledDwells, filled_dwells
 from hersey.life.film.layer import Layers, layers
@@ -248,3 +249,12 @@ def test_a_film_that_is_not_that_of_the_file_is_not_told() -> None:
     some = SimpleNamespace(path=whole.path, age_unit="pages", runs=lambda: runs, dwells=lambda: slow)
     with pytest.raises(InsufficientDataError, match="are not those of the machine's file"):
         film_life(some, shipped.machine())  # type: ignore[arg-type]
+
+
+def test_what_the_law_itself_may_be_off_moves_all_ages(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without it intervals are those of the dwells alone, and narrower."""
+    told = shipped.film(1).starves[0].units[0].age
+    monkeypatch.setattr(through_life, "_LAW", 0.0)
+    bare = film_life(shipped.campaign(1), shipped.machine()).starves[0].units[0].age
+    assert told.high - told.low > 1.05 * (bare.high - bare.low)
+    assert told.value == pytest.approx(bare.value, rel=0.02)

@@ -16,7 +16,7 @@ from hersey.life.ending.endings import Endings, endings
 from hersey.life.growth import fit as growth_module
 from hersey.life.growth import posterior as growth_posterior
 from hersey.life.growth.fit import fit_growth
-from hersey.life.indicator import Indicator, Indicators, Runs
+from hersey.life.indicator import Indicator, Indicators, OwnAges, Runs
 
 UNITS, AGES = 6, np.linspace(0.0, 600.0, 7)
 RATE = np.array([0.0008, 0.0009, 0.0010, 0.0011, 0.0012, 0.0030])
@@ -247,3 +247,10 @@ def test_what_to_measure_next_is_said() -> None:
     assert "again at" in told().advice[0]
     assert "the interval of its end narrows from" in told().advice[0]
     assert any(run.unit is None for run in runs)
+
+
+def test_ages_by_a_law_of_its_own_stand_in_the_place_of_growth() -> None:
+    own = OwnAges(np.full((50, len(RATE)), 123.0), np.full((50, 20), 456.0))
+    found = endings(of(indicator("torque", linear(RATE), 2.0, own_ages=own)))
+    assert {each.age.age.value for each in found.units} == {123.0}
+    assert found.b50.age.value == 456.0
