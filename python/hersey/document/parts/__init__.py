@@ -21,6 +21,7 @@ inspection  what a log holds
 campaign    runs of many units at many ages
 cycles      cycles of a trace and the drive behind them
 figures     the paper's figures, drawn anew
+decision    what to do, first of all
 analysis    the whole document
 ==========  ==================================================
 """
@@ -30,6 +31,7 @@ from hersey.document.parts.analysis import Analysis
 from hersey.document.parts.campaign import CampaignPart
 from hersey.document.parts.carried import CarriedPart
 from hersey.document.parts.cycles import CyclesPart, DrivePart
+from hersey.document.parts.decision import DecisionPart, FlagPart, MissingPart, PointDecisionPart
 from hersey.document.parts.drift import DriftPart
 from hersey.document.parts.ending import AgesPart, EndingsPart, GrowthPart
 from hersey.document.parts.figures import FiguresPart
@@ -112,6 +114,7 @@ __all__ = [
     "ComparisonPart",
     "Curve",
     "CyclesPart",
+    "DecisionPart",
     "DesignPart",
     "DisturbancePart",
     "DriftPart",

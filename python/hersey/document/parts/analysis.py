@@ -12,6 +12,7 @@ from pydantic import Field
 from hersey.document.parts.campaign import CampaignPart
 from hersey.document.parts.carried import CarriedPart
 from hersey.document.parts.cycles import CyclesPart
+from hersey.document.parts.decision import DecisionPart
 from hersey.document.parts.figures import FiguresPart
 from hersey.document.parts.film import FilmPart
 from hersey.document.parts.fit import FitPart, RegimePart
@@ -31,6 +32,7 @@ class Analysis(Part):
     hersey_version: str
     title: str
     command: str
+    decision: DecisionPart | None = None
     verdict: list[str] = Field(description="in paragraphs; a contradiction first")
     warnings: list[str]
     files: list[InputFile]

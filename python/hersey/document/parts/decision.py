@@ -1,0 +1,55 @@
+"""What to do, in the document: the instruction, its signal, and what stands against it."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from hersey.document.parts.part import Part
+from hersey.document.parts.stability import DisturbancePart, PlanPart, StepPart
+
+#: Good: nothing to do. Watch: it depends, or a number is not sure. Act: something does not work as it is.
+Signal = Literal["good", "watch", "act"]
+
+
+class PointDecisionPart(Part):
+    """An operating point of the machine's file: speed in m/s, temperature in K."""
+
+    name: str
+    speed: float
+    temperature: float
+    signal: Signal
+    words: str = Field(description="such as 'smooth from any start'")
+    disturbance: DisturbancePart | None = Field(default=None, description="what sliding there bears")
+    steps: list[StepPart] = Field(default=[], description="from the other points to this one")
+    plan: PlanPart | None = Field(default=None, description="where the belt does not slide from every start")
+
+
+class FlagPart(Part):
+    """A warning of the first screen, and the section that holds its evidence."""
+
+    signal: Signal
+    title: str
+    text: str
+    section: str = Field(description="name of a section of the page")
+
+
+class MissingPart(Part):
+    """What would let the report say more: lines to add to a file."""
+
+    purpose: str = Field(description="what the report would then say")
+    file: str
+    lines: str = Field(description="TOML, to be copied; values of the user's are named in comments")
+
+
+class DecisionPart(Part):
+    """The first screen of the report."""
+
+    signal: Signal
+    instruction: str = Field(description="one sentence in the imperative, on the safe side")
+    interval: str = Field(description="the estimate and its 95 % interval behind the instruction; may be empty")
+    otherwise: str = Field(description="what happens otherwise")
+    points: list[PointDecisionPart]
+    flags: list[FlagPart] = Field(description="three at the most, the gravest first")
+    missing: list[MissingPart]
