@@ -112,6 +112,14 @@ def test_the_torque_of_the_motor_at_both_corners(campaign: Campaign) -> None:
     assert "U4 at 170000 pages, 1.34 times the speed of the nearest dwell" in notes[1]
 
 
+def test_the_coldest_start_is_that_of_the_machine(campaign: Campaign) -> None:
+    colder = replace(machine(motor_torque=1.0), points=(), life=LifeTable(coldest=318.15))
+    cold = named(indicators_of(campaign, colder), "motor torque, cold and fast")
+    assert "45 degC" in cold.notes[0]
+    assert "[life] coldest" in cold.notes[0]
+    assert np.all(cold.value > named(in_use(campaign), cold.name).value)
+
+
 def test_what_the_machine_does_not_state_is_said(campaign: Campaign) -> None:
     found = indicators_of(campaign, replace(machine(), points=()))
     assert found.each == ()

@@ -222,7 +222,7 @@ def film_life(
     machine
         Contact and lubricant; asperities and boundary friction if stated; operating points.
     cold
-        Temperature of the cold corner, K; the coldest that all units recorded if left out.
+        Temperature of the cold corner, K; else that of ``[life]``, or the coldest that all units recorded.
     track
         Length of the track that carries the layer, m, by which it becomes an amount; the roll's circumference
         if left out.
@@ -244,7 +244,7 @@ def film_life(
             raise ParameterError(f"{name} is {value:g}: it must not be negative")
     if track is not None and not 0.0 < track < np.inf:
         raise ParameterError(f"track is {track:g} m: it must be positive")
-    read = _read(campaign, machine, cold)
+    read = _read(campaign, machine, machine.life.coldest if cold is None else cold)
     runs = read.runs
     names = list(dict.fromkeys(runs.unit[i] for i in read.told))
     unit = np.array([names.index(runs.unit[i]) for i in read.told])

@@ -51,6 +51,8 @@ def corners(machine: Machine, runs: CampaignRuns) -> tuple[State, State] | None:
     coldest, hottest = runs.shared("temperature", least=True), runs.shared("temperature", least=False)
     cold_from = hot_from = "that all units recorded" if coldest is not None else ""
     slow_from = fast_from = "slowest and fastest that all units recorded"
+    if machine.life.coldest is not None and coldest is not None:
+        coldest, cold_from = machine.life.coldest, "[life] coldest"
     if machine.limits.speed is not None:
         fastest, fast_from = machine.limits.speed / machine.roll_radius, "[limits] speed"
     if machine.points:
