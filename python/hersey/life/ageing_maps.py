@@ -26,7 +26,8 @@ if TYPE_CHECKING:
     import polars as pl
 
     from hersey.life.campaign import Campaign
-    from hersey.life.ending.endings import Endings, UnitEnd
+    from hersey.life.ending.endings import Endings
+    from hersey.life.ending.first import UnitEnd
     from hersey.machine.limits import OperatingPoint
     from hersey.machine.machine import Machine
 

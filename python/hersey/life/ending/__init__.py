@@ -1,7 +1,9 @@
 """What ends each unit, and when: every indicator against its limit.
 
 ========  =============================================================
+way       `Mode`: the growth of an indicator and the ages at its limit
 joined    draws of several ways to fail side by side
+first     `UnitEnd`: which way comes first, and when
 next_run  what to measure next, and how far it would narrow an interval
 endings   `endings`: the first end of each unit, and of the population
 ========  =============================================================

@@ -12,7 +12,8 @@ import numpy as np
 
 from hersey.arrays import FloatArray, IntArray, one_thread
 from hersey.errors import HerseyError, InsufficientDataError
-from hersey.life.ending.joined import correlations, order_by, ranks_of
+from hersey.life.ending.first import UnitEnd, ages_of_new, ends_of_units
+from hersey.life.ending.joined import correlations
 from hersey.life.ending.next_run import (
     HORIZON,
     NextRun,
@@ -21,27 +22,21 @@ from hersey.life.ending.next_run import (
     width_after_unit,
     widths_after,
 )
-from hersey.life.growth.fit import Growth, fit_growth
+from hersey.life.ending.way import FittedWay, Mode, fitted_way, last_ages, listed
 from hersey.life.growth.limit_ages import (
     CONFIDENCE,
     AgeAtLimit,
-    AgesAtLimit,
     Interval,
-    age_at_limit,
     quantiles,
     share_of_units,
 )
-from hersey.life.indicator import Indicator, Indicators
+from hersey.life.indicator import Indicators
 from hersey.life.population import Population, weibull
 from hersey.result import Result, json_record, json_value
 
 if TYPE_CHECKING:
     import polars as pl
 
-#: Ways are named until they hold so much of the probability of being first.
-NAMED = 0.9
-#: A way is named from this probability on, and where its age is so little later than the first.
-MENTIONED, NEAR = 0.05, 1.25
 #: What is said of a unit from so many times the age at which it was last seen on.
 FAR = 3.0
 #: Places of the curve of the population.
@@ -55,63 +50,6 @@ _FEW = 3
 #: Rows that a summary shows.
 _SHOWN = 24
 NEVER = "none"
-
-
-@dataclass(frozen=True, repr=False)
-class Mode:
-    """One way to fail: the growth of its indicator and the ages at its limit, of all units."""
-
-    name: str
-    kind: str
-    si: str
-    limit: float
-    sign: bool  #: an early sign, which ends no unit
-    growth: Growth
-    ages: AgesAtLimit
-    notes: tuple[str, ...]
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return what was found."""
-        kept = ("name", "kind", "si", "limit", "sign", "notes")
-        told = {name: getattr(self, name) for name in kept}
-        return json_record({**told, "growth": self.growth.to_dict(), "ages": self.ages.to_dict()})
-
-
-@dataclass(frozen=True)
-class UnitEnd:
-    """What ends a unit, and when."""
-
-    unit: str
-    age: AgeAtLimit  #: of the first of all ways
-    first: dict[str, float]  #: probability of each way to be the first; the rest is that none comes
-    near: tuple[str, ...]  #: ways whose own age, the middle one, is up to 25 % later than the first
-
-    @property
-    def named(self) -> tuple[str, ...]:
-        """The ways that must be named, the likeliest first.
-
-        The fewest that hold 90 % of the probability that any comes, each that has 5 % of it, and those near.
-        """
-        order = sorted(self.first, key=lambda name: -self.first[name])
-        total, found = sum(self.first.values()), 0.0
-        names = []
-        for name in order:
-            if found < NAMED * total or self.first[name] >= MENTIONED * total > 0.0 or name in self.near:
-                names.append(name)
-            found += self.first[name]
-        return tuple(names)
-
-    @property
-    def ways(self) -> str:
-        """The ways in words."""
-        likely = [name for name in self.named if self.first[name] >= MENTIONED]
-        text = " or ".join(f"{name} ({self.first[name]:.0%})" for name in likely) or "no way told"
-        behind = [name for name in self.named if name not in likely]
-        return text + (f", close behind {' and '.join(behind)}" if behind else "")
-
-    def __str__(self) -> str:
-        """Return it in words."""
-        return f"{self.age} by {self.ways}"
 
 
 @dataclass(frozen=True)
@@ -238,18 +176,6 @@ class Endings(Result):
         )
 
 
-@dataclass(frozen=True)
-class _Fitted:
-    """A mode with its draws: ages of all units and of new ones, and where its runs stand."""
-
-    mode: Mode
-    ages: FloatArray
-    new: FloatArray
-    residuals: FloatArray  #: per run of the campaign, NaN where it does not tell it
-    row: dict[str, int]  #: of each unit that the growth knows
-    error: float  #: of a run, typically
-
-
 @one_thread()
 def endings(
     indicators: Indicators, *, seed: int = 0, progress: Callable[[int, int], None] | None = None
@@ -278,7 +204,7 @@ def endings(
     fitted, unsaid = [], list(indicators.unsaid)
     for i, each in enumerate(indicators.each):
         try:
-            fitted.append(_fitted(indicators, each, seed + i))
+            fitted.append(fitted_way(indicators, each, seed + i))
         except HerseyError as error:
             unsaid.append(f"{each.name}: {error}")
         if progress:
@@ -289,9 +215,9 @@ def endings(
         raise InsufficientDataError(f"nothing that ends a unit can be followed: {why}")
     random = np.random.default_rng([seed, 2])
     of_runs = correlations([each.residuals for each in ending])
-    names, last = indicators.runs.units, _last_ages(indicators)
-    units, picks = _units(ending, of_runs, names, last, random)
-    new = _population(ending, of_runs, random)
+    names, last = indicators.runs.units, last_ages(indicators)
+    units, picks = ends_of_units(ending, of_runs, names, last, random)
+    new = ages_of_new(ending, of_runs, random)
     greatest = float(indicators.runs.age.max())
     first = np.sort(new.min(axis=0), axis=1)
     b10, b50 = (share_of_units(first, share) for share in (0.1, 0.5))
@@ -313,106 +239,7 @@ def endings(
     )
 
 
-def _last_ages(indicators: Indicators) -> dict[str, float]:
-    last: dict[str, float] = {}
-    for unit, age in zip(indicators.runs.unit, indicators.runs.age.tolist(), strict=True):
-        last[unit] = max(age, last.get(unit, 0.0))
-    return last
-
-
-def _fitted(indicators: Indicators, each: Indicator, seed: int) -> _Fitted:
-    runs = indicators.runs
-    told = np.flatnonzero(np.isfinite(each.value))
-    if not told.size:
-        raise InsufficientDataError("no run tells it")
-    growth = fit_growth(
-        [runs.unit[i] for i in told],
-        runs.age[told],
-        each.value[told],
-        each.error[told],
-        quantity=each.name,
-        age_unit=runs.age_unit,
-        seed=seed,
-    )
-    known, new = growth.drawn_ages(each.limit, limit_error=each.limit_error, accumulates=each.accumulates)
-    row = {name: i for i, name in enumerate(growth.units)}
-    last = _last_ages(indicators)
-    # A unit of which no run tells this is one more of the population.
-    random = np.random.default_rng([seed, 3])
-    spare = iter(random.permutation(new.shape[1]).tolist() * len(last))
-    ages = np.stack([known[:, row[n]] if n in row else new[:, next(spare)] for n in last], axis=1)
-    if each.own_ages is not None:
-        columns = random.integers(each.own_ages.new.shape[1], size=new.shape[1])
-        ages, new = (_as_many(own, len(known)) for own in (each.own_ages.known, each.own_ages.new))
-        new = new[:, columns]
-    notes = [*each.notes, *growth.notes]
-    missing = [name for name in last if name not in row]
-    if missing and each.own_ages is None:
-        notes.append(f"no run of {_listed(missing)} tells it: taken as any new unit")
-    ordered = np.sort(new, axis=1)
-    quantity = f"the sum of {each.name} over age" if each.accumulates else each.name
-    at_limit = AgesAtLimit(
-        quantity,
-        runs.age_unit,
-        each.limit,
-        tuple(age_at_limit(name, ages[:, i], last[name]) for i, name in enumerate(last)),
-        share_of_units(ordered, 0.1),
-        share_of_units(ordered, 0.5),
-        tuple(notes),
-        each.accumulates,
-    )
-    residuals = np.full(runs.age.size, np.nan)
-    residuals[told] = growth.residuals()
-    mode = Mode(each.name, each.kind, each.si, each.limit, each.sign, growth, at_limit, tuple(notes))
-    return _Fitted(mode, ages, new, residuals, row, float(np.median(each.error[told])))
-
-
-def _as_many(draws: FloatArray, count: int) -> FloatArray:
-    """So many of equally probable draws, evenly."""
-    return draws[np.linspace(0, len(draws) - 1, count).astype(np.intp)]
-
-
-def _units(
-    ending: Sequence[_Fitted],
-    of_runs: FloatArray,
-    names: Sequence[str],
-    last: dict[str, float],
-    random: np.random.Generator,
-) -> tuple[tuple[UnitEnd, ...], list[tuple[IntArray, FloatArray]]]:
-    """The first end of each unit; and which draws of each way stand together, with their first ages."""
-    found, picks = [], []
-    for i, name in enumerate(names):
-        keys = np.stack([each.ages[:, i] for each in ending], axis=1)
-        order = order_by(keys, ranks_of(len(keys), of_runs, random))
-        joint = np.take_along_axis(keys, order, axis=0)
-        first = joint.min(axis=1)
-        shares = {e.mode.name: float(s) for e, s in zip(ending, _firsts(joint.T), strict=True)}
-        end = age_at_limit(name, first, last[name])
-        middle = {e.mode.name: float(np.median(e.ages[:, i])) for e in ending}
-        near = tuple(way for way, age in middle.items() if age <= NEAR * end.age.value < np.inf)
-        found.append(UnitEnd(name, end, shares, near))
-        picks.append((order, first))
-    return tuple(found), picks
-
-
-def _firsts(ages: FloatArray) -> FloatArray:
-    """Share in which each row is the least of all, ties shared; less than 1 in all where none comes."""
-    least = (ages == ages.min(axis=0)) & np.isfinite(ages)
-    count = np.maximum(least.sum(axis=0), 1)
-    return np.asarray((least / count).reshape(len(ages), -1).mean(axis=1))
-
-
-def _population(ending: Sequence[_Fitted], of_runs: FloatArray, random: np.random.Generator) -> FloatArray:
-    """Ages of new units at each limit, (ways, draws, units), units side by side."""
-    logs = [np.log(np.clip([a.age.value for a in each.mode.ages.units], 1e-9, 1e300)) for each in ending]
-    of_units = correlations(logs)
-    middle = np.stack([np.median(each.new, axis=1) for each in ending], axis=1)
-    order = order_by(middle, ranks_of(len(middle), of_runs, random))
-    ranks = ranks_of(ending[0].new.shape[1], of_units, random)
-    return np.stack([np.sort(each.new[order[:, m]], axis=1)[:, ranks[:, m]] for m, each in enumerate(ending)])
-
-
-def _shares(ending: Sequence[_Fitted], new: FloatArray) -> dict[str, Interval]:
+def _shares(ending: Sequence[FittedWay], new: FloatArray) -> dict[str, Interval]:
     first = new.min(axis=0)
     found = {}
     for each, ages in zip(ending, new, strict=True):
@@ -429,7 +256,7 @@ def _curve(first: FloatArray, greatest: float) -> ShareEnded:
 
 
 def _again(
-    ending: Sequence[_Fitted],
+    ending: Sequence[FittedWay],
     units: Sequence[UnitEnd],
     picks: Sequence[tuple[IntArray, FloatArray]],
     of_runs: FloatArray,
@@ -469,7 +296,7 @@ def _one_more(first: FloatArray, greatest: float, random: np.random.Generator) -
     return [NextRun(None, age, width(b10), width_after_unit(b10, capped, random))]
 
 
-def _together(ending: Sequence[_Fitted], of_runs: FloatArray) -> tuple[str, ...]:
+def _together(ending: Sequence[FittedWay], of_runs: FloatArray) -> tuple[str, ...]:
     return tuple(
         f"{ending[j].mode.name} and {ending[i].mode.name} ({of_runs[i, j]:.2f})"
         for i in range(len(ending))
@@ -478,7 +305,7 @@ def _together(ending: Sequence[_Fitted], of_runs: FloatArray) -> tuple[str, ...]
     )
 
 
-def _notes(fitted: Sequence[_Fitted], units: Sequence[UnitEnd], of_runs: FloatArray) -> tuple[str, ...]:
+def _notes(fitted: Sequence[FittedWay], units: Sequence[UnitEnd], of_runs: FloatArray) -> tuple[str, ...]:
     """What cannot be told, and what rests on priors."""
     notes = []
     ending = [each for each in fitted if not each.mode.sign]
@@ -486,7 +313,7 @@ def _notes(fitted: Sequence[_Fitted], units: Sequence[UnitEnd], of_runs: FloatAr
     unnamed = [e.mode.name for e in ending if e.mode.growth.law is None and e.mode.name in named]
     if unnamed:
         notes.append(
-            f"which law of growth holds is not told for {_listed(unnamed)}: ages later than the last runs "
+            f"which law of growth holds is not told for {listed(unnamed)}: ages later than the last runs "
             "are taken over all laws that remain"
         )
     if len(units) == 1:
@@ -498,17 +325,17 @@ def _notes(fitted: Sequence[_Fitted], units: Sequence[UnitEnd], of_runs: FloatAr
         )
     passed = [each.unit for each in units if each.age.passed > 0.5]
     if passed:
-        notes.append(f"{_listed(passed)} reached a limit already, at the age told, before last seen")
+        notes.append(f"{listed(passed)} reached a limit already, at the age told, before last seen")
     near = [each.unit for each in units if len(each.named) > 1]
     if near:
-        notes.append(f"which way comes first is not told for {_listed(near)}: all that remain are named")
+        notes.append(f"which way comes first is not told for {listed(near)}: all that remain are named")
     wide = [each.unit for each in units if each.age.age.high > _WIDE * max(each.age.age.low, 1e-300)]
     if wide:
-        notes.append(f"the end of {_listed(wide)} is not told within a factor of {_WIDE:g}")
+        notes.append(f"the end of {listed(wide)} is not told within a factor of {_WIDE:g}")
     far = [each.unit for each in units if each.age.age.value > FAR * each.age.last]
     if far:
         notes.append(
-            f"the end of {_listed(far)} lies beyond {FAR:g} times the age followed: read it as not "
+            f"the end of {listed(far)} lies beyond {FAR:g} times the age followed: read it as not "
             "soon, no more"
         )
     together = _together(ending, of_runs)
@@ -518,8 +345,3 @@ def _notes(fitted: Sequence[_Fitted], units: Sequence[UnitEnd], of_runs: FloatAr
         f"{each.mode.name}: {note}" for each in ending for note in each.mode.notes if each.mode.name in named
     ]
     return tuple(notes)
-
-
-def _listed(names: Sequence[str], most: int = 8) -> str:
-    more = f" and {len(names) - most} more" if len(names) > most else ""
-    return ", ".join(names[:most]) + more

@@ -1,0 +1,95 @@
+"""The first end: of each unit by all ways together, and of new units."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from hersey.arrays import FloatArray, IntArray
+from hersey.life.ending.joined import correlations, order_by, ranks_of
+from hersey.life.ending.way import FittedWay
+from hersey.life.growth.limit_ages import AgeAtLimit, age_at_limit
+
+#: Ways are named until they hold so much of the probability of being first.
+NAMED = 0.9
+#: A way is named from this probability on, and where its age is so little later than the first.
+MENTIONED, NEAR = 0.05, 1.25
+
+
+@dataclass(frozen=True)
+class UnitEnd:
+    """What ends a unit, and when."""
+
+    unit: str
+    age: AgeAtLimit  #: of the first of all ways
+    first: dict[str, float]  #: probability of each way to be the first; the rest is that none comes
+    near: tuple[str, ...]  #: ways whose own age, the middle one, is up to 25 % later than the first
+
+    @property
+    def named(self) -> tuple[str, ...]:
+        """The ways that must be named, the likeliest first.
+
+        The fewest that hold 90 % of the probability that any comes, each that has 5 % of it, and those near.
+        """
+        order = sorted(self.first, key=lambda name: -self.first[name])
+        total, found = sum(self.first.values()), 0.0
+        names = []
+        for name in order:
+            if found < NAMED * total or self.first[name] >= MENTIONED * total > 0.0 or name in self.near:
+                names.append(name)
+            found += self.first[name]
+        return tuple(names)
+
+    @property
+    def ways(self) -> str:
+        """The ways in words."""
+        likely = [name for name in self.named if self.first[name] >= MENTIONED]
+        text = " or ".join(f"{name} ({self.first[name]:.0%})" for name in likely) or "no way told"
+        behind = [name for name in self.named if name not in likely]
+        return text + (f", close behind {' and '.join(behind)}" if behind else "")
+
+    def __str__(self) -> str:
+        """Return it in words."""
+        return f"{self.age} by {self.ways}"
+
+
+def ends_of_units(
+    ending: Sequence[FittedWay],
+    of_runs: FloatArray,
+    names: Sequence[str],
+    last: dict[str, float],
+    random: np.random.Generator,
+) -> tuple[tuple[UnitEnd, ...], list[tuple[IntArray, FloatArray]]]:
+    """The first end of each unit; and which draws of each way stand together, with their first ages."""
+    found, picks = [], []
+    for i, name in enumerate(names):
+        keys = np.stack([each.ages[:, i] for each in ending], axis=1)
+        order = order_by(keys, ranks_of(len(keys), of_runs, random))
+        joint = np.take_along_axis(keys, order, axis=0)
+        first = joint.min(axis=1)
+        shares = {e.mode.name: float(s) for e, s in zip(ending, _firsts(joint.T), strict=True)}
+        end = age_at_limit(name, first, last[name])
+        middle = {e.mode.name: float(np.median(e.ages[:, i])) for e in ending}
+        near = tuple(way for way, age in middle.items() if age <= NEAR * end.age.value < np.inf)
+        found.append(UnitEnd(name, end, shares, near))
+        picks.append((order, first))
+    return tuple(found), picks
+
+
+def _firsts(ages: FloatArray) -> FloatArray:
+    """Share in which each row is the least of all, ties shared; less than 1 in all where none comes."""
+    least = (ages == ages.min(axis=0)) & np.isfinite(ages)
+    count = np.maximum(least.sum(axis=0), 1)
+    return np.asarray((least / count).reshape(len(ages), -1).mean(axis=1))
+
+
+def ages_of_new(ending: Sequence[FittedWay], of_runs: FloatArray, random: np.random.Generator) -> FloatArray:
+    """Ages of new units at each limit, (ways, draws, units), units side by side."""
+    logs = [np.log(np.clip([a.age.value for a in each.mode.ages.units], 1e-9, 1e300)) for each in ending]
+    of_units = correlations(logs)
+    middle = np.stack([np.median(each.new, axis=1) for each in ending], axis=1)
+    order = order_by(middle, ranks_of(len(middle), of_runs, random))
+    ranks = ranks_of(ending[0].new.shape[1], of_units, random)
+    return np.stack([np.sort(each.new[order[:, m]], axis=1)[:, ranks[:, m]] for m, each in enumerate(ending)])

@@ -1,0 +1,121 @@
+"""One way to fail, followed: the growth of its indicator, and the ages at which it reaches its limit."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from hersey.arrays import FloatArray
+from hersey.errors import InsufficientDataError
+from hersey.life.growth.fit import Growth, fit_growth
+from hersey.life.growth.limit_ages import AgesAtLimit, age_at_limit, share_of_units
+from hersey.life.indicator import Indicator, Indicators
+from hersey.result import json_record
+
+
+@dataclass(frozen=True, repr=False)
+class Mode:
+    """One way to fail: the growth of its indicator and the ages at its limit, of all units."""
+
+    name: str
+    kind: str
+    si: str
+    limit: float
+    sign: bool  #: an early sign, which ends no unit
+    growth: Growth
+    ages: AgesAtLimit
+    notes: tuple[str, ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return what was found."""
+        kept = ("name", "kind", "si", "limit", "sign", "notes")
+        told = {name: getattr(self, name) for name in kept}
+        return json_record({**told, "growth": self.growth.to_dict(), "ages": self.ages.to_dict()})
+
+
+@dataclass(frozen=True)
+class FittedWay:
+    """A mode with its draws: ages of all units and of new ones, and where its runs stand."""
+
+    mode: Mode
+    ages: FloatArray
+    new: FloatArray
+    residuals: FloatArray  #: per run of the campaign, NaN where it does not tell it
+    row: dict[str, int]  #: of each unit that the growth knows
+    error: float  #: of a run, typically
+
+
+def last_ages(indicators: Indicators) -> dict[str, float]:
+    """Return the age at which each unit was last seen."""
+    last: dict[str, float] = {}
+    for unit, age in zip(indicators.runs.unit, indicators.runs.age.tolist(), strict=True):
+        last[unit] = max(age, last.get(unit, 0.0))
+    return last
+
+
+def fitted_way(indicators: Indicators, each: Indicator, seed: int, known: Growth | None = None) -> FittedWay:
+    """Return the growth of an indicator, which may be known already, and the ages at its limit.
+
+    Raises
+    ------
+    InsufficientDataError
+        If no run tells it.
+    """
+    runs = indicators.runs
+    told = np.flatnonzero(np.isfinite(each.value))
+    if not told.size:
+        raise InsufficientDataError("no run tells it")
+    growth = known or fit_growth(
+        [runs.unit[i] for i in told],
+        runs.age[told],
+        each.value[told],
+        each.error[told],
+        quantity=each.name,
+        age_unit=runs.age_unit,
+        seed=seed,
+    )
+    of_units, new = growth.drawn_ages(each.limit, limit_error=each.limit_error, accumulates=each.accumulates)
+    row = {name: i for i, name in enumerate(growth.units)}
+    last = last_ages(indicators)
+    # A unit of which no run tells this is one more of the population.
+    random = np.random.default_rng([seed, 3])
+    spare = iter(random.permutation(new.shape[1]).tolist() * len(last))
+    ages = np.stack([of_units[:, row[n]] if n in row else new[:, next(spare)] for n in last], axis=1)
+    if each.own_ages is not None:
+        columns = random.integers(each.own_ages.new.shape[1], size=new.shape[1])
+        ages, new = (_as_many(own, len(of_units)) for own in (each.own_ages.known, each.own_ages.new))
+        new = new[:, columns]
+    notes = [*each.notes, *growth.notes]
+    missing = [name for name in last if name not in row]
+    if missing and each.own_ages is None:
+        notes.append(f"no run of {listed(missing)} tells it: taken as any new unit")
+    ordered = np.sort(new, axis=1)
+    quantity = f"the sum of {each.name} over age" if each.accumulates else each.name
+    at_limit = AgesAtLimit(
+        quantity,
+        runs.age_unit,
+        each.limit,
+        tuple(age_at_limit(name, ages[:, i], last[name]) for i, name in enumerate(last)),
+        share_of_units(ordered, 0.1),
+        share_of_units(ordered, 0.5),
+        tuple(notes),
+        each.accumulates,
+    )
+    residuals = np.full(runs.age.size, np.nan)
+    residuals[told] = growth.residuals()
+    mode = Mode(each.name, each.kind, each.si, each.limit, each.sign, growth, at_limit, tuple(notes))
+    return FittedWay(mode, ages, new, residuals, row, float(np.median(each.error[told])))
+
+
+def _as_many(draws: FloatArray, count: int) -> FloatArray:
+    """So many of equally probable draws, evenly."""
+    return draws[np.linspace(0, len(draws) - 1, count).astype(np.intp)]
+
+
+def listed(names: Sequence[str], most: int = 8) -> str:
+    """Names in words, the rest of many counted."""
+    more = f" and {len(names) - most} more" if len(names) > most else ""
+    return ", ".join(names[:most]) + more
