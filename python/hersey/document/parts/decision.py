@@ -48,7 +48,9 @@ class DecisionPart(Part):
 
     signal: Signal
     instruction: str = Field(description="one sentence in the imperative, on the safe side")
-    interval: str = Field(description="the estimate and its 95 % interval behind the instruction; may be empty")
+    interval: str = Field(
+        description="the estimate and its 95 % interval behind the instruction; may be empty"
+    )
     otherwise: str = Field(description="what happens otherwise")
     points: list[PointDecisionPart]
     flags: list[FlagPart] = Field(description="three at the most, the gravest first")
