@@ -37,6 +37,7 @@ from hersey.document.parts import (
     MeasuredFilmPart,
     MixedPart,
     ModelsPart,
+    OtherUsesPart,
     Part,
     PlanPart,
     PointsPart,
@@ -51,7 +52,7 @@ from hersey.document.parts import (
 from hersey.result import LINE, Result, json_value, table_of
 from hersey.verdict.evidence import verdict
 from tests.conftest import ROOT
-from tests.life import shipped, test_ageing_maps
+from tests.life import shipped, test_ageing_maps, test_other_uses
 
 BENCH = ROOT / "examples" / "bench.csv"
 TRAIN = hersey.Drivetrain(1000, 1)
@@ -184,6 +185,7 @@ RESULTS: dict[str, tuple[Callable[[], Any], type[Part]]] = {
     "Plan": (plan, PlanPart),
     "WarmUp": (warm_up, WarmUpPart),
     "FilmLife": (lambda: shipped.film(1), FilmLifePart),
+    "OtherUses": (test_other_uses.by_hand, OtherUsesPart),
     "AgeingMaps": (test_ageing_maps.maps, AgeingMapsPart),
     "LifeTest": (lambda: shipped.followed(2), LifeTestPart),
     "Population": (

@@ -71,6 +71,7 @@ if TYPE_CHECKING:
     from hersey.life.growth.limit_ages import AgesAtLimit
     from hersey.life.indicator import Indicator, Indicators, Runs
     from hersey.life.indicators.telling import indicators_of
+    from hersey.life.other_uses import OtherUses, other_uses
     from hersey.life.population import BLife, Population, weibull
     from hersey.log import TorqueLog, memory_limit, read
     from hersey.log.mapping import read_with_mapping
@@ -163,6 +164,7 @@ _HOMES = {
     "life.indicators.telling": "indicators_of",
     "life.following": "LifeTest follow",
     "life.ageing_maps": "AgeingMaps",
+    "life.other_uses": "OtherUses other_uses",
     "life.population": "BLife Population weibull",
     "life.campaign": "Campaign",
     "life.film.through_life": "FilmLife film_life",
@@ -210,6 +212,7 @@ __all__ = [
     "ModelComparison",
     "OperatingMap",
     "OperatingPoint",
+    "OtherUses",
     "Plan",
     "Population",
     "RainflowCycles",
@@ -258,6 +261,7 @@ __all__ = [
     "mixed_torque",
     "nip_width",
     "operating_map",
+    "other_uses",
     "plan_profile",
     "rainflow_cycles",
     "read",

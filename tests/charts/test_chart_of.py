@@ -24,7 +24,7 @@ from hersey.motion.drag import Drag as AnyDrag
 from tests import test_results
 from tests.charts.test_charts import titles
 from tests.conftest import ROOT
-from tests.life import shipped, test_ageing_maps
+from tests.life import shipped, test_ageing_maps, test_other_uses
 
 RPM = 2 * np.pi / 60
 EXAMPLES = ROOT / "examples"
@@ -161,6 +161,7 @@ MADE: dict[str, Callable[[], Any]] = {
     "Growth": lambda: test_results.growth(),
     "AgesAtLimit": lambda: test_results.growth().reaches(2.0),
     "Endings": lambda: test_results.ends(),
+    "OtherUses": test_other_uses.by_hand,
     "AgeingMaps": test_ageing_maps.maps,
     "LifeTest": lambda: shipped.followed(2),
 }

@@ -69,6 +69,7 @@ CHARTS = {
     "Plan": ("plan", "plan_chart"),
     "WarmUp": ("warm_up", "warm_up_chart"),
     "Population": ("weibull", "weibull_chart"),
+    "OtherUses": ("other_uses", "other_uses_chart"),
     "AgeingMaps": ("ageing_maps", "ageing_maps_chart"),
     "LifeTest": ("life", "life_chart"),
     "Drift": ("drift", "drift_chart"),

@@ -55,7 +55,7 @@ def life(
     machine = read_machine(machine_file)
     with Campaign.open(file, write=False) as campaign:
         with steps() as step:
-            answer = follow(campaign, machine, seed=seed, unit=unit, step=step)
+            answer = follow(campaign, machine, seed=seed, unit=unit, uses=page is not None, step=step)
         runs = campaign.runs()
     if page is not None:
         from hersey.report.life_page import render_life

@@ -11,6 +11,7 @@ growth       how indicators grow, and the ages at their limits
 drift        what moved with age, and what it points to
 film         the film through life, the oil that is left, and when it starves
 ending       what ends each unit, and when
+other_uses   the same where limit, coldest start or duty is another one
 ageing_maps  the operating map of a unit when new, now and at its end
 following    a life test followed, in one answer
 ===========  ==================================================================

@@ -14,6 +14,7 @@ from hersey.life.ending.endings import Endings, endings
 from hersey.life.film.through_life import FilmLife, film_life
 from hersey.life.indicator import Indicators
 from hersey.life.indicators.telling import indicators_of
+from hersey.life.other_uses import OtherUses, other_uses
 from hersey.result import Result
 
 if TYPE_CHECKING:
@@ -36,6 +37,7 @@ class LifeTest(Result):
     drift: Drift | None
     film: FilmLife | None
     maps: AgeingMaps | None
+    uses: OtherUses | None
     unsaid: tuple[str, ...]
     seed: int
 
@@ -52,7 +54,7 @@ class LifeTest(Result):
 
     def to_dict(self) -> dict[str, Any]:
         """Return all parts as JSON can hold them, in SI; ages in the unit of the campaign."""
-        parts = {name: getattr(self, name) for name in ("drift", "film", "maps")}
+        parts = {name: getattr(self, name) for name in ("drift", "film", "maps", "uses")}
         told = {name: None if part is None else part.to_dict() for name, part in parts.items()}
         return {
             "file": self.name,
@@ -69,7 +71,13 @@ class LifeTest(Result):
 
 @one_thread()
 def follow(
-    campaign: Campaign, machine: Machine, *, seed: int = 0, unit: str = "", step: Step | None = None
+    campaign: Campaign,
+    machine: Machine,
+    *,
+    seed: int = 0,
+    unit: str = "",
+    uses: bool = False,
+    step: Step | None = None,
 ) -> LifeTest:
     """Follow the units of a campaign to what ends them.
 
@@ -83,6 +91,8 @@ def follow(
         Of all draws.
     unit
         Whose maps are drawn; the one that ends next if left out.
+    uses
+        Whether the ages are told for other limits, coldest starts and duties too.
     step
         Called with what is begun.
 
@@ -116,4 +126,9 @@ def follow(
         "maps at new, now and the end",
         lambda: ageing_maps(campaign, machine, found, unit=unit),
     )
-    return LifeTest(campaign.path.name, indicators, found, drift, film, maps, tuple(unsaid), seed)
+    others = (
+        tried("ages in other uses", lambda: other_uses(campaign, machine, indicators, seed=seed))
+        if uses
+        else None
+    )
+    return LifeTest(campaign.path.name, indicators, found, drift, film, maps, others, tuple(unsaid), seed)

@@ -46,6 +46,7 @@ def render_life(answer: LifeTest, runs: pl.DataFrame, command: str) -> str:
         "verdict": _verdict(found),
         "warnings": [*_of_all(found), *answer.unsaid],
         "sections": [each for each in _sections(answer, list(charts)) if each["text"] or each["charts"]],
+        "uses": None if answer.uses is None else answer.uses.to_dict(),
         "runs": runs.select("sha256", "log").to_dicts(),
         "command": command,
     }

@@ -15,6 +15,7 @@ drift       what moved with age
 film_life   the film of units that age
 ending      growth of indicators, and what ends units
 ageing_maps the maps of a unit through its life
+other_uses  the ages in other uses
 life_test   a life test followed: all of these
 models      candidates, comparisons of logs, designs
 inspection  what a log holds
@@ -66,6 +67,7 @@ from hersey.document.parts.log import (
 from hersey.document.parts.mixed import MixedPart
 from hersey.document.parts.models import ComparisonPart, DesignPart, ModelsPart
 from hersey.document.parts.motion import SimulationPart, StickSlipPart, SweepPart, TrajectoryPart
+from hersey.document.parts.other_uses import OtherUsesPart
 from hersey.document.parts.part import SCHEMA_VERSION, Interval, OpenInterval, Part
 from hersey.document.parts.rest import RestPart
 from hersey.document.parts.stability import (
@@ -127,6 +129,7 @@ __all__ = [
     "FilmStatesPart",
     "FitDocument",
     "FitPart",
+    "FlagPart",
     "GrowthPart",
     "HypothesisPart",
     "InputFile",
@@ -136,12 +139,15 @@ __all__ = [
     "LogPart",
     "MapPart",
     "MeasuredFilmPart",
+    "MissingPart",
     "MixedPart",
     "ModelsPart",
     "OpenInterval",
+    "OtherUsesPart",
     "Part",
     "PlanPart",
     "Point",
+    "PointDecisionPart",
     "PointsPart",
     "PopulationPart",
     "Quality",

@@ -6,6 +6,7 @@ from hersey.document.parts.ageing_maps import AgeingMapsPart
 from hersey.document.parts.drift import DriftPart
 from hersey.document.parts.ending import EndingsPart
 from hersey.document.parts.film_life import FilmLifePart
+from hersey.document.parts.other_uses import OtherUsesPart
 from hersey.document.parts.part import Part
 
 
@@ -17,5 +18,6 @@ class LifeTestPart(Part):
     drift: DriftPart | None
     film: FilmLifePart | None
     maps: AgeingMapsPart | None
+    uses: OtherUsesPart | None = None
     unsaid: list[str]
     seed: int

@@ -35,8 +35,10 @@ _Found = tuple[list[Indicator], list[str]]
 
 
 @one_thread()
-def indicators_of(campaign: Campaign, machine: Machine) -> Indicators:
+def indicators_of(campaign: Campaign, machine: Machine, *, signs: bool = True) -> Indicators:
     """Return what the runs of a campaign say of each way to fail whose limit the machine states.
+
+    Without ``signs`` V*, an early sign that takes longest, is left out.
 
     Raises
     ------
@@ -62,7 +64,7 @@ def indicators_of(campaign: Campaign, machine: Machine) -> Indicators:
     found: list[_Found] = [
         asked.motor_torque(),
         asked.grip(),
-        asked.stick_slip(),
+        asked.stick_slip(signs=signs),
         gear_fatigue(told, machine, _COLD, _POINTS, asked.gain),
         asked.continuous_torque(),
         asked.energy(),
@@ -164,11 +166,11 @@ class _Asked:
             "static friction as stated for the youngest runs, grown as the drag at the stick speed",
         )
 
-    def stick_slip(self) -> _Found:
+    def stick_slip(self, *, signs: bool) -> _Found:
         if not self.machine.points:
             return [], ["stick-slip at a used operating point: add [[points]] with speed and temperature"]
-        signs, unsaid = folds(self.told, self.machine)
-        return [*transitions(self.told, self.machine), *signs], unsaid
+        early, unsaid = folds(self.told, self.machine) if signs else ([], [])
+        return [*transitions(self.told, self.machine), *early], unsaid
 
     def continuous_torque(self) -> _Found:
         limit = self.machine.life.continuous_torque

@@ -22,7 +22,13 @@ async function main() {
   verdict.id = "verdict";
   data.verdict.forEach((text) => add(verdict, "p", text));
   list(report, data.warnings, "warnings");
-  for (const each of data.sections) await section(each);
+  for (const each of data.sections) {
+    await section(each);
+    if (each.name === "ends" && data.uses) {
+      add(report, "h2", "With another limit, start or duty").id = "uses";
+      otherUses(report, data.uses);
+    }
+  }
   add(report, "h2", "How to reproduce this report");
   add(report, "pre", data.command).id = "command";
   add(report, "p", `hersey ${data.hersey_version}, document schema ${data.schema_version}. Runs:`, "soft");

@@ -1,0 +1,239 @@
+"""How the ages move where the limit of the torque, the coldest start or the duty is another one."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from itertools import product
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hersey.arrays import one_thread
+from hersey.errors import HerseyError, ParameterError
+from hersey.life.ending.first import ages_of_new, ends_of_units
+from hersey.life.ending.joined import correlations
+from hersey.life.ending.way import FittedWay, fitted_way, last_ages
+from hersey.life.growth.limit_ages import Interval, share_of_units
+from hersey.life.indicators.corners import corners
+from hersey.life.indicators.run_dwells import read_runs_of
+from hersey.life.indicators.telling import indicators_of
+from hersey.result import Result, json_record
+from hersey.units import celsius
+
+if TYPE_CHECKING:
+    import polars as pl
+
+    from hersey.life.campaign import Campaign
+    from hersey.life.growth.fit import Growth
+    from hersey.life.indicator import Indicator, Indicators
+    from hersey.machine.machine import Machine
+
+#: Limits of the torque that are tried, over the one stated, and coldest starts beside the one as it is, K.
+_LIMITS = (0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.25, 1.5, 1.8)
+_COLDER = (-10.0, 0.0, 10.0)
+#: The duty as the machine's file states it.
+AS_STATED = "as stated"
+#: Ways whose limit is that of the motor's torque.
+_MOTOR = "motor torque"
+
+
+@dataclass(frozen=True)
+class UseEnd:
+    """The first end in another use: of a unit with the ways in words, or of a share of new units."""
+
+    name: str
+    age: Interval
+    ways: str
+
+
+@dataclass(frozen=True)
+class Use:
+    """One use: limit of the motor's torque (N m), coldest start (K), duty, and the first ends in it."""
+
+    torque_limit: float | None
+    coldest: float | None
+    duty: str
+    stated: bool  #: the use that the machine's file states
+    ends: tuple[UseEnd, ...]  #: units, a tenth and half of new units; none where nothing can be followed
+
+
+@dataclass(frozen=True, repr=False)
+class OtherUses(Result):
+    """The first ends of units and population in every combination of limits, coldest starts and duties."""
+
+    age_unit: str
+    torque_limits: tuple[float, ...]
+    coldest: tuple[float, ...]
+    duties: tuple[str, ...]
+    uses: tuple[Use, ...]
+
+    def headline(self) -> str:
+        """Return how far the age of half the population moves."""
+        told = [use for use in self.uses if use.ends]
+        ages = [use.ends[-1].age.value for use in told]
+        unit = f" {self.age_unit}" if self.age_unit else ""
+        low, high = (f"{float(f'{age:.3g}'):.10g}" for age in (min(ages), max(ages)))
+        return f"half of new units end between {low} and {high}{unit} in {len(told)} uses"
+
+    def summary(self) -> str:
+        """Return one line per use: when half of new units have ended."""
+        return "\n".join([self.headline(), *(f"  {_words(use)}" for use in self.uses)])
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return all uses; None for what is never reached."""
+        return json_record(vars(self))
+
+    def to_frame(self) -> pl.DataFrame:
+        """Return one row per use and unit, the population last; infinite where it is never reached."""
+        import polars as pl
+
+        rows = [(use, end) for use in self.uses for end in use.ends]
+        unit = self.age_unit or "1"
+        return pl.DataFrame(
+            {
+                "torque limit (N m)": [use.torque_limit for use, _ in rows],
+                "coldest (K)": [use.coldest for use, _ in rows],
+                "duty": [use.duty for use, _ in rows],
+                "unit": [end.name for _, end in rows],
+                f"age ({unit})": [end.age.value for _, end in rows],
+                f"age low ({unit})": [end.age.low for _, end in rows],
+                f"age high ({unit})": [end.age.high for _, end in rows],
+                "ways": [end.ways for _, end in rows],
+            }
+        )
+
+
+@one_thread()
+def other_uses(
+    campaign: Campaign,
+    machine: Machine,
+    indicators: Indicators,
+    *,
+    seed: int = 0,
+    progress: Callable[[int, int], None] | None = None,
+) -> OtherUses:
+    """Return the ages in other uses of the machine, each followed as the stated one is.
+
+    Parameters
+    ----------
+    campaign, machine
+        As for `follow`.
+    indicators
+        Of the use that the machine's file states; ways that hang on none of limit, cold and duty (the film's)
+        are taken from here.
+    seed
+        Of the draws, that of `endings`: the stated use is then told with the same numbers.
+    progress
+        Called with uses done and uses in all.
+
+    Raises
+    ------
+    ParameterError
+        If the machine states nothing that another use could change.
+    """
+    limit = machine.limits.motor_torque
+    cold = _coldest(campaign, machine)
+    limits = () if limit is None else tuple(limit * factor for factor in _LIMITS)
+    starts = () if cold is None or limit is None else tuple(cold + colder for colder in _COLDER)
+    points = tuple(point.name for point in machine.points) if _hangs_on_duty(machine) else ()
+    duties = (AS_STATED, *points)
+    if not limits and not points:
+        raise ParameterError("no other use: state [limits] motor_torque to see the ages move with it")
+    ways = _Ways({each.name: i for i, each in enumerate(indicators.each)}, seed)
+    uses: list[Use] = []
+    total = max(len(limits), 1) * max(len(starts), 1) * len(duties)
+    for coldest, duty in product(starts or (None,), duties):
+        stated = coldest in (cold, None) and duty == AS_STATED
+        here = indicators if stated else _in_use(campaign, machine, indicators, coldest, duty)
+        for torque in limits or (None,):
+            ends = ways.ends(here, torque)
+            uses.append(Use(torque, coldest, duty, stated and torque == limit, ends))
+            if progress:
+                progress(len(uses), total)
+    return OtherUses(indicators.runs.age_unit, limits, starts, duties, tuple(uses))
+
+
+class _Ways:
+    """The ways to fail of all uses, each growth fitted once, each limit reached once."""
+
+    def __init__(self, places: dict[str, int], seed: int) -> None:
+        self._places, self._seed = places, seed
+        self._growth: dict[tuple[str, bytes], Growth] = {}
+        self._known: dict[tuple[str, bytes, float], FittedWay | None] = {}
+
+    def ends(self, indicators: Indicators, torque: float | None) -> tuple[UseEnd, ...]:
+        """The first ends, drawn as `endings` does; none where no way can be followed."""
+        chosen = sorted(_limited(indicators, torque), key=lambda each: self._place(each.name))
+        ways = [way for each in chosen if (way := self._followed(indicators, each)) is not None]
+        if not ways:
+            return ()
+        random = np.random.default_rng([self._seed, 2])
+        of_runs = correlations([way.residuals for way in ways])
+        units, _ = ends_of_units(ways, of_runs, indicators.runs.units, last_ages(indicators), random)
+        first = np.sort(ages_of_new(ways, of_runs, random).min(axis=0), axis=1)
+        shares = [share_of_units(first, share) for share in (0.1, 0.5)]
+        return (
+            *(UseEnd(each.unit, each.age.age, each.ways) for each in units),
+            *(UseEnd(each.unit, each.age, "") for each in shares),
+        )
+
+    def _place(self, name: str) -> int:
+        return self._places.get(name, len(self._places))
+
+    def _followed(self, indicators: Indicators, each: Indicator) -> FittedWay | None:
+        grown = each.name, each.value.tobytes() + each.error.tobytes()
+        key = *grown, each.limit
+        if key not in self._known:
+            self._known[key] = None
+            with contextlib.suppress(HerseyError):  # as in the report, which says why
+                seed = self._seed + self._place(each.name)
+                way = fitted_way(indicators, each, seed, self._growth.get(grown))
+                self._known[key], self._growth[grown] = way, way.mode.growth
+        return self._known[key]
+
+
+def _coldest(campaign: Campaign, machine: Machine) -> float | None:
+    """The coldest start as the ways to fail take it, K."""
+    ends = corners(machine, read_runs_of(campaign, machine.rest))
+    return None if ends is None else ends[0].temperature
+
+
+def _words(use: Use) -> str:
+    """One use, and when half of new units have ended in it."""
+    parts = [] if use.torque_limit is None else [f"{use.torque_limit:.3g} N m"]
+    parts += [] if use.coldest is None else [f"from {celsius(use.coldest):.3g} degC"]
+    parts += [] if use.duty == AS_STATED else [f"only {use.duty}"]
+    words = ", ".join([*parts, *(["as stated"] if use.stated else [])])
+    return f"{words}: {use.ends[-1].age if use.ends else 'nothing can be followed'}"
+
+
+def _hangs_on_duty(machine: Machine) -> bool:
+    """Whether a way to fail sums over the points, and there is more than one."""
+    sums = machine.gear is not None or any(
+        value is not None for value in (machine.life.continuous_torque, machine.life.energy)
+    )
+    return sums and len(machine.points) > 1
+
+
+def _in_use(
+    campaign: Campaign, machine: Machine, stated: Indicators, coldest: float | None, duty: str
+) -> Indicators:
+    """The indicators in another use; those that do not hang on it as they are."""
+    points = machine.points
+    if duty != AS_STATED:
+        points = tuple(replace(point, share=float(point.name == duty)) for point in points)
+    life = machine.life if coldest is None else replace(machine.life, coldest=coldest)
+    other = indicators_of(campaign, replace(machine, life=life, points=points), signs=False)
+    names = {each.name for each in other.each}
+    kept = tuple(each for each in stated.each if each.name not in names)
+    return replace(other, each=(*other.each, *kept))
+
+
+def _limited(indicators: Indicators, torque: float | None) -> list[Indicator]:
+    """The indicators that end a unit, that of the motor against another limit."""
+    ending = [each for each in indicators.each if not each.sign]
+    if torque is None:
+        return ending
+    return [replace(each, limit=torque) if each.kind == _MOTOR else each for each in ending]
