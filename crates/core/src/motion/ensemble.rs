@@ -5,7 +5,7 @@ use super::hybrid::Motion;
 use super::lanes::{Lanes, arrival, run_lanes};
 use super::piece::Piece;
 use super::system::{Drivetrain, Integrator, Start, System, checked_tolerance};
-use crate::drag::{Closure, Drag, Mode};
+use crate::drag::{Closure, Drag, Mode, Rest};
 use crate::error::{Error, above, finite, unless_stopped};
 use crate::work::Work;
 
@@ -128,6 +128,8 @@ struct Member {
     damping: f64,
     stick_speed: f64,
     release: f64,
+    /// Drag of the rest of the drive: at any speed, which the pull on the lane leaves out, and per speed, scaled.
+    rest: Rest,
     exponents: (f64, f64),
     drive: f64,
     /// Time at which the belt is taken off, scaled.
@@ -168,11 +170,14 @@ impl Member {
         };
         let damping = drag.transition_force() / scale.pull;
         let (stick_speed, drive) = (drag.stick_speed() / scale.speed, drive_speed / scale.speed);
+        let rest = Rest {
+            force: drag.rest().force / scale.pull,
+            damping: drag.rest().damping * scale.speed / scale.pull,
+        };
         let plain = drag.closure() == Closure::Retained
             && drive > 1.01 * stick_speed
             && drive < 1e3
-            && drag.rest().is_none()
-            && damping * ehl.max(mixed) < STIFF
+            && damping * ehl.max(mixed) + rest.damping < STIFF
             && damping > 1e-6
             && damping < 1e3;
         if !plain {
@@ -189,6 +194,7 @@ impl Member {
             damping,
             stick_speed,
             release: drag.holding_force(drag.stick_speed()) / scale.pull,
+            rest,
             exponents: (mixed, ehl),
             drive,
             until,
@@ -266,8 +272,9 @@ impl Member {
         if margin <= 0.0 {
             return false;
         }
-        let steady = self.damping * self.drive.powf(self.exponents.1);
-        if steady * self.scale.pull >= self.system.train.grip() {
+        let steady =
+            self.damping * self.drive.powf(self.exponents.1) + self.rest.damping * self.drive;
+        if (steady + self.rest.force) * self.scale.pull >= self.system.train.grip() {
             return false;
         }
         let (ahead, off) = (lanes.speed[l] - self.drive, lanes.pull[l] - steady);
@@ -278,7 +285,7 @@ impl Member {
     #[allow(clippy::float_cmp)] // a level is reached by assigning it
     fn at_level(&mut self, lanes: &mut Lanes, l: usize, level: f64, rising: bool) {
         if level == self.drive {
-            self.lap.add_pull(lanes.pull[l]);
+            self.lap.add_pull(lanes.pull[l] + self.rest.force);
         }
         if level == 1.0 {
             lanes.drag[l] = self.damping;
@@ -309,7 +316,7 @@ impl Member {
         if self.all_steps > work.allowed() {
             return Verdict::TooLong;
         }
-        let pull = lanes.pull[l];
+        let pull = lanes.pull[l] + self.rest.force;
         if pull.abs() > self.release {
             let start = Start {
                 belt_speed: self.system.drag.stick_speed(),
@@ -323,10 +330,11 @@ impl Member {
         self.lap.add_pull(pull);
         self.lap.add_pull(self.release);
         self.lap.add_speed(self.stick_speed);
-        lanes.impulse[l] += 0.5 * (pull + self.release) * wait;
+        lanes.impulse[l] += (0.5 * (pull + self.release) - self.rest.force) * wait;
         lanes.time[l] += wait;
-        (lanes.pull[l], lanes.drag[l]) = (self.release, self.release);
-        (lanes.speed[l], lanes.turned[l]) = (self.stick_speed, 0.0);
+        (lanes.pull[l], lanes.speed[l]) = (self.release - self.rest.force, self.stick_speed);
+        lanes.balance(l);
+        lanes.turned[l] = 0.0;
         self.at_level(lanes, l, self.stick_speed, true);
         self.let_go(lanes.time[l], lanes.impulse[l], (self.release, self.stick_speed), span)
     }
@@ -385,7 +393,8 @@ impl Member {
                 return None;
             }
             self.take_in(&piece);
-            lanes.impulse[l] += piece.impulse(0.0) / (pull_scale * time_scale);
+            let shifted = self.rest.force * piece.duration / time_scale;
+            lanes.impulse[l] += piece.impulse(0.0) / (pull_scale * time_scale) - shifted;
             if let Some(event) = event.filter(|e| e.from == Mode::Stuck && e.to != Mode::Stuck) {
                 let now = origin + event.time / time_scale;
                 let stretch = event.stretch * system.train.stiffness() / pull_scale;
@@ -450,11 +459,15 @@ impl Member {
             phase.speed / self.scale.speed
         };
         lanes.speed[l] = speed;
-        lanes.pull[l] = phase.pull / self.scale.pull;
-        lanes.drag[l] = drag.force(phase.speed) / self.scale.pull;
+        lanes.pull[l] = phase.pull / self.scale.pull - self.rest.force;
+        lanes.drag[l] = drag.contact_force(phase.speed) / self.scale.pull;
+        lanes.rest[l] = self.rest.damping;
         lanes.drive[l] = self.drive;
         lanes.floor[l] = self.stick_speed;
         lanes.turned[l] = 0.0;
+        if phase.released {
+            lanes.balance(l);
+        }
         let slower = [1.0, self.drive, self.stick_speed].into_iter().filter(|v| *v <= speed);
         let below = slower.fold(self.stick_speed, f64::max);
         self.at_level(lanes, l, below, true);
@@ -489,7 +502,8 @@ impl Member {
             stretch_max: lap.pull.1 * stretch,
             grip_slip_duration: 0.0,
             laps_per_period: 1,
-            drag_work: self.drive * speed * lap.impulse * pull * time,
+            drag_work: self.drive * speed * lap.impulse * pull * time
+                + self.drive * speed * self.system.drag.rest().force * duration,
             laps: self.laps,
         }
     }

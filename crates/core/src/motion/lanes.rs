@@ -1,7 +1,8 @@
 //! Many belts at once: slip laps on the two power branches, several to a register.
 //!
 //! Each lane is one belt in scaled units: time by `sqrt(m/k)`, speed by `v_t`, pull by `v_t sqrt(k m)`. What
-//! is left of the equation is `p' = w - u`, `u' = p - d u^e`. A lane runs on the power branches and through
+//! is left of the equation is `p' = w - u`, `u' = p - d u^e - r u`, where `r` is how the rest of the drive grows
+//! with speed; what it drags at any speed only shifts the pull. A lane runs on the power branches and through
 //! the stuck phase at `v_s`; anything rarer (a belt pulled back below `v_s`, reversal, creep) is handed to
 //! the caller, which follows it with the full motion and puts the lane back. Every lane's arithmetic is its
 //! own, so results do not depend on the neighbours, on the instruction set, or on the number of threads.
@@ -52,11 +53,13 @@ pub(crate) struct Lanes {
     pub time: Row,
     pub pull: Row,
     pub speed: Row,
-    /// Drag at the present speed.
+    /// Drag of the contact at the present speed.
     pub drag: Row,
     pub drive: Row,
     /// Exponent of the branch.
     pub exponent: Row,
+    /// Drag of the rest of the drive per speed.
+    pub rest: Row,
     /// One, or minus one where the motion is followed back in time; `time` and `impulse` count up all the same.
     pub sense: Row,
     /// Next levels of the speed.
@@ -131,6 +134,7 @@ impl Lanes {
             drag: [1.0; LANES],
             drive: [2.0; LANES],
             exponent: [0.3; LANES],
+            rest: [0.0; LANES],
             sense: [1.0; LANES],
             upper: [f64::INFINITY; LANES],
             lower: [0.5; LANES],
@@ -139,6 +143,11 @@ impl Lanes {
             impulse: [0.0; LANES],
             arrival: [arrival::NONE; LANES],
         }
+    }
+
+    /// Give lane `l` the drag that its pull just balances, to the last bit.
+    pub(crate) fn balance(&mut self, l: usize) {
+        self.drag[l] = fused(-self.rest[l], self.speed[l], self.pull[l]);
     }
 
     /// One step of every lane.
@@ -170,7 +179,7 @@ impl Lanes {
         }
     }
 
-    /// The motion from the present state on; `u f' = e f u'` gives the drag `f`.
+    /// The motion from the present state on; `u f' = e f u'` gives the drag `f` of the contact.
     #[inline(always)]
     #[allow(clippy::inline_always, clippy::needless_range_loop)]
     fn series(&self) -> LaneSeries {
@@ -196,7 +205,7 @@ impl Lanes {
                 let early = share * weighted[l] - inverse[l] * plain[l];
                 let from_last = if n > 1 { u[1][l] * (share - inverse[l]) } else { 0.0 };
                 let from_rate = f[0][l] * (share - inverse[l] * per);
-                let net = p[n - 1][l] - f[n - 1][l];
+                let net = fused(-self.rest[l], u[n - 1][l], p[n - 1][l]) - f[n - 1][l];
                 iu[n][l] = net;
                 u[n][l] = net * per;
                 let driven = if n == 1 { self.drive[l] - self.speed[l] } else { -u[n - 1][l] };

@@ -224,19 +224,24 @@ fn released(train: &Drivetrain, drag: &Drag) -> Start {
 
 /// The belt in scaled units, if its drag has two power branches whose force follows the speed at once.
 ///
-/// A constant drag of the rest of the drive only shifts the pull; one that grows with speed has no scaled lap.
+/// A constant drag of the rest of the drive only shifts the pull. One that grows with speed must leave more drag at
+/// the stick speed than at the transition, so that drag falls from there.
 #[must_use]
 pub fn slip_lap(train: &Drivetrain, drag: &Drag) -> Option<SlipLap> {
     let (mixed, ehl) = drag.two_branches()?;
-    let pull = drag.transition_speed() * (train.stiffness() * train.mass()).sqrt();
     let memory = matches!(drag.closure(), Closure::LuGre { .. });
-    let plain = !memory && drag.rest().damping == 0.0;
-    (plain && mixed < 0.0 && ehl > 0.0).then(|| SlipLap {
-        damping: drag.transition_force() / pull,
+    if memory || mixed >= 0.0 || ehl <= 0.0 {
+        return None;
+    }
+    let impedance = (train.stiffness() * train.mass()).sqrt();
+    let lap = SlipLap {
+        damping: drag.transition_force() / (drag.transition_speed() * impedance),
         slowest: drag.stick_speed() / drag.transition_speed(),
         mixed,
         ehl,
-    })
+        rest: drag.rest().damping / impedance,
+    };
+    (lap.rest == 0.0 || lap.mixed_force(lap.slowest) > lap.mixed_force(1.0)).then_some(lap)
 }
 
 /// Folds by half laps, for the closures whose stuck belt is released and caught where the branches end.
@@ -255,8 +260,8 @@ fn half_lap_folds(
     let start = |index: usize, drive_speed: f64| {
         let (train, drag) = &belts[places[index]];
         if drag.closure() == Closure::Retained {
-            let SlipLap { damping, slowest, mixed, .. } = known[index];
-            return Some((damping * slowest.powf(mixed), slowest));
+            let lap = &known[index];
+            return Some((lap.mixed_force(lap.slowest), lap.slowest));
         }
         leaving_stick_speed(train, drag, drive_speed, tolerance, work)
     };
@@ -382,18 +387,22 @@ fn lower_edges(
         Ok(())
     };
     for share in FIRST_LOOKS {
-        let at: Vec<Option<f64>> =
-            known.iter().map(|lap| Some(lap.slowest + share * (1.0 - lap.slowest))).collect();
+        let at: Vec<Option<f64>> = known
+            .iter()
+            .map(|lap| Some(lap.slowest + share * (lap.rising_from() - lap.slowest)))
+            .collect();
         look(&mut seen, &at)?;
     }
     for _ in 0..PARABOLAS {
         let at: Vec<Option<f64>> = seen.iter().map(|points| below_three(points)).collect();
         look(&mut seen, &at)?;
     }
+    let rising_from = |place: usize| laps[place].map_or(1.0, |lap: SlipLap| lap.rising_from());
     let mut edges = vec![None; laps.len()];
     for (place, points) in places.into_iter().zip(seen) {
-        // at the transition speed itself cycles of no size begin
-        edges[place] = Some(points.iter().fold(1.0, |least: f64, (_, drive)| least.min(*drive)));
+        // where drag begins to rise cycles of no size begin
+        let none = rising_from(place);
+        edges[place] = Some(points.iter().fold(none, |least: f64, (_, drive)| least.min(*drive)));
     }
     Ok(edges)
 }

@@ -46,11 +46,15 @@ pub fn swings(
         many.take(1)?;
         at_least("slowest", *speed, drag.stick_speed())?;
         let own = below("slowest", *speed, transition)? / transition;
-        let most = 0.5 * (1.0 + own);
+        let most = 0.5 * (lap.rising_from().max(own) + own);
         let beside = [own, own * (1.0 - NEAR), own * (1.0 + NEAR)];
         laps.extend(beside.map(|s| SlipLap { slowest: s.min(most), ..lap }));
     }
-    let found = cycles(&laps, tolerance, work)?;
+    let mut found = cycles(&laps, tolerance, work)?;
+    // where drag only rises from the slowest speed on, nothing keeps a swing up
+    for (fold, lap) in found.iter_mut().zip(&laps) {
+        *fold = fold.filter(|_| lap.slowest < lap.rising_from());
+    }
     let (triples, _) = found.as_chunks::<3>();
     Ok(Some(
         slowest.iter().zip(triples).map(|(s, three)| swing(&lap, *s, transition, three)).collect(),
@@ -76,7 +80,7 @@ fn swing(lap: &SlipLap, slowest: f64, transition: f64, found: &[Option<Fold>; 3]
 /// If `work` is stopped.
 pub fn cycles(laps: &[SlipLap], tolerance: f64, work: &Work) -> Result<Vec<Option<Fold>>, Error> {
     fold::folds(laps, tolerance, work, |index, _| {
-        let SlipLap { damping, slowest, mixed, .. } = laps[index];
-        Some((damping * slowest.powf(mixed), slowest))
+        let lap = &laps[index];
+        Some((lap.mixed_force(lap.slowest), lap.slowest))
     })
 }

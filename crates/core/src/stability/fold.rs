@@ -1,7 +1,8 @@
 //! The drive speed at which a slip lap comes back to just where it began.
 //!
 //! In scaled units (time by `sqrt(m/k)`, speed by `v_t`, pull by `v_t sqrt(k m)`) the belt obeys
-//! `p' = w - u`, `u' = p - d u^e`. A lap without sticking passes its slowest speed `u0` with pull and drag equal,
+//! `p' = w - u`, `u' = p - d u^e - r u`, with `r` of the rest of the drive; its constant part only shifts the
+//! pull, which is counted from there. A lap without sticking passes its slowest speed `u0` with pull and drag equal,
 //! and one that comes back to that point is a cycle: unstable, or stable where it is small. At the stick
 //! speed the same point is where a held belt is released, so there the cycle of sticking and slipping and the
 //! unstable one meet: the upper fold `V*`.
@@ -28,6 +29,8 @@ pub struct SlipLap {
     pub mixed: f64,
     /// Exponent of drag on the EHL branch.
     pub ehl: f64,
+    /// Drag of the rest of the drive per speed, over `sqrt(k m)`.
+    pub rest: f64,
 }
 
 impl SlipLap {
@@ -35,7 +38,52 @@ impl SlipLap {
     /// back from below the transition.
     #[must_use]
     pub fn is_node(&self) -> bool {
-        -self.mixed * self.damping >= 2.0
+        -self.mixed * self.damping - self.rest >= 2.0
+    }
+
+    /// Drag at `u` on the mixed branch, the rest of the drive counted.
+    #[must_use]
+    pub fn mixed_force(&self, u: f64) -> f64 {
+        self.damping * u.powf(self.mixed) + self.rest * u
+    }
+
+    /// Drag at `u`.
+    fn force(&self, u: f64) -> f64 {
+        if u < 1.0 {
+            self.mixed_force(u)
+        } else {
+            self.damping * u.powf(self.ehl) + self.rest * u
+        }
+    }
+
+    /// Speed from which on drag rises: the transition, or less where the rest of the drive rises faster than the
+    /// mixed branch falls. No swing stays above it.
+    #[must_use]
+    pub fn rising_from(&self) -> f64 {
+        if self.rest == 0.0 {
+            return 1.0;
+        }
+        (self.rest / (-self.mixed * self.damping)).powf(1.0 / (self.mixed - 1.0)).min(1.0)
+    }
+
+    /// Speed above the transition from which on drag is more than `force`.
+    fn drags(&self, force: f64) -> f64 {
+        let Self { damping, ehl, rest, .. } = *self;
+        if rest == 0.0 {
+            return (force / damping).powf(1.0 / ehl);
+        }
+        // from below, where Newton's method keeps to its side of the root or comes back from the other
+        let mut u = (0.5 * force / damping).powf(1.0 / ehl).min(0.5 * force / rest);
+        for _ in 0..MAX_NEWTON {
+            let contact = damping * u.powf(ehl);
+            let next = u - (contact + rest * u - force) / (ehl * contact / u + rest);
+            let near = (next - u).abs() <= 2.0 * f64::EPSILON * u;
+            u = next;
+            if near {
+                break;
+            }
+        }
+        u
     }
 
     /// A drive speed close to the baseline's fold, so that few laps are needed.
@@ -59,6 +107,10 @@ pub struct Fold {
 const MAX_LAPS: usize = 80;
 /// Steps of one lap after which a search is given up.
 const MAX_STEPS: u32 = 20_000;
+/// Most iterations for the speed that drags with a given force.
+const MAX_NEWTON: usize = 50;
+/// Halvings, in logarithms, of the range of speeds where the way back may begin: nobody sees more.
+const MAX_HALVINGS: usize = 12;
 /// Greatest drive speed looked at, over `v_t`; a fold beyond is said to lie at infinity.
 const FASTEST: f64 = 1e4;
 /// Closeness of laps to the curve of slow motion, in e-folds, from which they are the same.
@@ -98,10 +150,9 @@ impl Gripped {
     /// From the drive speed `w` up to the greatest speed `(p - F)(p - F)' >= -(u - w) u'` where `F` is the greatest
     /// drag on the way, so the pull where the belt overtakes the drive is less than that by the gain in speed.
     pub(super) fn may_slip(&self) -> bool {
-        let SlipLap { damping, mixed, ehl, .. } = self.lap;
-        let drag = |u: f64| damping * u.powf(if u < 1.0 { mixed } else { ehl });
         let Fold { drive_speed, speed_max, .. } = self.free;
-        let pull = drag(drive_speed).max(drag(speed_max)) + (speed_max - drive_speed).max(0.0);
+        let drag = self.lap.force(drive_speed).max(self.lap.force(speed_max));
+        let pull = drag + (speed_max - drive_speed).max(0.0);
         // the greatest speed is that of the last lap that was followed, close to the fold
         let most = pull * (1.0 + CLOSE);
         !(most.is_finite() && self.grip > most)
@@ -217,7 +268,7 @@ impl Seeker {
     fn gripped(index: usize, Gripped { lap, grip, free }: &Gripped) -> Self {
         let mut seeker = Self::new(index, *lap);
         // from here on sliding drags more than the grip bears, and no belt overtakes the drive
-        let stalls = (grip / lap.damping).powf(1.0 / lap.ehl);
+        let stalls = lap.drags(*grip);
         seeker.search.most = free.drive_speed;
         seeker.search.at = if free.drive_speed < stalls {
             free.drive_speed
@@ -241,13 +292,13 @@ impl Seeker {
     }
 
     fn load(&mut self, lanes: &mut Lanes, l: usize, (pull, speed): (f64, f64), sense: f64) {
-        let SlipLap { damping, mixed, ehl, slowest } = self.lap;
+        let SlipLap { damping, mixed, ehl, slowest, rest } = self.lap;
         // only where belt and drive meet under a roll that slips
         let fast = speed > 1.0 || (speed >= 1.0 && sense > 0.0);
         let exponent = if fast { ehl } else { mixed };
         self.steps = 0;
         (lanes.time[l], lanes.impulse[l], lanes.sense[l]) = (0.0, 0.0, sense);
-        (lanes.pull[l], lanes.speed[l]) = (pull, speed);
+        (lanes.pull[l], lanes.speed[l], lanes.rest[l]) = (pull, speed, rest);
         lanes.drag[l] = damping * speed.powf(exponent);
         (lanes.drive[l], lanes.exponent[l], lanes.floor[l]) = (self.search.at, exponent, slowest);
         (lanes.lower[l], lanes.upper[l]) = if fast {
@@ -255,7 +306,11 @@ impl Seeker {
         } else {
             (0.5 * slowest, if sense > 0.0 { 1.0 } else { self.section() })
         };
-        lanes.turned[l] = if pull.to_bits() == lanes.drag[l].to_bits() { 1.0 } else { 0.0 };
+        let balanced = pull.to_bits() == (lanes.drag[l] + rest * speed).to_bits();
+        if balanced {
+            lanes.balance(l);
+        }
+        lanes.turned[l] = f64::from(balanced);
     }
 
     /// Pull and speed from which the lap is followed back in time.
@@ -264,18 +319,37 @@ impl Seeker {
     /// factor `exp(-integral of F'^2/(w - u) du)` up to the section. Where little is left of the rest, the
     /// stiff part of the way is passed over.
     fn last_point(&self) -> (f64, f64) {
-        let SlipLap { damping, mixed, slowest, .. } = self.lap;
+        let SlipLap { damping, mixed, slowest, rest, .. } = self.lap;
         let power = 2.0 * mixed - 1.0;
         let steepness = (mixed * damping).powi(2) / (self.search.at * -power);
-        let section = self.section();
+        let section = self.section().min(self.lap.rising_from());
+        // as if nothing but the contact dragged, whose slope is the steeper one
         let begin = (section.powf(power) + FORGOTTEN / steepness).powf(1.0 / power);
         if begin <= slowest {
-            return (damping * slowest.powf(mixed), slowest);
+            return (self.lap.mixed_force(slowest), slowest);
         }
+        let begin = if rest == 0.0 { begin } else { self.begin_beside_rest(section, begin) };
         let begin = begin.min(0.9 * section).max(slowest);
-        let force = damping * begin.powf(mixed);
-        let slope = mixed * force / begin;
-        (force + (self.search.at - begin) / slope, begin)
+        let slope = mixed * (damping * begin.powf(mixed)) / begin + rest;
+        (self.lap.mixed_force(begin) + (self.search.at - begin) / slope, begin)
+    }
+
+    /// Where the way back begins, at `most` or slower, if the rest of the drive takes from the slope of the drag.
+    fn begin_beside_rest(&self, section: f64, most: f64) -> f64 {
+        let SlipLap { damping, mixed, slowest, rest, .. } = self.lap;
+        let steep = -mixed * damping;
+        // integral of F'^2, up to a constant
+        let forgets = |u: f64| {
+            let fall = steep * u.powf(mixed) / u;
+            u * (fall * fall / (2.0 * mixed - 1.0) - 2.0 * rest * fall / mixed + rest * rest)
+        };
+        let enough = forgets(section) - FORGOTTEN * self.search.at;
+        let (mut low, mut high) = (slowest, most);
+        for _ in 0..MAX_HALVINGS {
+            let middle = (low * high).sqrt();
+            if forgets(middle) < enough { low = middle } else { high = middle }
+        }
+        low
     }
 
     /// Begin the lap at the drive speed that is looked at.
@@ -315,7 +389,7 @@ impl Seeker {
             // back in time from the slowest point the belt has reached the section
             return self.judge(Outcome::Gap(pull - lanes.pull[l]), lanes, l, start);
         }
-        let SlipLap { damping, mixed, ehl, .. } = self.lap;
+        let SlipLap { damping, mixed, ehl, rest, .. } = self.lap;
         if met == arrival::UPPER {
             (lanes.drag[l], lanes.exponent[l]) = (damping, ehl);
             (lanes.lower[l], lanes.upper[l]) = (1.0, f64::INFINITY);
@@ -338,9 +412,10 @@ impl Seeker {
             return Next::Goes;
         }
         let drive = self.search.at;
-        let steady = damping * drive.powf(mixed);
-        if drive <= 1.0 && -mixed * steady >= 2.0 * drive {
+        let contact = damping * drive.powf(mixed);
+        if drive <= 1.0 && -mixed * contact - rest * drive >= 2.0 * drive {
             // steady sliding is an unstable node: whatever falls below it sticks, and back in time laps end there
+            let steady = contact + rest * drive;
             return self.judge(Outcome::Gap(lanes.pull[l] - steady), lanes, l, start);
         }
         self.arrived = Some(lanes.pull[l]);
@@ -374,7 +449,7 @@ impl Seeker {
 
     /// Whether the belt slows down so gently that it cannot fall below a drive faster than the transition.
     ///
-    /// With `y = u - w > 0` the EHL branch gives `y'' = -y - c y'`, where the damping `c = e F/u` only grows as
+    /// With `y = u - w > 0` the EHL branch gives `y'' = -y - c y'`, where the damping `c = e F/u + r` only grows as
     /// the belt slows down. From `c >= 2` and `y' >= -y` on, `y' >= -y` holds for good and `y` never passes zero.
     fn creeps_to_the_drive(&self, lanes: &Lanes, l: usize) -> bool {
         let (speed, ahead) = (lanes.speed[l], lanes.speed[l] - self.search.at);
@@ -382,8 +457,8 @@ impl Seeker {
             && self.speed_max > 0.0
             && speed >= 1.0
             && self.arrived.is_none()
-            && self.lap.ehl * lanes.drag[l] >= 2.0 * speed
-            && lanes.pull[l] - lanes.drag[l] >= -ahead
+            && self.lap.ehl * lanes.drag[l] + self.lap.rest * speed >= 2.0 * speed
+            && lanes.pull[l] - (lanes.drag[l] + self.lap.rest * speed) >= -ahead
     }
 
     /// Go on with the drive speed that follows from the outcome at this one.
@@ -484,7 +559,7 @@ mod tests {
     }
 
     const BASELINE: SlipLap =
-        SlipLap { damping: 1.581_138_830_084_19, slowest: 0.01, mixed: -0.2, ehl: 0.3 };
+        SlipLap { damping: 1.581_138_830_084_19, slowest: 0.01, mixed: -0.2, ehl: 0.3, rest: 0.0 };
 
     #[test]
     fn the_fold_of_the_baseline_takes_five_laps() {
