@@ -26,8 +26,8 @@ const LONGEST_STEP: f64 = 2.0;
 /// Newton iterations for an extreme, which need not be met exactly for the step to end near it.
 const TURNING_NEWTON: usize = 3;
 
-/// Most Newton iterations for a level.
-const MAX_NEWTON: usize = 12;
+/// Most Newton iterations for a level, or halvings where they lead out of the step.
+const MAX_NEWTON: usize = 60;
 
 /// Relative distance from its level at which a step counts as ended there.
 const ARRIVED: f64 = 1e-13;
@@ -286,15 +286,21 @@ impl Lanes {
             level[l] = if crossing[l] > 0.0 { self.upper[l] } else { self.lower[l] };
             t[l] = h[l] * (level[l] - self.speed[l]) / (end[l] - self.speed[l]);
         }
+        let (mut before, mut after) = ([0.0; LANES], *h);
         for _ in 0..MAX_NEWTON {
             let (v, rate) = (value(&series.speed, 0, &t), value(&series.weighted_speed, 1, &t));
             any = 0;
             for l in 0..LANES {
                 let off = v[l] - level[l];
-                let next = t[l] - off / rate[l];
+                let newton = t[l] - off / rate[l];
+                let early = off * crossing[l] < 0.0;
+                before[l] = if early { t[l] } else { before[l] };
+                after[l] = if early { after[l] } else { t[l] };
+                let inside = newton >= 0.0 && newton <= h[l];
+                let next = if inside { newton } else { 0.5 * (before[l] + after[l]) };
                 // a lane that has arrived keeps its time, however long the others take
                 let open = crossing[l] != 0.0 && off.abs() > ARRIVED * level[l];
-                t[l] = if open && next >= 0.0 && next <= h[l] { next } else { t[l] };
+                t[l] = if open { next } else { t[l] };
                 lost[l] = if open { 1.0 } else { 0.0 };
                 any |= lost[l].to_bits();
             }

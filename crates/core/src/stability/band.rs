@@ -224,8 +224,8 @@ fn released(train: &Drivetrain, drag: &Drag) -> Start {
 
 /// The belt in scaled units, if its drag has two power branches whose force follows the speed at once.
 ///
-/// A constant drag of the rest of the drive only shifts the pull. One that grows with speed must leave more drag at
-/// the stick speed than at the transition, so that drag falls from there.
+/// A constant drag of the rest of the drive only shifts the pull. One that grows with speed must leave drag that
+/// falls from the stick speed on.
 #[must_use]
 pub fn slip_lap(train: &Drivetrain, drag: &Drag) -> Option<SlipLap> {
     let (mixed, ehl) = drag.two_branches()?;
@@ -241,7 +241,7 @@ pub fn slip_lap(train: &Drivetrain, drag: &Drag) -> Option<SlipLap> {
         ehl,
         rest: drag.rest().damping / impedance,
     };
-    (lap.rest == 0.0 || lap.mixed_force(lap.slowest) > lap.mixed_force(1.0)).then_some(lap)
+    (lap.slowest < lap.rising_from()).then_some(lap)
 }
 
 /// Folds by half laps, for the closures whose stuck belt is released and caught where the branches end.

@@ -66,11 +66,19 @@ impl SlipLap {
         (self.rest / (-self.mixed * self.damping)).powf(1.0 / (self.mixed - 1.0)).min(1.0)
     }
 
-    /// Speed above the transition from which on drag is more than `force`.
+    /// Speed from which on drag, where it rises, is more than `force`.
     fn drags(&self, force: f64) -> f64 {
         let Self { damping, ehl, rest, .. } = *self;
         if rest == 0.0 {
             return (force / damping).powf(1.0 / ehl);
+        }
+        if force < self.mixed_force(1.0) {
+            let (mut low, mut high) = (self.rising_from(), 1.0);
+            for _ in 0..MAX_NEWTON {
+                let middle = 0.5 * (low + high);
+                if self.mixed_force(middle) < force { low = middle } else { high = middle }
+            }
+            return low;
         }
         // from below, where Newton's method keeps to its side of the root or comes back from the other
         let mut u = (0.5 * force / damping).powf(1.0 / ehl).min(0.5 * force / rest);
@@ -232,6 +240,8 @@ struct Seeker {
     /// Pull with which the forward half has slowed to the section, once it has.
     arrived: Option<f64>,
     speed_max: f64,
+    /// Drag in steady sliding at the drive speed that is looked at.
+    steady: f64,
     steps: u32,
     /// Pull of the grip with which the lap is to end at the drive speed, and begin anew, if not at its slowest point.
     meets: Option<f64>,
@@ -261,7 +271,7 @@ impl Seeker {
         } else {
             Search::new(lap.slowest, guess.max(0.5 * (1.0 + lap.slowest)))
         };
-        Self { index, lap, search, arrived: None, speed_max: 0.0, steps: 0, meets: None }
+        Self { index, lap, search, arrived: None, speed_max: 0.0, steady: f64::NAN, steps: 0, meets: None }
     }
 
     /// The same for a lap that begins at the drive speed with the pull of the grip, no faster than the free one.
@@ -361,6 +371,7 @@ impl Seeker {
     ) -> bool {
         let Some(begin) = start(self.index, self.search.at) else { return false };
         (self.arrived, self.speed_max) = (None, 0.0);
+        self.steady = self.lap.force(self.search.at);
         self.load(lanes, l, begin, 1.0);
         true
     }
@@ -376,7 +387,7 @@ impl Seeker {
         if met == arrival::LOST || self.steps > MAX_STEPS {
             return Next::Fails;
         }
-        if self.creeps_to_the_drive(lanes, l) {
+        if self.creeps_to_the_drive(lanes, l) || self.dies_out(lanes, l) {
             return self.judge(Outcome::Escapes, lanes, l, start);
         }
         if met == arrival::NONE {
@@ -459,6 +470,18 @@ impl Seeker {
             && self.arrived.is_none()
             && self.lap.ehl * lanes.drag[l] + self.lap.rest * speed >= 2.0 * speed
             && lanes.pull[l] - (lanes.drag[l] + self.lap.rest * speed) >= -ahead
+    }
+
+    /// Whether the belt has too little energy about steady sliding to slow down to the transition ever again: on the
+    /// rising branch that energy only falls.
+    fn dies_out(&self, lanes: &Lanes, l: usize) -> bool {
+        let margin = self.search.at - 1.0;
+        let (ahead, off) = (lanes.speed[l] - self.search.at, lanes.pull[l] - self.steady);
+        margin > 0.0
+            && self.speed_max > 0.0
+            && lanes.speed[l] >= 1.0
+            && self.arrived.is_none()
+            && ahead * ahead + off * off < margin * margin
     }
 
     /// Go on with the drive speed that follows from the outcome at this one.
