@@ -273,7 +273,7 @@ impl Motion<'_> {
                     rate[0] = stiffness * self.phase.speed; // rounding must not say who is ahead
                 }
                 watch.look(Condition::Ahead(rate, stiffness), Guard::GripRegained);
-            } else {
+            } else if piece.pull_range().is_none_or(|(low, high)| !(low > -grip && high < grip)) {
                 // where roll and belt have just met the pull leaves that limit, whatever rounding says
                 let forward = self.phase.pull > 0.0;
                 let met = self.has_just_met(grip) && !piece.pulls_harder();

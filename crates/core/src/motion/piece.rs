@@ -221,12 +221,13 @@ impl Piece<'_> {
     /// Bounds of the speed over a piece that has a series.
     pub(super) fn speed_range(&self) -> Option<(f64, f64)> {
         let Path::Series(series) = &self.path else { return None };
-        let (mut reach, mut power) = (0.0, 1.0);
-        for c in &series.speed[1..] {
-            power *= self.duration;
-            reach += c.abs() * power;
-        }
-        Some((series.speed[0] - reach, series.speed[0] + reach))
+        Some(bounds(&series.speed, self.duration))
+    }
+
+    /// The same of the pull.
+    pub(super) fn pull_range(&self) -> Option<(f64, f64)> {
+        let Path::Series(series) = &self.path else { return None };
+        Some(bounds(&series.pull, self.duration))
     }
 
     /// When the belt overtakes a drive of constant speed, if it does.
@@ -294,6 +295,16 @@ impl Piece<'_> {
             }
         }
     }
+}
+
+/// Values between which the polynomial stays up to `end`.
+fn bounds(c: &Polynomial, end: f64) -> (f64, f64) {
+    let (mut reach, mut power) = (0.0, 1.0);
+    for c in &c[1..] {
+        power *= end;
+        reach += c.abs() * power;
+    }
+    (c[0] - reach, c[0] + reach)
 }
 
 /// Nodes and weights of Gauss's quadrature with four points on the unit interval.

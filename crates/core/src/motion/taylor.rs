@@ -96,7 +96,7 @@ impl pulp::WithSimd for Slip<'_> {
 #[allow(clippy::inline_always)] // so that it is compiled for the instruction set it is dispatched to
 fn slip_series(start: &SlipStart) -> Series {
     match start.thermal {
-        None if start.rest.is_none() && start.sharing.is_none() => plain_series(start),
+        None if start.sharing.is_none() => plain_series(start),
         _ => full_series(start),
     }
 }
@@ -106,16 +106,20 @@ fn slip_series(start: &SlipStart) -> Series {
 #[allow(clippy::inline_always)]
 fn plain_series(start: &SlipStart) -> Series {
     let (mut p, mut u, mut f) = ([0.0; ORDER + 1], [0.0; ORDER + 1], [0.0; ORDER + 1]);
-    let mut rate = [0.0; ORDER + 1];
+    let (mut rate, mut all) = ([0.0; ORDER + 1], [0.0; ORDER + 1]);
     let Recurrence { weight, back, inverse } = start.law;
     let (weight, back) = (weight * inverse, back * inverse);
     let per_mass = 1.0 / start.mass;
-    (p[0], u[0], f[0]) = (start.pull, start.speed, start.total);
+    let damping = start.rest.damping;
+    (p[0], u[0], all[0]) = (start.pull, start.speed, start.total);
+    // the drag of the contact, beside all of it
+    f[0] = start.total - start.rest.at(start.speed);
     // not fused: at a release the two forces are equal, and their difference is exactly nil
-    rate[1] = (p[0] - f[0]) * per_mass;
+    rate[1] = (p[0] - all[0]) * per_mass;
     u[1] = rate[1];
     p[1] = start.rate[0] - start.stiffness * u[0];
     f[1] = (weight - back) * f[0] * u[1];
+    all[1] = fused(damping, u[1], f[1]);
     for n in 2..=ORDER {
         let (mut weighted, mut plain) = (0.0, 0.0);
         for ((q, rate), f) in u[2..n].iter().zip(&rate[2..n]).zip(f[1..n - 1].iter().rev()) {
@@ -125,16 +129,17 @@ fn plain_series(start: &SlipStart) -> Series {
         let share = weight * INVERSE[n];
         let early = share * weighted - back * plain;
         let (from_last, from_rate) = (u[1] * (share - back), f[0] * (share - back * INVERSE[n]));
-        rate[n] = (p[n - 1] - f[n - 1]) * per_mass;
+        rate[n] = (p[n - 1] - all[n - 1]) * per_mass;
         u[n] = rate[n] * INVERSE[n];
         let driven = if n < 5 { start.rate[n - 1] } else { 0.0 };
         p[n] = (driven - start.stiffness * u[n - 1]) * INVERSE[n];
         f[n] = fused(from_rate, rate[n], fused(from_last, f[n - 1], early));
+        all[n] = fused(damping, u[n], f[n]);
     }
-    Series { pull: p, speed: u, drag: f }
+    Series { pull: p, speed: u, drag: all }
 }
 
-/// The same with the rest of the drive, and a law that moves with temperature.
+/// The same with a law that moves with temperature, or whose load film and asperities share.
 #[inline(never)]
 fn full_series(start: &SlipStart) -> Series {
     let (mut p, mut u, mut f) = ([0.0; ORDER + 1], [0.0; ORDER + 1], [0.0; ORDER + 1]);
