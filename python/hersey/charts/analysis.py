@@ -199,9 +199,11 @@ def carried(document: Analysis) -> Chart | None:
     return None if document.carried is None else carried_chart(document.carried)
 
 
-def simulation_speed(document: Analysis) -> Chart:
-    """Belt speed of the simulation (Fig. 9)."""
+def simulation_speed(document: Analysis) -> Chart | None:
+    """Belt speed of the simulation (Fig. 9); None without one."""
     s = document.simulation
+    if s is None:
+        return None
     scale, unit = (1e3, "mm/s") if s.speed_unit == "m/s" else (1.0, s.speed_unit)
     rows = [{"time": t, "value": v * scale} for t, v in zip(s.time, s.belt_speed, strict=True)]
     marks = [(s.transition_speed * scale, "transition speed", WIDTH, "right")]
@@ -220,9 +222,11 @@ def simulation_speed(document: Analysis) -> Chart:
     return alt.layer(line, *layers).properties(title=title, width=WIDTH, height=220)
 
 
-def simulation_force(document: Analysis) -> Chart:
-    """Spring force of the simulation."""
+def simulation_force(document: Analysis) -> Chart | None:
+    """Spring force of the simulation; None without one."""
     s = document.simulation
+    if s is None:
+        return None
     rows = [{"time": t, "value": f} for t, f in zip(s.time, s.spring_force, strict=True)]
     return alt.layer(_trace(rows, f"Spring force ({s.force_unit})")).properties(width=WIDTH, height=160)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
@@ -23,17 +23,6 @@ from hersey.cli.options import (
 from hersey.cli.outputs import give, may_write_table_and_figure
 from hersey.cli.progress import bar
 from hersey.errors import ParameterError
-
-if TYPE_CHECKING:
-    from hersey.arrays import FloatArray
-    from hersey.damping.surface import DampingSurface
-    from hersey.machine.machine import Machine
-    from hersey.machine.uncertainty import Uncertainty
-    from hersey.motion.drag import Drag
-
-
-#: Draws of the fit from which those of the plan are taken.
-_DRAWS = 4000
 
 
 @reads_logs
@@ -96,7 +85,7 @@ def plan(
     from hersey.log import memory_limit
     from hersey.machine.machine import read_machine
     from hersey.machine.temperature_profile import read_temperature_profile
-    from hersey.stability.plan import plan_profile
+    from hersey.stability.plan import plan_of_log
 
     machine = read_machine(machine_file)
     wanted = target_of(target, machine)
@@ -105,18 +94,13 @@ def plan(
     with memory_limit(reading.max_memory):
         profile = None if profile_file is None else read_temperature_profile(profile_file)
     surface = reading.surface(logs, fit_file, machine)
-    drag, samples = _drag(surface, machine, kelvin, seed, varies=heat or profile is not None)
     with bar("planning", unit="profiles") as progress:
-        planned = plan_profile(
-            machine.train,
-            drag,
+        planned = plan_of_log(
+            surface,
+            machine,
             target_speed=wanted,
-            temperature=profile,
+            temperature=kelvin if profile is None else profile,
             heat=warmth,
-            limits=machine.limits,
-            roll_radius=machine.roll_radius,
-            uncertainty=_uncertainty(machine, drag),
-            samples=samples,
             confidence=confidence,
             seed=seed,
             progress=progress,
@@ -127,33 +111,3 @@ def plan(
         said = beyond_the_log(surface, float(film.min()), float(film.max()))
         planned = replace(planned, warnings=(*planned.warnings, *said))
     give("plan", planned, called="profile", table=out, figure=figure, as_json=as_json, temperature=course)
-
-
-def _uncertainty(machine: Machine, drag: Drag) -> dict[str, Uncertainty]:
-    """How far parameters are known; a range of the stick speed moves with it from where it was stated."""
-    known = dict(machine.uncertainty)
-    if "stick_speed" in known:
-        known["stick_speed"] = known["stick_speed"].times(drag.stick_speed / machine.stick_speed)
-    return known
-
-
-def _drag(
-    surface: DampingSurface, machine: Machine, kelvin: float | None, seed: int, *, varies: bool
-) -> tuple[Drag, dict[str, FloatArray]]:
-    """The fitted drag, at one temperature or varying with it, and draws of what the fit leaves open."""
-    import warnings
-
-    if surface.b is not None and kelvin is None and not varies:
-        raise ParameterError(
-            "the drag varies with temperature: give --at '150 degC', --temperature-profile or --heat"
-        )
-    if surface.b is None and (kelvin is not None or varies):
-        raise ParameterError("the log is isothermal: leave out --at, --temperature-profile and --heat")
-    drag = surface.drag(**machine.belt, temperature=kelvin)
-    at = drag.reference_temperature if varies else kelvin
-    with warnings.catch_warnings():  # the fit's own command says how many draws have no falling branch
-        warnings.simplefilter("ignore")
-        samples = surface.drag_samples(_DRAWS, seed, **machine.belt, temperature=at)
-    if surface.rest is not None:
-        samples |= surface.rest.samples(_DRAWS, seed, roll_radius=machine.roll_radius, temperature=at)
-    return drag, samples

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Annotated
 
@@ -16,7 +17,7 @@ from hersey.cli.options import (
     reads_logs,
 )
 from hersey.cli.outputs import command, may_write, may_write_folder, print_document
-from hersey.cli.progress import working
+from hersey.cli.progress import steps, working
 from hersey.cli.terminal import say
 
 
@@ -54,10 +55,18 @@ def report(
 
     machine = None if machine_file is None else read_machine(machine_file)
     log = reading.log(logs, machine)
-    with working("fitting the surface"):
+    with steps() as step:
+        step("finding the dwells")
         points = reading.points(log, machine)
         document = analyse(
-            log, points, command=command(), temperature_scale=reading.temperature_scale, machine=machine
+            log,
+            points,
+            command=command(),
+            temperature_scale=reading.temperature_scale,
+            machine=machine,
+            machine_file=machine_file,
+            made=datetime.now(UTC).isoformat(timespec="seconds"),
+            step=step,
         )
     if page is not None:
         with working("drawing the page"):
@@ -70,6 +79,11 @@ def report(
     if as_json:
         print_document(document)
         return
+    if document.decision is not None:
+        told = document.decision
+        say(f"{told.instruction}{f' ({told.interval})' if told.interval else ''}. {told.otherwise}")
+        for point in told.points:
+            say(f"{point.name}: {point.words}")
     for paragraph in document.verdict:
         say(paragraph)
     for warning in document.warnings:

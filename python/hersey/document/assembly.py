@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import itertools
 import warnings
-from typing import Literal
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -14,6 +15,9 @@ from hersey.damping.dwells import SteadyPoints, groups_of_temperature
 from hersey.damping.fit import fit
 from hersey.damping.surface import DampingSurface
 from hersey.document.carried_part import carried_part
+from hersey.document.decision import decision
+from hersey.document.decision.behaviour import Step, Working, ranges
+from hersey.document.decision.parts import behaviour_parts
 from hersey.document.film_part import film_part
 from hersey.document.parts import (
     Analysis,
@@ -23,6 +27,7 @@ from hersey.document.parts import (
     FitDocument,
     FitPart,
     InputFile,
+    MachineFilePart,
     Point,
     Quality,
     RegimePart,
@@ -34,6 +39,7 @@ from hersey.document.parts import (
 )
 from hersey.document.thinning import kept
 from hersey.errors import ExtrapolationWarning, ParameterError
+from hersey.files.reading import hash_of
 from hersey.log import TorqueLog
 from hersey.log.means import MeansTable
 from hersey.machine.machine import Machine
@@ -56,34 +62,70 @@ def analyse(
     command: str = "",
     temperature_scale: str = "degC",
     machine: Machine | None = None,
+    machine_file: Path | None = None,
+    made: str | None = None,
+    step: Step = lambda _what: None,
 ) -> Analysis:
-    """Fit, judge and simulate, and return the document.
+    """Fit, judge, decide and simulate, and return the document.
+
+    Parameters
+    ----------
+    machine_file
+        Where the machine was read, for its name and hash.
+    made
+        When, as the document shall say.
+    step
+        Called with the name of each step that takes long.
 
     Raises
     ------
     InsufficientDataError
         If the points cannot determine the surface.
     """
+    step("fitting the surface")
     surface = fit(points, temperature_scale=temperature_scale)
+    working = None if machine is None or surface.transition is None else Working(surface, machine)
     nip = (machine.contact, machine.lubricant) if machine is not None else (None, None)
+    step("judging the regime")
     seen = regime(points, surface, contact=nip[0], lubricant=nip[1])
     film = film_part(points, surface, machine, seen)
-    return Analysis(
-        hersey_version=_core.VERSION,
-        title=_title(log),
-        command=command,
-        verdict=[*([film.verdict] if film is not None and film.verdict else []), seen.verdict],
-        warnings=_warnings(points, surface, machine),
-        files=[_file(log, i) for i in range(len(log.files))],
-        quality=_quality(log, points),
-        points=_points(points, surface),
-        fit=_fit_part(points, surface),
-        regime=RegimePart.model_validate(seen.to_dict()),
+    regime_part, carried = RegimePart.model_validate(seen.to_dict()), carried_part(points, surface, machine)
+    document: dict[str, Any] = {
+        "hersey_version": _core.VERSION,
+        "title": _title(log),
+        "command": command,
+        "made": made,
+        "machine": None if machine_file is None else _machine_file(machine_file),
+        "synthetic": any("synthetic" in text.lower() for file in log.files for text in file.comments),
+        "verdict": [*([film.verdict] if film is not None and film.verdict else []), seen.verdict],
+        "warnings": cautions(points, surface),
+        "files": [_file(log, i) for i in range(len(log.files))],
+        "quality": _quality(log, points),
+        "points": _points(points, surface),
+        "fit": _fit_part(points, surface),
+        "regime": regime_part,
+        "film": film,
+        "carried": carried,
+        "simulation": _simulation(surface, machine),
+        "timeline": _timeline(log),
+        "uncertainty": {} if machine is None else ranges(machine),
+    }
+    found = None if working is None else working.result(step)
+    decided = decision(
+        points,
+        surface,
+        machine,
+        seen=regime_part,
         film=film,
-        carried=carried_part(points, surface, machine),
-        simulation=_simulation(surface, machine),
-        timeline=_timeline(log),
+        carried=carried,
+        found=found,
+        machine_file="" if machine_file is None else machine_file.name,
     )
+    return Analysis(**document, decision=decided, **behaviour_parts(found))
+
+
+def _machine_file(path: Path) -> MachineFilePart:
+    return MachineFilePart(name=path.name, sha256=hash_of(path))
 
 
 def fit_document(log: TorqueLog | MeansTable, points: SteadyPoints, surface: DampingSurface) -> FitDocument:
@@ -221,19 +263,10 @@ def _fit_part(points: SteadyPoints, s: DampingSurface) -> FitPart:
     return FitPart.model_validate(s.to_dict() | chart_parts)
 
 
-def _warnings(points: SteadyPoints, surface: DampingSurface, machine: Machine | None) -> list[str]:
-    out = cautions(points, surface)
+def _simulation(surface: DampingSurface, machine: Machine | None) -> SimulationPart | None:
+    """The belt of this machine below its transition speed; None without a machine or a transition."""
     if surface.transition is None or machine is None:
-        missing = "the data show no transition" if surface.transition is None else "no machine.toml was given"
-        out.append(f"The simulation shows the paper's baseline, not this machine: {missing}.")
-    return out
-
-
-def _simulation(surface: DampingSurface, machine: Machine | None) -> SimulationPart:
-    if surface.transition is None or machine is None:
-        train, drag, speed = Drivetrain(1000.0, 1.0), _paper_drag(), 1.0
-        title = "The paper's baseline: k = 1000, B0 = 50, m = 1, drive speed 1 (inches, ounces, seconds)"
-        return _simulated(train, drag, speed, title, "paper", "in/s", "ozf")
+        return None
     kelvin = surface.temperature_range[1] if surface.temperature_range else None
     drag = surface.drag(**machine.belt, temperature=kelvin)
     at = "" if kelvin is None else f" at {celsius(kelvin):.0f} °C"
@@ -241,11 +274,7 @@ def _simulation(surface: DampingSurface, machine: Machine | None) -> SimulationP
     share = f"{100 * SIMULATED_SPEED:.0f} % of its transition speed"
     sticks = f"; stick speed {1e3 * drag.stick_speed:.3g} mm/s there"
     title = f"This machine{at}, driven at {rpm(slow):.3g} rpm, {share}{sticks}"
-    return _simulated(machine.train, drag, slow * machine.roll_radius, title, "fit", "m/s", "N")
-
-
-def _paper_drag() -> Drag:
-    return Drag(50.0, 1.0, ehl_exponent=-0.7, mixed_exponent=-1.2, stick_speed=0.01)
+    return _simulated(machine.train, drag, slow * machine.roll_radius, title)
 
 
 def _simulated(
@@ -253,9 +282,6 @@ def _simulated(
     drag: Drag,
     speed: float,
     title: str,
-    source: Literal["paper", "fit"],
-    speed_unit: str,
-    force_unit: str,
 ) -> SimulationPart:
     cycle = stick_slip(train, drag, drive_speed=speed)
     period = 1.0 / cycle.frequency if cycle.frequency else 10.0 * (train.mass / train.stiffness) ** 0.5
@@ -267,10 +293,9 @@ def _simulated(
     beside = {"rest_force": drag.rest_force, "rest_damping": drag.rest_damping}
     return SimulationPart(
         title=title,
-        source=source,
-        units="inches, ounces of force, seconds" if source == "paper" else "SI: N/m, kg, N, m/s",
-        speed_unit=speed_unit,
-        force_unit=force_unit,
+        units="SI: N/m, kg, N, m/s",
+        speed_unit="m/s",
+        force_unit="N",
         parameters={
             "stiffness": train.stiffness,
             "mass": train.mass,

@@ -41,6 +41,10 @@ if TYPE_CHECKING:
     import polars as pl
 
 
+#: With which a verdict begins where log and theory contradict each other.
+CONTRADICTION = "Log and film theory contradict each other"
+
+
 @dataclass(frozen=True, repr=False)
 class MeasuredFilm(Result):
     """What each dwell says of the film; arrays of shape (points,), SI.
@@ -321,7 +325,7 @@ def _text(
     lines = []
     if contradicted:
         excluded = f"{listed(ours)}, alone or beside a constant torque" if ours else "every film of theory"
-        lines.append(f"Log and film theory contradict each other: the log excludes {excluded}.")
+        lines.append(f"{CONTRADICTION}: the log excludes {excluded}.")
     lines += [
         f"The regime chart puts this contact in the {held} regime, where damping goes as speed to the power "
         f"{expected:.2f}; measured {c}."

@@ -57,6 +57,7 @@ from hersey.document.parts.log import (
     ChannelUse,
     InputFile,
     LogPart,
+    MachineFilePart,
     Point,
     PointsPart,
     Quality,
@@ -76,6 +77,7 @@ from hersey.document.parts.stability import (
     MapPart,
     PlanPart,
     StepPart,
+    StickSpeedPart,
     WarmUpPart,
 )
 
@@ -137,6 +139,7 @@ __all__ = [
     "Interval",
     "LifeTestPart",
     "LogPart",
+    "MachineFilePart",
     "MapPart",
     "MeasuredFilmPart",
     "MissingPart",
@@ -158,6 +161,7 @@ __all__ = [
     "SimulationPart",
     "StepPart",
     "StickSlipPart",
+    "StickSpeedPart",
     "SweepPart",
     "Timeline",
     "TrajectoryPart",

@@ -18,11 +18,11 @@ from hersey.document.parts.film import FilmPart
 from hersey.document.parts.fit import FitPart, RegimePart
 from hersey.document.parts.inspection import InspectionPart
 from hersey.document.parts.life_test import LifeTestPart
-from hersey.document.parts.log import InputFile, Point, Quality, Timeline
+from hersey.document.parts.log import InputFile, MachineFilePart, Point, Quality, Timeline
 from hersey.document.parts.models import ComparisonPart, DesignPart, ModelsPart
 from hersey.document.parts.motion import SimulationPart, StickSlipPart, SweepPart
 from hersey.document.parts.part import SCHEMA_VERSION, Part
-from hersey.document.parts.stability import BandPart, MapPart, PlanPart, WarmUpPart
+from hersey.document.parts.stability import BandPart, MapPart, PlanPart, StickSpeedPart, WarmUpPart
 
 
 class Analysis(Part):
@@ -32,6 +32,9 @@ class Analysis(Part):
     hersey_version: str
     title: str
     command: str
+    made: str | None = Field(default=None, description="when, UTC, ISO 8601; null where nobody said so")
+    machine: MachineFilePart | None = None
+    synthetic: bool = Field(default=False, description="a log says of itself that it is no measurement")
     decision: DecisionPart | None = None
     verdict: list[str] = Field(description="in paragraphs; a contradiction first")
     warnings: list[str]
@@ -42,7 +45,9 @@ class Analysis(Part):
     regime: RegimePart
     film: FilmPart | None = None
     carried: CarriedPart | None = None
-    simulation: SimulationPart
+    simulation: SimulationPart | None = Field(
+        default=None, description="below the transition; null without a machine or a transition"
+    )
     timeline: Timeline
     inspection: InspectionPart | None = None
     models: ModelsPart | None = None
@@ -55,6 +60,10 @@ class Analysis(Part):
     sweep: SweepPart | None = None
     band: BandPart | None = None
     map: MapPart | None = None
+    uncertainty: dict[str, tuple[float, float]] = Field(
+        default={}, description="95 % ranges of stiffness, mass and stick_speed by the machine's file, SI"
+    )
+    stick_speed_sweep: StickSpeedPart | None = None
     plan: PlanPart | None = None
     warm_up: WarmUpPart | None = None
     figures: FiguresPart | None = None

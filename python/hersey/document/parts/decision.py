@@ -6,11 +6,20 @@ from typing import Literal
 
 from pydantic import Field
 
-from hersey.document.parts.part import Part
+from hersey.document.parts.part import Numbers, Part
 from hersey.document.parts.stability import DisturbancePart, PlanPart, StepPart
 
 #: Good: nothing to do. Watch: it depends, or a number is not sure. Act: something does not work as it is.
 Signal = Literal["good", "watch", "act"]
+
+
+class StartPart(Part):
+    """A start as the plan has it, and straight up beside it: times in s, speeds in m/s, shape (samples,)."""
+
+    time: Numbers
+    drive_speed: Numbers
+    belt_speed: Numbers
+    straight: Numbers = Field(description="belt speed where the drive comes straight up to the point")
 
 
 class PointDecisionPart(Part):
@@ -24,6 +33,8 @@ class PointDecisionPart(Part):
     disturbance: DisturbancePart | None = Field(default=None, description="what sliding there bears")
     steps: list[StepPart] = Field(default=[], description="from the other points to this one")
     plan: PlanPart | None = Field(default=None, description="where the belt does not slide from every start")
+    motion: StartPart | None = Field(default=None, description="the plan's motion at the nominal parameters")
+    reason: str = Field(default="", description="why there is no plan, or no figure, where one is wanted")
 
 
 class FlagPart(Part):

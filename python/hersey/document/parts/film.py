@@ -164,6 +164,7 @@ class FilmPart(Part):
     measured: MeasuredFilmPart | None = None
     exponents: VerdictPart | None = None
     verdict: str = ""
+    contradicted: bool = Field(default=False, description="the log excludes the film of this nip")
     mixed: MixedPart | None = Field(default=None, description="who carries what, at the points")
     transition: ContactTransitionPart | None = Field(default=None, description="where drag is least")
     notes: list[str] = Field(default=[], description="what in the numbers cannot be, and cautions of the log")

@@ -18,6 +18,13 @@ class ChannelUse(Part):
     unit: str
 
 
+class MachineFilePart(Part):
+    """The file that states the machine."""
+
+    name: str
+    sha256: str
+
+
 class InputFile(Part):
     """A file that went in; the sampling interval is the median, in s."""
 

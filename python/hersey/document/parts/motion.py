@@ -13,7 +13,6 @@ class SimulationPart(Part):
     """A simulation from rest at a low drive speed."""
 
     title: str
-    source: Literal["paper", "fit"]
     units: str
     speed_unit: str
     force_unit: str

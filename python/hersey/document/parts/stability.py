@@ -105,6 +105,17 @@ class MapPart(Part):
     stick_speed_rule: Literal["with transition", "fixed"]
 
 
+class StickSpeedPart(Part):
+    """How V* moves with the stick speed at one temperature (K; null if isothermal): m/s, shape (n,)."""
+
+    temperature: float | None
+    stated: float = Field(description="stick speed of the machine's file, there")
+    known: tuple[float, float] | None = Field(description="range that the file states, 95 %, there")
+    stick_speed: Numbers
+    transition: Numbers
+    upper: Holed = Field(description="V*; null beyond the search")
+
+
 class WarmUpPart(Part):
     """Drive speed from a cold start: times in s, speeds in m/s, temperatures in K, forces in N."""
 

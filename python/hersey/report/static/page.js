@@ -165,14 +165,18 @@ async function main() {
     : `No falling branch is announced: ${data.fit.no_transition}.`);
   await film();
   await carried();
+  if (data.simulation) await motion();
+  files();
+  reproduce();
+}
+
+async function motion() {
   add(report, "h2", "What stick-slip looks like");
   await chart(report, "simulation_speed");
   await chart(report, "simulation_force");
   add(report, "p", "Exact solution of the paper's hybrid model from rest; parameters: "
     + Object.entries(data.simulation.parameters).map(([k, v]) => `${k.replace("_", " ")} ${typeof v === "number" ? digits(v) : v}`).join(", ")
     + ` (${data.simulation.units}).`, "soft");
-  files();
-  reproduce();
 }
 
 show(main);

@@ -15,10 +15,12 @@ obstacles why there is none: the limit, and the number that would do
 result    the plan, its table and its words
 warming   the film's temperature where heater and plan make it
 planner   the whole way: search, proof on fresh draws, plan
+of_log    the same for the machine whose drag a log tells
 ========= ==================================================================
 """
 
+from hersey.stability.plan.of_log import plan_of_log
 from hersey.stability.plan.planner import plan_profile
 from hersey.stability.plan.result import LimitUse, Plan
 
-__all__ = ["LimitUse", "Plan", "plan_profile"]
+__all__ = ["LimitUse", "Plan", "plan_of_log", "plan_profile"]

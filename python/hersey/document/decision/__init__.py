@@ -1,0 +1,19 @@
+"""The first screen of the report: what to do, why, how sure, and what would tell more.
+
+=========== ==================================================================
+module      what it holds
+=========== ==================================================================
+words       numbers as the first screen writes them
+behaviour   what the machine does: map, band, plans, worked out in threads
+edges       transition and V* at one temperature, with their intervals
+instruction the sentence, its interval, and what happens otherwise
+points      what is said of each operating point
+flags       what stands against it, and the section that holds the evidence
+missing     lines to add to a file, ready to copy
+decision    all of it together
+=========== ==================================================================
+"""
+
+from hersey.document.decision.decision import decision
+
+__all__ = ["decision"]

@@ -1,0 +1,45 @@
+"""The first screen: instruction, points, flags and what is missing, from all that is known."""
+
+from __future__ import annotations
+
+from hersey.damping.dwells import SteadyPoints
+from hersey.damping.surface import DampingSurface
+from hersey.document.decision.behaviour import Behaviour
+from hersey.document.decision.flags import flags
+from hersey.document.decision.instruction import of_log, of_machine
+from hersey.document.decision.missing import missing
+from hersey.document.decision.points import point_decision, worst
+from hersey.document.parts import CarriedPart, DecisionPart, FilmPart, RegimePart
+from hersey.document.parts.decision import Signal
+from hersey.machine.machine import Machine
+
+
+def decision(
+    points: SteadyPoints,
+    surface: DampingSurface,
+    machine: Machine | None,
+    *,
+    seen: RegimePart,
+    film: FilmPart | None,
+    carried: CarriedPart | None,
+    found: Behaviour | None,
+    machine_file: str = "",
+) -> DecisionPart:
+    """Return what to do, why, and what stands against it; ``found`` is None without machine or transition."""
+    map_ = None if found is None else found.map
+    said = of_log(surface, seen) if found is None or map_ is None else of_machine(found, map_)
+    of_points = [] if found is None or map_ is None else [point_decision(p, map_) for p in found.points]
+    against = flags(points, surface, seen, film, carried, found)
+    signals: list[Signal] = [said.signal, *(point.signal for point in of_points)]
+    signals += [flag.signal for flag in against if flag.signal == "act"]
+    if map_ is not None and "stick_speed" not in map_.uncertain:
+        signals.append("watch")  # the safe end does not count what V* hangs on most
+    return DecisionPart(
+        signal=worst(signals),
+        instruction=said.instruction,
+        interval=said.interval,
+        otherwise=said.otherwise,
+        points=of_points,
+        flags=against,
+        missing=missing(points, surface, machine, machine_file),
+    )

@@ -1,0 +1,80 @@
+"""The speeds that an instruction stands on: transition and V* at one temperature, each with its interval."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from hersey.arrays import FloatArray
+from hersey.stability.operating_map import OperatingMap
+
+#: V* is not told where its interval reaches so many transition speeds: the search ends at 10,000.
+_TOLD = 5e3
+
+
+@dataclass(frozen=True)
+class Edge:
+    """A speed (m/s) with the ends of its 95 % interval, the upper one infinite if it is not told."""
+
+    value: float
+    low: float
+    high: float
+
+    @property
+    def told(self) -> bool:
+        """Whether the interval has an upper end."""
+        return math.isfinite(self.high)
+
+
+@dataclass(frozen=True)
+class Edges:
+    """Transition and V* at a temperature; ``greatest`` is the speed (m/s) that the drive reaches."""
+
+    transition: Edge
+    fold: Edge
+    greatest: float
+    holding: float
+    starts: bool
+
+    @property
+    def safe(self) -> float:
+        """The speed from which on the belt is smooth from any start, by the ends of the intervals."""
+        return max(self.transition.high, self.fold.high)
+
+    @property
+    def bistable(self) -> bool:
+        """Whether there are speeds at which the start decides."""
+        return self.fold.high > self.transition.high * (1.0 + 1e-6)
+
+
+def edges_of(map_: OperatingMap, kelvin: float | None) -> Edges:
+    """Return the edges of a map at a temperature (K; None if isothermal): speeds exact, ends interpolated."""
+    state = map_.state_at(kelvin, float(map_.speed[-1]))
+    turn = _ends(map_, map_.transition_interval, kelvin)
+    fold = _ends(map_, map_.upper_interval, kelvin)
+    upper, far = max(state.upper, state.transition), _TOLD * state.transition
+    stall = _at(map_, map_.stall_above, kelvin)
+    return Edges(
+        transition=Edge(state.transition, min(turn[0], state.transition), max(turn[1], state.transition)),
+        fold=Edge(upper, min(fold[0], upper), math.inf if fold[1] > far else max(fold[1], upper)),
+        greatest=min(map_.speed_limit or math.inf, stall),
+        holding=state.holding,
+        starts=state.starts,
+    )
+
+
+def _ends(map_: OperatingMap, interval: FloatArray, kelvin: float | None) -> tuple[float, float]:
+    low, high = (_at(map_, edge, kelvin) for edge in interval)
+    return low, high
+
+
+def _at(map_: OperatingMap, values: FloatArray, kelvin: float | None) -> float:
+    if map_.temperature is None or kelvin is None:
+        return float(values[0])
+    right = int(np.searchsorted(map_.temperature, kelvin).clip(1, map_.temperature.size - 1))
+    ends = values[right - 1 : right + 1]
+    if not np.all(np.isfinite(ends)):
+        return float(ends[0] if kelvin <= map_.temperature[right - 1] else ends[1])
+    return float(np.interp(kelvin, map_.temperature, values))

@@ -1,0 +1,144 @@
+"""The warnings of the first screen: contradictions, what V* hangs on, what the log leaves open."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from hersey.damping.dwells import SteadyPoints
+from hersey.damping.dwells.doubtful import doubtful_order, doubtful_tare
+from hersey.damping.surface import DampingSurface
+from hersey.document.decision.behaviour import Behaviour
+from hersey.document.decision.edges import edges_of
+from hersey.document.decision.words import at, figures, listed, mm, signed
+from hersey.document.parts import CarriedPart, FilmPart, RegimePart
+from hersey.document.parts.decision import FlagPart
+from hersey.log.doubtful import doubtful_units
+from hersey.stability.operating_map import OperatingMap
+
+#: How many the first screen has room for.
+MOST = 3
+#: Measured over stated torque beyond which the file does not make the log.
+_FAR = 2.0
+#: Scatter between dwells that is spoken of.
+_SCATTER = 0.05
+
+
+def flags(
+    points: SteadyPoints,
+    surface: DampingSurface,
+    seen: RegimePart,
+    film: FilmPart | None,
+    carried: CarriedPart | None,
+    found: Behaviour | None,
+) -> list[FlagPart]:
+    """Return the gravest warnings, each with the section of the page that holds its evidence."""
+    map_ = None if found is None else found.map
+    out = [*_contradictions(film, carried), *_of_log(points)]
+    if found is not None and map_ is not None:
+        out += _of_machine(found, map_)
+    if found is not None:
+        out += [
+            FlagPart(signal="watch", title="No map.", text=_sentence(why), section="band")
+            for why in found.reasons
+        ]
+        out += _plans(found)
+    out += _left_open(points, surface, seen)
+    grave = {"act": 0, "watch": 1, "good": 2}
+    return sorted(out, key=lambda flag: grave[flag.signal])[:MOST]
+
+
+def _contradictions(film: FilmPart | None, carried: CarriedPart | None) -> list[FlagPart]:
+    out = []
+    if film is not None and film.contradicted and film.exponents is not None:
+        e = film.exponents
+        theory = e.expected if e.solved is None else e.solved
+        value = e.exponent.value
+        measured = "" if value is None else f"Measured {signed(value)}; "
+        text = f"{measured}the film solved for this nip gives {signed(theory)}."
+        out.append(FlagPart(signal="watch", title="Exponent and nip disagree.", text=text, section="regime"))
+    if carried is not None and (carried.ratio[0] < 1 / _FAR or carried.ratio[2] > _FAR):
+        low, mean, high = (figures(ratio) for ratio in carried.ratio)
+        text = f"Measured torque is {mean} times what the file states, {low} to {high} by dwell."
+        out.append(FlagPart(signal="watch", title="Torque and file disagree.", text=text, section="regime"))
+    return out
+
+
+def _of_machine(found: Behaviour, map_: OperatingMap) -> list[FlagPart]:
+    edges, kelvin = edges_of(map_, found.temperature), found.temperature
+    out = []
+    if not edges.starts:
+        gives = "motor" if map_.limited_by == "motor torque" else "grip"
+        text = (
+            f"{at(kelvin)}a belt at rest bears {figures(edges.holding)} N·m, the {gives} "
+            f"{figures(map_.torque_limit or 0.0)}."
+        )
+        title = "The motor does not start the belt." if gives == "motor" else "The roll slips at the start."
+        out.append(FlagPart(signal="act", title=title, text=_sentence(text), section="band"))
+    stick = found.stick_speeds
+    if stick is not None and edges.bistable:
+        upper = np.array(stick.upper)
+        ends = stick.known or (stick.stick_speed[0], stick.stick_speed[-1])
+        moved = np.exp(np.interp(np.log(ends), np.log(stick.stick_speed), np.log(np.maximum(upper, 1e-12))))
+        within = f"{mm(ends[0])} to {mm(ends[1])} mm/s"
+        counted = "" if stick.known else "; the interval does not count it"
+        text = f"Nobody measures it; {within} moves V* from {mm(moved[0])} to {mm(moved[1])}{counted}."
+        out.append(FlagPart(signal="watch", title="V* hangs on the stick speed.", text=text, section="band"))
+    if map_.train.grip is None:
+        pulls = [p.plan.peak_force for p in found.points if p.plan is not None and p.plan.found]
+        force = f"The first slip pulls {figures(max(pulls))} N; " if pulls else ""
+        text = _sentence(f"{force}the roll's grip is not stated, so it is not in the model.")
+        out.append(
+            FlagPart(signal="watch", title="The roll may slip at the start.", text=text, section="plan")
+        )
+    far = [p.name for p in map_.points if p.at.extrapolated]
+    if far:
+        text = f"{_sentence(listed(far))}: no dwell lies that far out."
+        out.append(FlagPart(signal="watch", title="Points are extrapolated.", text=text, section="data"))
+    return out
+
+
+def _plans(found: Behaviour) -> list[FlagPart]:
+    out = []
+    for each in found.points:
+        if each.plan is not None and not each.plan.found:
+            text = _sentence("; ".join(obstacle.text for obstacle in each.plan.obstacles)) + "."
+            title = f"No start for {each.point.name}."
+            out.append(FlagPart(signal="act", title=title, text=text, section="plan"))
+    return out
+
+
+def _of_log(points: SteadyPoints) -> list[FlagPart]:
+    """What is doubtful in the log itself: a unit or a zero shifts every number."""
+    titled = {
+        "A unit is doubtful.": doubtful_units(points.log),
+        "The zero is doubtful.": doubtful_tare(points),
+    }
+    out = [
+        FlagPart(signal="watch", title=title, text=text, section="data")
+        for title, texts in titled.items()
+        for text in texts[:1]
+    ]
+    if loads := points.varying_load:
+        text = f"From {figures(loads[0])} to {figures(loads[1])} N: fit each load alone."
+        out.append(FlagPart(signal="watch", title="The load differs.", text=text, section="data"))
+    return out
+
+
+def _left_open(points: SteadyPoints, surface: DampingSurface, seen: RegimePart) -> list[FlagPart]:
+    out = []
+    for text in doubtful_order(points)[:1]:
+        title, rest = text.split(": ", 1)
+        out.append(FlagPart(signal="watch", title=f"{title}.", text=_sentence(rest), section="data"))
+    if seen.named is None:
+        why = seen.why_unnamed or "several explain the dwells"
+        text = f"{_sentence(why)}."
+        out.append(FlagPart(signal="watch", title="No regime is told.", text=text, section="regime"))
+    scatter = surface.statistics.scatter
+    if scatter > _SCATTER:
+        text = f"By {100 * scatter:.0f} %, more than their noise: a cause not recorded, or not this law."
+        out.append(FlagPart(signal="watch", title="Dwells stand off the law.", text=text, section="torque"))
+    return out
+
+
+def _sentence(text: str) -> str:
+    return f"{text[0].upper()}{text[1:]}" if text else text

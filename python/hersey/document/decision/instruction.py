@@ -1,0 +1,168 @@
+"""The one sentence of the first screen, its interval, and what happens otherwise."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from hersey.damping.surface import DampingSurface
+from hersey.document.decision.behaviour import Behaviour, PointBehaviour
+from hersey.document.decision.edges import Edge, Edges, edges_of
+from hersey.document.decision.words import at, degrees, figures, mm, roll, signed, within
+from hersey.document.parts import RegimePart
+from hersey.document.parts.decision import Signal
+from hersey.stability.operating_map import OperatingMap
+
+#: Temperatures that are alike, K.
+_ALIKE = 0.5
+#: p-value of one exponent over all speeds, below which it does not hold.
+_SURE = 0.05
+
+
+@dataclass(frozen=True)
+class Instruction:
+    """The decision in words."""
+
+    signal: Signal
+    instruction: str
+    interval: str
+    otherwise: str
+
+
+def of_machine(found: Behaviour, map_: OperatingMap) -> Instruction:
+    """Return what to do with a machine whose band is known."""
+    kelvin = found.temperature
+    edges = edges_of(map_, kelvin)
+    where, fold, turn = at(kelvin), edges.fold, edges.transition
+    if not edges.starts:
+        return _not_started(where, edges, map_)
+    interval = _interval("V* is", fold) if edges.bistable else _interval("the transition is", turn)
+    starts = _starts(found, kelvin)
+    if not math.isfinite(edges.safe):
+        lead = _lead(where, "measure the stick speed before you count on a start from rest")
+        return Instruction("watch", lead, interval, _otherwise(edges, starts))
+    if edges.safe > edges.greatest:
+        planned = any(each.plan is not None and each.plan.found for each in found.points)
+        what = "start as the plan says" if planned else f"come from above {mm(turn.high)} mm/s"
+        why = f"no speed up to {mm(edges.greatest)} mm/s, the most that the drive gives, is surely smooth"
+        lead = _lead(where, f"{what}: {why}")
+        return Instruction("watch" if planned else "act", lead, interval, _otherwise(edges, starts))
+    lead = _lead(where, f"run above {_up(edges.safe)} mm/s")
+    return Instruction("good", lead, interval, _otherwise(edges, starts))
+
+
+def of_log(surface: DampingSurface, seen: RegimePart) -> Instruction:
+    """Return what the log alone tells, in speeds of the roll."""
+    if surface.transition is None:
+        return _one_branch(surface, seen)
+    ends = [None] if surface.b is None or surface.temperature_range is None else [*surface.temperature_range]
+    kelvin = max(ends, key=surface.transition_speed)
+    found = surface.transition_estimate(kelvin)
+    lead = at(kelvin)
+    slower = "Below it torque rises as the drive slows, and the drive can stick and slip"
+    if not found.told:
+        text = _lead(lead, f"keep the roll well above {roll(found.value)} rpm")
+        interval = f"torque is least at {roll(found.value)} rpm, interval not told"
+        return Instruction("watch", text, interval, f"{slower}.")
+    factor = 60.0 / math.tau
+    value, low, high = found.value, found.low, found.high
+    text = _lead(lead, f"keep the roll above {figures(high * factor, up=True)} rpm")
+    interval = f"torque is least at {roll(value)} {within(low, high, factor)} rpm"
+    return Instruction(
+        "watch", text, interval, f"{slower}; how far above it that lasts, only the machine tells."
+    )
+
+
+def _one_branch(surface: DampingSurface, seen: RegimePart) -> Instruction:
+    """What a log says that shows no transition: nothing sticks, or torque falls all the way."""
+    low, high = (roll(speed) for speed in surface.speed_range)
+    c = surface.c
+    interval = f"exponent of damping {signed(c.value)}"
+    interval += f" [{signed(c.low)}, {signed(c.high)}]" if c.told else ", interval not told"
+    if c.value < -1.0:
+        sure = c.told and c.high < -1.0
+        falls = "torque falls" if sure else "torque does not rise"
+        return Instruction(
+            "watch",
+            f"Measure faster dwells: {falls} as speed rises, over all that was measured, {low} to {high} rpm",
+            interval,
+            "Where torque falls with speed the drive can stick and slip; where it ends to fall is not known.",
+        )
+    slow = _local(seen)
+    if slow is not None and slow < -1.0:
+        return Instruction(
+            "watch",
+            f"Keep the roll well above {low} rpm: there torque falls as speed rises",
+            f"exponent of damping {signed(slow)} at the slow end, {signed(c.value)} over all",
+            "Where torque falls with speed the drive can stick and slip; no transition is told.",
+        )
+    return Instruction(
+        "good",
+        f"Keep the roll at {low} rpm or faster: no falling branch down to there, so nothing sticks",
+        interval,
+        f"Slower than {low} rpm is not known.",
+    )
+
+
+def _local(seen: RegimePart) -> float | None:
+    """The exponent at the slow end, where one exponent does not hold over all speeds."""
+    lack = seen.lack_of_fit
+    if lack is None or lack.curvature is None or lack.curvature > _SURE:
+        return None
+    return lack.local_exponents[0]
+
+
+def _not_started(where: str, edges: Edges, map_: OperatingMap) -> Instruction:
+    holding, limit = figures(edges.holding, up=True), figures(map_.torque_limit or math.nan)
+    if map_.limited_by == "motor torque":
+        what = f"give the roll more than {holding} N·m: the motor's {limit} N·m do not start a belt at rest"
+    else:
+        what = f"let the roll grip more than {holding} N·m: at {limit} N·m it slips on a belt at rest"
+    turn = mm(edges.transition.high)
+    moving = "A belt that slides already goes on sliding above" if edges.starts is False else ""
+    return Instruction("act", _lead(where, what), "", f"{moving} {turn} mm/s.")
+
+
+def _otherwise(edges: Edges, starts: str) -> str:
+    turn = mm(edges.transition.value)
+    sticks = f"Below {turn} mm/s it sticks."
+    if not edges.bistable:
+        return f"{sticks} The way there does not matter."
+    upper = f"{turn} and {_up(edges.safe)} mm/s" if math.isfinite(edges.safe) else ""
+    between = f"Between {upper}" if upper else f"Above {turn} mm/s"
+    return f"{between} it depends on how you get there{starts}. {sticks}"
+
+
+def _starts(found: Behaviour, kelvin: float | None) -> str:
+    """How the plans start the points that need one."""
+    said = [text for each in found.points if (text := _start(each, kelvin))]
+    return f": {'; '.join(said)}" if said else ""
+
+
+def _start(found: PointBehaviour, kelvin: float | None) -> str:
+    plan, point = found.plan, found.point
+    if plan is None:
+        return ""
+    apart = kelvin is not None and abs(point.temperature - kelvin) > _ALIKE
+    goal = f"{mm(point.speed)} mm/s" + (f" at {degrees(point.temperature)}" if apart else "")
+    if plan.kind == "overshoot":
+        return f"for {goal} overshoot to {mm(plan.peak_speed)} mm/s first (plan)"
+    if plan.kind == "direct":
+        return f"for {goal} come straight up in {figures(plan.rise)} s (plan)" if plan.rise else ""
+    return f"for {goal} no start within the limits works"
+
+
+def _interval(what: str, edge: Edge) -> str:
+    if edge.told:
+        return f"{what} {mm(edge.value)} {within(edge.low, edge.high, 1e3)} mm/s"
+    least = figures(1e3 * edge.low, up=False)
+    value = f"{mm(edge.value)} mm/s" if math.isfinite(edge.value) else "not found"
+    return f"{what} {value}, at least {least}; its upper end is not told"
+
+
+def _lead(where: str, what: str) -> str:
+    return f"{where}{what}" if where else f"{what[0].upper()}{what[1:]}"
+
+
+def _up(speed: float) -> str:
+    return figures(1e3 * speed, up=True)

@@ -1,0 +1,104 @@
+"""What is said of each operating point."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from hersey.document.decision.behaviour import PointBehaviour
+from hersey.document.decision.edges import Edges, edges_of
+from hersey.document.decision.words import figures, mm, within
+from hersey.document.parts.decision import PointDecisionPart, Signal, StartPart
+from hersey.document.parts.stability import DisturbancePart, PlanPart, StepPart
+from hersey.document.thinning import kept
+from hersey.result import json_record
+from hersey.stability.operating_map import OperatingMap
+from hersey.stability.operating_map.state import MapState
+
+#: Samples of a start that the page draws.
+_SAMPLES = 600
+#: The gravest last.
+_ORDER: tuple[Signal, ...] = ("good", "watch", "act")
+
+
+def worst(signals: list[Signal]) -> Signal:
+    """Return the gravest signal; good where there is none."""
+    return max(signals, key=_ORDER.index, default="good")
+
+
+def point_decision(found: PointBehaviour, map_: OperatingMap) -> PointDecisionPart:
+    """Return what is said of an operating point."""
+    point = found.point
+    kelvin = point.temperature if map_.drag.varies_with_temperature else None
+    state, edges = map_.state_at(kelvin, point.speed), edges_of(map_, kelvin)
+    signal, words = _judged(found, state, edges, map_)
+    if state.extrapolated:
+        signal, words = worst([signal, "watch"]), f"{words}; extrapolated"
+    bears, plan = found.disturbance, found.plan
+    return PointDecisionPart(
+        name=point.name,
+        speed=point.speed,
+        temperature=point.temperature,
+        signal=signal,
+        words=words,
+        disturbance=None if bears is None else DisturbancePart(**json_record(vars(bears))),
+        steps=[StepPart(**json_record(vars(step))) for step in found.steps],
+        plan=None if plan is None else PlanPart(**plan.to_dict()),
+        motion=_motion(found),
+        reason=found.reason,
+    )
+
+
+def _judged(found: PointBehaviour, state: MapState, edges: Edges, map_: OperatingMap) -> tuple[Signal, str]:
+    speed, fold, turn = found.point.speed, edges.fold, edges.transition
+    if map_.speed_limit is not None and speed > map_.speed_limit:
+        return "act", f"faster than the drive, {mm(map_.speed_limit)} mm/s"
+    if not state.starts:
+        return "act", f"not started: {_beyond(map_, 'a belt at rest bears', state.holding)}"
+    if state.state in ("stall", "motor"):
+        return "act", f"stalls: {_beyond(map_, 'sliding takes', state.torque)}"
+    if state.state in ("stick_slip", "swing"):
+        return (
+            "act",
+            f"sticks: below the transition, {mm(turn.value)} {within(turn.low, turn.high, 1e3)} mm/s",
+        )
+    if state.state == "smooth":
+        if speed >= edges.safe:
+            return "good", "smooth from any start"
+        ends = within(fold.low, fold.high, 1e3)
+        return "watch", f"smooth by the estimate; V* is {mm(fold.value)} {ends} mm/s"
+    near = f"; the transition is {mm(turn.value)} {within(turn.low, turn.high, 1e3)} mm/s"
+    doubt = near if speed < turn.high else ""
+    if found.plan is None:
+        return "watch", f"depends: only from above{doubt}"
+    if not found.plan.found:
+        return "act", f"depends: only from above, and no start within the limits gets there{doubt}"
+    way = "only from above" if found.plan.kind == "overshoot" else "only if it starts gently"
+    return "watch", f"depends: {way} (plan){doubt}"
+
+
+def _beyond(map_: OperatingMap, what: str, torque: float) -> str:
+    limit = figures(map_.torque_limit or math.nan)
+    gives = "the motor gives" if map_.limited_by == "motor torque" else "the roll grips"
+    return f"{what} {figures(torque)} N·m, {gives} {limit}"
+
+
+def _motion(found: PointBehaviour) -> StartPart | None:
+    """The plan's motion, thinned so that its peaks stay, with the drive and the motion straight up."""
+    plan = found.plan
+    if plan is None or plan.response is None or plan.schedule is None or found.straight is None:
+        return None
+    run, straight = plan.response, found.straight
+    thin = kept(run.belt_speed, _SAMPLES)
+    time = run.time[thin]
+    return StartPart(
+        time=_short(plan.wait + time),
+        drive_speed=_short(np.array([plan.schedule.at(plan.wait + t) for t in time.tolist()])),
+        belt_speed=_short(run.belt_speed[thin]),
+        straight=_short(np.interp(time, straight.time, straight.belt_speed)),
+    )
+
+
+def _short(values: np.ndarray) -> list[float]:
+    return [float(f"{value:.5g}") for value in values.tolist()]

@@ -1,0 +1,61 @@
+"""Numbers as the first screen writes them: two or three figures, °C, a true minus, intervals outward."""
+
+from __future__ import annotations
+
+import math
+
+from hersey.units import celsius
+from hersey.units import rpm as in_rpm
+
+_MINUS = "\N{MINUS SIGN}"
+
+
+def mm(speed: float) -> str:
+    """Return a belt speed (m/s) in mm/s, without the unit."""
+    return figures(1e3 * speed)
+
+
+def roll(speed: float) -> str:
+    """Return a roll speed (rad/s) in rpm, without the unit."""
+    return figures(float(in_rpm(speed)))
+
+
+def degrees(kelvin: float) -> str:
+    """Return a temperature."""
+    return f"{celsius(kelvin):.0f} °C".replace("-", _MINUS)
+
+
+def at(kelvin: float | None, *, first: bool = True) -> str:
+    """Return ``At 180 °C `` to begin a sentence (or ``at``), nothing where there are no temperatures."""
+    if kelvin is None:
+        return ""
+    return f"{'At' if first else 'at'} {degrees(kelvin)} "
+
+
+def signed(value: float) -> str:
+    """Return an exponent to two places."""
+    return f"{value:.2f}".replace("-", _MINUS)
+
+
+def figures(value: float, *, up: bool | None = None) -> str:
+    """Return a positive number to two figures, from 100 on to the whole; ``up`` says which way."""
+    if not math.isfinite(value) or value <= 0:
+        return "0" if value == 0 else "∞"
+    place = 0 if value >= 100 else 1 - math.floor(math.log10(value))
+    scaled = value * 10.0**place
+    nearest = round(scaled)
+    if up is None or math.isclose(scaled, nearest, rel_tol=1e-9):
+        whole = nearest
+    else:
+        whole = math.ceil(scaled) if up else math.floor(scaled)
+    return f"{whole / 10.0**place:.{max(place, 0)}f}"
+
+
+def within(low: float, high: float, factor: float) -> str:
+    """Return an interval in brackets, rounded outward; ``factor`` leads to its unit."""
+    return f"[{figures(low * factor, up=False)}, {figures(high * factor, up=True)}]"
+
+
+def listed(parts: list[str]) -> str:
+    """Return parts as a sentence lists them."""
+    return parts[0] if len(parts) == 1 else f"{', '.join(parts[:-1])} and {parts[-1]}"

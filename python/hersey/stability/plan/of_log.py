@@ -1,0 +1,98 @@
+"""The plan of a machine whose drag a log tells: what fit and machine's file leave open is drawn together."""
+
+from __future__ import annotations
+
+import warnings
+
+from hersey.arrays import FloatArray
+from hersey.damping.surface import DampingSurface
+from hersey.errors import ParameterError
+from hersey.machine.machine import Machine
+from hersey.machine.uncertainty import Uncertainty
+from hersey.motion.drag import Drag
+from hersey.motion.heat import HeatBalance
+from hersey.motion.schedule import Schedule
+from hersey.stability.plan.planner import plan_profile
+from hersey.stability.plan.result import Plan
+from hersey.stability.plan.search import Progress
+from hersey.units import takes_si
+
+#: Draws of the fit from which those of the plan are taken.
+_DRAWS = 4000
+
+
+@takes_si(target_speed="belt speed", temperature="temperature")
+def plan_of_log(
+    surface: DampingSurface,
+    machine: Machine,
+    *,
+    target_speed: float,
+    temperature: float | Schedule | None = None,
+    heat: HeatBalance | None = None,
+    confidence: float = 0.95,
+    seed: int = 1,
+    progress: Progress | None = None,
+) -> Plan:
+    """Return the quickest profile from rest after which the belt of a machine slides, as `plan_profile` does.
+
+    Parameters
+    ----------
+    surface, machine
+        The fit of the log, and what the machine's file states.
+    target_speed
+        m/s.
+    temperature
+        K, or its profile; None for the fit of an isothermal log, or with ``heat``.
+    heat, confidence, seed, progress
+        As in `plan_profile`.
+
+    Raises
+    ------
+    InsufficientDataError
+        If the data show no falling branch.
+    ParameterError
+        If temperature and fit do not go together, or a value is out of range, with its name.
+    """
+    varies = heat is not None or isinstance(temperature, Schedule)
+    kelvin = None if isinstance(temperature, Schedule) else temperature
+    if surface.b is not None and kelvin is None and not varies:
+        raise ParameterError(
+            "the drag varies with temperature: give --at '150 degC', --temperature-profile or --heat"
+        )
+    if surface.b is None and (kelvin is not None or varies):
+        raise ParameterError("the log is isothermal: leave out --at, --temperature-profile and --heat")
+    drag = surface.drag(**machine.belt, temperature=kelvin)
+    return plan_profile(
+        machine.train,
+        drag,
+        target_speed=target_speed,
+        temperature=temperature if varies else None,
+        heat=heat,
+        limits=machine.limits,
+        roll_radius=machine.roll_radius,
+        uncertainty=_uncertainty(machine, drag),
+        samples=_samples(surface, machine, drag.reference_temperature if varies else kelvin, seed),
+        confidence=confidence,
+        seed=seed,
+        progress=progress,
+    )
+
+
+def _uncertainty(machine: Machine, drag: Drag) -> dict[str, Uncertainty]:
+    """How far parameters are known; a range of the stick speed moves with it from where it was stated."""
+    known = dict(machine.uncertainty)
+    if "stick_speed" in known:
+        known["stick_speed"] = known["stick_speed"].times(drag.stick_speed / machine.stick_speed)
+    return known
+
+
+def _samples(
+    surface: DampingSurface, machine: Machine, kelvin: float | None, seed: int
+) -> dict[str, FloatArray]:
+    """Draws of what the fit leaves open."""
+    with warnings.catch_warnings():  # the fit's own command says how many draws have no falling branch
+        warnings.simplefilter("ignore")
+        samples = surface.drag_samples(_DRAWS, seed, **machine.belt, temperature=kelvin)
+    if surface.rest is not None:
+        samples |= surface.rest.samples(_DRAWS, seed, roll_radius=machine.roll_radius, temperature=kelvin)
+    return samples
