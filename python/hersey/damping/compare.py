@@ -15,7 +15,6 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy import stats
 
 from hersey.arrays import FloatArray
 from hersey.damping.candidates.branched import Law
@@ -24,6 +23,7 @@ from hersey.damping.candidates.intervals import quantities
 from hersey.damping.candidates.likelihood import EVIDENCE
 from hersey.damping.candidates.model_comparison import CandidateFit, ModelComparison
 from hersey.damping.candidates.observations import Inputs, Observations
+from hersey.damping.distributions import ratio_quantile, student_above, student_quantile
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.estimate import CONFIDENCE, Estimate
 from hersey.errors import InsufficientDataError
@@ -168,7 +168,7 @@ def compare(
     covariance = g_a @ of_a.fit.covariance @ g_a.T + g_b @ of_b.fit.covariance @ g_b.T
     freedom = _least_freedom(of_a, of_b, g_a, g_b)
     rank = of_a.fit.values.size
-    reach = np.sqrt(rank * stats.f.ppf(CONFIDENCE, rank, freedom)) * np.sqrt(np.diag(covariance))
+    reach = np.sqrt(rank * ratio_quantile(CONFIDENCE, rank, freedom)) * np.sqrt(np.diag(covariance))
     shape = (max(temperatures.size, 1), speeds.size)
     all_of = np.full((1, difference.size), 1.0 / difference.size)
     mean = _mean(difference, covariance, _least_freedom(of_a, of_b, all_of @ g_a, all_of @ g_b))
@@ -274,7 +274,7 @@ def _law_at(
 def _mean(difference: FloatArray, covariance: FloatArray, freedom: float) -> Estimate:
     share = np.full(difference.size, 1.0 / difference.size)
     centre, error = float(share @ difference), float(np.sqrt(share @ covariance @ share))
-    reach = float(stats.t.ppf(0.5 + CONFIDENCE / 2, freedom)) * error
+    reach = float(student_quantile(0.5 + CONFIDENCE / 2, freedom)) * error
     ratio = float(np.exp(centre))
     return Estimate(
         ratio, ratio * error, float(np.exp(centre - reach)), float(np.exp(centre + reach)), freedom
@@ -306,8 +306,8 @@ def _changes(a: CandidateFit, b: CandidateFit, of_a: Observations, of_b: Observa
             values = values[0], values[1] * _moved(b, of_b, of_a.reference_kelvin)
         freedom = min(fit.freedom_of(fit.law.names[k.parameter]) for fit, k in ((a.fit, p), (b.fit, q)))
         size = float(np.log(values[1] / values[0])) if is_ratio else values[1] - values[0]
-        p_value = float(2 * stats.t.sf(abs(size) / max(error, 1e-300), freedom))
-        reach = float(stats.t.ppf(0.5 + CONFIDENCE / 2, freedom)) * error
+        p_value = float(2 * student_above(abs(size) / max(error, 1e-300), freedom))
+        reach = float(student_quantile(0.5 + CONFIDENCE / 2, freedom)) * error
         ends = size - reach, size + reach
         change = Estimate(size, error, *ends)
         if is_ratio:

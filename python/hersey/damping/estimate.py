@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy import stats
+
+from hersey.damping.distributions import student_quantile
 
 #: Confidence of every interval.
 CONFIDENCE = 0.95
@@ -43,7 +44,7 @@ class Estimate:
 
 def quantile(freedom: float) -> float:
     """Return how many standard errors an interval reaches to either side (Student's t)."""
-    return float(stats.t.ppf(0.5 + CONFIDENCE / 2, max(freedom, 1)))
+    return float(student_quantile(0.5 + CONFIDENCE / 2, max(freedom, 1)))
 
 
 def estimate(value: float, error: float, freedom: float) -> Estimate:

@@ -12,9 +12,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy import stats
 
 from hersey.arrays import FloatArray
+from hersey.damping.distributions import student_below
 from hersey.damping.estimate import CONFIDENCE
 
 #: Variances of the curve that are weighed, over that of the dwells, by mean of what each adds.
@@ -123,7 +123,7 @@ class Curve:
         for i in np.flatnonzero(weights):
             mean, deviation = self._slope(grid, float(ratios[i]), float(scale[i]))
             slope += weights[i] * mean
-            falling += weights[i] * stats.t.cdf(-mean / deviation, self.freedom)
+            falling += weights[i] * student_below(-mean / deviation, self.freedom)
         return slope, falling
 
     def _slope(self, grid: FloatArray, ratio: float, scale: float) -> tuple[FloatArray, FloatArray]:

@@ -15,16 +15,16 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy import stats
 
 from hersey.arrays import FloatArray
 from hersey.damping.candidates.branched import LEAST_POWER, transition_exponent
 from hersey.damping.candidates.thermal import scaled_temperature
+from hersey.damping.distributions import square_quantile
 from hersey.damping.estimate import Estimate, quantile
 from hersey.damping.fitted_law import FittedLaw
 from hersey.damping.rest import with_rest
 from hersey.damping.surface_words import headline_of, record_of, summary_of, table_of
-from hersey.errors import InsufficientDataError, ParameterError
+from hersey.errors import InsufficientDataError, ParameterError, UntoldWarning
 from hersey.motion.drag import Drag
 from hersey.units import ZERO_CELSIUS, takes_si
 
@@ -256,6 +256,31 @@ class DampingSurface(FittedLaw):
         ParameterError
             If a value is out of range, with its name.
         """
+        drawn, said = self.drawn_drag(
+            count,
+            seed,
+            roll_radius=roll_radius,
+            stick_speed=stick_speed,
+            temperature=temperature,
+            stick_speed_temperature=stick_speed_temperature,
+            stick_speed_rule=stick_speed_rule,
+        )
+        for warning in said:
+            warnings.warn(warning, stacklevel=3)
+        return drawn
+
+    def drawn_drag(
+        self,
+        count: int,
+        seed: int,
+        *,
+        roll_radius: float,
+        stick_speed: float,
+        temperature: float | None = None,
+        stick_speed_temperature: float | None = None,
+        stick_speed_rule: str = WITH_TRANSITION,
+    ) -> tuple[dict[str, FloatArray], tuple[Warning, ...]]:
+        """Return the draws of `drag_samples`, and what that warns of: for threads, which share warnings."""
         if self.transition is None:
             raise InsufficientDataError(
                 f"the data show no falling branch ({self.rejected_transition}); "
@@ -279,24 +304,25 @@ class DampingSurface(FittedLaw):
         if temperature is not None and self.reference_temperature is not None:
             x = self._checked_temperature(temperature)
         slowest = np.log(at.stick_speed / roll_radius / self.reference_speed)
-        self._warn_untold()
+        said: list[Warning] = [UntoldWarning()] if self.b is not None and not self.b.told else []
         kept, total, failed = self._draws(count, seed, x, slowest)
         if failed:
-            warnings.warn(
+            again = (
                 f"{failed} of {total} draws of the fit had no falling branch and were drawn again: "
-                "the intervals hold for fits that have one",
-                stacklevel=3,
+                "the intervals hold for fits that have one"
             )
+            said.append(UserWarning(again))
         level, b, c, mixed, corner = kept.T
         z = corner + _transition_exponents(b, c) * x
         speed = self.reference_speed * np.exp(z)
         torque = np.exp(level + b * x + c * z) * speed
-        return {
+        drawn = {
             "transition_force": torque / roll_radius,
             "transition_speed": speed * roll_radius,
             "ehl_exponent": c,
             "mixed_exponent": mixed,
         }
+        return drawn, tuple(said)
 
     def _draws(self, count: int, seed: int, x: float, slowest: float) -> tuple[FloatArray, int, int]:
         """Draws of level, b, c, c_mixed and at that have both branches; how many were drawn, and refused."""
@@ -312,7 +338,7 @@ class DampingSurface(FittedLaw):
         while len(kept) < count:
             values = rng.multivariate_normal(np.zeros(centre.size), covariance, size=count)
             share = rng.random(count)  # one quantile of chi-square for all values of a draw
-            wider = [np.sqrt(f / stats.chi2.ppf(share, f)) for f in freedoms]
+            wider = [np.sqrt(f / square_quantile(share, f)) for f in freedoms]
             values = centre + values * np.column_stack(wider)
             if self.b is None:
                 values = np.insert(values, 1, 0.0, axis=1)

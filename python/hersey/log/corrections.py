@@ -11,7 +11,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.signal import savgol_filter
 
 from hersey.arrays import FloatArray
 from hersey.errors import InsufficientDataError, ParameterError
@@ -316,6 +315,8 @@ def _derivative(run: Run, values: FloatArray, window: float) -> FloatArray:
     window.
     """
     time, index = np.unique(run.time, return_inverse=True)
+    from scipy.signal import savgol_filter  # takes long to import
+
     level = np.bincount(index, values) / np.bincount(index)
     step = run.sampling_interval
     length = max(_LEAST_WINDOW, 2 * round(0.5 * window / step) + 1)

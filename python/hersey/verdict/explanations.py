@@ -13,7 +13,6 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from scipy import stats
 
 from hersey.arrays import FloatArray
 from hersey.damping.candidates.candidate import LEAST_FREEDOM
@@ -24,6 +23,7 @@ from hersey.damping.candidates.likelihood import EVIDENCE
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.candidates.stribeck import StribeckLaw
 from hersey.damping.candidates.thermal import ARRHENIUS, VFT, Thermal
+from hersey.damping.distributions import student_above
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.estimate import CONFIDENCE
 from hersey.damping.rising import Rising, rising
@@ -194,7 +194,7 @@ def _own_film(
     lack = lack_of_fit(fit, straight)
     c = fit.estimate("c")
     away = max(abs(c.value - best[power.names.index("c")]) - surface.c.systematic - FORMULA, 0.0)
-    p = min(1.0, tests * 2.0 * float(stats.t.sf(away / max(c.error, 1e-12), max(c.freedom, 1))))
+    p = min(1.0, tests * 2.0 * float(student_above(away / max(c.error, 1e-12), max(c.freedom, 1))))
     if p <= 1.0 - CONFIDENCE or lack.bent_by(2.0 * surface.c.systematic):
         return None
     return Explanation(law.regime, f"{law.regime} as theory has it for this contact", None, p), fit

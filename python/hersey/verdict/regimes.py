@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy import stats
 
+from hersey.damping.distributions import student_above
 from hersey.damping.estimate import CONFIDENCE, Estimate
 from hersey.result import json_record
 
@@ -109,7 +109,7 @@ def _p_value(exponent: Estimate, row: RegimeRow) -> float:
     away = max(row.low - exponent.value, exponent.value - row.high, 0.0) - exponent.systematic
     sides = 1.0 if np.isinf(row.low) else 2.0
     deviation = max(away, 0.0) / max(exponent.error, 1e-12)
-    return min(1.0, sides * float(stats.t.sf(deviation, max(exponent.freedom, 1))))
+    return min(1.0, sides * float(student_above(deviation, max(exponent.freedom, 1))))
 
 
 def _holm(p_values: list[float]) -> list[float]:

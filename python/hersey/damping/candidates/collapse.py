@@ -12,10 +12,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy import optimize, stats
+from scipy import optimize
 
 from hersey.arrays import FloatArray, IntArray
 from hersey.damping.candidates.observations import Observations
+from hersey.damping.distributions import ratio_above
 from hersey.errors import InsufficientDataError, ParameterError
 
 #: Deviation of a group, relative, below which curves are one for every purpose of a drive.
@@ -168,7 +169,7 @@ def _deviation(x: FloatArray, y: FloatArray, group: IntArray, fitted: int = 0) -
     variance = s_own / freedom
     ratio = (s_common - s_own) / more / max(variance, 1e-24)
     deviation = float(np.sqrt(max(s_common - s_own - more * variance, 0.0) / y.size))
-    return deviation, float(np.sqrt(variance)), float(stats.f.sf(ratio, more, freedom))
+    return deviation, float(np.sqrt(variance)), float(ratio_above(ratio, more, freedom))
 
 
 def _knots(x: FloatArray) -> FloatArray:

@@ -10,13 +10,13 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy import stats
 
 from hersey.arrays import FloatArray
 from hersey.damping.candidates.branched import FREE, LEAST_POWER, Law
 from hersey.damping.candidates.constant_plus import ConstantPlusLaw
 from hersey.damping.candidates.fitting import LawFit
 from hersey.damping.candidates.observations import Observations
+from hersey.damping.distributions import student_above
 from hersey.damping.estimate import Estimate, estimate, quantile
 
 #: Joules in a thermochemical calorie.
@@ -138,7 +138,7 @@ def _disagreement(fit: LawFit) -> float:
     e, c, d = (fit.values[fit.law.index(name)] for name in ("e", "c", "d"))
     slopes = _gradient(fit, e=1.0 / (1.0 + c), c=-e / (1.0 + c) ** 2, d=1.0)
     error = float(np.sqrt(slopes @ fit.covariance @ slopes))
-    return float(2.0 * stats.t.sf(abs(d + e / (1.0 + c)) / max(error, 1e-300), fit.freedoms.of(slopes)))
+    return float(2.0 * student_above(abs(d + e / (1.0 + c)) / max(error, 1e-300), fit.freedoms.of(slopes)))
 
 
 def _gradient(fit: LawFit, **share: float) -> FloatArray:

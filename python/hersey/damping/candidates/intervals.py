@@ -18,7 +18,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy import stats
 
 from hersey.arrays import FloatArray
 from hersey.damping.candidates.branched import FREE, Law
@@ -29,6 +28,7 @@ from hersey.damping.candidates.shared_errors import Freedom, SharedScatter, shar
 from hersey.damping.candidates.shared_load import SharedLoadLaw
 from hersey.damping.candidates.stribeck import StribeckLaw
 from hersey.damping.candidates.thermal import ARRHENIUS, VFT
+from hersey.damping.distributions import normal_quantile, ratio_above
 from hersey.damping.estimate import CONFIDENCE, quantile
 from hersey.units import convert
 
@@ -227,7 +227,7 @@ def _intervals(
         low, high = np.quantile(draws[:, parameter], [0.5 - CONFIDENCE / 2, 0.5 + CONFIDENCE / 2])
         widened = np.sqrt(clusters / max(clusters - fit.values.size, 1))
         widened *= quantile(min(clusters - fit.values.size, freedom)) / float(
-            stats.norm.ppf(0.5 + CONFIDENCE / 2)
+            normal_quantile(0.5 + CONFIDENCE / 2)
         )
         out["bootstrap"] = value - widened * (value - float(low)), value + widened * (float(high) - value)
     return out
@@ -284,4 +284,4 @@ def likelihood_ratio(smaller: LawFit, larger: LawFit) -> float:
     gain = max(smaller.deviance - larger.deviance, 0.0)
     n = larger.residuals.size
     ratio = np.expm1(gain / n) * larger.freedom / max(more, 1)
-    return float(stats.f.sf(ratio, more, larger.freedom))
+    return float(ratio_above(ratio, more, larger.freedom))

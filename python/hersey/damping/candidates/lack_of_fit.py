@@ -10,11 +10,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import stats
 
 from hersey.arrays import FloatArray
 from hersey.damping.candidates.fitting import LawFit
 from hersey.damping.candidates.observations import Observations
+from hersey.damping.distributions import ratio_above
 from hersey.damping.dwells import distinct_speeds
 
 #: Speeds and temperatures that a curvature needs.
@@ -139,4 +139,4 @@ def _tested(
     gain = float(rest @ rest) - after
     ratio = gain / len(terms) / max(after / freedom, 1e-300)
     values = fit.values - (taken_up @ coefficients)[: fit.values.size]
-    return float(stats.f.sf(ratio, len(terms), freedom)), coefficients, values
+    return float(ratio_above(ratio, len(terms), freedom)), coefficients, values

@@ -12,9 +12,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import optimize, stats
+from scipy import optimize
 
 from hersey.arrays import FloatArray
+from hersey.damping.distributions import normal_above, normal_density
 from hersey.errors import InsufficientDataError
 
 #: Standard errors up to which a residual counts as normal; 99 % efficient if all are.
@@ -53,7 +54,7 @@ def loss(u: FloatArray, limit: float) -> FloatArray:
 
 def log_normalisation(limit: float) -> float:
     """Return the logarithm of the integral of exp(-rho)."""
-    core = np.sqrt(2 * np.pi) * (1.0 - 2.0 * stats.norm.sf(limit))
+    core = np.sqrt(2 * np.pi) * (1.0 - 2.0 * normal_above(limit))
     tails = 2.0 * np.exp(-0.5 * limit**2) / limit if np.isfinite(limit) else 0.0
     return float(np.log(core + tails))
 
@@ -142,10 +143,10 @@ def scatter_beyond(residuals: FloatArray, errors: FloatArray, freedom: float, li
     Paule and Mandel (J. Res. NBS 87 (1982) 377), with squares of Huber's psi in place of squares (his
     proposal 2), so that one bad dwell does not widen every interval.
     """
-    outside = float(stats.norm.sf(limit))
+    outside = float(normal_above(limit))
     expected = 1.0 - 2.0 * outside
     if np.isfinite(limit):
-        expected += 2.0 * limit**2 * outside - 2.0 * limit * float(stats.norm.pdf(limit))
+        expected += 2.0 * limit**2 * outside - 2.0 * limit * float(normal_density(limit))
 
     def excess(scatter: float) -> float:
         u = residuals / np.sqrt(errors**2 + scatter**2)

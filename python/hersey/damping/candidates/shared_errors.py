@@ -14,10 +14,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy import optimize, stats
+from scipy import optimize
 
 from hersey.arrays import FloatArray, IntArray
 from hersey.damping.candidates.observations import Observations
+from hersey.damping.distributions import ratio_above
 
 #: Groups that tell how far groups scatter, where a law of temperature is fitted to them too: two may lie
 #: close by chance, and would show none.
@@ -159,7 +160,7 @@ def _restricted(
     between = float(np.sum(along**2 / spread))
     freedom = residuals.size - basis.shape[1] + modes - spread.size
     within = max(float(rest @ rest) - between, 1e-300)
-    p_value = stats.f.sf(between / spread.size / (within / max(freedom, 1)), spread.size, max(freedom, 1))
+    p_value = ratio_above(between / spread.size / (within / max(freedom, 1)), spread.size, max(freedom, 1))
     variance = _likeliest(spread, along)
     return SharedScatter(grouping.name, variance**0.5, float(p_value), told=True)
 

@@ -12,9 +12,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy import linalg, stats
+from scipy import linalg
 
 from hersey.arrays import FloatArray
+from hersey.damping.distributions import square_above
 from hersey.damping.dwells.noise import mean_and_error
 from hersey.damping.dwells.segments import Segment
 from hersey.damping.dwells.shared_noise import Powers, SharedNoise
@@ -96,7 +97,7 @@ class Zero:
         if len(self.stretches) < 2:
             return 1.0
         square = float(np.sum(((self._torque - self.mean) / self._errors) ** 2))
-        return float(stats.chi2.sf(square, len(self.stretches) - 1))
+        return float(square_above(square, len(self.stretches) - 1))
 
     def at(self, times: FloatArray) -> FloatArray:
         """Return the zero at these times, shape (times,)."""

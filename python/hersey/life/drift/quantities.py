@@ -9,9 +9,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import stats
 
 from hersey.arrays import FloatArray
+from hersey.damping.distributions import normal_quantile, student_quantile
 from hersey.life.drift.aged_torque import OWN, Scales, parts
 from hersey.life.drift.fit import Fitted
 from hersey.life.growth.limit_ages import CONFIDENCE, Interval
@@ -151,8 +151,8 @@ def quantities_of(found: Fitted, oldest: float) -> tuple[tuple[Quantity, ...], F
     units = len(solved.unit)
     # Of all: the line of the population, whose spread counts; of one unit: its own.
     line, covariance = solved.common[:two], solved.common_covariance[:two, :two]
-    normal = float(stats.norm.ppf(0.5 + CONFIDENCE / 2))
-    reach = float(stats.t.ppf(0.5 + CONFIDENCE / 2, units - 1)) if units > 1 else normal
+    normal = float(normal_quantile(0.5 + CONFIDENCE / 2))
+    reach = float(student_quantile(0.5 + CONFIDENCE / 2, units - 1)) if units > 1 else normal
     if units == 1:
         line, covariance = solved.mean, solved.mean_covariance
     to_age = np.stack([np.hstack([np.eye(own), t * np.eye(own)]) for t in grid])

@@ -14,9 +14,9 @@ from dataclasses import dataclass, fields, replace
 from functools import cached_property
 
 import numpy as np
-from scipy import stats
 
 from hersey.arrays import BoolArray, FloatArray
+from hersey.damping.distributions import student_quantile
 from hersey.life.film.filled_dwells import FilledDwells
 from hersey.life.film.starved_drag import (
     BOUNDARY,
@@ -139,7 +139,7 @@ class Layers:
 
     def _ends(self, shift: FloatArray, extra: FloatArray, level: float) -> tuple[FloatArray, ...]:
         """Ends of place + shift, from the root of the deviance, widened by an error of the shift."""
-        reach: FloatArray = np.asarray(stats.t.ppf(0.5 + level / 2.0, self.freedom))
+        reach: FloatArray = np.asarray(student_quantile(0.5 + level / 2.0, self.freedom))
         away = self.place - self.best[:, None]
         root = np.maximum.accumulate(np.sqrt(np.maximum(self.deviance, 0.0)) * np.sign(away), axis=1)
         best, low, high = (np.empty_like(self.best) for _ in range(3))

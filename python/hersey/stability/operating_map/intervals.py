@@ -42,11 +42,12 @@ def intervals(
     seed: int,
     draws: int,
     threads: int,
-) -> tuple[FloatArray, FloatArray, tuple[str, ...]]:
-    """Intervals of the transition speed and of V*, shape (2, n) each, and the parameters that were varied."""
+) -> tuple[FloatArray, FloatArray, tuple[str, ...], tuple[str, ...]]:
+    """Intervals of the transition speed and of V*, shape (2, n) each, what was varied, and warnings."""
+    said: dict[str, None] = {}
 
     def samples(t: float | None, count: int) -> dict[str, FloatArray]:
-        return surface.drag_samples(
+        drawn, warned = surface.drawn_drag(
             count,
             seed,
             roll_radius=roll_radius,
@@ -54,6 +55,8 @@ def intervals(
             temperature=t,
             stick_speed_rule=rule,
         )
+        said.update(dict.fromkeys(map(str, warned)))
+        return drawn
 
     levels: list[float | None] = [None] if kelvin is None else kelvin.tolist()
     transition = np.array([_middle(samples(t, DRAWS)["transition_speed"]) for t in levels]).T
@@ -97,7 +100,7 @@ def intervals(
             [np.exp(np.interp(kelvin, np.array(few, dtype=float), np.log(edge))) for edge in upper]
         )
     bend = np.array([law.transition_speed for law in laws_at(drag, kelvin, rule)])
-    return transition, upper * bend, tuple(uncertainties)
+    return transition, upper * bend, tuple(uncertainties), tuple(said)
 
 
 def _middle(values: FloatArray) -> tuple[float, float]:

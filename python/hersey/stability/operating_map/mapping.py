@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -120,20 +119,18 @@ def operating_map(
     laws = laws_at(drag, kelvin, stick_speed_rule)
     limit, limited_by = torque_limit(train.grip, limits.motor_torque, roll_radius)
     below, above = contour(laws, np.inf if limit is None else limit / roll_radius)
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        transition_interval, upper_interval, uncertain = intervals(
-            surface,
-            train,
-            drag,
-            kelvin,
-            known,
-            roll_radius,
-            stick_speed_rule,
-            seed,
-            draws,
-            threads,
-        )
+    transition_interval, upper_interval, uncertain, warned = intervals(
+        surface,
+        train,
+        drag,
+        kelvin,
+        known,
+        roll_radius,
+        stick_speed_rule,
+        seed,
+        draws,
+        threads,
+    )
     map_ = OperatingMap(
         temperature=kelvin,
         speed=speed_grid,
@@ -158,9 +155,7 @@ def operating_map(
         stick_speed_rule=stick_speed_rule,
     )
     placed = tuple(_placed(map_, point) for point in points)
-    said = list(dict.fromkeys(str(w.message) for w in caught))
-    said += _remarks(map_, placed)
-    return replace(map_, points=placed, warnings=tuple(said))
+    return replace(map_, points=placed, warnings=(*warned, *_remarks(map_, placed)))
 
 
 def torque_limit(

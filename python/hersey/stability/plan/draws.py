@@ -8,9 +8,9 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.stats import beta
 
 from hersey.arrays import FloatArray
+from hersey.damping.distributions import beta_quantile
 from hersey.errors import ParameterError
 from hersey.machine.uncertainty import Uncertainty
 from hersey.motion.drag import BESIDE, AnyDrag
@@ -48,7 +48,7 @@ def most_failures(confidence: float, level: float, count: int) -> int:
 
 def lower_bound(good: int, count: int, level: float) -> float:
     """Return the bound (Clopper and Pearson) that the true share exceeds with probability ``level``."""
-    return float(beta.ppf(1.0 - level, good, count - good + 1)) if good > 0 else 0.0
+    return float(beta_quantile(1.0 - level, good, count - good + 1)) if good > 0 else 0.0
 
 
 def drawn(

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
-
 from hersey.arrays import FloatArray
 from hersey.damping.surface import DampingSurface
 from hersey.errors import ParameterError
@@ -90,9 +88,8 @@ def _samples(
     surface: DampingSurface, machine: Machine, kelvin: float | None, seed: int
 ) -> dict[str, FloatArray]:
     """Draws of what the fit leaves open."""
-    with warnings.catch_warnings():  # the fit's own command says how many draws have no falling branch
-        warnings.simplefilter("ignore")
-        samples = surface.drag_samples(_DRAWS, seed, **machine.belt, temperature=kelvin)
+    # the fit's own command says how many draws have no falling branch
+    samples, _ = surface.drawn_drag(_DRAWS, seed, **machine.belt, temperature=kelvin)
     if surface.rest is not None:
         samples |= surface.rest.samples(_DRAWS, seed, roll_radius=machine.roll_radius, temperature=kelvin)
     return samples
