@@ -338,7 +338,8 @@ class DampingSurface(FittedLaw):
         while len(kept) < count:
             values = rng.multivariate_normal(np.zeros(centre.size), covariance, size=count)
             share = rng.random(count)  # one quantile of chi-square for all values of a draw
-            wider = [np.sqrt(f / square_quantile(share, f)) for f in freedoms]
+            by_freedom = {f: np.sqrt(f / square_quantile(share, f)) for f in set(freedoms)}
+            wider = [by_freedom[f] for f in freedoms]
             values = centre + values * np.column_stack(wider)
             if self.b is None:
                 values = np.insert(values, 1, 0.0, axis=1)

@@ -322,6 +322,66 @@ def hysteresis_sweep(
     """
     import xarray as xr
 
+    swept = sweep_bands(
+        train,
+        drag,
+        stiffness=stiffness,
+        mass=mass,
+        transition_force=transition_force,
+        transition_speed=transition_speed,
+        ehl_exponent=ehl_exponent,
+        mixed_exponent=mixed_exponent,
+        stick_speed=stick_speed,
+        temperature=temperature,
+        zip=zip,
+        lower=lower,
+        threads=threads,
+        tolerance=tolerance,
+        progress=progress,
+        most_steps=most_steps,
+    )
+    return xr.Dataset(
+        {name: (swept.axes, values) for name, values in swept.columns.items()},
+        coords=swept.coordinates,
+        attrs={
+            "closure": drag.closure,
+            "tolerance": tolerance,
+            "hersey_version": _core.VERSION,
+            "failures": list(swept.failures),
+        },
+    )
+
+
+@dataclass(frozen=True)
+class SweptBands:
+    """The bands of a sweep as arrays: ``columns`` by the names of `hysteresis_sweep`, over ``axes``."""
+
+    axes: tuple[str, ...]
+    columns: Mapping[str, NDArray[Any]]
+    coordinates: Mapping[str, Any]
+    failures: tuple[str, ...]
+
+
+def sweep_bands(
+    train: Drivetrain,
+    drag: Drag,
+    *,
+    stiffness: ArrayLike | None = None,
+    mass: ArrayLike | None = None,
+    transition_force: ArrayLike | None = None,
+    transition_speed: ArrayLike | None = None,
+    ehl_exponent: ArrayLike | None = None,
+    mixed_exponent: ArrayLike | None = None,
+    stick_speed: ArrayLike | None = None,
+    temperature: ArrayLike | None = None,
+    zip: bool = False,  # noqa: A002 - NumPy users know what it means
+    lower: bool = True,
+    threads: int = 1,
+    tolerance: float = TOLERANCE,
+    progress: Callable[[int, int], object] | None = None,
+    most_steps: float = MOST_STEPS,
+) -> SweptBands:
+    """Return what `hysteresis_sweep` does, as arrays: xarray takes long to import."""
     if not isinstance(drag, Drag):
         raise ParameterError("a sweep needs a Drag")
     if drag.varies_with_temperature != (temperature is not None):
@@ -356,18 +416,11 @@ def hysteresis_sweep(
         for name, values in given.items()
         if temperature is None or name not in ("transition_force", "transition_speed", "stick_speed")
     }
-    return xr.Dataset(
-        {
-            name: (axes, getattr(bands, name).reshape(shape).astype(_WHOLE.get(name, float)))
-            for name in _COLUMNS
-        },
-        coords=coordinates,
-        attrs={
-            "closure": drag.closure,
-            "tolerance": tolerance,
-            "hersey_version": _core.VERSION,
-            "failures": [f"set {failure.index}: {failure.error}" for failure in bands.failures],
-        },
+    return SweptBands(
+        tuple(axes),
+        {name: getattr(bands, name).reshape(shape).astype(_WHOLE.get(name, float)) for name in _COLUMNS},
+        coordinates,
+        tuple(f"set {failure.index}: {failure.error}" for failure in bands.failures),
     )
 
 

@@ -17,7 +17,7 @@ from hersey.machine.machine import Machine
 from hersey.motion.schedule import Schedule
 from hersey.motion.simulation import Trajectory, simulate
 from hersey.stability.disturbance import Disturbance, SafeStep, disturbance, safe_step
-from hersey.stability.hysteresis import HysteresisBand, hysteresis, hysteresis_sweep
+from hersey.stability.hysteresis import HysteresisBand, hysteresis, sweep_bands
 from hersey.stability.operating_map import OperatingMap, operating_map
 from hersey.stability.plan import Plan, plan_of_log
 
@@ -150,10 +150,8 @@ class Working:
         high = min(max(ends[1], 2.0 * drag.stick_speed), _BELOW * drag.transition_speed)
         grid = np.unique(np.append(np.geomspace(low, max(high, drag.stick_speed), _STICK_SPEEDS), ends))
         grid = grid[grid < drag.transition_speed]
-        bands = hysteresis_sweep(
-            machine.train, drag, stick_speed=grid, lower=False, threads=os.cpu_count() or 1
-        )
-        edges = [np.atleast_1d(bands[name].values) for name in ("transition", "upper")]
+        bands = sweep_bands(machine.train, drag, stick_speed=grid, lower=False, threads=os.cpu_count() or 1)
+        edges = [bands.columns[name] for name in ("transition", "upper")]
         upper = np.maximum(*edges)
         return StickSpeeds(drag.stick_speed, known, grid.tolist(), edges[0].tolist(), upper.tolist())
 

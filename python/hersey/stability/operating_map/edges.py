@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,10 +12,7 @@ from hersey.damping.surface import FIXED, WITH_TRANSITION
 from hersey.errors import ParameterError
 from hersey.motion.drag import Drag
 from hersey.motion.simulation import Drivetrain
-from hersey.stability.hysteresis import hysteresis, hysteresis_sweep
-
-if TYPE_CHECKING:
-    import xarray as xr
+from hersey.stability.hysteresis import SweptBands, hysteresis, sweep_bands
 
 
 def check_temperatures(kelvin: FloatArray, drag: Drag) -> None:
@@ -38,19 +34,19 @@ def edges_at(
         bands = [hysteresis(train, law, sensitivity=False) for law in laws_at(drag, kelvin, rule)]
         edges = {name: np.array([getattr(band, name) for band in bands]) for name in names}
     else:
-        band = hysteresis_sweep(train, drag, temperature=kelvin)
+        band = sweep_bands(train, drag, temperature=kelvin)
         require_all(band)
-        edges = {name: np.atleast_1d(band[name].values) for name in names}
+        edges = {name: np.atleast_1d(band.columns[name]) for name in names}
     # Without a band the three speeds are one, up to the last digit.
     edges["lower"] = np.minimum(edges["lower"], edges["transition"])
     edges["upper"] = np.maximum(edges["upper"], edges["transition"])
     return edges
 
 
-def require_all(band: xr.Dataset) -> None:
+def require_all(band: SweptBands) -> None:
     """Refuse a sweep of bands that lacks one."""
-    if band.attrs["failures"]:
-        raise ParameterError(f"the bands cannot be computed: {band.attrs['failures'][0]}")
+    if band.failures:
+        raise ParameterError(f"the bands cannot be computed: {band.failures[0]}")
 
 
 def law_at(drag: Drag, kelvin: float | None, rule: str) -> Drag:

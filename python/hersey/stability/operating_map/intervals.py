@@ -13,7 +13,7 @@ from hersey.damping.surface import DampingSurface
 from hersey.machine.uncertainty import Uncertainty
 from hersey.motion.drag import Drag
 from hersey.motion.simulation import Drivetrain
-from hersey.stability.hysteresis import hysteresis_sweep
+from hersey.stability.hysteresis import sweep_bands
 from hersey.stability.operating_map.edges import law_at, laws_at, require_all
 
 if TYPE_CHECKING:
@@ -74,7 +74,7 @@ def intervals(
         stick = (
             uncertainties.get("stick_speed", np.array(drag.stick_speed)) * law.stick_speed / drag.stick_speed
         )
-        band = hysteresis_sweep(
+        band = sweep_bands(
             train,
             law,
             stiffness=uncertainties.get("stiffness"),
@@ -91,7 +91,7 @@ def intervals(
         )
         require_all(band)
         # without stick-slip the belt slides from the transition speed up, if anything moves it
-        upper = np.where(band["upper"] > 0, band["upper"], band["transition"])
+        upper = np.where(band.columns["upper"] > 0, band.columns["upper"], band.columns["transition"])
         low, high = _middle(upper / law.transition_speed)
         ratios.append((min(low, _FARTHEST), min(high, _FARTHEST)))
     upper = np.array(ratios).T
