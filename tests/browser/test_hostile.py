@@ -71,15 +71,16 @@ def hostile_document(document: Analysis) -> Analysis:
         stretch.model_copy(update={"reason": name})
         for stretch, name in zip(document.quality.rejected * 60, NAMES, strict=False)
     ]
-    film = document.film
+    film, simulation = document.film, document.simulation
     assert film is not None
+    assert simulation is not None
     update = {
         "title": NAMES[1],
         "files": [changed],
         "warnings": list(NAMES),
         "command": " ".join(NAMES),
         "quality": document.quality.model_copy(update={"rejected": rejected}),
-        "simulation": document.simulation.model_copy(update={"title": NAMES[3], "force_unit": NAMES[28]}),
+        "simulation": simulation.model_copy(update={"title": NAMES[3], "force_unit": NAMES[28]}),
         "film": film.model_copy(update={"verdict": NAMES[5], "notes": list(NAMES)}),
     }
     return document.model_copy(update=update)

@@ -181,6 +181,7 @@ def test_exponents_stand_against_what_each_regime_predicts(document: Analysis) -
 
 def test_the_simulation_is_drawn_as_it_ran(document: Analysis) -> None:
     s = document.simulation
+    assert s is not None
     unit = 1e3 if s.speed_unit == "m/s" else 1.0
     line, *marks = panel(document, "simulation_speed")
     assert [r["time"] for r in rows(line)] == s.time

@@ -3,6 +3,7 @@
 ============  ================================================
 parts         one part per result, versioned and validated
 assembly      from a log to the document
+decision      what to do: the first screen
 film_part     the film of the nip
 carried_part  what film, contact and rest of the drive take
 thinning      fewer samples to show, the extremes among them

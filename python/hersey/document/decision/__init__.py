@@ -11,6 +11,7 @@ points      what is said of each operating point
 flags       what stands against it, and the section that holds the evidence
 missing     lines to add to a file, ready to copy
 decision    all of it together
+parts       what the machine does, as parts of the document
 =========== ==================================================================
 """
 

@@ -1,0 +1,315 @@
+"""What the first screen says: the safe end, the plan's own overshoot, signals that agree with the map."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import hersey
+from hersey.damping.fit import fit
+from hersey.damping.surface import DampingSurface
+from hersey.document.assembly import analyse, load
+from hersey.document.decision import behaviour, decision
+from hersey.document.decision.behaviour import Behaviour, PointBehaviour, Working, ranges
+from hersey.document.decision.words import figures, within
+from hersey.document.parts import Analysis, DecisionPart, RegimePart
+from hersey.errors import ParameterError
+from hersey.log.means import read_means
+from hersey.machine.limits import Limits, OperatingPoint
+from hersey.machine.machine import Machine, read_machine
+from hersey.stability.hysteresis import hysteresis
+from hersey.stability.operating_map import OperatingMap, operating_map
+from hersey.stability.plan import plan_profile
+from hersey.verdict.regime import regime
+from tests.conftest import ROOT
+
+HOT = 453.15
+ROOMY = Limits(motor_torque=8.0, acceleration=0.5, speed=0.4)
+SLOW, BETWEEN, FAST = 0.02, 0.045, 0.12
+
+
+@pytest.fixture(scope="module")
+def surface(points: hersey.SteadyPoints) -> DampingSurface:
+    return fit(points)
+
+
+@pytest.fixture(scope="module")
+def seen(points: hersey.SteadyPoints, surface: DampingSurface) -> RegimePart:
+    return RegimePart.model_validate(regime(points, surface).to_dict())
+
+
+@pytest.fixture(scope="module")
+def machine() -> Machine:
+    states = [OperatingPoint(name, speed, HOT) for name, speed in _POINTS.items()]
+    stated = read_machine(ROOT / "tests" / "stand" / "machine.toml")
+    return replace(stated, limits=ROOMY, points=tuple(states))
+
+
+_POINTS = {"crawl": SLOW, "thick paper": BETWEEN, "near": 0.07, "full speed": FAST}
+
+
+@pytest.fixture(scope="module")
+def map_(surface: DampingSurface, machine: Machine) -> OperatingMap:
+    return operating_map(
+        surface,
+        machine.train,
+        **machine.belt,
+        limits=machine.limits,
+        points=machine.points,
+        uncertainty=machine.uncertainty,
+        temperatures=[HOT - 10.0, HOT],
+        draws=40,
+    )
+
+
+@pytest.fixture(scope="module")
+def found(surface: DampingSurface, machine: Machine, map_: OperatingMap) -> Behaviour:
+    """What the machine does, its plan that of the nominal parameters."""
+    drag = surface.drag(**machine.belt, temperature=HOT)
+    plan = plan_profile(
+        machine.train, drag, target_speed=BETWEEN, limits=machine.limits, roll_radius=machine.roll_radius
+    )
+    planned = {"plan": plan, "straight": plan.response}
+    of_points = [PointBehaviour(p, **(planned if p.speed == BETWEEN else {})) for p in machine.points]
+    band = hysteresis(machine.train, drag)
+    return Behaviour(HOT, band, None, map_, tuple(of_points), ())
+
+
+Decide = Callable[..., DecisionPart]
+
+
+@pytest.fixture(scope="module")
+def decide(
+    points: hersey.SteadyPoints, surface: DampingSurface, seen: RegimePart, machine: Machine
+) -> Decide:
+    def decided(found: Behaviour, **changed: object) -> DecisionPart:
+        of = replace(machine, **changed)  # type: ignore[arg-type]
+        return decision(points, surface, of, seen=seen, film=None, carried=None, found=found)
+
+    return decided
+
+
+def test_the_instruction_takes_the_safe_end_and_the_plans_overshoot(
+    decide: Decide, found: Behaviour, map_: OperatingMap
+) -> None:
+    said = decide(found)
+    safe = figures(1e3 * float(map_.upper_interval[1, -1]), up=True)
+    assert said.instruction == f"At 180 °C run above {safe} mm/s"
+    assert said.interval.startswith("V* is 53 [")
+    assert said.interval.endswith(f", {safe}] mm/s")
+    [plan] = [each.plan for each in found.points if each.plan is not None]
+    assert plan.kind == "overshoot"
+    assert f"for 45 mm/s overshoot to {figures(1e3 * plan.peak_speed)} mm/s first (plan)" in said.otherwise
+    assert said.otherwise.startswith(f"Between 33 and {safe} mm/s it depends")
+    assert said.otherwise.endswith("Below 33 mm/s it sticks.")
+
+
+def test_each_point_has_the_signal_of_its_state(decide: Decide, found: Behaviour) -> None:
+    said = decide(found)
+    signals = {point.name: (point.signal, point.words.split(";")[0].split(":")[0]) for point in said.points}
+    assert signals == {
+        "crawl": ("act", "sticks"),
+        "thick paper": ("watch", "depends"),
+        "near": ("watch", "smooth by the estimate"),
+        "full speed": ("good", "smooth from any start"),
+    }
+    assert said.signal == "act"
+    motion = next(point.motion for point in said.points if point.name == "thick paper")
+    assert motion is not None
+    assert motion.belt_speed[-1] == pytest.approx(BETWEEN, rel=0.05)
+
+
+@settings(deadline=None, max_examples=40)  # each asks the core for a band
+@given(st.floats(0.01, 0.39))
+def test_signals_agree_with_the_map(
+    decide: Decide, found: Behaviour, map_: OperatingMap, speed: float
+) -> None:
+    """Good is said only where the map is smooth up to the end of the interval; act wherever it sticks."""
+    point = OperatingPoint("any", speed, HOT)
+    [said] = decide(replace(found, points=(PointBehaviour(point),))).points
+    state = map_.state_at(HOT, speed).state
+    if said.signal == "good":
+        assert state == "smooth"
+        assert speed >= map_.upper_interval[1, -1]
+    assert (said.signal == "act") == (state in ("stick_slip", "swing"))
+
+
+def test_a_plan_that_is_impossible_is_something_to_act_on(
+    decide: Decide, found: Behaviour, surface: DampingSurface, machine: Machine
+) -> None:
+    drag = surface.drag(**machine.belt, temperature=HOT)
+    none = plan_profile(machine.train, drag, target_speed=BETWEEN, limits=Limits(speed=0.045))
+    assert not none.found
+    point = OperatingPoint("thick paper", BETWEEN, HOT)
+    said = decide(replace(found, points=(PointBehaviour(point, plan=none),)))
+    assert said.signal == said.points[0].signal == "act"
+    assert "no start within the limits" in said.points[0].words
+    assert "no start within the limits works" in said.otherwise
+    assert said.flags[0].title == "No start for thick paper."
+    assert said.flags[0].section == "plan"
+
+
+def test_v_star_that_is_not_told_gives_no_speed(decide: Decide, found: Behaviour, map_: OperatingMap) -> None:
+    wide = map_.upper_interval.copy()
+    wide[1] = 1e4 * map_.transition
+    said = decide(replace(found, map=replace(map_, upper_interval=wide)))
+    assert "measure the stick speed" in said.instruction
+    assert said.interval.endswith("its upper end is not told")
+    assert said.otherwise.startswith("Above 33 mm/s it depends")
+    assert said.points[-1].signal == "watch"
+
+
+def test_a_safe_speed_beyond_the_drive_is_not_asked_for(
+    decide: Decide, found: Behaviour, map_: OperatingMap
+) -> None:
+    slow = replace(found, map=replace(map_, speed_limit=0.06))
+    said = decide(slow)
+    assert said.instruction.startswith("At 180 °C start as the plan says: no speed up to 60 mm/s")
+    assert said.points[-1].words.startswith("faster than the drive")
+    bare = decide(replace(slow, points=()))
+    assert bare.signal == "act"
+    assert "come from above" in bare.instruction
+
+
+def test_a_belt_that_is_not_started_comes_first(document: Analysis) -> None:
+    said = document.decision
+    assert said is not None
+    assert said.signal == "act"
+    assert said.instruction.startswith("At 180 °C let the roll grip more than ")
+    assert [point.signal for point in said.points] == ["act", "act"]
+    assert said.points[0].words.startswith("not started: a belt at rest bears ")
+    assert any(flag.title == "The roll slips at the start." for flag in said.flags)
+
+
+def test_a_motor_that_is_too_weak_is_named(decide: Decide, found: Behaviour, map_: OperatingMap) -> None:
+    weak = replace(map_, torque_limit=0.9 * float(map_.holding[-1]), limited_by="motor torque")
+    said = decide(replace(found, map=weak))
+    assert "give the roll more than" in said.instruction
+    assert said.flags[0].title == "The motor does not start the belt."
+
+
+def test_without_a_machine_it_speaks_of_the_roll(log: hersey.TorqueLog, tmp_path: Path) -> None:
+    points = log.steady(tare="standing")
+    document = analyse(log, points)
+    said = document.decision
+    assert said is not None
+    assert document.simulation is document.map is None
+    assert not any("paper" in warning for warning in document.warnings)
+    high = fit(points).transition_estimate(fit(points).temperature_range[1]).high  # type: ignore[index]
+    assert f"keep the roll above {figures(high * 60 / math.tau, up=True)} rpm" in said.instruction
+    file = tmp_path / "machine.toml"
+    file.write_text("\n".join(part.lines for part in said.missing if part.file == "machine.toml"))
+    assert read_machine(file).points  # the lines are ready to copy
+    assert {part.file for part in said.missing} == {"machine.toml"}
+
+
+def test_lines_for_a_file_that_is_there_do_not_repeat_its_tables(
+    decide: Decide, found: Behaviour, tmp_path: Path
+) -> None:
+    said = decide(found, points=(), uncertainty={}, limits=Limits(motor_torque=8.0), contact=None)
+    lines = "".join(part.lines for part in said.missing)
+    assert "[limits]\n" not in lines
+    assert "roll_friction" in lines
+    assert "[uncertainty]\nstick_speed" in lines
+    stated = (ROOT / "tests" / "stand" / "machine.toml").read_text().split("[limits]")[0]
+    file = tmp_path / "machine.toml"
+    within_limits = next(part.lines for part in said.missing if part.lines.startswith("# in [limits]"))
+    others = "".join(part.lines for part in said.missing if not part.lines.startswith(("# in", "[rest]")))
+    file.write_text(f'{stated}\n[limits]\nmotor_torque = "8 N*m"\n{within_limits}\n{others}')
+    assert read_machine(file).limits.grip is not None
+
+
+def test_a_stick_speed_whose_range_is_not_stated_makes_it_watch(
+    decide: Decide, found: Behaviour, map_: OperatingMap
+) -> None:
+    fast = tuple(each for each in found.points if each.point.speed == FAST)
+    assert decide(replace(found, points=fast)).signal == "good"
+    unknown = replace(found, points=fast, map=replace(map_, uncertain=("stiffness",)))
+    assert decide(unknown).signal == "watch"
+
+
+def test_no_falling_branch_says_how_far_down() -> None:
+    rng = np.random.default_rng(2)
+    speeds = np.repeat(np.geomspace(1.0, 30.0, 12), 2)
+    rising = _table(speeds, 0.2 * speeds**0.3 * np.exp(0.005 * rng.standard_normal(speeds.size)))
+    said = rising.decision
+    assert said is not None
+    assert said.signal == "good"
+    assert said.instruction.startswith("Keep the roll at 9.5 rpm or faster: no falling branch")
+    assert said.otherwise == "Slower than 9.5 rpm is not known."
+    falling = _table(speeds, 0.2 * speeds**-0.3 * np.exp(0.005 * rng.standard_normal(speeds.size)))
+    assert falling.decision is not None
+    assert falling.decision.signal == "watch"
+    assert falling.decision.instruction.startswith("Measure faster dwells: torque falls")
+    assert any(part.file == "hersey.toml" for part in falling.decision.missing)
+
+
+def test_one_temperature_is_not_named(points: hersey.SteadyPoints, machine: Machine) -> None:
+    """An isothermal fit with a machine: the sentence begins with what to do."""
+    hot = points.column("temperature") > points.column("temperature").max() - 5.0
+    speeds, torques = points.column("speed")[hot], points.column("torque")[hot]
+    alone = replace(machine, points=machine.points[-1:], uncertainty={}, rest=None)
+    document = _table(speeds, torques, alone)
+    assert document.decision is not None
+    assert document.decision.instruction.startswith("Run above ")
+    assert document.map is not None
+    assert document.map.temperature is None
+
+
+def test_what_cannot_be_computed_is_said(
+    surface: DampingSurface, machine: Machine, decide: Decide, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A report does not fail for a map: the reason stands in its place."""
+
+    def refuse(*_: object, **__: object) -> None:
+        raise ParameterError("the bands cannot be computed: set 3")
+
+    monkeypatch.setattr(behaviour, "operating_map", refuse)
+    monkeypatch.setattr(behaviour, "plan_of_log", refuse)
+    steps: list[str] = []
+    found = Working(surface, machine).result(steps.append)
+    assert steps[0] == "finding the bands"
+    assert "planning thick paper" in steps
+    said = decide(found)
+    assert "rpm" in said.instruction
+    assert said.points == []
+    assert any("the bands cannot be computed: set 3" in flag.text.lower() for flag in said.flags)
+    assert found.points[1].reason.startswith("the bands cannot")
+    assert found.stick_speeds is not None
+    assert found.stick_speeds.upper[0] > found.stick_speeds.upper[-1]
+
+
+def test_the_ranges_are_those_of_the_file(machine: Machine) -> None:
+    known = ranges(machine)
+    assert known["stick_speed"] == machine.uncertainty["stick_speed"].limits
+    assert known["stiffness"] == pytest.approx((machine.stiffness / 1.1, machine.stiffness * 1.1))
+
+
+@given(st.floats(1e-3, 1e4), st.floats(1.0, 3.0))
+def test_intervals_are_rounded_outward(value: float, wider: float) -> None:
+    low, high = (float(end) for end in within(value, value * wider, 1.0)[1:-1].split(","))
+    assert low <= value * (1 + 1e-9)
+    assert high >= value * wider * (1 - 1e-9)
+    assert high <= 1.11 * value * wider + (0.5 if value * wider > 100 else 0)
+
+
+def _table(speeds: np.ndarray, torques: np.ndarray, machine: Machine | None = None) -> Analysis:
+    """The document of a table of means."""
+    import tempfile
+
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "means.csv"
+        rows = [f"{w:.9g},{t:.9g}" for w, t in zip(speeds, torques, strict=True)]
+        path.write_text("\n".join(["Speed [rad/s],Torque [N*m]", *rows]) + "\n")
+        table = read_means([path], isothermal=True)
+        points = hersey.SteadyPoints.from_table(table)
+        document = analyse(table, points, machine=machine)
+    assert load(document.model_dump_json()) == document
+    return document
