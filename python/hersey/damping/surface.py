@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -326,23 +327,9 @@ class DampingSurface(FittedLaw):
 
     def _draws(self, count: int, seed: int, x: float, slowest: float) -> tuple[FloatArray, int, int]:
         """Draws of level, b, c, c_mixed and at that have both branches; how many were drawn, and refused."""
-        assert self.transition is not None
-        centre, covariance = self._closure
-        covariance = covariance.copy()
-        # The likelihood of a corner is less sharp than its curvature.
-        error = self.transition.speed.error / self.transition.speed.value
-        covariance[-1, -1] = max(covariance[-1, -1], error**2)
-        freedoms = [self.freedoms.of(row) for row in np.eye(self.values.size)]
-        rng = np.random.default_rng(seed)
         kept, total = np.empty((0, 5)), 0
         while len(kept) < count:
-            values = rng.multivariate_normal(np.zeros(centre.size), covariance, size=count)
-            share = rng.random(count)  # one quantile of chi-square for all values of a draw
-            by_freedom = {f: np.sqrt(f / square_quantile(share, f)) for f in set(freedoms)}
-            wider = [by_freedom[f] for f in freedoms]
-            values = centre + values * np.column_stack(wider)
-            if self.b is None:
-                values = np.insert(values, 1, 0.0, axis=1)
+            values = self._round(count, seed, total // count)
             _, b, c, mixed, at = values.T
             falls = (c > -1.0) & (mixed < -1.0) & (at + _transition_exponents(b, c) * x > slowest)
             kept, total = np.concatenate([kept, values[falls]]), total + count
@@ -352,6 +339,35 @@ class DampingSurface(FittedLaw):
                     "the data do not prove one; record more dwells below the transition"
                 )
         return kept[:count], total, total - len(kept)
+
+    def _round(self, count: int, seed: int, number: int) -> FloatArray:
+        """So many draws of level, b, c, c_mixed and at, which are the same at any temperature."""
+        if number >= len(self._rounds.get((count, seed), ())):
+            self._rounds[count, seed] = self._drawn_rounds(count, seed, number + 1)
+        return self._rounds[count, seed][number]
+
+    @cached_property
+    def _rounds(self) -> dict[tuple[int, int], list[FloatArray]]:
+        """Rounds of draws that are kept, by their number and seed."""
+        return {}
+
+    def _drawn_rounds(self, count: int, seed: int, rounds: int) -> list[FloatArray]:
+        assert self.transition is not None
+        centre, covariance = self._closure
+        covariance = covariance.copy()
+        # The likelihood of a corner is less sharp than its curvature.
+        error = self.transition.speed.error / self.transition.speed.value
+        covariance[-1, -1] = max(covariance[-1, -1], error**2)
+        freedoms = [self.freedoms.of(row) for row in np.eye(self.values.size)]
+        rng = np.random.default_rng(seed)
+        out = []
+        for _ in range(rounds):
+            values = rng.multivariate_normal(np.zeros(centre.size), covariance, size=count)
+            share = rng.random(count)  # one quantile of chi-square for all values of a draw
+            by_freedom = {f: np.sqrt(f / square_quantile(share, f)) for f in set(freedoms)}
+            values = centre + values * np.column_stack([by_freedom[f] for f in freedoms])
+            out.append(np.insert(values, 1, 0.0, axis=1) if self.b is None else values)
+        return out
 
     def _checked_temperature(self, temperature: float) -> float:
         """The same for one temperature where the powers of the law have a meaning."""
@@ -381,4 +397,4 @@ class DampingSurface(FittedLaw):
 
 
 def _transition_exponents(b: FloatArray, c: FloatArray) -> FloatArray:
-    return np.array([transition_exponent(*pair) for pair in zip(b.tolist(), c.tolist(), strict=True)])
+    return np.asarray(-b / np.maximum(1.0 + c, LEAST_POWER))

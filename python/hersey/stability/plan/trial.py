@@ -195,6 +195,7 @@ class MachineSample:
         self.lap = 2.0 * math.pi * math.sqrt(train.mass / train.stiffness)
         self._law = drag.law()
         self._laws: dict[float | None, tuple[float, float]] = {}
+        self._gripping = math.nan, self._belt(math.inf)
 
     def at(self, temperature: float | None, target: float) -> tuple[float, float]:
         """Return transition speed and steady drag at the target speed, at a temperature."""
@@ -219,6 +220,11 @@ class MachineSample:
 
     def belt(self, force_limit: float) -> tuple[tuple[float, float, float | None], _core.Law]:
         """Return the machine as the core takes it: the limit of force is the grip of the roll."""
+        if self._gripping[0] != force_limit:
+            self._gripping = force_limit, self._belt(force_limit)
+        return self._gripping[1]
+
+    def _belt(self, force_limit: float) -> tuple[tuple[float, float, float | None], _core.Law]:
         grip = force_limit if force_limit < math.inf else None
         return (float(self.train.stiffness), float(self.train.mass), grip), self._law
 
