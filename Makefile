@@ -5,14 +5,30 @@ SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
 SOURCES := $(shell find crates -name '*.rs' -o -name Cargo.toml) Cargo.toml pyproject.toml
 
-.PHONY: help build demo demo-life test quick lint format typecheck test-rust test-python browser lowest fuzz fuzz-read benchmark \
-  mutants mutants-python mutants-rust clean
+# The core in the page, and the sums by which the tests know that it is made of these sources.
+PHYSICS := python/hersey/report/static/physics
+PHYSICS_SOURCES := $(sort $(shell find crates/core/src crates/wasm/src -name '*.rs') crates/core/Cargo.toml \
+  crates/wasm/Cargo.toml Cargo.toml)
+
+WEB := wasm32-unknown-unknown
+HAS_WEB := test -d "$$(rustc --print target-libdir --target $(WEB) 2>/dev/null)"
+SUM_OF_SOURCES := cat $(PHYSICS_SOURCES) | sha256sum | cut -c1-64
+
+.PHONY: help build physics demo demo-life test quick lint format typecheck test-rust test-python browser lowest fuzz \
+  fuzz-read benchmark mutants mutants-python mutants-rust clean
 .DEFAULT_GOAL := help
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
 
 build: .venv/built ## make .venv with hersey in it
+
+physics: ## compile the core for the page anew (rustup target add wasm32-unknown-unknown)
+	CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS="-C target-feature=+simd128 --remap-path-prefix=$(CURDIR)=. \
+	  --remap-path-prefix=$${CARGO_HOME:-$$HOME/.cargo}=cargo --remap-path-prefix=$$(rustc --print sysroot)=rust" \
+	  cargo build --quiet --profile web --target $(WEB) --package hersey-wasm $(BUILD_STD)
+	install -m 644 $${CARGO_TARGET_DIR:-target}/$(WEB)/web/hersey_wasm.wasm $(PHYSICS).wasm
+	@{ $(SUM_OF_SOURCES); sha256sum < $(PHYSICS).wasm | cut -c1-64; } > $(PHYSICS).sha256
 
 .venv/tools: constraints.txt pyproject.toml
 	@test -x $(BIN)/python || $(PYTHON) -m venv .venv || \
@@ -22,6 +38,8 @@ build: .venv/built ## make .venv with hersey in it
 	@touch $@
 
 .venv/built: .venv/tools $(SOURCES)
+	@test "$$(head -n 1 $(PHYSICS).sha256)" = "$$($(SUM_OF_SOURCES))" || { $(HAS_WEB) && $(MAKE) --no-print-directory physics; } || \
+	  echo "the page keeps its committed core, though the sources are others: make physics renews it" >&2
 	PIP_CONSTRAINT=$(CURDIR)/constraints.txt $(BIN)/maturin develop --release --quiet
 	@touch $@
 

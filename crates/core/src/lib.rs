@@ -28,11 +28,13 @@
 //! | `motion::trajectory`      | the motion sampled at given times, with its event table and energies               |
 //! | `motion::lap`             | one lap: its sections, its extremes, and where the laps are heading                |
 //! | `motion::cycle`           | what the motion settles to: steady sliding, oscillation, stick-slip                |
+//! | `motion::returning`       | where a belt that overtakes the drive overtakes it again                           |
 //! | `motion::lanes`           | slip laps of many belts at once, several to a register                             |
 //! | `motion::ensemble`        | what thousands of belts settle to                                                  |
 //! | `stability::fold`         | drive speed at which a slip lap comes back to its start, many at once              |
 //! | `stability::cycles`       | swings that never stick, by their slowest speed                                    |
 //! | `stability::band`         | lower edge, transition and upper fold of a belt, for every closure                 |
+//! | `stability::unstable`     | the lap between the starts that come to slide and those that come to stick         |
 //!
 //! Conventions: any consistent set of units (SI inside the product); speeds and forces are signed,
 //! positive along the drive; stretch is drive position minus belt position. The crate does no I/O,

@@ -1,6 +1,5 @@
 //! What the exported functions answer. Each question begins with the steps of work that are allowed.
 
-use hersey_core::Error;
 use hersey_core::drag::Drag;
 use hersey_core::motion::{
     Drive, Drivetrain, Integrator, Schedule, Span, System, settle, simulate,
@@ -13,8 +12,8 @@ use crate::refusal::Refusal;
 
 type Answer = Result<Vec<f64>, Refusal>;
 
-/// Law. Answer: force and speed of the transition, stick speed, force that the contact bears at rest, that with the rest
-/// of the drive, force and damping of the rest, speed from which on drag rises.
+/// Law. Answer: force and speed of the transition, stick speed, force that the contact bears at rest, that with the
+/// rest of the drive, force and damping of the rest, speed from which on drag rises.
 pub fn law(question: &mut Question) -> Answer {
     let drag = drag(question)?;
     let rest = drag.rest();
@@ -36,9 +35,9 @@ pub fn forces(question: &mut Question) -> Answer {
     Ok(question.list()?.iter().map(|speed| drag.force(*speed)).collect())
 }
 
-/// Steps, train, law, tolerance, duration, samples, list of times of the drive, list of its speeds, start. Answer: steps taken, samples,
-/// events, whether the roll ever slips; of each sample time, then of each belt speed, spring force, mode (0 EHL, 1 mixed, 2 microslip, 3 stuck) and
-/// whether the roll slips; of each event time, modes before and after, guard, stretch, belt speed.
+/// Steps, train, law, tolerance, duration, samples, list of times of the drive, list of its speeds, start. Answer: steps
+/// taken, samples, events; of each sample time, then of each belt speed, spring force, mode (0 EHL, 1 mixed, 2 microslip,
+/// 3 stuck) and whether the roll slips; of each event time, modes before and after, guard, stretch, belt speed.
 #[allow(clippy::cast_precision_loss)] // counts
 pub fn motion(question: &mut Question) -> Answer {
     let work = question.work()?;
@@ -58,8 +57,14 @@ pub fn motion(question: &mut Question) -> Answer {
     answer.extend(&run.time);
     answer.extend(&run.belt_speed);
     answer.extend(run.stretch.iter().map(|stretch| train.stiffness() * stretch));
-    answer.extend(run.mode.iter().map(|mode| f64::from(*mode as u8)));
-    answer.extend(run.slipping.iter().map(|slips| f64::from(u8::from(*slips))));
+    for state in [
+        run.mode.iter().map(|mode| f64::from(*mode as u8)).collect::<Vec<_>>(),
+        run.slipping.iter().map(|slips| f64::from(u8::from(*slips))).collect(),
+    ] {
+        answer.extend(&state);
+        // a change of mode just at the end leaves the last sample without one
+        answer.extend(state.last().into_iter().cycle().take(samples - state.len()));
+    }
     for event in &run.events {
         let [from, to] = [event.from, event.to].map(|mode| f64::from(mode as u8));
         let guard = f64::from(event.guard as u8);
@@ -68,9 +73,9 @@ pub fn motion(question: &mut Question) -> Answer {
     Ok(answer)
 }
 
-/// Steps, train, law, tolerance, drive speed, start. Answer: kind (0 steady sliding, 1 oscillation, 2 stick-slip, 3 unsettled,
-/// 4 stalled, 5 grip slip), frequency, durations of slip and stick, least and greatest speed, least and greatest stretch, duration of the
-/// roll's slip, work of drag, laps a period, laps.
+/// Steps, train, law, tolerance, drive speed, start. Answer: kind (0 steady sliding, 1 oscillation, 2 stick-slip,
+/// 3 unsettled, 4 stalled, 5 grip slip), frequency, durations of slip and stick, least and greatest speed, least and
+/// greatest stretch, duration of the roll's slip, work of drag, laps a period, laps.
 #[allow(clippy::cast_precision_loss)] // counts
 pub fn cycle(question: &mut Question) -> Answer {
     let work = question.work()?;
@@ -94,10 +99,10 @@ pub fn cycle(question: &mut Question) -> Answer {
     ])
 }
 
-/// Steps of each motion, train, law (without temperature), whether with the lower edge, tolerance, stick speed at every temperature (or
-/// that of the law), list of temperatures (empty: the law as it is). Answer for each: lower edge,
-/// transition, upper edge, whether it stalls, greatest speed, accuracies of lower and upper, whether by half laps, whether deeper, laps; all
-/// not a number where there is none, and if none has one, why the first has not.
+/// Steps of each motion, train, law (without temperature), whether with the lower edge, tolerance, stick speed at every
+/// temperature (or that of the law), list of temperatures (empty: the law as it is). Answer for each: lower edge,
+/// transition, upper edge, whether it stalls, greatest speed, accuracies of lower and upper, whether by half laps,
+/// whether deeper, laps; not a number where there is no band. If none has one, why the first has not.
 pub fn bands(question: &mut Question) -> Answer {
     let work = question.work()?;
     let (train, asked) = (question.train()?, AskedLaw::read(question)?);
@@ -152,7 +157,20 @@ fn row(band: &Band) -> [f64; 10] {
     ]
 }
 
-/// Not there yet.
-pub fn unstable(_: &mut Question) -> Answer {
-    Err(Error::Stopped.into())
+/// Steps of each motion, train, law, tolerance, drive speed, samples. Answer: whether the lap closes; of each sample along
+/// it belt speed, then of each spring force; nothing where there is no such lap.
+pub fn unstable(question: &mut Question) -> Answer {
+    let work = question.work()?;
+    let (train, drag) = (question.train()?, drag(question)?);
+    let [tolerance, drive_speed] = question.numbers()?;
+    let samples = question.count()?;
+    let Some(lap) = stability::unstable_lap(&train, &drag, drive_speed, tolerance, &work)? else {
+        return Ok(Vec::new());
+    };
+    let (system, adaptive) = (System::at_speed(train, &drag, drive_speed)?, Integrator::Adaptive);
+    let run = simulate(&system, lap.start, lap.duration, samples, tolerance, adaptive, &work)?;
+    let mut answer = vec![f64::from(u8::from(lap.closed))];
+    answer.extend(&run.belt_speed);
+    answer.extend(run.stretch.iter().map(|stretch| train.stiffness() * stretch));
+    Ok(answer)
 }

@@ -9,11 +9,11 @@ use crate::refusal::Refusal;
 
 /// A law of drag as it was asked for.
 ///
-/// Its numbers, in this order: shape (0 two powers, 1 points, 2 mixed lubrication); stick speed; closure (0 retained, 1 stiction,
-/// 2 Stribeck, 3 `LuGre`), bristle stiffness and damping; static force (or none), force and damping of the rest of the
-/// drive; growth of the static force and the time from which on; how it varies with temperature (0 not, 1 powers, 2 as a
-/// viscosity of Arrhenius, 3 of Vogel, 4 of Walther), reference temperature, force exponent, slopes of boundary friction and of
-/// the rest, three numbers of the speeds' law; a list of the numbers of the shape.
+/// Its numbers, in this order: shape (0 two powers, 1 points, 2 mixed lubrication); stick speed; closure (0 retained,
+/// 1 stiction, 2 Stribeck, 3 `LuGre`), bristle stiffness and damping; static force (or none), force and damping of the
+/// rest of the drive; growth of the static force and the time from which on; how it varies with temperature (0 not,
+/// 1 powers, 2 as a viscosity of Arrhenius, 3 of Vogel, 4 of Walther), reference temperature, force exponent, slopes of
+/// boundary friction and of the rest, three numbers of the speeds' law; a list of the numbers of the shape.
 pub struct AskedLaw<'a> {
     shape: f64,
     stick_speed: f64,

@@ -21,6 +21,7 @@
 //! | `ensemble`    | what thousands of belts settle to                                         |
 //! | `lap`         | one lap: its sections, its extremes, and where the laps are heading       |
 //! | `cycle`       | what the motion settles to: steady sliding, oscillation, stick-slip       |
+//! | `returning`   | where a belt that overtakes the drive overtakes it again                  |
 //! | `start_up`    | from when on a belt that starts from rest slides for good                 |
 //!
 //! The state is the pull of the spring and the belt speed (and the deflection of the bristles, with
@@ -36,6 +37,7 @@ mod lap;
 mod modes;
 mod piece;
 mod polynomial;
+mod returning;
 mod runge_kutta;
 mod schedule;
 mod sharing;
@@ -52,6 +54,7 @@ pub use ensemble::{Belt, Outcome, ensemble};
 pub use event::{Event, Guard};
 pub use heat::{HeatBalance, Heater};
 pub(crate) use hybrid::first_slide;
+pub(crate) use returning::{Return, next_return};
 pub use schedule::{Cubic, Schedule};
 pub use start_up::{Ending, StartUp, Started, start_up};
 pub(crate) use system::checked_tolerance;

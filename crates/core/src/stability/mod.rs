@@ -5,11 +5,14 @@
 //! | `fold` | drive speed at which a slip lap comes back to its start, many at once              |
 //! | `cycles` | swings that never stick, by their slowest speed                                 |
 //! | `band` | lower edge, transition and upper fold of a belt, for every closure                 |
+//! | `unstable` | the lap between the starts that come to slide and those that come to stick    |
 
 mod band;
 mod cycles;
 mod fold;
+mod unstable;
 
 pub use band::{Band, Method, bands, slip_lap};
 pub use cycles::{Swing, cycles, swings};
 pub use fold::{Fold, SlipLap};
+pub use unstable::{UnstableLap, unstable_lap};

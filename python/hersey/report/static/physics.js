@@ -33,7 +33,7 @@ async function physics(bytes) {
   }
 
   function asked(name, numbers) {
-    if (core === null) throw refused({ message: "the physics of the page is starting anew: ask again", unfinished: true });
+    if (core === null) throw refused({ message: "the physics of the page starts anew: ask again", unfinished: true });
     try {
       const place = core.hersey_question(numbers.length);
       new Float64Array(core.memory.buffer, place, numbers.length).set(numbers);
@@ -99,7 +99,7 @@ async function physics(bytes) {
     const bristles = drag.closure === "lugre"
       ? named(["bristle_stiffness", "bristle_damping"], drag) : [0, 0];
     const growth = drag.static_growth ?? 0;
-    if (growth && (drag.closure !== "stiction" || given("static_growth_time", drag.static_growth_time) !== drag.static_growth_time)) {
+    if (growth && (drag.closure !== "stiction" || !drag.static_growth_time)) {
       const needed = drag.closure === "stiction" ? "static_growth_time" : "closure 'stiction'";
       throw refused({ message: `static_growth is ${growth}: it needs ${needed}`, quantity: "static_growth" });
     }
@@ -147,9 +147,8 @@ async function physics(bytes) {
     drag(drag, temperature, { rule = "with transition", stick_speed, ...changes } = {}) {
       const part = { ...drag, ...changes };
       const fixed = known("rule", RULES, rule) === 1;
-      const numbers = [
-        ...ofDrag(part), scaled(part, temperature), given("stick_speed", stick_speed ?? (fixed ? part.stick_speed : null)),
-      ];
+      const there = stick_speed ?? (fixed ? part.stick_speed : null);
+      const numbers = [...ofDrag(part), scaled(part, temperature), given("stick_speed", there)];
       const [transitionForce, transitionSpeed, stickSpeed, breakaway, holding, restForce, restDamping, risingFrom] =
         asked("hersey_law", numbers);
       return {
@@ -205,7 +204,8 @@ async function physics(bytes) {
       };
     },
 
-    // Edges of the behaviour over drive speed; null for what was not asked for or is not known, infinite beyond the search.
+    // Edges of the behaviour over drive speed; null for what was not asked for or is not known, infinite beyond the
+    // search.
     band({ train, law, lower = false, ...options }) {
       const numbers = [...law.numbers];
       const [temperature, stickSpeed] = numbers.splice(-2);
@@ -216,11 +216,12 @@ async function physics(bytes) {
       ]));
     },
 
-    // The same at many temperatures (K; none for a drag that does not vary), by the rule of the stick speed. Without a band
-    // the three speeds are one. Where there is none at a temperature, not a number; if at none, an error says why.
+    // The same at many temperatures (K; null for a drag that does not vary), by the rule of the stick speed. Without a
+    // band the three speeds are one. Where there is none at a temperature, not a number; if at none, an error says why.
     edges({ train, drag, temperatures, rule, lower = false, ...options }) {
       const fixed = known("rule", RULES, rule) === 1;
-      const scale = temperatures === null ? (scaled(drag, null), []) : Array.from(temperatures, (t) => scaled(drag, t));
+      const scale = temperatures ? Array.from(temperatures, (t) => scaled(drag, t)) : [];
+      if (!temperatures) scaled(drag, null);
       const answer = asked("hersey_bands", [
         steps(options), ...ofTrain(train), ...ofDrag(drag), lower ? 1 : 0,
         number("tolerance", options.tolerance ?? TOLERANCE.band), fixed ? drag.stick_speed : NONE,
@@ -234,15 +235,17 @@ async function physics(bytes) {
       return edges;
     },
 
-    // The lap in the phase plane (m/s, N) that parts starts which come to slide from those which come to stick, or null.
-    unstable({ train, law, drive_speed, ...options }) {
+    // The lap in the phase plane (m/s, N) that parts the starts which come to slide from those which come to stick, or
+    // null where all come to one motion. Where no lap comes back to its start, or none that rounding lets find, it is
+    // the one that just meets the stick speed: not closed.
+    unstable({ train, law, drive_speed, samples = 361, ...options }) {
       const answer = asked("hersey_unstable", [
         steps(options), ...ofTrain(train), ...law.numbers,
         number("tolerance", options.tolerance ?? TOLERANCE.band), number("drive_speed", drive_speed),
+        number("samples", samples),
       ]);
       if (!answer.length) return null;
-      const half = answer.length / 2;
-      return { speed: answer.slice(0, half), force: answer.slice(half) };
+      return { closed: answer[0] > 0, speed: answer.slice(1, 1 + samples), force: answer.slice(1 + samples) };
     },
   };
 }
