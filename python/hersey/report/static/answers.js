@@ -1,0 +1,108 @@
+// What the panel asks of the core about one setting: in the page, or in a worker made of the same text. Every
+// number is the core's; here stands only what is asked, and in which order. All SI.
+
+function answers(core) {
+  // Lengths of a trace, in s: on a ladder, so that the axis rests while a slider moves.
+  const LENGTHS = [0.1, 0.2, 0.5, 1, 2, 3, 5, 8, 12, 20, 30, 50, 80, 120, 200, 300, 500, 800, 1200];
+  const SAMPLES = 1200, STEADY_SAMPLES = 200, LAP_SAMPLES = 240, HALVINGS = 12, COARSE = 13;
+  const lawOf = (job) => core.drag(job.drag, job.temperature, { rule: job.rule });
+  const forceAt = (law, speed) => core.forces(law, [speed])[0];
+  const drawn = ({ time, belt_speed, spring_force, stuck }) => ({ time, belt_speed, spring_force, stuck });
+
+  function lengthOf({ train, speed, profile }, law, cycle) {
+    if (profile) return LENGTHS.find((each) => each >= 1.6 * profile.at(-1)[0] + 0.3) ?? 2 * profile.at(-1)[0];
+    const period = cycle.frequency > 0 ? 1 / cycle.frequency : 2 * Math.PI * Math.sqrt(train.mass / train.stiffness);
+    const wanted = law.holding_force / (train.stiffness * speed) + (cycle.frequency > 0 ? 6 : 10) * period;
+    return LENGTHS.find((length) => length >= wanted) ?? LENGTHS.at(-1);
+  }
+
+  // The motion of a setting, the quick first: each step adds to the answer.
+  function* setting(job) {
+    const { train, speed, profile } = job, law = lawOf(job), force = forceAt(law, speed);
+    const cycle = core.cycle({ train, law, drive_speed: speed, start: "rest" });
+    const above = core.cycle({ train, law, drive_speed: speed, start: "steady" });
+    yield { law, force, cycle, above };
+    const schedule = profile ?? [[0, speed]], duration = lengthOf(job, law, cycle);
+    const motion = drawn(core.motion({ train, law, schedule, start: "rest", duration, samples: SAMPLES }));
+    yield { motion, duration };
+    if (cycle.frequency > 0 && !profile) {
+      const last = SAMPLES - 1, start = [motion.belt_speed[last], motion.spring_force[last] / train.stiffness];
+      const length = 1.02 * cycle.laps_per_period / cycle.frequency;
+      yield { lap: drawn(core.motion({ train, law, schedule, start, duration: length, samples: LAP_SAMPLES })) };
+    }
+    if (!profile && above.kind !== cycle.kind) {
+      yield { steady: drawn(core.motion({ train, law, schedule, start: "steady", duration, samples: STEADY_SAMPLES })) };
+    }
+  }
+
+  // The lap that parts what slides from what sticks, and the greatest sudden loss of belt speed that a belt bears
+  // which slides steadily; null where there is none.
+  function unstable(job) {
+    try {
+      return core.unstable({ train: job.train, law: lawOf(job), drive_speed: job.speed });
+    } catch (error) {
+      if (error.unfinished) return null;
+      throw error;
+    }
+  }
+  function kick(job) {
+    const { train, speed } = job, law = lawOf(job), stretch = forceAt(law, speed) / train.stiffness;
+    const sticks = (loss) => {
+      const found = core.cycle({ train, law, drive_speed: speed, start: [speed - loss, stretch] });
+      return found.kind !== "steady_sliding" && found.speed_min <= law.stick_speed * (1 + 1e-9);
+    };
+    if (!sticks(speed)) return null;
+    let [low, high] = [0, speed];
+    for (let i = 0; i < HALVINGS; i += 1) {
+      const middle = 0.5 * (low + high);
+      if (sticks(middle)) high = middle; else low = middle;
+    }
+    return low;
+  }
+
+  const band = (job) => core.band({ train: job.train, law: lawOf(job), lower: !job.slow });
+
+  // Edges of the whole map and what a belt at rest bears, first at a few temperatures, then at all.
+  function* edges({ train, drag, temperatures, rule }) {
+    const at = (kelvin, lower) => {
+      const holding = kelvin ? kelvin.map((each) => core.drag(drag, each, { rule }).holding_force) : [core.drag(drag, null, { rule }).holding_force];
+      return { temperatures: kelvin, ...core.edges({ train, drag, temperatures: kelvin, rule, lower }), holding };
+    };
+    if (temperatures && temperatures.length > 2 * COARSE) {
+      yield at(Array.from({ length: COARSE }, (_, i) => temperatures[Math.round(i * (temperatures.length - 1) / (COARSE - 1))]), false);
+    }
+    yield at(temperatures, true);
+  }
+
+  // V* at both ends of what is stated of each parameter, the others as set.
+  function spread(job) {
+    return job.ranges.map(([name, ends]) => ends.map((value) => {
+      const train = name in job.train ? { ...job.train, [name]: value } : job.train;
+      const drag = name in job.train ? job.drag : { ...job.drag, stick_speed: job.drag.stick_speed * value / job.stick_speed };
+      const found = core.band({ train, law: lawOf({ ...job, drag }) });
+      return Math.max(found.upper, found.transition);
+    }));
+  }
+
+  // Which zone a setting lies in, by the names of the map's states, as the map itself tells it.
+  function zone({ speed, limit, motor }, law, force, found) {
+    const starts = law.holding_force <= limit, lower = Math.min(found.lower ?? found.transition, found.transition);
+    const held = lower === 0 && speed < found.transition, beyond = motor ? "motor" : "stall";
+    const moving = force > limit || (held && !starts) ? beyond
+      : speed < lower ? "stick_slip" : speed < found.transition ? "swing" : speed < found.upper ? "bistable" : "smooth";
+    return { state: starts ? moving : beyond, moving, starts };
+  }
+
+  // What a worker does, by name: every part of an answer as soon as there is one.
+  const tasks = {
+    *after(job) {
+      if (job.slow) yield* setting(job);
+      yield { unstable: unstable(job) };
+      if (job.kick) yield { kick: kick(job) };
+      if (job.band) yield { band: band(job) };
+      if (job.ranges.length && !job.slow) yield { spread: spread(job) };
+    },
+    edges,
+  };
+  return { setting, band, unstable, zone, tasks };
+}

@@ -1,0 +1,429 @@
+// The operating map, drawn by our own few lines: temperature across, drive speed up. The same picture stands in
+// the page whether or not it can be asked; only the ring, the setting tried, needs what moves it.
+
+function operatingMap(place, map, move = null) {
+  const hot = map.temperature !== null;
+  const columns = hot ? map.temperature : [0, 1];
+  const wide = (values) => (hot ? values : [values[0], values[0]]).map((v) => v ?? Infinity);
+  const [slowest, fastest] = [map.speed[0], map.speed.at(-1)];
+  const given = {
+    lower: wide(map.lower), transition: wide(map.transition), upper: wide(map.upper),
+    starts: wide(map.holding).map((force) => force <= (map.torque_limit ?? Infinity)),
+  };
+  const [below, above] = [wide(map.stall_below), wide(map.stall_above)];
+  const intervals = [...map.transition_interval, ...map.upper_interval].map(wide);
+  const celsius = (kelvin) => kelvin - 273.15, millimetres = (speed) => 1e3 * speed;
+  const rpm = 60 / (2 * Math.PI * map.roll_radius);
+  const named = `hatch-${Math.random().toString(36).slice(2)}`;
+  const beyond = map.limited_by === "motor torque" ? "motor stops" : "stall";
+  let edges = given, lagging = false, changed = false, setting = null, frame = null, printing = false, unnamed = [];
+
+  place.classList.add("map");
+  const caption = add(place, "div", "", "cap");
+  add(caption, "h2", "Operating map");
+  const hint = add(caption, "span", move ? "drag the ring, or arrow keys on it" : "", "hint");
+  const drawing = svg("svg", { role: "group", "aria-label": "Operating map" }, place);
+  const hatch = svg("pattern", { id: named, width: 7, height: 7, patternUnits: "userSpaceOnUse", patternTransform: "rotate(45)" }, svg("defs", {}, drawing));
+  svg("path", { d: "M0 0v7", class: "hatch" }, hatch);
+  const picture = svg("g", { role: "img" }, drawing);
+  const ring = move ? held() : null;
+  const key = add(place, "ul", "", "key");
+  const figures = fold(place, "Table of the map");
+  figures.className = "figures";
+
+  // Pixels of a temperature and of a speed, and back.
+  const across = (x) => frame.left + (x - columns[0]) / (columns.at(-1) - columns[0]) * frame.width;
+  const up = (v) => frame.bottom - Math.log(v / slowest) / Math.log(fastest / slowest) * frame.height;
+  const speedAt = (y) => slowest * (fastest / slowest) ** ((frame.bottom - y) / frame.height);
+  const columnAt = (x) => columns[0] + (x - frame.left) / frame.width * (columns.at(-1) - columns[0]);
+  const kept = (v) => Math.min(Math.max(v, slowest), fastest);
+  const line = (values) => columns.map((x, i) => (values[i] > 0.2 * slowest && values[i] < 5 * fastest ? [across(x), up(values[i])] : [NaN, NaN]));
+
+  function place_of(point, number) {
+    return hot ? point.temperature : (number + 1) / (map.points.length + 1);
+  }
+
+  function draw() {
+    const room = printing ? 688 : place.clientWidth;
+    if (!room) return;
+    const height = room > 600 ? 424 : 372, left = 34, right = 34, top = 24;
+    frame = { left, top, width: room - left - right, bottom: height - 36, height: height - 36 - top, right: room - right };
+    drawing.setAttribute("viewBox", `0 0 ${room} ${height}`);
+    drawing.setAttribute("width", room);
+    drawing.setAttribute("height", height);
+    picture.replaceChildren();
+    picture.setAttribute("aria-label", finding());
+    const clip = svg("rect", { x: left, y: top, width: frame.width, height: frame.height }, svg("clipPath", { id: `${named}-frame` }, picture));
+    clip.parentNode.setAttribute("clipPathUnits", "userSpaceOnUse");
+    const inside = svg("g", { "clip-path": `url(#${named}-frame)` }, picture);
+    const taken = [];
+    const zones = drawZones(inside);
+    drawHatch(inside);
+    const torques = drawTorques(inside);
+    drawLines(inside);
+    const box = measured();
+    svg("rect", { x: box[0], y: box[1], width: Math.max(box[2] - box[0], 0), height: Math.max(box[3] - box[1], 0), class: "measured" }, inside);
+    svg("rect", { x: left, y: top, width: frame.width, height: frame.height, class: "box" }, picture);
+    drawAxes();
+    drawPoints(taken);
+    nameLimit(taken);
+    nameTorques(torques, taken);
+    unnamed = nameZones(zones, box, taken);
+    drawKey();
+    drawTable();
+    if (ring) drawRing();
+  }
+
+  function finding() {
+    const middle = Math.floor(columns.length / 2), ends = hot ? [0, columns.length - 1] : [0];
+    const told = (edge) => ends.map((i) => digits(millimetres(edges[edge][i]))).join(" to ");
+    const from = hot ? ` from ${celsius(columns[0]).toFixed(0)} to ${celsius(columns.at(-1)).toFixed(0)} °C` : "";
+    const band = edges.upper[middle] > 1.01 * edges.transition[middle] || edges.upper.at(-1) > 1.01 * edges.transition.at(-1);
+    return `Operating map: the belt sticks below ${told("transition")} mm/s${from}`
+      + (band ? `, and slides from any start above ${told("upper")} mm/s` : ", and slides above");
+  }
+
+  // Areas: the speeds between two edges, and below and above what the drive bears.
+  function parts() {
+    const lowest = columns.map(() => slowest), highest = columns.map(() => fastest);
+    const floor = below.map((v, i) => (edges.starts[i] ? kept(changed ? 0 : v) : fastest)), roof = above.map(kept);
+    const between = (low, high) => low.map((v, i) => {
+      const a = Math.min(Math.max(kept(v), floor[i]), Math.max(roof[i], floor[i]));
+      return [a, Math.max(Math.min(Math.max(kept(high[i]), floor[i]), Math.max(roof[i], floor[i])), a)];
+    });
+    return {
+      smooth: [between(edges.upper.map((v, i) => Math.max(v, edges.transition[i])), highest)],
+      depends: [between(edges.lower, edges.upper)],
+      sticks: [between(lowest, edges.lower)],
+      stall: [lowest.map((v, i) => [v, floor[i]]), roof.map((v, i) => [Math.max(v, floor[i]), fastest])],
+    };
+  }
+
+  function drawZones(inside) {
+    const zones = {};
+    for (const [name, bands] of Object.entries(parts())) {
+      zones[name] = bands.map((band) => band.map(([low, high], i) => [across(columns[i]), up(low), up(high)]));
+      for (const band of zones[name]) {
+        if (Math.max(...band.map(([, low, high]) => low - high)) < 0.5) continue;
+        const outline = [...band.map(([x, low]) => [x, low]), ...band.map(([x, , high]) => [x, high]).reverse()];
+        svg("path", { d: `${shape.path(outline)}Z`, class: `zone ${name}${lagging ? " lags" : ""}` }, inside);
+      }
+    }
+    return zones;
+  }
+
+  function measured() {
+    const [low, high] = map.measured_speed.map((v) => up(kept(v)));
+    const sides = map.measured_temperature ? map.measured_temperature.map(across) : [frame.left, frame.right];
+    return [Math.max(sides[0], frame.left), high, Math.min(sides[1], frame.right), low];
+  }
+
+  function drawHatch(inside) {
+    const [x, y, x2, y2] = measured(), { left, top, right, bottom } = frame;
+    const d = `M${left} ${top}H${right}V${bottom}H${left}Z` + (x2 > x && y2 > y ? `M${x} ${y}V${y2}H${x2}V${y}Z` : "");
+    svg("path", { d, fill: `url(#${named})`, "fill-rule": "evenodd" }, inside);
+  }
+
+  // Lines of one torque where the belt slides steadily, read off the torques of the map.
+  function drawTorques(inside) {
+    const rising = map.torque.map((row, i) => row.filter((_, j) => map.speed[j] >= (map.transition[i] ?? Infinity)));
+    const all = rising.flat();
+    if (!all.length) return [];
+    const low = Math.min(...all), high = Math.min(Math.max(...all), map.torque_limit ?? Infinity);
+    const scale = high < 0.1 ? 1e3 : 1, unit = scale === 1 ? "N·m" : "mN·m";
+    if (!(high > low)) return [];
+    const step = ticks(0, scale * (high - low), 6)[1];
+    const lines = [];
+    for (let k = Math.ceil(scale * low / step); k * step < scale * high; k += 1) {
+      const speeds = map.torque.map((row, i) => crossing(row, map.transition[i] ?? Infinity, k * step / scale));
+      const points = line(hot ? speeds : [speeds[0], speeds[0]]);
+      const d = shape.path(points);
+      if (!d.includes("L")) continue;
+      svg("path", { d, class: "torque" }, inside);
+      lines.push([digits(k * step), points.filter(([x, y]) => Number.isFinite(x) && y > frame.top && y < frame.bottom)]);
+    }
+    if (lines.length) lines[0][0] += ` ${unit}`;
+    return lines;
+  }
+
+  function crossing(row, from, torque) {
+    for (let j = 1; j < row.length; j += 1) {
+      if (map.speed[j - 1] >= from && row[j - 1] <= torque && row[j] > torque) {
+        return map.speed[j - 1] * (map.speed[j] / map.speed[j - 1]) ** (Math.log(torque / row[j - 1]) / Math.log(row[j] / row[j - 1]));
+      }
+    }
+    return NaN;
+  }
+
+  function drawLines(inside) {
+    const draw_line = (values, name) => svg("path", { d: shape.path(line(values)), class: name }, inside);
+    const [low, high, vLow, vHigh] = intervals;
+    const band = [...columns.map((x, i) => [across(x), up(kept(low[i]))]), ...columns.map((x, i) => [across(x), up(kept(high[i]))]).reverse()];
+    const faint = changed ? " lags" : "";
+    svg("path", { d: `${shape.path(band)}Z`, class: `interval${faint}` }, inside);
+    const beyond_bend = (edge) => edge.map((v, i) => (v > 1.01 * high[i] ? v : NaN));
+    draw_line(beyond_bend(vLow), `fold-interval${faint}`);
+    draw_line(beyond_bend(vHigh), `fold-interval${faint}`);
+    for (const edge of [below, above]) draw_line(edge.map((v) => v || NaN), "stall-edge");
+    const lags = lagging ? " lags" : "";
+    draw_line(edges.upper.map((v, i) => (v > 1.01 * edges.transition[i] ? v : NaN)), `fold${lags}`);
+    draw_line(edges.transition, `transition${lags}`);
+    if (map.speed_limit !== null && map.speed_limit < fastest) draw_line(columns.map(() => map.speed_limit), "limit");
+  }
+
+  function drawAxes() {
+    const { left, right, top, bottom } = frame;
+    svg("text", { x: 0, y: 12, class: "axis" }, picture, frame.width > 420 ? "Drive speed at the belt (mm/s)" : "Drive speed (mm/s)");
+    svg("text", { x: right + 34, y: 12, "text-anchor": "end", class: "axis" }, picture, "roll (rpm)");
+    for (const value of logTicks(1e3 * slowest, 1e3 * fastest)) {
+      const y = up(value / 1e3);
+      svg("path", { d: `M${left} ${y}h-4`, class: "tick" }, picture);
+      svg("text", { x: left - 7, y: y + 4, "text-anchor": "end", class: "ticks" }, picture, digits(value, 4));
+    }
+    for (const value of logTicks(rpm * slowest, rpm * fastest)) {
+      const y = up(value / rpm);
+      svg("path", { d: `M${right} ${y}h4`, class: "tick" }, picture);
+      svg("text", { x: right + 7, y: y + 4, class: "ticks" }, picture, digits(value, 4));
+    }
+    if (!hot) {
+      svg("text", { x: (left + right) / 2, y: bottom + 18, "text-anchor": "middle", class: "axis" }, picture, "at the temperature of the log (none recorded)");
+      return;
+    }
+    for (const value of ticks(celsius(columns[0]), celsius(columns.at(-1)), frame.width / 90)) {
+      const x = across(value + 273.15);
+      svg("path", { d: `M${x} ${bottom}v4`, class: "tick" }, picture);
+      svg("text", { x, y: bottom + 16, "text-anchor": "middle", class: "ticks" }, picture, digits(value, 4));
+    }
+    svg("text", { x: (left + right) / 2, y: bottom + 31, "text-anchor": "middle", class: "axis" }, picture, "Temperature (°C)");
+  }
+
+  const free = (box, taken) => taken.every((b) => box[2] < b[0] || box[0] > b[2] || box[3] < b[1] || box[1] > b[3]);
+  const within = (box) => box[0] >= frame.left + 2 && box[2] <= frame.right - 2 && box[1] >= frame.top + 2 && box[3] <= frame.bottom - 2;
+
+  function drawPoints(taken) {
+    const shown = map.points.map((point, i) => [point, across(place_of(point, i)), up(point.speed)])
+      .filter(([, x, y]) => x >= frame.left && x <= frame.right && y >= frame.top && y <= frame.bottom);
+    for (const [, x, y] of shown) taken.push([x - 13, y - 13, x + 13, y + 13]);
+    for (const [point, x, y] of shown) {
+      const width = shape.width(point.name, 12.5, 700);
+      const places = [[x - 15 - width, y], [x + 15, y], [x - width / 2, y - 20], [x - width / 2, y + 20], [x - 15 - width, y - 13],
+        [x - 15 - width, y + 14], [x - 15 - width, y - 26], [x - 15 - width, y + 28], [x + 15, y - 18], [x + 15, y + 18]];
+      const boxed = ([a, b]) => [a - 2, b - 7, a + width + 2, b + 7];
+      const best = places.find((p) => within(boxed(p)) && free(boxed(p), taken));
+      if (best) {
+        taken.push(boxed(best));
+        svg("text", { x: best[0], y: best[1] + 4.5, class: "name" }, picture, point.name);
+      }
+    }
+    for (const [point, x, y] of shown) {
+      const mark = svg("path", { d: `M${x} ${y - 6.5}l6.5 6.5l-6.5 6.5l-6.5 -6.5Z`, class: "point" }, picture);
+      svg("title", {}, mark, point.name);
+    }
+  }
+
+  function nameLimit(taken) {
+    if (map.speed_limit === null || !(map.speed_limit > slowest && map.speed_limit < fastest)) return;
+    const text = `greatest drive speed ${digits(millimetres(map.speed_limit))}`, width = shape.width(text, 11.5);
+    const y = up(map.speed_limit);
+    for (const offset of [-5, 13]) {
+      for (const share of [0.5, 0.3, 0.7, 0.2, 0.8]) {
+        const x = frame.left + share * frame.width - width / 2, box = [x - 2, y + offset - 10, x + width + 2, y + offset + 3];
+        if (!within(box) || !free(box, taken)) continue;
+        taken.push(box, [frame.left, y - 2, frame.right, y + 2]);
+        svg("text", { x, y: y + offset, class: "limit-name" }, picture, text);
+        return;
+      }
+    }
+  }
+
+  function nameTorques(lines, taken) {
+    for (const [text, points] of lines) {
+      const width = shape.width(text, 11.5);
+      const order = points.map((p, i) => [Math.abs(i / points.length - 0.3), p]).sort((a, b) => a[0] - b[0]);
+      const found = order.map(([, [x, y]]) => [x - width / 2 - 2, y - 7, x + width / 2 + 2, y + 7]).find((box) => within(box) && free(box, taken));
+      if (!found) continue;
+      taken.push(found);
+      svg("text", { x: (found[0] + found[2]) / 2, y: found[3] - 3, "text-anchor": "middle", class: "torque-name" }, picture, text);
+    }
+  }
+
+  // The word of each zone where it has the most room, upright or along the zone; else it stands in the key.
+  function nameZones(zones, box, taken) {
+    const nameless = [];
+    for (const [name, bands] of Object.entries(zones)) {
+      const word = name === "stall" ? beyond : name, size = 14, width = shape.width(word, size, 700) + 6;
+      let best = null, thick = 0;
+      for (const band of bands) {
+        thick = Math.max(thick, ...band.map(([, low, high]) => low - high));
+        for (let x = frame.left + width / 2 + 4; x < frame.right - width / 2 - 4; x += 8) {
+          for (const spot of [upright(band, x, width), along(band, x, width)]) {
+            if (!spot || !free(spot.box, taken)) continue;
+            const inside = x > box[0] && x < box[2] && spot.y > box[1] && spot.y < box[3];
+            const score = Math.min(spot.room, 90) + (inside ? 30 : 0) - Math.abs(x - frame.left - 0.4 * frame.width) / 20 - (spot.turn ? 45 : 0);
+            if (!best || score > best.score) best = { ...spot, x, score };
+          }
+        }
+      }
+      if (best) {
+        taken.push(best.box);
+        svg("text", { x: best.x, y: best.y + 5, "text-anchor": "middle", class: `word ${name}`,
+          ...(best.turn ? { transform: `rotate(${best.turn} ${best.x} ${best.y})` } : {}) }, picture, word);
+      } else if (thick > 2) nameless.push([name, word]);
+    }
+    return nameless;
+  }
+
+  function heights(band, from, to) {
+    return band.filter(([x]) => x >= from - frame.width / band.length && x <= to + frame.width / band.length);
+  }
+  function upright(band, x, width) {
+    const over = heights(band, x - width / 2, x + width / 2);
+    const top = Math.max(...over.map(([, , high]) => high)), bottom = Math.min(...over.map(([, low]) => low));
+    if (bottom - top < 18) return null;
+    const y = (top + bottom) / 2;
+    return { y, turn: 0, room: bottom - top, box: [x - width / 2, y - 9, x + width / 2, y + 9] };
+  }
+  function along(band, x, width) {
+    const over = heights(band, x - width / 2, x + width / 2).filter(([, low, high]) => low - high > 10);
+    if (over.length < 2) return null;
+    const [first, last] = [over[0], over.at(-1)], middle = ([, low, high]) => (low + high) / 2;
+    if (last[0] - first[0] < 0.8 * width) return null;
+    const slope = (middle(last) - middle(first)) / (last[0] - first[0]), centre = middle(first) + slope * (x - first[0]);
+    const room = 2 * Math.min(...over.map(([a, low, high]) => { const y = centre + slope * (a - x); return Math.min(low - y, y - high); })) / Math.hypot(1, slope);
+    if (room < 15 || Math.abs(slope) > 1) return null;
+    const rise = Math.abs(slope) * width / 2;
+    return { y: centre, turn: Math.atan(slope) * 180 / Math.PI, room, box: [x - width / 2, centre - 8 - rise, x + width / 2, centre + 8 + rise] };
+  }
+
+  function drawKey() {
+    key.replaceChildren();
+    const entry = (kind, text) => {
+      const item = add(key, "li"), sample = svg("svg", { viewBox: "0 0 26 12", "aria-hidden": "true" }, item);
+      if (kind === "measured" || kind.startsWith("zone")) svg("rect", { x: 2.5, y: 1.5, width: 20, height: 9, class: kind }, sample);
+      else if (kind === "hatched") svg("rect", { x: 1, y: 0, width: 24, height: 12, fill: `url(#${named})` }, sample);
+      else svg("path", { d: "M1 6h24", class: kind }, sample);
+      item.append(text);
+    };
+    const at = setting && hot ? ` at ${celsius(setting.temperature).toFixed(0)} °C` : "";
+    const valued = (values) => {
+      if (!setting && hot) return "";
+      return `, ${digits(millimetres(valueAt(values, setting?.temperature ?? 0)), 2)}${at}`;
+    };
+    entry("transition", `transition${valued(edges.transition)}`);
+    if (edges.upper.some((v, i) => v > 1.01 * edges.transition[i])) entry("fold", `V*${valued(edges.upper)}`);
+    if (intervals[3].some((v, i) => v > 1.01 * intervals[1][i])) entry("fold-interval", changed ? "its 95 % interval in the report" : "its 95 % interval");
+    entry("torque", "drag torque");
+    entry("measured", "measured");
+    entry("hatched", "extrapolated");
+    for (const [name, word] of unnamed) entry(`zone ${name}`, word);
+  }
+
+  // A value of an edge at the temperature of the setting, between two columns.
+  function valueAt(values, kelvin) {
+    const i = Math.min(Math.max(columns.findIndex((x) => x >= kelvin), 1), columns.length - 1);
+    const share = hot ? Math.min(Math.max((kelvin - columns[i - 1]) / (columns[i] - columns[i - 1]), 0), 1) : 0;
+    return values[i - 1] * (values[i] / values[i - 1]) ** share;
+  }
+
+  function drawTable() {
+    for (const old of figures.querySelectorAll(".wide")) old.remove();
+    const every = Math.max(1, Math.round((columns.length - 1) / 10));
+    const rows = columns.map((_, i) => i).filter((i) => (hot ? i % every === 0 : i === 0));
+    const value = (v) => (Number.isFinite(v) ? digits(millimetres(v)) : "never");
+    const range = (i, low, high) => `${value(intervals[low][i])} to ${value(intervals[high][i])}`;
+    const heads = ["Sticks below (mm/s)", "Transition", "95 % in the report", "Smooth above V*", "95 % in the report", `${map.torque_limit === null ? "Stall" : "Stall from"}`];
+    table(figures, [...(hot ? ["°C"] : []), ...heads], rows.map((i) => [
+      ...(hot ? [celsius(columns[i]).toFixed(0)] : []), value(edges.lower[i]), value(edges.transition[i]), range(i, 0, 1),
+      value(edges.upper[i]), range(i, 2, 3), map.torque_limit === null ? "not known" : edges.starts[i] ? value(above[i]) : "not started"]),
+    [0, 1, 2, 3, 4, 5, 6]);
+  }
+
+  // The ring: the setting tried. Only it takes a drag; everything else scrolls.
+  function held() {
+    const group = svg("g", { class: "tried" }, drawing);
+    const parts_ = {
+      across: svg("path", { class: "lead" }, group), down: svg("path", { class: "lead" }, group),
+      speed: svg("g", { class: "tag" }, group), temperature: svg("g", { class: "tag" }, group),
+    };
+    for (const tag of [parts_.speed, parts_.temperature]) {
+      svg("rect", { width: 34, height: 16, rx: 2 }, tag);
+      svg("text", { x: 17, y: 12, "text-anchor": "middle" }, tag);
+    }
+    const handle = svg("g", { class: "ring", tabindex: 0, role: "slider", "aria-label": "Setting tried: drive speed and temperature",
+      "aria-orientation": "vertical", "aria-valuemin": digits(millimetres(slowest)), "aria-valuemax": digits(millimetres(fastest)), "aria-valuenow": 0 }, group);
+    svg("circle", { r: 22, class: "reach" }, handle);
+    svg("circle", { r: 9, class: "round" }, handle);
+    svg("circle", { r: 3, class: "dot" }, handle);
+    let from = null;
+    handle.addEventListener("pointerdown", (event) => {
+      from = { x: event.clientX - across(column()), y: event.clientY - up(kept(setting.speed)) };
+      handle.setPointerCapture(event.pointerId);
+      handle.focus({ preventScroll: true });
+      event.preventDefault();
+    });
+    handle.addEventListener("pointermove", (event) => {
+      if (!from) return;
+      const speed = kept(speedAt(event.clientY - from.y)), x = columnAt(event.clientX - from.x);
+      moved(Number(speed.toPrecision(3)), Math.round(celsius(x)) + 273.15);
+    });
+    for (const end of ["pointerup", "pointercancel"]) handle.addEventListener(end, () => { from = null; });
+    handle.addEventListener("keydown", (event) => {
+      const times = event.shiftKey ? 10 : 1;
+      const [factor, kelvin] = { ArrowUp: [1.02 ** times, 0], ArrowDown: [1.02 ** -times, 0], ArrowLeft: [1, -times], ArrowRight: [1, times] }[event.key] ?? [];
+      if (factor === undefined) return;
+      event.preventDefault();
+      moved(setting.speed * factor, (setting.temperature ?? 0) + kelvin);
+    });
+    return { ...parts_, handle };
+  }
+  function moved(speed, kelvin) {
+    const within_map = Math.min(Math.max(kelvin, columns[0]), columns.at(-1));
+    move(kept(speed), hot ? within_map : null);
+  }
+  const column = () => (hot ? Math.min(Math.max(setting.temperature, columns[0]), columns.at(-1)) : 0.5);
+
+  function drawRing() {
+    ring.handle.parentNode.setAttribute("visibility", setting ? "visible" : "hidden");
+    if (!setting) return;
+    const x = across(column()), y = up(kept(setting.speed));
+    ring.handle.setAttribute("transform", `translate(${x} ${y})`);
+    ring.across.setAttribute("d", `M${frame.left} ${y}H${x - 10}`);
+    ring.down.setAttribute("d", hot ? `M${x} ${frame.bottom}V${y + 10}` : "");
+    ring.speed.setAttribute("transform", `translate(${frame.left - 34} ${y - 8})`);
+    ring.speed.lastChild.textContent = digits(millimetres(setting.speed));
+    ring.temperature.setAttribute("transform", `translate(${x - 17} ${frame.bottom + 4})`);
+    ring.temperature.setAttribute("visibility", hot ? "inherit" : "hidden");
+    if (hot) ring.temperature.lastChild.textContent = celsius(setting.temperature).toFixed(0);
+    ring.handle.setAttribute("aria-valuenow", digits(millimetres(setting.speed)));
+    const where = hot ? ` at ${celsius(setting.temperature).toFixed(0)} °C` : "";
+    ring.handle.setAttribute("aria-valuetext", `${digits(millimetres(setting.speed))} mm/s${where}, ${setting.zone ?? "not known"}`);
+  }
+
+  new ResizeObserver(() => { if (!printing && frame && place.clientWidth !== frame.right + 34) draw(); }).observe(place);
+  addEventListener("beforeprint", () => { printing = true; draw(); });
+  addEventListener("afterprint", () => { printing = false; draw(); });
+  draw();
+  document.fonts?.ready.then(draw);
+
+  return {
+    hint,
+    // The setting tried: speed (m/s), temperature (K) and the word of its zone.
+    show(tried) {
+      setting = tried;
+      drawRing();
+      drawKey();
+    },
+    // Edges of another machine, at the temperatures of the map; null for those of the report.
+    edges(other) {
+      edges = other ? { lower: wide(other.lower), transition: wide(other.transition), upper: wide(other.upper), starts: wide(other.starts) } : given;
+      changed = Boolean(other);
+      lagging = false;
+      draw();
+    },
+    lag() {
+      if (lagging) return;
+      lagging = true;
+      for (const each of picture.querySelectorAll(".zone, .transition, .fold")) each.classList.add("lags");
+    },
+  };
+}

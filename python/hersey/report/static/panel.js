@@ -1,0 +1,359 @@
+// The panel that answers: a setting of the machine, what the belt does there, and how to reproduce it.
+
+async function live(analysis, bytes, { map: mapPlace, panel: place }) {
+  place.classList.add("panel");
+  const heading = add(place, "div", "", "cap");
+  add(heading, "h2", "Try a setting");
+  const still = { show() {}, profile() {}, reset() {} };
+  const able = bytes && typeof WebAssembly === "object";
+  if (!able) {
+    operatingMap(mapPlace, analysis.map);
+    add(place, "p", "This browser runs no WebAssembly, so nothing can be tried here; all figures of the report stand.");
+    return still;
+  }
+  let core;
+  try {
+    core = await physics(bytes);
+  } catch (error) {
+    operatingMap(mapPlace, analysis.map);
+    add(place, "p", `Nothing can be tried here: ${error.message}. All figures of the report stand.`);
+    return still;
+  }
+  const hint = add(heading, "span", "", "hint");
+  const { map } = analysis, motor = map.limited_by === "motor torque", hot = map.temperature !== null;
+  const limit = map.torque_limit === null ? Infinity : map.torque_limit / map.roll_radius;
+  const known = settings(analysis), questions = answers(core);
+  const SLOW = ["stribeck", "lugre"], QUICK_BAND = 5;
+  const CLOSURES = { retained: "retained: keeps its creep (the paper)", stiction: "stiction: stops dead", stribeck: "Stribeck, smooth", lugre: "LuGre, bristles" };
+  const ZONES = { stick_slip: "sticks", swing: "depends", bistable: "depends", smooth: "smooth", stall: "stall", motor: "stall" };
+  let point = worst(), base = known.own(point), setting = known.read(location.hash, base) ?? { ...base };
+  let answer = null, found = null, kicked = null, spread = null, asked = 0, drawn = 0, mapped = "", bandCost = 0, spoken = 0, open = "";
+
+  const picture = operatingMap(mapPlace, map, (speed, temperature) => tried({ speed, temperature }));
+  const controls = controlsOf();
+  const verdict = add(place, "div", "", "verdict-line"), said = add(place, "div", "", "unseen");
+  said.setAttribute("aria-live", "polite");
+  const printed = add(place, "p", "", "print-values");
+  const chart = traces(place);
+  const course = profile(place, chart, {
+    change: (rows) => tried({ profile: rows, speed: rows.at(-1)[1] }),
+    leave: () => tried({ profile: null }),
+  });
+  const foot = add(place, "div", "", "foot"), out = add(place, "div", "", "out");
+  out.hidden = true;
+  const outs = { Link: () => link(), Command: () => known.command(setting, answer.law, answer.duration), TOML: () => known.toml(setting, answer.law) };
+  const buttons = Object.keys(outs).map((name) => {
+    const each = button(foot, name, () => { open = open === name ? "" : name; output(); });
+    each.setAttribute("aria-expanded", "false");
+    return each;
+  });
+  const courses = button(foot, "Profile", () => tried({ profile: setting.profile ? null : [[0, 0], [0.2, setting.speed]] }));
+  courses.setAttribute("aria-pressed", "false");
+  const back = button(foot, "Back to the report’s setting", () => reset());
+  back.classList.add("back");
+  const after = labour(core.module, heard), edges = labour(core.module, heardEdges);
+
+  // The point that most needs a look: the gravest signal, or the first point that the past decides.
+  function worst() {
+    const signals = analysis.decision?.points?.map((each) => ["good", "watch", "act"].indexOf(each.signal)) ?? [];
+    const gravest = signals.indexOf(Math.max(...signals));
+    if (signals.length) return Math.max(map.points.findIndex((each) => each.name === analysis.decision.points[gravest].name), 0);
+    return Math.max(map.points.findIndex((each) => each.at.state !== "smooth"), 0);
+  }
+
+  function controlsOf() {
+    const made = {};
+    const one = (where, name, label, unit, scale, low, high, options = {}) => {
+      made[name] = control(where, { name, label, unit, low: low / scale, high: high / scale, ...options,
+        change: (value) => tried(options.given ? options.given(value) : { [name]: value * scale }) });
+      made[name].scale = scale;
+    };
+    one(place, "speed", "Drive speed", "mm/s", 1e-3, map.speed[0], map.speed.at(-1), {
+      given: (value) => ({ speed: value / 1e3, ...(setting.profile ? { profile: setting.profile.with(-1, [setting.profile.at(-1)[0], value / 1e3]) } : {}) }) });
+    if (hot) {
+      one(place, "temperature", "Temperature", "°C", 1, map.temperature[0] - 273.15, map.temperature.at(-1) - 273.15, {
+        logarithmic: false, step: 1, given: (value) => ({ temperature: value + 273.15 }) });
+      made.temperature.shift = 273.15;
+    }
+    one(place, "stiffness", "Stiffness", "N/mm", 1e3, base.stiffness / 10, base.stiffness * 10);
+    one(place, "stick_speed", "Stick speed", "mm/s", 1e-3, base.stick_speed / 10, base.stick_speed * 10);
+    const row = add(place, "div", "", "chosen"), label = add(row, "label", "Closure"), select = add(row, "select");
+    label.htmlFor = select.id = "try-closure";
+    const mark = document.createElement("span");
+    mark.className = "changed";
+    label.prepend(mark);
+    for (const name of known.closures) add(select, "option", CLOSURES[name]).value = name;
+    select.addEventListener("change", () => tried({ closure: select.value }));
+    const further = add(place, "div", "", "further");
+    further.id = "further";
+    further.hidden = true;
+    const more = button(row, "Mass, spread…", () => { further.hidden = !further.hidden; more.setAttribute("aria-expanded", String(!further.hidden)); });
+    more.setAttribute("aria-expanded", "false");
+    more.setAttribute("aria-controls", "further");
+    one(further, "mass", "Mass", "kg", 1, base.mass / 10, base.mass * 10);
+    const ranges = Object.keys(rangesOf(base));
+    if (ranges.length) one(further, "spread", "Spread", "×", 1, 0.1, 3, { count: 2 });
+    add(further, "p", ranges.length ? `Spread 1 is what the machine’s file states of ${ranges.map((name) => name.replace("_", " ")).join(" and ")} (95 %).`
+      : "The machine’s file states no [uncertainty]: V* has no spread to show.", "hint");
+    const told_spread = add(further, "p", "", "hint");
+    one(further, "bristle_stiffness", "Bristles", "N/mm", 1e3, base.bristle_stiffness / 100, base.bristle_stiffness * 100);
+    one(further, "bristle_damping", "Their damping", "N·s/m", 1, base.bristle_damping / 100, base.bristle_damping * 100);
+    const bristles = add(further, "p", "Bristles: 100 times the stiffness until measured; damping 2 √(bristles × mass).", "hint");
+    return { made, select, mark, more, further, bristles, spread: told_spread };
+  }
+
+  // Ends of what is stated of each parameter, spread about the value set.
+  function rangesOf(now) {
+    const stated = analysis.uncertainty ?? {}, ranges = {};
+    for (const [name, own] of [["stiffness", base.stiffness], ["mass", base.mass], ["stick_speed", base.stick_speed]]) {
+      if (!stated[name]) continue;
+      ranges[name] = stated[name].map((end) => now[name] * (end / own) ** now.spread);
+    }
+    return ranges;
+  }
+
+  function tried(change) {
+    setting = { ...setting, ...change };
+    if (setting.temperature !== null && hot) setting.temperature = Math.min(Math.max(setting.temperature, map.temperature[0]), map.temperature.at(-1));
+    if (!asked) asked = requestAnimationFrame(() => { asked = 0; update(); });
+  }
+
+  const job = () => ({
+    train: known.train(setting), drag: known.drag(setting), temperature: setting.temperature, rule: map.stick_speed_rule,
+    speed: setting.speed, stick_speed: setting.stick_speed, profile: setting.profile, limit, motor, slow: SLOW.includes(setting.closure),
+  });
+  const machineKey = (s) => [s.stiffness, s.mass, s.stick_speed, s.closure, ...(s.closure === "lugre" ? [s.bristle_stiffness, s.bristle_damping] : [])].join(" ");
+  const bandKey = (s) => `${machineKey(s)} ${s.temperature}`;
+
+  function update() {
+    showControls();
+    const task = job(), number = drawn += 1;
+    kicked = spread = null;
+    if (found?.key !== bandKey(setting)) found = found && { ...found, stale: true };
+    try {
+      if (task.slow) {
+        answer = answer && { ...answer, stale: true };
+        chart.lag(true);
+      } else {
+        answer = { train: task.train, unstable: null };
+        for (const part of questions.setting(task)) Object.assign(answer, part);
+        if ((!found || found.stale) && bandCost < QUICK_BAND) {
+          const start = performance.now();
+          found = { ...questions.band(task), key: bandKey(setting) };
+          bandCost = performance.now() - start;
+        }
+        if (between(task)) answer.unstable = questions.unstable(task);
+        chart.lag(false);
+        chart.draw(answer, setting);
+      }
+      showAnswer();
+      const needs = !found || found.stale;
+      after.ask("after", { ...task, band: needs, kick: !task.slow && slides(), ranges: Object.entries(rangesOf(setting)) }, { number, key: bandKey(setting), task, setting });
+      askEdges(task);
+    } catch (error) {
+      failed(error.message);
+    }
+  }
+  const between = () => answer && answer.above?.kind === "steady_sliding" && answer.cycle.kind !== "steady_sliding";
+  const slides = () => between();
+
+  function heard({ part, failure }, about) {
+    if (!about || about.number !== drawn) return;
+    if (failure) { failed(failure); return; }
+    if (!part) return;
+    if (part.law) answer = { train: about.task.train, unstable: null };
+    if (part.band) { found = { ...part.band, key: about.key }; bandCost = 0.9 * bandCost; }
+    if ("kick" in part) kicked = { value: part.kick };
+    if (part.spread) spread = spreadOf(part.spread);
+    for (const name of ["law", "force", "cycle", "above", "motion", "duration", "lap", "steady"]) if (name in part) answer[name] = part[name];
+    if (part.unstable && answer && between()) answer.unstable = part.unstable;
+    if (answer?.motion && (part.motion || part.lap || part.steady || part.unstable)) {
+      chart.lag(false);
+      chart.draw(answer, setting);
+    }
+    if (answer?.motion) showAnswer();
+  }
+  // The ends of V* of all parameters together: the relative changes of each, squared and added.
+  function spreadOf(each) {
+    if (!found || found.stale) return null;
+    const upper = Math.max(found.upper, found.transition);
+    const ends = each.map((pair) => pair.map((v) => Math.log(v / upper)).sort((a, b) => a - b));
+    const side = (i) => Math.hypot(...ends.map((pair) => (i ? Math.max(pair[1], 0) : Math.min(pair[0], 0))));
+    return [upper * Math.exp(-side(0)), upper * Math.exp(side(1))];
+  }
+
+  function askEdges(task) {
+    const key = machineKey(setting);
+    if (key === mapped) return;
+    mapped = key;
+    if (key === machineKey(base)) { edges.forget(); picture.edges(null); return; }
+    picture.lag();
+    if (task.slow) { edges.forget(); return; }
+    edges.ask("edges", { train: task.train, drag: task.drag, temperatures: map.temperature, rule: map.stick_speed_rule }, { key });
+  }
+  function heardEdges({ part, failure }, about) {
+    if (failure || !part || about.key !== mapped) return;
+    picture.edges({ ...part, starts: Array.from(part.holding, (force) => force <= limit) });
+  }
+
+  const speedText = (v) => `${digits(1e3 * v)} mm/s`;
+  function extrapolated() {
+    const [slow, fast] = map.measured_speed, [cold, warm] = map.measured_temperature ?? [-Infinity, Infinity];
+    return setting.speed < slow || setting.speed > fast || (hot && (setting.temperature < cold || setting.temperature > warm));
+  }
+  function zoneNow() {
+    if (found && !found.stale && answer.law) return questions.zone({ speed: setting.speed, limit, motor }, answer.law, answer.force, found);
+    const starts = answer.law.holding_force <= limit, beyond = motor ? "motor" : "stall";
+    const rest = answer.cycle.kind === "steady_sliding", above = answer.above.kind === "steady_sliding";
+    const moving = answer.force > limit ? beyond : rest && above ? "smooth" : above ? "bistable" : answer.above.kind === "oscillation" ? "swing" : "stick_slip";
+    return { state: starts ? moving : beyond, moving, starts };
+  }
+
+  // Signal, word and the line below it.
+  function told() {
+    const { cycle, motion, force, law } = answer, radius = map.roll_radius, zone = zoneNow();
+    const torque = `torque ${torqueText(force * radius)}`;
+    const laps = cycle.frequency > 0 ? `${digits(cycle.frequency)} Hz, stuck ${digits(100 * cycle.stuck_fraction, 2)} %` : "";
+    if (setting.profile) return { zone, ...follows() };
+    if (!zone.starts) {
+      const holds = `a belt at rest bears ${torqueText(law.holding_force * radius)}, the ${motor ? "motor" : "grip"} ${torqueText(limit * radius)}`;
+      return { zone, signal: "act", words: `does not start from rest${["bistable", "smooth"].includes(zone.moving) ? "; slides on once it slides" : ""}`, sub: [torque, holds] };
+    }
+    switch (zone.state) {
+      case "stall": return { zone, signal: "act", words: "stalls: the roll slips on the belt", sub: [torque, `the roll grips ${torqueText(limit * radius)}`] };
+      case "motor": return { zone, signal: "act", words: "stalls: more than the motor bears", sub: [torque, `the motor bears ${torqueText(limit * radius)}`] };
+      case "smooth": return { zone, signal: "good", words: "smooth from any start", sub: [torque, settles(motion)] };
+      case "bistable": {
+        const kick = kicked ? (kicked.value === null ? "bears any kick" : `bears a kick of ${digits(1e3 * kicked.value, 2)} mm/s`) : "";
+        return { zone, signal: "watch", words: "sticks from rest, slides from above", sub: [torque, laps, kick] };
+      }
+      case "swing": return { zone, signal: "watch", words: "swings from above; sticks once it has stuck", sub: [torque, laps] };
+      default: return { zone, signal: "act", words: "sticks and slips from any start", sub: [laps && `${laps} of the time`, cycle.speed_max > 0 ? `belt peaks at ${speedText(cycle.speed_max)}` : torque] };
+    }
+  }
+  const torqueText = (value) => (Math.abs(value) < 0.1 ? `${digits(1e3 * value)} mN·m` : `${digits(value)} N·m`);
+  // When the belt stays within 2 % of the drive, counted from its first slip.
+  function settles({ time, belt_speed: v }) {
+    let off = v.length - 1, slip = 0;
+    while (off >= 0 && Math.abs(v[off] / setting.speed - 1) <= 0.02) off -= 1;
+    while (slip < v.length && v[slip] < setting.speed) slip += 1;
+    return off === v.length - 1 || slip >= v.length ? "" : `settles ${digits(Math.max(time[off + 1] - time[slip], 0), 2)} s after the first slip`;
+  }
+  function follows() {
+    const { motion, law } = answer, { time, belt_speed: v } = motion, last = setting.profile.at(-1)[0];
+    let stuck = v.length - 1, first = 0;
+    while (stuck >= 0 && v[stuck] > law.stick_speed * (1 + 1e-6)) stuck -= 1;
+    while (first < v.length && !(v[first] > law.stick_speed * (1 + 1e-6))) first += 1;
+    const peak = v.reduce((a, b) => Math.max(a, b), 0), pull = motion.spring_force.reduce((a, b) => Math.max(a, b), 0);
+    const sub = [`belt peaks at ${speedText(peak)}`, `spring pulls ${digits(pull)} N`];
+    if (first >= v.length) return { signal: "act", words: "does not move under this profile", sub };
+    if (time[v.length - 1] - time[Math.max(stuck, 0)] > 3 * 2 * Math.PI * Math.sqrt(answer.train.mass / answer.train.stiffness) && time.at(-1) > last) {
+      return { signal: "good", words: `slides from ${digits(time[Math.min(stuck + 1, v.length - 1)], 3)} s on under this profile`, sub };
+    }
+    return { signal: "act", words: "still sticks and slips at the end of this profile", sub };
+  }
+
+  function showAnswer() {
+    const { zone, signal: kind, words, sub } = told();
+    controls.spread.textContent = spread ? `With this spread V* is ${digits(1e3 * found.upper)} [${digits(1e3 * spread[0])}, ${digits(1e3 * spread[1])}] mm/s.` : "\u00a0";
+    const far = extrapolated() ? " (extrapolated)" : "";
+    verdict.replaceChildren();
+    const word = add(verdict, "span", "", `signal ${kind}`);
+    word.append(signal(kind), { good: "Good:", watch: "Watch:", act: "Act:" }[kind]);
+    verdict.append(` ${words}${far}`);
+    const below = add(verdict, "span", "", "sub");
+    sub.filter(Boolean).forEach((text, i) => add(below, "span", `${i ? " · " : ""}${text}`));
+    setting.zone = ZONES[zone.state];
+    picture.show(setting);
+    chart.say(`Belt speed: ${words} at ${speedText(setting.speed)}`, `Phase plane at ${speedText(setting.speed)}: ${words}`);
+    clearTimeout(spoken);
+    spoken = setTimeout(() => { said.textContent = verdict.textContent; }, 700);
+    trackColours();
+    course.show(setting.profile);
+    printed.textContent = inWords();
+    if (open) output();
+  }
+  function trackColours() {
+    const { speed } = controls.made;
+    if (!found || found.stale) { speed.slider.classList.toggle("lags", Boolean(found)); return; }
+    speed.slider.classList.remove("lags");
+    const [low, high] = [1e3 * map.speed[0], 1e3 * map.speed.at(-1)], lower = 1e3 * Math.min(found.lower ?? found.transition, found.transition);
+    const upper = 1e3 * Math.max(found.upper, found.transition);
+    speed.track([[low, lower, "sticks"], [lower, upper, "depends"], [upper, high, "smooth"]]);
+  }
+  function failed(reason) {
+    verdict.replaceChildren();
+    const word = add(verdict, "span", "", "signal act");
+    word.append(signal("act"), "Not computed:");
+    verdict.append(` ${reason}`);
+    said.textContent = verdict.textContent;
+    chart.lag(true);
+  }
+
+  const differs = (name) => JSON.stringify(setting[name]) !== JSON.stringify(base[name]);
+  function showControls() {
+    const { made, select, mark, more, bristles } = controls;
+    for (const [name, each] of Object.entries(made)) each.show((setting[name] - (each.shift ?? 0)) / each.scale, differs(name));
+    select.value = setting.closure;
+    mark.textContent = differs("closure") ? "◆ " : "";
+    const lugre = setting.closure === "lugre";
+    for (const each of [made.bristle_stiffness.row, made.bristle_damping.row, bristles]) each.hidden = !lugre;
+    const hidden = ["mass", "spread", ...(lugre ? ["bristle_stiffness", "bristle_damping"] : [])].some(differs);
+    more.textContent = `${hidden ? "◆ " : ""}Mass, spread…`;
+    courses.textContent = `${setting.profile ? "◆ " : ""}Profile`;
+    courses.setAttribute("aria-pressed", String(Boolean(setting.profile)));
+    const name = map.points[point]?.name, changed = ["speed", "temperature", "stiffness", "mass", "stick_speed", "closure", "spread", "profile"].some(differs) || hidden;
+    hint.textContent = changed ? "◆ differs from the report" : name ? `as in the report: ${name}` : "as in the report";
+    back.disabled = !changed;
+  }
+  function inWords() {
+    const parts = [`Drive speed ${speedText(setting.speed)}`, ...(hot ? [`temperature ${digits(setting.temperature - 273.15)} °C`] : []),
+      `stiffness ${digits(setting.stiffness / 1e3)} N/mm`, `mass ${digits(setting.mass)} kg`, `stick speed ${speedText(setting.stick_speed)}`, `closure ${setting.closure}`];
+    return `${parts.join(", ")}.`;
+  }
+
+  function link() {
+    history.replaceState(null, "", known.link(setting));
+    return location.href;
+  }
+  function output() {
+    for (const each of buttons) each.setAttribute("aria-expanded", String(each.textContent === open));
+    out.hidden = !open;
+    if (!open || !answer?.law) return;
+    if (!out.firstChild) {
+      const field = add(out, "textarea");
+      field.readOnly = true;
+      field.rows = 5;
+      const line = add(out, "div", "", "foot");
+      button(line, "Copy", (from) => copy(field.value, from));
+      out.save = button(line, "Save", () => save(open === "TOML" ? "setting.toml" : `${open.toLowerCase()}.txt`, field.value, "text/plain"));
+    }
+    const field = out.querySelector("textarea");
+    field.setAttribute("aria-label", { Link: "Address of this setting", Command: "Command that reproduces this setting", TOML: "Machine’s file of this setting" }[open]);
+    field.value = outs[open]();
+  }
+
+  function reset() {
+    setting = { ...base };
+    if (location.hash.startsWith("#setting?")) history.replaceState(null, "", location.pathname + location.search);
+    tried({});
+  }
+  addEventListener("hashchange", () => {
+    const there = known.read(location.hash, base);
+    if (there) { setting = there; tried({}); }
+  });
+  update();
+  return {
+    show(index) {
+      const name = analysis.decision?.points?.[index]?.name;
+      point = Math.max(name ? map.points.findIndex((each) => each.name === name) : index, 0);
+      base = known.own(point);
+      reset();
+    },
+    profile(rows) {
+      const course_rows = known.rows(rows.map((row) => [row.time, row.drive_speed]));
+      if (course_rows) tried({ profile: course_rows, speed: course_rows.at(-1)[1] });
+    },
+    reset,
+  };
+}

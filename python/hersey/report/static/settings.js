@@ -1,0 +1,99 @@
+// A setting: what is tried, in SI. How it follows from the report, stands in an address, and is typed as a command
+// or written as TOML.
+
+function settings(analysis) {
+  const { map } = analysis;
+  const CLOSURES = ["retained", "stiction", "stribeck", "lugre"];
+  const NUMBERS = ["speed", "temperature", "stiffness", "mass", "stick_speed", "bristle_stiffness", "bristle_damping", "spread"];
+  const anchor = map.points[0] ?? null;
+  // The stick speed is that at one temperature, where the report states it; elsewhere it follows the map's rule.
+  const stick = anchor ? { speed: anchor.at.stick_speed, temperature: anchor.temperature }
+    : { speed: map.drag.stick_speed, temperature: map.drag.reference_temperature };
+  const middle = (ends) => Math.sqrt(ends[0] * ends[1]);
+
+  function own(point) {
+    const at = map.points[point] ?? {
+      speed: middle(map.measured_speed),
+      temperature: map.temperature && (map.measured_temperature[0] + map.measured_temperature[1]) / 2,
+    };
+    return {
+      speed: at.speed, temperature: map.temperature ? at.temperature : null, stiffness: map.train.stiffness, mass: map.train.mass,
+      stick_speed: stick.speed, closure: map.drag.closure, bristle_stiffness: map.drag.bristle_stiffness ?? 100 * map.train.stiffness,
+      bristle_damping: map.drag.bristle_damping ?? 2 * Math.sqrt(100 * map.train.stiffness * map.train.mass), spread: 1, profile: null,
+    };
+  }
+  const drag = (setting) => ({
+    ...map.drag, stick_speed: map.drag.stick_speed * (setting.stick_speed / stick.speed), closure: setting.closure,
+    ...(setting.closure === "lugre" ? { bristle_stiffness: setting.bristle_stiffness, bristle_damping: setting.bristle_damping } : {}),
+  });
+  const train = (setting) => ({ ...map.train, stiffness: setting.stiffness, mass: setting.mass });
+
+  function link(setting) {
+    const words = NUMBERS.filter((name) => setting[name] !== null).map((name) => `${name}=${setting[name]}`);
+    if (setting.profile) words.push(`profile=${setting.profile.map((row) => row.join(":")).join(",")}`);
+    return `#setting?${[...words, `closure=${setting.closure}`].join("&")}`;
+  }
+  // The setting of an address, or null if it holds none; what it does not say is as in the report.
+  function read(address, base) {
+    if (!address.startsWith("#setting?")) return null;
+    const words = new URLSearchParams(address.slice("#setting?".length)), setting = { ...base, profile: null };
+    for (const name of NUMBERS) {
+      const value = Number(words.get(name));
+      if (words.has(name) && Number.isFinite(value) && value > 0 && setting[name] !== null) setting[name] = value;
+    }
+    if (CLOSURES.includes(words.get("closure"))) setting.closure = words.get("closure");
+    if (words.has("profile")) setting.profile = rows(words.get("profile").split(",").map((row) => row.split(":").map(Number)));
+    if (setting.profile) setting.speed = setting.profile.at(-1)[1];
+    setting.speed = Math.min(Math.max(setting.speed, map.speed[0]), map.speed.at(-1));
+    if (map.temperature) setting.temperature = Math.min(Math.max(setting.temperature, map.temperature[0]), map.temperature.at(-1));
+    return setting;
+  }
+  // Rows of a profile that a motion can follow: ascending times, the last speed above 0; else null.
+  function rows(given) {
+    const sound = given.length > 0 && given.length <= 200 && given.every(([t, v], i) => Number.isFinite(t) && Number.isFinite(v)
+      && t >= 0 && v >= 0 && (i === 0 || t >= given[i - 1][0]));
+    return sound && given.at(-1)[1] > 0 ? given : null;
+  }
+
+  const beside = (law) => map.train.grip !== null || law.rest_force !== 0 || law.rest_damping !== 0;
+  function command(setting, law, duration) {
+    if (setting.profile) return script(setting, law, duration);
+    const amounts = [["drive-speed", setting.speed, "m/s"], ["stiffness", setting.stiffness, "N/m"], ["mass", setting.mass, "kg"],
+      ["transition-force", law.transition_force, "N"], ["transition-speed", law.transition_speed, "m/s"], ["stick-speed", law.stick_speed, "m/s"],
+      ...(setting.closure === "lugre" ? [["bristle-stiffness", setting.bristle_stiffness, "N/m"], ["bristle-damping", setting.bristle_damping, "N*s/m"]] : [])];
+    const words = amounts.map(([name, value, unit]) => `--${name} "${value} ${unit}"`);
+    const plain = [`--ehl-exponent=${map.drag.ehl_exponent}`, `--mixed-exponent=${map.drag.mixed_exponent}`, `--closure ${setting.closure}`];
+    const machine = beside(law) ? ["--machine setting.toml"] : [];
+    return ["hersey simulate", ...machine, ...words, ...plain].join(" ");
+  }
+  // A profile has no command of its own: the same in Python.
+  function script(setting, law, duration) {
+    const bristles = setting.closure === "lugre" ? `, bristle_stiffness=${setting.bristle_stiffness}, bristle_damping=${setting.bristle_damping}` : "";
+    const grip = map.train.grip === null ? "" : `, grip=${map.train.grip}`;
+    return `python -c "import hersey; drag = hersey.Drag(${law.transition_force}, ${law.transition_speed}, ehl_exponent=${map.drag.ehl_exponent}, `
+      + `mixed_exponent=${map.drag.mixed_exponent}, stick_speed=${law.stick_speed}, closure='${setting.closure}', rest_force=${law.rest_force}, `
+      + `rest_damping=${law.rest_damping}${bristles}); train = hersey.Drivetrain(${setting.stiffness}, ${setting.mass}${grip}); `
+      + `drive = hersey.Schedule([${setting.profile.map((row) => row[0]).join(", ")}], [${setting.profile.map((row) => row[1]).join(", ")}]); `
+      + `print(hersey.simulate(train, drag, drive_speed=drive, duration=${duration}).summary())"`;
+  }
+  function toml(setting, law) {
+    const radius = map.roll_radius, at = setting.temperature === null ? "" : ` at ${digits(setting.temperature - 273.15)} °C`;
+    const lines = ["# The setting tried, for the machine's file (hersey map, plan and report) and for hersey simulate --machine.", "[drivetrain]",
+      `stiffness = "${setting.stiffness} N/m"`, `mass = "${setting.mass} kg"`, `roll_radius = "${radius} m"`, `stick_speed = "${law.stick_speed} m/s"`];
+    if (setting.temperature !== null) lines.push(`stick_speed_temperature = "${setting.temperature} K"`);
+    if (map.stick_speed_rule === "fixed") lines.push('stick_speed_rule = "fixed"');
+    const limits = [...(map.limited_by === "motor torque" ? [`motor_torque = "${map.torque_limit} N*m"`] : []),
+      ...(map.train.grip === null ? [] : ["roll_friction = 1.0  # with the load below the grip of the roll", `nip_load = "${map.train.grip} N"`]),
+      ...(map.speed_limit === null ? [] : [`speed = "${map.speed_limit} m/s"`])];
+    if (limits.length) lines.push("", "[limits]", ...limits);
+    if (law.rest_force !== 0 || law.rest_damping !== 0) {
+      lines.push("", `[rest]  # of the drive${at}`, `torque = "${law.rest_force * radius} N*m"`, `damping = "${law.rest_damping * radius ** 2} N*m*s/rad"`);
+    }
+    if (setting.temperature !== null) {
+      lines.push("", "[[points]]", 'name = "tried"', `speed = "${setting.speed} m/s"`, `temperature = "${setting.temperature} K"`);
+    }
+    if (setting.profile) lines.push("", "# The profile tried, times and speeds of the drive:", ...setting.profile.map(([t, v]) => `# ${t} s  ${v} m/s`));
+    return `${lines.join("\n")}\n`;
+  }
+  return { own, drag, train, link, read, rows, command, toml, stick, closures: CLOSURES };
+}
