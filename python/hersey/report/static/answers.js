@@ -16,14 +16,20 @@ function answers(core) {
     return LENGTHS.find((length) => length >= wanted) ?? LENGTHS.at(-1);
   }
 
+  const swings = ({ belt_speed: v }, speed) => v.subarray(Math.floor(0.85 * v.length)).some((each) => Math.abs(each / speed - 1) > 0.05);
+
   // The motion of a setting, the quick first: each step adds to the answer.
   function* setting(job) {
     const { train, speed, profile } = job, law = lawOf(job), force = forceAt(law, speed);
     const cycle = core.cycle({ train, law, drive_speed: speed, start: "rest" });
     const above = core.cycle({ train, law, drive_speed: speed, start: "steady" });
     yield { law, force, cycle, above };
-    const schedule = profile ?? [[0, speed]], duration = lengthOf(job, law, cycle);
-    const motion = drawn(core.motion({ train, law, schedule, start: "rest", duration, samples: SAMPLES }));
+    let duration = lengthOf(job, law, cycle);
+    const schedule = profile ?? [[0, speed]];
+    const run = (length) => drawn(core.motion({ train, law, schedule, start: "rest", duration: length, samples: SAMPLES }));
+    let motion = run(duration);
+    // One that slides in the end is followed until it does.
+    if (!profile && !job.slow && cycle.kind === "steady_sliding" && swings(motion, speed)) motion = run(duration = LENGTHS.find((each) => each >= 4 * duration) ?? duration);
     yield { motion, duration };
     if (cycle.frequency > 0 && !profile) {
       const last = SAMPLES - 1, start = [motion.belt_speed[last], motion.spring_force[last] / train.stiffness];

@@ -4,11 +4,11 @@
 function operatingMap(place, map, move = null) {
   const hot = map.temperature !== null;
   const columns = hot ? map.temperature : [0, 1];
-  const wide = (values) => (hot ? values : [values[0], values[0]]).map((v) => v ?? Infinity);
+  const wide = (values) => Array.from(hot ? values : [values[0], values[0]], (v) => v ?? Infinity);
   const [slowest, fastest] = [map.speed[0], map.speed.at(-1)];
   const given = {
     lower: wide(map.lower), transition: wide(map.transition), upper: wide(map.upper),
-    starts: wide(map.holding).map((force) => force <= (map.torque_limit ?? Infinity)),
+    starts: wide(map.holding).map((torque) => torque <= (map.torque_limit ?? Infinity)),
   };
   const [below, above] = [wide(map.stall_below), wide(map.stall_above)];
   const intervals = [...map.transition_interval, ...map.upper_interval].map(wide);
@@ -46,7 +46,8 @@ function operatingMap(place, map, move = null) {
   function draw() {
     const room = printing ? 688 : place.clientWidth;
     if (!room) return;
-    const height = room > 600 ? 424 : 372, left = 34, right = 34, top = 24;
+    const asked = Number.parseFloat(getComputedStyle(place).getPropertyValue("--map-height")) - 86;
+    const height = room > 600 ? Math.min(Math.max(asked || 424, 340), 480) : 372, left = 34, right = 34, top = 24;
     frame = { left, top, width: room - left - right, bottom: height - 36, height: height - 36 - top, right: room - right };
     drawing.setAttribute("viewBox", `0 0 ${room} ${height}`);
     drawing.setAttribute("width", room);
@@ -103,13 +104,31 @@ function operatingMap(place, map, move = null) {
     const zones = {};
     for (const [name, bands] of Object.entries(parts())) {
       zones[name] = bands.map((band) => band.map(([low, high], i) => [across(columns[i]), up(low), up(high)]));
-      for (const band of zones[name]) {
-        if (Math.max(...band.map(([, low, high]) => low - high)) < 0.5) continue;
-        const outline = [...band.map(([x, low]) => [x, low]), ...band.map(([x, , high]) => [x, high]).reverse()];
+      for (const run of zones[name].flatMap(runs)) {
+        if (Math.max(...run.map(([, low, high]) => low - high)) < 0.5) continue;
+        const outline = [...run.map(([x, low]) => [x, low]), ...run.map(([x, , high]) => [x, high]).reverse()];
         svg("path", { d: `${shape.path(outline)}Z`, class: `zone ${name}${lagging ? " lags" : ""}` }, inside);
       }
     }
     return zones;
+  }
+  // Stretches of columns that have edges: at some temperatures a law has none.
+  function runs(band) {
+    const out = [[]];
+    for (const each of band) {
+      if (each.every(Number.isFinite)) out.at(-1).push(each);
+      else if (out.at(-1).length) out.push([]);
+    }
+    return out.filter((run) => run.length > 1);
+  }
+  // Values at a few temperatures as a line through all columns.
+  function through(temperatures, values) {
+    if (!hot || temperatures.length === columns.length) return wide(values);
+    return columns.map((x) => {
+      const i = Math.min(Math.max(temperatures.findIndex((t) => t >= x), 1), temperatures.length - 1);
+      const share = (x - temperatures[i - 1]) / (temperatures[i] - temperatures[i - 1]);
+      return share <= 0 ? values[i - 1] : share >= 1 ? values[i] : values[i - 1] ** (1 - share) * values[i] ** share;
+    });
   }
 
   function measured() {
@@ -253,7 +272,7 @@ function operatingMap(place, map, move = null) {
     for (const [name, bands] of Object.entries(zones)) {
       const word = name === "stall" ? beyond : name, size = 14, width = shape.width(word, size, 700) + 6;
       let best = null, thick = 0;
-      for (const band of bands) {
+      for (const band of bands.flatMap(runs)) {
         thick = Math.max(thick, ...band.map(([, low, high]) => low - high));
         for (let x = frame.left + width / 2 + 4; x < frame.right - width / 2 - 4; x += 8) {
           for (const spot of [upright(band, x, width), along(band, x, width)]) {
@@ -307,7 +326,8 @@ function operatingMap(place, map, move = null) {
     const at = setting && hot ? ` at ${celsius(setting.temperature).toFixed(0)} °C` : "";
     const valued = (values) => {
       if (!setting && hot) return "";
-      return `, ${digits(millimetres(valueAt(values, setting?.temperature ?? 0)), 2)}${at}`;
+      const value = millimetres(valueAt(values, setting?.temperature ?? 0));
+      return `, ${digits(value, value >= 100 ? 3 : 2)}${at}`;
     };
     entry("transition", `transition${valued(edges.transition)}`);
     if (edges.upper.some((v, i) => v > 1.01 * edges.transition[i])) entry("fold", `V*${valued(edges.upper)}`);
@@ -415,7 +435,11 @@ function operatingMap(place, map, move = null) {
     },
     // Edges of another machine, at the temperatures of the map; null for those of the report.
     edges(other) {
-      edges = other ? { lower: wide(other.lower), transition: wide(other.transition), upper: wide(other.upper), starts: wide(other.starts) } : given;
+      const line_of = (values) => through(other.temperatures, values);
+      edges = other ? {
+        lower: line_of(other.lower ?? other.transition), transition: line_of(other.transition), upper: line_of(other.upper),
+        starts: line_of(Array.from(other.holding)).map((force) => force <= (map.torque_limit ?? Infinity) / map.roll_radius),
+      } : given;
       changed = Boolean(other);
       lagging = false;
       draw();
@@ -423,7 +447,7 @@ function operatingMap(place, map, move = null) {
     lag() {
       if (lagging) return;
       lagging = true;
-      for (const each of picture.querySelectorAll(".zone, .transition, .fold")) each.classList.add("lags");
+      for (const each of picture.querySelectorAll(".zone, .transition, .fold, .word")) each.classList.add("lags");
     },
   };
 }

@@ -193,7 +193,7 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
   }
   function heardEdges({ part, failure }, about) {
     if (failure || !part || about.key !== mapped) return;
-    picture.edges({ ...part, starts: Array.from(part.holding, (force) => force <= limit) });
+    picture.edges(part);
   }
 
   const speedText = (v) => `${digits(1e3 * v)} mm/s`;
@@ -237,7 +237,8 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
     let off = v.length - 1, slip = 0;
     while (off >= 0 && Math.abs(v[off] / setting.speed - 1) <= 0.02) off -= 1;
     while (slip < v.length && v[slip] < setting.speed) slip += 1;
-    return off === v.length - 1 || slip >= v.length ? "" : `settles ${digits(Math.max(time[off + 1] - time[slip], 0), 2)} s after the first slip`;
+    if (slip >= v.length) return "";
+    return off > 0.97 * v.length ? `not settled after ${digits(time.at(-1))} s` : `settles ${digits(Math.max(time[off + 1] - time[slip], 0), 2)} s after the first slip`;
   }
   function follows() {
     const { motion, law } = answer, { time, belt_speed: v } = motion, last = setting.profile.at(-1)[0];

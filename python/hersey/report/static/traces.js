@@ -34,6 +34,7 @@ function traces(place) {
     while (i < v.length && v[i] > speed) i += 1;
     return i < v.length ? i : 0;
   }
+  const ends = (values, about) => values.reduce(([low, high], v) => [Math.min(low, v), Math.max(high, v)], [0.8 * about, 1.2 * about]);
   const nice = (least) => { const power = 10 ** Math.floor(Math.log10(least)); return power * [1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10].find((m) => m * power >= least * (1 - 1e-9)); };
 
   function scale(answer, setting) {
@@ -41,7 +42,7 @@ function traces(place) {
     const swings = cycle.frequency > 0 && cycle.speed_max > 0, fastest = setting.profile ? Math.max(...setting.profile.map((row) => row[1])) : setting.speed;
     const lively = setting.profile ? Math.min(peakOf(motion.belt_speed, afterFirst(motion, fastest)), 2.4 * fastest) : 0;
     const most = Math.max(swings && !setting.profile ? 1.1 * cycle.speed_max : 1.9 * fastest, 1.25 * fastest, 1.05 * lively, unstable ? 1.1 * peakOf(unstable.speed) : 0);
-    let forces = swings && !setting.profile ? [k * cycle.stretch_min, k * cycle.stretch_max] : [0.6 * answer.force, 1.4 * answer.force];
+    let forces = swings && !setting.profile ? [k * cycle.stretch_min, k * cycle.stretch_max] : ends(motion.spring_force.subarray(afterFirst(motion, setting.speed)), answer.force);
     if (unstable) forces = [Math.min(forces[0], ...unstable.force), Math.max(forces[1], ...unstable.force)];
     if (setting.profile) forces = [Math.min(0, ...motion.spring_force), Math.max(...motion.spring_force)];
     const room = 0.08 * (forces[1] - forces[0]);
@@ -85,7 +86,8 @@ function traces(place) {
     const drive = setting.profile ? [...setting.profile, [scales.duration, setting.profile.at(-1)[1]]] : [[0, setting.speed], [scales.duration, setting.speed]];
     put(time, "drive", shape.path([...(drive[0][0] > 0 ? [[0, drive[0][1]]] : []), ...drive].map(([s, v]) => [t(s), y(v)])));
     const lapped = lap ?? motion, from = lap || setting.profile ? 0 : afterFirst(motion, setting.speed);
-    put(plane, "from-rest", track(lapped.spring_force.subarray(from), lapped.belt_speed.subarray(from), f, y));
+    const few = 7 * 2 * Math.PI * Math.sqrt(answer.train.mass / answer.train.stiffness), until = lap || setting.profile ? undefined : lapped.time.findIndex((s) => s > lapped.time[from] + few);
+    put(plane, "from-rest", track(lapped.spring_force.subarray(from, until > 0 ? until : undefined), lapped.belt_speed.subarray(from, until > 0 ? until : undefined), f, y));
     put(plane, "unstable", unstable ? `${track(unstable.force, unstable.speed, f, y)}Z` : "");
     const sits = answer.above.kind === "steady_sliding";
     plane.dot.setAttribute("visibility", "visible");
