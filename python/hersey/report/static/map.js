@@ -398,7 +398,8 @@ function operatingMap(place, map, move = null) {
   }
   function moved(speed, kelvin) {
     const within_map = Math.min(Math.max(kelvin, columns[0]), columns.at(-1));
-    move(kept(speed), hot ? within_map : null);
+    setting = { ...setting, speed: kept(speed), temperature: hot ? within_map : null };
+    move(setting.speed, setting.temperature);
   }
   const column = () => (hot ? Math.min(Math.max(setting.temperature, columns[0]), columns.at(-1)) : 0.5);
 

@@ -142,27 +142,29 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
           found = { ...questions.band(task), key: bandKey(setting) };
           bandCost = performance.now() - start;
         }
-        if (between(task)) answer.unstable = questions.unstable(task);
+        if (between()) answer.unstable = questions.unstable(task);
         chart.lag(false);
         chart.draw(answer, setting);
       }
       showAnswer();
       const needs = !found || found.stale;
-      after.ask("after", { ...task, band: needs, kick: !task.slow && slides(), ranges: Object.entries(rangesOf(setting)) }, { number, key: bandKey(setting), task, setting });
+      after.ask("after", { ...task, band: needs, kick: !task.slow && between(), ranges: Object.entries(rangesOf(setting)) }, { number, key: bandKey(setting), task, setting });
       askEdges(task);
     } catch (error) {
       failed(error.message);
     }
   }
-  const between = () => answer && answer.above?.kind === "steady_sliding" && answer.cycle.kind !== "steady_sliding";
-  const slides = () => between();
+  // Whether a motion slides in the end: what swings by less than a thousandth of its speed does, too.
+  const slides = (motion) => motion?.kind === "steady_sliding" || (motion?.kind === "oscillation" && motion.speed_max - motion.speed_min < 1e-3 * setting.speed);
+  const between = () => answer && slides(answer.above) && !slides(answer.cycle);
 
   function heard({ part, failure }, about) {
     if (!about || about.number !== drawn) return;
     if (failure) { failed(failure); return; }
     if (!part) return;
     if (part.law) answer = { train: about.task.train, unstable: null };
-    if (part.band) { found = { ...part.band, key: about.key }; bandCost = 0.9 * bandCost; }
+    if ("band" in part) found = part.band && { ...part.band, key: about.key };
+    if (part.band) bandCost *= 0.9;
     if ("kick" in part) kicked = { value: part.kick };
     if (part.spread) spread = spreadOf(part.spread);
     for (const name of ["law", "force", "cycle", "above", "motion", "duration", "lap", "steady"]) if (name in part) answer[name] = part[name];
@@ -204,7 +206,7 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
   function zoneNow() {
     if (found && !found.stale && answer.law) return questions.zone({ speed: setting.speed, limit, motor }, answer.law, answer.force, found);
     const starts = answer.law.holding_force <= limit, beyond = motor ? "motor" : "stall";
-    const rest = answer.cycle.kind === "steady_sliding", above = answer.above.kind === "steady_sliding";
+    const rest = slides(answer.cycle), above = slides(answer.above);
     const moving = answer.force > limit ? beyond : rest && above ? "smooth" : above ? "bistable" : answer.above.kind === "oscillation" ? "swing" : "stick_slip";
     return { state: starts ? moving : beyond, moving, starts };
   }
@@ -276,8 +278,10 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
   }
   function trackColours() {
     const { speed } = controls.made;
-    if (!found || found.stale) { speed.slider.classList.toggle("lags", Boolean(found)); return; }
+    if (found?.stale) { speed.slider.classList.add("lags"); return; }
+    if (!found) speed.track([]);
     speed.slider.classList.remove("lags");
+    if (!found) return;
     const [low, high] = [1e3 * map.speed[0], 1e3 * map.speed.at(-1)], lower = 1e3 * Math.min(found.lower ?? found.transition, found.transition);
     const upper = 1e3 * Math.max(found.upper, found.transition);
     speed.track([[low, lower, "sticks"], [lower, upper, "depends"], [upper, high, "smooth"]]);

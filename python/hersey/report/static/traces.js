@@ -88,8 +88,8 @@ function traces(place) {
     const lapped = lap ?? motion, from = lap || setting.profile ? 0 : afterFirst(motion, setting.speed);
     const few = 7 * 2 * Math.PI * Math.sqrt(answer.train.mass / answer.train.stiffness), until = lap || setting.profile ? undefined : lapped.time.findIndex((s) => s > lapped.time[from] + few);
     put(plane, "from-rest", track(lapped.spring_force.subarray(from, until > 0 ? until : undefined), lapped.belt_speed.subarray(from, until > 0 ? until : undefined), f, y));
-    put(plane, "unstable", unstable ? `${track(unstable.force, unstable.speed, f, y)}Z` : "");
-    const sits = answer.above.kind === "steady_sliding";
+    put(plane, "unstable", unstable ? track(unstable.force, unstable.speed, f, y) : "");
+    const { above } = answer, sits = above.speed_max - above.speed_min < 1e-3 * setting.speed;
     plane.dot.setAttribute("visibility", "visible");
     plane.dot.setAttribute("class", sits ? "steady" : "unsteady");
     plane.dot.setAttribute("cx", f(force));

@@ -1,0 +1,361 @@
+"""The panel that answers, in a real headless Chromium: what it says is what the core says outside of a browser."""
+
+from __future__ import annotations
+
+import re
+import shlex
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from playwright.sync_api import Browser, Page
+
+from hersey.document.parts import Analysis
+from hersey.document.parts.motion import TrainPart
+from hersey.document.parts.stability import MapPart
+from hersey.motion.drag import Drag
+from hersey.motion.simulation import Drivetrain, StickSlipCycle, stick_slip
+from hersey.report.page import render
+from hersey.stability.disturbance import disturbance
+from hersey.stability.operating_map import OperatingMap
+from hersey.stability.operating_map.edges import edges_at
+from tests.browser.opening import Opened
+
+#: What the verdict says of each state of the map.
+WORDS = {
+    "stick_slip": "Act: sticks and slips from any start",
+    "swing": "Watch: swings from above",
+    "bistable": "Watch: sticks from rest, slides from above",
+    "smooth": "Good: smooth from any start",
+}
+
+
+@pytest.fixture(scope="module")
+def part(document: Analysis) -> MapPart:
+    """The map of a drive that starts its belt: a roll that grips, no limit of torque."""
+    given = document.map
+    assert given is not None
+    assert given.temperature is not None
+    train = Drivetrain(given.train.stiffness, given.train.mass)
+    edges = edges_at(train, Drag(**given.drag.model_dump()), np.asarray(given.temperature), given.stick_speed_rule)
+    many = len(given.temperature)
+    told = {name: values.tolist() for name, values in edges.items()}
+    intervals = {f"{name}_interval": [(f * edges[name]).tolist() for f in (0.8, 1.3)] for name in ("transition", "upper")}
+    limits = {"torque_limit": None, "stall_below": [0.0] * many, "stall_above": [None] * many}
+    return given.model_copy(update={"train": TrainPart(stiffness=train.stiffness, mass=train.mass), **told, **intervals, **limits})
+
+
+@pytest.fixture(scope="module")
+def report(document: Analysis, part: MapPart, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("panel") / "report.html"
+    path.write_text(render(document.model_copy(update={"map": part})), encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="module")
+def opened(browser: Browser, report: Path) -> Opened:
+    found = Opened(browser, report)
+    found.page.set_viewport_size({"width": 1280, "height": 800})
+    return found
+
+
+@pytest.fixture
+def page(opened: Opened) -> Iterator[Page]:
+    """The page at the report's own setting; nothing may have gone wrong on it in the end."""
+    if opened.page.locator(".back").is_enabled():
+        opened.page.click(".back")
+    rested(opened.page)
+    yield opened.page
+    quiet(opened)
+
+
+@pytest.fixture(scope="module")
+def native(part: MapPart) -> OperatingMap:
+    """The map of the document, as Python has it."""
+    fields = part.model_dump(exclude={"train", "drag", "temperature", "points"})
+    arrays = {k: np.asarray(v, float) if isinstance(v, list) and k not in ("uncertain", "warnings") else v for k, v in fields.items()}
+    return OperatingMap(
+        **arrays,
+        temperature=np.asarray(part.temperature),
+        points=(),
+        train=Drivetrain(**part.train.model_dump()),
+        drag=Drag(**part.drag.model_dump()),
+    )
+
+
+def quiet(opened: Opened) -> None:
+    """No fault, and nothing left the page: its workers are made of its own text."""
+    assert {each for each in opened.requests if not each.startswith("blob:")} == {opened.address}
+    assert opened.violations == []
+    assert opened.errors == [], opened.errors[:3]
+
+
+def rested(page: Page) -> None:
+    """Wait until nothing of the picture lags."""
+    page.wait_for_function(
+        "() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() =>"
+        " done(!document.querySelector('#map .lags:not(.interval):not(.fold-interval), #panel .lags')))))"
+    )
+
+
+def enter(page: Page, name: str, value: str) -> None:
+    page.fill(f"#try-{name}", value)
+    page.press(f"#try-{name}", "Enter")
+    rested(page)
+
+
+def verdict(page: Page) -> str:
+    return (page.text_content(".verdict-line") or "").strip()
+
+
+def written(page: Page, name: str) -> str:
+    """What the button Link, Command or TOML writes."""
+    button = page.locator(".panel .foot button", has_text=re.compile(f"^{name}$"))
+    if button.get_attribute("aria-expanded") == "false":
+        button.click()
+    return page.input_value(".panel textarea")
+
+
+def cycle_of(native: OperatingMap, speed: float, kelvin: float, **changed: float) -> StickSlipCycle:
+    train = Drivetrain(changed.get("stiffness", native.train.stiffness), native.train.mass, grip=native.train.grip)
+    return stick_slip(train, native.drag, drive_speed=speed, temperature=kelvin)
+
+
+def test_the_map_is_drawn_with_its_words(page: Page, part: MapPart) -> None:
+    words = page.locator("#map .word").all_text_contents()
+    assert {"smooth", "sticks"} <= set(words)
+    assert page.locator("#map .point").count() == len(part.points)
+    assert page.locator("#map .name").all_text_contents() == [point.name for point in part.points]
+    boxes = [each.bounding_box() for each in page.locator("#map .name, #map .word, #map .torque-name").all()]
+    for i, a in enumerate(boxes):
+        for b in boxes[:i]:
+            assert a is not None
+            assert b is not None
+            apart = a["x"] >= b["x"] + b["width"] or b["x"] >= a["x"] + a["width"]
+            assert apart or a["y"] >= b["y"] + b["height"] - 4 or b["y"] >= a["y"] + a["height"] - 4
+
+
+@pytest.mark.parametrize("share", [0.6, 0.98, 1.1, 2.5])
+@pytest.mark.parametrize("celsius", [110, 180])
+def test_the_verdict_is_that_of_the_core(page: Page, native: OperatingMap, share: float, celsius: int) -> None:
+    kelvin = celsius + 273.15
+    transition = native.state_at(kelvin, 0.1).transition
+    enter(page, "temperature", str(celsius))
+    enter(page, "speed", f"{1e3 * share * transition:.4g}")
+    speed = float(f"{share * transition:.4g}")
+    state = native.state_at(kelvin, speed)
+    assert verdict(page).startswith(WORDS[state.state])
+    assert ("extrapolated" in verdict(page)) == state.extrapolated
+    cycle = cycle_of(native, speed, kelvin)
+    if cycle.kind == "stick_slip":
+        assert f"{cycle.frequency:.3g} Hz, stuck {100 * cycle.stuck_fraction:.2g} %" in verdict(page)
+    if state.state == "bistable":
+        page.wait_for_function("() => document.querySelector('.verdict-line').textContent.includes('kick')")
+        bears = disturbance(native.train, native.drag, drive_speed=speed, temperature=kelvin).kick
+        assert "bears any kick" in verdict(page) if np.isinf(bears) else f"bears a kick of {1e3 * bears:.2g}" in verdict(page)
+
+
+def test_arrows_move_the_ring(page: Page) -> None:
+    ring = page.locator("#map .ring")
+    ring.focus()
+    before = float(page.input_value("#try-speed"))
+    ring.press("ArrowUp")
+    ring.press("Shift+ArrowLeft")
+    rested(page)
+    assert float(page.input_value("#try-speed")) == pytest.approx(1.02 * before, rel=1e-3)
+    kelvin = page.input_value("#try-temperature")
+    text = ring.get_attribute("aria-valuetext") or ""
+    assert re.fullmatch(rf"[\d.]+ mm/s at {kelvin} °C, (sticks|depends|smooth|stall)", text)
+    assert page.evaluate("document.activeElement.classList.contains('ring')")
+
+
+def test_a_drag_moves_the_ring_and_crosses_the_zones(page: Page) -> None:
+    box = page.locator("#map .ring .round").bounding_box()
+    frame = page.locator("#map .box").bounding_box()
+    assert box is not None
+    assert frame is not None
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    said = []
+    page.mouse.move(x, y)
+    page.mouse.down()
+    for target in (frame["y"] + frame["height"] - 4, frame["y"] + 30):
+        page.mouse.move(x - 40, target, steps=3)
+        rested(page)
+        said.append(verdict(page).split(":")[0])
+    page.mouse.up()
+    assert said[0] == "Act"
+    assert said[1] in ("Good", "Act")
+    assert "◆" in (page.text_content("#panel .cap .hint") or "")
+    assert page.locator("#panel .differs").count() == 2
+
+
+def test_a_stiffer_drive_moves_the_edges_of_the_map(page: Page, part: MapPart, native: OperatingMap) -> None:
+    before = page.get_attribute("#map [role=img] .fold", "d")
+    enter(page, "stiffness", "33")
+    page.wait_for_function("(old) => document.querySelector('#map [role=img] .fold')?.getAttribute('d') !== old", arg=before)
+    assert "in the report" in (page.text_content("#map .key") or "")
+    kelvin, speed = part.points[-1].temperature, part.points[-1].speed
+    cycle = cycle_of(native, speed, kelvin, stiffness=33e3)
+    if cycle.kind == "stick_slip":
+        assert f"{cycle.frequency:.3g} Hz" in verdict(page)
+
+
+def test_back_returns_to_the_report(page: Page) -> None:
+    before = verdict(page)
+    enter(page, "speed", "33")
+    enter(page, "stick_speed", "0.5")
+    page.select_option("#try-closure", "stiction")
+    rested(page)
+    assert page.locator("#panel .changed", has_text="◆").count() == 3
+    page.click(".back")
+    rested(page)
+    assert page.locator("#panel .changed", has_text="◆").count() == 0
+    assert verdict(page).split("·")[0] == before.split("·")[0]
+    assert page.locator(".back").is_disabled()
+
+
+def test_the_link_restores_the_setting(page: Page, browser: Browser, report: Path) -> None:
+    enter(page, "speed", "37.5")
+    enter(page, "temperature", "150")
+    page.select_option("#try-closure", "stiction")
+    rested(page)
+    address = written(page, "Link")
+    there = browser.new_page()
+    there.goto(address)
+    there.wait_for_selector("body[data-ready]")
+    rested(there)
+    assert there.input_value("#try-speed") == "37.5"
+    assert there.input_value("#try-temperature") == "150"
+    assert there.input_value("#try-closure") == "stiction"
+    assert verdict(there).split("·")[0] == verdict(page).split("·")[0]
+    there.close()
+
+
+def test_the_command_reproduces_the_setting(page: Page, tmp_path: Path) -> None:
+    enter(page, "speed", "20")
+    enter(page, "stiffness", "15")
+    (tmp_path / "setting.toml").write_text(written(page, "TOML"), encoding="utf-8")
+    words = shlex.split(written(page, "Command"))
+    assert words.pop(0) == "hersey"
+    ran = subprocess.run([sys.executable, "-m", "hersey.cli", *words], cwd=tmp_path, capture_output=True, text=True, check=True)
+    numbers = dict(re.findall(r"(frequency|stuck fraction) +([\d.]+)", ran.stdout))
+    shown = re.search(r"([\d.]+) Hz, stuck ([\d.]+) %", verdict(page))
+    assert shown is not None
+    assert float(shown[1]) == float(f"{float(numbers['frequency']):.3g}")
+    assert float(shown[2]) == float(f"{100 * float(numbers['stuck fraction']):.2g}")
+
+
+def test_a_profile_is_followed_and_edited(page: Page, native: OperatingMap, part: MapPart) -> None:
+    page.click("#panel button:text-is('Profile')")
+    page.fill("[aria-label='Row 2, time in s']", "0.4")
+    page.press("[aria-label='Row 2, time in s']", "Enter")
+    page.click("text=Add a row")
+    page.fill("[aria-label='Row 3, speed in mm/s']", "20")
+    page.press("[aria-label='Row 3, speed in mm/s']", "Enter")
+    rested(page)
+    assert "under this profile" in verdict(page) or "of this profile" in verdict(page)
+    assert page.input_value("#try-speed") == "20"
+    script = shlex.split(written(page, "Command"))
+    ran = subprocess.run([sys.executable, *script[1:]], capture_output=True, text=True, check=True)
+    assert ran.stdout
+    page.fill("[aria-label='Row 2, time in s']", "7")
+    page.press("[aria-label='Row 2, time in s']", "Enter")
+    assert page.get_attribute("[aria-label='Row 2, time in s']", "aria-invalid") == "true"
+    handle = page.locator("#panel .handle").nth(1)
+    handle.focus()
+    handle.press("Shift+ArrowUp")
+    rested(page)
+    assert page.locator("#panel .handle").count() >= 3
+    page.click("text=Without a profile")
+    rested(page)
+    assert page.locator("#profile").is_hidden()
+
+
+def test_a_profile_is_drawn_by_hand(page: Page) -> None:
+    page.click("#panel button:text-is('Profile')")
+    page.click("text=Draw by hand")
+    sheet = page.locator("#panel .sheet").bounding_box()
+    assert sheet is not None
+    page.mouse.move(sheet["x"] + 4, sheet["y"] + 0.9 * sheet["height"])
+    page.mouse.down()
+    page.mouse.move(sheet["x"] + 0.3 * sheet["width"], sheet["y"] + 0.3 * sheet["height"], steps=12)
+    page.mouse.move(sheet["x"] + 0.8 * sheet["width"], sheet["y"] + 0.6 * sheet["height"], steps=12)
+    page.mouse.up()
+    rested(page)
+    assert 3 <= page.locator("#panel .rows input").count() / 2 <= 8
+    assert "profile" in verdict(page)
+
+
+def test_a_wrong_number_is_refused_in_its_field(page: Page) -> None:
+    before = verdict(page)
+    page.fill("#try-stiffness", "stiff")
+    page.press("#try-stiffness", "Enter")
+    assert page.get_attribute("#try-stiffness", "aria-invalid") == "true"
+    assert verdict(page) == before
+    enter(page, "stiffness", "12")
+    assert page.get_attribute("#try-stiffness", "aria-invalid") == "false"
+
+
+def test_a_smooth_closure_is_drawn_by_a_worker_and_can_be_overtaken(page: Page) -> None:
+    page.select_option("#try-closure", "stribeck")
+    page.select_option("#try-closure", "lugre")
+    assert page.locator("#try-bristle_stiffness").count() == 1
+    page.select_option("#try-closure", "stribeck")
+    page.wait_for_function("() => !document.querySelector('.two').classList.contains('lags')")
+    assert verdict(page).split(":")[0] in ("Good", "Watch", "Act")
+    page.select_option("#try-closure", "retained")
+    rested(page)
+    assert page.locator(".back").is_disabled()
+
+
+def test_sixty_settings_in_a_row(page: Page) -> None:
+    """Each is drawn; how long they take is measured by benchmarks/page.py, as a busy machine is slow."""
+    seen = page.evaluate(
+        """async () => {
+          const slider = document.getElementById("slide-speed"), seen = new Set();
+          for (let i = 0; i < 60; i += 1) {
+            slider.value = 200 + 10 * i;
+            slider.dispatchEvent(new Event("input", { bubbles: true }));
+            await new Promise((done) => requestAnimationFrame(() => setTimeout(done, 0)));
+            seen.add(document.querySelector("#panel .from-rest").getAttribute("d"));
+          }
+          return seen.size;
+        }"""
+    )
+    assert seen >= 58
+
+
+def test_it_prints_values_instead_of_controls(page: Page) -> None:
+    page.emulate_media(media="print")
+    assert page.locator(".print-values").is_visible()
+    assert page.locator("#try-speed").is_hidden()
+    page.emulate_media(media="screen")
+
+
+def test_nothing_is_cut_on_a_phone(page: Page) -> None:
+    page.set_viewport_size({"width": 360, "height": 800})
+    page.wait_for_function("() => document.querySelector('#map > svg').clientWidth < 360")
+    assert page.evaluate("document.documentElement.scrollWidth") <= 360
+    for each in page.locator("#map > svg text, #panel svg text").all():
+        box = each.bounding_box()
+        assert box is None or (box["x"] >= 0 and box["x"] + box["width"] <= 361), each.text_content()
+    page.set_viewport_size({"width": 1280, "height": 800})
+
+
+def test_without_webassembly_the_page_stays_whole(browser: Browser, report: Path, part: MapPart) -> None:
+    page = browser.new_page(viewport={"width": 1280, "height": 800})
+    errors: list[str] = []
+    page.on("pageerror", lambda e: errors.append(str(e)))
+    page.add_init_script("delete globalThis.WebAssembly")
+    page.goto(report.as_uri())
+    page.wait_for_selector("body[data-ready]")
+    assert page.get_attribute("body", "data-ready") == "true"
+    assert "runs no WebAssembly" in (page.text_content("#panel") or "")
+    assert page.locator("#panel input").count() == 0
+    assert page.locator("#map .point").count() == len(part.points)
+    assert page.locator("#map .zone").count() >= 2
+    assert errors == []
+    page.close()
