@@ -44,10 +44,10 @@ function operatingMap(place, map, move = null) {
   }
 
   function draw() {
-    const room = printing ? 688 : place.clientWidth;
+    const room = printing ? paperWidth(place) : place.clientWidth;
     if (!room) return;
     const asked = Number.parseFloat(getComputedStyle(place).getPropertyValue("--map-height")) - 86;
-    const height = room > 600 ? Math.min(Math.max(asked || 424, 340), 480) : 372, left = 34, right = 34, top = 24;
+    const height = printing ? 380 : room > 600 ? Math.min(Math.max(asked || 424, 340), 480) : 372, left = 34, right = 34, top = 24;
     frame = { left, top, width: room - left - right, bottom: height - 36, height: height - 36 - top, right: room - right };
     drawing.setAttribute("viewBox", `0 0 ${room} ${height}`);
     drawing.setAttribute("width", room);

@@ -24,7 +24,7 @@ function traces(place) {
     item.append(text);
     return [kind, item];
   });
-  let scales = null, last = null;
+  let scales = null, last = null, printing = false;
   const peakOf = (values, from = 0) => { let most = 0; for (let i = from; i < values.length; i += 1) most = Math.max(most, values[i]); return most; };
 
   // From which sample on the first slip is over, the belt slower than the drive again.
@@ -75,7 +75,7 @@ function traces(place) {
     const { motion, lap, steady, unstable, force } = answer;
     scales = scale(answer, setting);
     const bottom = HEIGHT - BOTTOM, y = (v) => bottom - v / scales.top * (bottom - TOP);
-    const widths = panes.map(({ box }) => Math.max(box.clientWidth, 120));
+    const paper = printing ? paperWidth(two) - 32 : 0, widths = panes.map(({ box }, i) => (paper ? paper * [0.61, 0.39][i] : Math.max(box.clientWidth, 120)));
     const t = (s) => LEFT + s / scales.duration * (widths[0] - 6 - LEFT);
     const f = (n) => LEFT + (n - scales.low) / (scales.high - scales.low) * (widths[1] - 6 - LEFT);
     scales = { ...scales, t, y, right: widths[0] - 6, bottom };
@@ -116,7 +116,10 @@ function traces(place) {
     time.peak.setAttribute("x", x - width - 8 > LEFT ? x - width - 8 : x + 12);
     time.peak.setAttribute("y", TOP - 2);
   }
-  new ResizeObserver(() => { if (last) draw(...last); }).observe(two);
+  const again = () => { if (last) draw(...last); };
+  new ResizeObserver(() => { if (!printing) again(); }).observe(two);
+  addEventListener("beforeprint", () => { printing = true; again(); });
+  addEventListener("afterprint", () => { printing = false; again(); });
 
   return {
     draw, key,
