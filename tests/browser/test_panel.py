@@ -1,4 +1,4 @@
-"""The panel that answers, in a real headless Chromium: what it says is what the core says outside of a browser."""
+"""The panel that answers, in a real Chromium: what it says is what the core says outside of a browser."""
 
 from __future__ import annotations
 
@@ -40,12 +40,19 @@ def part(document: Analysis) -> MapPart:
     assert given is not None
     assert given.temperature is not None
     train = Drivetrain(given.train.stiffness, given.train.mass)
-    edges = edges_at(train, Drag(**given.drag.model_dump()), np.asarray(given.temperature), given.stick_speed_rule)
+    edges = edges_at(
+        train, Drag(**given.drag.model_dump()), np.asarray(given.temperature), given.stick_speed_rule
+    )
     many = len(given.temperature)
     told = {name: values.tolist() for name, values in edges.items()}
-    intervals = {f"{name}_interval": [(f * edges[name]).tolist() for f in (0.8, 1.3)] for name in ("transition", "upper")}
+    intervals = {
+        f"{name}_interval": [(f * edges[name]).tolist() for f in (0.8, 1.3)]
+        for name in ("transition", "upper")
+    }
     limits = {"torque_limit": None, "stall_below": [0.0] * many, "stall_above": [None] * many}
-    return given.model_copy(update={"train": TrainPart(stiffness=train.stiffness, mass=train.mass), **told, **intervals, **limits})
+    return given.model_copy(
+        update={"train": TrainPart(stiffness=train.stiffness, mass=train.mass), **told, **intervals, **limits}
+    )
 
 
 @pytest.fixture(scope="module")
@@ -76,7 +83,10 @@ def page(opened: Opened) -> Iterator[Page]:
 def native(part: MapPart) -> OperatingMap:
     """The map of the document, as Python has it."""
     fields = part.model_dump(exclude={"train", "drag", "temperature", "points"})
-    arrays = {k: np.asarray(v, float) if isinstance(v, list) and k not in ("uncertain", "warnings") else v for k, v in fields.items()}
+    arrays = {
+        k: np.asarray(v, float) if isinstance(v, list) and k not in ("uncertain", "warnings") else v
+        for k, v in fields.items()
+    }
     return OperatingMap(
         **arrays,
         temperature=np.asarray(part.temperature),
@@ -120,7 +130,9 @@ def written(page: Page, name: str) -> str:
 
 
 def cycle_of(native: OperatingMap, speed: float, kelvin: float, **changed: float) -> StickSlipCycle:
-    train = Drivetrain(changed.get("stiffness", native.train.stiffness), native.train.mass, grip=native.train.grip)
+    train = Drivetrain(
+        changed.get("stiffness", native.train.stiffness), native.train.mass, grip=native.train.grip
+    )
     return stick_slip(train, native.drag, drive_speed=speed, temperature=kelvin)
 
 
@@ -140,7 +152,9 @@ def test_the_map_is_drawn_with_its_words(page: Page, part: MapPart) -> None:
 
 @pytest.mark.parametrize("share", [0.6, 0.98, 1.1, 2.5])
 @pytest.mark.parametrize("celsius", [110, 180])
-def test_the_verdict_is_that_of_the_core(page: Page, native: OperatingMap, share: float, celsius: int) -> None:
+def test_the_verdict_is_that_of_the_core(
+    page: Page, native: OperatingMap, share: float, celsius: int
+) -> None:
     kelvin = celsius + 273.15
     transition = native.state_at(kelvin, 0.1).transition
     enter(page, "temperature", str(celsius))
@@ -155,7 +169,11 @@ def test_the_verdict_is_that_of_the_core(page: Page, native: OperatingMap, share
     if state.state == "bistable":
         page.wait_for_function("() => document.querySelector('.verdict-line').textContent.includes('kick')")
         bears = disturbance(native.train, native.drag, drive_speed=speed, temperature=kelvin).kick
-        assert "bears any kick" in verdict(page) if np.isinf(bears) else f"bears a kick of {1e3 * bears:.2g}" in verdict(page)
+        assert (
+            "bears any kick" in verdict(page)
+            if np.isinf(bears)
+            else f"bears a kick of {1e3 * bears:.2g}" in verdict(page)
+        )
 
 
 def test_arrows_move_the_ring(page: Page) -> None:
@@ -195,7 +213,9 @@ def test_a_drag_moves_the_ring_and_crosses_the_zones(page: Page) -> None:
 def test_a_stiffer_drive_moves_the_edges_of_the_map(page: Page, native: OperatingMap) -> None:
     before = page.get_attribute("#map [role=img] .fold", "d")
     enter(page, "stiffness", "33")
-    page.wait_for_function("(old) => document.querySelector('#map [role=img] .fold')?.getAttribute('d') !== old", arg=before)
+    page.wait_for_function(
+        "(old) => document.querySelector('#map [role=img] .fold')?.getAttribute('d') !== old", arg=before
+    )
     assert "in the report" in (page.text_content("#map .key") or "")
     enter(page, "speed", "20")
     cycle = cycle_of(native, 0.02, float(page.input_value("#try-temperature")) + 273.15, stiffness=33e3)
@@ -217,7 +237,7 @@ def test_back_returns_to_the_report(page: Page) -> None:
     assert page.locator(".back").is_disabled()
 
 
-def test_the_link_restores_the_setting(page: Page, browser: Browser, report: Path) -> None:
+def test_the_link_restores_the_setting(page: Page, browser: Browser) -> None:
     enter(page, "speed", "37.5")
     enter(page, "temperature", "150")
     page.select_option("#try-closure", "stiction")
@@ -240,7 +260,9 @@ def test_the_command_reproduces_the_setting(page: Page, tmp_path: Path) -> None:
     (tmp_path / "setting.toml").write_text(written(page, "TOML"), encoding="utf-8")
     words = shlex.split(written(page, "Command"))
     assert words.pop(0) == "hersey"
-    ran = subprocess.run([sys.executable, "-m", "hersey.cli", *words], cwd=tmp_path, capture_output=True, text=True, check=True)
+    ran = subprocess.run(
+        [sys.executable, "-m", "hersey.cli", *words], cwd=tmp_path, capture_output=True, text=True, check=True
+    )
     numbers = dict(re.findall(r"(frequency|stuck fraction) +([\d.]+)", ran.stdout))
     shown = re.search(r"([\d.]+) Hz, stuck ([\d.]+) %", verdict(page))
     assert shown is not None
@@ -248,7 +270,7 @@ def test_the_command_reproduces_the_setting(page: Page, tmp_path: Path) -> None:
     assert float(shown[2]) == float(f"{100 * float(numbers['stuck fraction']):.2g}")
 
 
-def test_a_profile_is_followed_and_edited(page: Page, native: OperatingMap, part: MapPart) -> None:
+def test_a_profile_is_followed_and_edited(page: Page) -> None:
     page.click("#panel button:text-is('Profile')")
     page.fill("[aria-label='Row 2, time in s']", "0.4")
     page.press("[aria-label='Row 2, time in s']", "Enter")

@@ -14,7 +14,7 @@ function control(place, { name, label, unit, low, high, logarithmic = true, coun
   Object.assign(slider, { type: "range", min: 0, max: STEPS, step: 1, id: `slide-${name}` });
   slider.setAttribute("aria-label", `${label}, ${unit}`);
   Object.assign(field, { type: "text", inputMode: "decimal", autocomplete: "off" });
-  let value = low;
+  let value = null, marked = null, tracked = "";
   const position = (v) => STEPS * (logarithmic ? Math.log(v / low) / Math.log(high / low) : (v - low) / (high - low));
   const at = (p) => (logarithmic ? low * (high / low) ** (p / STEPS) : low + (high - low) * p / STEPS);
   const rounded = (v) => (step ? Math.round(v / step) * step : Number(v.toPrecision(count)));
@@ -29,7 +29,9 @@ function control(place, { name, label, unit, low, high, logarithmic = true, coun
   return {
     row, field, slider,
     show(next, changed) {
-      value = next;
+      const same = next === value && changed === marked && field.getAttribute("aria-invalid") !== "true";
+      if (same) return;
+      [value, marked] = [next, changed];
       const text = digits(value, 4);
       slider.value = position(Math.min(Math.max(value, low), high));
       slider.setAttribute("aria-valuetext", `${text} ${unit}`);
@@ -43,7 +45,8 @@ function control(place, { name, label, unit, low, high, logarithmic = true, coun
     // Colours of the track: [[share from, share to, colour], ...] of values.
     track(bands) {
       const stops = bands.map(([from, to, colour]) => [from, to].map((v) => `var(--${colour}) ${(Math.min(Math.max(position(v) / STEPS, 0), 1) * 100).toFixed(1)}%`).join(", "));
-      slider.style.setProperty("--track", bands.length ? `linear-gradient(90deg, ${stops.join(", ")})` : "");
+      const colours = bands.length ? `linear-gradient(90deg, ${stops.join(", ")})` : "";
+      if (colours !== tracked) slider.style.setProperty("--track", tracked = colours);
     },
     unit(text) { unitText.textContent = text; },
   };

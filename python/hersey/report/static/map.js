@@ -16,7 +16,7 @@ function operatingMap(place, map, move = null) {
   const rpm = 60 / (2 * Math.PI * map.roll_radius);
   const named = `hatch-${Math.random().toString(36).slice(2)}`;
   const beyond = map.limited_by === "motor torque" ? "motor stops" : "stall";
-  let edges = given, lagging = false, changed = false, setting = null, frame = null, printing = false, unnamed = [];
+  let edges = given, lagging = false, changed = false, setting = null, frame = null, printing = false, unnamed = [], keyed = "";
 
   place.classList.add("map");
   const caption = add(place, "div", "", "cap");
@@ -205,7 +205,7 @@ function operatingMap(place, map, move = null) {
       svg("text", { x: right + 7, y: y + 4, class: "ticks" }, picture, digits(value, 4));
     }
     if (!hot) {
-      svg("text", { x: (left + right) / 2, y: bottom + 18, "text-anchor": "middle", class: "axis" }, picture, "at the temperature of the log (none recorded)");
+      svg("text", { x: (left + right) / 2, y: bottom + 18, "text-anchor": "middle", class: "axis" }, picture, "one law for all temperatures of the log");
       return;
     }
     for (const value of ticks(celsius(columns[0]), celsius(columns.at(-1)), frame.width / 90)) {
@@ -315,8 +315,9 @@ function operatingMap(place, map, move = null) {
   }
 
   function drawKey() {
-    key.replaceChildren();
-    const entry = (kind, text) => {
+    const words = [];
+    const entry = (kind, text) => words.push([kind, text]);
+    const draw_entry = ([kind, text]) => {
       const item = add(key, "li"), sample = svg("svg", { viewBox: "0 0 26 12", "aria-hidden": "true" }, item);
       if (kind === "measured" || kind.startsWith("zone")) svg("rect", { x: 2.5, y: 1.5, width: 20, height: 9, class: kind }, sample);
       else if (kind === "hatched") svg("rect", { x: 1, y: 0, width: 24, height: 12, fill: `url(#${named})` }, sample);
@@ -336,6 +337,11 @@ function operatingMap(place, map, move = null) {
     entry("measured", "measured");
     entry("hatched", "extrapolated");
     for (const [name, word] of unnamed) entry(`zone ${name}`, word);
+    const same = words.join();
+    if (keyed === same) return;
+    keyed = same;
+    key.replaceChildren();
+    words.forEach(draw_entry);
   }
 
   // A value of an edge at the temperature of the setting, between two columns.
@@ -401,7 +407,11 @@ function operatingMap(place, map, move = null) {
     setting = { ...setting, speed: kept(speed), temperature: hot ? within_map : null };
     move(setting.speed, setting.temperature);
   }
-  const column = () => (hot ? Math.min(Math.max(setting.temperature, columns[0]), columns.at(-1)) : 0.5);
+  function column() {
+    if (hot) return Math.min(Math.max(setting.temperature, columns[0]), columns.at(-1));
+    const same = map.points.findIndex((point) => point.speed === setting.speed);
+    return same < 0 ? 0.5 : place_of(map.points[same], same);
+  }
 
   function drawRing() {
     ring.handle.parentNode.setAttribute("visibility", setting ? "visible" : "hidden");

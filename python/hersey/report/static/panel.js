@@ -268,12 +268,14 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
     sub.filter(Boolean).forEach((text, i) => add(below, "span", `${i ? " · " : ""}${text}`));
     setting.zone = ZONES[zone.state];
     picture.show(setting);
-    chart.say(`Belt speed: ${words} at ${speedText(setting.speed)}`, `Phase plane at ${speedText(setting.speed)}: ${words}`);
     clearTimeout(spoken);
-    spoken = setTimeout(() => { said.textContent = verdict.textContent; }, 700);
+    spoken = setTimeout(() => {
+      said.textContent = verdict.textContent;
+      printed.textContent = inWords();
+      chart.say(`Belt speed: ${words} at ${speedText(setting.speed)}`, `Phase plane at ${speedText(setting.speed)}: ${words}`);
+    }, 500);
     trackColours();
     course.show(setting.profile);
-    printed.textContent = inWords();
     if (open) output();
   }
   function trackColours() {
@@ -343,6 +345,7 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
     if (location.hash.startsWith("#setting?")) history.replaceState(null, "", location.pathname + location.search);
     tried({});
   }
+  addEventListener("beforeprint", () => { printed.textContent = inWords(); });
   addEventListener("hashchange", () => {
     const there = known.read(location.hash, base);
     if (there) { setting = there; tried({}); }

@@ -24,7 +24,7 @@ function traces(place) {
     item.append(text);
     return [kind, item];
   });
-  let scales = null, last = null, printing = false;
+  let scales = null, last = null, printing = false, seen = null;
   const peakOf = (values, from = 0) => { let most = 0; for (let i = from; i < values.length; i += 1) most = Math.max(most, values[i]); return most; };
 
   // From which sample on the first slip is over, the belt slower than the drive again.
@@ -52,7 +52,9 @@ function traces(place) {
   }
 
   function axes(pane, width, across, label, y) {
-    const right = width - 6, bottom = HEIGHT - BOTTOM;
+    const right = width - 6, bottom = HEIGHT - BOTTOM, same = [width, scales.top, ...across.flat()].join(" ");
+    if (pane.same === same) return;
+    pane.same = same;
     pane.drawing.setAttribute("width", width);
     pane.drawing.setAttribute("viewBox", `0 0 ${width} ${HEIGHT}`);
     for (const [name, value] of Object.entries({ x: LEFT, width: right - LEFT, height: bottom - TOP + 1 })) pane.edge.setAttribute(name, value);
@@ -75,7 +77,7 @@ function traces(place) {
     const { motion, lap, steady, unstable, force } = answer;
     scales = scale(answer, setting);
     const bottom = HEIGHT - BOTTOM, y = (v) => bottom - v / scales.top * (bottom - TOP);
-    const paper = printing ? paperWidth(two) - 32 : 0, widths = panes.map(({ box }, i) => (paper ? paper * [0.61, 0.39][i] : Math.max(box.clientWidth, 120)));
+    const paper = printing ? paperWidth(two) - 32 : 0, widths = paper ? [0.61 * paper, 0.39 * paper] : seen ??= panes.map(({ box }) => Math.max(box.clientWidth, 120));
     const t = (s) => LEFT + s / scales.duration * (widths[0] - 6 - LEFT);
     const f = (n) => LEFT + (n - scales.low) / (scales.high - scales.low) * (widths[1] - 6 - LEFT);
     scales = { ...scales, t, y, right: widths[0] - 6, bottom };
@@ -117,7 +119,7 @@ function traces(place) {
     time.peak.setAttribute("y", TOP - 2);
   }
   const again = () => { if (last) draw(...last); };
-  new ResizeObserver(() => { if (!printing) again(); }).observe(two);
+  new ResizeObserver(() => { seen = null; if (!printing) again(); }).observe(two);
   addEventListener("beforeprint", () => { printing = true; again(); });
   addEventListener("afterprint", () => { printing = false; again(); });
 
