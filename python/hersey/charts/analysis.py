@@ -7,22 +7,31 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import altair as alt
 import numpy as np
 
 from hersey.charts.carried import carried_chart
+from hersey.charts.damping import logs_chart
 from hersey.charts.film import regime_chart
+from hersey.charts.labels import apart
+from hersey.charts.plan import profile_chart
 from hersey.charts.regime import exponent_chart, exponent_row
 from hersey.charts.render import write_pictures
 from hersey.charts.style import (
+    APART,
+    BLUE,
+    GREEN,
     HEIGHT,
     INK,
     WIDTH,
     Chart,
     Row,
+    across,
     logarithmic,
     plot,
+    ramp,
     temperature_channels,
     temperature_name,
     tip,
@@ -31,11 +40,13 @@ from hersey.charts.style import (
     zoom,
 )
 from hersey.charts.transition import transition_chart
-from hersey.document.parts import Analysis, Point, Series
+from hersey.document.parts import Analysis, PlanPart, Point, Series
 from hersey.units import celsius, rpm
 
 #: Cells of a surface overlap a little: seams would shine through otherwise.
 _OVERLAP = 1.004
+#: Height of torque and damping.
+_TALL = 290
 #: Width kept for the axis of charts that share a time axis, so that they line up.
 _AXIS = 42
 
@@ -51,24 +62,24 @@ def charts(document: Analysis) -> dict[str, Chart]:
         "film": film,
         "transition": transition,
         "carried": carried,
-        "simulation_speed": simulation_speed,
-        "simulation_force": simulation_force,
+        "compare": compare,
         "timeline_speed": timeline_speed,
         "timeline_torque": timeline_torque,
         "timeline_temperature": timeline_temperature,
     }
     with unchecked():
         made = {name: make(document) for name, make in makers.items()}
+        made |= {f"plan_{i}": profile_chart(*each) for i, each in enumerate(_plans(document))}
     return {name: chart for name, chart in made.items() if chart is not None}
 
 
 def torque(document: Analysis) -> Chart:
     """Torque against speed per temperature, with the fitted law (the paper's Fig. 2)."""
     scale, unit = _torque_unit(document)
-    subtitle = "points are dwells with two standard errors; lines are the fitted law"
+    subtitle = "filled: reached from below, open: from above, bars: two standard errors; lines: the fitted law"
     subtitle += "" if document.fit.rest is None else "; the rest of the drive is taken off"
     title = alt.Title("Drag torque against speed", subtitle=subtitle)
-    return _against_speed(document, "torque", f"Torque ({unit})", scale).properties(title=title)
+    return _against_speed(document, "torque", f"Torque ({unit})", scale, []).properties(title=title)
 
 
 def damping(document: Analysis) -> Chart:
@@ -77,9 +88,9 @@ def damping(document: Analysis) -> Chart:
     title = alt.Title(
         "Damping against speed", subtitle="dashed: slope -1, where torque does not depend on speed"
     )
-    chart = _against_speed(document, "damping", f"Damping ({unit}·s/rad)", scale)
-    layers = alt.layer(_slope_of_minus_one(document, scale), chart)
-    return layers.properties(title=title, width=WIDTH, height=HEIGHT)
+    slope = _slope_of_minus_one(document, scale)
+    chart = _against_speed(document, "damping", f"Damping ({unit}·s/rad)", scale, [slope])
+    return chart.properties(title=title)
 
 
 def surface(document: Analysis) -> Chart:
@@ -168,7 +179,7 @@ def regime(document: Analysis) -> Chart:
     """Exponent of damping per temperature and branch with its interval, against the named hypotheses."""
     c = document.fit.coefficients["c"]
     surface: Row = {
-        "where": "surface",
+        "where": "all",
         "order": 1e6,
         "branch": "rising torque" if document.fit.transition else "all speeds",
         "value": c.value,
@@ -177,7 +188,9 @@ def regime(document: Analysis) -> Chart:
         "speeds": f"{document.fit.points} dwells together",
     }
     rows = [exponent_row(branch) for branch in document.regime.exponents]
-    return exponent_chart([*rows, surface], [(h.name, h.low, h.high) for h in document.regime.hypotheses])
+    solved = document.film.exponents.solved if document.film and document.film.exponents else None
+    hypotheses = [(h.name, h.low, h.high) for h in document.regime.hypotheses]
+    return exponent_chart([row for row in rows if row["where"] != "all"] + [surface], hypotheses, solved)
 
 
 def film(document: Analysis) -> Chart | None:
@@ -199,197 +212,8 @@ def carried(document: Analysis) -> Chart | None:
     return None if document.carried is None else carried_chart(document.carried)
 
 
-def simulation_speed(document: Analysis) -> Chart | None:
-    """Belt speed of the simulation (Fig. 9); None without one."""
-    s = document.simulation
-    if s is None:
-        return None
-    scale, unit = (1e3, "mm/s") if s.speed_unit == "m/s" else (1.0, s.speed_unit)
-    rows = [{"time": t, "value": v * scale} for t, v in zip(s.time, s.belt_speed, strict=True)]
-    marks = [(s.transition_speed * scale, "transition speed", WIDTH, "right")]
-    marks += (
-        [(s.drive_speed * scale, "drive speed", 4, "left")] if s.drive_speed != s.transition_speed else []
-    )
-    line = _trace(rows, f"Belt speed ({unit})")
-    layers: list[alt.Chart] = []
-    for y, name, at, align in marks:
-        mark = plot([{"y": y, "name": name}])
-        layers.append(mark.mark_rule(color=INK, strokeDash=[4, 3]).encode(y="y:Q"))
-        label = mark.mark_text(align=align, dy=-7, color=INK)  # type: ignore[arg-type]  # left or right
-        layers.append(label.encode(x=alt.value(at), y="y:Q", text="name:N"))
-    what = {"stick_slip": f"stick-slip at {s.frequency:.4g} Hz, stuck {s.stuck_fraction:.1%} of the time"}
-    title = alt.Title(s.title, subtitle=what.get(s.kind, s.kind.replace("_", " ")))
-    return alt.layer(line, *layers).properties(title=title, width=WIDTH, height=220)
 
 
-def simulation_force(document: Analysis) -> Chart | None:
-    """Spring force of the simulation; None without one."""
-    s = document.simulation
-    if s is None:
-        return None
-    rows = [{"time": t, "value": f} for t, f in zip(s.time, s.spring_force, strict=True)]
-    return alt.layer(_trace(rows, f"Spring force ({s.force_unit})")).properties(width=WIDTH, height=160)
-
-
-def timeline_speed(document: Analysis) -> Chart | None:
-    """Speed over the log, dwells shaded; None for a table of means."""
-    if not document.timeline.starts:
-        return None
-    return _timeline(document, document.timeline.speed, "Speed (rpm)", rpm, "The log: dwells used are shaded")
-
-
-def timeline_torque(document: Analysis) -> Chart | None:
-    """Torque over the log, dwells shaded; None for a table of means."""
-    if not document.timeline.starts:
-        return None
-    scale, unit = _torque_unit(document)
-    return _timeline(document, document.timeline.torque, f"Torque ({unit})", lambda v: v * scale, None)
-
-
-def timeline_temperature(document: Analysis) -> Chart | None:
-    """Temperature over the log, dwells shaded; None if not recorded."""
-    series = document.timeline.temperature
-    return None if series is None else _timeline(document, series, "Temperature (°C)", celsius, None)
-
-
-def write_figures(document: Analysis, folder: Path) -> list[Path]:
-    """Write every chart as SVG, PNG and PDF and return the paths; all are drawn before one is written."""
-    return write_pictures(charts(document), folder)
-
-
-def _torque_unit(document: Analysis) -> tuple[float, str]:
-    """Factor from N m, and the unit in which the torques of a document read best."""
-    return torque_unit(max(abs(p.torque) for p in document.points))
-
-
-def _against_speed(document: Analysis, quantity: str, title: str, scale: float) -> Chart:
-    rows = _point_rows(document)
-    for row, point in zip(rows, document.points, strict=True):
-        value, error = abs(getattr(point, quantity)) * scale, 2 * abs(point.torque_error / point.torque)
-        row |= {"y": value, "low": value * (1 - error), "high": value * (1 + error)}
-    curves = [
-        {
-            "speed": rpm(v),
-            "y": scale * b * (v if quantity == "torque" else 1.0),
-            "level": temperature_name(c.temperature),
-        }
-        for c in document.fit.curves
-        for v, b in zip(c.speed, c.damping, strict=True)
-    ]
-    y = alt.Y("y:Q", title=title, scale=logarithmic())
-    color, shape = _temperature_channels(document)
-    line = (
-        plot(curves)
-        .mark_line(strokeWidth=1.8)
-        .encode(x=_speed("speed:Q"), y=y, color=color, detail="level:N")
-    )
-    base = plot(rows)
-    bars = base.mark_rule(strokeWidth=1.5).encode(x=_speed("speed:Q"), y="low:Q", y2="high:Q", color=color)
-    dots = (
-        base.mark_point(filled=True, size=55, opacity=0.9)
-        .encode(x=_speed("speed:Q"), y=y, color=color, shape=shape, tooltip=_point_tips(document))
-        .add_params(zoom())
-    )
-    return alt.layer(line, bars, dots).properties(width=WIDTH, height=HEIGHT)
-
-
-def _slope_of_minus_one(document: Analysis, scale: float) -> alt.Chart:
-    """From the upper left corner of the data down, as far as they reach."""
-    top = max(p.damping for p in document.points) * scale
-    bottom = min(p.damping for p in document.points) * scale
-    low, high = (rpm(v) for v in document.fit.speed_range)
-    end = min(high, low * top / bottom)
-    rows = [{"speed": low, "y": top}, {"speed": end, "y": top * low / end}]
-    chart: alt.Chart = (
-        plot(rows)
-        .mark_line(color=INK, strokeDash=[4, 3], strokeWidth=1)
-        .encode(x=_speed("speed:Q"), y=alt.Y("y:Q", scale=alt.Scale(type="log", nice=False)))
-    )
-    return chart
-
-
-def _point_rows(document: Analysis) -> list[Row]:
-    scale, _ = _torque_unit(document)
-    return [_point_row(p, scale) for p in document.points]
-
-
-def _point_row(p: Point, scale: float) -> Row:
-    return {
-        "speed": rpm(abs(p.speed)),
-        "temperature": None if p.temperature is None else celsius(p.temperature),
-        "level": temperature_name(p.group_temperature),
-        "torque_shown": abs(p.torque) * scale,
-        "damping_shown": p.damping * scale,
-        "residual": 100.0 * float(np.expm1(p.residual)),
-        "approach": p.approach,
-        "from_to": f"{p.start:.1f} to {p.end:.1f} s",
-    }
-
-
-def _temperature_channels(document: Analysis) -> tuple[alt.Color, alt.Shape]:
-    kelvin = [p.group_temperature for p in document.points]
-    return temperature_channels(kelvin, legend=document.fit.temperature_range is not None)
-
-
-def _speed(field: str, domain: list[float] | None = None) -> alt.X:
-    scale = logarithmic() if domain is None else alt.Scale(type="log", domain=domain)
-    return alt.X(field, title="Drive speed (rpm)", scale=scale)
-
-
-def _point_tips(document: Analysis) -> list[alt.Tooltip]:
-    _, unit = _torque_unit(document)
-    hot = [tip("temperature", "temperature (°C)")] if document.fit.temperature_range else []
-    return [
-        tip("speed", "speed (rpm)"),
-        *hot,
-        tip("torque_shown", f"torque ({unit})"),
-        tip("damping_shown", f"damping ({unit}·s/rad)"),
-        tip("residual", "measured / fitted - 1 (%)"),
-        alt.Tooltip("approach:N", title="approached"),
-        alt.Tooltip("from_to:N", title="dwell"),
-    ]
-
-
-def _trace(rows: list[Row], title: str) -> alt.Chart:
-    chart: alt.Chart = (
-        plot(rows)
-        .mark_line(color="#1f4e9c", strokeWidth=1.5)
-        .encode(
-            x=alt.X("time:Q", title="Time (s)", scale=alt.Scale(nice=False)),
-            y=alt.Y("value:Q", title=title, axis=alt.Axis(minExtent=_AXIS)),
-            tooltip=[tip("time", "time (s)"), tip("value", title)],
-        )
-        .add_params(zoom())
-    )
-    return chart
-
-
-def _timeline(
-    document: Analysis, series: Series, title: str, in_unit: Callable[[float], float], heading: str | None
-) -> Chart:
-    values = [float(f"{in_unit(v):.5g}") for v in series.value]
-    rows = [{"time": t, "value": v} for t, v in zip(series.time, values, strict=True)]
-    starts = document.timeline.starts
-    dwells = [{"from": starts[p.run] + p.start, "to": starts[p.run] + p.end} for p in document.points]
-    several = len(document.files) > 1
-    shade = (
-        plot(dwells)
-        .mark_rect(color="#f2c14e", opacity=0.55)
-        .encode(x="from:Q", x2="to:Q", y=alt.value(0), y2=alt.value(110))
-    )
-    line = (
-        plot(rows)
-        .mark_line(color="#1f4e9c", strokeWidth=0.9)
-        .encode(
-            x=alt.X(
-                "time:Q",
-                title="Time (s), files one after another" if several else "Time (s)",
-                scale=alt.Scale(nice=False),
-            ),
-            y=alt.Y("value:Q", title=title, scale=alt.Scale(zero=False), axis=alt.Axis(minExtent=_AXIS)),
-            tooltip=[tip("time", "time (s)"), tip("value", title)],
-        )
-        .add_params(zoom())
-    )
-    chart = alt.layer(shade, line).properties(width=WIDTH, height=110)
-    return chart.properties(title=heading) if heading else chart
+def compare(document: Analysis) -> Chart | None:
+    """Damping of one log over that of another."""
+    return None if document.compare is None else logs_chart(document.compare)

@@ -10,10 +10,10 @@ from hersey.units import celsius, rpm
 
 #: Parts from below, with their names and shades that stay apart in grey.
 _PARTS = (
-    ("rest", "rest of the drive", "#d5d5d5"),
-    ("contact", "contact", "#d9730d"),
-    ("shear", "film, sheared over the nip", "#1f4e9c"),
-    ("inlet", "film, inlet and pressure", "#8fb4e3"),
+    ("rest", "rest of the drive", "#c9d1d6"),
+    ("contact", "contact", "#b8500c"),
+    ("shear", "film, sheared over the nip", "#0a5c8f"),
+    ("inlet", "film, inlet and pressure", "#74a9cf"),
 )
 
 
@@ -30,7 +30,7 @@ def carried_chart(part: CarriedPart) -> Chart:
         speed=[rpm(speed) for speed in part.measured_speed],
         whole=[factor * torque for torque in part.measured_torque],
     )
-    x = alt.X("speed:Q", title="Drive speed (rpm)", scale=logarithmic())
+    x = alt.X("speed:Q", title="Roll speed (rpm)", scale=logarithmic())
     areas = (
         plot(rows)
         .mark_area(line=False)
@@ -41,15 +41,15 @@ def carried_chart(part: CarriedPart) -> Chart:
             color=alt.Color(
                 "part:N",
                 scale=alt.Scale(domain=names, range=shades),
-                legend=alt.Legend(title=None, orient="bottom"),
+                legend=alt.Legend(title=None, orient="bottom", columns=2, symbolOpacity=1),
             ),
-            tooltip=["part:N", tip("speed", "rpm"), tip("torque", unit)],
+            tooltip=[alt.Tooltip("part:N", title="part"), tip("speed", "roll (rpm)"), tip("torque", f"torque ({unit})")],
         )
     )
     dots = (
         plot(dwells)
         .mark_point(filled=True, fill="white", stroke=INK, strokeWidth=1.2, size=45, opacity=1)
-        .encode(x=x, y="whole:Q", tooltip=[tip("speed", "rpm"), tip("whole", unit)])
+        .encode(x=x, y="whole:Q", tooltip=[tip("speed", "roll (rpm)"), tip("whole", f"torque ({unit})")])
     )
     title = alt.Title(
         f"What carries the torque at {celsius(part.temperature):.0f} °C",

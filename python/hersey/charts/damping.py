@@ -32,6 +32,7 @@ from hersey.damping.design import TestDesign
 from hersey.damping.dwells import SteadyPoints, groups_of_temperature
 from hersey.damping.rest import RestOfDrive
 from hersey.damping.surface import DampingSurface
+from hersey.document.parts import ComparisonPart
 from hersey.units import celsius, rpm
 
 #: Speeds at which a law is drawn, temperatures at which a surface is, and candidates that are listed.
@@ -164,19 +165,23 @@ def _ranking(comparison: ModelComparison) -> Chart:
     return alt.layer(bars, text, title=title, width=WIDTH, height=22 * len(rows))
 
 
-def logs_chart(comparison: LogComparison) -> Chart:
+def logs_chart(comparison: LogComparison | ComparisonPart) -> Chart:
     """Return damping of the second log over that of the first against speed, with simultaneous limits."""
-    hot: list[float | None] = list(comparison.temperatures) if comparison.temperatures.size else [None]
+    a, b = (
+        (comparison.a, comparison.b) if isinstance(comparison, ComparisonPart) else comparison.names
+    )
+    temperatures, speeds = np.asarray(comparison.temperatures), np.asarray(comparison.speeds)
+    hot: list[float | None] = list(temperatures) if temperatures.size else [None]
     rows: list[Row] = []
     for number, kelvin in enumerate(hot):
         apart = 1.0 + _APART * (number - 0.5 * (len(hot) - 1))
         rows += rows_of(
-            x=apart * rpm(comparison.speeds),
-            speed=rpm(comparison.speeds),
+            x=apart * rpm(speeds),
+            speed=rpm(speeds),
             ratio=comparison.ratio[number],
             low=comparison.low[number],
             high=comparison.high[number],
-            level=[temperature_name(kelvin)] * comparison.speeds.size,
+            level=[temperature_name(kelvin)] * speeds.size,
         )
     color, shape = temperature_channels(hot, legend=len(hot) > 1)
     x = alt.X("x:Q", title=_SPEED, scale=logarithmic())
@@ -190,7 +195,6 @@ def logs_chart(comparison: LogComparison) -> Chart:
         dots.encode(x=x, y=y, color=color, shape=shape, tooltip=tips),
     ]
     beside = ", temperatures beside each other" if len(hot) > 1 else ""
-    a, b = comparison.names
     subtitle = [f"A: {a}, B: {b}; bars: simultaneous 95 % limits{beside}", comparison.verdict]
     title = alt.Title("Two logs compared", subtitle=subtitle)
     return alt.layer(*layers, title=title, width=WIDTH, height=HEIGHT)

@@ -11,7 +11,7 @@ from hersey import _core
 from hersey.arrays import FloatArray, IntArray, pointwise
 from hersey.charts.friction import friction_chart
 from hersey.charts.labels import Labels
-from hersey.charts.style import HEIGHT, INK, WIDTH, Chart, Row, plot
+from hersey.charts.style import BLUE, INK, RIM, WIDTH, Chart, Row, plot
 from hersey.charts.transition import transition_chart
 from hersey.document.film_part import film_points
 from hersey.document.parts import FilmPoint
@@ -22,11 +22,24 @@ from hersey.verdict.evidence import MeasuredFilm
 from hersey.verdict.transition import ContactTransition
 
 #: Shades of the regimes that stay apart in grey.
-_SHADES = ("#f4f1de", "#e8b4a0", "#b7d3e9", "#8fae8b")
+_SHADES = ("#f0eee2", "#eed9cf", "#dce9ef", "#cfdccb")
+#: Width that is counted on to keep names apart, and height, pixels.
+_NARROW, _TALL = 400, 250
 #: Cells of the chart to a side, and decades shown beyond the points.
 _CELLS, _MARGIN = 90, 1.5
 #: Most points that are named, and the width of a letter in pixels.
 _NAMED, _LETTER = 8, 5.6
+#: Looks of the texts, and the rim around those that stand on marks.
+_LOOKS: dict[str, Row] = {
+    "regimes": {"fontSize": 11.5, "fontStyle": "italic"},
+    "points": {"fontSize": 12, "fontWeight": "bold"},
+}
+_RIMS: dict[str, Row] = {"regimes": {}, "points": RIM}
+_TIPS = [
+    alt.Tooltip("name:N", title="point"),
+    alt.Tooltip("regime:N", title="regime"),
+    alt.Tooltip("h:Q", title="least film (um)", format=".3~g"),
+]
 #: The chart shows at least this.
 _LEAST = ((-2.0, 4.0), (-1.0, 3.0))
 #: Speed parameter at which the chart is computed: the regimes depend on g_V and g_E alone.
@@ -81,8 +94,8 @@ def regime_chart(points: list[FilmPoint], dwells: list[FilmPoint], layer_factor:
 def _regimes(points: list[Row], dwells: list[Row], layer_factor: float) -> Chart:
     known = [row for row in (*points, *dwells) if row["g_v"] > 0]
     spans = [_span([row["g_v"] for row in known], _LEAST[0]), _span([row["g_e"] for row in known], _LEAST[1])]
-    x = alt.X("g_v:Q", title="viscosity parameter g_V = G W^1.5/U^0.5 (no unit)", scale=_log(spans[0]))
-    y = alt.Y("g_e:Q", title="elasticity parameter g_E = W/U^0.5 (no unit)", scale=_log(spans[1]))
+    x = alt.X("g_v:Q", title="Viscosity parameter g_V (no unit)", scale=_log(spans[0]))
+    y = alt.Y("g_e:Q", title="Elasticity parameter g_E (no unit)", scale=_log(spans[1]))
     cells, regime = _cells(spans, layer_factor)
     shade = alt.Scale(domain=list(REGIMES), range=list(_SHADES))
     area = (
@@ -92,45 +105,54 @@ def _regimes(points: list[Row], dwells: list[Row], layer_factor: float) -> Chart
     )
     dots = (
         plot([row for row in dwells if row["g_v"] > 0])
-        .mark_point(color=INK, size=14, opacity=0.6, clip=True)
+        .mark_point(filled=True, color=BLUE, size=12, opacity=1)
         .encode(x=x, y=y)
     )
     marks = (
         plot([row for row in points if row["g_v"] > 0])
-        .mark_point(filled=True, fill="white", stroke=INK, strokeWidth=1.5, size=70, opacity=1, clip=True)
+        .mark_point(shape="diamond", fill="white", stroke=INK, strokeWidth=1.8, size=85, opacity=1)
         .encode(
-            x=x, y=y, tooltip=["name:N", "regime:N", alt.Tooltip("h:Q", title="h_min (um)", format=".3~g")]
+            x=x, y=y, tooltip=_TIPS
         )
     )
     hidden = "" if known else " No point is shown: alpha is not known, g_V = 0."
     subtitle = [
-        "U = eta u/(E'R) with the mean speed u, W = w/(E'R), G = alpha E'; colour: the law that holds."
-        + hidden
+        "g_V = G W^1.5/U^0.5, g_E = W/U^0.5; U = eta u/(E'R) with the mean speed u, W = w/(E'R), "
+        "G = alpha E'; ground: the law that holds." + hidden
     ]
     if dwells and points:
-        subtitle.append("Large: points of the machine. Small: dwells of the log.")
+        subtitle.append("Diamonds: points of the machine. Dots: dwells of the log.")
     title = alt.Title("Regimes of the film", subtitle=subtitle)
-    texts = _texts(points if len(points) <= _NAMED else [], spans, regime)
-    return alt.layer(area, dots, marks, *texts, width=WIDTH, height=HEIGHT, title=title)
+    texts = _texts(points if len(points) <= _NAMED else [], spans, regime, x, y)
+    return alt.layer(area, dots, marks, *texts, width=WIDTH, height=_TALL, title=title)
 
 
-def _texts(points: list[Row], spans: list[tuple[float, float]], regime: IntArray) -> list[alt.Chart]:
+def _texts(
+    points: list[Row], spans: list[tuple[float, float]], regime: IntArray, x: alt.X, y: alt.Y
+) -> list[alt.Chart]:
     """Names of the points, and of each regime where it is roomiest, none over another."""
-    labels = Labels(WIDTH, HEIGHT, letter=_LETTER)
+    labels = Labels(_NARROW, _TALL, letter=_LETTER)
     (left, right), (bottom, top) = spans
     for row in points:
         if row["g_v"] > 0:
-            across = WIDTH * (np.log10(row["g_v"]) - left) / (right - left)
-            up = HEIGHT * (np.log10(row["g_e"]) - bottom) / (top - bottom)
+            across = _NARROW * (np.log10(row["g_v"]) - left) / (right - left)
+            up = _TALL * (np.log10(row["g_e"]) - bottom) / (top - bottom)
             labels.beside(row["name"], float(across), float(up), "points")
     for name, *column in _columns_of(regime):
         labels.inside(name, [(column[0], column[1], column[2])], "regimes")
-    layers = []
-    for style, look in (("regimes", {"fontSize": 12, "fontStyle": "italic"}), ("points", {"fontSize": 11})):
-        places = [t for t in labels.texts if t.style == style]
-        placed = [{"across": t.across, "down": HEIGHT - t.up, "name": t.text} for t in places]
-        x, y = (alt.X("across:Q", scale=None, axis=None), alt.Y("down:Q", scale=None, axis=None))
-        layers.append(plot(placed).mark_text(color=INK, **look).encode(x=x, y=y, text=alt.Text("name:N")))
+    layers: list[alt.Chart] = []
+    for style, look in _LOOKS.items():
+        placed: list[Row] = [
+            {
+                "g_v": 10 ** (left + (right - left) * t.across / _NARROW),
+                "g_e": 10 ** (bottom + (top - bottom) * t.up / _TALL),
+                "name": t.text,
+            }
+            for t in labels.texts
+            if t.style == style
+        ]
+        base = plot(placed).encode(x=x, y=y, text=alt.Text("name:N"))
+        layers += [base.mark_text(**(look | rim)) for rim in (_RIMS[style], {"color": INK}) if rim]
     return layers
 
 
@@ -192,8 +214,8 @@ def _cells(spans: list[tuple[float, float]], softness: float) -> tuple[list[Row]
 
 def _columns_of(regime: IntArray) -> Iterator[tuple[str, FloatArray, FloatArray, FloatArray]]:
     """Each regime's columns of cells in pixels: where they are across, from where they reach to where."""
-    across = (np.arange(_CELLS) + 0.5) * WIDTH / _CELLS
-    cell = HEIGHT / _CELLS
+    across = (np.arange(_CELLS) + 0.5) * _NARROW / _CELLS
+    cell = _TALL / _CELLS
     for k, name in enumerate(REGIMES):
         inside = regime == k
         low = np.argmax(inside, axis=1)

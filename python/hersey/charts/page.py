@@ -15,7 +15,9 @@ from collections.abc import Mapping
 from hersey.charts.runtime import runtime
 
 
-def page(*, title: str, style: str, body: str, data: Mapping[str, object], script: str) -> str:
+def page(
+    *, title: str, style: str, body: str, data: Mapping[str, object], script: str, computes: bool = False
+) -> str:
     """Return a page as HTML text that needs no network.
 
     Parameters
@@ -29,12 +31,14 @@ def page(*, title: str, style: str, body: str, data: Mapping[str, object], scrip
     script
         Our script, a module; ``vegaEmbed`` is there when it runs, and needs its option ``ast``, by which Vega
         interprets its expressions rather than compile them.
+    computes
+        Whether the script compiles WebAssembly that the page holds, and runs it in workers of its own.
     """
     scripts = [_normal(text) for text in (runtime(), script)]
     pieces = [
         '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">',
         '<meta name="viewport" content="width=device-width, initial-scale=1">',
-        f'<meta http-equiv="Content-Security-Policy" content="{policy(scripts)}">',
+        f'<meta http-equiv="Content-Security-Policy" content="{policy(scripts, computes=computes)}">',
         f"<title>{html.escape(_encodable(title))}</title>",
         f"<style>\n{style}\n</style>\n</head>\n<body>\n{body}",
         *(
@@ -47,14 +51,16 @@ def page(*, title: str, style: str, body: str, data: Mapping[str, object], scrip
     return "\n".join(pieces)
 
 
-def policy(scripts: list[str]) -> str:
+def policy(scripts: list[str], *, computes: bool = False) -> str:
     """Return the content security policy of a page: these scripts run, and nothing is loaded or sent.
 
-    Styles are open: Vega sets its own where it draws, and a style can load nothing.
+    Styles are open: Vega sets its own where it draws, and a style can load nothing. A page that ``computes``
+    compiles the WebAssembly inside it, which is no way to run text, and starts workers from itself.
     """
     allowed = " ".join(f"'sha256-{_digest(text)}'" for text in scripts)
+    core = " 'wasm-unsafe-eval'; worker-src blob:" if computes else ""
     return (
-        f"default-src 'none'; script-src {allowed}; style-src 'unsafe-inline'; base-uri 'none'; "
+        f"default-src 'none'; script-src {allowed}{core}; style-src 'unsafe-inline'; base-uri 'none'; "
         "form-action 'none'"
     )
 

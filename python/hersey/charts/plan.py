@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import altair as alt
 import numpy as np
 
-from hersey.charts.style import BLUE, INK, ORANGE, WIDTH, Chart, Row, level, levels, plot, tip
+from hersey.charts.style import BLUE, EDGE, INK, ORANGE, RIM, WIDTH, Chart, Row, level, levels, plot, tip
+from hersey.document.parts import PlanPart
 from hersey.errors import InsufficientDataError
 from hersey.motion.schedule import Schedule
 from hersey.stability.plan.result import Plan
@@ -42,6 +45,80 @@ def plan_chart(plan: Plan, *, temperature: Schedule | None = None) -> Chart:
     title = alt.Title("Drive profile", subtitle=[*_sentences(heading), plan.proof(), _KEY])
     stacked: Chart = alt.vconcat(*panels, spacing=14).properties(title=title)
     return stacked
+
+
+def profile_chart(plan: PlanPart, motion: Any) -> Chart:
+    """Return the profile of a plan of the document, with the motion it makes if that is known.
+
+    The first slip does not set the scale: it is cut, and its peak written.
+    """
+    end = plan.duration or (plan.rows[-1].time if plan.rows else 1.0)
+    last = max(1.6 * end, plan.rows[-1].time if plan.rows else 0.0)
+    drive = [(row.time, row.drive_speed) for row in plan.rows]
+    if drive:
+        drive.append((last, drive[-1][1]))
+    lines: list[tuple[str, list[tuple[float, float]]]] = [("drive", drive)]
+    if motion is not None:
+        last = max(motion.time)
+        lines = [("drive", [*drive[:-1], (last, drive[-1][1])])] if drive else []
+        straight = list(zip(motion.time, motion.straight, strict=True)) if motion.straight else []
+        lines += [("belt, straight to speed", straight)] if straight else []
+        lines.append(("belt", list(zip(motion.time, motion.belt_speed, strict=True))))
+    marks = [(plan.transition_speed, "transition")]
+    if plan.fold_speed is not None and plan.fold_speed < _SHOWN * max(plan.peak_speed or 0.0, plan.target_speed):
+        marks.append((plan.fold_speed, "V*"))
+    top = 1e3 * max([plan.peak_speed or 0.0, plan.target_speed, *(v for v, _ in marks)]) * 2.2
+    domain = (0.0, top)
+    rows: list[Row] = [
+        {"time": t, "value": 1e3 * v, "line": name, "index": i}
+        for name, line in lines
+        for i, (t, v) in enumerate(line)
+    ]
+    names = [name for name, _ in lines]
+    looks = {"drive": (INK, [7, 3]), "belt": (BLUE, [1, 0]), "belt, straight to speed": (EDGE, [1, 0])}
+    key = alt.Legend(title=None, orient="bottom", symbolSize=400)
+    color = alt.Scale(domain=names, range=[looks[name][0] for name in names])
+    dash = alt.Scale(domain=names, range=[looks[name][1] for name in names])
+    x = alt.X("time:Q", title="Time (s)", scale=alt.Scale(domain=[0.0, last], nice=False))
+    y = alt.Y("value:Q", title="Speed (mm/s)", scale=alt.Scale(domain=list(domain), nice=False))
+    drawn = plot(rows).mark_line(strokeWidth=1.7, clip=True)
+    layers: list[alt.Chart] = [
+        *levels([(1e3 * v, name) for v, name in marks], domain, _HEIGHT),
+        drawn.encode(
+            x=x,
+            y=y,
+            order="index:Q",
+            color=alt.Color("line:N", scale=color, legend=key),
+            strokeDash=alt.StrokeDash("line:N", scale=dash, legend=key),
+            tooltip=[alt.Tooltip("line:N", title="line"), tip("time", "time (s)"), tip("value", "speed (mm/s)")],
+        ),
+        *_peaks(rows, top, x, y),
+    ]
+    if plan.duration is not None:
+        mark = plot([{"time": plan.duration, "name": f"slides from here on, {plan.duration:.2g} s"}])
+        layers.append(mark.mark_rule(color=BLUE, strokeWidth=1).encode(x=x))
+        layers.append(
+            mark.mark_text(align="left", dx=5, baseline="top", **RIM).encode(x=x, y=alt.value(4), text="name:N")
+        )
+        layers.append(
+            mark.mark_text(align="left", dx=5, baseline="top", color=INK).encode(
+                x=x, y=alt.value(4), text="name:N"
+            )
+        )
+    return alt.layer(*layers, title="Drive profile", width=WIDTH, height=_HEIGHT)
+
+
+def _peaks(rows: list[Row], top: float, x: alt.X, y: alt.Y) -> list[alt.Chart]:
+    """The peak of the belt, where it is cut off."""
+    belt = [row for row in rows if row["line"] == "belt"]
+    if not belt:
+        return []
+    peak = max(belt, key=lambda row: float(row["value"]))
+    if peak["value"] <= top:
+        return []
+    named = plot([{"time": peak["time"], "text": f"\u2191 {peak['value']:.0f}"}])
+    text = named.mark_text(align="right", dx=-6, baseline="top", color=INK)
+    return [text.encode(x=x, y=alt.value(20), text="text:N")]
 
 
 def _sentences(parts: list[str]) -> list[str]:

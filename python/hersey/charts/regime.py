@@ -7,8 +7,7 @@ from collections.abc import Sequence
 
 import altair as alt
 
-from hersey.charts.labels import apart
-from hersey.charts.style import BLUE, HEIGHT, INK, ORANGE, WIDTH, Chart, Row, plot, tip
+from hersey.charts.style import BLUE, INK, RED, SECONDARY, SHADE, WIDTH, Chart, Row, plot, tip
 from hersey.document.parts import BranchPart
 from hersey.units import celsius, rpm
 from hersey.verdict.regime import BranchExponent, Regime
@@ -18,11 +17,13 @@ _BRANCHES = {"ehl": "rising torque", "mixed": "falling torque", "all": "all spee
 #: Colour and shape of each.
 _LOOKS = {
     "rising torque": (BLUE, "circle"),
-    "falling torque": (ORANGE, "square"),
-    "all speeds": ("#555", "diamond"),
+    "falling torque": (RED, "square"),
+    "all speeds": (BLUE, "diamond"),
 }
 #: The axis shows at least these exponents.
 _LEAST, _GREATEST = -1.3, 0.1
+#: Height of a row; width that is counted on to keep names apart, that of a letter, height of a line, pixels.
+_ROW, _NARROW, _LETTER, _LINE = 24, 290, 6.6, 14
 
 
 def regime_chart(result: Regime) -> Chart:
@@ -44,55 +45,104 @@ def exponent_row(branch: BranchExponent | BranchPart) -> Row:
     }
 
 
-def exponent_chart(rows: list[Row], regimes: Sequence[tuple[str, float | None, float]]) -> Chart:
-    """Return exponents with their intervals over named regimes, each from a least to a greatest exponent."""
-    low = min([_LEAST, *(r["low"] for r in rows)]) - 0.05
-    high = max([_GREATEST, *(r["high"] for r in rows)])
+def exponent_chart(
+    rows: list[Row],
+    regimes: Sequence[tuple[str, float | None, float]],
+    solved: float | None = None,
+) -> Chart:
+    """Return exponents with their intervals over named regimes, each from a least to a greatest exponent.
+
+    ``solved`` is what the film of the contact gives, if it is known.
+    """
+    told = [row | {"text": ""} for row in rows]
+    for row in told:  # an interval that is not told has no length
+        row |= {end: row["value"] for end in ("low", "high") if row[end] is None}
+    low = min([_LEAST, *(r["low"] for r in told)]) - 0.05
+    high = max([_GREATEST, *(r["high"] for r in told)]) + 0.05
+    told[-1]["text"] = _words(rows[-1])
+    places = sorted({(r["order"], r["where"]) for r in told})
+    order = [where for _, where in places]
+    nip: list[Row] = []
+    if solved is not None:
+        nip = [{"where": "this nip", "value": solved, "text": f"{solved:.2f}, film solved".replace("-", "\u2212")}]
+        order.append("this nip")
     scale = alt.Scale(domain=[low, high], nice=False)
-    title = alt.Title(
-        "Exponent of damping, with 95 % intervals", subtitle="against what each regime predicts"
-    )
-    layers = [*_regimes(regimes, scale, low, high), *_exponents(rows, scale)]
-    return alt.layer(*layers, title=title, width=WIDTH, height=HEIGHT)
+    x = alt.X("value:Q", title="Exponent of damping in speed (no unit)", scale=scale)
+    y = alt.Y("where:N", title=None, sort=order, axis=alt.Axis(grid=False))
+    title = alt.Title("Exponent of damping, with 95 % intervals", subtitle=_subtitle(told))
+    layers = [*_regimes(regimes, scale, low, high), *_exponents(told, x, y, scale), *_nip(nip, x, y)]
+    return alt.layer(*layers, title=title, width=WIDTH, height=_ROW * len(order))
+
+
+def _words(row: Row) -> str:
+    ends = "" if row["low"] is None or row["high"] is None else f" [{row['low']:.3f}, {row['high']:.3f}]"
+    return f"{row['value']:.3f}{ends}".replace("-", "\u2212")
+
+
+def _subtitle(rows: list[Row]) -> str:
+    seen = {r["branch"] for r in rows}
+    shapes = {"rising torque": "round: rising branch", "falling torque": "square: falling branch"}
+    said = [words for branch, words in shapes.items() if branch in seen]
+    return "; ".join([*said, "dashed and grey: what each regime predicts"]).capitalize() + "."
 
 
 def _regimes(
     regimes: Sequence[tuple[str, float | None, float]], scale: alt.Scale, low: float, high: float
 ) -> list[alt.Chart]:
-    """Ranges shaded (an open one down to the axis), single exponents dashed, all named on the right."""
+    """Ranges shaded (an open one down to the axis), single exponents dashed, all named above."""
     named: list[Row] = [
         {"name": name, "low": low if least is None or math.isinf(least) else least, "high": greatest}
         for name, least, greatest in regimes
     ]
-    y = alt.Y("low:Q", scale=scale)
-    shade = plot([h for h in named if h["high"] != h["low"]]).mark_rect(color="#bbb", opacity=0.5, clip=True)
-    rule = plot([h for h in named if h["high"] == h["low"]]).mark_rule(color=INK, strokeDash=[4, 3])
-    middles = [(max(h["low"], low) + h["high"]) / 2 for h in named]
-    heights = apart([HEIGHT * (middle - low) / (high - low) for middle in middles])
-    names: list[Row] = [
-        {"text": h["name"], "down": HEIGHT - up} for h, up in zip(named, heights, strict=True)
-    ]
-    text = plot(names).mark_text(align="left", dx=6, color=INK)
-    return [
-        shade.encode(y=y, y2=alt.Y2("high:Q")),
-        rule.encode(y=y),
-        text.encode(x=alt.value(WIDTH), y=alt.Y("down:Q", scale=None, axis=None), text=alt.Text("text:N")),
-    ]
+    x = alt.X("low:Q", scale=scale)
+    shade = plot([h for h in named if h["high"] != h["low"]]).mark_rect(color=SHADE, clip=True)
+    rule = plot([h for h in named if h["high"] == h["low"]]).mark_rule(color=SECONDARY, strokeDash=[4, 3])
+    layers = [shade.encode(x=x, x2=alt.X2("high:Q")), rule.encode(x=x)]
+    ends = [-math.inf] * len(named)
+    for each in sorted(named, key=lambda h: h["low"] + h["high"]):
+        middle = (each["low"] + each["high"]) / 2
+        at = _NARROW * (middle - low) / (high - low)
+        half = 0.5 * _LETTER * len(each["name"])
+        side = "left" if at < half else "right" if at > _NARROW - half else "center"
+        left = {"left": at, "right": at - 2 * half, "center": at - half}[side]
+        row = next(i for i, end in enumerate(ends) if left > end + 6)
+        ends[row] = left + 2 * half
+        name = plot([{"text": each["name"], "low": middle}])
+        text = name.mark_text(align=side, fontSize=12, color=SECONDARY)  # type: ignore[arg-type]  # of three
+        layers.append(text.encode(x=x, y=alt.value(-9 - _LINE * row), text=alt.Text("text:N")))
+    return layers
 
 
-def _exponents(rows: list[Row], scale: alt.Scale) -> list[alt.Chart]:
+def _exponents(rows: list[Row], x: alt.X, y: alt.Y, scale: alt.Scale) -> list[alt.Chart]:
     branches = [name for name in _LOOKS if any(r["branch"] == name for r in rows)]
-    legend = alt.Legend(orient="top", title=None)
-    colors = alt.Scale(domain=branches, range=[_LOOKS[name][0] for name in branches])
-    shapes = alt.Scale(domain=branches, range=[_LOOKS[name][1] for name in branches])
-    color = alt.Color("branch:N", scale=colors, legend=legend)
-    shape = alt.Shape("branch:N", scale=shapes, legend=legend)
-    tips = [tip("value", "exponent"), tip("low", "95 % from"), tip("high", "to"), alt.Tooltip("speeds:N")]
-    x = alt.X("where:N", title=None, sort=alt.SortField("order"), axis=alt.Axis(labelAngle=0))
-    y = alt.Y("value:Q", title="exponent of damping in speed", scale=scale)
-    bars = plot(rows).mark_rule(strokeWidth=3)
-    dots = plot(rows).mark_point(filled=True, size=90)
-    return [
-        bars.encode(x=x, y=alt.Y("low:Q", scale=scale), y2=alt.Y2("high:Q"), color=color),
-        dots.encode(x=x, y=y, color=color, shape=shape, tooltip=tips),
+    color = alt.Color(
+        "branch:N", scale=alt.Scale(domain=branches, range=[_LOOKS[b][0] for b in branches]), legend=None
+    )
+    shape = alt.Shape(
+        "branch:N", scale=alt.Scale(domain=branches, range=[_LOOKS[b][1] for b in branches]), legend=None
+    )
+    tips = [
+        alt.Tooltip("where:N", title="where"),
+        alt.Tooltip("branch:N", title="branch"),
+        tip("value", "exponent"),
+        tip("low", "95 % from"),
+        tip("high", "to"),
+        alt.Tooltip("speeds:N", title="speeds"),
     ]
+    bars = plot(rows).mark_rule(strokeWidth=1.6, color=INK)
+    dots = plot(rows).mark_point(filled=True, size=60, opacity=1)
+    words = plot([rows[-1]]).mark_text(align="left", dx=10, fontWeight="bold", color=INK, fontSize=12)
+    return [
+        bars.encode(x=alt.X("low:Q", scale=scale), x2=alt.X2("high:Q"), y=y),
+        dots.encode(x=x, y=y, color=color, shape=shape, tooltip=tips),
+        words.encode(x=alt.X("high:Q", scale=scale), y=y, text="text:N"),
+    ]
+
+
+def _nip(rows: list[Row], x: alt.X, y: alt.Y) -> list[alt.Chart]:
+    """What the film of the contact gives, under the rest."""
+    if not rows:
+        return []
+    mark = plot(rows).mark_point(shape="triangle-down", filled=True, size=60, color=SECONDARY, opacity=1)
+    words = plot(rows).mark_text(align="left", dx=10, color=SECONDARY, fontSize=12)
+    return [mark.encode(x=x, y=y), words.encode(x=x, y=y, text="text:N")]

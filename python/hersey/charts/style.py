@@ -14,8 +14,14 @@ from hersey.charts.labels import apart
 from hersey.units import celsius
 
 WIDTH, HEIGHT = 680, 340
-#: Ink for words and rules, the first and the second colour of lines.
-INK, BLUE, ORANGE = "#333", "#1f4e9c", "#d9730d"
+#: Ink for words and rules, the first and the second colour of lines (static/tokens.css of the pages).
+INK, BLUE, ORANGE = "#15202b", "#0a5c8f", "#b8500c"
+#: Words beside a chart, what is hardly more than the ground, and what does not hold.
+SECONDARY, SHADE, EDGE, RED, GREEN = "#4b5965", "#eaeef1", "#73808c", "#a5301a", "#17694a"
+#: Anchors of the colours of temperatures, cold to hot.
+_RAMP = ((0x2B, 0x4F, 0x9E), (0x7A, 0x3F, 0x9D), (0xB3, 0x2C, 0x66), (0xB8, 0x50, 0x0C))
+#: Names at the ends of lines are as far apart, pixels.
+APART = 14.0
 SHAPES = ("circle", "square", "triangle-up", "diamond", "cross", "triangle-down")
 Row = dict[str, Any]
 #: A pale rim around words, so that lines do not run through them.
@@ -65,11 +71,16 @@ def unchecked() -> AbstractContextManager[None]:
 
 
 def ramp(count: int) -> list[str]:
-    """Dark blue (cold) to orange (hot), lightness rising evenly (anchors of the plasma scale)."""
-    anchors = np.array([[13, 8, 135], [126, 3, 168], [203, 70, 121], [240, 135, 60]], dtype=float)
+    """Blue (cold) by purple to orange (hot), all dark enough for words on white."""
+    anchors = np.array(_RAMP, dtype=float)
     at = np.linspace(0, 3, count) if count > 1 else np.array([0.0])
     channels = [np.interp(at, range(4), anchors[:, i]) for i in range(3)]
     return [f"#{int(r):02x}{int(g):02x}{int(b):02x}" for r, g, b in zip(*channels, strict=True)]
+
+
+def across(pixels: float = 0.0) -> Any:
+    """Return a place so many pixels right of a chart's right edge, whatever its width."""
+    return alt.value(alt.ExprRef(f"width + {pixels:g}"))
 
 
 def rows_of(**columns: object) -> list[Row]:
@@ -88,7 +99,7 @@ def torque_unit(largest: float) -> tuple[float, str]:
     return (1.0, "N·m") if largest >= 1.0 else (1e3, "mN·m")
 
 
-def level(value: float, name: str, *, lift: float = 0.0, width: int = WIDTH) -> list[alt.Chart]:
+def level(value: float, name: str, *, lift: float = 0.0) -> list[alt.Chart]:
     """Return a dashed level across a chart, named right of it where no line crosses the words.
 
     ``lift`` moves the name up by pixels, away from that of a level nearby.
@@ -97,7 +108,7 @@ def level(value: float, name: str, *, lift: float = 0.0, width: int = WIDTH) -> 
     y = alt.Y("value:Q")
     rule = mark.mark_rule(color=INK, strokeDash=[4, 3], strokeWidth=1).encode(y=y)
     text = mark.mark_text(align="left", dx=6, dy=-lift, color=INK, fontSize=12)
-    return [rule, text.encode(x=alt.value(width), y=y, text=alt.Text("name:N"))]
+    return [rule, text.encode(x=across(), y=y, text=alt.Text("name:N"))]
 
 
 def levels(marks: list[tuple[float, str]], domain: tuple[float, float], height: float) -> list[alt.Chart]:

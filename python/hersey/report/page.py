@@ -6,6 +6,7 @@ from vl-convert and inlined, so the file works offline and nothing foreign is ke
 
 from __future__ import annotations
 
+import base64
 from collections.abc import Mapping
 from importlib import resources
 from typing import Any
@@ -16,25 +17,63 @@ from hersey.charts.render import specification_of
 from hersey.charts.style import Chart
 from hersey.document.parts import Analysis
 
-# Samples that only the charts need: the page carries them once.
-_DRAWN: Any = {
-    "timeline": True,
-    "fit": {"curves", "cells", "transition_curve"},
-    "simulation": {"time", "belt_speed", "spring_force"},
-}
+#: Styles of all pages, and the pieces of their scripts, in the order in which they are one module.
+_STYLES = ("tokens.css", "page.css")
+_SHARED = ("drawing.js", "chart.js")
+_LIVE = (
+    "physics.js",
+    "shape.js",
+    "map.js",
+    "settings.js",
+    "traces.js",
+    "profile.js",
+    "worker.js",
+    "controls.js",
+    "panel.js",
+)
+_REPORT = ("panel.css", "timeline.js", *_LIVE, "first.js", "page.js")
+#: The page draws these itself, on one axis.
+_TIMELINE = "timeline_"
 
 
 def render(document: Analysis) -> str:
     """Return the page of a log as HTML text."""
-    shown = document.model_dump(mode="json", exclude=_DRAWN)
-    return drawn("page", "hersey report", shown, charts(document))
+    shown = {name: chart for name, chart in charts(document).items() if not name.startswith(_TIMELINE)}
+    core = resources.files("hersey.report") / "static" / "physics.wasm"
+    physics = base64.b64encode(core.read_bytes()).decode() if core.is_file() and document.map else None
+    return drawn(_REPORT, "hersey report", document.model_dump(mode="json"), shown, physics=physics)
 
 
-def drawn(name: str, title: str, document: Mapping[str, Any], charts: Mapping[str, Chart]) -> str:
-    """Return a page as HTML text: what the script ``static/NAME.js`` shows of a document, with its charts."""
-    static = resources.files("hersey.report") / "static"
-    files = ("page.html", "page.css", "drawing.js", f"{name}.js")
-    body, style, drawing, script = ((static / file).read_text(encoding="utf-8") for file in files)
-    specifications = {key: specification_of(chart) for key, chart in charts.items()}
-    data = {"document": document, "charts": specifications}
-    return page(title=title, style=style, body=body, data=data, script=f"{drawing}\n{script}")
+def drawn(
+    pieces: tuple[str, ...],
+    title: str,
+    document: Mapping[str, Any],
+    charts: Mapping[str, Chart],
+    *,
+    physics: str | None = None,
+) -> str:
+    """Return a page as HTML text: what the ``pieces`` of ``static`` (scripts, styles) show of a document, with its charts.
+
+    ``physics`` is the core as WebAssembly, in base64.
+    """
+    data: dict[str, object] = {
+        "document": document,
+        "charts": {key: specification_of(chart) for key, chart in charts.items()},
+    }
+    if physics is not None:
+        data["physics"] = physics
+    return page(
+        title=title,
+        style=_static((*_STYLES, *(name for name in pieces if name.endswith(".css")))),
+        body=_static(("page.html",)),
+        data=data,
+        script=_static((*_SHARED, *(name for name in pieces if name.endswith(".js")))),
+        computes=physics is not None,
+    )
+
+
+def _static(names: tuple[str, ...]) -> str:
+    """The pieces one after another, as far as they are there."""
+    folder = resources.files("hersey.report") / "static"
+    files = [folder / name for name in names]
+    return "\n".join(file.read_text(encoding="utf-8") for file in files if file.is_file())

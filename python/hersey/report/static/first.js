@@ -1,0 +1,153 @@
+// The first screen: where the data come from, what to do, the operating points, what stands against it, the
+// map, and the panel that answers.
+
+const TO_RPM = 60 / (2 * Math.PI);
+const celsius = (kelvin) => kelvin - 273.15;
+const degrees = (kelvin) => data.fit.temperature_scale === "K" ? `${digits(kelvin, 4)} K` : `${digits(celsius(kelvin), 3)} °C`;
+const perSecond = (speed) => speed === null || speed === undefined ? "–" : digits(speed * 1e3, 3);
+// The unit in which the torques of the document read best, with its factor from N·m.
+function torqueUnit() {
+  return Math.max(...data.points.map((p) => Math.abs(p.torque))) >= 1 ? [1, "N·m"] : [1e3, "mN·m"];
+}
+function seconds(value) {
+  return value >= 600 ? `${(value / 60).toFixed(1)} min` : `${digits(value)} s`;
+}
+const counted = (value) => String(value).replace(/\B(?=(\d{3})+$)/g, "\u202f");
+
+function titleLine() {
+  const head = document.getElementById("title");
+  head.className = "title";
+  add(head, "h1", data.title);
+  if (data.files.some((f) => f.comments.some((text) => /synthetic/i.test(text)))) add(head, "span", "synthetic, no measurement", "mark");
+  const duration = data.files.reduce((sum, f) => sum + f.duration, 0);
+  const made = data.made ? new Date(data.made).toLocaleString("en-GB", { day: "numeric", month: "short", year: "numeric", hour: "2-digit", minute: "2-digit" }) : "";
+  const from = [made, `${counted(data.quality.rows)} rows${duration ? ` in ${seconds(duration)}` : ""}`, data.machine ? `machine: ${data.machine.name}` : ""];
+  add(head, "span", from.filter(Boolean).join(" · "), "meta");
+  const tools = add(head, "span", "", "tools");
+  link(tools, "Contents", "contents").className = "btn";
+  button(tools, "Print", () => window.print());
+  theme(tools);
+}
+
+// What the flags call sections, where it is not their name here.
+const SECTIONS = { film: "regime", verdict: "regime", models: "candidates", quality: "data", log: "data", fit: "torque", damping: "torque", stability: "band", step: "band", plans: "plan", points: "plan", comparison: "compare" };
+const sectionOf = (name) => SECTIONS[name] ?? name;
+
+function decision() {
+  const row = add(report, "div", "", "decide");
+  const box = add(row, "div", "", "decision");
+  box.id = "decision";
+  const told = data.decision;
+  const kind = told?.signal ?? "watch";
+  const sign = add(box, "div", "", `sign ${kind}`);
+  sign.append(largeSign(kind));
+  add(sign, "span", SIGNALS[kind]);
+  const words = add(box, "div");
+  const lead = add(words, "p", pretty(told?.instruction ?? data.verdict[0] ?? ""), "lead");
+  if (told?.interval) {
+    lead.append(" ");
+    add(lead, "span", pretty(told.interval), "interval");
+  }
+  if (told?.otherwise) add(words, "p", pretty(told.otherwise), "more");
+  if (lead.textContent.length + 0.6 * (told?.otherwise.length ?? 0) > 210) row.classList.add("tight");
+  if (told?.points.length) points(row, told.points);
+  else row.style.gridTemplateColumns = "minmax(0, 1fr)";
+  if (told?.flags.length) {
+    const flags = add(report, "ul", "", "flags");
+    flags.id = "flags";
+    for (const flag of told.flags) {
+      const item = add(flags, "li");
+      const title = add(item, "b", "", flag.signal);
+      title.append(signal(flag.signal));
+      add(title, "span", `${SIGNALS[flag.signal]}: `, "sr-only");
+      title.append(pretty(flag.title.replace(/\.?$/, ".")));
+      item.append(` ${pretty(flag.text)} `);
+      item.dataset.section = sectionOf(flag.section);
+    }
+  }
+}
+function largeSign(kind) {
+  const drawing = svg("svg", { viewBox: "0 0 44 40", "aria-hidden": "true" });
+  const outline = { good: "M22 3a17 17 0 1 1 0 34a17 17 0 1 1 0-34Z", watch: "M22 3 42 37H2Z", act: "M5 3h34v34H5Z" }[kind];
+  const inside = { good: "M14 20l6 6 10-12", watch: "M22 14v11M22 29v4", act: "M22 9v14M22 28v4" }[kind];
+  svg("path", { d: outline, fill: "none", stroke: "currentColor", "stroke-width": 4, "stroke-linejoin": "round" }, drawing);
+  svg("path", { d: inside, fill: "none", stroke: "currentColor", "stroke-width": 4 }, drawing);
+  return drawing;
+}
+function points(row, all) {
+  const element = add(row, "table", "", "points");
+  const levels = new Set(all.map((p) => degrees(p.temperature)));
+  add(element, "caption", `Your operating points${levels.size === 1 ? ` at ${[...levels][0]}` : ""}`);
+  const body = add(element, "tbody");
+  all.forEach((point, i) => {
+    const line = add(body, "tr");
+    const word = add(line, "td", "", `s ${point.signal}`);
+    word.append(signal(point.signal), SIGNALS[point.signal]);
+    add(line, "td", point.name, "n");
+    add(line, "td", `${perSecond(point.speed)} mm/s${levels.size > 1 ? `, ${degrees(point.temperature)}` : ""}`, "v");
+    const words = add(line, "td", pretty(point.words), "w");
+    if (point.plan) {
+      words.append(" (");
+      link(words, "plan", "plan");
+      words.append(")");
+    }
+    const press = button(add(line, "td", "", "b"), "Show", () => controller?.show(i));
+    press.setAttribute("aria-label", `Show ${point.name}`);
+    press.dataset.show = i;
+    press.disabled = true;
+  });
+}
+// Flags point to their sections once these are there.
+function linkFlags() {
+  for (const item of document.querySelectorAll("#flags li")) {
+    const section = document.getElementById(item.dataset.section);
+    if (section) link(item, section.querySelector("h2").textContent, section.id);
+  }
+}
+
+// What answers to a setting; null where nothing does.
+let controller = null;
+async function mapAndPanel() {
+  const row = add(report, "div", "", "first");
+  const place = add(row, "figure");
+  place.id = "map";
+  const panel = add(row, "div", "", "panel");
+  panel.id = "panel";
+  const free = innerHeight - place.getBoundingClientRect().top - scrollY - 8;
+  place.style.setProperty("--map-height", `${Math.round(Math.min(560, Math.max(380, free)))}px`);
+  if (!data.map) {
+    await chart(place, "torque", { heading: "Torque against speed", note: torqueNote(), behind: true });
+    missing(panel);
+    return;
+  }
+  if (typeof live === "function") {
+    const block = document.getElementById("physics");
+    const bytes = block && typeof WebAssembly === "object" ? bytesOf(JSON.parse(block.textContent)) : null;
+    controller = await live(data, bytes, { map: place, panel });
+  } else if (typeof operatingMap === "function") operatingMap(data, place);
+  else add(panel, "p", "Settings cannot be tried here.", "u");
+  if (controller) for (const press of document.querySelectorAll("[data-show], [data-profile]")) press.disabled = false;
+}
+function bytesOf(text) {
+  return Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+}
+// What would let the report say more: lines to add, ready to copy.
+function missing(panel) {
+  const cap = add(panel, "div", "", "cap");
+  add(cap, "h2", "To say more");
+  const all = data.decision?.missing ?? [];
+  if (!all.length) {
+    add(panel, "p", "With a machine's file (--machine) the report shows where the belt runs smoothly, sticks or stalls.", "text");
+    return;
+  }
+  all.forEach((each, i) => {
+    add(panel, "p", pretty(each.purpose));
+    const head = add(panel, "div", "", "cap");
+    head.style.marginTop = "6px";
+    add(head, "h3", each.file);
+    const lines_ = add(panel, "pre", each.lines);
+    lines_.className = "lines";
+    reachable(lines_);
+    button(head, i ? "Copy" : "Copy the lines", (from) => copy(each.lines, from));
+  });
+}
