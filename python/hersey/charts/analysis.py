@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import altair as alt
 import numpy as np
@@ -19,6 +18,7 @@ from hersey.charts.labels import apart
 from hersey.charts.plan import profile_chart
 from hersey.charts.regime import exponent_chart, exponent_row
 from hersey.charts.render import write_pictures
+from hersey.charts.stick_speed import stick_speed_chart
 from hersey.charts.style import (
     APART,
     BLUE,
@@ -30,8 +30,10 @@ from hersey.charts.style import (
     Row,
     across,
     logarithmic,
+    logarithmic_axis,
     plot,
     ramp,
+    span,
     temperature_channels,
     temperature_name,
     tip,
@@ -41,10 +43,12 @@ from hersey.charts.style import (
 )
 from hersey.charts.transition import transition_chart
 from hersey.document.parts import Analysis, PlanPart, Point, Series
+from hersey.document.parts.decision import StartPart
 from hersey.units import celsius, rpm
 
 #: Cells of a surface overlap a little: seams would shine through otherwise.
 _OVERLAP = 1.004
+_ROLL = "Roll speed (rpm)"
 #: Height of torque and damping.
 _TALL = 290
 #: Width kept for the axis of charts that share a time axis, so that they line up.
@@ -62,6 +66,9 @@ def charts(document: Analysis) -> dict[str, Chart]:
         "film": film,
         "transition": transition,
         "carried": carried,
+        "stick_speed": stick_speed,
+        "simulation_speed": simulation_speed,
+        "simulation_force": simulation_force,
         "compare": compare,
         "timeline_speed": timeline_speed,
         "timeline_torque": timeline_torque,
@@ -88,9 +95,8 @@ def damping(document: Analysis) -> Chart:
     title = alt.Title(
         "Damping against speed", subtitle="dashed: slope -1, where torque does not depend on speed"
     )
-    slope = _slope_of_minus_one(document, scale)
-    chart = _against_speed(document, "damping", f"Damping ({unit}·s/rad)", scale, [slope])
-    return chart.properties(title=title)
+    under = [_slope_of_minus_one(document, scale)]
+    return _against_speed(document, "damping", f"Damping ({unit}·s/rad)", scale, under).properties(title=title)
 
 
 def surface(document: Analysis) -> Chart:
@@ -212,8 +218,262 @@ def carried(document: Analysis) -> Chart | None:
     return None if document.carried is None else carried_chart(document.carried)
 
 
+def stick_speed(document: Analysis) -> Chart | None:
+    """V* against the stick speed, which nobody measures."""
+    return None if document.stick_speed_sweep is None else stick_speed_chart(document)
 
 
 def compare(document: Analysis) -> Chart | None:
     """Damping of one log over that of another."""
     return None if document.compare is None else logs_chart(document.compare)
+
+def simulation_speed(document: Analysis) -> Chart | None:
+    """Belt speed of the simulation (Fig. 9); None without one."""
+    s = document.simulation
+    if s is None:
+        return None
+    scale, unit = (1e3, "mm/s") if s.speed_unit == "m/s" else (1.0, s.speed_unit)
+    rows = [{"time": t, "value": v * scale} for t, v in zip(s.time, s.belt_speed, strict=True)]
+    marks = [(s.transition_speed * scale, "transition speed", alt.ExprRef("width"), "right")]
+    marks += (
+        [(s.drive_speed * scale, "drive speed", 4, "left")] if s.drive_speed != s.transition_speed else []
+    )
+    line = _trace(rows, f"Belt speed ({unit})")
+    layers: list[alt.Chart] = []
+    for y, name, at, align in marks:
+        mark = plot([{"y": y, "name": name}])
+        layers.append(mark.mark_rule(color=INK, strokeDash=[4, 3]).encode(y="y:Q"))
+        label = mark.mark_text(align=align, dy=-7, color=INK)  # type: ignore[arg-type]  # left or right
+        layers.append(label.encode(x=alt.value(at), y="y:Q", text="name:N"))
+    what = {"stick_slip": f"stick-slip at {s.frequency:.4g} Hz, stuck {s.stuck_fraction:.1%} of the time"}
+    title = alt.Title(s.title, subtitle=what.get(s.kind, s.kind.replace("_", " ")))
+    return alt.layer(line, *layers).properties(title=title, width=WIDTH, height=220)
+
+
+def simulation_force(document: Analysis) -> Chart | None:
+    """Spring force of the simulation; None without one."""
+    s = document.simulation
+    if s is None:
+        return None
+    rows = [{"time": t, "value": f} for t, f in zip(s.time, s.spring_force, strict=True)]
+    return alt.layer(_trace(rows, f"Spring force ({s.force_unit})")).properties(width=WIDTH, height=160)
+
+
+def timeline_speed(document: Analysis) -> Chart | None:
+    """Speed over the log, dwells shaded; None for a table of means."""
+    if not document.timeline.starts:
+        return None
+    return _timeline(document, document.timeline.speed, "Speed (rpm)", rpm, "The log: dwells used are shaded")
+
+
+def timeline_torque(document: Analysis) -> Chart | None:
+    """Torque over the log, dwells shaded; None for a table of means."""
+    if not document.timeline.starts:
+        return None
+    scale, unit = _torque_unit(document)
+    return _timeline(document, document.timeline.torque, f"Torque ({unit})", lambda v: v * scale, None)
+
+
+def timeline_temperature(document: Analysis) -> Chart | None:
+    """Temperature over the log, dwells shaded; None if not recorded."""
+    series = document.timeline.temperature
+    return None if series is None else _timeline(document, series, "Temperature (°C)", celsius, None)
+
+
+def write_figures(document: Analysis, folder: Path) -> list[Path]:
+    """Write every chart as SVG, PNG and PDF and return the paths; all are drawn before one is written."""
+    return write_pictures(charts(document), folder)
+
+
+def _torque_unit(document: Analysis) -> tuple[float, str]:
+    """Factor from N m, and the unit in which the torques of a document read best."""
+    return torque_unit(max(abs(p.torque) for p in document.points))
+
+
+def _against_speed(
+    document: Analysis, quantity: str, title: str, scale: float, under: list[alt.Chart]
+) -> Chart:
+    """Dwells and the fitted law, each temperature named at its line's end, over what lies ``under``."""
+    rows = _point_rows(document)
+    for row, point in zip(rows, document.points, strict=True):
+        value, error = abs(getattr(point, quantity)) * scale, 2 * abs(point.torque_error / point.torque)
+        row |= {"y": value, "low": value * (1 - error), "high": value * (1 + error)}
+    curves = [
+        {
+            "speed": rpm(v),
+            "y": scale * b * (v if quantity == "torque" else 1.0),
+            "level": temperature_name(c.temperature),
+        }
+        for c in document.fit.curves
+        for v, b in zip(c.speed, c.damping, strict=True)
+    ]
+    domain = span([r["y"] for r in rows] + [r["y"] for r in curves])
+    y = alt.Y("y:Q", title=title, **logarithmic_axis(domain))
+    reach = span([r["speed"] for r in rows])
+    x = alt.X("speed:Q", title=_ROLL, **logarithmic_axis(reach))
+    levels = sorted({row["level"] for row in rows})
+    shades = alt.Scale(domain=levels, range=ramp(len(levels)))
+    color = alt.Color("level:N", scale=shades, legend=None)
+    shown = {"opacity": alt.condition("indexof(hidden, datum.level) < 0", alt.value(1), alt.value(0.06))}
+    line = plot(curves).mark_line(strokeWidth=1.6).encode(x=x, y=y, color=color, detail="level:N", **shown)
+    base = plot(rows)
+    bars = base.mark_rule(strokeWidth=1.2).encode(x=x, y="low:Q", y2="high:Q", color=color, **shown)
+    fill = alt.condition("datum.approach === 'from above'", alt.value("white"), color)
+    dots = base.mark_point(size=30, strokeWidth=1.4).encode(
+        x=x, y=y, stroke=color, fill=fill, tooltip=_point_tips(document), **shown
+    )
+    layers = [*under, *_ends(curves, domain, shades), *_bends(document, quantity, scale, x, y)]
+    hidden = alt.param(name="hidden", value=[])
+    series = [
+        {"name": f"{level:.0f} °C", "value": level, "color": shade}
+        for level, shade in zip(levels, ramp(len(levels)), strict=True)
+    ]
+    chart: Chart = alt.layer(*layers, line, bars, dots, width=WIDTH, height=_TALL)
+    return chart.add_params(hidden).properties(usermeta={"series": series})
+
+
+def _ends(curves: list[Row], domain: list[float], shades: alt.Scale) -> list[alt.Chart]:
+    """The temperature at the end of each line, none nearer to the next than can be read."""
+    ends = {row["level"]: row for row in curves}
+    if len(ends) < 2:
+        return []
+    low, high = np.log(domain)
+    ups = [_TALL * (float(np.log(row["y"])) - low) / (high - low) for row in ends.values()]
+    named: list[Row] = [
+        {"level": level, "down": _TALL - up, "text": f"{level:.0f} °C"}
+        for level, up in zip(ends, apart(ups, APART), strict=True)
+    ]
+    text = plot(named).mark_text(align="left", dx=6, fontSize=11.5, fontWeight="bold")
+    return [
+        text.encode(
+            x=across(),
+            y=alt.Y("down:Q", scale=None, axis=None),
+            text="text:N",
+            color=alt.Color("level:N", scale=shades, legend=None),
+        )
+    ]
+
+
+def _bends(document: Analysis, quantity: str, scale: float, x: alt.X, y: alt.Y) -> list[alt.Chart]:
+    """A tick on each line at its transition."""
+    if document.fit.transition is None or quantity != "torque":
+        return []
+    rows: list[Row] = []
+    for curve in document.fit.curves:
+        torque = [v * b * scale for v, b in zip(curve.speed, curve.damping, strict=True)]
+        least = int(np.argmin(torque))
+        if 0 < least < len(torque) - 1:
+            rows.append({"speed": rpm(curve.speed[least]), "y": torque[least]})
+    mark = plot(rows).mark_tick(orient="vertical", size=13, thickness=1.6, color=INK)
+    return [mark.encode(x=x, y=y)] if rows else []
+
+
+def _plans(document: Analysis) -> list[tuple[PlanPart, StartPart | None]]:
+    """Plans that are drawn, with the motion they make if the document has it."""
+    if document.decision is not None:
+        planned = [(p.plan, p.motion) for p in document.decision.points if p.plan]
+        if planned:
+            return planned
+    return [] if document.plan is None else [(document.plan, None)]
+
+
+def _slope_of_minus_one(document: Analysis, scale: float) -> alt.Chart:
+    """From the upper left corner of the data down, as far as they reach."""
+    top = max(p.damping for p in document.points) * scale
+    bottom = min(p.damping for p in document.points) * scale
+    low, high = (rpm(v) for v in document.fit.speed_range)
+    end = min(high, low * top / bottom)
+    rows = [{"speed": low, "y": top}, {"speed": end, "y": top * low / end}]
+    chart: alt.Chart = (
+        plot(rows)
+        .mark_line(color=INK, strokeDash=[4, 3], strokeWidth=1)
+        .encode(x="speed:Q", y="y:Q")
+    )
+    return chart
+
+
+def _point_rows(document: Analysis) -> list[Row]:
+    scale, _ = _torque_unit(document)
+    return [_point_row(p, scale) for p in document.points]
+
+
+def _point_row(p: Point, scale: float) -> Row:
+    return {
+        "speed": rpm(abs(p.speed)),
+        "temperature": None if p.temperature is None else celsius(p.temperature),
+        "level": temperature_name(p.group_temperature),
+        "torque_shown": abs(p.torque) * scale,
+        "damping_shown": p.damping * scale,
+        "residual": 100.0 * float(np.expm1(p.residual)),
+        "approach": p.approach,
+        "from_to": f"{p.start:.1f} to {p.end:.1f} s",
+    }
+
+
+def _temperature_channels(document: Analysis) -> tuple[alt.Color, alt.Shape]:
+    kelvin = [p.group_temperature for p in document.points]
+    return temperature_channels(kelvin, legend=document.fit.temperature_range is not None)
+
+
+def _speed(field: str, domain: list[float] | None = None) -> alt.X:
+    scale = logarithmic() if domain is None else alt.Scale(type="log", domain=domain)
+    return alt.X(field, title=_ROLL, scale=scale)
+
+
+def _point_tips(document: Analysis) -> list[alt.Tooltip]:
+    _, unit = _torque_unit(document)
+    hot = [tip("temperature", "temperature (°C)")] if document.fit.temperature_range else []
+    return [
+        tip("speed", "speed (rpm)"),
+        *hot,
+        tip("torque_shown", f"torque ({unit})"),
+        tip("damping_shown", f"damping ({unit}·s/rad)"),
+        tip("residual", "measured / fitted - 1 (%)"),
+        alt.Tooltip("approach:N", title="approached"),
+        alt.Tooltip("from_to:N", title="dwell"),
+    ]
+
+
+def _trace(rows: list[Row], title: str) -> alt.Chart:
+    chart: alt.Chart = (
+        plot(rows)
+        .mark_line(color=BLUE, strokeWidth=1.5)
+        .encode(
+            x=alt.X("time:Q", title="Time (s)", scale=alt.Scale(nice=False)),
+            y=alt.Y("value:Q", title=title, axis=alt.Axis(minExtent=_AXIS)),
+            tooltip=[tip("time", "time (s)"), tip("value", title)],
+        )
+        .add_params(zoom())
+    )
+    return chart
+
+
+def _timeline(
+    document: Analysis, series: Series, title: str, in_unit: Callable[[float], float], heading: str | None
+) -> Chart:
+    values = [float(f"{in_unit(v):.5g}") for v in series.value]
+    rows = [{"time": t, "value": v} for t, v in zip(series.time, values, strict=True)]
+    starts = document.timeline.starts
+    dwells = [{"from": starts[p.run] + p.start, "to": starts[p.run] + p.end} for p in document.points]
+    several = len(document.files) > 1
+    shade = (
+        plot(dwells)
+        .mark_rect(color=GREEN, opacity=0.25)
+        .encode(x="from:Q", x2="to:Q", y=alt.value(0), y2=alt.value(110))
+    )
+    line = (
+        plot(rows)
+        .mark_line(color=BLUE, strokeWidth=0.9)
+        .encode(
+            x=alt.X(
+                "time:Q",
+                title="Time (s), files one after another" if several else "Time (s)",
+                scale=alt.Scale(nice=False),
+            ),
+            y=alt.Y("value:Q", title=title, scale=alt.Scale(zero=False), axis=alt.Axis(minExtent=_AXIS)),
+            tooltip=[tip("time", "time (s)"), tip("value", title)],
+        )
+        .add_params(zoom())
+    )
+    chart = alt.layer(shade, line).properties(width=WIDTH, height=110)
+    return chart.properties(title=heading) if heading else chart

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import altair as alt
 
-from hersey.charts.style import HEIGHT, INK, WIDTH, Chart, logarithmic, plot, rows_of, tip, torque_unit
+from hersey.charts.style import HEIGHT, INK, WIDTH, Chart, logarithmic_axis, plot, rows_of, span, tip, torque_unit
 from hersey.document.parts import CarriedPart
 from hersey.units import celsius, rpm
 
@@ -30,13 +30,13 @@ def carried_chart(part: CarriedPart) -> Chart:
         speed=[rpm(speed) for speed in part.measured_speed],
         whole=[factor * torque for torque in part.measured_torque],
     )
-    x = alt.X("speed:Q", title="Roll speed (rpm)", scale=logarithmic())
+    x = alt.X("speed:Q", title="Roll speed (rpm)", **logarithmic_axis(span([row["speed"] for row in rows])))
     areas = (
         plot(rows)
         .mark_area(line=False)
         .encode(
             x=x,
-            y=alt.Y("torque:Q", title=f"Torque ({unit})", stack="zero"),
+            y=alt.Y("torque:Q", title=f"Torque ({unit})", stack="zero", axis=alt.Axis(tickCount=6)),
             order="order:Q",
             color=alt.Color(
                 "part:N",

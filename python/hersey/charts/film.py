@@ -11,7 +11,7 @@ from hersey import _core
 from hersey.arrays import FloatArray, IntArray, pointwise
 from hersey.charts.friction import friction_chart
 from hersey.charts.labels import Labels
-from hersey.charts.style import BLUE, INK, RIM, WIDTH, Chart, Row, plot
+from hersey.charts.style import BLUE, INK, RIM, WIDTH, Chart, Row, logarithmic_axis, plot
 from hersey.charts.transition import transition_chart
 from hersey.document.film_part import film_points
 from hersey.document.parts import FilmPoint
@@ -94,8 +94,8 @@ def regime_chart(points: list[FilmPoint], dwells: list[FilmPoint], layer_factor:
 def _regimes(points: list[Row], dwells: list[Row], layer_factor: float) -> Chart:
     known = [row for row in (*points, *dwells) if row["g_v"] > 0]
     spans = [_span([row["g_v"] for row in known], _LEAST[0]), _span([row["g_e"] for row in known], _LEAST[1])]
-    x = alt.X("g_v:Q", title="Viscosity parameter g_V (no unit)", scale=_log(spans[0]))
-    y = alt.Y("g_e:Q", title="Elasticity parameter g_E (no unit)", scale=_log(spans[1]))
+    x = alt.X("g_v:Q", title="Viscosity parameter g_V (no unit)", **_log(spans[0]))
+    y = alt.Y("g_e:Q", title="Elasticity parameter g_E (no unit)", **_log(spans[1]))
     cells, regime = _cells(spans, layer_factor)
     shade = alt.Scale(domain=list(REGIMES), range=list(_SHADES))
     area = (
@@ -180,8 +180,8 @@ def _span(values: list[float], least: tuple[float, float]) -> tuple[float, float
     return min(least[0], float(logs.min()) - _MARGIN), max(least[1], float(logs.max()) + _MARGIN)
 
 
-def _log(span: tuple[float, float]) -> alt.Scale:
-    return alt.Scale(type="log", domain=[10.0 ** span[0], 10.0 ** span[1]], nice=False)
+def _log(span: tuple[float, float]) -> Row:
+    return logarithmic_axis((10.0 ** span[0], 10.0 ** span[1]))
 
 
 def _cells(spans: list[tuple[float, float]], softness: float) -> tuple[list[Row], IntArray]:
@@ -202,7 +202,7 @@ def _cells(spans: list[tuple[float, float]], softness: float) -> tuple[list[Row]
                 cells.append(
                     {
                         "g_v": 10.0 ** edges[0][i],
-                        "g_v2": 10.0 ** (edges[0][i + 1] + 0.004),
+                        "g_v2": 10.0 ** (edges[0][i + 1] + 0.03),
                         "g_e": 10.0 ** edges[1][start],
                         "g_e2": 10.0 ** edges[1][j],
                         "regime": REGIMES[regime[i, start]],

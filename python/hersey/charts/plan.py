@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import altair as alt
 import numpy as np
 
 from hersey.charts.style import BLUE, EDGE, INK, ORANGE, RIM, WIDTH, Chart, Row, level, levels, plot, tip
 from hersey.document.parts import PlanPart
+from hersey.document.parts.decision import StartPart
 from hersey.errors import InsufficientDataError
 from hersey.motion.schedule import Schedule
 from hersey.stability.plan.result import Plan
@@ -47,7 +46,7 @@ def plan_chart(plan: Plan, *, temperature: Schedule | None = None) -> Chart:
     return stacked
 
 
-def profile_chart(plan: PlanPart, motion: Any) -> Chart:
+def profile_chart(plan: PlanPart, motion: StartPart | None) -> Chart:
     """Return the profile of a plan of the document, with the motion it makes if that is known.
 
     The first slip does not set the scale: it is cut, and its peak written.
@@ -70,16 +69,14 @@ def profile_chart(plan: PlanPart, motion: Any) -> Chart:
     top = 1e3 * max([plan.peak_speed or 0.0, plan.target_speed, *(v for v, _ in marks)]) * 2.2
     domain = (0.0, top)
     rows: list[Row] = [
-        {"time": t, "value": 1e3 * v, "line": name, "index": i}
-        for name, line in lines
-        for i, (t, v) in enumerate(line)
+        {"time": t, "value": round(1e3 * v, 2), "line": name} for name, line in lines for t, v in line
     ]
     names = [name for name, _ in lines]
     looks = {"drive": (INK, [7, 3]), "belt": (BLUE, [1, 0]), "belt, straight to speed": (EDGE, [1, 0])}
     key = alt.Legend(title=None, orient="bottom", symbolSize=400)
     color = alt.Scale(domain=names, range=[looks[name][0] for name in names])
     dash = alt.Scale(domain=names, range=[looks[name][1] for name in names])
-    x = alt.X("time:Q", title="Time (s)", scale=alt.Scale(domain=[0.0, last], nice=False))
+    x = alt.X("time:Q", title="Time (s)", scale=alt.Scale(domain=[0.0, last], nice=False), axis=alt.Axis(tickCount=6))
     y = alt.Y("value:Q", title="Speed (mm/s)", scale=alt.Scale(domain=list(domain), nice=False))
     drawn = plot(rows).mark_line(strokeWidth=1.7, clip=True)
     layers: list[alt.Chart] = [
@@ -87,7 +84,6 @@ def profile_chart(plan: PlanPart, motion: Any) -> Chart:
         drawn.encode(
             x=x,
             y=y,
-            order="index:Q",
             color=alt.Color("line:N", scale=color, legend=key),
             strokeDash=alt.StrokeDash("line:N", scale=dash, legend=key),
             tooltip=[alt.Tooltip("line:N", title="line"), tip("time", "time (s)"), tip("value", "speed (mm/s)")],
@@ -96,15 +92,11 @@ def profile_chart(plan: PlanPart, motion: Any) -> Chart:
     ]
     if plan.duration is not None:
         mark = plot([{"time": plan.duration, "name": f"slides from here on, {plan.duration:.2g} s"}])
-        layers.append(mark.mark_rule(color=BLUE, strokeWidth=1).encode(x=x))
-        layers.append(
-            mark.mark_text(align="left", dx=5, baseline="top", **RIM).encode(x=x, y=alt.value(4), text="name:N")
-        )
-        layers.append(
-            mark.mark_text(align="left", dx=5, baseline="top", color=INK).encode(
-                x=x, y=alt.value(4), text="name:N"
-            )
-        )
+        late = plan.duration > 0.55 * last
+        look: Row = {"align": "right" if late else "left", "dx": -5 if late else 5, "baseline": "top"}
+        text = mark.encode(x=x, y=alt.value(4), text="name:N")
+        rule = mark.mark_rule(color=BLUE, strokeWidth=1).encode(x=x)
+        layers += [rule, text.mark_text(**(look | RIM)), text.mark_text(color=INK, **look)]
     return alt.layer(*layers, title="Drive profile", width=WIDTH, height=_HEIGHT)
 
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import altair as alt
 
-from hersey.charts.style import BLUE, INK, RED, SECONDARY, SHADE, WIDTH, Chart, Row, plot, tip
+from hersey.charts.style import BLUE, INK, RED, RIM, SECONDARY, SHADE, WIDTH, Chart, Row, plot, tip
 from hersey.document.parts import BranchPart
 from hersey.units import celsius, rpm
 from hersey.verdict.regime import BranchExponent, Regime
@@ -23,7 +23,14 @@ _LOOKS = {
 #: The axis shows at least these exponents.
 _LEAST, _GREATEST = -1.3, 0.1
 #: Height of a row; width that is counted on to keep names apart, that of a letter, height of a line, pixels.
-_ROW, _NARROW, _LETTER, _LINE = 24, 290, 6.6, 14
+_ROW, _NARROW, _LETTER, _LINE = 24, 330, 6.2, 14
+#: Shorter names of regimes, for the picture alone.
+_SHORT = {
+    "dry Coulomb friction or a rigid film": "dry or rigid",
+    "rigid piezoviscous film": "rigid piezoviscous",
+    "Dowson-Higginson EHL": "Dowson-Higginson",
+    "falling branch": "torque falls",
+}
 
 
 def regime_chart(result: Regime) -> Chart:
@@ -70,7 +77,7 @@ def exponent_chart(
     x = alt.X("value:Q", title="Exponent of damping in speed (no unit)", scale=scale)
     y = alt.Y("where:N", title=None, sort=order, axis=alt.Axis(grid=False))
     title = alt.Title("Exponent of damping, with 95 % intervals", subtitle=_subtitle(told))
-    layers = [*_regimes(regimes, scale, low, high), *_exponents(told, x, y, scale), *_nip(nip, x, y)]
+    layers = [*_regimes(regimes, scale, low, high), *_exponents(told, x, y, scale, 0.5 * (low + high)), *_nip(nip, x, y)]
     return alt.layer(*layers, title=title, width=WIDTH, height=_ROW * len(order))
 
 
@@ -102,18 +109,19 @@ def _regimes(
     for each in sorted(named, key=lambda h: h["low"] + h["high"]):
         middle = (each["low"] + each["high"]) / 2
         at = _NARROW * (middle - low) / (high - low)
-        half = 0.5 * _LETTER * len(each["name"])
+        short = _SHORT.get(each["name"], each["name"])
+        half = 0.5 * _LETTER * len(short)
         side = "left" if at < half else "right" if at > _NARROW - half else "center"
         left = {"left": at, "right": at - 2 * half, "center": at - half}[side]
         row = next(i for i, end in enumerate(ends) if left > end + 6)
         ends[row] = left + 2 * half
-        name = plot([{"text": each["name"], "low": middle}])
+        name = plot([{"text": short, "low": middle}])
         text = name.mark_text(align=side, fontSize=12, color=SECONDARY)  # type: ignore[arg-type]  # of three
         layers.append(text.encode(x=x, y=alt.value(-9 - _LINE * row), text=alt.Text("text:N")))
     return layers
 
 
-def _exponents(rows: list[Row], x: alt.X, y: alt.Y, scale: alt.Scale) -> list[alt.Chart]:
+def _exponents(rows: list[Row], x: alt.X, y: alt.Y, scale: alt.Scale, middle: float) -> list[alt.Chart]:
     branches = [name for name in _LOOKS if any(r["branch"] == name for r in rows)]
     color = alt.Color(
         "branch:N", scale=alt.Scale(domain=branches, range=[_LOOKS[b][0] for b in branches]), legend=None
@@ -131,11 +139,15 @@ def _exponents(rows: list[Row], x: alt.X, y: alt.Y, scale: alt.Scale) -> list[al
     ]
     bars = plot(rows).mark_rule(strokeWidth=1.6, color=INK)
     dots = plot(rows).mark_point(filled=True, size=60, opacity=1)
-    words = plot([rows[-1]]).mark_text(align="left", dx=10, fontWeight="bold", color=INK, fontSize=12)
+    last, right = rows[-1], rows[-1]["value"] < middle
+    end, look = ("high", {"align": "left", "dx": 10}) if right else ("low", {"align": "right", "dx": -10})
+    look |= {"fontWeight": "bold", "fontSize": 12}
+    words = plot([last]).encode(x=alt.X(f"{end}:Q", scale=scale), y=y, text="text:N")
     return [
         bars.encode(x=alt.X("low:Q", scale=scale), x2=alt.X2("high:Q"), y=y),
         dots.encode(x=x, y=y, color=color, shape=shape, tooltip=tips),
-        words.encode(x=alt.X("high:Q", scale=scale), y=y, text="text:N"),
+        words.mark_text(**(look | RIM)),
+        words.mark_text(color=INK, **look),
     ]
 
 

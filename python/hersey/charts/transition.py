@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import altair as alt
 import numpy as np
 
-from hersey.charts.style import BLUE, INK, WIDTH, Chart, logarithmic, plot, rows_of, tip
+from hersey.charts.style import BLUE, INK, WIDTH, Chart, logarithmic_axis, plot, rows_of, span, tip
 from hersey.units import celsius, rpm
 
 
@@ -22,7 +22,8 @@ def transition_chart(
     hot = [celsius(kelvin) for kelvin in temperature]
     model, seen, below, above = (_rpm(values) for values in (speed, measured, low, high))
     x = alt.X("hot:Q", title="Temperature (°C)", scale=alt.Scale(zero=False, padding=12))
-    y = alt.Y("speed:Q", title="Transition speed (rpm)", scale=logarithmic())
+    seen_speeds = [v for v in (*model, *seen, *below, *above) if np.isfinite(v)] or [1.0]
+    y = alt.Y("speed:Q", title="Transition speed (rpm)", **logarithmic_axis(span(seen_speeds)))
     line = [row for row in rows_of(hot=hot, speed=model) if np.isfinite(row["speed"])]
     dots = [row for row in rows_of(hot=hot, speed=seen) if np.isfinite(row["speed"])]
     bars = [

@@ -22,26 +22,29 @@ _STYLES = ("tokens.css", "page.css")
 _SHARED = ("drawing.js", "chart.js")
 _LIVE = (
     "physics.js",
+    "answers.js",
+    "labour.js",
     "shape.js",
     "map.js",
     "settings.js",
     "traces.js",
     "profile.js",
-    "worker.js",
     "controls.js",
     "panel.js",
 )
 _REPORT = ("panel.css", "timeline.js", *_LIVE, "first.js", "page.js")
-#: The page draws these itself, on one axis.
-_TIMELINE = "timeline_"
+#: Charts that the page has otherwise: the log on one axis, motion by the core itself.
+_OTHERWISE = ("timeline_", "simulation_")
+#: Samples that only charts need.
+_DRAWN: Any = {"fit": {"cells"}, "simulation": True}
 
 
 def render(document: Analysis) -> str:
     """Return the page of a log as HTML text."""
-    shown = {name: chart for name, chart in charts(document).items() if not name.startswith(_TIMELINE)}
+    shown = {name: chart for name, chart in charts(document).items() if not name.startswith(_OTHERWISE)}
     core = resources.files("hersey.report") / "static" / "physics.wasm"
     physics = base64.b64encode(core.read_bytes()).decode() if core.is_file() and document.map else None
-    return drawn(_REPORT, "hersey report", document.model_dump(mode="json"), shown, physics=physics)
+    return drawn(_REPORT, "hersey report", document.model_dump(mode="json", exclude=_DRAWN), shown, physics=physics)
 
 
 def drawn(

@@ -33,14 +33,14 @@ const SECONDARY = "light-dark(#4b5965, #a9b5c0)";
 const RULE = "light-dark(#c9d1d6, #33404b)";
 const EDGE = "light-dark(#73808c, #8593a0)";
 const LOOKS = {
-  aria: false, background: null, font: "inherit", padding: 0, view: { stroke: null },
+  aria: false, background: null, font: getComputedStyle(document.body).fontFamily, padding: { left: 0, top: 4, right: 1, bottom: 4 }, view: { stroke: null },
   axis: { labelFontSize: 11.5, labelColor: SECONDARY, titleFontSize: 12, titleFontWeight: "normal", titleColor: SECONDARY,
     gridColor: RULE, gridWidth: 0.8, domainColor: EDGE, tickColor: EDGE, tickSize: 4, labelPadding: 4 },
   axisX: { grid: false },
   legend: { labelFontSize: 12, titleFontSize: 12, labelColor: SECONDARY, titleColor: SECONDARY, titleFontWeight: "normal" },
   header: { labelColor: SECONDARY, titleColor: SECONDARY },
   title: { color: SECONDARY, subtitleColor: SECONDARY },
-  text: { color: "light-dark(#15202b, #e7ecf0)" },
+  text: { color: "light-dark(#15202b, #e7ecf0)", fontSize: 12 },
 };
 // Titles of vertical axes lie above them.
 const ABOVE = {

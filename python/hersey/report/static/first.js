@@ -18,7 +18,7 @@ function titleLine() {
   const head = document.getElementById("title");
   head.className = "title";
   add(head, "h1", data.title);
-  if (data.files.some((f) => f.comments.some((text) => /synthetic/i.test(text)))) add(head, "span", "synthetic, no measurement", "mark");
+  if (data.synthetic) add(head, "span", "synthetic, no measurement", "mark");
   const duration = data.files.reduce((sum, f) => sum + f.duration, 0);
   const made = data.made ? new Date(data.made).toLocaleString("en-GB", { day: "numeric", month: "short", year: "numeric", hour: "2-digit", minute: "2-digit" }) : "";
   const from = [made, `${counted(data.quality.rows)} rows${duration ? ` in ${seconds(duration)}` : ""}`, data.machine ? `machine: ${data.machine.name}` : ""];
@@ -31,6 +31,7 @@ function titleLine() {
 
 // What the flags call sections, where it is not their name here.
 const SECTIONS = { film: "regime", verdict: "regime", models: "candidates", quality: "data", log: "data", fit: "torque", damping: "torque", stability: "band", step: "band", plans: "plan", points: "plan", comparison: "compare" };
+const SHORT = { torque: "Torque", regime: "Regime", data: "Data", band: "Band", plan: "Plan" };
 const sectionOf = (name) => SECTIONS[name] ?? name;
 
 function decision() {
@@ -83,9 +84,9 @@ function points(row, all) {
     const line = add(body, "tr");
     const word = add(line, "td", "", `s ${point.signal}`);
     word.append(signal(point.signal), SIGNALS[point.signal]);
-    add(line, "td", point.name, "n");
+    add(line, "td", point.name, point.name.length < 16 ? "n short" : "n");
     add(line, "td", `${perSecond(point.speed)} mm/s${levels.size > 1 ? `, ${degrees(point.temperature)}` : ""}`, "v");
-    const words = add(line, "td", pretty(point.words), "w");
+    const words = add(line, "td", pretty(point.words.replace(/ \(plan\)$/, "")), "w");
     if (point.plan) {
       words.append(" (");
       link(words, "plan", "plan");
@@ -101,7 +102,7 @@ function points(row, all) {
 function linkFlags() {
   for (const item of document.querySelectorAll("#flags li")) {
     const section = document.getElementById(item.dataset.section);
-    if (section) link(item, section.querySelector("h2").textContent, section.id);
+    if (section) link(item, SHORT[section.id] ?? section.querySelector("h2").textContent, section.id);
   }
 }
 
@@ -124,7 +125,7 @@ async function mapAndPanel() {
     const block = document.getElementById("physics");
     const bytes = block && typeof WebAssembly === "object" ? bytesOf(JSON.parse(block.textContent)) : null;
     controller = await live(data, bytes, { map: place, panel });
-  } else if (typeof operatingMap === "function") operatingMap(data, place);
+  } else if (typeof operatingMap === "function") operatingMap(place, data.map);
   else add(panel, "p", "Settings cannot be tried here.", "u");
   if (controller) for (const press of document.querySelectorAll("[data-show], [data-profile]")) press.disabled = false;
 }

@@ -6,6 +6,7 @@ function interval(e, scale = 1, count = 3) {
   return `${digits(e.value * scale, count)} [${digits(e.low * scale, count)}, ${digits(e.high * scale, count)}]`;
 }
 const bounds = (e, scale = 1, count = 3) => e.low === null || e.high === null ? "not told" : `[${digits(e.low * scale, count)}, ${digits(e.high * scale, count)}]`;
+const twoPlaces = (value) => value.toFixed(2).replace("-", "−");
 const share = (part, whole) => `${digits((100 * part) / whole, 2)} %`;
 const plural = (count, word, words = `${word}s`) => `${count} ${count === 1 ? word : words}`;
 const radius = data.map?.roll_radius ?? null;
@@ -38,8 +39,17 @@ function torqueNote() {
   const level = radius === null ? "" : ` 10 rpm is ${perSecond((10 / TO_RPM) * radius)} mm/s at the belt.`;
   return `${dwells}; filled: reached from below, open: from above, bars: two standard errors. Lines: the fitted law.${data.fit.rest ? " The rest of the drive is taken off." : ""}${level}`;
 }
+// Transition speeds over temperature, by the map as far as dwells were measured.
+function transitions() {
+  const { map, fit } = data;
+  if (!map?.temperature || !map.measured_temperature) return fit.transition_curve;
+  const [low, high] = map.measured_temperature;
+  return map.temperature.map((temperature, i) => ({ temperature, speed: (map.transition[i] ?? 0) / map.roll_radius }))
+    .filter((each) => each.speed > 0 && each.temperature >= low - 1 && each.temperature <= high + 1);
+}
 function torqueFinding() {
-  const { transition, transition_curve: curve, reference_temperature: level } = data.fit;
+  const { transition, reference_temperature: level } = data.fit;
+  const curve = transitions();
   if (!transition) return `Torque rises with speed over all speeds measured; no falling branch is seen.`;
   if (curve.length < 2) return `Torque falls up to ${rolled(transition.speed.value)}${level === null ? "" : ` at ${degrees(level)}`} and rises above.`;
   const [cold, hot] = [curve[0], curve.at(-1)];
@@ -93,7 +103,7 @@ function dwells(parent) {
 
 function regimeFinding() {
   const { named, why_unnamed: why } = data.regime;
-  const c = digits(data.fit.coefficients.c.value, 2);
+  const c = twoPlaces(data.fit.coefficients.c.value);
   const nip = data.film?.points[0]?.regime ?? data.film?.dwells[0]?.regime ?? null;
   const fits = data.film?.exponents?.predictions.find((each) => each.film === nip)?.consistent;
   if (nip && named && fits === false) return `The log looks like ${named}; the nip says ${nip}. Trust the exponent for prediction, not for film thickness.`;
@@ -107,7 +117,7 @@ async function regimeSection(parent) {
   const part = section(parent, "regime", "Regime and film", finding);
   const columns = add(part, "div", "", "columns");
   const c = data.fit.coefficients.c;
-  await chart(columns, "regime", { heading: `1. What the log says: ${digits(c.value, 2)}`, says: finding });
+  await chart(columns, "regime", { heading: `1. What the log says: ${twoPlaces(c.value)}`, says: finding });
   const nip = data.film?.points[0]?.regime ?? data.film?.dwells[0]?.regime;
   await chart(columns, "film", { heading: `2. What the nip says: ${nip ?? ""}`, says: finding });
   if (data.film) misfits(part);
@@ -221,7 +231,8 @@ async function bandSection(parent) {
   if (!data.map && !data.band && !bears.length && !steps.length) return;
   const part = section(parent, "band", "Band and safe step", bandFinding(bears, steps));
   const columns = add(part, "div", "", "columns");
-  if (data.map) bandTable(columns);
+  await chart(columns, "stick_speed", { says: bandFinding(bears, steps) });
+  if (data.map && !charts.stick_speed) bandTable(columns);
   const right = add(columns, "div");
   if (bears.length) {
     add(right, "h3", "What sliding there bears");
@@ -236,10 +247,10 @@ async function bandSection(parent) {
     [2], { name: "steps", label: "Steps from steady sliding" });
   }
   if (data.band) {
-    add(part, "p", pretty(data.band.verdict), "text");
     const moves = Object.entries(data.band.sensitivity).filter(([, value]) => value !== null && Math.abs(value) >= 0.005);
     if (moves.length) add(part, "p", `One per cent more moves V* by: ${moves.map(([name, value]) => `${name.replaceAll("_", " ")} ${digits(value, 2)} %`).join(", ")}.`, "note");
   }
+  if (data.map && charts.stick_speed) fold(part, "Edges of the band by temperature", bandTable);
   if (data.map) data.map.warnings.forEach((text) => add(part, "p", pretty(text), "note"));
 }
 const rampOf = (step) => step.ramp_time >= 1 ? `${digits(step.ramp_time, 2)} s` : `${digits(step.ramp_time * 1e3, 2)} ms`;
@@ -267,7 +278,7 @@ function bandFinding(bears, steps) {
 function bandTable(parent) {
   const { temperature, lower, transition, upper, upper_interval: ends } = data.map;
   const box = add(parent, "div");
-  add(box, "h3", "Edges of the band");
+  if (parent.className === "columns") add(box, "h3", "Edges of the band");
   const count = transition.length;
   const [low, high] = data.map.measured_temperature ?? [-Infinity, Infinity];
   const inside = transition.map((_, i) => i).filter((i) => !temperature || (temperature[i] >= low - 1 && temperature[i] <= high + 1));
@@ -304,7 +315,7 @@ async function planSection(parent) {
   for (const point of all.filter((p) => !p.plan)) {
     add(part, "h3", pointName(point));
     const line = add(part, "p");
-    line.append(signal(point.signal), `Needs no plan: ${pretty(point.words)}.`);
+    line.append(signal(point.signal), point.reason ? pretty(point.reason) : `Needs no plan: ${pretty(point.words)}.`);
   }
 }
 const pointName = (p) => `${p.name}, ${perSecond(p.speed)} mm/s${p.temperature === null ? "" : ` at ${degrees(p.temperature)}`}`;
@@ -363,7 +374,7 @@ async function warmUp(parent) {
   checks(part, data.warm_up.warnings.map((text) => ["watch", pretty(text)]));
 }
 const SHOWN = new Set(["schema_version", "hersey_version", "title", "command", "made", "machine", "synthetic", "decision", "verdict", "warnings", "files", "quality", "points", "fit",
-  "regime", "film", "carried", "simulation", "timeline", "models", "compare", "band", "map", "plan", "warm_up", "uncertainty"]);
+  "regime", "film", "carried", "simulation", "timeline", "stick_speed_sweep", "models", "compare", "band", "map", "plan", "warm_up", "uncertainty"]);
 function others(parent) {
   const left = Object.entries(data).filter(([name, part]) => part !== null && !SHOWN.has(name));
   if (!left.length) return;
