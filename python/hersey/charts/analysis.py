@@ -340,14 +340,14 @@ def _ends(curves: list[Row], domain: list[float], shades: alt.Scale) -> list[alt
     low, high = np.log(domain)
     ups = [_TALL * (float(np.log(row["y"])) - low) / (high - low) for row in ends.values()]
     named: list[Row] = [
-        {"level": level, "down": _TALL - up, "text": f"{level:.0f} °C"}
+        {"level": level, "y": float(np.exp(low + (high - low) * up / _TALL)), "text": f"{level:.0f} °C"}
         for level, up in zip(ends, apart(ups, APART), strict=True)
     ]
     text = plot(named).mark_text(align="left", dx=6, fontSize=11.5, fontWeight="bold")
     return [
         text.encode(
             x=across(),
-            y=alt.Y("down:Q", scale=None, axis=None),
+            y="y:Q",
             text="text:N",
             color=alt.Color("level:N", scale=shades, legend=None),
         )

@@ -78,7 +78,7 @@ def exponent_chart(
     y = alt.Y("where:N", title=None, sort=order, axis=alt.Axis(grid=False))
     title = alt.Title("Exponent of damping, with 95 % intervals", subtitle=_subtitle(told))
     layers = [*_regimes(regimes, scale, low, high), *_exponents(told, x, y, scale, 0.5 * (low + high)), *_nip(nip, x, y)]
-    return alt.layer(*layers, title=title, width=WIDTH, height=_ROW * len(order))
+    return alt.layer(*layers, title=title, width=WIDTH, height=_ROW * max(len(order), 3))
 
 
 def _words(row: Row) -> str:

@@ -20,8 +20,8 @@ INK, BLUE, ORANGE = "#15202b", "#0a5c8f", "#b8500c"
 SECONDARY, SHADE, EDGE, RED, GREEN = "#4b5965", "#eaeef1", "#73808c", "#a5301a", "#17694a"
 #: Anchors of the colours of temperatures, cold to hot.
 _RAMP = ((0x2B, 0x4F, 0x9E), (0x7A, 0x3F, 0x9D), (0xB3, 0x2C, 0x66), (0xB8, 0x50, 0x0C))
-#: Shares of greatest over least beyond which an axis names decades alone, and below which more than 1, 2, 5.
-_WIDE, _CLOSE = 1e4, 6.0
+#: Shares of greatest over least beyond which an axis names decades alone, and below which it has even steps.
+_WIDE, _CLOSE = 1e4, 5.0
 #: Names at the ends of lines are as far apart, pixels.
 APART = 14.0
 SHAPES = ("circle", "square", "triangle-up", "diamond", "cross", "triangle-down")
@@ -107,10 +107,14 @@ def logarithmic_axis(domain: tuple[float, float]) -> Row:
     """Return scale and axis of a channel from a least to a greatest value, with round numbers along it."""
     low, high = domain
     decades = range(int(np.floor(np.log10(low))), int(np.ceil(np.log10(high))) + 1)
-    steps = (1, 2, 5) if high / low < _WIDE else (1,)
-    if high / low < _CLOSE:
-        steps = (1, 1.5, 2, 3, 4, 5, 6, 7, 8)
-    values = [step * 10.0**decade for decade in decades for step in steps]
+    if high / low < _CLOSE:  # round numbers at even steps
+        rough = (high - low) / 5
+        power = 10.0 ** np.floor(np.log10(rough))
+        step = power * min(each for each in (1, 2, 5, 10) if each * power >= rough)
+        values = [float(f"{i * step:.9g}") for i in range(int(np.ceil(low / step)), int(high / step) + 1)]
+    else:
+        steps = (1, 2, 5) if high / low < _WIDE else (1,)
+        values = [each * 10.0**decade for decade in decades for each in steps]
     return {
         "scale": alt.Scale(type="log", domain=list(domain), nice=False),
         "axis": alt.Axis(values=[v for v in values if low <= v <= high], format="~g"),

@@ -90,7 +90,7 @@ async function pictureOf(specification, name, kind) {
 
 // A chart under its title, and what it says to who cannot see it. `heading` and `note` stand in the place of the
 // chart's own; `behind` is false where a table of the same numbers stands beside.
-async function chart(parent, name, { heading = null, note = null, says = "", behind = true } = {}) {
+async function chart(parent, name, { heading = null, note = null, says = "", behind = true, height = null } = {}) {
   const specification = charts[name];
   if (!specification) return null;
   const title = typeof specification.title === "string" ? { text: specification.title } : specification.title ?? {};
@@ -100,12 +100,12 @@ async function chart(parent, name, { heading = null, note = null, says = "", beh
   if (words) add(figure, "h3", words);
   const place = add(figure, "div", "", "chart");
   const notes = note === null ? lines(title.subtitle) : lines(note);
-  const view = await embedded(place, specification);
+  const view = await embedded(place, height === null ? specification : { ...specification, height });
   const drawing = place.querySelector("svg");
   drawing.setAttribute("role", "img");
   drawing.setAttribute("aria-label", [words, says, ...notes].filter(Boolean).join(". "));
   toggles(figure, specification, view);
-  for (const text of notes) add(figure, "p", pretty(text), "note");
+  for (const text of notes) add(figure, "p", sentence(text), "note");
   if (behind) {
     fold(figure, "Numbers and files", (all) => {
       numbersOf(specification).forEach(({ heads, rows, numeric }, i) => table(all, heads, rows, numeric, { name: `${name}${i ? `-${i + 1}` : ""}`, label: words }));

@@ -15,7 +15,12 @@ function digits(value, count = 3) {
 // A text of ours as it is set: true minus, degree sign, squares.
 function pretty(text) {
   return text.replaceAll(" degC", " °C").replaceAll("+/-", "±").replace(/(^|[\s[(,±])-(?=\d)/g, "$1−").replace(/(?<=[a-z])\^2\b/g, "²")
-    .replace(/\b(mN|N) m\b/g, "$1·m");
+    .replace(/\b(mN|N) m\b/g, "$1·m").replace(/(\d)e-0*(\d+)\b/g, (_, first, power) => `${first}·10⁻${[...power].map((each) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[each]).join("")}`);
+}
+// The same as a sentence of its own.
+function sentence(text) {
+  const set = pretty(text).replace(/[^.!?:]$/, "$&.");
+  return `${set.slice(0, 1).toUpperCase()}${set.slice(1)}`;
 }
 
 function add(parent, tag, text = "", className = "") {

@@ -117,7 +117,7 @@ async function mapAndPanel() {
   const free = innerHeight - place.getBoundingClientRect().top - scrollY - 8;
   place.style.setProperty("--map-height", `${Math.round(Math.min(560, Math.max(380, free)))}px`);
   if (!data.map) {
-    await chart(place, "torque", { heading: "Torque against speed", note: torqueNote(), behind: true });
+    await chart(place, "torque", { heading: "Torque against speed", note: torqueNote(), height: Math.round(Math.min(560, Math.max(300, free))) - 140 });
     missing(panel);
     return;
   }
@@ -142,13 +142,13 @@ function missing(panel) {
     return;
   }
   all.forEach((each, i) => {
-    add(panel, "p", pretty(each.purpose));
-    const head = add(panel, "div", "", "cap");
+    const words = sentence(each.purpose);
+    const place = i ? fold(panel, `${each.file}: ${each.purpose}`) : add(panel, "div");
+    if (!i) add(place, "p", words);
+    const head = add(place, "div", "", "cap");
     head.style.marginTop = "6px";
-    add(head, "h3", each.file);
-    const lines_ = add(panel, "pre", each.lines);
-    lines_.className = "lines";
-    reachable(lines_);
-    button(head, i ? "Copy" : "Copy the lines", (from) => copy(each.lines, from));
+    add(head, "h3", `Add to ${each.file}`);
+    reachable(add(place, "pre", each.lines));
+    button(head, "Copy the lines", (from) => copy(each.lines, from));
   });
 }

@@ -8,10 +8,12 @@ function interval(e, scale = 1, count = 3) {
 const bounds = (e, scale = 1, count = 3) => e.low === null || e.high === null ? "not told" : `[${digits(e.low * scale, count)}, ${digits(e.high * scale, count)}]`;
 const twoPlaces = (value) => value.toFixed(2).replace("-", "−");
 const share = (part, whole) => `${digits((100 * part) / whole, 2)} %`;
-const plural = (count, word, words = `${word}s`) => `${count} ${count === 1 ? word : words}`;
+const plural = (count, word, words = `${word}s`) => `${count === 1 ? "one" : count} ${count === 1 ? word : words}`;
+const capital = (text) => `${text.slice(0, 1).toUpperCase()}${text.slice(1)}`;
 const radius = data.map?.roll_radius ?? null;
 // A speed of the roll, at the belt where its radius is known.
-const rolled = (speed) => radius === null ? `${digits(speed * TO_RPM)} rpm` : `${perSecond(speed * radius)} mm/s`;
+const rolled = (speed) => radius === null ? `${digits(speed * TO_RPM, 2)} rpm` : `${digits(1e3 * speed * radius, 2)} mm/s`;
+const whole = (kelvin) => data.fit.temperature_scale === "K" ? degrees(kelvin) : `${Math.round(celsius(kelvin))} °C`;
 
 // A section with its topic and its finding; listed in the contents.
 const made = [];
@@ -54,7 +56,7 @@ function torqueFinding() {
   if (curve.length < 2) return `Torque falls up to ${rolled(transition.speed.value)}${level === null ? "" : ` at ${degrees(level)}`} and rises above.`;
   const [cold, hot] = [curve[0], curve.at(-1)];
   const way = hot.speed > cold.speed ? "climbs" : "falls";
-  return `Torque rises with speed above the transition and falls below it; the transition ${way} from ${rolled(cold.speed)} at ${degrees(cold.temperature)} to ${rolled(hot.speed)} at ${degrees(hot.temperature)}.`;
+  return `Torque rises with speed above the transition and falls below it; the transition ${way} from ${rolled(cold.speed)} at ${whole(cold.temperature)} to ${rolled(hot.speed)} at ${whole(hot.temperature)}.`;
 }
 async function torqueSection(parent) {
   const finding = torqueFinding();
@@ -251,7 +253,7 @@ async function bandSection(parent) {
     if (moves.length) add(part, "p", `One per cent more moves V* by: ${moves.map(([name, value]) => `${name.replaceAll("_", " ")} ${digits(value, 2)} %`).join(", ")}.`, "note");
   }
   if (data.map && charts.stick_speed) fold(part, "Edges of the band by temperature", bandTable);
-  if (data.map) data.map.warnings.forEach((text) => add(part, "p", pretty(text), "note"));
+  if (data.map) data.map.warnings.forEach((text) => add(part, "p", sentence(text), "note"));
 }
 const rampOf = (step) => step.ramp_time >= 1 ? `${digits(step.ramp_time, 2)} s` : `${digits(step.ramp_time * 1e3, 2)} ms`;
 function bandFinding(bears, steps) {
@@ -271,8 +273,7 @@ function bandFinding(bears, steps) {
     parts.push(transition[i] === null ? "Nothing sticks within the speeds looked at" : `Smooth above ${perSecond(upper[i] ?? transition[i])} mm/s${at}; below ${perSecond(transition[i])} it sticks`);
   }
   if (!parts.length && data.band) return data.band.verdict.split(". ")[0];
-  const text = parts.join("; ");
-  return text ? `${text[0].toUpperCase()}${text.slice(1)}.` : "";
+  return parts.length ? `${capital(parts.join("; "))}.` : "";
 }
 // The edges at a few temperatures of the map.
 function bandTable(parent) {
@@ -294,7 +295,7 @@ function bandTable(parent) {
 const failuresOf = (plan) => Object.entries(plan.failures).filter(([, count]) => count).map(([name, count]) => `${name.replaceAll("_", " ")} ${count}`).join(", ");
 function planFinding(point) {
   const { plan } = point;
-  const name = `${point.name[0]?.toUpperCase() ?? ""}${point.name.slice(1)}`;
+  const name = capital(point.name);
   const sure = plan.share ? ` It slides in ${digits(100 * plan.share, 2)} % of the machines that fit the log.` : "";
   if (plan.kind === "overshoot") return `${name}: up to ${perSecond(plan.peak_speed)} mm/s, hold ${digits(plan.hold, 2)} s, down to ${perSecond(plan.target_speed)}.${sure}`;
   if (plan.kind === "direct") return `${name}: straight up to ${perSecond(plan.target_speed)} mm/s in ${digits(plan.rise, 2)} s.${sure}`;
@@ -318,7 +319,7 @@ async function planSection(parent) {
     line.append(signal(point.signal), point.reason ? pretty(point.reason) : `Needs no plan: ${pretty(point.words)}.`);
   }
 }
-const pointName = (p) => `${p.name}, ${perSecond(p.speed)} mm/s${p.temperature === null ? "" : ` at ${degrees(p.temperature)}`}`;
+const pointName = (p) => `${capital(p.name)}, ${perSecond(p.speed)} mm/s${p.temperature === null ? "" : ` at ${degrees(p.temperature)}`}`;
 async function onePlan(parent, point, i) {
   const { plan } = point;
   add(parent, "h3", pointName(point));
@@ -335,7 +336,7 @@ async function onePlan(parent, point, i) {
     press.disabled = true;
     press.dataset.profile = "";
   }
-  const marks = plan.uses.map((use) => [use.used !== null && use.used > use.limit ? "watch" : "good", `${use.name.replaceAll("_", " ")}: ${use.used === null ? "–" : amount(use.name, use.used)} of ${amount(use.name, use.limit)}`]);
+  const marks = plan.uses.map((use) => [use.used !== null && use.used > use.limit ? "watch" : "good", `${capital(use.name.replaceAll("_", " "))}: ${use.used === null ? "not told" : amount(use.name, use.used)[0]} of ${amount(use.name, use.limit).join(" ")}`]);
   marks.push(...plan.obstacles.map((each) => ["act", pretty(each.text)]), ...plan.warnings.map((text) => ["watch", pretty(text)]));
   checks(side, marks);
   const all = fold(columns, "How sure, in full");
@@ -344,12 +345,10 @@ async function onePlan(parent, point, i) {
   add(all, "p", `${digits(100 * plan.share, 3)} % of ${plural(plan.draws, "draw")} slide; the true share exceeds ${digits(100 * plan.share_low, 3)} % with 95 % confidence. `
     + `${failuresOf(plan) ? `Others: ${failuresOf(plan)}. ` : ""}Seed ${plan.seed}, ${plural(plan.tried, "profile")} tried.`, "text");
 }
+// A value and its unit.
 function amount(name, value) {
-  if (/torque/.test(name)) return `${digits(value * torqueUnit()[0])} ${torqueUnit()[1]}`;
-  if (/force|grip/.test(name)) return `${digits(value)} N`;
-  if (/acceleration/.test(name)) return `${digits(value * 1e3)} mm/s²`;
-  if (/speed/.test(name)) return `${digits(value * 1e3)} mm/s`;
-  return digits(value);
+  const [factor, unit] = /torque/.test(name) ? torqueUnit() : /force|grip/.test(name) ? [1, "N"] : /acceleration/.test(name) ? [1e3, "mm/s²"] : /speed/.test(name) ? [1e3, "mm/s"] : [1, ""];
+  return [digits(value * factor), unit];
 }
 
 // Comparison, and whatever else the document holds
