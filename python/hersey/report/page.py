@@ -23,7 +23,7 @@ _SHARED = ("drawing.js", "chart.js")
 _LIVE = (
     "physics.js",
     "answers.js",
-    "worker.js",
+    "labour.js",
     "shape.js",
     "map.js",
     "settings.js",
