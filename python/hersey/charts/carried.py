@@ -12,8 +12,8 @@ from hersey.units import celsius, rpm
 _PARTS = (
     ("rest", "rest of the drive", "#c9d1d6"),
     ("contact", "contact", "#b8500c"),
-    ("shear", "film, sheared over the nip", "#0a5c8f"),
-    ("inlet", "film, inlet and pressure", "#74a9cf"),
+    ("shear", "film, sheared", "#0a5c8f"),
+    ("inlet", "film, inlet", "#74a9cf"),
 )
 
 
@@ -53,6 +53,7 @@ def carried_chart(part: CarriedPart) -> Chart:
     )
     title = alt.Title(
         f"What carries the torque at {celsius(part.temperature):.0f} °C",
-        subtitle="areas: by the machine's file; circles: dwells of the log, rest of the drive included",
+        subtitle="areas: by the machine's file, the film's shear over the nip and its inlet with the pressure; "
+        "circles: dwells of the log, rest of the drive included",
     )
     return alt.layer(areas, dots, title=title, width=WIDTH, height=HEIGHT)

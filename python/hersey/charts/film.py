@@ -24,7 +24,7 @@ from hersey.verdict.transition import ContactTransition
 #: Shades of the regimes that stay apart in grey.
 _SHADES = ("#f0eee2", "#eed9cf", "#dce9ef", "#cfdccb")
 #: Width that is counted on to keep names apart, and height, pixels.
-_NARROW, _TALL = 400, 250
+_NARROW, _TALL = 270, 250
 #: Cells of the chart to a side, and decades shown beyond the points.
 _CELLS, _MARGIN = 90, 1.5
 #: Most points that are named, and the width of a letter in pixels.
@@ -117,8 +117,8 @@ def _regimes(points: list[Row], dwells: list[Row], layer_factor: float) -> Chart
     )
     hidden = "" if known else " No point is shown: alpha is not known, g_V = 0."
     subtitle = [
-        "g_V = G W^1.5/U^0.5, g_E = W/U^0.5; U = eta u/(E'R) with the mean speed u, W = w/(E'R), "
-        "G = alpha E'; ground: the law that holds." + hidden
+        "Ground: the law that holds. g_V = G W^1.5/U^0.5, g_E = W/U^0.5, with U = eta u/(E'R) of the mean "
+        "speed u, W = w/(E'R), G = alpha E'." + hidden
     ]
     if dwells and points:
         subtitle.append("Diamonds: points of the machine. Dots: dwells of the log.")

@@ -23,7 +23,7 @@ _LOOKS = {
 #: The axis shows at least these exponents.
 _LEAST, _GREATEST = -1.3, 0.1
 #: Height of a row; width that is counted on to keep names apart, that of a letter, height of a line, pixels.
-_ROW, _NARROW, _LETTER, _LINE = 24, 330, 6.2, 14
+_ROW, _NARROW, _LETTER, _LINE = 24, 250, 6.2, 14
 #: Shorter names of regimes, for the picture alone.
 _SHORT = {
     "dry Coulomb friction or a rigid film": "dry or rigid",
@@ -77,13 +77,16 @@ def exponent_chart(
     x = alt.X("value:Q", title="Exponent of damping in speed (no unit)", scale=scale)
     y = alt.Y("where:N", title=None, sort=order, axis=alt.Axis(grid=False))
     title = alt.Title("Exponent of damping, with 95 % intervals", subtitle=_subtitle(told))
-    layers = [*_regimes(regimes, scale, low, high), *_exponents(told, x, y, scale, 0.5 * (low + high)), *_nip(nip, x, y)]
+    layers = [*_regimes(regimes, scale, low, high), *_exponents(told, x, y, scale, 0.5 * (low + high)), *_nip(nip, x, y, 0.5 * (low + high))]
     return alt.layer(*layers, title=title, width=WIDTH, height=_ROW * max(len(order), 3))
 
 
 def _words(row: Row) -> str:
-    ends = "" if row["low"] is None or row["high"] is None else f" [{row['low']:.3f}, {row['high']:.3f}]"
-    return f"{row['value']:.3f}{ends}".replace("-", "\u2212")
+    value, low, high = row["value"], row["low"], row["high"]
+    if low is None or high is None:
+        return f"{value:.2f}".replace("-", "\u2212")
+    places = 2 if high - low > 0.02 else 3
+    return f"{value:.{places}f} [{low:.{places}f}, {high:.{places}f}]".replace("-", "\u2212")
 
 
 def _subtitle(rows: list[Row]) -> str:
@@ -151,10 +154,11 @@ def _exponents(rows: list[Row], x: alt.X, y: alt.Y, scale: alt.Scale, middle: fl
     ]
 
 
-def _nip(rows: list[Row], x: alt.X, y: alt.Y) -> list[alt.Chart]:
+def _nip(rows: list[Row], x: alt.X, y: alt.Y, middle: float) -> list[alt.Chart]:
     """What the film of the contact gives, under the rest."""
     if not rows:
         return []
     mark = plot(rows).mark_point(shape="triangle-down", filled=True, size=60, color=SECONDARY, opacity=1)
-    words = plot(rows).mark_text(align="left", dx=10, color=SECONDARY, fontSize=12)
+    side: Row = {"align": "left", "dx": 10} if rows[0]["value"] < middle else {"align": "right", "dx": -10}
+    words = plot(rows).mark_text(color=SECONDARY, fontSize=12, **side)
     return [mark.encode(x=x, y=y), words.encode(x=x, y=y, text="text:N")]

@@ -73,7 +73,7 @@ async function embedded(place, specification) {
   const { view } = await window.vegaEmbed(place, shown, {
     renderer: "svg", ast: true, actions: false, defaultStyle: false, config: looks, tooltip: { disableDefaultStyle: true },
   });
-  if (simple) drawnViews.push({ view, place });
+  if (simple) drawnViews.push({ view, place, height: view.height() });
   return view;
 }
 async function pictureOf(specification, name, kind) {
@@ -136,6 +136,7 @@ function toggles(figure, specification, view) {
     press.prepend(mark);
   }
 }
-// Charts take the width of paper, and then that of the screen again.
-addEventListener("beforeprint", () => drawnViews.forEach(({ view, place }) => view.width(place.clientWidth).run()));
-addEventListener("afterprint", () => drawnViews.forEach(({ view, place }) => view.width(place.clientWidth).run()));
+// Charts take the width of paper and are lower there; then they are as before.
+const LOWER = 0.64;
+addEventListener("beforeprint", () => drawnViews.forEach(({ view, place, height }) => view.width(paperWidth(place)).height(Math.max(110, LOWER * height)).run()));
+addEventListener("afterprint", () => drawnViews.forEach(({ view, place, height }) => view.width(place.clientWidth).height(height).run()));

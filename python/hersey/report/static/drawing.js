@@ -89,7 +89,7 @@ async function copy(text, from) {
 }
 
 // Rows of a fold that are printed.
-const PRINTED = 5;
+const PRINTED = 4;
 const number = (text) => Number.parseFloat(String(text).replaceAll("−", "-").replaceAll(" ", "").replace(/^[^\d.-]+/, ""));
 function csv(heads, rows) {
   const cell = (text) => {
@@ -145,6 +145,11 @@ function table(parent, heads, rows, numeric = [], { name = "", label = "" } = {}
   reachable(wide);
   return element;
 }
+// Width of a place on paper, pixels: A4 less its margins, whole or in one of two columns.
+const PAPER = 695;
+function paperWidth(place) {
+  return place.closest(".columns") && !place.closest(".across") ? (PAPER - 24) / 2 : PAPER;
+}
 // What scrolls can be reached by keyboard.
 function reachable(element) {
   new ResizeObserver(() => {
@@ -170,11 +175,16 @@ function filled(details) {
 }
 // On paper folds are open, but for those of class "behind"; the first rows of their tables are printed.
 let closed = [];
+let onPaper = false;
 addEventListener("beforeprint", () => {
+  onPaper = true;
   closed = [...document.querySelectorAll("details:not([open]):not(.behind)")];
   closed.forEach((details) => { filled(details); details.open = true; });
 });
-addEventListener("afterprint", () => closed.forEach((details) => { details.open = false; }));
+addEventListener("afterprint", () => {
+  onPaper = false;
+  closed.forEach((details) => { details.open = false; });
+});
 
 // Round numbers between two, and those of a logarithmic axis: 1, 2, 5 of each decade.
 function ticks(low, high, count = 5) {

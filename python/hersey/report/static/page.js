@@ -217,7 +217,7 @@ function dataSection(parent) {
     table(all, ["File", "From, s", "To, s", "Rows", "Reason"], q.rejected.map((r) => [
       data.files[r.run].name, r.start.toFixed(2), r.end.toFixed(2), String(r.rows), pretty(r.reason)]), [1, 2, 3], { name: "not-used", label: "Stretches not used" });
   }
-  const input = fold(part, `${plural(data.files.length, "file")}: channels, units and comments`);
+  const input = fold(part, `${capital(plural(data.files.length, "file"))}: channels, units and comments`);
   table(input, ["File", "Rows", "Duration", "Every, ms", "Gaps", "Channels"], data.files.map((f) => [
     f.name, counted(f.rows), f.duration ? seconds(f.duration) : "–", f.sampling_interval ? digits(f.sampling_interval * 1e3) : "–", String(f.gaps),
     f.channels.map((c) => `${c.role}: ${c.name || "(no name)"} [${c.unit}]`).join(", ")]), [1, 2, 3, 4], { label: "Files" });

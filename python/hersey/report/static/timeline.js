@@ -1,6 +1,7 @@
 // The log in one figure: what was used, then speed, torque and temperature on one axis of time with one cursor.
 
 const ROW = 82;
+const ROW_ON_PAPER = 56;
 const BETWEEN = 12;
 function timeline(parent, says) {
   const { speed, torque, temperature, starts } = data.timeline;
@@ -23,28 +24,28 @@ function timeline(parent, says) {
   let at = null;
   const left = 38;
   const top = 36;
-  const height = top + rows.length * (ROW + BETWEEN) + 26;
   const draw = (width) => {
+    const rowHeight = onPaper ? ROW_ON_PAPER : ROW;
     const right = width - 6;
     const x = (time) => left + ((time - first) / (last - first || 1)) * (right - left);
-    const root = svg("svg", { width, height, viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": says });
+    const root = svg("svg", { width, role: "img", "aria-label": says });
     strip(root, x, left, right);
     const scales = rows.map((row, i) => {
-      const floor = top + i * (ROW + BETWEEN) + ROW;
+      const floor = top + i * (rowHeight + BETWEEN) + rowHeight;
       let [low, high] = [Math.min(...row.value), Math.max(...row.value)];
       const pad = 0.06 * (high - low || Math.abs(high) || 1);
       [low, high] = [low - (low < 0 || low > 0.3 * high ? pad : 0), high + pad];
       if (low > 0 && low < 0.35 * high) low = 0;
-      const y = (value) => floor - ((value - low) / (high - low)) * ROW;
+      const y = (value) => floor - ((value - low) / (high - low)) * rowHeight;
       for (const each of ticks(low, high, 3)) {
         svg("line", { x1: left, x2: right, y1: y(each), y2: y(each), class: "grid" }, root);
         svg("text", { x: left - 6, y: y(each) + 4, class: "tl", "text-anchor": "end" }, root, digits(each, 4));
       }
-      svg("path", { d: `M${left} ${floor}H${right}M${left} ${floor}V${floor - ROW}`, class: "axis" }, root);
+      svg("path", { d: `M${left} ${floor}H${right}M${left} ${floor}V${floor - rowHeight}`, class: "axis" }, root);
       let path = "";
       row.time.forEach((time, k) => { path += `${k && !starts.some((start, n) => n && row.time[k - 1] < start && time >= start) ? "L" : "M"}${x(time).toFixed(1)} ${y(row.value[k]).toFixed(1)}`; });
       svg("path", { d: path, class: "trace thin" }, root);
-      svg("text", { x: left + 6, y: floor - ROW + 12, class: "strong" }, root, `${row.name} (${row.unit})`);
+      svg("text", { x: left + 6, y: floor - rowHeight + 12, class: "strong" }, root, `${row.name} (${row.unit})`);
       return { floor, y };
     });
     const bottom = scales.at(-1).floor;
@@ -64,7 +65,7 @@ function timeline(parent, says) {
       const words = rows.map((row, i) => {
         const value = row.value[nearest(row.time, at)];
         const text = `${digits(value, 3)} ${row.unit}`;
-        tag(cursor, to, scales[i].floor - ROW + 2, text, right);
+        tag(cursor, to, scales[i].floor - rowHeight + 2, text, right);
         return `${row.name} ${text}`;
       });
       tag(cursor, to, bottom + 4, `${digits(at, 4)} s`, right);
@@ -96,13 +97,13 @@ function timeline(parent, says) {
 // Draws what we draw ourselves anew where its place gets another width, and for paper.
 function atWidth(place, draw) {
   let known = 0;
-  const again = () => {
-    const width = Math.round(place.clientWidth);
+  const again = (width) => {
     if (width > 0 && width !== known) { known = width; draw(width); }
   };
-  again();
-  new ResizeObserver(again).observe(place);
-  addEventListener("beforeprint", again);
+  again(Math.round(place.clientWidth));
+  new ResizeObserver(() => again(Math.round(place.clientWidth))).observe(place);
+  addEventListener("beforeprint", () => again(paperWidth(place)));
+  addEventListener("afterprint", () => again(Math.round(place.clientWidth)));
 }
 function nearest(times, at) {
   let [low, high] = [0, times.length - 1];
