@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Literal
 
 from playwright.sync_api import Browser, Page
 
@@ -14,21 +15,36 @@ document.addEventListener("securitypolicyviolation", (event) =>
 """
 
 
+def _leaves(address: str) -> bool:
+    """Whether a request leaves the page: its workers and the files it saves are its own."""
+    return not address.startswith("blob:")
+
+
 class Opened:
     """A page and what happened on it."""
 
-    def __init__(self, browser: Browser, path: Path) -> None:
+    def __init__(
+        self,
+        browser: Browser,
+        path: Path,
+        *,
+        size: tuple[int, int] = (1000, 900),
+        scheme: Literal["light", "dark"] = "light",
+    ) -> None:
         self.errors: list[str] = []
         self.requests: list[str] = []
         self.held_back: list[str] = []
         self.dialogs: list[str] = []
-        self.page: Page = browser.new_page(viewport={"width": 1000, "height": 900})
+        width, height = size
+        self.page: Page = browser.new_page(
+            viewport={"width": width, "height": height}, color_scheme=scheme, accept_downloads=True
+        )
         self.page.add_init_script(_SPY)
         self.page.on("pageerror", lambda e: self.errors.append(str(e)))
         self.page.on(
             "console", lambda m: self.errors.append(m.text) if m.type in ("error", "warning") else None
         )
-        self.page.on("request", lambda r: self.requests.append(r.url))
+        self.page.on("request", lambda r: self.requests.append(r.url) if _leaves(r.url) else None)
         self.page.on("requestfailed", lambda r: self.held_back.append(r.url) if r.failure == "csp" else None)
         self.page.on("dialog", lambda d: (self.dialogs.append(d.message), d.dismiss()))
         self.page.goto(path.as_uri())

@@ -1,105 +1,384 @@
-"""The page in a real headless Chromium, offline."""
+"""The page of a report in a real headless Chromium, offline: three logs, screen, dark, narrow and paper."""
 
 from __future__ import annotations
 
+import csv
+import json
+import re
+from collections.abc import Callable, Iterator
+from itertools import pairwise
 from pathlib import Path
+from typing import Any, Literal
 
 import pytest
-from playwright.sync_api import Browser
+from axe_playwright_python.sync_playwright import Axe
+from playwright.sync_api import Browser, Page
 
-from hersey.charts.analysis import charts
+from hersey.document.assembly import load
 from hersey.document.parts import Analysis
-from hersey.report.page import render
+from tests.browser.conftest import SCREENS
 from tests.browser.opening import Opened
+
+Report = Callable[[str], tuple[Path, Analysis]]
+DESK = (1280, 800)
+#: What WCAG 2.2 AA asks.
+RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa"]
+
+
+@pytest.fixture(scope="module", params=["demo", "screw", "plain"])
+def each(browser: Browser, report: Report, request: pytest.FixtureRequest) -> Iterator[tuple[Opened, Analysis]]:
+    """Each of the three pages, as it opens on a desk."""
+    path, document = report(request.param)
+    opened = Opened(browser, path, size=DESK)
+    opened.page.wait_for_timeout(300)
+    picture(opened.page, f"{request.param}-first")
+    picture(opened.page, request.param, whole=True)
+    yield opened, document
+    opened.page.close()
 
 
 @pytest.fixture(scope="module")
-def opened(browser: Browser, document: Analysis, tmp_path_factory: pytest.TempPathFactory) -> Opened:
-    path = tmp_path_factory.mktemp("page") / "report.html"
-    path.write_text(render(document), encoding="utf-8")
-    return Opened(browser, path)
+def demo(browser: Browser, report: Report) -> Iterator[Opened]:
+    opened = Opened(browser, report("demo")[0], size=DESK)
+    yield opened
+    opened.page.close()
 
 
-def test_it_draws_without_errors_and_without_network(opened: Opened) -> None:
-    opened.assert_quiet()
+def picture(page: Page, name: str, *, whole: bool = False) -> None:
+    SCREENS.mkdir(parents=True, exist_ok=True)
+    page.screenshot(path=SCREENS / f"{name}.png", full_page=whole)
 
 
-def test_the_verdict_comes_first(opened: Opened, document: Analysis) -> None:
-    assert opened.page.locator("#verdict p").all_text_contents() == document.verdict
-    verdict = opened.page.locator("#verdict").bounding_box()
-    assert verdict is not None
-    assert verdict["y"] < 300
-    assert opened.page.locator("#warnings li").all_text_contents() == document.warnings
+def boxes(page: Page, selector: str) -> list[dict[str, Any]]:
+    """Places of elements that are shown, with their texts."""
+    found: list[dict[str, Any]] = page.evaluate(
+        """(selector) => [...document.querySelectorAll(selector)].map((e) => {
+             const b = e.getBoundingClientRect();
+             return { text: e.textContent, x: b.x, y: b.y, right: b.right, bottom: b.bottom };
+           }).filter((b) => b.right > b.x && b.bottom > b.y)""",
+        selector,
+    )
+    return found
 
 
-def test_every_chart_is_drawn(opened: Opened, document: Analysis) -> None:
-    for name in charts(document):
-        box = opened.page.locator(f"#chart-{name} svg").first.bounding_box()
-        assert box is not None, name
-        assert box["width"] > 500
-        assert box["height"] > 90
-    marks = opened.page.locator("#chart-torque svg .mark-symbol path")
-    assert marks.count() >= len(document.points)
+def test_it_draws_without_errors_and_without_network(each: tuple[Opened, Analysis]) -> None:
+    each[0].assert_quiet()
 
 
-def test_nothing_is_wider_than_the_page(opened: Opened) -> None:
-    for width in (1000, 700):
-        opened.page.set_viewport_size({"width": width, "height": 900})
+def test_what_to_do_is_seen_first(each: tuple[Opened, Analysis]) -> None:
+    """Decision, points, flags and the picture, all within a screen of 1280 by 800."""
+    opened, document = each
+    page, decision = opened.page, document.decision
+    assert decision is not None
+    assert page.evaluate("scrollY") == 0
+    lead = page.locator("#decision .lead").text_content() or ""
+    assert lead.startswith(decision.instruction)
+    assert decision.signal.capitalize() in (page.locator("#decision .sign").text_content() or "")
+    assert page.locator(".points tr").count() == len(decision.points)
+    assert page.locator("#flags li").count() == len(decision.flags)
+    drawing = "#map svg" if document.map else "#chart-torque svg.marks"
+    for selector in ("#decision", ".points", "#flags", drawing, "#panel .cap"):
+        for box in boxes(page, selector)[:1]:
+            assert 0 <= box["x"] < box["right"] <= DESK[0], selector
+            assert 0 <= box["y"] < box["bottom"] <= DESK[1], (selector, box)
+    picture_box = boxes(page, drawing)[0]
+    assert picture_box["bottom"] - picture_box["y"] > 250
+
+
+def test_without_a_machine_the_lines_to_add_are_ready(each: tuple[Opened, Analysis]) -> None:
+    opened, document = each
+    assert document.decision is not None
+    if document.map is not None:
+        pytest.skip("this one has a machine")
+    lines = opened.page.locator("#panel pre").all_text_contents()
+    assert lines == [missing.lines for missing in document.decision.missing]
+    assert opened.page.locator("#panel button", has_text="Copy").count() == len(lines)
+
+
+def test_each_section_states_its_finding(each: tuple[Opened, Analysis]) -> None:
+    opened, document = each
+    names = opened.page.locator("section").evaluate_all("all => all.map((e) => e.id)")
+    for part, name in (("fit", "torque"), ("regime", "regime"), ("quality", "data"), ("command", "reproduce")):
+        assert name in names, part
+    for part, name in (("map", "band"), ("models", "candidates"), ("compare", "compare")):
+        assert (name in names) == bool(getattr(document, part)), part
+    findings = opened.page.locator("section > .finding").all_text_contents()
+    assert len(findings) == len(names)
+    for finding in findings:
+        assert re.match(r"[A-Z0-9].{15,}\.$", finding), finding
+        assert "undefined" not in finding
+        assert "NaN" not in finding
+    contents = opened.page.locator("#contents a").evaluate_all("all => all.map((e) => e.hash.slice(1))")
+    assert contents == names
+    for target in opened.page.locator("#flags a").evaluate_all("all => all.map((e) => e.hash.slice(1))"):
+        assert target in names
+
+
+def test_nothing_is_said_twice(each: tuple[Opened, Analysis]) -> None:
+    headings = each[0].page.locator("h2, h3, .finding").all_text_contents()
+    assert len(headings) == len(set(headings)), headings
+    ids = each[0].page.locator("[id]").evaluate_all("all => all.map((e) => e.id)")
+    assert len(ids) == len(set(ids))
+
+
+def test_numbers_match_the_document(each: tuple[Opened, Analysis]) -> None:
+    opened, document = each
+    page = opened.page
+    page.evaluate("document.querySelectorAll('details').forEach((d) => { d.open = true; })")
+    page.wait_for_selector("#summary", state="attached")
+    assert page.text_content("#summary") == document.fit.summary
+    assert page.text_content("#command") == document.command
+    shown = page.locator("section").all_text_contents()
+    c = document.fit.coefficients["c"].value
+    assert f"{c:.2f}".replace("-", "\u2212") in " ".join(shown)
+    assert len(page.locator("#warnings li").all()) == len(document.warnings)
+    assert len(page.locator("#verdict p").all()) == len(document.verdict)
+
+
+def test_marks_and_words_lie_inside_their_charts(each: tuple[Opened, Analysis]) -> None:
+    """No mark or word of a chart is cut off by its frame."""
+    cut = each[0].page.evaluate(
+        """() => [...document.querySelectorAll("svg.marks, #timeline svg")].flatMap((drawing) => {
+             const frame = drawing.getBoundingClientRect();
+             if (!frame.width) return [];
+             return [...drawing.querySelectorAll("text, .mark-symbol path")].filter((e) => {
+               const b = e.getBoundingClientRect();
+               return b.width && (b.x < frame.x - 1 || b.right > frame.right + 1 || b.y < frame.y - 1 || b.bottom > frame.bottom + 1);
+             }).map((e) => `${drawing.closest("figure")?.id}: ${e.textContent || "mark"}`);
+           })"""
+    )
+    assert cut == []
+
+
+#: Pairs of words in one chart that cover each other.
+_COVERED = """() => [...document.querySelectorAll("svg.marks, #timeline svg")].flatMap((drawing) => {
+  const words = [...drawing.querySelectorAll("text")].filter((e) => e.textContent && getComputedStyle(e).stroke === "none" && !e.closest(".cursor"))
+    .map((e) => ({ text: e.textContent, b: e.getBoundingClientRect() })).filter(({ b }) => b.width);
+  const out = [];
+  words.forEach((one, i) => words.slice(i + 1).forEach((other) => {
+    const across = Math.min(one.b.right, other.b.right) - Math.max(one.b.x, other.b.x);
+    const down = Math.min(one.b.bottom, other.b.bottom) - Math.max(one.b.y, other.b.y);
+    if (across > 2 && down > 4) out.push(`${drawing.closest("figure")?.id}: ${one.text} / ${other.text}`);
+  }));
+  return out;
+})"""
+
+
+def test_words_cover_no_other_words(each: tuple[Opened, Analysis]) -> None:
+    assert each[0].page.evaluate(_COVERED) == []
+
+
+def test_drawings_say_what_they_show(each: tuple[Opened, Analysis]) -> None:
+    labels = each[0].page.locator("figure svg[role=img]").evaluate_all("all => all.map((e) => e.getAttribute('aria-label'))")
+    assert labels
+    assert all(label and len(label) > 20 for label in labels), labels
+    unnamed = each[0].page.locator("figure svg.marks:not([role=img])").count()
+    assert unnamed == 0
+
+
+@pytest.mark.parametrize("width", [360, 390, 768, 1000])
+def test_nothing_is_wider_than_the_page(browser: Browser, report: Report, width: int) -> None:
+    for name in ("demo", "plain"):
+        opened = Opened(browser, report(name)[0], size=(width, 800))
+        opened.page.wait_for_timeout(150)
         assert opened.page.evaluate("document.documentElement.scrollWidth") <= width
-    opened.page.set_viewport_size({"width": 1000, "height": 900})
+        if width == 360:
+            picture(opened.page, f"{name}-{width}", whole=True)
+            assert opened.page.evaluate(_COVERED) == []
+            broken = opened.page.evaluate(  # a word of a heading that stands in two lines
+                """() => [...document.querySelectorAll("h1, h2, h3, .finding, .lead, .points td, .btn, th")].flatMap((e) => {
+                     const walk = document.createTreeWalker(e, NodeFilter.SHOW_TEXT), out = [];
+                     while (walk.nextNode()) for (const word of walk.currentNode.data.matchAll(/[^\\s-]+/g)) {
+                       const range = new Range();
+                       range.setStart(walk.currentNode, word.index); range.setEnd(walk.currentNode, word.index + word[0].length);
+                       if (range.getClientRects().length > 1) out.push(word[0]);
+                     }
+                     return out;
+                   })"""
+            )
+            assert broken == []
+        opened.assert_quiet()
+        opened.page.close()
 
 
-def test_numbers_match_the_document(opened: Opened, document: Analysis) -> None:
-    assert opened.page.text_content("#summary") == document.fit.summary
-    assert opened.page.text_content("#command") == document.command
-    cards = " ".join(opened.page.locator(".card b").all_text_contents())
-    assert f"{document.fit.coefficients['c'].value:.3g}" in cards
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("name", ["demo", "plain"])
+def test_it_is_accessible(
+    browser: Browser, report: Report, name: str, scheme: Literal["light", "dark"]
+) -> None:
+    """WCAG 2.2 AA by axe-core, with folds open: no violation."""
+    opened = Opened(browser, report(name)[0], size=DESK, scheme=scheme)
+    page = opened.page
+    assert page.get_attribute("html", "data-theme") == scheme
+    page.evaluate("document.querySelectorAll('details').forEach((d) => { d.open = true; })")
+    page.wait_for_timeout(1200)
+    picture(page, f"{name}-{scheme}-open", whole=True)
+    inside = {"exclude": [["svg[role=img] > *"]]}  # drawings have names; what is in them is presentational
+    result = Axe().run(page, context=inside, options={"runOnly": RULES, "resultTypes": ["violations"]}).response
+    found = [
+        (violation["id"], node["html"][:150], node["failureSummary"][:200])
+        for violation in result["violations"]
+        for node in violation["nodes"][:3]
+    ]
+    assert found == []
+    page.close()
 
 
-def test_a_tooltip_shows_the_numbers_of_a_dwell(opened: Opened) -> None:
-    mark = opened.page.locator("#chart-torque svg .mark-symbol path").nth(5)
+def test_dark_and_light(demo: Opened) -> None:
+    page = demo.page
+    ground = "getComputedStyle(document.body).backgroundColor"
+    line = """getComputedStyle(document.querySelector("#chart-damping .mark-line path")).stroke"""
+    before = page.evaluate(ground), page.evaluate(line)
+    page.click("#theme")
+    after = page.evaluate(ground), page.evaluate(line)
+    assert after[0] == "rgb(17, 23, 29)"
+    assert before[1] != after[1]
+    picture(page, "demo-dark-first")
+    page.click("#theme")
+    assert (page.evaluate(ground), page.evaluate(line)) == before
+
+
+def test_a_table_sorts_by_its_heads(demo: Opened) -> None:
+    page = demo.page
+    page.locator("#statistics > summary").click()
+    table = page.locator("table[aria-label='All dwells']")
+    column = "all => all.map((e) => Number(e.textContent.replaceAll('\u2212', '-')))"
+    head = table.locator("th button", has_text="Off the fit")
+    place = head.evaluate("e => e.closest('th').cellIndex") + 1
+    head.focus()
+    page.keyboard.press("Enter")
+    values = table.locator(f"td:nth-child({place})").evaluate_all(column)
+    assert values == sorted(values)
+    assert values[0] < 0
+    page.keyboard.press("Enter")
+    values = table.locator(f"td:nth-child({place})").evaluate_all(column)
+    assert values == sorted(values, reverse=True)
+    assert table.locator("th[aria-sort]").get_attribute("aria-sort") == "descending"
+
+
+def saved(page: Page, button: Any) -> bytes:
+    with page.expect_download() as download:
+        button.click()
+    return Path(download.value.path()).read_bytes()
+
+
+def test_a_table_is_saved(demo: Opened, report: Report) -> None:
+    document = report("demo")[1]
+    fold = demo.page.locator("#statistics")
+    if fold.get_attribute("open") is None:
+        fold.locator("summary").first.click()
+    text = saved(demo.page, fold.locator("table[aria-label='All dwells'] >> xpath=ancestor::details[1]//button[text()='Save CSV']").first)
+    rows = list(csv.reader(text.decode().splitlines()))
+    assert len(rows) == 1 + len(document.points)
+    head = {name: i for i, name in enumerate(rows[0])}
+    torques = sorted(float(row[head["Torque, mN·m"]]) for row in rows[1:])
+    assert torques == pytest.approx(sorted(1e3 * p.torque for p in document.points), rel=1e-3)
+    assert demo.violations == []
+
+
+def test_the_document_is_saved(demo: Opened, report: Report) -> None:
+    text = saved(demo.page, demo.page.locator("button", has_text="Save document"))
+    document = load(text.decode())
+    assert document.points == report("demo")[1].points
+    assert document.map == report("demo")[1].map
+
+
+@pytest.mark.parametrize(("kind", "start"), [("SVG", b"<svg"), ("PNG", b"\x89PNG")])
+def test_a_chart_is_saved(demo: Opened, kind: str, start: bytes) -> None:
+    behind = demo.page.locator("#chart-regime details")
+    if behind.get_attribute("open") is None:
+        behind.locator("summary").click()
+    assert behind.locator("tbody tr").count() >= 5
+    content = saved(demo.page, behind.locator("button", has_text=f"Save {kind}"))
+    assert content.startswith(start)
+    assert b"light-dark" not in content
+    assert demo.violations == []
+
+
+def test_a_series_can_be_hidden(demo: Opened) -> None:
+    press = demo.page.locator("#chart-torque .toggle").first
+    marks = "[...document.querySelectorAll('#chart-torque .mark-symbol path')].filter((e) => Number(e.getAttribute('opacity')) < 0.5).length"
+    assert demo.page.evaluate(marks) == 0
+    press.focus()
+    demo.page.keyboard.press("Space")
+    assert press.get_attribute("aria-pressed") == "false"
+    assert demo.page.evaluate(marks) > 5
+    press.click()
+    assert demo.page.evaluate(marks) == 0
+
+
+def test_a_tooltip_shows_the_numbers_of_a_dwell(demo: Opened) -> None:
+    mark = demo.page.locator("#chart-torque svg .mark-symbol path").nth(5)
     mark.scroll_into_view_if_needed()
-    box = mark.bounding_box()
-    assert box is not None
-    opened.page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
-    opened.page.wait_for_selector("#vg-tooltip-element.visible")
-    text = opened.page.text_content("#vg-tooltip-element") or ""
+    mark.hover(force=True)
+    demo.page.wait_for_selector("#vg-tooltip-element.visible")
+    text = demo.page.text_content("#vg-tooltip-element") or ""
     assert "speed (rpm)" in text
     assert "torque (" in text
 
 
-def test_shift_and_wheel_zoom(opened: Opened) -> None:
-    """By an expression of Vega, interpreted: the page forbids to compile it."""
-    place = opened.page.locator("#chart-torque svg.marks")
+def test_one_cursor_reads_all_rows_of_the_log(demo: Opened) -> None:
+    place = demo.page.locator("#timeline .chart")
     place.scroll_into_view_if_needed()
-    before = place.locator(".role-axis-label text").all_text_contents()
-    box = place.bounding_box()
-    assert box is not None
-    opened.page.mouse.move(box["x"] + 0.4 * box["width"], box["y"] + 0.5 * box["height"])
-    opened.page.keyboard.down("Shift")
-    opened.page.mouse.wheel(0, -600)
-    opened.page.wait_for_function(
-        """(before) => before !== [
-          ...document.querySelectorAll("#chart-torque svg.marks .role-axis-label text")]
-          .map((e) => e.textContent).join("|")""",
-        arg="|".join(before),
+    place.hover(position={"x": 500, "y": 120})
+    read = place.locator(".cursor text").all_text_contents()
+    assert [re.sub(r"[\d.\u2212]+ ", "", text) for text in read] == ["rpm", "mN·m", "°C", "s"]
+    first = read[-1]
+    place.focus()
+    demo.page.keyboard.press("ArrowRight")
+    assert place.locator(".cursor text").last.text_content() != first
+    said = demo.page.locator("#timeline [aria-live]").text_content() or ""
+    assert "Torque" in said
+
+
+def test_keys_reach_everything_in_order(demo: Opened) -> None:
+    """Tab goes down the page; nothing that takes a click is left out."""
+    page = demo.page
+    page.reload()
+    page.wait_for_selector("body[data-ready=true]")
+    page.evaluate("document.activeElement.blur(); scrollTo(0, 0)")
+    want = page.evaluate(
+        """() => [...document.querySelectorAll("a, button, summary, input, select, [tabindex='0']")]
+             .filter((e) => e.offsetParent !== null || e.ownerSVGElement).filter((e) => !e.disabled && e.checkVisibility()).length"""
     )
-    opened.page.keyboard.up("Shift")
-    opened.assert_quiet()
+    seen = []
+    for _ in range(want + 5):
+        page.keyboard.press("Tab")
+        seen.append(
+            page.evaluate(
+                """() => { const e = document.activeElement; if (e === document.body) return null;
+                     e.dataset.seen = "true"; const b = e.getBoundingClientRect(); return [b.x, b.y + scrollY, e.closest("#map, #panel, nav, .columns") !== null]; }"""
+            )
+        )
+        if seen[-1] is None:
+            break
+    left = page.evaluate(
+        """() => [...document.querySelectorAll("a, button, summary, input, select")]
+             .filter((e) => e.checkVisibility() && !e.disabled && e.tabIndex >= 0 && !e.dataset.seen).map((e) => e.outerHTML.slice(0, 80))"""
+    )
+    assert left == []
+    down = [place[1] for place in seen if place is not None and not place[2]]
+    assert all(after > before - 40 for before, after in pairwise(down))
 
 
-@pytest.mark.parametrize(("number", "start"), [(0, b"<svg"), (1, b"\x89PNG")])
-def test_a_chart_can_be_saved(opened: Opened, number: int, start: bytes) -> None:
-    menu = opened.page.locator("#chart-regime details")
-    if menu.get_attribute("open") is None:
-        menu.locator("summary").click()
-    with opened.page.expect_download() as download:
-        menu.locator("a").nth(number).click()
-    assert download.value.path().read_bytes().startswith(start)
-    assert opened.violations == []
+def test_it_prints(browser: Browser, report: Report, tmp_path: Path) -> None:
+    """Five pages of A4, light, folds open, and no control."""
+    opened = Opened(browser, report("demo")[0], size=DESK, scheme="dark")
+    SCREENS.mkdir(parents=True, exist_ok=True)
+    pdf = opened.page.pdf(prefer_css_page_size=True, path=SCREENS / "demo.pdf")
+    assert len(re.findall(rb"/Type\s*/Page[^s]", pdf)) <= 5
+    opened.page.emulate_media(media="print")
+    opened.page.evaluate("dispatchEvent(new Event('beforeprint'))")
+    assert opened.page.evaluate("getComputedStyle(document.documentElement).colorScheme") == "light"
+    assert opened.page.locator("button:visible, nav:visible").count() == 0
+    assert opened.page.locator(".on-paper:visible", has_text="4 of 73 rows").count() == 1
+    opened.page.evaluate("dispatchEvent(new Event('afterprint'))")
+    assert opened.page.locator("details[open]").count() == 0
+    opened.page.close()
 
 
-def test_it_prints(opened: Opened, tmp_path: Path) -> None:
-    pdf = opened.page.pdf(format="A4", path=str(tmp_path / "report.pdf"))
-    assert pdf.startswith(b"%PDF")
-    assert len(pdf) > 50_000
+def test_the_document_is_data_and_no_markup(report: Report) -> None:
+    text = report("demo")[0].read_text(encoding="utf-8")
+    assert len(text.encode()) < 2_500_000
+    (block,) = re.findall(r'id="document">(.*?)</script>', text, re.DOTALL)
+    assert json.loads(block)["title"] == "bench.csv"

@@ -83,7 +83,9 @@ def charts(document: Analysis) -> dict[str, Chart]:
 def torque(document: Analysis) -> Chart:
     """Torque against speed per temperature, with the fitted law (the paper's Fig. 2)."""
     scale, unit = _torque_unit(document)
-    subtitle = "filled: reached from below, open: from above, bars: two standard errors; lines: the fitted law"
+    subtitle = (
+        "filled: reached from below, open: from above, bars: two standard errors; lines: the fitted law"
+    )
     subtitle += "" if document.fit.rest is None else "; the rest of the drive is taken off"
     title = alt.Title("Drag torque against speed", subtitle=subtitle)
     return _against_speed(document, "torque", f"Torque ({unit})", scale, []).properties(title=title)
@@ -96,7 +98,9 @@ def damping(document: Analysis) -> Chart:
         "Damping against speed", subtitle="dashed: slope -1, where torque does not depend on speed"
     )
     under = [_slope_of_minus_one(document, scale)]
-    return _against_speed(document, "damping", f"Damping ({unit}·s/rad)", scale, under).properties(title=title)
+    return _against_speed(document, "damping", f"Damping ({unit}·s/rad)", scale, under).properties(
+        title=title
+    )
 
 
 def surface(document: Analysis) -> Chart:
@@ -226,6 +230,7 @@ def stick_speed(document: Analysis) -> Chart | None:
 def compare(document: Analysis) -> Chart | None:
     """Damping of one log over that of another."""
     return None if document.compare is None else logs_chart(document.compare)
+
 
 def simulation_speed(document: Analysis) -> Chart | None:
     """Belt speed of the simulation (Fig. 9); None without one."""
@@ -385,9 +390,7 @@ def _slope_of_minus_one(document: Analysis, scale: float) -> alt.Chart:
     end = min(high, low * top / bottom)
     rows = [{"speed": low, "y": top}, {"speed": end, "y": top * low / end}]
     chart: alt.Chart = (
-        plot(rows)
-        .mark_line(color=INK, strokeDash=[4, 3], strokeWidth=1)
-        .encode(x="speed:Q", y="y:Q")
+        plot(rows).mark_line(color=INK, strokeDash=[4, 3], strokeWidth=1).encode(x="speed:Q", y="y:Q")
     )
     return chart
 

@@ -4,7 +4,18 @@ from __future__ import annotations
 
 import altair as alt
 
-from hersey.charts.style import HEIGHT, INK, WIDTH, Chart, logarithmic_axis, plot, rows_of, span, tip, torque_unit
+from hersey.charts.style import (
+    HEIGHT,
+    INK,
+    WIDTH,
+    Chart,
+    logarithmic_axis,
+    plot,
+    rows_of,
+    span,
+    tip,
+    torque_unit,
+)
 from hersey.document.parts import CarriedPart
 from hersey.units import celsius, rpm
 
@@ -43,7 +54,11 @@ def carried_chart(part: CarriedPart) -> Chart:
                 scale=alt.Scale(domain=names, range=shades),
                 legend=alt.Legend(title=None, orient="bottom", columns=2, symbolOpacity=1),
             ),
-            tooltip=[alt.Tooltip("part:N", title="part"), tip("speed", "roll (rpm)"), tip("torque", f"torque ({unit})")],
+            tooltip=[
+                alt.Tooltip("part:N", title="part"),
+                tip("speed", "roll (rpm)"),
+                tip("torque", f"torque ({unit})"),
+            ],
         )
     )
     dots = (
@@ -53,7 +68,7 @@ def carried_chart(part: CarriedPart) -> Chart:
     )
     title = alt.Title(
         f"What carries the torque at {celsius(part.temperature):.0f} °C",
-        subtitle="areas: by the machine's file, the film's shear over the nip and its inlet with the pressure; "
+        subtitle="areas: by the machine's file, the film sheared over the nip, its inlet with the pressure; "
         "circles: dwells of the log, rest of the drive included",
     )
     return alt.layer(areas, dots, title=title, width=WIDTH, height=HEIGHT)

@@ -167,9 +167,7 @@ def _ranking(comparison: ModelComparison) -> Chart:
 
 def logs_chart(comparison: LogComparison | ComparisonPart) -> Chart:
     """Return damping of the second log over that of the first against speed, with simultaneous limits."""
-    a, b = (
-        (comparison.a, comparison.b) if isinstance(comparison, ComparisonPart) else comparison.names
-    )
+    a, b = (comparison.a, comparison.b) if isinstance(comparison, ComparisonPart) else comparison.names
     temperatures, speeds = np.asarray(comparison.temperatures), np.asarray(comparison.speeds)
     hot: list[float | None] = list(temperatures) if temperatures.size else [None]
     rows: list[Row] = []

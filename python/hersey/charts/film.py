@@ -111,9 +111,7 @@ def _regimes(points: list[Row], dwells: list[Row], layer_factor: float) -> Chart
     marks = (
         plot([row for row in points if row["g_v"] > 0])
         .mark_point(shape="diamond", fill="white", stroke=INK, strokeWidth=1.8, size=85, opacity=1)
-        .encode(
-            x=x, y=y, tooltip=_TIPS
-        )
+        .encode(x=x, y=y, tooltip=_TIPS)
     )
     hidden = "" if known else " No point is shown: alpha is not known, g_V = 0."
     subtitle = [

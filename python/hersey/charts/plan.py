@@ -64,7 +64,9 @@ def profile_chart(plan: PlanPart, motion: StartPart | None) -> Chart:
         lines += [("belt, straight to speed", straight)] if straight else []
         lines.append(("belt", list(zip(motion.time, motion.belt_speed, strict=True))))
     marks = [(plan.transition_speed, "transition")]
-    if plan.fold_speed is not None and plan.fold_speed < _SHOWN * max(plan.peak_speed or 0.0, plan.target_speed):
+    if plan.fold_speed is not None and plan.fold_speed < _SHOWN * max(
+        plan.peak_speed or 0.0, plan.target_speed
+    ):
         marks.append((plan.fold_speed, "V*"))
     top = 1e3 * max([plan.peak_speed or 0.0, plan.target_speed, *(v for v, _ in marks)]) * 2.2
     domain = (0.0, top)
@@ -76,7 +78,12 @@ def profile_chart(plan: PlanPart, motion: StartPart | None) -> Chart:
     key = alt.Legend(title=None, orient="bottom", symbolSize=400)
     color = alt.Scale(domain=names, range=[looks[name][0] for name in names])
     dash = alt.Scale(domain=names, range=[looks[name][1] for name in names])
-    x = alt.X("time:Q", title="Time (s)", scale=alt.Scale(domain=[0.0, last], nice=False), axis=alt.Axis(tickCount=6))
+    x = alt.X(
+        "time:Q",
+        title="Time (s)",
+        scale=alt.Scale(domain=[0.0, last], nice=False),
+        axis=alt.Axis(tickCount=6),
+    )
     y = alt.Y("value:Q", title="Speed (mm/s)", scale=alt.Scale(domain=list(domain), nice=False))
     drawn = plot(rows).mark_line(strokeWidth=1.7, clip=True)
     layers: list[alt.Chart] = [
@@ -86,9 +93,13 @@ def profile_chart(plan: PlanPart, motion: StartPart | None) -> Chart:
             y=y,
             color=alt.Color("line:N", scale=color, legend=key),
             strokeDash=alt.StrokeDash("line:N", scale=dash, legend=key),
-            tooltip=[alt.Tooltip("line:N", title="line"), tip("time", "time (s)"), tip("value", "speed (mm/s)")],
+            tooltip=[
+                alt.Tooltip("line:N", title="line"),
+                tip("time", "time (s)"),
+                tip("value", "speed (mm/s)"),
+            ],
         ),
-        *_peaks(rows, top, x, y),
+        *_peaks(rows, top, x),
     ]
     if plan.duration is not None:
         mark = plot([{"time": plan.duration, "name": f"slides from here on, {plan.duration:.2g} s"}])
@@ -100,7 +111,7 @@ def profile_chart(plan: PlanPart, motion: StartPart | None) -> Chart:
     return alt.layer(*layers, title="Drive profile", width=WIDTH, height=_HEIGHT)
 
 
-def _peaks(rows: list[Row], top: float, x: alt.X, y: alt.Y) -> list[alt.Chart]:
+def _peaks(rows: list[Row], top: float, x: alt.X) -> list[alt.Chart]:
     """The peak of the belt, where it is cut off."""
     belt = [row for row in rows if row["line"] == "belt"]
     if not belt:

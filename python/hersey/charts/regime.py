@@ -71,13 +71,23 @@ def exponent_chart(
     order = [where for _, where in places]
     nip: list[Row] = []
     if solved is not None:
-        nip = [{"where": "this nip", "value": solved, "text": f"{solved:.2f}, film solved".replace("-", "\u2212")}]
+        nip = [
+            {
+                "where": "this nip",
+                "value": solved,
+                "text": f"{solved:.2f}, film solved".replace("-", "\u2212"),
+            }
+        ]
         order.append("this nip")
     scale = alt.Scale(domain=[low, high], nice=False)
     x = alt.X("value:Q", title="Exponent of damping in speed (no unit)", scale=scale)
     y = alt.Y("where:N", title=None, sort=order, axis=alt.Axis(grid=False))
     title = alt.Title("Exponent of damping, with 95 % intervals", subtitle=_subtitle(told))
-    layers = [*_regimes(regimes, scale, low, high), *_exponents(told, x, y, scale, 0.5 * (low + high)), *_nip(nip, x, y, 0.5 * (low + high))]
+    layers = [
+        *_regimes(regimes, scale, low, high),
+        *_exponents(told, x, y, scale, 0.5 * (low + high)),
+        *_nip(nip, x, y, 0.5 * (low + high)),
+    ]
     return alt.layer(*layers, title=title, width=WIDTH, height=_ROW * max(len(order), 3))
 
 

@@ -30,7 +30,10 @@ def stick_speed_chart(document: Analysis) -> Chart:
     sides = logarithmic_axis((min(stick), max(stick)))
     x = alt.X("stick:Q", title="Stick speed (mm/s), never measured", **sides)
     y_scale = alt.Scale(domain=[0, top], nice=False)
-    y = {name: alt.Y(f"{name}:Q", title="Drive speed (mm/s)", scale=y_scale) for name in ("transition", "upper", "edge")}
+    y = {
+        name: alt.Y(f"{name}:Q", title="Drive speed (mm/s)", scale=y_scale)
+        for name in ("transition", "upper", "edge")
+    }
     base = plot(rows)
     ground: list[Row] = [{"low": min(stick), "high": max(stick)}]
     layers = [
@@ -41,7 +44,11 @@ def stick_speed_chart(document: Analysis) -> Chart:
         base.mark_line(color=INK, strokeWidth=1.8, strokeDash=[7, 4]).encode(
             x=x,
             y=y["upper"],
-            tooltip=[tip("stick", "stick speed (mm/s)"), tip("transition", "transition (mm/s)"), tip("upper", "V* (mm/s)")],
+            tooltip=[
+                tip("stick", "stick speed (mm/s)"),
+                tip("transition", "transition (mm/s)"),
+                tip("upper", "V* (mm/s)"),
+            ],
         ),
     ]
     layers += _words(stick, transition, known, top, sides, y_scale)
@@ -49,7 +56,8 @@ def stick_speed_chart(document: Analysis) -> Chart:
     layers += _stated(sweep, x, y["upper"])
     at = "" if sweep.temperature is None else f" at {celsius(sweep.temperature):.0f} °C"
     title = alt.Title(
-        f"V* against the stick speed{at}", subtitle="solid: transition; dashed: V*, above which the past does not matter"
+        f"V* against the stick speed{at}",
+        subtitle="solid: transition; dashed: V*, above which the past does not matter",
     )
     return alt.layer(*layers, title=title, width=WIDTH, height=_HEIGHT)
 

@@ -44,7 +44,9 @@ def render(document: Analysis) -> str:
     shown = {name: chart for name, chart in charts(document).items() if not name.startswith(_OTHERWISE)}
     core = resources.files("hersey.report") / "static" / "physics.wasm"
     physics = base64.b64encode(core.read_bytes()).decode() if core.is_file() and document.map else None
-    return drawn(_REPORT, "hersey report", document.model_dump(mode="json", exclude=_DRAWN), shown, physics=physics)
+    return drawn(
+        _REPORT, "hersey report", document.model_dump(mode="json", exclude=_DRAWN), shown, physics=physics
+    )
 
 
 def drawn(
@@ -55,7 +57,7 @@ def drawn(
     *,
     physics: str | None = None,
 ) -> str:
-    """Return a page as HTML text: what the ``pieces`` of ``static`` (scripts, styles) show of a document, with its charts.
+    """Return a page as HTML text: what ``pieces`` of ``static`` (scripts, styles) show of a document.
 
     ``physics`` is the core as WebAssembly, in base64.
     """

@@ -36,7 +36,8 @@ const LOOKS = {
   aria: false, background: null, font: getComputedStyle(document.body).fontFamily, padding: { left: 0, top: 4, right: 1, bottom: 4 }, view: { stroke: null },
   axis: { labelFontSize: 11.5, labelColor: SECONDARY, titleFontSize: 12, titleFontWeight: "normal", titleColor: SECONDARY,
     gridColor: RULE, gridWidth: 0.8, domainColor: EDGE, tickColor: EDGE, tickSize: 4, labelPadding: 4 },
-  axisX: { grid: false },
+  axisX: { grid: false, labelFlush: false, labelOverlap: "greedy", labelSeparation: 8 },
+  axisY: { labelOverlap: "greedy", labelSeparation: 4 },
   legend: { labelFontSize: 12, titleFontSize: 12, labelColor: SECONDARY, titleColor: SECONDARY, titleFontWeight: "normal" },
   header: { labelColor: SECONDARY, titleColor: SECONDARY },
   title: { color: SECONDARY, subtitleColor: SECONDARY },
@@ -102,6 +103,9 @@ async function chart(parent, name, { heading = null, note = null, says = "", beh
   const notes = note === null ? lines(title.subtitle) : lines(note);
   const view = await embedded(place, height === null ? specification : { ...specification, height });
   const drawing = place.querySelector("svg");
+  for (const inner of drawing.querySelectorAll("[role], [aria-roledescription], [aria-label]")) {
+    for (const name of ["role", "aria-roledescription", "aria-label", "aria-hidden"]) inner.removeAttribute(name);
+  }
   drawing.setAttribute("role", "img");
   drawing.setAttribute("aria-label", [words, says, ...notes].filter(Boolean).join(". "));
   toggles(figure, specification, view);

@@ -147,7 +147,7 @@ function missing(panel) {
     if (!i) add(place, "p", words);
     const head = add(place, "div", "", "cap");
     head.style.marginTop = "6px";
-    add(head, "h3", `Add to ${each.file}`);
+    add(head, "b", `Add to ${each.file}`);
     reachable(add(place, "pre", each.lines));
     button(head, "Copy the lines", (from) => copy(each.lines, from));
   });

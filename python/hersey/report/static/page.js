@@ -127,7 +127,11 @@ async function regimeSection(parent) {
   const more = add(part, "div", "", "columns");
   await chart(more, "transition");
   await chart(more, "carried");
-  if (data.carried) data.carried.text.forEach((text, i) => { add(more, "p", pretty(text), "note across").id = i ? "" : "carried"; });
+  if (data.carried) {
+    const said = add(more, "div", "", "across");
+    said.id = "carried";
+    for (const text of data.carried.text) add(said, "p", pretty(text), "note");
+  }
   const all = fold(part, "The reasoning in full, and all regimes tested");
   const verdict = add(all, "div");
   verdict.id = "verdict";
