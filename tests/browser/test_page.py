@@ -371,7 +371,7 @@ def test_it_prints(browser: Browser, report: Report, tmp_path: Path) -> None:
     opened.page.evaluate("dispatchEvent(new Event('beforeprint'))")
     assert opened.page.evaluate("getComputedStyle(document.documentElement).colorScheme") == "light"
     assert opened.page.locator("button:visible, nav:visible").count() == 0
-    assert opened.page.locator(".on-paper:visible", has_text="4 of 73 rows").count() == 1
+    assert opened.page.locator(".on-paper:visible", has_text="3 of 73 rows").count() == 1
     opened.page.evaluate("dispatchEvent(new Event('afterprint'))")
     assert opened.page.locator("details[open]").count() == 0
     opened.page.close()

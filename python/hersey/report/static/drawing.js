@@ -89,7 +89,7 @@ async function copy(text, from) {
 }
 
 // Rows of a fold that are printed.
-const PRINTED = 4;
+const PRINTED = 3;
 const number = (text) => Number.parseFloat(String(text).replaceAll("−", "-").replaceAll(" ", "").replace(/^[^\d.-]+/, ""));
 function csv(heads, rows) {
   const cell = (text) => {
@@ -145,8 +145,8 @@ function table(parent, heads, rows, numeric = [], { name = "", label = "" } = {}
   reachable(wide);
   return element;
 }
-// Width of a place on paper, pixels: A4 less its margins, whole or in one of two columns.
-const PAPER = 695;
+// Width of a place on paper, pixels: A4 less its margins at the scale of page.css, whole or one of two columns.
+const PAPER = Math.floor(695 / 0.85);
 function paperWidth(place) {
   return place.closest(".columns") && !place.closest(".across") ? (PAPER - 24) / 2 : PAPER;
 }
