@@ -113,6 +113,9 @@ pub struct Fold {
 
 /// Laps after which a search is given up.
 const MAX_LAPS: usize = 80;
+/// Tolerance of the steps, whose errors add up along a lap, over that asked for, and the tightest.
+const SHARE: f64 = 0.1;
+const TIGHTEST: f64 = 1e-14;
 /// Steps of one lap after which a search is given up.
 const MAX_STEPS: u32 = 20_000;
 /// Most iterations for the speed that drags with a given force.
@@ -221,7 +224,8 @@ fn seek(
     let admit = |lanes: &mut Lanes, l: usize| {
         seekers.find_map(|mut seeker| seeker.forward(lanes, l, &start).then_some(seeker))
     };
-    run_lanes(tolerance, work, admit, |seeker, lanes, l| match seeker.follow(lanes, l, &start) {
+    let steps = (SHARE * tolerance).max(TIGHTEST);
+    run_lanes(steps, work, admit, |seeker, lanes, l| match seeker.follow(lanes, l, &start) {
         Next::Goes => true,
         Next::Found(fold) => {
             found[seeker.index] = Some(fold);

@@ -1,0 +1,151 @@
+//! Folds of belts whose drive drags with speed and whose roll may slip, against motions followed one by one.
+
+#[path = "common/random.rs"]
+mod random;
+
+use random::Random;
+use hersey_core::Work;
+use hersey_core::drag::{Closure, Drag, Rest};
+use hersey_core::motion::{Belt, CycleKind, Drivetrain, Span, Start, ensemble, settle, stick_slip};
+use hersey_core::stability::{Band, Method, bands, swings};
+
+const TOLERANCE: f64 = 1e-11;
+
+/// A belt like those of machines: a rest of the drive that grows with speed, and a grip that may matter.
+fn belt(random: &mut Random) -> (Drivetrain, Drag) {
+    let (k, m) = (random.decades(2.0, 4.0), random.decades(-1.0, 1.0));
+    let speed = random.decades(-2.0, 0.0);
+    let impedance = f64::sqrt(k * m);
+    let force = random.decades(-0.8, 0.5) * impedance * speed;
+    let (mixed, ehl) = (random.between(-2.1, -1.15), random.between(-0.8, -0.4));
+    let stick = speed * random.decades(-1.7, -0.7);
+    let rest = Rest {
+        force: force * random.between(0.0, 3.0),
+        damping: impedance * random.decades(-3.0, -1.0),
+    };
+    let drag = Drag::new(force, speed, ehl, mixed, stick, Closure::Retained).unwrap();
+    let drag = drag.with_rest(rest).unwrap();
+    // from where a belt that sticks is just released
+    let grip = drag.holding_force(stick) * random.between(1.02, 3.0);
+    (Drivetrain::new(k, m).unwrap().with_grip(grip).unwrap(), drag)
+}
+
+fn band_of(train: Drivetrain, drag: &Drag, lower: bool) -> Band {
+    bands(&[(train, drag.clone())], lower, TOLERANCE, &Work::default()).unwrap().remove(0).unwrap()
+}
+
+/// Whether a belt that has just been released goes on to slow down to the stick speed, or to slip on its roll.
+fn is_rough(train: &Drivetrain, drag: &Drag, drive_speed: f64) -> bool {
+    let belt_speed = drag.stick_speed();
+    let start = Start { belt_speed, stretch: drag.holding_force(belt_speed) / train.stiffness() };
+    let cycle = stick_slip(train, drag, drive_speed, start, TOLERANCE).unwrap();
+    let sticks = cycle.kind != CycleKind::SteadySliding
+        && cycle.speed_min <= drag.stick_speed() * (1.0 + 1e-9);
+    sticks || cycle.grip_slip_duration > 0.0
+}
+
+#[test]
+fn stick_slip_ends_where_half_laps_meet() {
+    let mut random = Random(15);
+    let (mut slipping, mut fast) = (0, 0);
+    for i in 0..100 {
+        let (train, drag) = belt(&mut random);
+        let band = band_of(train, &drag, false);
+        let free = Drivetrain::new(train.stiffness(), train.mass()).unwrap();
+        if band.method != Method::HalfLaps || !band.upper.is_finite() {
+            continue;
+        }
+        fast += 1;
+        slipping += usize::from(band.upper < 0.999 * band_of(free, &drag, false).upper);
+        assert!(is_rough(&train, &drag, band.upper * (1.0 - 3e-5)), "{i}: {band:?} {drag:?}");
+        assert!(!is_rough(&train, &drag, band.upper * (1.0 + 3e-5)), "{i}: {band:?} {drag:?}");
+    }
+    assert!(fast > 90 && slipping > 15, "{fast} {slipping}");
+}
+
+#[test]
+fn a_loose_tolerance_finds_the_fold_of_a_tight_one() {
+    let mut random = Random(8);
+    for i in 0..300 {
+        let (train, drag) = belt(&mut random);
+        let belts = [(train, drag)];
+        let at = |tolerance: f64| {
+            bands(&belts, true, tolerance, &Work::default()).unwrap().remove(0).unwrap()
+        };
+        let (tight, loose) = (at(1e-13), at(1e-8));
+        if tight.upper > 20.0 * tight.transition {
+            continue; // the error grows with the fold
+        }
+        assert_eq!((tight.method, tight.deeper), (loose.method, loose.deeper), "{i}");
+        for (a, b, accuracy) in [
+            (tight.upper, loose.upper, loose.upper_accuracy),
+            (tight.lower, loose.lower, loose.lower_accuracy),
+        ] {
+            assert!((a - b).abs() <= accuracy * a, "{i}: {tight:?} {loose:?}");
+        }
+    }
+}
+
+#[test]
+fn a_nudged_belt_sticks_below_the_lower_edge_and_swings_on_above() {
+    let mut random = Random(3);
+    for i in 0..4 {
+        let (train, drag) = belt(&mut random);
+        let train = Drivetrain::new(train.stiffness(), train.mass()).unwrap();
+        let lower = band_of(train, &drag, true).lower;
+        assert!(lower <= drag.rising_from());
+        let sticks = |drive_speed: f64| {
+            let start = Start::steady(&train, &drag, drive_speed).unwrap().nudged();
+            let cycle = stick_slip(&train, &drag, drive_speed, start, TOLERANCE).unwrap();
+            cycle.kind == CycleKind::StickSlip
+        };
+        assert!(sticks(lower * 0.999) && !sticks(lower * 1.001), "{i}: {lower} {drag:?}");
+    }
+}
+
+#[test]
+fn belts_in_lanes_settle_as_they_do_alone() {
+    let mut random = Random(4);
+    let belts: Vec<Belt> = (0..200)
+        .map(|_| {
+            let (train, drag) = belt(&mut random);
+            let drive_speed = drag.transition_speed() * random.decades(-0.5, 0.7);
+            Belt { train, drag, drive_speed, start: Start::REST }
+        })
+        .collect();
+    let work = Work::default();
+    let together = ensemble(&belts, Span::UntilClosed, TOLERANCE, &work).unwrap();
+    for (i, (belt, found)) in belts.iter().zip(together).enumerate() {
+        let Belt { train, drag, drive_speed, start } = belt;
+        let span = Span::UntilClosed;
+        let alone = settle(train, drag, *drive_speed, *start, span, TOLERANCE, &work).unwrap();
+        let found = found.unwrap();
+        assert_eq!(found.kind, alone.kind, "{i}: {belt:?}");
+        let pairs = [
+            (found.frequency, alone.frequency),
+            (found.speed_min, alone.speed_min),
+            (found.speed_max, alone.speed_max),
+            (found.stretch_max, alone.stretch_max),
+            (found.drag_work, alone.drag_work),
+            (found.stick_duration, alone.stick_duration),
+        ];
+        for (a, b) in pairs {
+            assert!((a - b).abs() <= 1e-7 * b.abs(), "{i}: {found:?} {alone:?}");
+        }
+        // the least may be nil, or nearly
+        assert!((found.stretch_min - alone.stretch_min).abs() <= 1e-7 * alone.stretch_max, "{i}");
+    }
+}
+
+#[test]
+fn no_swing_stays_where_drag_rises() {
+    let train = Drivetrain::new(1000.0, 1.0).unwrap();
+    let drag = Drag::new(50.0, 1.0, -0.7, -1.2, 0.01, Closure::Retained).unwrap();
+    let drag = drag.with_rest(Rest { force: 5.0, damping: 15.0 }).unwrap();
+    let foot = drag.rising_from();
+    assert!(foot > 0.5 && foot < 0.9);
+    let slowest = [0.9 * foot, 1.01 * foot];
+    let found = swings(&train, &drag, &slowest, TOLERANCE, &Work::default()).unwrap().unwrap();
+    assert!(found[0].drive_speed > 0.95 * foot && found[0].drive_speed < 1.05 * foot);
+    assert!(found[1].drive_speed.is_nan() && !found[1].stable);
+}
