@@ -242,6 +242,37 @@ def read_tables(path: str | Path, kind: type[Tables], *, plain: bool = False) ->
         raise _mistake(path.name, error) from None
 
 
+def refuse_value(kind: type, key: str, given: object) -> None:
+    """Raise what `read_tables` says of one value of a table of ``kind``; the message begins with the key.
+
+    Raises
+    ------
+    ParameterError, UnitError
+        If the value cannot stand there.
+    """
+    try:
+        TypeAdapter(kind).validate_python({key: given}, context=Reading(Path()))
+    except ValidationError as error:
+        wrong = [
+            each for each in error.errors() if each["type"] != "missing" and each["loc"][:1] in ((), (key,))
+        ]
+        for mistake in wrong[:1]:
+            if mistake["type"] == "value_error":
+                raise _named(key, mistake.get("ctx", {})["error"]) from None
+            told = _told(mistake["type"], (key,), mistake["input"], mistake.get("ctx", {}))
+            raise ParameterError(told) from None
+
+
+def quoted(text: str) -> str:
+    """A text as TOML writes it: what is no visible character stands as its code."""
+    escaped = text.replace("\\", "\\\\").replace('"', '\\"')
+    return '"' + "".join(c if c.isprintable() else _code(c) for c in escaped) + '"'
+
+
+def _code(char: str) -> str:
+    return "?" if "\ud800" <= char <= "\udfff" else f"\\U{ord(char):08X}"  # half a pair is no character
+
+
 @contextmanager
 def naming(place: str) -> Iterator[None]:
     """Put file and place before the message of what is raised inside."""

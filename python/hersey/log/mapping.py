@@ -19,7 +19,7 @@ from pydantic import BeforeValidator, ValidationInfo
 from pydantic.dataclasses import dataclass
 
 from hersey.errors import ChannelError, HerseyError, ParameterError, UnitError
-from hersey.files.toml import Quantity, Table, Text, naming, read_tables, read_toml
+from hersey.files.toml import Quantity, Table, Text, naming, quoted, read_tables, read_toml
 from hersey.log import corrections
 from hersey.log.channels import (
     OTHER_ROLES,
@@ -444,7 +444,7 @@ def _proposed(role: str, columns: tuple[Column, ...], choice: ChannelChoice, pat
     if channel is None:
         return [f"# [{role}]", f"# {printable(said)}", '# channel = ""', '# unit = ""']
     column, unit = channel
-    stated = [f"channel = {_quoted(column.path)}", f"unit = {_quoted(unit.unit)}"]
+    stated = [f"channel = {quoted(column.path)}", f"unit = {quoted(unit.unit)}"]
     needed = _RADIUS if role_conversion(role, unit.unit)[0] in ("force", "friction coefficient") else ()
     return [f"[{role}]", *stated, *_EXAMPLES[role], *needed]
 
@@ -457,16 +457,6 @@ def _says_nothing(path: Path, column: Column, *, zero: bool = False) -> bool:
     except (HerseyError, IndexError):
         return False
     return is_dead(values) and not (zero and np.any(values[np.isfinite(values)]))
-
-
-def _quoted(text: str) -> str:
-    """A text as TOML writes it: what is no visible character stands as its code."""
-    escaped = text.replace("\\", "\\\\").replace('"', '\\"')
-    return '"' + "".join(c if c.isprintable() else _code(c) for c in escaped) + '"'
-
-
-def _code(char: str) -> str:
-    return "?" if "\ud800" <= char <= "\udfff" else f"\\U{ord(char):08X}"  # half a pair is no character
 
 
 def mapping_of(files: Sequence[str | Path], stated: str | Path | None = None) -> LogMapping:

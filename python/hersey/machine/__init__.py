@@ -11,6 +11,8 @@ rest                 the table of what the drive takes without the film
 sharing              the tables of what shares the load with the film
 uncertainty          how far a parameter is known
 temperature_profile  temperature against time, from a file
+questions            what is asked about a machine and the channels of its log
+writing              a machine's file and hersey.toml from answers
 ===================  ==============================================================
 """
 

@@ -151,7 +151,9 @@ class Machine:
 
 
 @dataclass(frozen=True)
-class _DrivetrainTable(Table):
+class DrivetrainTable(Table):
+    """What moves the belt, and below which speed it sticks, in SI."""
+
     stiffness: Annotated[float, Quantity("stiffness", 1.0, 1e10)]
     mass: Annotated[float, Quantity("mass", 1e-6, 1e6)]
     roll_radius: Annotated[float, Quantity("length", 1e-5, 100.0)]
@@ -171,7 +173,7 @@ def _named(rows: object) -> object:
 
 @dataclass(frozen=True)
 class _MachineFile(Table):
-    drivetrain: _DrivetrainTable
+    drivetrain: DrivetrainTable
     limits: Limits = field(default_factory=Limits)
     contact: ContactTable | None = None
     lubricant: LubricantTable | None = None

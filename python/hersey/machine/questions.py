@@ -1,0 +1,289 @@
+"""What is asked about a machine and the channels of its log: one table for the terminal and for the app.
+
+Each question is a key of a table of the machine's file or of ``hersey.toml``; what can be answered is what
+the reader of that file takes, in its words.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from hersey.errors import ParameterError, UnitError
+from hersey.files.toml import naming, refuse_value
+from hersey.log import mapping
+from hersey.lubrication.lubricant import MODELS
+from hersey.machine.limits import Limits, OperatingPoint
+from hersey.machine.machine import DrivetrainTable
+from hersey.machine.nip import ContactTable, LubricantTable
+from hersey.machine.rest import RestTable
+from hersey.machine.uncertainty import read_uncertainty
+from hersey.motion.parameters import KINDS as PARAMETERS
+from hersey.units import KINDS, convert, parse
+
+#: The tables of both files that are asked about.
+_TABLES: dict[str, type] = {
+    "drivetrain": DrivetrainTable,
+    "limits": Limits,
+    "contact": ContactTable,
+    "lubricant": LubricantTable,
+    "rest": RestTable,
+    "points": OperatingPoint,
+    "torque": mapping.TorqueMapping,
+    "speed": mapping.SpeedMapping,
+    "temperature": mapping.TemperatureMapping,
+    "time": mapping.TimeMapping,
+    "radius": mapping.RadiusMapping,
+    "load": mapping.LoadMapping,
+}
+#: What is known of an answer beside its value, written behind it.
+_SHARE = re.compile(r"(.*?)\s*(?:±|\+/?-)\s*([0-9.]+\s*%)\s*")
+_BARE = re.compile(r"\s*[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?\s*")
+
+
+@dataclass(frozen=True)
+class Question:
+    """One key of a file.
+
+    Attributes
+    ----------
+    section, field
+        Table and key.
+    words
+        What the number is, for a person who has the machine before them.
+    example
+        An answer.
+    unit
+        In which a bare number of the app's form is meant, which shows it beside the field; empty for a number
+        without dimension, and for a text.
+    letter
+        How the sketch calls it, or empty.
+    needed
+        Whether its table says nothing without it.
+    first
+        Whether it is asked of everyone; the others may be folded.
+    uncertain
+        Whether a range, or a share behind the value, is an answer too.
+    """
+
+    section: str
+    field: str
+    words: str
+    example: str
+    unit: str = ""
+    letter: str = ""
+    needed: bool = False
+    first: bool = False
+    uncertain: bool = False
+
+    @property
+    def key(self) -> str:
+        """Return its name among all questions."""
+        return f"{self.section}.{self.field}"
+
+    @property
+    def name(self) -> str:
+        """Return what a person calls it, with its letter in the sketch."""
+        words = self.field.replace("_", " ")
+        return f"{self.letter} {words}" if self.letter else words
+
+    @property
+    def is_number(self) -> bool:
+        """Whether the file has a bare number there, and no text."""
+        return self.example.lstrip("-").replace(".", "", 1).isdigit()
+
+    def with_unit(self, text: str) -> str:
+        """Return an answer with the unit that stands beside the field, where it has none of its own."""
+        if not self.unit:
+            return text
+        value, share = _split(text)
+        parts = re.split(r"\s+to\s+|\s*\u2013\s*", value)
+        told = " to ".join(f"{part.strip()} {self.unit}" if _BARE.fullmatch(part) else part for part in parts)
+        return f"{told} ± {share}" if share else told
+
+    def values(self, text: str) -> dict[str, Any]:
+        """Return what stands in the file for an answer, by key: a range is a value and its uncertainty.
+
+        Raises
+        ------
+        ParameterError, UnitError
+            In the words of the reader.
+        """
+        text = text.strip()
+        if not text:
+            raise ParameterError(f"{self.field} is blank")
+        if self.uncertain:
+            return self._uncertain(text)
+        if self.field == "viscosities":
+            return self._viscosities(text)
+        value = _number(text) if self.is_number else text
+        refuse_value(_TABLES[self.section], self.field, value)
+        return {self.key: value}
+
+    def _uncertain(self, text: str) -> dict[str, Any]:
+        value, share = _split(text)
+        out: dict[str, Any] = {}
+        if share or re.search(r"\sto\s", value):
+            told = share or value
+            with naming(self.field):
+                known = read_uncertainty(self.field, told)
+            out[f"uncertainty.{self.field}"] = told
+            if known.limits is not None:
+                value = _middle(self.field, *known.limits, self.unit)
+        refuse_value(_TABLES[self.section], self.field, value)
+        return {self.key: value, **out}
+
+    def _viscosities(self, text: str) -> dict[str, Any]:
+        pairs = [[part.strip() for part in pair.split(":")] for pair in text.split(",")]
+        if not all(len(pair) == 2 for pair in pairs):
+            raise ParameterError(
+                f"viscosities is '{text}': write temperature and viscosity, as '{self.example}'"
+            )
+        kinematic = False
+        for hot, thick in pairs:
+            with naming("viscosities"):
+                parse("temperature", hot)
+                try:
+                    parse("kinematic viscosity", thick)
+                    kinematic = True
+                except UnitError:
+                    parse("viscosity", thick)
+        models = [name for name, points in MODELS.items() if points == len(pairs)]
+        if not models:
+            raise ParameterError(f"viscosities are {len(pairs)}: two or three temperatures make a law")
+        model = "walther" if kinematic and "walther" in models else models[0]
+        return {self.key: pairs, "lubricant.model": model}
+
+
+def _number(text: str) -> Any:
+    try:
+        value = float(text)
+    except ValueError:
+        return text
+    return (
+        int(value) if value.is_integer() and abs(value) < 1e15 and re.fullmatch(r"[-+]?\d+", text) else value
+    )
+
+
+def _split(text: str) -> tuple[str, str]:
+    """Value, and the share behind it or an empty text."""
+    match = _SHARE.fullmatch(text.strip())
+    return (match[1], match[2]) if match else (text.strip(), "")
+
+
+def _middle(field: str, low: float, high: float, unit: str) -> str:
+    """The middle of a range in which every order of magnitude is as likely."""
+    si, _ = KINDS[str(PARAMETERS[field])]
+    return f"{convert(math.sqrt(low * high), si, unit):.4g} {unit}"
+
+
+#: What is asked about the machine, in the order of the file.
+MACHINE = (
+    Question(
+        "drivetrain", "stiffness", "stiffness of gear train, roll core and rubber together, at the belt",
+        "11 N/mm", "N/mm", "k", needed=True, first=True, uncertain=True,
+    ),
+    Question(
+        "drivetrain", "mass", "all that moves with the belt, at the belt: the motor too",
+        "11 kg", "kg", "m", needed=True, first=True, uncertain=True,
+    ),
+    Question(
+        "drivetrain", "roll_radius", "radius at which the torque acts on the belt",
+        "15 mm", "mm", "R", needed=True, first=True,
+    ),
+    Question(
+        "drivetrain", "stick_speed", "below which the belt sticks; nobody measures it: a range is an answer",
+        "0.1 mm/s to 1 mm/s", "mm/s", "", needed=True, first=True, uncertain=True,
+    ),
+    Question(
+        "drivetrain", "stick_speed_temperature",
+        "at which that holds; without it the reference temperature of the fit", "180 degC", "degC",
+    ),
+    Question("limits", "nip_load", "load that presses the roll on the heater", "300 N", "N", "N", first=True),
+    Question("limits", "motor_torque", "greatest torque of the motor, at the roll", "1 N*m", "N*m"),
+    Question("limits", "roll_friction", "friction coefficient of the belt on the roll", "0.6", "", "µ"),
+    Question("limits", "acceleration", "greatest of the drive, at the belt", "500 mm/s^2", "mm/s^2"),
+    Question("limits", "speed", "greatest of the drive, at the belt", "400 mm/s", "mm/s"),
+    Question("contact", "rubber_thickness", "rubber on the roll", "3.5 mm", "mm", "h", needed=True),
+    Question(
+        "contact", "modulus", "Young's modulus of the rubber when warm", "0.65 MPa", "MPa", "E", needed=True
+    ),
+    Question("contact", "poisson_ratio", "Poisson's ratio of the rubber, up to 0.5", "0.48", needed=True),
+    Question("contact", "length", "of the nip, along the roll", "220 mm", "mm", "L", needed=True),
+    Question("contact", "roughness", "of belt and heater together, rms", "0.5 um", "um"),
+    Question(
+        "lubricant", "density", "of the lubricant; a viscosity in mm^2/s needs it", "0.9 g/cm^3", "g/cm^3"
+    ),
+    Question(
+        "lubricant", "viscosities", "two or three points of the data sheet",
+        "40 degC: 400 mm^2/s, 100 degC: 40 mm^2/s", needed=True,
+    ),
+    Question("lubricant", "pressure_viscosity", "pressure-viscosity coefficient", "20 GPa^-1", "GPa^-1"),
+    Question(
+        "rest", "torque", "what the drive takes without film and contact, at the roll",
+        "180 mN*m", "mN*m", needed=True,
+    ),
+)  # fmt: skip
+
+#: What is asked of each operating point.
+POINT = (
+    Question("points", "name", "what this state of the machine is called", "full speed"),
+    Question("points", "speed", "of the belt", "200 mm/s", "mm/s", needed=True, first=True),
+    Question("points", "temperature", "of the belt", "180 degC", "degC", needed=True, first=True),
+)
+
+#: What is asked about a log, for ``hersey.toml``.
+MAPPING = (
+    Question("torque", "channel", "channel of the torque", "Drive torque", needed=True, first=True),
+    Question("torque", "unit", "its unit", "N*m", needed=True, first=True),
+    Question("torque", "sign", "-1 turns it", "-1"),
+    Question("torque", "gear_ratio", "turns of the sensor's shaft for each turn of the roll", "12.5"),
+    Question("torque", "efficiency", "of those gears", "0.9"),
+    Question("torque", "tare", "what the sensor shows without load", "4 mN*m", "mN*m"),
+    Question("torque", "motor_constant", "if the channel is the motor's current", "35 mN*m/A", "mN*m/A"),
+    Question("speed", "channel", "channel of the speed", "Drive speed", needed=True, first=True),
+    Question("speed", "unit", "its unit", "rpm", needed=True, first=True),
+    Question("speed", "sign", "-1 turns it", "-1"),
+    Question("speed", "gear_ratio", "turns of its shaft for each turn of the roll", "12.5"),
+    Question("temperature", "channel", "channel of the temperature", "Temperature", first=True),
+    Question("temperature", "unit", "its unit", "degC", first=True),
+    Question("temperature", "offset", "film minus reading", "-1.5 K", "K"),
+    Question("temperature", "time_constant", "lag of the sensor", "4 s", "s"),
+    Question("time", "channel", "channel of the time", "Time", first=True),
+    Question("time", "unit", "its unit", "s", first=True),
+    Question("time", "every", "time between rows, where no channel is a clock", "2 ms", "ms"),
+    Question("radius", "value", "at which a friction force acts", "25 mm", "mm"),
+    Question("load", "value", "normal load: a friction coefficient needs it", "50 N", "N"),
+)
+
+#: Titles of the tables, as the files have them above.
+TITLES = {
+    "drivetrain": "What the log cannot tell: the drivetrain, every value with its unit.",
+    "limits": "What the machine can bear: for the map and for profiles of drive speed.",
+    "contact": "The nip, for the film: a rubber-covered roll presses the belt on the heater.",
+    "lubricant": "What is in the nip: points of the data sheet.",
+    "rest": "What the drive takes besides film and contact (bearings, gears), at the roll.",
+    "uncertainty": "How far these are known: a share (95 % of the values within it) or a range.",
+    "points": "States of the machine that the map names.",
+    "torque": "Channels: name and unit as the log has them; the rest says what lies between sensor and roll.",
+    "speed": "",
+    "temperature": "",
+    "time": "",
+    "radius": "Where the log holds a friction force: the radius at which it acts.",
+    "load": "Where the log holds a friction coefficient: the normal load.",
+}
+BY_KEY: Mapping[str, Question] = {q.key: q for q in (*MACHINE, *POINT, *MAPPING)}
+
+
+def lacking(answered: Mapping[str, str]) -> list[Question]:
+    """Return the questions of the machine that the others answered make needed."""
+    sections = {key.split(".")[0] for key, text in answered.items() if text.strip()}
+    sections |= {"drivetrain"} if sections else set()
+    out = [q for q in MACHINE if q.needed and q.section in sections and not answered.get(q.key, "").strip()]
+    load = BY_KEY["limits.nip_load"]
+    if "contact" in sections and not answered.get(load.key, "").strip():
+        out.append(load)
+    return out
