@@ -45,6 +45,7 @@ ROOMS = (
     "report",
     "paper_figures",
     "testbench",
+    "app",
     "cli",
 )
 #: The arrows that point backwards, taken only when a user asks: a log reduces itself to its dwells,

@@ -25,6 +25,7 @@ charts          one chart per result
 report          the page
 paper_figures   the paper's figures anew, each claim judged
 testbench       the virtual test stand
+app             the local app: from dropped logs to the report
 cli             one file per verb
 ==============  ==============================================================================
 

@@ -55,6 +55,8 @@ def test_a_map_and_a_plan_never_replace_what_they_read(bench_csv: Path, tmp_path
         "report none.csv --out kept.html",
         "report none.csv --figures kept",
         "inspect none.csv --figure kept.svg",
+        "new none.csv --machine kept.csv",
+        "new none.csv --mapping kept.csv",
         "film none.toml --log none.csv --figure kept.svg",
         "map none.toml none.csv --out kept.html",
         "plan none.toml none.csv --target 1 --out kept.csv",

@@ -22,6 +22,8 @@ BENCH = [str(EXAMPLES / "bench.csv"), "--tare", "standing"]
 MACHINE = str(EXAMPLES / "machine.toml")
 #: Each verb with an input that keeps it busy, and roughly how long on a quiet machine, s.
 TYPED: dict[str, tuple[list[str], float]] = {
+    "app": (["--no-browser"], 1.5),
+    "new": ([BENCH[0], "--mapping", "h.toml", "--machine", "m.toml"], 1.5),
     "report": ([*BENCH, "--machine", MACHINE, "--out", "r.html", "--figures", "pictures"], 4.0),
     "inspect": ([BENCH[0], "--figure", "i.png"], 2.0),
     "fit": ([*BENCH, "--json"], 1.5),
@@ -63,6 +65,7 @@ def test_ctrl_c_ends_a_command(verb: str, moment: int, tmp_path: Path) -> None:
     process = subprocess.Popen(
         [sys.executable, "-c", READY, verb, *typed],
         cwd=tmp_path,
+        stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
     )

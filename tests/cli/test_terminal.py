@@ -55,6 +55,8 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 LOG, OTHER, TRACE = f"{IN_FILE}.csv", f"{IN_FILE}2.csv", f"{IN_FILE}-trace.csv"
 MACHINE, SCENARIO, BROKEN = (f"{IN_FILE}-{name}.toml" for name in ("machine", "scenario", "broken"))
 TYPED: dict[str, list[list[str]]] = {
+    "app": [["--port", "99999"], ["--port", HOSTILE]],
+    "new": [[LOG, "--machine", f"{IN_FILE}-new.toml"], [HOSTILE], [LOG, "--machine", f"{IN_FILE}/x.toml"]],
     "inspect": [[LOG], [LOG, "--json"], [LOG, "--torque", HOSTILE], [LOG, "--save-mapping", "--force"]],
     "fit": [[LOG], [LOG, "--json"], [LOG, "--torque-unit", HOSTILE], [HOSTILE]],
     "report": [[LOG, "--out", f"{IN_FILE}.html", "--force"], [LOG, "--json"], [LOG, "--machine", BROKEN]],
@@ -89,7 +91,7 @@ TYPED: dict[str, list[list[str]]] = {
 
 
 #: Verbs of which only refusals are typed here: what they print otherwise holds no name.
-REFUSED = {"life", "map", "plan", "warmup", "simulate", "sweep", "hysteresis", "figures"}
+REFUSED = {"app", "new", "life", "map", "plan", "warmup", "simulate", "sweep", "hysteresis", "figures"}
 
 
 def test_every_verb_is_typed() -> None:

@@ -3,6 +3,7 @@
 ============  ==================================================================
 application   the program: its verbs, errors in one line
 interruption  Ctrl-C, whatever the program is in the midst of
+asking        questions in a terminal, or answers from a pipe
 amounts       numbers of a belt: with units, bare, or from the machine's file
 options       options that several verbs share, and the reading of a log by them
 outputs       files that a verb writes: refused early, never replaced unasked
@@ -18,12 +19,8 @@ the program, the list of verbs without loading a verb.
 from __future__ import annotations
 
 import sys
-from typing import TYPE_CHECKING, Any
 
-if TYPE_CHECKING:
-    from hersey.cli.application import app
-
-__all__ = ["app", "main"]
+__all__ = ["main"]
 
 
 def main() -> None:
@@ -46,11 +43,3 @@ def main() -> None:
         if comes_of_interrupt(error):
             end()
         raise
-
-
-def __getattr__(name: str) -> Any:
-    if name != "app":
-        raise AttributeError(f"module 'hersey.cli' has no attribute '{name}'")
-    from hersey.cli.application import app
-
-    return app

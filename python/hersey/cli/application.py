@@ -17,6 +17,10 @@ from hersey.errors import HerseyError
 #: The verbs in the order of the help, with the first sentence of each, which stands here too so that the list
 #: of verbs is printed without loading them. Each is a module of this folder, with a function of that name.
 VERBS = {
+    "app": (
+        "Open a page on this computer: drop logs, choose channels, describe the machine, read the report."
+    ),
+    "new": "Ask the few things that a log cannot tell, and write hersey.toml and the machine's file.",
     "report": (
         "Write a report: regime, damping surface, data quality and a stick-slip simulation, in one HTML page."
     ),

@@ -243,7 +243,7 @@ def inspect(
         for role in (*ROLES, *OTHER_ROLES)
     }
     known = Stated(*(getattr(stated, f.name) or getattr(said.stated, f.name) for f in fields(Stated)))
-    reports = tuple(_file_report(raw_channels(file), choices, known) for file in files)
+    reports = tuple(file_report(raw_channels(file), choices, known) for file in files)
     if means:
         of_fit = rotation, temperature_scale
         return _of_means(files, reports, choices, isothermal, signs, known, chosen.sensors, of_fit)
@@ -365,7 +365,8 @@ def _tries(given: bool, helps: bool) -> tuple[bool, ...]:
 
 
 @np.errstate(all="ignore")  # numbers of a damaged file may be beyond all bounds: they are shown
-def _file_report(log: RawLog, choices: dict[str, ChannelChoice], stated: Stated) -> FileReport:
+def file_report(log: RawLog, choices: dict[str, ChannelChoice], stated: Stated) -> FileReport:
+    """Return what one file holds: clocks, channels with their roles and faults, roles without a channel."""
     columns, without = roles_of(log, choices, stated)
     role_of = {column.index: role for role, column in columns.items()}
     clocks, clock_names = _clocks(log, role_of, choices, stated)

@@ -1,0 +1,397 @@
+"""One analysis: its files, what was chosen, and how far it is."""
+
+from __future__ import annotations
+
+import asyncio
+import re
+import secrets
+import shlex
+import time
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+from hersey.app.channels import UNITS, Fault, channel_faults
+from hersey.app.machine import (
+    answer_faults,
+    file_faults,
+    form_text,
+    mapping_faults,
+    mapping_of_form,
+    named_logs,
+)
+from hersey.errors import HerseyError
+from hersey.files.text import read_text
+from hersey.log.channels import OTHER_ROLES, ROLES
+from hersey.machine.questions import BY_KEY, MAPPING
+from hersey.machine.writing import answers_of
+
+#: Channels that the page shows of a log at the most, those with a role first.
+_SHOWN = 200
+#: Operating points of a machine at the most.
+_MOST_POINTS = 50
+_OPTIONS: dict[str, Any] = {"isothermal": False, "drop_missing": False, "tare": "none"}
+#: What is asked between sensor and roll, beside channels and units.
+CORRECTIONS = tuple(q.key for q in MAPPING if not q.first)
+
+
+def number() -> str:
+    """Return a name that nobody guesses."""
+    return secrets.token_urlsafe(12)
+
+
+@dataclass
+class Dropped:
+    """A file as it came: ``state`` is arriving, looking, ready or fault."""
+
+    name: str
+    path: Path
+    size: int = 0
+    received: int = 0
+    state: str = "arriving"
+    fault: str = ""
+    look: dict[str, Any] = field(default_factory=dict)
+    id: str = field(default_factory=number)
+
+
+@dataclass
+class Analysis:
+    """Files, choices and machine; ``state`` is editing, preparing, running, done or stopped."""
+
+    folder: Path
+    id: str = field(default_factory=number)
+    files: dict[str, Dropped] = field(default_factory=dict)
+    choices: dict[str, dict[str, str]] = field(default_factory=dict)
+    corrections: dict[str, str] = field(default_factory=dict)
+    options: dict[str, Any] = field(default_factory=lambda: dict(_OPTIONS))
+    kept: set[str] = field(default_factory=set)
+    mode: str = "form"
+    answers: dict[str, str] = field(default_factory=dict)
+    points: list[dict[str, str]] = field(default_factory=list)
+    text: str = ""
+    state: str = "editing"
+    step: str = ""
+    share: float | None = None
+    started: float = 0.0
+    result: dict[str, Any] = field(default_factory=dict)
+    reason: str = ""
+    report: str = ""
+    saved: str = ""
+    finished: str = ""
+    revision: int = 0
+    faults: list[Fault] = field(default_factory=list)
+    lock: asyncio.Lock = field(default_factory=asyncio.Lock)
+
+    @property
+    def name(self) -> str:
+        """Return what the list calls it."""
+        return ", ".join(file.name for file in self.files.values()) or "new analysis"
+
+    @property
+    def logs(self) -> list[Dropped]:
+        """Return the files that can be read, but for those that the machine's file names."""
+        beside = named_logs(self.machine_file())
+        return [f for f in self.files.values() if f.state == "ready" and f.name not in beside]
+
+    @property
+    def busy(self) -> bool:
+        """Whether it is preparing or running."""
+        return self.state in ("preparing", "running")
+
+    def machine_file(self) -> str:
+        """Return the machine's file as it stands; empty where the form cannot be written."""
+        if self.mode == "toml":
+            return self.text
+        try:
+            return form_text(self.answers, self.points)
+        except HerseyError:
+            return ""
+
+    def mapping_answers(self) -> dict[str, str]:
+        """Return the answers that make the mapping."""
+        out: dict[str, str] = {}
+        for name, choice in self.choices.items():
+            role = choice["role"]
+            if role in ROLES and not (role == "temperature" and self.options["isothermal"]):
+                out |= {f"{role}.channel": name, f"{role}.unit": choice["unit"]}
+        every = self.corrections.get("time.every", "").strip()
+        if every:
+            out = {key: text for key, text in out.items() if not key.startswith("time.")}
+        return out | {key: text for key, text in self.corrections.items() if text.strip()}
+
+    def mapping_file(self) -> str:
+        """Return ``hersey.toml`` as it stands."""
+        return mapping_of_form(self.mapping_answers())
+
+    def command(self) -> str:
+        """Return the command that gives the same report from the files and what can be saved here."""
+        parts = ["hersey", "report", *(file.name for file in self.logs), "--mapping", "hersey.toml"]
+        parts += ["--machine", "machine.toml"] if self.machine_file() else []
+        parts += ["--isothermal"] if self.options["isothermal"] else []
+        parts += ["--drop-missing"] if self.options["drop_missing"] else []
+        parts += ["--tare", self.options["tare"]] if self.options["tare"] != "none" else []
+        return shlex.join(parts)
+
+    def propose(self, file: Dropped) -> None:
+        """Take roles and units of a file's channels as proposed, where nothing was chosen yet."""
+        claimed = {name: role for role, names in file.look["claims"].items() for name in names}
+        for channel in file.look["channels"]:
+            role = channel["role"] or claimed.get(channel["name"], "")
+            self.choices.setdefault(channel["name"], {"role": role, "unit": channel["unit"]})
+
+    def check(self) -> None:
+        """Look again for what stands before a run; it may take a moment where the machine names a log."""
+        self.revision += 1
+        faults = [
+            Fault(
+                f"file:{file.id}",
+                "",
+                file.fault,
+                f"{file.name}: {_short(file.fault)}",
+                "Remove",
+                {"remove": file.id},
+            )
+            for file in self.files.values()
+            if file.state == "fault"
+        ]
+        logs = self.logs
+        if logs:
+            faults += self._channel_faults(logs)
+        faults += self._machine_faults()
+        self.faults = [fault for fault in faults if not (fault.keep and fault.key in self.kept)]
+
+    def _channel_faults(self, logs: list[Dropped]) -> list[Fault]:
+        options = {
+            **self.options,
+            "every": self.corrections.get("time.every", ""),
+            "radius": self.corrections.get("radius.value", ""),
+        }
+        faults = channel_faults(logs[0].look, self.choices, options)
+        used = {name for name, choice in self.choices.items() if choice["role"] in ROLES}
+        for other in logs[1:]:
+            have = {channel["name"] for channel in other.look["channels"]}
+            if absent := sorted(name for name in used - have if name in _names(logs[0])):
+                text = f"It has no channel “{absent[0]}”: logs of one analysis are alike."
+                faults.append(
+                    Fault(
+                        f"file:{other.id}",
+                        "",
+                        text,
+                        f"{other.name}: other channels",
+                        "Remove",
+                        {"remove": other.id},
+                    )
+                )
+        return faults or mapping_faults(self.mapping_answers(), self.folder)
+
+    def _machine_faults(self) -> list[Fault]:
+        if self.mode == "form" and (faults := answer_faults(self.answers, self.points)):
+            return faults
+        dropped = {file.name: file.path for file in self.files.values() if file.state == "ready"}
+        return file_faults(self.machine_file(), self.folder, dropped)
+
+    def choose(self, given: Mapping[str, Any]) -> None:
+        """Take what the page changes: ``roles``, ``units`` by channel, ``options``, ``corrections``.
+
+        Raises
+        ------
+        ValueError
+            If it is nothing that can be chosen.
+        """
+        for name, role in _texts(given.get("roles", {})).items():
+            if name not in self.choices or role not in ("", *ROLES, *OTHER_ROLES):
+                raise ValueError(role)
+            self.choices[name]["role"] = role
+            if role in ROLES:
+                self.options |= {"isothermal": False} if role == "temperature" else {}
+        for name, unit in _texts(given.get("units", {})).items():
+            if name not in self.choices:
+                raise ValueError(name)
+            self.choices[name]["unit"] = unit[:100]
+        for key, value in dict(given.get("options", {})).items():
+            if (key == "tare" and value in ("none", "standing")) or (
+                key in ("isothermal", "drop_missing") and isinstance(value, bool)
+            ):
+                self.options[key] = value
+            else:
+                raise ValueError(key)
+        for key, text in _texts(given.get("corrections", {})).items():
+            if key not in CORRECTIONS:
+                raise ValueError(key)
+            self.corrections[key] = text[:200]
+        if "remove" in given:
+            self.remove(str(given["remove"]))
+
+    def take_machine(self, given: Mapping[str, Any]) -> None:
+        """Take what the page changes of the machine: its ``text``, or ``answers`` of the form by key.
+
+        Answers are those of the operating point of that number where ``point`` is given; ``add`` adds one,
+        ``remove`` takes one away.
+
+        Raises
+        ------
+        ValueError
+            If it is none of these.
+        """
+        if "text" in given:
+            self.mode, self.text = "toml", str(given["text"])[:1_000_000]
+            return
+        if given.get("add") and len(self.points) < _MOST_POINTS:
+            self.points.append({})
+        if "remove" in given:
+            del self.points[_whole(given["remove"], len(self.points))]
+        answers = {key: text[:1000] for key, text in _texts(given.get("answers", {})).items()}
+        if any(key not in BY_KEY for key in answers):
+            raise ValueError("answers")
+        if "point" in given:
+            point = self.points[_whole(given["point"], len(self.points))]
+            point |= {BY_KEY[key].field: text for key, text in answers.items()}
+        else:
+            self.answers |= answers
+        self.mode = "form"
+
+    def turn(self, mode: str) -> str:
+        """Show the machine as a form or as TOML; return why it stays what it is, or nothing."""
+        if mode == "toml" and self.mode == "form":
+            if faults := answer_faults(self.answers, self.points):
+                return f"first put right: {', '.join(fault.link for fault in faults)}"
+            self.text = form_text(self.answers, self.points)
+        if mode == "form" and self.mode == "toml" and self.text.strip():
+            if any(fault.at == "toml" for fault in self.faults):
+                return "first put the text right"
+            import tomllib
+
+            answers, points, others = answers_of(tomllib.loads(self.text))
+            if others:
+                return f"the form does not ask for {', '.join(others[:5])}: keep the text"
+            self.answers, self.points = answers, points
+        elif mode == "form" and self.mode == "toml":
+            self.answers, self.points = {}, []
+        self.mode = mode
+        return ""
+
+    def take_file(self, file: Dropped) -> bool:
+        """Take a dropped TOML file as the machine or the mapping; return whether it is one."""
+        text = read_text(file.path, most=1_000_000)
+        if re.search(r"^\s*\[\s*drivetrain\s*\]", text, re.M):
+            self.mode, self.text = "toml", text
+            return True
+        return False
+
+    def remove(self, file: str) -> None:
+        """Leave a file out."""
+        gone = self.files.pop(file)
+        gone.path.unlink(missing_ok=True)
+        if not self.files:
+            self.choices, self.corrections, self.options = {}, {}, dict(_OPTIONS)
+        elif gone.look:
+            still = {name for f in self.files.values() if f.look for name in _names(f)}
+            self.choices = {name: choice for name, choice in self.choices.items() if name in still}
+
+    def line(self) -> dict[str, Any]:
+        """Return what the list shows."""
+        left = None
+        if self.state == "running" and self.share and self.share > 0.03:
+            left = (time.monotonic() - self.started) * (1 - self.share) / self.share
+        return {
+            "id": self.id,
+            "name": self.name,
+            "state": self.state,
+            "step": self.step,
+            "share": self.share,
+            "left": left,
+            "signal": self.result.get("signal", ""),
+            "words": self.result.get("words", ""),
+            "report": self.report,
+            "saved": self.saved,
+            "finished": self.finished,
+            "reason": self.reason,
+            "faults": len(self.faults),
+            "ready": bool(self.logs) and not self.faults and not self.waiting,
+            "revision": self.revision,
+        }
+
+    @property
+    def waiting(self) -> bool:
+        """Whether a file is still on its way."""
+        return any(file.state in ("arriving", "looking") for file in self.files.values())
+
+    def view(self) -> dict[str, Any]:
+        """Return all that the page shows of it."""
+        logs = self.logs
+        look = logs[0].look if logs else None
+        return self.line() | {
+            "files": [_file_view(file) for file in self.files.values()],
+            "beside": sorted(named_logs(self.machine_file())),
+            "log": None if look is None else {key: look[key] for key in ("name", "means", "own_clock")},
+            "channels": [] if look is None else self._channels(look),
+            "hidden": 0 if look is None else max(0, len(look["channels"]) - _SHOWN),
+            "units": UNITS,
+            "corrections": self.corrections,
+            "options": self.options,
+            "machine": {
+                "mode": self.mode,
+                "answers": self.answers,
+                "points": self.points,
+                "text": self.text,
+                "blank": not self.machine_file().strip(),
+            },
+            "all_faults": [asdict(fault) | {"key": fault.key} for fault in self.faults],
+        }
+
+    def _channels(self, look: Mapping[str, Any]) -> list[dict[str, Any]]:
+        rates = {clock["name"]: clock["interval"] for clock in look["clocks"]}
+        rows = [
+            {
+                **{key: channel[key] for key in ("name", "written", "low", "high", "preview", "findings")},
+                "column": column,
+                "proposed": channel["unit"],
+                "interval": rates.get(channel["name"]),
+                **self.choices[channel["name"]],
+            }
+            for column, channel in enumerate(look["channels"], 1)
+        ]
+        if len(rows) > _SHOWN:
+            rows.sort(key=lambda row: not row["role"])
+            rows = rows[:_SHOWN]
+        return rows
+
+
+def _names(file: Dropped) -> set[str]:
+    return {channel["name"] for channel in file.look["channels"]}
+
+
+def _short(fault: str) -> str:
+    return fault.split(":")[0][:60]
+
+
+def _whole(given: Any, below: int) -> int:
+    if not isinstance(given, int) or not 0 <= given < below:
+        raise ValueError(given)
+    return given
+
+
+def _texts(given: Any) -> dict[str, str]:
+    if not isinstance(given, dict) or not all(isinstance(value, str) for value in given.values()):
+        raise ValueError("texts by name are needed")
+    return {str(key): value for key, value in given.items()}
+
+
+def _file_view(file: Dropped) -> dict[str, Any]:
+    look = file.look
+    clock = look["clocks"][0] if look.get("clocks") else None
+    return {
+        "id": file.id,
+        "name": file.name,
+        "size": file.size,
+        "received": file.received,
+        "state": file.state,
+        "fault": file.fault,
+        "rows": look.get("rows"),
+        "duration": None if clock is None else clock["duration"],
+        "gaps": None if clock is None else clock["gaps"],
+        "lost": None if clock is None else clock["lost"],
+        "cut_off": look.get("cut_off", False),
+        "means": look.get("means", False),
+    }

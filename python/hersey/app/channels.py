@@ -1,0 +1,335 @@
+"""What is wrong with the choices of a log's channels: where it stands, in words, and what mends it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from hersey.errors import UnitError
+from hersey.log.channels import ROLES, role_conversion
+from hersey.log.doubtful import RARE, TOO_HOT
+from hersey.units import KINDS, ZERO_CELSIUS, nearest_unit
+
+#: Units to choose from, by role; any other can be written.
+UNITS = {
+    "time": ("s", "ms", "us", "min", "h"),
+    "torque": ("N*m", "mN*m", "N*cm", "ozf*in", "lbf*in", "N"),
+    "speed": ("rpm", "rad/s", "rev/s", "deg/s", "mm/s", "m/s"),
+    "temperature": ("degC", "K", "degF"),
+    "load": ("N", "kN", "kgf", "lbf"),
+    "radius": ("mm", "m", "in"),
+}
+#: No belt is colder, K; so large a share of the rows may be left out without a question.
+_TOO_COLD, _FEW = 220.0, 0.02
+_SETPOINT = re.compile(r"\b(set|cmd|command|target|demand|reference|soll|nominal)", re.IGNORECASE)
+_FLAG = re.compile(r"--(time|torque|speed|temperature)(-unit)?\b")
+
+
+@dataclass(frozen=True)
+class Fault:
+    """Something that stands before a run.
+
+    Attributes
+    ----------
+    at
+        The control that is at fault: ``role:NAME`` and ``unit:NAME`` of a channel, ``lacking:ROLE``,
+        ``file:NUMBER``, ``field:KEY``, ``toml``.
+    title, text
+        What is wrong, and what is known of it.
+    link
+        What the line beside Run calls it.
+    button, mend
+        What the one button says and changes: ``roles`` and ``units`` by channel, ``options``, ``remove``.
+    keep
+        What a second one says, which keeps what is only doubtful; empty where it cannot be kept.
+    """
+
+    at: str
+    title: str
+    text: str = ""
+    link: str = ""
+    button: str = ""
+    mend: Mapping[str, Any] = field(default_factory=dict)
+    keep: str = ""
+
+    @property
+    def key(self) -> str:
+        """Return what tells it from others."""
+        return f"{self.at} {self.title}"
+
+
+def channel_faults(
+    look: Mapping[str, Any], choices: Mapping[str, Mapping[str, str]], options: Mapping[str, Any]
+) -> list[Fault]:
+    """Return what is wrong with the channels of a log, in the order of the roles.
+
+    Parameters
+    ----------
+    look
+        What `hersey.app.looking.look` found.
+    choices
+        ``role`` and ``unit`` of each channel by name.
+    options
+        ``isothermal``, ``drop_missing``, ``every``, ``radius`` (texts; empty where nothing is said).
+    """
+    channels = {channel["name"]: channel for channel in look["channels"]}
+    faults: list[Fault] = []
+    for role in ROLES:
+        names = [name for name, choice in choices.items() if choice["role"] == role and name in channels]
+        if not names:
+            faults += _lacking(role, look, choices, options)
+        elif len(names) > 1:
+            faults.append(_claimed(role, names, channels))
+        elif not (role == "temperature" and options["isothermal"]):
+            faults += _of_one(role, channels[names[0]], choices, look, options)
+    if not faults and look["problem"] and _as_proposed(look, choices) and not options["drop_missing"]:
+        faults.append(of_problem(look["problem"], look, choices))
+    return faults
+
+
+def _as_proposed(look: Mapping[str, Any], choices: Mapping[str, Mapping[str, str]]) -> bool:
+    return all(
+        choices.get(name, {}).get("role") == role for role, name in look["found"].items() if role in ROLES
+    )
+
+
+def of_problem(problem: str, look: Mapping[str, Any], choices: Mapping[str, Mapping[str, str]]) -> Fault:
+    """Return the fault of what a reader said, at the channel it speaks of."""
+    text = problem.removeprefix(f"{look['name']}: ").removeprefix(f"{look['name']}, ")
+    flag = _FLAG.search(text)
+    role = flag[1] if flag else "time" if re.search(r"\btime\b|clock", text) else ""
+    name = next((name for name, choice in choices.items() if role and choice["role"] == role), "")
+    kind = "unit" if flag and flag[2] else "role"
+    at = f"{kind}:{name}" if name else "file:"
+    title = "Time runs backwards." if re.search(r"back|not ascend", text) else "It cannot be read so."
+    said = re.sub(r"[,;:]?\s*(say|or say|name it with|choose with)\s+--.*", "", text)
+    return Fault(at, title, said[:1].upper() + said[1:], f"{role or 'the log'}: {title.lower().rstrip('.')}")
+
+
+def _claimed(role: str, names: list[str], channels: Mapping[str, Any]) -> Fault:
+    def worth(name: str) -> tuple[bool, bool, bool]:
+        channel = channels[name]
+        return (bool(_SETPOINT.search(name)), channel["dead"], not _fits(role, channel["unit"]))
+
+    best = min(names, key=worth)
+    others = [name for name in names if name != best]
+    set_value = next((name for name in others if _SETPOINT.search(name)), "")
+    listed = " and ".join(f"“{name}”" for name in others[:3])
+    text = (
+        f"“{set_value}” looks like a set value."
+        if set_value
+        else f"The other is {listed}."
+        if len(others) == 1
+        else f"The others are {listed}."
+    )
+    return Fault(
+        f"role:{best}",
+        f"{_number(len(names))} channels claim {role}.",
+        text,
+        f"choose the {role} channel",
+        "Keep this one",
+        {"roles": dict.fromkeys(others, "")},
+    )
+
+
+def _number(count: int) -> str:
+    return {2: "Two", 3: "Three", 4: "Four"}.get(count, str(count))
+
+
+def _lacking(
+    role: str, look: Mapping[str, Any], choices: Mapping[str, Mapping[str, str]], options: Mapping[str, Any]
+) -> list[Fault]:
+    if role == "time" and (look["means"] or look["own_clock"] or options["every"].strip()):
+        return []
+    if role == "temperature" and options["isothermal"]:
+        return []
+    link = f"choose the {role} channel"
+    title = f"No channel is the {role}."
+    at = f"lacking:{role}"
+    free = [
+        channel["name"]
+        for channel in look["channels"]
+        if not choices.get(channel["name"], {}).get("role") and not channel["dead"]
+    ]
+    units = {channel["name"]: channel["unit"] for channel in look["channels"]}
+    fitting = next((name for name in free if units[name] and _fits(role, units[name])), "")
+    if fitting:
+        return [
+            Fault(
+                at,
+                title,
+                f"“{fitting}” has a unit of it.",
+                link,
+                f"Use “{fitting}”",
+                {"roles": {fitting: role}},
+            )
+        ]
+    if role == "temperature":
+        text = "Choose one below, or leave it out: the law then holds at the one temperature of the log."
+        return [Fault(at, title, text, link, "Run without temperature", {"options": {"isothermal": True}})]
+    text = "Choose one in the column Role."
+    if role == "time":
+        text = "Choose one in the column Role, or say the time between rows below the table."
+    return [Fault(at, title, text, link)]
+
+
+def _of_one(
+    role: str,
+    channel: Mapping[str, Any],
+    choices: Mapping[str, Mapping[str, str]],
+    look: Mapping[str, Any],
+    options: Mapping[str, Any],
+) -> list[Fault]:
+    name, unit = channel["name"], choices[channel["name"]]["unit"].strip()
+    if channel["dead"] and role in ("torque", "speed"):
+        others = [
+            c
+            for c in look["channels"]
+            if c["name"] != name and not c["dead"] and not choices[c["name"]]["role"]
+        ]
+        other = next((c["name"] for c in others if c["unit"] and _fits(role, c["unit"])), "")
+        value = "" if channel["low"] is None else f" {channel['low']:.6g} {unit}".rstrip()
+        title = f"It holds{value} throughout." if value else "It holds no number."
+        button, mend = (f"Use “{other}”", {"roles": {name: "", other: role}}) if other else ("", {})
+        return [
+            Fault(
+                f"role:{name}",
+                title,
+                "A dead channel: choose another.",
+                f"choose a {role} that lives",
+                button,
+                mend,
+            )
+        ]
+    faults = _unit_faults(role, channel, unit, options)
+    if not faults and channel["missing"] > max(1, _FEW * channel["rows"]) and not options["drop_missing"]:
+        share = 100 * channel["missing"] / channel["rows"]
+        faults.append(
+            Fault(
+                f"role:{name}",
+                f"{channel['missing']} rows lack a number.",
+                f"That is {share:.2g} % of all.",
+                f"rows without {role}",
+                "Leave these rows out",
+                {"options": {"drop_missing": True}},
+            )
+        )
+    if not faults and role == "time":
+        faults += _rare(channel, unit, look)
+    return faults
+
+
+def _unit_faults(role: str, channel: Mapping[str, Any], unit: str, options: Mapping[str, Any]) -> list[Fault]:
+    name, at = channel["name"], f"unit:{channel['name']}"
+    link = f"unit of {name}"
+    if not unit:
+        usual = _usual(role, channel)
+        text = "A number without a unit could be any."
+        return [
+            Fault(
+                at,
+                "It has no unit in the file.",
+                text,
+                link,
+                f"Read as {sign(usual)}",
+                {"units": {name: usual}},
+            )
+        ]
+    try:
+        kind, line = role_conversion(role, unit)
+    except UnitError as error:
+        near = _nearest(role, unit, channel)
+        text = f"{error}"
+        return [
+            Fault(
+                at,
+                f"{sign(unit)} is no unit of {role}.",
+                text,
+                link,
+                f"Read as {sign(near)}",
+                {"units": {name: near}},
+            )
+        ]
+    if kind in ("force", "friction coefficient") and role == "torque" and not options["radius"].strip():
+        return [
+            Fault(
+                "field:radius.value",
+                "A friction force needs its radius.",
+                f"“{name}” is a force: torque is force times radius.",
+                "radius of the friction force",
+            )
+        ]
+    if role != "temperature" or channel["most"] is None:
+        return []
+    return _doubtful_heat(channel, unit, line.scale, line.offset)
+
+
+def _doubtful_heat(channel: Mapping[str, Any], unit: str, scale: float, offset: float) -> list[Fault]:
+    name = channel["name"]
+    most, median = scale * channel["most"] + offset, scale * channel["median"] + offset
+    if median > _TOO_COLD and most < ZERO_CELSIUS + TOO_HOT:
+        return []
+    hot = most >= ZERO_CELSIUS + TOO_HOT
+    for other in ("K", "degC", "degF"):
+        line = role_conversion("temperature", other)[1]
+        low, high = (line.scale * channel[end] + line.offset for end in ("low", "most"))
+        if other != unit and low > _TOO_COLD and high < ZERO_CELSIUS + TOO_HOT:
+            title = (
+                f"{channel['most']:.4g} {sign(unit)} is hotter than any belt here."
+                if hot
+                else f"{channel['median']:.4g} {sign(unit)} is colder than any belt here."
+            )
+            text = f"Read as {sign(other)} it is {low - ZERO_CELSIUS:.0f} to {high - ZERO_CELSIUS:.0f} °C."
+            return [
+                Fault(
+                    f"unit:{name}", title, text, f"unit of {name}", f"Read as {sign(other)}",
+                    {"units": {name: other}}, f"Keep {sign(unit)}",
+                )
+            ]  # fmt: skip
+    return []
+
+
+def _rare(channel: Mapping[str, Any], unit: str, look: Mapping[str, Any]) -> list[Fault]:
+    clock = next((clock for clock in look["clocks"] if clock["name"] == channel["name"]), None)
+    if clock is None or unit != channel["unit"] or unit != "s" or (clock["interval"] or 0.0) < RARE:
+        return []
+    title = f"Rows come every {clock['interval']:.4g} s."
+    return [
+        Fault(
+            f"unit:{channel['name']}", title, "Logs of a drive have them far more often.",
+            f"unit of {channel['name']}", "Read as ms", {"units": {channel["name"]: "ms"}}, "Keep s",
+        )
+    ]  # fmt: skip
+
+
+def _fits(role: str, unit: str) -> bool:
+    try:
+        role_conversion(role, unit)
+    except UnitError:
+        return False
+    return True
+
+
+def _usual(role: str, channel: Mapping[str, Any]) -> str:
+    if role == "temperature" and channel["median"] is not None and channel["median"] > _TOO_COLD:
+        return "K"
+    return UNITS[role][0] if role in UNITS else KINDS["force"][1]
+
+
+def _nearest(role: str, unit: str, channel: Mapping[str, Any]) -> str:
+    if role == "speed" and unit in ("Hz", "1/s"):
+        return "rev/s"
+    return nearest_unit(role, unit) or _usual(role, channel)
+
+
+def sign(unit: str) -> str:
+    """Return a unit as people write it.
+
+    Examples
+    --------
+    >>> sign("degC"), sign("mN*m")
+    ('°C', 'mN·m')
+    """
+    return re.sub(r"\bdeg([CF])\b", r"°\1", unit).replace("*", "·")

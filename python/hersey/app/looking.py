@@ -1,0 +1,161 @@
+"""What the page shows of a file: clocks, channels with previews, proposed roles and units, faults."""
+
+from __future__ import annotations
+
+import itertools
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hersey.arrays import FloatArray
+from hersey.errors import HerseyError, UnreadableLogError
+from hersey.inspection.inspecting import ChannelReport, file_report
+from hersey.inspection.raw import RawLog, raw_channels
+from hersey.log.channels import OTHER_ROLES, ROLES, ChannelChoice, Stated, find_channel, is_dead
+from hersey.log.mapping import LogMapping, read_with_mapping
+from hersey.log.means import is_means_table
+
+#: Columns of a preview: each shows the least and the greatest of its rows.
+_COLUMNS = 75
+
+
+def look(path: Path) -> dict[str, Any]:
+    """Return a file as the page shows it, JSON; see `hersey.inspection` for what is found.
+
+    Raises
+    ------
+    HerseyError
+        If it is no log.
+    """
+    log = raw_channels(path)
+    if not log.channels:
+        raise UnreadableLogError(f"{log.name} holds no channel of numbers")
+    choices = {role: ChannelChoice() for role in (*ROLES, *OTHER_ROLES)}
+    report = file_report(log, choices, Stated())
+    names = _names(log)
+    units = _units(log)
+    means = is_means_table(path, {}, {})
+    without = {role: why for role, why in report.without.items() if not (means and role == "time")}
+    found = {channel.role: name for channel, name in zip(report.channels, names, strict=True) if channel.role}
+    return {
+        "name": log.name,
+        "format": log.format,
+        "means": means,
+        "rows": report.rows,
+        "cut_off": log.cut_off,
+        "notes": list(log.notes),
+        "clocks": [_clock(clock) for clock in report.clocks],
+        "own_clock": any(channel.clock is not None for channel in log.channels),
+        "channels": [
+            _channel(
+                report.channels[i], names[i], units.get(report.channels[i].role, ""), log.channels[i].values
+            )
+            for i in range(len(names))
+        ],
+        "without": without,
+        "claims": {role: _claims(log, names, why) for role, why in without.items()},
+        "problem": "" if without or means else _problem(path),
+        "found": found,
+    }
+
+
+def _names(log: RawLog) -> list[str]:
+    """Names as `hersey.read` understands them: the second of a name has its number."""
+    counts, seen = Counter(channel.column.path for channel in log.channels), Counter[str]()
+    names = []
+    for channel in log.channels:
+        path = channel.column.path
+        seen[path] += 1
+        names.append(f"{path}#{seen[path]}" if counts[path] > 1 else path)
+    return names
+
+
+def _units(log: RawLog) -> dict[str, str]:
+    """The unit in which each role would be read, which a name may hold."""
+    columns = tuple(channel.column for channel in log.channels)
+    values = {channel.column: channel.values for channel in log.channels}
+    units = {}
+    for role in ROLES:
+        try:
+            found = find_channel(
+                role, columns, ChannelChoice(), log.name, lambda column: is_dead(values[column])
+            )
+        except HerseyError:
+            continue
+        if found is not None:
+            units[role] = found[1].unit
+    return units
+
+
+def _claims(log: RawLog, names: list[str], why: str) -> list[str]:
+    """The channels between which a message does not choose."""
+    shown = [(f"'{channel.column}'", name) for channel, name in zip(log.channels, names, strict=True)]
+    return [name for quoted, name in shown if quoted in why or f"'{name}'" in why]
+
+
+def _clock(clock: Any) -> dict[str, Any]:
+    return {
+        "name": clock.name,
+        "interval": _finite(clock.interval),
+        "duration": _finite(clock.duration),
+        "gaps": clock.gaps,
+        "lost": _finite(clock.lost),
+        "findings": clock.findings(),
+    }
+
+
+def _channel(report: ChannelReport, name: str, unit: str, values: FloatArray) -> dict[str, Any]:
+    traits = report.traits
+    known = values[np.isfinite(values)]
+    return {
+        "name": name,
+        "unit": unit or report.unit,
+        "written": report.unit,
+        "role": report.role,
+        "low": _finite(traits.low),
+        "high": _finite(traits.high),
+        "median": _finite(traits.median),
+        "most": _finite(float(np.quantile(known, 0.99))) if known.size else None,
+        "missing": traits.missing,
+        "rows": traits.rows,
+        "dead": is_dead(values),
+        "findings": list(report.findings),
+        "preview": preview(values),
+    }
+
+
+def preview(values: FloatArray) -> list[list[float]]:
+    """Return the least and the greatest of each part of a channel, as shares of its range.
+
+    Each is ``[place, low, high]``, all between 0 and 1; parts without a number are left out.
+    """
+    known = np.isfinite(values)
+    if not known.any():
+        return []
+    low, high = float(values[known].min()), float(values[known].max())
+    span = (high - low) or 1.0
+    out = []
+    edges = np.linspace(0, values.size, min(_COLUMNS, values.size) + 1).astype(int)
+    for start, end in itertools.pairwise(edges):
+        part = values[start:end]
+        part = part[np.isfinite(part)]
+        if part.size:
+            ends = (float(part.min()) - low) / span, (float(part.max()) - low) / span
+            place = (start + end) / 2 / values.size
+            out.append([round(place, 4), *(round(min(max(e, 0.0), 1.0), 3) for e in ends)])
+    return out
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None
+
+
+def _problem(path: Path) -> str:
+    """Why the file cannot be read as a log of torque as it is, or nothing."""
+    try:
+        read_with_mapping([path], mapping=LogMapping())
+    except HerseyError as error:
+        return str(error)
+    return ""

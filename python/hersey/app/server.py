@@ -1,0 +1,223 @@
+"""What the page may ask, and the answers."""
+
+from __future__ import annotations
+
+import json
+import secrets
+from collections.abc import AsyncIterator, Awaitable, Callable
+from contextlib import asynccontextmanager
+from importlib import resources
+from typing import Any
+from urllib.parse import unquote
+
+from starlette.applications import Starlette
+from starlette.middleware import Middleware
+from starlette.requests import ClientDisconnect, Request
+from starlette.responses import FileResponse, JSONResponse, PlainTextResponse, Response
+from starlette.routing import Route
+
+from hersey.app.analysis import CORRECTIONS, Analysis
+from hersey.app.guard import SANDBOX, Guard
+from hersey.app.session import NotNowError, Session, UnknownError
+from hersey.app.uploads import TooMuchError
+from hersey.errors import HerseyError
+from hersey.machine.questions import BY_KEY, MACHINE, POINT, Question
+
+Handler = Callable[[Request], Awaitable[Response]]
+#: Files of the page, and what each is.
+_STATIC = {
+    "": ("app", "app.html", "text/html; charset=utf-8"),
+    "tokens.css": ("report", "tokens.css", "text/css; charset=utf-8"),
+    "app.css": ("app", "app.css", "text/css; charset=utf-8"),
+    "icon.svg": ("app", "icon.svg", "image/svg+xml"),
+    "app.js": ("app", "app.js", "text/javascript; charset=utf-8"),
+    "building.js": ("app", "building.js", "text/javascript; charset=utf-8"),
+    "machine.js": ("app", "machine.js", "text/javascript; charset=utf-8"),
+    "channels.js": ("app", "channels.js", "text/javascript; charset=utf-8"),
+    "analyses.js": ("app", "analyses.js", "text/javascript; charset=utf-8"),
+}
+
+
+def application(session: Session, *, token: str, port: int) -> Starlette:
+    """Return the server of a session, for the port on which it listens."""
+    routes = _Routes(session)
+
+    @asynccontextmanager
+    async def until_the_end(_app: Starlette) -> AsyncIterator[None]:
+        try:
+            yield
+        finally:
+            await session.close()
+
+    one = "/api/analyses/{one}"
+    return Starlette(
+        routes=[
+            *(Route(f"/{name}", _static(*file), methods=["GET"]) for name, file in _STATIC.items()),
+            Route("/report/{number}", routes.report, methods=["GET"]),
+            Route("/api/questions", routes.questions, methods=["GET"]),
+            Route("/api/state", routes.state, methods=["GET"]),
+            Route("/api/analyses", _safe(routes.new), methods=["POST"]),
+            Route(one, _safe(routes.view), methods=["GET"]),
+            Route(one, _safe(routes.remove), methods=["DELETE"]),
+            Route(f"{one}/files", _safe(routes.drop), methods=["POST"]),
+            Route(f"{one}/files/{{file}}", _safe(routes.remove_file), methods=["DELETE"]),
+            Route(f"{one}/choices", _safe(routes.choices), methods=["POST"]),
+            Route(f"{one}/machine", _safe(routes.machine), methods=["POST"]),
+            Route(f"{one}/mend", _safe(routes.mend), methods=["POST"]),
+            Route(f"{one}/run", _safe(routes.run), methods=["POST"]),
+            Route(f"{one}/cancel", _safe(routes.cancel), methods=["POST"]),
+            Route(f"{one}/hersey.toml", _safe(routes.mapping_file), methods=["GET"]),
+            Route(f"{one}/machine.toml", _safe(routes.machine_file), methods=["GET"]),
+            Route(f"{one}/report.html", _safe(routes.report_file), methods=["GET"]),
+        ],
+        middleware=[Middleware(Guard, token=token, port=port)],
+        lifespan=until_the_end,
+    )
+
+
+def new_token() -> str:
+    """Return a token that nobody guesses."""
+    return secrets.token_urlsafe(32)
+
+
+def _static(room: str, name: str, kind: str) -> Handler:
+    content = (resources.files(f"hersey.{room}") / "static" / name).read_bytes()
+
+    async def answer(_request: Request) -> Response:
+        return Response(content, media_type=kind)
+
+    return answer
+
+
+def _safe(handler: Handler) -> Handler:
+    """A handler whose refusals are answers with words."""
+
+    async def answer(request: Request) -> Response:
+        try:
+            return await handler(request)
+        except UnknownError:
+            return _refused(404, "that is no longer here")
+        except TooMuchError as error:
+            return _refused(413, str(error))
+        except NotNowError as error:
+            return _refused(409, str(error))
+        except ClientDisconnect:
+            return _refused(400, "the page went away")
+        except (ValueError, TypeError, KeyError):
+            return _refused(400, "that cannot be chosen")
+        except HerseyError as error:
+            return _refused(409, str(error))
+
+    return answer
+
+
+def _refused(status: int, words: str) -> Response:
+    return JSONResponse({"error": words}, status_code=status)
+
+
+class _Routes:
+    """The handlers."""
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+
+    def _one(self, request: Request) -> Analysis:
+        return self._session.get(request.path_params["one"])
+
+    async def _json(self, request: Request) -> dict[str, Any]:
+        body = b""
+        async for chunk in request.stream():
+            body += chunk
+            if len(body) > self._session.bounds.request:
+                raise TooMuchError("that is too long")
+        given = json.loads(body or b"{}")
+        if not isinstance(given, dict):
+            raise ValueError("an object is needed")
+        return given
+
+    async def questions(self, _request: Request) -> Response:
+        return JSONResponse(
+            {
+                "machine": [_question(q) for q in MACHINE],
+                "point": [_question(q) for q in POINT],
+                "corrections": [_question(BY_KEY[key]) for key in CORRECTIONS],
+                "most": self._session.bounds.file,
+            }
+        )
+
+    async def state(self, _request: Request) -> Response:
+        return JSONResponse({"analyses": [one.line() for one in self._session.analyses.values()]})
+
+    async def new(self, _request: Request) -> Response:
+        return JSONResponse(self._session.new().view())
+
+    async def view(self, request: Request) -> Response:
+        return JSONResponse(self._one(request).view())
+
+    async def remove(self, request: Request) -> Response:
+        self._session.remove(self._one(request))
+        return JSONResponse({})
+
+    async def drop(self, request: Request) -> Response:
+        one = self._one(request)
+        length = request.headers.get("content-length", "")
+        name = unquote(request.headers.get("x-name", ""))
+        await self._session.drop(one, name, int(length) if length else None, request.stream())
+        return JSONResponse(one.view())
+
+    async def remove_file(self, request: Request) -> Response:
+        one = self._one(request)
+        await self._session.remove_file(one, request.path_params["file"])
+        return JSONResponse(one.view())
+
+    async def choices(self, request: Request) -> Response:
+        one = self._one(request)
+        given = await self._json(request)
+        given.pop("remove", None)
+        await self._session.change(one, given)
+        return JSONResponse(one.view())
+
+    async def machine(self, request: Request) -> Response:
+        one = self._one(request)
+        refused = await self._session.take_machine(one, await self._json(request))
+        return JSONResponse(one.view() | {"refused": refused})
+
+    async def mend(self, request: Request) -> Response:
+        one = self._one(request)
+        given = await self._json(request)
+        act = self._session.keep if given.get("keep") else self._session.mend
+        await act(one, str(given["fault"]))
+        return JSONResponse(one.view())
+
+    async def run(self, request: Request) -> Response:
+        one = self._one(request)
+        await self._session.run(one)
+        return JSONResponse(one.view())
+
+    async def cancel(self, request: Request) -> Response:
+        one = self._one(request)
+        self._session.cancel(one)
+        return JSONResponse(one.view())
+
+    async def mapping_file(self, request: Request) -> Response:
+        return PlainTextResponse(self._one(request).mapping_file())
+
+    async def machine_file(self, request: Request) -> Response:
+        return PlainTextResponse(self._one(request).machine_file())
+
+    async def report_file(self, request: Request) -> Response:
+        return self._report(self._one(request).report)
+
+    async def report(self, request: Request) -> Response:
+        return self._report(request.path_params["number"])
+
+    def _report(self, number: str) -> Response:
+        path = self._session.shown.get(number)
+        if path is None or not path.is_file():
+            return PlainTextResponse("This report is no longer here.", status_code=404)
+        return FileResponse(path, media_type="text/html", headers={"content-security-policy": SANDBOX})
+
+
+def _question(question: Question) -> dict[str, Any]:
+    names = ("key", "section", "field", "words", "example", "unit", "letter", "needed", "first")
+    return {name: getattr(question, name) for name in names}

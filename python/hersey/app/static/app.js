@@ -1,0 +1,179 @@
+// The app's page: asks the server on this computer, shows what it says, and sends what is chosen.
+
+import { left, showAnalyses } from "./analyses.js";
+import { button, find, link, make, renew, signal, size } from "./building.js";
+import { showChannels, showFiles } from "./channels.js";
+import { showMachine } from "./machine.js";
+
+const at = (id) => document.getElementById(id);
+const SOON = 400;
+let token = "", questions = null, analyses = [], current = "", view = null, timer = 0;
+
+/** Ask the server; what it refuses is said above the page. */
+async function ask(method, path, body, headers = {}) {
+  let answer;
+  try {
+    answer = await fetch(`api/${path}`, { method, body, headers: { "X-Hersey-Token": token, ...headers } });
+  } catch {
+    say("hersey app does not answer: it has ended. Start it again and open the address that it prints.");
+    return null;
+  }
+  const said = await answer.json();
+  if (answer.ok) return said;
+  say(said.error);
+  return null;
+}
+const post = (path, given = {}) => ask("POST", path, JSON.stringify(given), { "Content-Type": "application/json" });
+
+function say(words) {
+  at("problem").textContent = words;
+  at("problem").hidden = !words;
+}
+
+async function refresh() {
+  clearTimeout(timer);
+  const state = await ask("GET", "state");
+  if (!state || pending) return;
+  analyses = state.analyses;
+  if (!analyses.some((one) => one.id === current)) current = analyses[0]?.id ?? "";
+  const line = analyses.find((one) => one.id === current);
+  if (line && (view?.id !== current || view.revision !== line.revision)) await look();
+  else if (line) Object.assign(view, { state: line.state, step: line.step, share: line.share, left: line.left });
+  show();
+  const busy = analyses.some((one) => one.state === "running" || one.state === "preparing") || view?.files.some((file) => file.state === "arriving" || file.state === "looking");
+  if (busy) timer = setTimeout(refresh, SOON);
+}
+
+async function look() {
+  const seen = await ask("GET", `analyses/${current}`);
+  if (seen && !pending && seen.id === current) view = seen;
+}
+
+let pending = 0, queue = Promise.resolve();
+
+/** Change something, one change after the other; what the server says of all but the last is old. */
+function change(asked) {
+  pending += 1;
+  queue = queue.then(async () => {
+    const seen = await asked();
+    pending -= 1;
+    if (seen && !pending && seen.id === current) view = seen;
+    if (!pending) await refresh();
+    return seen;
+  });
+  return queue;
+}
+
+const here = () => `analyses/${current}`;
+const act = {
+  show: async (id) => { current = id; say(""); await refresh(); },
+  removeAnalysis: async (id) => { await ask("DELETE", `analyses/${id}`); await refresh(); },
+  cancel: async (id) => { await post(`analyses/${id}/cancel`); await refresh(); },
+  removeFile: (file) => change(() => ask("DELETE", `${here()}/files/${file.id}`)),
+  choose: (given) => change(() => post(`${here()}/choices`, given)),
+  mend: async (fault) => { say(""); await change(() => post(`${here()}/mend`, { fault: fault.key })); (find(fault.at) ?? at("run"))?.focus(); },
+  keep: (fault) => change(() => post(`${here()}/mend`, { fault: fault.key, keep: true })),
+  machine: (given) => change(() => post(`${here()}/machine`, given)),
+  turn: async (mode) => { const seen = await change(() => post(`${here()}/machine`, { mode })); if (seen?.refused) { view.refused = seen.refused; show(); } },
+};
+
+async function send(files) {
+  say("");
+  const one = current;
+  const sent = [...files].map((file) => ask("POST", `analyses/${one}/files`, file, { "X-Name": encodeURIComponent(file.name), "Content-Type": "application/octet-stream" }));
+  setTimeout(refresh, SOON / 2);
+  await Promise.all(sent);
+  await refresh();
+}
+
+async function save(path, name, kind) {
+  const answer = await fetch(`api/${here()}/${path}`, { headers: { "X-Hersey-Token": token } });
+  if (!answer.ok) return say((await answer.json().catch(() => ({ error: "that is no longer here" }))).error);
+  const url = URL.createObjectURL(new Blob([await answer.blob()], { type: kind }));
+  make("a", { href: url, download: name }).click();
+  setTimeout(() => URL.revokeObjectURL(url), 10_000);
+  return undefined;
+}
+
+function show() {
+  if (!view || !questions) return;
+  at("what").textContent = view.files.length ? view.name : "New analysis";
+  showAnalyses(at("analyses"), analyses, current, act);
+  showFiles(at("files"), view, act);
+  showChannels(at("channels"), view, questions, act);
+  showMachine(at("machine"), view, questions, act);
+  showBar();
+  document.body.dataset.ready = "true";
+}
+
+/** Run, what stands before it, and what can be saved. */
+function showBar() {
+  const busy = view.state === "running" || view.state === "preparing";
+  const stem = (view.log?.name ?? "log").replace(/\.[^.]*$/, "");
+  const run = make("button", { class: "run", id: "run", type: "button", text: view.report ? "Run again" : "Run", "data-control": "run", "aria-disabled": String(!view.ready || busy), "aria-describedby": "why",
+    onclick: async () => { if (view.ready && !busy) { say(""); await change(() => post(`${here()}/run`)); } } });
+  renew(at("bar"), run, make("span", { class: "why", id: "why", "aria-live": "polite" }, ...why(busy)),
+    make("span", { class: "right" },
+      view.report ? make("a", { class: "button", href: `report/${view.report}`, target: "_blank", rel: "noopener", text: "Open report" }) : null,
+      view.report ? button("Save report", () => save("report.html", `${stem}.html`, "text/html"), { "data-control": "save-report" }) : null,
+      view.log ? button("Save mapping", () => save("hersey.toml", "hersey.toml", "application/toml"), { "data-control": "save-mapping" }) : null,
+      view.machine.blank ? null : button("Save TOML", () => save("machine.toml", "machine.toml", "application/toml"), { "data-control": "save-toml" })));
+}
+
+function why(busy) {
+  if (busy) return [make("b", { text: view.state === "running" ? "Running: " : "Preparing: " }), [view.step, left(view.left)].filter(Boolean).join(", ") + " ", button("Cancel", () => act.cancel(current), { "data-control": "cancel" })];
+  if (view.all_faults.length) {
+    const stopped = view.state === "stopped" ? [make("b", { class: "act", text: `Stopped: ${view.reason} ` })] : [];
+    return [...stopped, make("b", { class: "act" }, signal("act"), "Before a run: "), ...view.all_faults.flatMap((fault, number) => [number ? ", " : "", link(fault.link, () => lead(fault.at))])];
+  }
+  if (view.state === "stopped") return [make("b", { class: "act" }, signal("act"), "Stopped: "), view.reason];
+  if (!view.log) return [make("span", { class: "note", text: view.files.length ? "a file is on its way" : "Drop a log first." })];
+  const points = view.machine.points.length;
+  const parts = view.machine.blank ? "fit and regime; the map needs the machine" : `fit, map, band${points ? `, plans for ${points} point${points > 1 ? "s" : ""}` : ""}`;
+  return [make("b", { class: "good" }, signal("good"), "Ready: "), parts];
+}
+
+/** Bring the guilty control into view. */
+function lead(place) {
+  const file = place.startsWith("file:") ? at(`file-${place.slice(5)}`)?.querySelector("button") : null;
+  const control = file ?? find(place) ?? (place.startsWith("lacking:") ? document.querySelector("#channels select") : at("toml")) ?? at("machine").querySelector("input");
+  control?.closest("details")?.setAttribute("open", "");
+  control?.scrollIntoView({ block: "center" });
+  control?.focus();
+}
+
+function theme(dark) {
+  document.documentElement.dataset.theme = dark ? "dark" : "light";
+  at("theme").textContent = dark ? "Light" : "Dark";
+}
+
+function listen() {
+  const drop = at("drop");
+  at("theme").addEventListener("click", () => theme(document.documentElement.dataset.theme !== "dark"));
+  at("new").addEventListener("click", async () => { const made = await post("analyses"); if (made) { current = made.id; view = made; } await refresh(); at("choose").focus(); });
+  at("choose").addEventListener("change", async (event) => { const files = [...event.target.files]; event.target.value = ""; await send(files); });
+  document.addEventListener("dragover", (event) => { event.preventDefault(); drop.classList.add("over"); });
+  document.addEventListener("dragleave", (event) => { if (!event.relatedTarget) drop.classList.remove("over"); });
+  document.addEventListener("drop", (event) => { event.preventDefault(); drop.classList.remove("over"); if (event.dataTransfer.files.length) send(event.dataTransfer.files); });
+}
+
+/** The token of this start: in the fragment of the address, which no request holds; kept for a reload. */
+function key() {
+  if (location.hash.length > 1) {
+    sessionStorage.setItem("token", location.hash.slice(1));
+    history.replaceState(null, "", location.pathname);
+  }
+  return sessionStorage.getItem("token") ?? "";
+}
+
+token = key();
+theme(matchMedia("(prefers-color-scheme: dark)").matches);
+listen();
+if (!token) say("Open the address that hersey app printed, with all that stands behind its #.");
+else {
+  questions = await ask("GET", "questions");
+  if (questions) {
+    at("formats").textContent = `CSV, TDMS, MF4, HDF5, LVM, Excel, MATLAB; up to ${size(questions.most)}. They stay where they are: a copy on this computer is read.`;
+    await refresh();
+  }
+}
