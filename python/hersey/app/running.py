@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +21,8 @@ from hersey.report.page import render
 
 Step = Callable[[str, float | None], None]
 #: Share of the whole at which each step begins, as it is for a log of some minutes.
-_READING, _DWELLS, _FITTING, _DRAWING = 0.0, 0.15, 0.2, 0.95
+_READING, _DWELLS, _PLANS, _DRAWING = 0.0, 0.1, 0.5, 0.95
+_BEGINS = {"fitting the surface": 0.15, "judging the regime": 0.25, "finding the bands": 0.35}
 
 
 def run(request: Mapping[str, Any], step: Step) -> dict[str, Any]:
@@ -39,24 +41,43 @@ def run(request: Mapping[str, Any], step: Step) -> dict[str, Any]:
     """
     machine = None if request["machine"] is None else read_machine(request["machine"])
     points = _points(request, machine, step)
-    step("fitting and judging", _FITTING)
-    given: dict[str, Any] = {"command": request["command"], "machine": machine}
-    if "progress" in inspect.signature(analyse).parameters:
-        span = _DRAWING - _FITTING
-        given["progress"] = lambda words, share: step(words, _FITTING + span * share)
-    document = analyse(points.log, points, **given)
+    given: dict[str, Any] = {
+        "machine_file": None if machine is None else Path(request["machine"]),
+        "made": datetime.now(UTC).isoformat(timespec="seconds"),
+        "step": _shared(step, 0 if machine is None else len(machine.points)),
+    }
+    known = inspect.signature(analyse).parameters
+    document = analyse(
+        points.log,
+        points,
+        command=request["command"],
+        machine=machine,
+        **{name: value for name, value in given.items() if name in known},
+    )
     step("drawing the page", _DRAWING)
     write_atomically(Path(request["report"]), render(document), overwrite=True)
-    decision = getattr(document, "decision", None)
+    decision = document.decision
+    headline = document.verdict[0] if document.verdict else ""
     return {
         "signal": "" if decision is None else decision.signal,
-        "words": document.verdict[0]
-        if decision is None and document.verdict
-        else decision.instruction
-        if decision
-        else "",
+        "words": headline if decision is None else decision.instruction,
         "warnings": len(document.warnings),
     }
+
+
+def _shared(step: Step, points: int) -> Callable[[str], None]:
+    """A word on each step of the analysis, with the share of the whole at which it begins."""
+    planned = 0
+
+    def said(words: str) -> None:
+        nonlocal planned
+        share = _BEGINS.get(words)
+        if share is None:  # a plan for each of the operating points
+            share = _PLANS + (_DRAWING - _PLANS) * min(planned, points) / max(points, 1)
+            planned += 1
+        step(words, share)
+
+    return said
 
 
 def _points(request: Mapping[str, Any], machine: Machine | None, step: Step) -> SteadyPoints:
