@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from playwright.sync_api import Browser
 
 from hersey.report.life_page import render_life
 from tests.browser.opening import Opened
 from tests.life import shipped
+from tests.life.test_other_uses import by_hand
 
 
 @pytest.fixture(scope="module")
 def opened(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Opened:
     path = tmp_path_factory.mktemp("life") / "life.html"
-    page = render_life(shipped.followed(2), shipped.opened(2).runs(), "hersey life <life.hersey>")
+    answer = replace(shipped.followed(2), uses=by_hand())
+    page = render_life(answer, shipped.opened(2).runs(), "hersey life <life.hersey>")
     path.write_text(page, encoding="utf-8")
     return Opened(browser, path)
 
@@ -27,14 +31,42 @@ def test_it_says_what_ends_the_units(opened: Opened) -> None:
     assert "U1 ends at" in verdict  # two units do not tell what half of new ones do
     assert "Next: U1 at" in verdict
     assert opened.page.inner_text("#command") == "hersey life <life.hersey>"
-    titles = opened.page.locator("h2").all_inner_texts()
+    titles = opened.page.locator(".part h2").all_inner_texts()
     assert titles[0] == "What ends each unit, and when"
     assert titles[-1] == "How to reproduce this report"
     for name in ("ends", "growth_1", "maps", "film", "drift", "population"):
         assert opened.page.locator(f"#chart-{name} svg.marks").count() == 1
-    assert opened.page.locator("#chart-ends ~ .wide td").first.inner_text() == "U1"
+    assert opened.page.locator("#ages td").first.inner_text() == "U1"
 
 
 def test_nothing_is_wider_than_the_page(opened: Opened) -> None:
     width = opened.page.evaluate("document.documentElement.scrollWidth - window.innerWidth")
     assert width <= 0
+
+
+def test_it_can_be_asked_for_another_use(opened: Opened) -> None:
+    page = opened.page
+    assert "at 100000 [80000, 130000] pages." in page.inner_text(".use-verdict")
+    assert page.inner_text("#uses .hint") == "as the machine's file states"
+    page.focus("#use-limit")
+    page.keyboard.press("ArrowRight")
+    page.focus("#use-cold")
+    page.keyboard.press("ArrowLeft")
+    told = page.inner_text(".use-verdict")
+    assert told.startswith("Half of new units have ended at 104000 [83300, 135000] pages;")
+    assert "100000" in told
+    assert 'motor_torque = "1.25 N*m"' in page.inner_text("#use-toml")
+    assert 'coldest = "50 degC"' in page.inner_text("#use-toml")
+    page.fill("#use-day", "500")
+    assert "208 days at 500 a day" in page.inner_text(".use-verdict")
+    page.fill("#use-day", "many")
+    assert page.inner_text("#uses [role=status]") == "a number above 0, such as 500"
+    assert "U1 104000 [83300, 135000]" in (page.locator("#chart-uses svg").get_attribute("aria-label") or "")
+    chosen = page.evaluate("location.hash")
+    assert chosen == "#use?limit=1&cold=0&day=many"
+    page.click("text=Back to the machine's file")
+    assert page.inner_text(".use-verdict").endswith("at 100000 [80000, 130000] pages.")
+    page.evaluate("location.hash = '#use?limit=1&cold=0'")
+    page.wait_for_function("document.querySelector('.use-verdict').textContent.includes('104000')")
+    page.evaluate("location.hash = '#use?limit=9&cold=-1'")  # of another report: as the file states
+    page.wait_for_function("document.querySelector('#uses .hint').textContent.startsWith('as')")

@@ -50,7 +50,7 @@ def render_life(answer: LifeTest, runs: pl.DataFrame, command: str) -> str:
         "runs": runs.select("sha256", "log").to_dicts(),
         "command": command,
     }
-    return drawn(("life.js",), "hersey life", document, charts)
+    return drawn(("life.css", "uses.js", "life.js"), "hersey life", document, charts)
 
 
 def _of_all(found: Endings) -> list[str]:

@@ -4,7 +4,7 @@
 const otherUses = (() => {
   const LEFT = 66, RIGHT = 14, TOP = 20, ROW = 22;
   const celsius = (kelvin) => `${digits(kelvin - 273.15)} °C`;
-  const plain = (value) => (value >= 1000 ? String(Math.round(value)).replace(/\B(?=(\d{3})+$)/g, " ") : digits(value));
+  const plain = (value) => (value >= 1000 && value < 1e9 ? String(Math.round(value)) : digits(value));
   const span = (age, scale = 1) => age.value === null
     ? "never" : `${plain(rounded(age.value * scale))} [${age.low === null ? "never" : plain(rounded(age.low * scale))}, ${age.high === null ? "never" : plain(rounded(age.high * scale))}]`;
   const rounded = (value) => Number(value.toPrecision(3));
@@ -34,8 +34,10 @@ const otherUses = (() => {
     const chosen = read(uses, start);
     const own = uses.uses[stated];
     const unit = uses.age_unit || "units of age";
-    const box = add(parent, "div", "", "panel");
-    box.id = "uses-panel";
+    const box = parent;
+    const head = add(box, "div", "", "cap");
+    add(head, "h2", "With another limit, start or duty");
+    const hint = add(head, "span", "", "hint");
     const refresh = [];
 
     function control(label, name, make) {
@@ -59,7 +61,7 @@ const otherUses = (() => {
         return range;
       });
     }
-    if (uses.torque_limits.length) steps("Limit of the motor's torque, at the roll", "limit", uses.torque_limits.length);
+    if (uses.torque_limits.length) steps("Motor torque, at the roll", "limit", uses.torque_limits.length);
     if (uses.coldest.length) steps("Coldest start", "cold", uses.coldest.length);
     if (uses.duties.length > 1) {
       control("Duty", "duty", (row) => {
@@ -91,8 +93,7 @@ const otherUses = (() => {
     verdict.setAttribute("aria-live", "polite");
     const figure = add(box, "div", "", "chart");
     figure.id = "chart-uses";
-    const behind = fold(box, "The numbers");
-    const held = add(behind, "div");
+    const held = add(fold(box, "The numbers"), "div");
     const toml = add(box, "pre", "", "mono");
     toml.id = "use-toml";
     const foot = add(box, "div", "", "foot");
@@ -119,7 +120,7 @@ const otherUses = (() => {
         svg("line", { x1: x(tick), x2: x(tick), y1: TOP, y2: height - 30, stroke: "var(--rule)" }, drawing);
         svg("text", { x: x(tick), y: height - 15, "text-anchor": "middle", class: "tl" }, drawing, plain(tick));
       }
-      svg("text", { x: LEFT, y: 12 }, drawing, `Age of the first end (${unit}); hollow: as the machine's file states it`);
+      svg("text", { x: 0, y: 12 }, drawing, `First end (${unit}); hollow: as the machine's file states`);
       use.ends.forEach(({ name, age }, i) => {
         const y = TOP + (i + 0.5) * ROW;
         svg("text", { x: LEFT - 8, y: y + 4, "text-anchor": "end" }, drawing, name);
@@ -149,6 +150,7 @@ const otherUses = (() => {
       const heads = ["unit", `first end (${unit})`, ...(day > 0 ? ["days"] : []), "by"];
       table(held, heads, use.ends.map(({ name, age, ways }) => [name, span(age), ...(day > 0 ? [span(age, 1 / day)] : []), ways]), day > 0 ? [1, 2] : [1], { name: "ages" });
       toml.textContent = lines();
+      hint.textContent = address(chosen, start) === "" ? "as the machine's file states" : "◆ differs from the machine's file";
       back.disabled = address(chosen, start) === "";
       history.replaceState(null, "", address(chosen, start) || location.pathname + location.search);
     }
