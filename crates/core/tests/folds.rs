@@ -3,11 +3,11 @@
 #[path = "common/random.rs"]
 mod random;
 
-use random::Random;
 use hersey_core::Work;
 use hersey_core::drag::{Closure, Drag, Rest};
 use hersey_core::motion::{Belt, CycleKind, Drivetrain, Span, Start, ensemble, settle, stick_slip};
 use hersey_core::stability::{Band, Method, bands, swings};
+use random::Random;
 
 const TOLERANCE: f64 = 1e-11;
 
