@@ -3,6 +3,9 @@
 W3: the fold speed V*(k, B0) on 64 x 64 points (k 500 to 2000, B0 25 to 100). Peers halve the drive speed
 between 1.01 and 4 with 15 runs of 5 s each, on some of the points, scaled to all.
 
+The machine's law of examples/machine.toml and examples/bench.csv beside it: a steep mixed branch, a rest of the
+drive that rises with speed, and the grip of the roll; 200 draws at each of 13 temperatures, and one belt.
+
 Usage: python -m benchmarks.fold
 """
 
@@ -15,8 +18,14 @@ import numpy as np
 
 import hersey
 from benchmarks.motion import DRAG, TRAIN, best_of, machine
+from hersey import _core
+from hersey.motion.parameters import MOST_STEPS
 
 SIDE, RUNS, DURATION = 64, 15, 5.0
+#: Temperatures (K) and draws of the machine's law.
+LEVELS, DRAWS = np.linspace(363.15, 455.15, 13), 200
+#: Seconds for the same before half laps knew a rest of the drive, on the machine of FOLD.md: all draws, one belt.
+BEFORE = {1e-13: (19.1, 7.6e-3), 1e-11: (13.5, 5.3e-3), 1e-8: (35.0, 1.4e-2)}
 
 
 def folds(side: int, tolerance: float) -> Any:
@@ -81,6 +90,62 @@ def measure() -> list[tuple[str, float, int, float]]:
     return rows
 
 
+def machine_law() -> tuple[hersey.Drivetrain, list[tuple[Any, dict[str, Any]]]]:
+    """Return the train with the roll's grip, and the law with its draws at each temperature."""
+    from hersey.machine import read_machine
+
+    stated = read_machine("examples/machine.toml")
+    log = hersey.read("examples/bench.csv").steady(tare="standing").without(stated.rest)
+    surface, rng = hersey.fit(log), np.random.default_rng(1)
+    train, laws = stated.limits.gripping(stated.train), []
+    for level in LEVELS:
+        law = surface.drag(**stated.belt, temperature=level)
+        draws = surface.drag_samples(
+            DRAWS, 1, roll_radius=stated.roll_radius, stick_speed=law.stick_speed, temperature=level
+        )
+        draws["stick_speed"] = np.minimum(
+            law.stick_speed * rng.uniform(0.67, 1.33, DRAWS), 0.9 * draws["transition_speed"]
+        )
+        stiffness = train.stiffness * rng.uniform(0.9, 1.1, DRAWS)
+        laws.append((law, {**draws, "stiffness": stiffness}))
+    return train, laws
+
+
+def measure_machine() -> list[tuple[float, float, float, float]]:
+    """Return (tolerance, seconds for all draws, seconds for one belt, greatest relative error)."""
+    train, laws = machine_law()
+
+    def all_draws(tolerance: float) -> Any:
+        found = [
+            hersey.hysteresis_sweep(train, law, **draws, zip=True, lower=False, tolerance=tolerance)
+            for law, draws in laws
+        ]
+        return np.concatenate([grid.upper.values for grid in found])
+
+    arguments = train._arguments, laws[6][0].law()
+    rows, exact = [], all_draws(1e-14)
+    for tolerance in BEFORE:
+        seconds, upper = best_of(5, lambda t=tolerance: all_draws(t))
+        one, _ = best_of(100, lambda t=tolerance: _core.band(*arguments, t, MOST_STEPS))
+        rows.append((tolerance, seconds, one, float(np.max(np.abs(upper / exact - 1)))))
+    return rows
+
+
+def machine_table(rows: list[tuple[float, float, float, float]]) -> str:
+    """Return the rows of the machine's law as Markdown."""
+    lines = [
+        "| tolerance | all draws | before | one belt, lower edge too | before | error of V* |",
+        "|---|---|---|---|---|---|",
+    ]
+    for tolerance, seconds, one, error in rows:
+        before, one_before = BEFORE[tolerance]
+        lines.append(
+            f"| {tolerance:g} | {seconds:.3g} s | {before:.3g} s | {1e3 * one:.2g} ms "
+            f"| {1e3 * one_before:.2g} ms | {error:.0e} |"
+        )
+    return "\n".join(lines)
+
+
 def table(rows: list[tuple[str, float, int, float]]) -> str:
     """Return the rows as Markdown, with ratios to the first."""
     lines = ["| tool (tolerance) | W3 | to hersey | points run | error of V* |", "|---|---|---|---|---|"]
@@ -100,6 +165,12 @@ W3: the fold V* over stiffness (500 to 2000) and drag at the transition (25 to 1
 hersey's time includes the check whether a deeper stick-slip lasts above each fold.
 
 {table(measure())}
+
+The machine's law: that of examples/bench.csv on the drive of examples/machine.toml, with the rest of the drive that rises
+with speed and the grip of the roll. {len(LEVELS)} temperatures, {DRAWS} draws at each: fit, stiffness and stick speed. Before, a rest that
+rises with speed sent every belt to simulation.
+
+{machine_table(measure_machine())}
 """
     print(content)
     Path(__file__).with_name("FOLD.md").write_text(content)

@@ -302,3 +302,38 @@ impl Series {
         by_last.min(by_before)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn both_ways_to_a_series_beside_a_rest_agree() {
+        let rest = Rest { force: 3.0, damping: 0.7 };
+        for law in [Recurrence::power(-0.98, 0.4), Recurrence::exponential(0.1)] {
+            let start = SlipStart {
+                stiffness: 20.0,
+                mass: 1.3,
+                rate: [9.0, 0.5, -0.2, 0.1],
+                pull: 11.0,
+                speed: 0.4,
+                force: 6.0,
+                total: 6.0 + rest.at(0.4),
+                law,
+                sharing: None,
+                rest,
+                thermal: None,
+                below: false,
+            };
+            let (quick, full) = (plain_series(&start), full_series(&start));
+            for (a, b) in
+                [(quick.pull, full.pull), (quick.speed, full.speed), (quick.drag, full.drag)]
+            {
+                assert!(
+                    a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 1e-12 * b.abs()),
+                    "{a:?} {b:?}"
+                );
+            }
+        }
+    }
+}
