@@ -157,3 +157,17 @@ fn absurd_values_end_with_an_error_or_a_result_but_do_end() {
         let _ = simulate(&train, &drag, drive, Start::REST, 1.0, 11, 1e-9);
     }
 }
+
+#[test]
+fn an_event_just_at_the_end_leaves_no_sample_out() {
+    let train = Drivetrain::new(1000.0, 1.0).unwrap();
+    let drag = Drag::new(50.0, 1.0, -0.7, -1.2, 0.01, Closure::Retained).unwrap();
+    let over =
+        |duration: f64| simulate(&train, &drag, 1.0, Start::REST, duration, 5, 1e-12).unwrap();
+    for event in over(1.0).events {
+        let run = over(event.time);
+        assert_eq!((run.mode.len(), run.slipping.len()), (5, 5));
+        assert!((run.stretch[4] - event.stretch).abs() < 1e-12, "{event:?}");
+        assert!((run.belt_speed[4] - event.belt_speed).abs() < 1e-9, "{event:?}");
+    }
+}

@@ -98,7 +98,7 @@ pub fn simulate(
     let initial = stored(system, end_state, 0.0);
     while motion.time() < duration {
         let (piece, event) = motion.advance(duration - motion.time())?;
-        let last = event.is_none() && motion.time() >= duration;
+        let last = motion.time() >= duration;
         let end = if last { f64::INFINITY } else { piece.time + piece.duration };
         let begin = mode.len();
         let count = time[begin..].iter().take_while(|t| **t < end).count();
