@@ -43,7 +43,7 @@ pub fn motion(question: &mut Question) -> Answer {
     let work = question.work()?;
     let (train, drag) = (question.train()?, drag(question)?);
     let [tolerance, duration] = question.numbers()?;
-    let samples = question.count()?;
+    let samples = question.count("samples")?;
     let (times, speeds) = (question.list()?, question.list()?);
     let schedule = Schedule::linear("drive_speed", times, speeds)?;
     let start = question.start(&train, &drag, schedule.at(0.0))?;
@@ -102,7 +102,8 @@ pub fn cycle(question: &mut Question) -> Answer {
 /// Steps of each motion, train, law (without temperature), whether with the lower edge, tolerance, stick speed at every
 /// temperature (or that of the law), list of temperatures (empty: the law as it is). Answer for each: lower edge,
 /// transition, upper edge, whether it stalls, greatest speed, accuracies of lower and upper, whether by half laps,
-/// whether deeper, laps; not a number where there is no band. If none has one, why the first has not.
+/// whether deeper, laps, what a belt at rest bears; not a number where there is none. If no temperature has a band, why
+/// the first has not.
 pub fn bands(question: &mut Question) -> Answer {
     let work = question.work()?;
     let (train, asked) = (question.train()?, AskedLaw::read(question)?);
@@ -126,11 +127,15 @@ pub fn bands(question: &mut Question) -> Answer {
         }
     }
     let found = stability::bands(&belts, lower, tolerance, &work)?;
-    let mut answer = vec![[f64::NAN; 10]; each.len()];
+    let mut answer = vec![[f64::NAN; 11]; each.len()];
     let mut any = false;
-    for (place, band) in places.into_iter().zip(found) {
+    for ((place, band), (_, drag)) in places.into_iter().zip(found).zip(&belts) {
+        answer[place][10] = drag.holding_force(0.0);
         match band {
-            Ok(band) => (answer[place], any) = (row(&band), true),
+            Ok(band) => {
+                answer[place][..10].copy_from_slice(&row(&band));
+                any = true;
+            }
             Err(error) => why = why.or(Some(error.into())),
         }
     }
@@ -163,7 +168,7 @@ pub fn unstable(question: &mut Question) -> Answer {
     let work = question.work()?;
     let (train, drag) = (question.train()?, drag(question)?);
     let [tolerance, drive_speed] = question.numbers()?;
-    let samples = question.count()?;
+    let samples = question.count("samples")?;
     let Some(lap) = stability::unstable_lap(&train, &drag, drive_speed, tolerance, &work)? else {
         return Ok(Vec::new());
     };

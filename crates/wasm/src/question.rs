@@ -1,8 +1,8 @@
 //! A question read number by number, in the order in which the page wrote it.
 
-use hersey_core::Work;
 use hersey_core::drag::Drag;
 use hersey_core::motion::{Drivetrain, Start};
+use hersey_core::{Error, Work};
 
 use crate::refusal::Refusal;
 
@@ -41,12 +41,15 @@ impl<'a> Question<'a> {
 
     /// A number that counts.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss)]
-    pub fn count(&mut self) -> Result<usize, Refusal> {
-        let number = self.number()?;
-        if number >= 0.0 && number <= MOST as f64 && number.fract() == 0.0 {
-            Ok(number as usize)
+    pub fn count(&mut self, quantity: &'static str) -> Result<usize, Refusal> {
+        let (value, limit) = (self.number()?, MOST as f64);
+        if !(value >= 0.0 && value.fract() == 0.0) {
+            return Err(Refusal::Malformed("a count is negative or broken"));
+        }
+        if value > limit {
+            Err(Error::TooLarge { quantity, value, limit }.into())
         } else {
-            Err(Refusal::Malformed("a count is negative, broken, or above 4 million"))
+            Ok(value as usize)
         }
     }
 
@@ -56,7 +59,7 @@ impl<'a> Question<'a> {
 
     /// So many numbers as the first says.
     pub fn list(&mut self) -> Result<&'a [f64], Refusal> {
-        let count = self.count()?;
+        let count = self.count("numbers of a list")?;
         let (list, rest) = self
             .left
             .split_at_checked(count)

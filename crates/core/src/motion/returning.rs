@@ -20,18 +20,19 @@ pub(crate) enum Return {
     Slid(f64, f64),
     /// The same, but it did.
     Stuck(f64, f64),
-    /// It is held, or creeps on below the stick speed.
+    /// It is held, or creeps on below the stick speed, or has come to it and is followed no further.
     Held,
     /// It comes to slide with the drive.
     Dies,
 }
 
-/// The next return of a belt that overtakes the constant `drive_speed` of `system` with `pull`; one with a smooth
-/// closure, which creeps for long, is followed no further than to the stick speed.
+/// The next return of a belt that overtakes the constant `drive_speed` of `system` with `pull`; one that sticks is followed
+/// no further unless `through` says so.
 pub(crate) fn next_return(
     system: &System,
     drive_speed: f64,
     pull: f64,
+    through: bool,
     tolerance: f64,
     work: &Work,
 ) -> Result<Return, Error> {
@@ -49,7 +50,7 @@ pub(crate) fn next_return(
         }
         if event.is_some_and(|event| matches!(event.to, Mode::Stuck | Mode::Microslip)) {
             stuck = true;
-            if drag.closure().is_smooth() {
+            if !through {
                 return Ok(Return::Held);
             }
         }

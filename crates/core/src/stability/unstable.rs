@@ -52,9 +52,11 @@ pub fn unstable_lap(
     above("drive_speed", drive_speed, 0.0)?;
     let system = System::at_speed(*train, drag, drive_speed)?;
     let steady = drag.force(drive_speed);
-    let lap = |swing: f64| next_return(&system, drive_speed, steady + swing, tolerance, work);
+    let lap = |swing: f64, through: bool| {
+        next_return(&system, drive_speed, steady + swing, through, tolerance, work)
+    };
     let way = |swing: f64| -> Result<Way, Error> {
-        Ok(match lap(swing)? {
+        Ok(match lap(swing, false)? {
             Return::Dies => Way::Falls(swing),
             Return::Slid(_, pull) if pull - steady < swing => Way::Falls(swing - (pull - steady)),
             Return::Slid(_, pull) => Way::Grows(Some(pull - steady - swing)),
@@ -78,19 +80,16 @@ pub fn unstable_lap(
             Way::Grows(rise) => high = (swing, rise),
         }
     }
-    // without a closed lap the belt must stick again and again
-    let lasts = |swing: f64| -> Result<bool, Error> {
-        Ok(match lap(swing)? {
-            Return::Stuck(_, pull) => pull - steady >= swing,
-            _ => true,
-        })
-    };
     let closed = high.1.is_some();
-    if !closed && !lasts(high.0)? {
+    // without a closed lap the belt must stick again and again
+    if !closed
+        && let Return::Stuck(_, pull) = lap(high.0, true)?
+        && pull - steady < high.0
+    {
         return Ok(None);
     }
     let swing = low.0;
-    let Return::Slid(duration, _) = lap(swing)? else { return Ok(None) };
+    let Return::Slid(duration, _) = lap(swing, false)? else { return Ok(None) };
     let start = Start { belt_speed: drive_speed, stretch: (steady + swing) / train.stiffness() };
     Ok(Some(UnstableLap { start, duration, closed }))
 }

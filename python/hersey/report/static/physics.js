@@ -55,6 +55,7 @@ async function physics(bytes) {
     if (typeof value === "number" && !Number.isNaN(value)) return value;
     throw refused({ message: `${name} is ${value}: a finite number is needed`, quantity: name });
   }
+  const or = (name, object, otherwise) => number(name, object[name] ?? otherwise);
   const given = (name, value) => (value === null || value === undefined ? NONE : number(name, value));
   const named = (names, object) => names.map((name) => number(name, object[name]));
   function known(name, names, value) {
@@ -78,12 +79,12 @@ async function physics(bytes) {
     return [0, named(["transition_force", "transition_speed", "ehl_exponent", "mixed_exponent"], drag)];
   }
   const varies = (drag) => drag.reference_temperature !== null && drag.reference_temperature !== undefined;
-  const zeroOf = (drag) => drag.temperature_zero ?? 0;
+  const zeroOf = (drag) => or("temperature_zero", drag, 0);
 
   function ofTemperature(drag) {
     if (!varies(drag)) return [0, 0, 0, 0, 0, 0, 0, 0];
     const reference = number("reference_temperature", drag.reference_temperature) - zeroOf(drag);
-    const slopes = [drag.boundary_temperature_slope ?? 0, drag.rest_temperature_slope ?? 0];
+    const slopes = ["boundary_temperature_slope", "rest_temperature_slope"].map((name) => or(name, drag, 0));
     if (drag.viscosity_law) {
       const { kind, ...law } = drag.viscosity_law;
       known("viscosity law", Object.keys(VISCOSITIES), kind);
@@ -98,15 +99,15 @@ async function physics(bytes) {
     const [shape, numbers] = ofShape(drag);
     const bristles = drag.closure === "lugre"
       ? named(["bristle_stiffness", "bristle_damping"], drag) : [0, 0];
-    const growth = drag.static_growth ?? 0;
+    const growth = or("static_growth", drag, 0);
     if (growth && (drag.closure !== "stiction" || !drag.static_growth_time)) {
       const needed = drag.closure === "stiction" ? "static_growth_time" : "closure 'stiction'";
       throw refused({ message: `static_growth is ${growth}: it needs ${needed}`, quantity: "static_growth" });
     }
     return [
       shape, number("stick_speed", drag.stick_speed), known("closure", CLOSURES, drag.closure), ...bristles,
-      given("static_force", drag.static_force), drag.rest_force ?? 0, drag.rest_damping ?? 0,
-      growth, drag.static_growth_time ?? 1, ...ofTemperature(drag), numbers.length, ...numbers,
+      given("static_force", drag.static_force), or("rest_force", drag, 0), or("rest_damping", drag, 0),
+      growth, or("static_growth_time", drag, 1), ...ofTemperature(drag), numbers.length, ...numbers,
     ];
   }
 
@@ -129,10 +130,10 @@ async function physics(bytes) {
 
   const bandOf = (row) => {
     const [lower, transition, upper, stalls, speedMax, lowerAccuracy, upperAccuracy, half, deeper, laps] = row;
-    const or = (value) => (Number.isNaN(value) ? null : value);
+    const known = (value) => (Number.isNaN(value) ? null : value);
     return {
-      lower: or(lower), transition, upper, stalls: stalls > 0, speed_max: or(speedMax),
-      lower_accuracy: or(lowerAccuracy), upper_accuracy: upperAccuracy,
+      lower: known(lower), transition, upper, stalls: stalls > 0, speed_max: known(speedMax),
+      lower_accuracy: known(lowerAccuracy), upper_accuracy: upperAccuracy,
       method: half > 0 ? "half laps" : "simulation", deeper: deeper > 0, laps,
     };
   };
@@ -218,6 +219,7 @@ async function physics(bytes) {
 
     // The same at many temperatures (K; null for a drag that does not vary), by the rule of the stick speed. Without a
     // band the three speeds are one. Where there is none at a temperature, not a number; if at none, an error says why.
+    // With what a belt at rest bears (N).
     edges({ train, drag, temperatures, rule, lower = false, ...options }) {
       const fixed = known("rule", RULES, rule) === 1;
       const scale = temperatures ? Array.from(temperatures, (t) => scaled(drag, t)) : [];
@@ -227,12 +229,11 @@ async function physics(bytes) {
         number("tolerance", options.tolerance ?? TOLERANCE.band), fixed ? drag.stick_speed : NONE,
         scale.length, ...scale,
       ]);
-      const column = (i) => Float64Array.from({ length: answer.length / 10 }, (_, row) => answer[10 * row + i]);
+      const column = (i) => Float64Array.from({ length: answer.length / 11 }, (_, row) => answer[11 * row + i]);
       const transition = column(1);
       const edges = { transition, upper: column(2).map((upper, i) => Math.max(upper, transition[i])) };
       if (lower) edges.lower = column(0).map((edge, i) => Math.min(edge, transition[i]));
-      edges.stalls = Uint8Array.from(column(3));
-      return edges;
+      return { ...edges, stalls: Uint8Array.from(column(3)), holding: column(10) };
     },
 
     // The lap in the phase plane (m/s, N) that parts the starts which come to slide from those which come to stick, or
