@@ -186,6 +186,11 @@ FIELD = {
     "kinematic viscosity": "m^2/s mm^2/s cSt St",
     "density": "kg/m^3 g/cm^3",
     "pressure-viscosity coefficient": "Pa^-1 GPa^-1 1/GPa",
+    "thermal conductivity": "W/m/K mW/m/K",
+    "power": "W kW mW",
+    "energy": "J kJ mJ",
+    "heat capacity": "J/K kJ/K",
+    "thermal conductance": "W/K mW/K",
 }
 
 
@@ -211,6 +216,7 @@ def test_units_of_drives_need_no_registry(kind: str, unit: str, theirs: Any) -> 
         ("force", "kip", 4448.2216152605),
         ("thermal conductivity", "mW/mm/K", 1.0),
         ("time", "day", 86_400.0),
+        ("energy", "Wh", 3600.0),
     ],
 )
 def test_any_other_unit_is_read_by_pint(kind: str, unit: str, one: float) -> None:

@@ -131,8 +131,7 @@ _FORCE, _PRESSURE, _VISCOSITY = (1, 1, -2, 0, 0), (-1, 1, -2, 0, 0), (-1, 1, -1,
 _POUND, _INCH, _GRAVITY = Fraction("0.45359237"), Fraction("0.0254"), Fraction("9.80665")
 _PSI, _TURN = _POUND * _GRAVITY / _INCH**2, 2 * Fraction(math.pi)
 
-#: Units of drives that take SI prefixes, and those that take none: value in SI, exact, and dimension. Units
-#: of energy are left to pint, which tells them from a torque.
+#: Units of drives that take SI prefixes, and those that take none: value in SI, exact, and dimension.
 _PREFIXED: dict[str, tuple[Fraction, _Dimension]] = {
     "m": (Fraction(1), _LENGTH),
     "g": (Fraction(1, 1000), _MASS),
@@ -144,6 +143,12 @@ _PREFIXED: dict[str, tuple[Fraction, _Dimension]] = {
     "P": (Fraction(1, 10), _VISCOSITY),
     "St": (Fraction(1, 10_000), (2, 0, -1, 0, 0)),
 }
+#: Units of energy, known only where an energy is asked for: none is one of torque.
+_OF_ENERGY: dict[str, tuple[Fraction, _Dimension]] = {
+    "J": (Fraction(1), (2, 1, -2, 0, 0)),
+    "W": (Fraction(1), (2, 1, -3, 0, 0)),
+}
+_ENERGY_KINDS = frozenset(("power", "energy", "heat capacity", "thermal conductance", "thermal conductivity"))
 _UNPREFIXED: dict[str, tuple[Fraction, _Dimension]] = {
     "min": (Fraction(60), _TIME),
     "h": (Fraction(3600), _TIME),
@@ -166,11 +171,18 @@ _UNPREFIXED: dict[str, tuple[Fraction, _Dimension]] = {
     "reyn": (_PSI, _VISCOSITY),
 }
 _PREFIXES = {"G": 9, "M": 6, "k": 3, "": 0, "d": -1, "c": -2, "m": -3, "u": -6, "µ": -6, "μ": -6, "n": -9}
-_TABLE = {
-    prefix + name: (Fraction(10) ** power * value, dimension)
-    for prefix, power in _PREFIXES.items()
-    for name, (value, dimension) in _PREFIXED.items()
-} | _UNPREFIXED
+
+
+def _with_prefixes(units: dict[str, tuple[Fraction, _Dimension]]) -> dict[str, tuple[Fraction, _Dimension]]:
+    return {
+        prefix + name: (Fraction(10) ** power * value, dimension)
+        for prefix, power in _PREFIXES.items()
+        for name, (value, dimension) in units.items()
+    }
+
+
+_TABLE = _with_prefixes(_PREFIXED) | _UNPREFIXED
+_TABLE_WITH_ENERGY = _TABLE | _with_prefixes(_OF_ENERGY)
 #: Scales of temperature that do not start at absolute zero: K = scale * value + offset.
 _OFFSETS = {
     "degC": (1.0, ZERO_CELSIUS, _TEMPERATURE),
@@ -230,7 +242,7 @@ def conversion(kind: str, unit: str) -> Conversion:
         told = f"'{unit[:20]}...' of {len(unit)} characters, {_LONGEST_UNIT} at the most"
         raise UnitError(f"unknown unit {told}: write one such as {example}")
     factor, text = _split_factor(unit.strip(), unit, kind)
-    line, standard = _from_table(text), _from_table(si)
+    line, standard = (_from_table(each, energy=kind in _ENERGY_KINDS) for each in (text, si))
     if line and standard and line[2] == standard[2]:
         scale, zero = line[:2]
     elif line and standard and line[2][:-1] != standard[2][:-1]:
@@ -243,16 +255,17 @@ def conversion(kind: str, unit: str) -> Conversion:
 
 
 @lru_cache(maxsize=256)
-def _from_table(text: str) -> tuple[float, float, _Dimension] | None:
+def _from_table(text: str, *, energy: bool = False) -> tuple[float, float, _Dimension] | None:
     """Scale, offset and dimension of a product of units of the table, as ``N*m``; None for any other."""
+    table = _TABLE_WITH_ENERGY if energy else _TABLE
     if text in _OFFSETS or not text:
         return _OFFSETS.get(text)
     scale, dimension, end = Fraction(1), _NONE, 0
     for match in _TERM.finditer(text):
         sign, name, power = match[1], match[2], int(match[3] or 1)
-        if match.start() != end or bool(sign) == (end == 0) or (name != "1" and name not in _TABLE):
+        if match.start() != end or bool(sign) == (end == 0) or (name != "1" and name not in table):
             return None
-        value, of_unit = (Fraction(1), _NONE) if name == "1" else _TABLE[name]
+        value, of_unit = (Fraction(1), _NONE) if name == "1" else table[name]
         power = -power if sign == "/" else power
         scale *= value**power
         dimension = cast("_Dimension", tuple(a + power * b for a, b in zip(dimension, of_unit, strict=True)))
