@@ -458,7 +458,7 @@ def fields_in_si(record: Any, kinds: Mapping[str, Kind]) -> None:
 
 def convert(value: float, si: str, unit: str) -> float:
     """Return an SI value (given its SI unit) in ``unit``."""
-    given, wanted = _from_table(si), _from_table(unit)
+    given, wanted = (_from_table(each, energy=True) for each in (si, unit))
     if given is None or wanted is None or given[2] != wanted[2]:
         return float(registry.Quantity(value, si).to(unit).magnitude)
     return float((value * given[0] + given[1] - wanted[1]) / wanted[0])
