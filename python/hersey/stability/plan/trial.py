@@ -31,6 +31,8 @@ ROUNDING = 1e-9
 _THREADS = os.cpu_count() or 1
 #: Tolerance of the motions of the search, and of what is said of them.
 COARSE, FINE = 1e-7, 1e-9
+#: Machines that a profile is tried on, at first and in all, while so many fail as may.
+_BLOCKS = (4, 36, None)
 #: Laps within which a temperature changes quickly: a swing that dies out at one may not at the next.
 _QUICK = 100.0
 #: What is said of a spring force that reaches the limit, and of other endings of a trial.
@@ -271,6 +273,34 @@ def outcomes(
     """
     if not machines or not shapes:
         return []
+
+    def followed(some: Sequence[MachineSample], may_fail: int | None) -> list[Outcome]:
+        return _followed(some, shapes, thermal, force_limit, latest, may_fail, force, until, tolerance, heat)
+
+    if allowed is None:
+        return followed(machines, None)
+    found: list[Outcome] = []
+    for block in _BLOCKS:  # most profiles fail on the first few machines: the others are not handed over
+        some = machines[len(found) : block]
+        found += followed(some, allowed - sum(each.ready == math.inf for each in found)) if some else []
+        if sum(each.ready == math.inf for each in found) > allowed:
+            break
+    return found
+
+
+def _followed(
+    machines: Sequence[MachineSample],
+    shapes: Sequence[Shape],
+    thermal: TemperatureProfile,
+    force_limit: float,
+    latest: float,
+    allowed: int | None,
+    force: bool,
+    until: float,
+    tolerance: float,
+    heat: HeatBalance | None,
+) -> list[Outcome]:
+    """What the core says of these machines, and what comes after the profile."""
     zero = machines[0].drag.temperature_zero
     begin = 0.0 if heat is not None else shapes[0].wait
     if thermal.end <= _QUICK * machines[0].lap:
