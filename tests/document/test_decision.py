@@ -313,3 +313,24 @@ def _table(speeds: np.ndarray, torques: np.ndarray, machine: Machine | None = No
         document = analyse(table, points, machine=machine)
     assert load(document.model_dump_json()) == document
     return document
+
+
+def test_a_machine_that_does_not_fit_the_log_is_said(log: hersey.TorqueLog, machine: Machine) -> None:
+    """A stick speed above the transition: the log is told in speed of the roll, and the reason beside it."""
+    document = analyse(log, log.steady(tare="standing"), machine=replace(machine, stick_speed=0.5))
+    assert document.map is document.band is document.simulation is None
+    assert document.decision is not None
+    assert document.decision.signal == "act"
+    assert document.decision.flags[0].title == "No band."
+    assert "stick_speed" in document.decision.flags[0].text
+    assert "rpm" in document.decision.instruction
+
+
+def test_the_laws_tried_stand_in_their_order(document: Analysis) -> None:
+    tried = document.regime.tried
+    assert [law.aicc for law in tried] == sorted(law.aicc for law in tried)
+    assert {law.verdict == "not excluded" for law in tried} == {True, False}
+    assert all(law.parameters for law in tried)
+    listed = {each.name for each in document.regime.explanations}
+    kept = {law.name for law in tried if law.verdict == "not excluded"}
+    assert kept - {"one power of speed"} <= listed

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import warnings
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -38,7 +39,7 @@ from hersey.document.parts import (
     TransitionAt,
 )
 from hersey.document.thinning import kept
-from hersey.errors import ExtrapolationWarning, ParameterError
+from hersey.errors import ExtrapolationWarning, HerseyError, ParameterError
 from hersey.files.reading import hash_of
 from hersey.log import TorqueLog
 from hersey.log.means import MeansTable
@@ -85,6 +86,22 @@ def analyse(
     step("fitting the surface")
     surface = fit(points, temperature_scale=temperature_scale)
     working = None if machine is None or surface.transition is None else Working(surface, machine)
+    with nullcontext() if working is None else working:
+        return _analysed(log, points, surface, command, machine, machine_file, made, step, working)
+
+
+def _analysed(
+    log: TorqueLog | MeansTable,
+    points: SteadyPoints,
+    surface: DampingSurface,
+    command: str,
+    machine: Machine | None,
+    machine_file: Path | None,
+    made: str | None,
+    step: Step,
+    working: Working | None,
+) -> Analysis:
+    """The document of a fit, while the behaviour of its machine is worked out."""
     nip = (machine.contact, machine.lubricant) if machine is not None else (None, None)
     step("judging the regime")
     seen = regime(points, surface, contact=nip[0], lubricant=nip[1])
@@ -106,11 +123,15 @@ def analyse(
         "regime": regime_part,
         "film": film,
         "carried": carried,
-        "simulation": _simulation(surface, machine),
         "timeline": _timeline(log),
         "uncertainty": {} if machine is None else ranges(machine),
     }
-    found = None if working is None else working.result(step)
+    found, why = None, ""
+    try:
+        found = None if working is None else working.result(step)
+        document["simulation"] = _simulation(surface, machine)
+    except HerseyError as error:  # a stick speed above the transition, say: the log can be told all the same
+        why = str(error)
     decided = decision(
         points,
         surface,
@@ -119,6 +140,7 @@ def analyse(
         film=film,
         carried=carried,
         found=found,
+        why=why,
         machine_file="" if machine_file is None else machine_file.name,
     )
     return Analysis(**document, decision=decided, **behaviour_parts(found))

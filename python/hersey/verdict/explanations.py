@@ -39,8 +39,9 @@ FORMULA = 0.01
 CONSTANT = " + constant torque"
 COULOMB_VISCOUS, STRIBECK = "Coulomb + viscous", "Stribeck curve"
 THINNING, HEATING, OTHER = "shear thinning", "shear heating", "other curvature"
-UNTRIED = "film" + CONSTANT
+UNTRIED, POWER = "film" + CONSTANT, "one power of speed"
 _WORDS = {
+    POWER: "one power of speed",
     STRIBECK: "a Stribeck curve near its least torque",
     THINNING: "a lubricant that thins with shear",
     HEATING: "a film warmed by its own shear",
@@ -64,13 +65,37 @@ class Explanation:
 
 
 @dataclass(frozen=True)
+class Tried:
+    """A law that was fitted to the dwells of the rising branch.
+
+    ``parameters`` are in the coordinates of the fit, ``constant_share`` as in `Explanation`; ``curvature`` is
+    the p-value of the law as it bends with speed, None where too few speeds can say.
+    """
+
+    name: str
+    parameters: dict[str, float]
+    constant_share: float | None
+    aicc: float
+    curvature: float | None
+    verdict: str = ""
+
+
+@dataclass(frozen=True)
 class Explained:
-    """Explanations, the regime named (None if none may be), and whether one exponent holds."""
+    """Explanations, the regime named (None if none may be), and whether one exponent holds.
+
+    ``tried`` are the laws behind them, the likeliest first.
+    """
 
     named: str | None
     explanations: tuple[Explanation, ...]
     lack_of_fit: LackOfFit | None  #: None where too few dwells can say
     why_unnamed: str
+    tried: tuple[Tried, ...] = ()
+
+
+#: What a law is called, its fit, whether it is listed, and the p-value of its bend.
+_Fitted = tuple[Explanation, LawFit, bool, float | None]
 
 
 class FilmLaw(NamedTuple):
@@ -106,7 +131,9 @@ def explained(
     own = None if law is None else _own_film(branch, surface, law, len(hypotheses))
     if own is not None and own[0].key not in {e.key for e in single}:
         single = (*single, own[0])
-    beside = _beside_constant(branch, hypotheses, {e.key for e in single}, None if own is None else own[1])
+    beside, fitted = _beside_constant(
+        branch, hypotheses, {e.key for e in single}, None if own is None else own[1]
+    )
     too_few = len(branch.data) < len(branch.fit.law.names) + 1 + LEAST_FREEDOM
     listed = [*single, *beside]
     if not bent and surface.c.low > -1.0 and surface.c.high < -LEVEL:
@@ -124,7 +151,29 @@ def explained(
         named, why = None, f"{beside[0].name} explains the dwells as well"
     if named and too_few:
         named, why = None, "too few dwells to try a constant torque beside the film"
-    return Explained(named, tuple(listed), lack, why)
+    power = Explanation(POWER, _WORDS[POWER])
+    fitted += [(power, branch.fit, not bent, lack.curvature)]
+    fitted += [] if own is None else [(*own, own[0].key in {e.key for e in listed}, own[0].p_value)]
+    return Explained(named, tuple(listed), lack, why, _laws_tried(fitted))
+
+
+def _laws_tried(fitted: list[_Fitted]) -> tuple[Tried, ...]:
+    """The laws fitted, the likeliest first, each with what became of it."""
+    least = min(fit.aicc for _, fit, _, _ in fitted)
+    out = []
+    for said, fit, kept, p in sorted(fitted, key=lambda each: each[1].aicc):
+        away = fit.aicc - least
+        if kept:
+            verdict = "not excluded"
+        elif p is not None and p < 1.0 - CONFIDENCE:
+            verdict = f"bends otherwise with speed (p = {p:.1g})"
+        elif away > EVIDENCE:
+            verdict = "less likely"
+        else:
+            verdict = "no more than the film alone"
+        values = dict(zip(fit.law.names, fit.values.tolist(), strict=True))
+        out.append(Tried(said.name, values, said.constant_share, fit.aicc, p, verdict))
+    return tuple(out)
 
 
 def _alone(films: list[Hypothesis]) -> tuple[Explanation, ...]:
@@ -142,13 +191,14 @@ def _sole(films: list[Hypothesis], surface: DampingSurface) -> str | None:
 
 def _beside_constant(
     branch: Rising, hypotheses: tuple[Hypothesis, ...], alone: set[str], own: LawFit | None
-) -> list[Explanation]:
-    """Films beside a constant torque, and a Stribeck curve, that no other law excludes."""
+) -> tuple[list[Explanation], list[_Fitted]]:
+    """Films beside a constant torque, and a Stribeck curve, that no other law excludes; and all fitted."""
     assert branch.fit is not None
     data, bent = branch.data, branch.bent
     thermal = _thermal_of_film(data, branch.thermal)
     least = [fit.aicc for fit in (None if bent else branch.fit, own) if fit is not None]
     tried: list[tuple[Explanation, LawFit]] = []
+    refused: list[_Fitted] = []
     for row in hypotheses:
         if row.name in (COULOMB, FALLING) or (row.name in alone and not bent):
             continue
@@ -163,6 +213,9 @@ def _beside_constant(
         if held:
             fit, lack = min(held, key=lambda f: f[0].aicc)
             tried.append((_with_constant(row.name, fit, lack, data), fit))
+        elif judged:
+            fit, lack = min(judged, key=lambda f: f[0].aicc)
+            refused.append((_with_constant(row.name, fit, lack, data), fit, False, lack.curvature))
     curve = _stribeck(data, thermal)
     if curve is not None and curve.aicc < min([*least, np.inf]):
         lack = lack_of_fit(curve, data)
@@ -170,9 +223,10 @@ def _beside_constant(
             tried.append((Explanation(STRIBECK, _WORDS[STRIBECK], None, lack.curvature), curve))
     worst = min([*least, *(fit.aicc for _, fit in tried)], default=0.0) + EVIDENCE
     near = sorted(((e, fit) for e, fit in tried if fit.aicc <= worst), key=lambda tie: tie[1].aicc)
-    return [
+    kept = [
         e for e, _ in near if e.constant_share is None or LEAST_SHARE <= e.constant_share <= 1.0 - LEAST_SHARE
     ]
+    return kept, refused + [(e, fit, e in kept, e.p_value) for e, fit in tried]
 
 
 def _own_film(

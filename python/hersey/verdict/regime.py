@@ -17,7 +17,7 @@ from hersey.lubrication.lubricant import Lubricant
 from hersey.result import Result, json_record
 from hersey.units import celsius, rpm
 from hersey.verdict.contact_regimes import film_law, log_regimes
-from hersey.verdict.explanations import Explained, Explanation, explained
+from hersey.verdict.explanations import Explained, Explanation, Tried, explained
 from hersey.verdict.regimes import REGIMES, Hypothesis, RegimeRow, judged, listed
 
 if TYPE_CHECKING:
@@ -54,6 +54,7 @@ class Regime(Result):
     why_unnamed: str
     lack_of_fit: LackOfFit | None  #: of one exponent; None where too few dwells can say
     verdict: str
+    tried: tuple[Tried, ...] = ()  #: laws fitted to the rising branch, the likeliest first
 
     def summary(self) -> str:
         """Return the verdict, the hypotheses and the exponents as text."""
@@ -129,6 +130,7 @@ def regime(
         by.why_unnamed,
         by.lack_of_fit,
         " ".join(filter(None, (_verdict(surface, by, table), _taken_off(points), points.dropped()))),
+        by.tried,
     )
 
 

@@ -87,6 +87,14 @@ class Working:
         self._rest = self._begin(self._at_the_band)
         self._points = [self._begin(self._borne, point) for point in machine.points]
 
+    def __enter__(self) -> Working:
+        """Return itself."""
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Begin nothing more: what has begun goes on in its thread, and is not waited for."""
+        self._pool.shutdown(wait=False, cancel_futures=True)
+
     def result(self, step: Step = lambda _what: None) -> Behaviour:
         """Return it when it is done.
 
@@ -95,25 +103,20 @@ class Working:
         HerseyError
             If not even a band can be computed.
         """
-        try:
-            temperature, band, stick = self._rest.result()
-            step("finding the bands")
-            map_: OperatingMap | None
-            map_, why = _done(self._map)
-            points = []
-            for point, borne, planned in zip(self._machine.points, self._points, self._plans, strict=True):
-                step(f"planning {point.name}")
-                of_plan, no_plan = _done(planned)
-                plan, straight = of_plan if of_plan is not None else (None, None)
-                of_point, no_figure = _done(borne)
-                bears, steps = of_point if of_point is not None else (None, ())
-                reason = "; ".join(filter(None, (no_plan, no_figure)))
-                points.append(PointBehaviour(point, bears, steps, plan, straight, reason))
-            return Behaviour(
-                temperature, band, stick, map_, tuple(points), (f"no map: {why}",) if why else ()
-            )
-        finally:
-            self._pool.shutdown(wait=False, cancel_futures=True)
+        temperature, band, stick = self._rest.result()
+        step("finding the bands")
+        map_: OperatingMap | None
+        map_, why = _done(self._map)
+        points = []
+        for point, borne, planned in zip(self._machine.points, self._points, self._plans, strict=True):
+            step(f"planning {point.name}")
+            of_plan, no_plan = _done(planned)
+            plan, straight = of_plan if of_plan is not None else (None, None)
+            of_point, no_figure = _done(borne)
+            bears, steps = of_point if of_point is not None else (None, ())
+            reason = "; ".join(filter(None, (no_plan, no_figure)))
+            points.append(PointBehaviour(point, bears, steps, plan, straight, reason))
+        return Behaviour(temperature, band, stick, map_, tuple(points), (f"no map: {why}",) if why else ())
 
     def _begin(self, work: Callable[..., _T], *given: object) -> Future[_T]:
         return self._pool.submit(work, *given)

@@ -23,13 +23,17 @@ def decision(
     film: FilmPart | None,
     carried: CarriedPart | None,
     found: Behaviour | None,
+    why: str = "",
     machine_file: str = "",
 ) -> DecisionPart:
-    """Return what to do, why, and what stands against it; ``found`` is None without machine or transition."""
+    """Return what to do, why, and what stands against it.
+
+    ``found`` is None without machine or transition, or where nothing can be computed, for the reason ``why``.
+    """
     map_ = None if found is None else found.map
     said = of_log(surface, seen) if found is None or map_ is None else of_machine(found, map_)
     of_points = [] if found is None or map_ is None else [point_decision(p, map_) for p in found.points]
-    against = flags(points, surface, seen, film, carried, found)
+    against = flags(points, surface, seen, film, carried, found, why)
     signals: list[Signal] = [said.signal, *(point.signal for point in of_points)]
     signals += [flag.signal for flag in against if flag.signal == "act"]
     if map_ is not None and "stick_speed" not in map_.uncertain:

@@ -30,16 +30,19 @@ def flags(
     film: FilmPart | None,
     carried: CarriedPart | None,
     found: Behaviour | None,
+    why: str = "",
 ) -> list[FlagPart]:
     """Return the gravest warnings, each with the section of the page that holds its evidence."""
     map_ = None if found is None else found.map
     out = [*_contradictions(film, carried), *_of_log(points)]
+    if why:
+        out.append(FlagPart(signal="act", title="No band.", text=f"{_sentence(why)}.", section="band"))
     if found is not None and map_ is not None:
         out += _of_machine(found, map_)
     if found is not None:
         out += [
-            FlagPart(signal="watch", title="No map.", text=_sentence(why), section="band")
-            for why in found.reasons
+            FlagPart(signal="watch", title="No map.", text=_sentence(reason), section="band")
+            for reason in found.reasons
         ]
         out += _plans(found)
     out += _left_open(points, surface, seen)
@@ -141,4 +144,5 @@ def _left_open(points: SteadyPoints, surface: DampingSurface, seen: RegimePart) 
 
 
 def _sentence(text: str) -> str:
-    return f"{text[0].upper()}{text[1:]}" if text else text
+    """The text with a capital, unless it begins with the name of a parameter."""
+    return text if "_" in text.split(" ", 1)[0] else f"{text[:1].upper()}{text[1:]}"

@@ -141,6 +141,17 @@ class ExplanationPart(Part):
     p_value: float | None
 
 
+class TriedPart(Part):
+    """A law fitted to the rising branch; parameters in the coordinates of the fit."""
+
+    name: str
+    parameters: dict[str, float | None]
+    constant_share: float | None = Field(description="of torque at the middle speed; null if there is none")
+    aicc: float
+    curvature: float | None = Field(description="p-value of the law's bend with speed")
+    verdict: str
+
+
 class LackOfFitPart(Part):
     """p-values of a law that holds; null where too few speeds or temperatures can say."""
 
@@ -160,6 +171,7 @@ class RegimePart(Part):
     explanations: list[ExplanationPart]
     lack_of_fit: LackOfFitPart | None
     hypotheses: list[HypothesisPart]
+    tried: list[TriedPart] = Field(default=[], description="the likeliest first")
     exponents: list[BranchPart]
 
 
