@@ -124,8 +124,9 @@ def verdict(page: Page) -> str:
 def written(page: Page, name: str) -> str:
     """What the button Link, Command or TOML writes."""
     button = page.locator(".panel .foot button", has_text=re.compile(f"^{name}$"))
-    if button.get_attribute("aria-expanded") == "false":
+    if button.get_attribute("aria-expanded") == "true":
         button.click()
+    button.click()
     return page.input_value(".panel textarea")
 
 

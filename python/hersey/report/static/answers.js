@@ -20,13 +20,13 @@ function answers(core) {
 
   // The motion of a setting, the quick first: each step adds to the answer.
   function* setting(job) {
-    const { train, speed, profile } = job, law = lawOf(job), force = forceAt(law, speed);
-    const cycle = core.cycle({ train, law, drive_speed: speed, start: "rest" });
-    const above = core.cycle({ train, law, drive_speed: speed, start: "steady" });
+    const { train, speed, profile } = job, work = job.work ? { most_steps: job.work } : {}, law = lawOf(job), force = forceAt(law, speed);
+    const cycle = core.cycle({ train, law, drive_speed: speed, start: "rest", ...work });
+    const above = core.cycle({ train, law, drive_speed: speed, start: "steady", ...work });
     yield { law, force, cycle, above };
     let duration = lengthOf(job, law, cycle);
     const schedule = profile ?? [[0, speed]];
-    const run = (length) => drawn(core.motion({ train, law, schedule, start: "rest", duration: length, samples: SAMPLES }));
+    const run = (length) => drawn(core.motion({ train, law, schedule, start: "rest", duration: length, samples: SAMPLES, ...work }));
     let motion = run(duration);
     // One that slides in the end is followed until it does.
     if (!profile && !job.slow && cycle.kind === "steady_sliding" && swings(motion, speed)) motion = run(duration = LENGTHS.find((each) => each >= 4 * duration) ?? duration);
@@ -110,7 +110,7 @@ function answers(core) {
   // What a worker does, by name: every part of an answer as soon as there is one.
   const tasks = {
     *after(job) {
-      if (job.slow) yield* setting(job);
+      if (job.whole) yield* setting(job);
       yield { unstable: unstable(job) };
       if (job.kick) yield { kick: kick(job) };
       if (job.band) yield { band: band(job) };

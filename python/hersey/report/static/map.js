@@ -392,6 +392,7 @@ function operatingMap(place, map, move = null) {
       const speed = kept(speedAt(event.clientY - from.y)), x = columnAt(event.clientX - from.x);
       moved(Number(speed.toPrecision(3)), Math.round(celsius(x)) + 273.15);
     });
+    handle.addEventListener("touchstart", (event) => event.preventDefault(), { passive: false });
     for (const end of ["pointerup", "pointercancel"]) handle.addEventListener(end, () => { from = null; });
     handle.addEventListener("keydown", (event) => {
       const times = event.shiftKey ? 10 : 1;

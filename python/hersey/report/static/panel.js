@@ -23,8 +23,8 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
   const { map } = analysis, motor = map.limited_by === "motor torque", hot = map.temperature !== null;
   const limit = map.torque_limit === null ? Infinity : map.torque_limit / map.roll_radius;
   const known = settings(analysis), questions = answers(core);
-  const SLOW = ["stribeck", "lugre"], QUICK_BAND = 5;
-  const CLOSURES = { retained: "retained: keeps its creep (the paper)", stiction: "stiction: stops dead", stribeck: "Stribeck, smooth", lugre: "LuGre, bristles" };
+  const SLOW = ["stribeck", "lugre"], QUICK_BAND = 5, FRAME = 20_000;
+  const CLOSURES = { retained: "retained: keeps its creep", stiction: "stiction: stops dead", stribeck: "Stribeck, smooth", lugre: "LuGre, bristles" };
   const ZONES = { stick_slip: "sticks", swing: "depends", bistable: "depends", smooth: "smooth", stall: "stall", motor: "stall" };
   let point = worst(), base = known.own(point), setting = known.read(location.hash, base) ?? { ...base };
   let answer = null, found = null, kicked = null, spread = null, asked = 0, drawn = 0, mapped = "", bandCost = 0, spoken = 0, open = "";
@@ -128,15 +128,14 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
   function update() {
     showControls();
     const task = job(), number = drawn += 1;
+    let whole = task.slow;
     kicked = spread = null;
     if (found?.key !== bandKey(setting)) found = found && { ...found, stale: true };
     try {
-      if (task.slow) {
-        answer = answer && { ...answer, stale: true };
+      if (!whole) whole = !answered(task);
+      if (whole) {
         chart.lag(true);
       } else {
-        answer = { train: task.train, unstable: null };
-        for (const part of questions.setting(task)) Object.assign(answer, part);
         if ((!found || found.stale) && bandCost < QUICK_BAND) {
           const start = performance.now();
           found = { ...questions.band(task), key: bandKey(setting) };
@@ -146,13 +145,30 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
         chart.lag(false);
         chart.draw(answer, setting);
       }
-      showAnswer();
-      const needs = !found || found.stale;
-      after.ask("after", { ...task, band: needs, kick: !task.slow && between(), ranges: Object.entries(rangesOf(setting)) }, { number, key: bandKey(setting), task, setting });
+      if (whole) picture.show({ ...setting, zone: null });
+      else showAnswer();
+      after.ask("after", { ...task, whole, band: !found || found.stale, kick: !whole && between(), ranges: Object.entries(rangesOf(setting)) }, { number, key: bandKey(setting), task, setting });
       askEdges(task);
     } catch (error) {
-      failed(error.message);
+      failed(reason(error));
     }
+  }
+  // A refusal of the core in the words and at the temperature of the panel's own controls.
+  function reason({ message, quantity, value, limit: most }) {
+    if (quantity !== "stick_speed" || !(most > 0)) return message;
+    return `the stick speed must be less than the transition speed, ${speedText(setting.stick_speed * most / value)} here`;
+  }
+  // Whether the motion could be had within a frame; what takes longer is left to the worker.
+  function answered(task) {
+    const next = { train: task.train, unstable: null };
+    try {
+      for (const part of questions.setting({ ...task, work: FRAME })) Object.assign(next, part);
+    } catch (error) {
+      if (error.unfinished) return false;
+      throw error;
+    }
+    answer = next;
+    return true;
   }
   // Whether a motion slides in the end: what swings by less than a thousandth of its speed does, too.
   const slides = (motion) => motion?.kind === "steady_sliding" || (motion?.kind === "oscillation" && motion.speed_max - motion.speed_min < 1e-3 * setting.speed);
@@ -190,12 +206,14 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
     mapped = key;
     if (key === machineKey(base)) { edges.forget(); picture.edges(null); return; }
     picture.lag();
-    if (task.slow) { edges.forget(); return; }
-    edges.ask("edges", { train: task.train, drag: task.drag, temperatures: map.temperature, rule: map.stick_speed_rule }, { key });
+    // The folds of a smooth closure take minutes at all temperatures: those of the same belt that retains its creep stay.
+    const drag = task.slow ? { ...task.drag, closure: "retained" } : task.drag;
+    edges.ask("edges", { train: task.train, drag, temperatures: map.temperature, rule: map.stick_speed_rule }, { key, slow: task.slow });
   }
   function heardEdges({ part, failure }, about) {
     if (failure || !part || about.key !== mapped) return;
     picture.edges(part);
+    if (about.slow) picture.lag();
   }
 
   const speedText = (v) => `${digits(1e3 * v)} mm/s`;
@@ -230,7 +248,9 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
         return { zone, signal: "watch", words: "sticks from rest, slides from above", sub: [torque, laps, kick] };
       }
       case "swing": return { zone, signal: "watch", words: "swings from above; sticks once it has stuck", sub: [torque, laps] };
-      default: return { zone, signal: "act", words: "sticks and slips from any start", sub: [laps && `${laps} of the time`, cycle.speed_max > 0 ? `belt peaks at ${speedText(cycle.speed_max)}` : torque] };
+      default:
+        if (setting.speed <= law.stick_speed) return { zone, signal: "act", words: "creeps, slower than the stick speed", sub: [torque] };
+        return { zone, signal: "act", words: "sticks and slips from any start", sub: [laps && `${laps} of the time`, cycle.speed_max > 0 ? `belt peaks at ${speedText(cycle.speed_max)}` : torque] };
     }
   }
   const torqueText = (value) => (Math.abs(value) < 0.1 ? `${digits(1e3 * value)} mN·m` : `${digits(value)} N·m`);
@@ -272,11 +292,11 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
     spoken = setTimeout(() => {
       said.textContent = verdict.textContent;
       printed.textContent = inWords();
+      if (open) output();
       chart.say(`Belt speed: ${words} at ${speedText(setting.speed)}`, `Phase plane at ${speedText(setting.speed)}: ${words}`);
     }, 500);
     trackColours();
     course.show(setting.profile);
-    if (open) output();
   }
   function trackColours() {
     const { speed } = controls.made;
@@ -294,6 +314,9 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
     word.append(signal("act"), "Not computed:");
     verdict.append(` ${reason}`);
     said.textContent = verdict.textContent;
+    picture.show({ ...setting, zone: null });
+    picture.lag();
+    mapped = "";
     chart.lag(true);
   }
 
@@ -304,6 +327,7 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
     select.value = setting.closure;
     mark.textContent = differs("closure") ? "◆ " : "";
     const lugre = setting.closure === "lugre";
+    picture.hint.textContent = SLOW.includes(setting.closure) ? "edges of the map: as for retained" : "drag the ring, or arrow keys on it";
     for (const each of [made.bristle_stiffness.row, made.bristle_damping.row, bristles]) each.hidden = !lugre;
     const hidden = ["mass", "spread", ...(lugre ? ["bristle_stiffness", "bristle_damping"] : [])].some(differs);
     more.textContent = `${hidden ? "◆ " : ""}Mass, spread…`;
@@ -320,13 +344,18 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
   }
 
   function link() {
-    history.replaceState(null, "", known.link(setting));
-    return location.href;
+    const words = known.link(setting);
+    address(words);
+    return location.href.split("#")[0] + words;
+  }
+  // A page in a sandbox may not change its address.
+  function address(words) {
+    try { history.replaceState(null, "", words); } catch { /* the link stands in its field */ }
   }
   function output() {
     for (const each of buttons) each.setAttribute("aria-expanded", String(each.textContent === open));
     out.hidden = !open;
-    if (!open || !answer?.law) return;
+    if (!open || !answer?.law) { out.hidden = true; return; }
     if (!out.firstChild) {
       const field = add(out, "textarea");
       field.readOnly = true;
@@ -342,7 +371,7 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
 
   function reset() {
     setting = { ...base };
-    if (location.hash.startsWith("#setting?")) history.replaceState(null, "", location.pathname + location.search);
+    if (location.hash.startsWith("#setting?")) address(location.pathname + location.search);
     tried({});
   }
   addEventListener("beforeprint", () => { printed.textContent = inWords(); });

@@ -79,6 +79,7 @@ function profile(place, chart, { change, leave }) {
         addEventListener("pointerup", stop);
         addEventListener("pointercancel", stop);
       });
+      handle.addEventListener("touchstart", (event) => event.preventDefault(), { passive: false });
       if (active === String(i)) handle.focus({ preventScroll: true });
     });
   }
@@ -93,6 +94,7 @@ function profile(place, chart, { change, leave }) {
     const line_drawn = svg("path", { class: "drive" }, chart.over);
     let points = null;
     sheet.addEventListener("pointerdown", (event) => { points = [[0, chart.at(event)[1]], chart.at(event)]; sheet.setPointerCapture(event.pointerId); event.preventDefault(); });
+    sheet.addEventListener("touchstart", (event) => event.preventDefault(), { passive: false });
     sheet.addEventListener("pointermove", (event) => {
       if (!points) return;
       const [t, v] = chart.at(event);
