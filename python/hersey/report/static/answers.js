@@ -37,7 +37,9 @@ function answers(core) {
       yield { lap: drawn(core.motion({ train, law, schedule, start, duration: length, samples: LAP_SAMPLES })) };
     }
     if (!profile && above.kind !== cycle.kind) {
-      yield { steady: drawn(core.motion({ train, law, schedule, start: "steady", duration, samples: STEADY_SAMPLES })) };
+      // An unstable balance is left a little, or rounding would decide.
+      const start = above.kind === "steady_sliding" ? "steady" : [1.001 * speed, force / train.stiffness];
+      yield { steady: drawn(core.motion({ train, law, schedule, start, duration, samples: STEADY_SAMPLES })) };
     }
   }
 
@@ -45,7 +47,7 @@ function answers(core) {
   // which slides steadily; null where there is none.
   function unstable(job) {
     try {
-      return core.unstable({ train: job.train, law: lawOf(job), drive_speed: job.speed });
+      return core.unstable({ train: job.train, law: lawOf(job), drive_speed: job.speed, most_steps: WORK });
     } catch (error) {
       if (error.unfinished) return null;
       throw error;
@@ -78,10 +80,7 @@ function answers(core) {
 
   // Edges of the whole map and what a belt at rest bears, first at a few temperatures, then at all.
   function* edges({ train, drag, temperatures, rule }) {
-    const at = (kelvin, lower) => {
-      const holding = kelvin ? kelvin.map((each) => core.drag(drag, each, { rule }).holding_force) : [core.drag(drag, null, { rule }).holding_force];
-      return { temperatures: kelvin, ...core.edges({ train, drag, temperatures: kelvin, rule, lower }), holding };
-    };
+    const at = (kelvin, lower) => ({ temperatures: kelvin, ...core.edges({ train, drag, temperatures: kelvin, rule, lower }) });
     if (temperatures && temperatures.length > 2 * COARSE) {
       yield at(Array.from({ length: COARSE }, (_, i) => temperatures[Math.round(i * (temperatures.length - 1) / (COARSE - 1))]), false);
     }

@@ -317,6 +317,7 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
     picture.show({ ...setting, zone: null });
     picture.lag();
     mapped = "";
+    controls.made.speed.slider.classList.add("lags");
     chart.lag(true);
   }
 
