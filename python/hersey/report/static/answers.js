@@ -4,7 +4,7 @@
 function answers(core) {
   // Lengths of a trace, in s: on a ladder, so that the axis rests while a slider moves.
   const LENGTHS = [0.1, 0.2, 0.5, 1, 2, 3, 5, 8, 12, 20, 30, 50, 80, 120, 200, 300, 500, 800, 1200];
-  const SAMPLES = 1200, STEADY_SAMPLES = 200, LAP_SAMPLES = 240, HALVINGS = 12, COARSE = 13, WORK = 1_000_000;
+  const SAMPLES = 1200, STEADY_SAMPLES = 200, LAP_SAMPLES = 240, DECAY = 8, HALVINGS = 12, COARSE = 13, WORK = 1_000_000;
   const lawOf = (job) => core.drag(job.drag, job.temperature, { rule: job.rule });
   const forceAt = (law, speed) => core.forces(law, [speed])[0];
   const drawn = ({ time, belt_speed, spring_force, stuck }) => ({ time, belt_speed, spring_force, stuck });
@@ -35,6 +35,10 @@ function answers(core) {
       const last = SAMPLES - 1, start = [motion.belt_speed[last], motion.spring_force[last] / train.stiffness];
       const length = 1.02 * cycle.laps_per_period / cycle.frequency;
       yield { lap: drawn(core.motion({ train, law, schedule, start, duration: length, samples: LAP_SAMPLES })) };
+    }
+    if (cycle.kind === "steady_sliding" && !profile) {
+      const length = law.holding_force / (train.stiffness * speed) + DECAY * 2 * Math.PI * Math.sqrt(train.mass / train.stiffness);
+      yield { decay: drawn(core.motion({ train, law, schedule, start: "rest", duration: Math.min(length, duration), samples: 2 * LAP_SAMPLES, ...work })) };
     }
     if (!profile && above.kind !== cycle.kind) {
       // An unstable balance is left a little, or rounding would decide.

@@ -46,7 +46,14 @@ function labour(module, heard) {
       running = null;
     }
     if (running) return;
-    if (!worker) start();
+    const { about } = waiting;
+    try {
+      if (!worker) start();
+    } catch (error) {
+      waiting = null;
+      heard({ failure: `the browser lets no worker run (${error.message})`, done: true }, about);
+      return;
+    }
     running = { ...waiting, since: performance.now() };
     waiting = null;
     worker.postMessage({ number: running.number, task: running.task, job: running.job });

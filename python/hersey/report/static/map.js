@@ -262,8 +262,15 @@ function operatingMap(place, map, move = null) {
       const found = order.map(([, [x, y]]) => [x - width / 2 - 2, y - 7, x + width / 2 + 2, y + 7]).find((box) => within(box) && free(box, taken));
       if (!found) continue;
       taken.push(found);
-      svg("text", { x: (found[0] + found[2]) / 2, y: found[3] - 3, "text-anchor": "middle", class: "torque-name" }, picture, text);
+      const [x, y] = [(found[0] + found[2]) / 2, found[3] - 3];
+      svg("text", { x, y, "text-anchor": "middle", class: `torque-name on-${groundAt(x, y - 4)}` }, picture, text);
     }
+  }
+
+  // The zone below a name.
+  function groundAt(x, y) {
+    const speed = speedAt(y), at = columnAt(x);
+    return speed >= valueAt(edges.upper, at) ? "smooth" : speed >= valueAt(edges.lower, at) ? "depends" : "sticks";
   }
 
   // The word of each zone where it has the most room, upright or along the zone; else it stands in the key.

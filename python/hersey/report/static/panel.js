@@ -147,7 +147,7 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
       }
       if (whole) picture.show({ ...setting, zone: null });
       else showAnswer();
-      after.ask("after", { ...task, whole, band: !found || found.stale, kick: !whole && between(), ranges: Object.entries(rangesOf(setting)) }, { number, key: bandKey(setting), task, setting });
+      after.ask("after", { ...task, whole, band: !found || found.stale, kick: !whole && between(), ranges: Object.entries(rangesOf(setting)) }, { number, key: bandKey(setting), task: { ...task, whole } });
       askEdges(task);
     } catch (error) {
       failed(reason(error));
@@ -176,14 +176,18 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
 
   function heard({ part, failure }, about) {
     if (!about || about.number !== drawn) return;
-    if (failure) { failed(failure); return; }
+    if (failure) {
+      // A motion that is drawn stands, though what belongs to it could not be had.
+      if (about.task.whole) failed(failure);
+      return;
+    }
     if (!part) return;
     if (part.law) answer = { train: about.task.train, unstable: null };
     if ("band" in part) found = part.band && { ...part.band, key: about.key };
     if (part.band) bandCost *= 0.9;
     if ("kick" in part) kicked = { value: part.kick };
     if (part.spread) spread = spreadOf(part.spread);
-    for (const name of ["law", "force", "cycle", "above", "motion", "duration", "lap", "steady"]) if (name in part) answer[name] = part[name];
+    for (const name of ["law", "force", "cycle", "above", "motion", "duration", "lap", "decay", "steady"]) if (name in part) answer[name] = part[name];
     if (part.unstable && answer && between()) answer.unstable = part.unstable;
     if (answer?.motion && (part.motion || part.lap || part.steady || part.unstable)) {
       chart.lag(false);

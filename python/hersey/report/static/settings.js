@@ -29,7 +29,8 @@ function settings(analysis) {
   const train = (setting) => ({ ...map.train, stiffness: setting.stiffness, mass: setting.mass });
 
   function link(setting) {
-    const words = NUMBERS.filter((name) => setting[name] !== null).map((name) => `${name}=${setting[name]}`);
+    const said = (name) => setting[name] !== null && (setting.closure === "lugre" || !name.startsWith("bristle")) && (name !== "spread" || setting.spread !== 1);
+    const words = NUMBERS.filter(said).map((name) => `${name}=${setting[name]}`);
     if (setting.profile) words.push(`profile=${setting.profile.map((row) => row.join(":")).join(",")}`);
     return `#setting?${[...words, `closure=${setting.closure}`].join("&")}`;
   }

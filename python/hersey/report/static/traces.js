@@ -74,7 +74,7 @@ function traces(place) {
   const put = (pane, kind, d) => pane.lines[kind].setAttribute("d", d);
   function draw(answer, setting) {
     last = [answer, setting];
-    const { motion, lap, steady, unstable, force } = answer;
+    const { motion, lap, decay, steady, unstable, force } = answer;
     scales = scale(answer, setting);
     const bottom = HEIGHT - BOTTOM, y = (v) => bottom - v / scales.top * (bottom - TOP);
     const paper = printing ? paperWidth(two) - 32 : 0, widths = paper ? [0.61 * paper, 0.39 * paper] : seen ??= panes.map(({ box }) => Math.max(box.clientWidth, 120));
@@ -82,14 +82,13 @@ function traces(place) {
     const f = (n) => LEFT + (n - scales.low) / (scales.high - scales.low) * (widths[1] - 6 - LEFT);
     scales = { ...scales, t, y, right: widths[0] - 6, bottom };
     axes(time, widths[0], ticks(0, scales.duration, 4).map((s) => [s, t(s)]), time.below, y);
-    axes(plane, widths[1], ticks(scales.low, scales.high, 3).map((n) => [n, f(n)]), plane.below, y);
+    axes(plane, widths[1], ticks(scales.low, scales.high, 4).map((n) => [n, f(n)]), plane.below, y);
     put(time, "from-rest", track(motion.time, motion.belt_speed, t, y));
     put(time, "from-above", steady ? track(steady.time, steady.belt_speed, t, y) : "");
     const drive = setting.profile ? [...setting.profile, [scales.duration, setting.profile.at(-1)[1]]] : [[0, setting.speed], [scales.duration, setting.speed]];
     put(time, "drive", shape.path([...(drive[0][0] > 0 ? [[0, drive[0][1]]] : []), ...drive].map(([s, v]) => [t(s), y(v)])));
-    const lapped = lap ?? motion, from = lap || setting.profile ? 0 : afterFirst(motion, setting.speed);
-    const few = 7 * 2 * Math.PI * Math.sqrt(answer.train.mass / answer.train.stiffness), until = lap || setting.profile ? undefined : lapped.time.findIndex((s) => s > lapped.time[from] + few);
-    put(plane, "from-rest", track(lapped.spring_force.subarray(from, until > 0 ? until : undefined), lapped.belt_speed.subarray(from, until > 0 ? until : undefined), f, y));
+    const lapped = lap ?? decay ?? motion, from = lap || setting.profile ? 0 : afterFirst(lapped, setting.speed);
+    put(plane, "from-rest", track(lapped.spring_force.subarray(from), lapped.belt_speed.subarray(from), f, y));
     put(plane, "unstable", unstable ? track(unstable.force, unstable.speed, f, y) : "");
     const { above } = answer, sits = above.speed_max - above.speed_min < 1e-3 * setting.speed;
     plane.dot.setAttribute("visibility", "visible");
