@@ -4,7 +4,7 @@
 function answers(core) {
   // Lengths of a trace, in s: on a ladder, so that the axis rests while a slider moves.
   const LENGTHS = [0.1, 0.2, 0.5, 1, 2, 3, 5, 8, 12, 20, 30, 50, 80, 120, 200, 300, 500, 800, 1200];
-  const SAMPLES = 1200, STEADY_SAMPLES = 200, LAP_SAMPLES = 240, DECAY = 8, HALVINGS = 12, COARSE = 13, WORK = 1_000_000;
+  const SAMPLES = 1200, STEADY_SAMPLES = 200, LAP_SAMPLES = 240, DECAY = 8, HALVINGS = 12, WORK = 1_000_000;
   const lawOf = (job) => core.drag(job.drag, job.temperature, { rule: job.rule });
   const forceAt = (law, speed) => core.forces(law, [speed])[0];
   const drawn = ({ time, belt_speed, spring_force, stuck }) => ({ time, belt_speed, spring_force, stuck });
@@ -82,13 +82,9 @@ function answers(core) {
     }
   }
 
-  // Edges of the whole map and what a belt at rest bears, first at a few temperatures, then at all.
+  // Edges of the whole map, and what a belt at rest bears at each of its temperatures.
   function* edges({ train, drag, temperatures, rule }) {
-    const at = (kelvin, lower) => ({ temperatures: kelvin, ...core.edges({ train, drag, temperatures: kelvin, rule, lower }) });
-    if (temperatures && temperatures.length > 2 * COARSE) {
-      yield at(Array.from({ length: COARSE }, (_, i) => temperatures[Math.round(i * (temperatures.length - 1) / (COARSE - 1))]), false);
-    }
-    yield at(temperatures, true);
+    yield core.edges({ train, drag, temperatures, rule, lower: true });
   }
 
   // V* at both ends of what is stated of each parameter, the others as set.

@@ -71,7 +71,7 @@ function operatingMap(place, map, move = null) {
     nameTorques(torques, taken);
     unnamed = nameZones(zones, box, taken);
     drawKey();
-    drawTable();
+    if (figures.open) drawTable();
     if (ring) drawRing();
   }
 
@@ -120,15 +120,6 @@ function operatingMap(place, map, move = null) {
       else if (out.at(-1).length) out.push([]);
     }
     return out.filter((run) => run.length > 1);
-  }
-  // Values at a few temperatures as a line through all columns.
-  function through(temperatures, values) {
-    if (!hot || temperatures.length === columns.length) return wide(values);
-    return columns.map((x) => {
-      const i = Math.min(Math.max(temperatures.findIndex((t) => t >= x), 1), temperatures.length - 1);
-      const share = (x - temperatures[i - 1]) / (temperatures[i] - temperatures[i - 1]);
-      return share <= 0 ? values[i - 1] : share >= 1 ? values[i] : values[i - 1] ** (1 - share) * values[i] ** share;
-    });
   }
 
   function measured() {
@@ -438,6 +429,7 @@ function operatingMap(place, map, move = null) {
     ring.handle.setAttribute("aria-valuetext", `${digits(millimetres(setting.speed))} mm/s${where}, ${setting.zone ?? "not known"}`);
   }
 
+  figures.addEventListener("toggle", () => { if (figures.open) drawTable(); });
   new ResizeObserver(() => { if (!printing && frame && place.clientWidth !== frame.right + 34) draw(); }).observe(place);
   addEventListener("beforeprint", () => { printing = true; draw(); });
   addEventListener("afterprint", () => { printing = false; draw(); });
@@ -454,10 +446,9 @@ function operatingMap(place, map, move = null) {
     },
     // Edges of another machine, at the temperatures of the map; null for those of the report.
     edges(other) {
-      const line_of = (values) => through(other.temperatures, values);
       edges = other ? {
-        lower: line_of(other.lower ?? other.transition), transition: line_of(other.transition), upper: line_of(other.upper),
-        starts: line_of(Array.from(other.holding)).map((force) => force <= (map.torque_limit ?? Infinity) / map.roll_radius),
+        lower: wide(other.lower), transition: wide(other.transition), upper: wide(other.upper),
+        starts: wide(other.holding).map((force) => force <= (map.torque_limit ?? Infinity) / map.roll_radius),
       } : given;
       changed = Boolean(other);
       lagging = false;
