@@ -239,9 +239,9 @@ def simulation_speed(document: Analysis) -> Chart | None:
         return None
     scale, unit = (1e3, "mm/s") if s.speed_unit == "m/s" else (1.0, s.speed_unit)
     rows = [{"time": t, "value": v * scale} for t, v in zip(s.time, s.belt_speed, strict=True)]
-    marks = [(s.transition_speed * scale, "transition speed", alt.ExprRef("width"), "right")]
+    marks = [(s.transition_speed * scale, "transition speed", "width", "right")]
     marks += (
-        [(s.drive_speed * scale, "drive speed", 4, "left")] if s.drive_speed != s.transition_speed else []
+        [(s.drive_speed * scale, "drive speed", "4", "left")] if s.drive_speed != s.transition_speed else []
     )
     line = _trace(rows, f"Belt speed ({unit})")
     layers: list[alt.Chart] = []
@@ -249,7 +249,7 @@ def simulation_speed(document: Analysis) -> Chart | None:
         mark = plot([{"y": y, "name": name}])
         layers.append(mark.mark_rule(color=INK, strokeDash=[4, 3]).encode(y="y:Q"))
         label = mark.mark_text(align=align, dy=-7, color=INK)  # type: ignore[arg-type]  # left or right
-        layers.append(label.encode(x=alt.value(at), y="y:Q", text="name:N"))
+        layers.append(label.encode(x=alt.value(alt.ExprRef(at)), y="y:Q", text="name:N"))
     what = {"stick_slip": f"stick-slip at {s.frequency:.4g} Hz, stuck {s.stuck_fraction:.1%} of the time"}
     title = alt.Title(s.title, subtitle=what.get(s.kind, s.kind.replace("_", " ")))
     return alt.layer(line, *layers).properties(title=title, width=WIDTH, height=220)
@@ -337,7 +337,7 @@ def _against_speed(
     return chart.add_params(hidden).properties(usermeta={"series": series})
 
 
-def _ends(curves: list[Row], domain: list[float], shades: alt.Scale) -> list[alt.Chart]:
+def _ends(curves: list[Row], domain: tuple[float, float], shades: alt.Scale) -> list[alt.Chart]:
     """The temperature at the end of each line, none nearer to the next than can be read."""
     ends = {row["level"]: row for row in curves}
     if len(ends) < 2:
@@ -419,8 +419,9 @@ def _temperature_channels(document: Analysis) -> tuple[alt.Color, alt.Shape]:
 
 
 def _speed(field: str, domain: list[float] | None = None) -> alt.X:
-    scale = logarithmic() if domain is None else alt.Scale(type="log", domain=domain)
-    return alt.X(field, title=_ROLL, scale=scale)
+    if domain is not None:
+        return alt.X(field, title=_ROLL, **logarithmic_axis((domain[0], domain[1])))
+    return alt.X(field, title=_ROLL, scale=logarithmic())
 
 
 def _point_tips(document: Analysis) -> list[alt.Tooltip]:

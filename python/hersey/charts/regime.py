@@ -153,8 +153,8 @@ def _exponents(rows: list[Row], x: alt.X, y: alt.Y, scale: alt.Scale, middle: fl
     bars = plot(rows).mark_rule(strokeWidth=1.6, color=INK)
     dots = plot(rows).mark_point(filled=True, size=60, opacity=1)
     last, right = rows[-1], rows[-1]["value"] < middle
-    end, look = ("high", {"align": "left", "dx": 10}) if right else ("low", {"align": "right", "dx": -10})
-    look |= {"fontWeight": "bold", "fontSize": 12}
+    end, side, dx = ("high", "left", 10) if right else ("low", "right", -10)
+    look: Row = {"align": side, "dx": dx, "fontWeight": "bold", "fontSize": 12}
     words = plot([last]).encode(x=alt.X(f"{end}:Q", scale=scale), y=y, text="text:N")
     return [
         bars.encode(x=alt.X("low:Q", scale=scale), x2=alt.X2("high:Q"), y=y),
