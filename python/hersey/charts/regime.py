@@ -122,7 +122,7 @@ def _regimes(
     for each in sorted(named, key=lambda h: h["low"] + h["high"]):
         middle = (each["low"] + each["high"]) / 2
         at = _NARROW * (middle - low) / (high - low)
-        short = _SHORT.get(each["name"], each["name"])
+        short = _SHORT.get(str(each["name"]), str(each["name"]))
         half = 0.5 * _LETTER * len(short)
         side = "left" if at < half else "right" if at > _NARROW - half else "center"
         left = {"left": at, "right": at - 2 * half, "center": at - half}[side]

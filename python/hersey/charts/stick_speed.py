@@ -96,7 +96,7 @@ def _stated(sweep: StickSpeedPart, x: alt.X, y: alt.Y) -> list[alt.Chart]:
     known = [(v, u) for v, u in zip(sweep.stick_speed, sweep.upper, strict=True) if u is not None]
     if len(known) < 2 or not known[0][0] <= sweep.stated <= known[-1][0]:
         return []
-    upper = 1e3 * float(np.interp(sweep.stated, *zip(*known, strict=True)))
+    upper = 1e3 * float(np.interp(sweep.stated, [v for v, _ in known], [u for _, u in known]))
     row = plot([{"stick": 1e3 * sweep.stated, "upper": upper, "text": f"as stated: {upper:.3g}"}])
     mark = row.mark_point(shape="diamond", fill="white", stroke=INK, strokeWidth=1.8, size=85, opacity=1)
     text = row.encode(x=x, y=y, text="text:N")
