@@ -49,6 +49,8 @@ from hersey.units import celsius, rpm
 #: Cells of a surface overlap a little: seams would shine through otherwise.
 _OVERLAP = 1.004
 _ROLL = "Roll speed (rpm)"
+#: Share of a torque down to which its error is surely in the picture.
+_SHORTEST = 0.6
 #: Height of torque and damping.
 _TALL = 290
 #: Width kept for the axis of charts that share a time axis, so that they line up.
@@ -312,7 +314,8 @@ def _against_speed(
         for c in document.fit.curves
         for v, b in zip(c.speed, c.damping, strict=True)
     ]
-    domain = span([r["y"] for r in rows] + [r["y"] for r in curves])
+    ends = [end for r in rows for end in (max(r["low"], _SHORTEST * r["y"]), r["high"])]
+    domain = span(ends + [r["y"] for r in curves])
     y = alt.Y("y:Q", title=title, **logarithmic_axis(domain))
     reach = span([r["speed"] for r in rows])
     x = alt.X("speed:Q", title=_ROLL, **logarithmic_axis(reach))
@@ -322,7 +325,9 @@ def _against_speed(
     shown = {"opacity": alt.condition("indexof(hidden, datum.level) < 0", alt.value(1), alt.value(0.06))}
     line = plot(curves).mark_line(strokeWidth=1.6).encode(x=x, y=y, color=color, detail="level:N", **shown)
     base = plot(rows)
-    bars = base.mark_rule(strokeWidth=1.2).encode(x=x, y="low:Q", y2="high:Q", color=color, **shown)
+    bars = base.mark_rule(strokeWidth=1.2, clip=True).encode(
+        x=x, y="low:Q", y2="high:Q", color=color, **shown
+    )
     fill = alt.condition("datum.approach === 'from above'", alt.value("white"), color)
     dots = base.mark_point(size=30, strokeWidth=1.4).encode(
         x=x, y=y, stroke=color, fill=fill, tooltip=_point_tips(document), **shown

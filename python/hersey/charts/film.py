@@ -121,21 +121,30 @@ def _regimes(points: list[Row], dwells: list[Row], layer_factor: float) -> Chart
     if dwells and points:
         subtitle.append("Diamonds: points of the machine. Dots: dwells of the log.")
     title = alt.Title("Regimes of the film", subtitle=subtitle)
-    texts = _texts(points if len(points) <= _NAMED else [], spans, regime, x, y)
+    named = points if len(points) <= _NAMED else []
+    texts = _texts(named, dwells, spans, regime, x, y)
     return alt.layer(area, dots, marks, *texts, width=WIDTH, height=_TALL, title=title)
 
 
 def _texts(
-    points: list[Row], spans: list[tuple[float, float]], regime: IntArray, x: alt.X, y: alt.Y
+    points: list[Row],
+    dwells: list[Row],
+    spans: list[tuple[float, float]],
+    regime: IntArray,
+    x: alt.X,
+    y: alt.Y,
 ) -> list[alt.Chart]:
     """Names of the points, and of each regime where it is roomiest, none over another."""
     labels = Labels(_NARROW, _TALL, letter=_LETTER)
     (left, right), (bottom, top) = spans
-    for row in points:
+    for row in (*dwells, *points):
         if row["g_v"] > 0:
-            across = _NARROW * (np.log10(row["g_v"]) - left) / (right - left)
-            up = _TALL * (np.log10(row["g_e"]) - bottom) / (top - bottom)
-            labels.beside(row["name"], float(across), float(up), "points")
+            across = float(_NARROW * (np.log10(row["g_v"]) - left) / (right - left))
+            up = float(_TALL * (np.log10(row["g_e"]) - bottom) / (top - bottom))
+            if row in points:
+                labels.beside(row["name"], across, up, "points")
+            else:
+                labels.avoid(across, up)
     for name, *column in _columns_of(regime):
         labels.inside(name, [(column[0], column[1], column[2])], "regimes")
     layers: list[alt.Chart] = []

@@ -17,6 +17,8 @@ _LETTER, _LINE = 7.0, 15.0
 _ROWS = (17.0, -17.0, 33.0, -33.0, 49.0, -49.0)
 #: Half the width of a point's mark, and the room between a mark and its name.
 _MARK, _BESIDE = 8.0, 12.0
+#: Half the width of a small mark without a name.
+_DOT = 3.0
 #: Room that a name gives up to stand where it is preferred, and the most that counts.
 _PREFERENCE, _ROOMY = 40.0, 80.0
 #: Steps of the search for a place, across and up.
@@ -50,6 +52,10 @@ class Labels:
         self.width, self.height, self._letter = width, height, letter
         self.texts: list[Text] = []
         self._taken: list[Box] = []
+
+    def avoid(self, across: float, up: float) -> None:
+        """Keep texts off a mark."""
+        self._taken.append((across - _DOT, up - _DOT, across + _DOT, up + _DOT))
 
     def beside(self, text: str, across: float, up: float, style: str) -> None:
         """Name a point, on the first side where there is room, or above it where there is none."""

@@ -33,6 +33,9 @@ _SHORT = {
 }
 
 
+_AXIS = alt.Axis(tickCount=6, format=".1f")
+
+
 def regime_chart(result: Regime) -> Chart:
     """Return the exponents of a verdict on the regime."""
     rows = [exponent_row(branch) for branch in result.exponents]
@@ -80,7 +83,7 @@ def exponent_chart(
         ]
         order.append("this nip")
     scale = alt.Scale(domain=[low, high], nice=False)
-    x = alt.X("value:Q", title="Exponent of damping in speed (no unit)", scale=scale)
+    x = alt.X("value:Q", title="Exponent of damping in speed (no unit)", scale=scale, axis=_AXIS)
     y = alt.Y("where:N", title=None, sort=order, axis=alt.Axis(grid=False))
     title = alt.Title("Exponent of damping, with 95 % intervals", subtitle=_subtitle(told))
     layers = [

@@ -45,8 +45,8 @@ const LOOKS = {
 };
 // Titles of vertical axes lie above them.
 const ABOVE = {
-  axisLeft: { titleAngle: 0, titleAnchor: "end", titleAlign: "left", titleBaseline: "bottom", titleX: -34, titleY: -8, minExtent: 34 },
-  axisRight: { titleAngle: 0, titleAnchor: "end", titleAlign: "right", titleBaseline: "bottom", titleX: 34, titleY: -8 },
+  axisLeft: { titleAngle: 0, titleAnchor: "end", titleAlign: "left", titleBaseline: "bottom", titleX: -38, titleY: -8, minExtent: 38 },
+  axisRight: { titleAngle: 0, titleAnchor: "end", titleAlign: "right", titleBaseline: "bottom", titleX: 38, titleY: -8 },
 };
 
 const lines = (text) => (text === undefined || text === null ? [] : Array.isArray(text) ? text : [text]);

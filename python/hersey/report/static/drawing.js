@@ -14,7 +14,7 @@ function digits(value, count = 3) {
 }
 // A text of ours as it is set: true minus, degree sign, squares.
 function pretty(text) {
-  return text.replaceAll(" degC", " °C").replaceAll("+/-", "±").replace(/(^|[\s[(,±])-(?=\d)/g, "$1−").replace(/(?<=[a-z])\^2\b/g, "²")
+  return text.replaceAll(" degC", " °C").replace(/(\d) (?=%|°C)/g, "$1\u00a0").replaceAll("+/-", "±").replace(/(^|[\s[(,±])-(?=\d)/g, "$1−").replace(/(?<=[a-z])\^2\b/g, "²")
     .replace(/\b(mN|N) m\b/g, "$1·m").replace(/(\d)e-0*(\d+)\b/g, (_, first, power) => `${first}·10⁻${[...power].map((each) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[each]).join("")}`);
 }
 // The same as a sentence of its own.
@@ -62,9 +62,11 @@ function checks(parent, items) {
   const list = add(parent, "ul", "", "checks");
   for (const [kind, text] of items) {
     const item = add(list, "li");
-    item.append(signal(kind));
-    add(item, "span", `${SIGNALS[kind]}: `, "sr-only");
-    item.append(text);
+    const icon = signal(kind);
+    icon.removeAttribute("aria-hidden");
+    icon.setAttribute("role", "img");
+    icon.setAttribute("aria-label", SIGNALS[kind]);
+    item.append(icon, text);
   }
   return list;
 }

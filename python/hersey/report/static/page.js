@@ -140,10 +140,15 @@ async function regimeSection(parent) {
   if (data.film) explanations(all);
 }
 function misfits(parent) {
-  add(parent, "h3", "3. What does not fit, and what to know, largest first");
-  const given = data.film.misfits?.map((each) => [each.signal, pretty(each.text)]);
-  checks(parent, given ?? data.film.notes.map((text) => ["watch", pretty(text)])).id = "notes";
-  if (given) fold(parent, "All notes on the film").append(checks(parent, data.film.notes.map((text) => ["watch", pretty(text)])));
+  const given = data.film.misfits ?? [];
+  if (given.length) {
+    add(parent, "h3", "3. What does not fit, largest first");
+    checks(parent, given.map((each) => [each.signal, sentence(each.text)]));
+  }
+  add(parent, "h3", given.length ? "What else the film says" : "3. What the film of this nip says");
+  const notes = add(parent, "ul", "", "checks plain");
+  notes.id = "notes";
+  for (const text of data.film.notes) add(notes, "li", pretty(text));
 }
 function hypotheses(parent) {
   const element = table(parent, ["Regime", "Exponent", "p-value", "Result", "Meaning"], data.regime.hypotheses.map((h) => {
