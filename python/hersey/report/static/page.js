@@ -8,7 +8,8 @@ function interval(e, scale = 1, count = 3) {
 const bounds = (e, scale = 1, count = 3) => e.low === null || e.high === null ? "not told" : `[${digits(e.low * scale, count)}, ${digits(e.high * scale, count)}]`;
 const twoPlaces = (value) => value.toFixed(2).replace("-", "−");
 const share = (part, whole) => `${digits((100 * part) / whole, 2)} %`;
-const plural = (count, word, words = `${word}s`) => `${count === 1 ? "one" : count} ${count === 1 ? word : words}`;
+const NUMBERS = ["no", "one", "two", "three", "four", "five", "six"];
+const plural = (count, word, words = `${word}s`) => `${NUMBERS[count] ?? count} ${count === 1 ? word : words}`;
 const capital = (text) => `${text.slice(0, 1).toUpperCase()}${text.slice(1)}`;
 const radius = data.map?.roll_radius ?? null;
 // A speed of the roll, at the belt where its radius is known.
@@ -269,7 +270,7 @@ function bandFinding(bears, steps) {
   const parts = [];
   const weak = bears.filter((p) => p.disturbance.kick !== null || p.disturbance.step !== null).sort((a, b) => (a.disturbance.kick ?? 9) - (b.disturbance.kick ?? 9))[0];
   if (weak) {
-    const can = [weak.disturbance.kick === null ? "" : `a kick of ${perSecond(weak.disturbance.kick)} mm/s`, weak.disturbance.step === null ? "" : `a step of ${perSecond(weak.disturbance.step)}`].filter(Boolean);
+    const can = [weak.disturbance.kick === null ? "" : `a kick of ${digits(1e3 * weak.disturbance.kick, 2)} mm/s`, weak.disturbance.step === null ? "" : `a step of ${digits(1e3 * weak.disturbance.step, 2)}`].filter(Boolean);
     parts.push(`At ${perSecond(weak.speed)} mm/s the belt bears ${can.join(" or ")}`);
   }
   const bad = steps.find((s) => s.sticks);
