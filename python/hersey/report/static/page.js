@@ -53,11 +53,22 @@ function transitions() {
 function torqueFinding() {
   const { transition, reference_temperature: level } = data.fit;
   const curve = transitions();
-  if (!transition) return `Torque rises with speed over all speeds measured; no falling branch is seen.`;
+  if (!transition) return untoldFinding();
   if (curve.length < 2) return `Torque falls up to ${rolled(transition.speed.value)}${level === null ? "" : ` at ${degrees(level)}`} and rises above.`;
   const [cold, hot] = [curve[0], curve.at(-1)];
   const way = hot.speed > cold.speed ? "climbs" : "falls";
   return `Torque rises with speed above the transition and falls below it; the transition ${way} from ${rolled(cold.speed)} at ${whole(cold.temperature)} to ${rolled(hot.speed)} at ${whole(hot.temperature)}.`;
+}
+// Without a transition: where torque falls with speed, damping falls faster than as its inverse.
+function untoldFinding() {
+  const c = data.fit.coefficients.c.value;
+  const [slow, fast] = data.regime.lack_of_fit?.local_exponents ?? [c, c];
+  const fallsSlow = slow < -1;
+  if (fallsSlow !== fast < -1) {
+    const [falls, rises] = fallsSlow ? ["slow", "fast"] : ["fast", "slow"];
+    return `Torque falls with speed at the ${falls} end (exponent of damping ${twoPlaces(fallsSlow ? slow : fast)}) and rises at the ${rises} one; no transition is told.`;
+  }
+  return fallsSlow ? "Torque falls with speed over all speeds measured." : "Torque rises with speed over all speeds measured; no falling branch is seen.";
 }
 async function torqueSection(parent) {
   const finding = torqueFinding();
@@ -65,13 +76,14 @@ async function torqueSection(parent) {
   const columns = add(part, "div", "", "columns");
   if (data.map) await chart(columns, "torque", { heading: "Drag torque", note: "", says: finding });
   await chart(columns, "damping", { heading: "Damping = torque / speed", note: data.map ? "" : "Dashed: slope −1, where torque does not depend on speed.", says: finding });
+  if (!data.map) await chart(columns, "residuals");
   if (data.map) add(part, "p", `${torqueNote()} Dashed: slope −1, where torque does not depend on speed.`, "note");
-  const all = fold(part, `Exponents, statistics, residuals and ${data.points.length === 1 ? "the dwell" : `all ${data.points.length} dwells`}`, async (inside) => {
+  const all = fold(part, `Exponents, statistics and ${data.points.length === 1 ? "the dwell" : `all ${data.points.length} dwells`}`, async (inside) => {
     exponents(inside);
     add(inside, "pre", data.fit.summary).id = "summary";
     dwells(inside);
     const pair = add(inside, "div", "", "columns");
-    await chart(pair, "residuals");
+    if (data.map) await chart(pair, "residuals");
     await chart(pair, "surface", { behind: false });
   });
   all.id = "statistics";
