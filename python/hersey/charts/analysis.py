@@ -166,8 +166,8 @@ def residuals(document: Analysis) -> Chart:
         plot(rows)
         .mark_point(filled=True, size=55, opacity=0.85)
         .encode(
-            x=_speed("speed:Q"),
-            y=alt.Y("residual:Q", title="measured / fitted - 1 (%)"),
+            x=_speed("speed:Q", list(span([row["speed"] for row in rows]))),
+            y=alt.Y("residual:Q", title="Measured / fitted \u2212 1 (%)"),
             color=_temperature_channels(document)[0],
             shape=alt.Shape(
                 "approach:N",
