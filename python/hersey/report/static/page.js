@@ -150,6 +150,7 @@ async function regimeSection(parent) {
   verdict.id = "verdict";
   data.verdict.forEach((text) => add(verdict, "p", pretty(text), "text"));
   hypotheses(all);
+  tried(all);
   if (data.film) explanations(all);
 }
 function misfits(parent) {
@@ -172,6 +173,15 @@ function hypotheses(parent) {
   data.regime.hypotheses.forEach((h, i) => { if (h.consistent) element.tBodies[0].rows[i].className = "kept"; });
   const tested = data.fit.transition ? "of the rising branch" : "over all speeds";
   add(parent, "p", `Tested is the exponent c ${tested}, ${interval(data.fit.coefficients.c)}. p-values count all regimes tested, and allow for what the sensors do not know.`, "note");
+}
+// Laws that were fitted to the rising branch, the likeliest first.
+function tried(parent) {
+  const all = data.regime.tried ?? [];
+  if (!all.length) return;
+  const least = Math.min(...all.map((each) => each.aicc));
+  table(parent, ["Law of the rising branch", "ΔAICc", "Constant share, %", "p of its bend", "Verdict"], all.map((each) => [
+    each.name, digits(each.aicc - least), each.constant_share === null ? "–" : digits(100 * each.constant_share), each.curvature === null ? "–" : digits(each.curvature, 2), pretty(each.verdict)]),
+  [1, 2, 3], { name: "laws-tried", label: "Laws tried" });
 }
 function explanations(parent) {
   const box = add(parent, "div");
