@@ -103,7 +103,7 @@ def of_problem(problem: str, look: Mapping[str, Any], choices: Mapping[str, Mapp
     name = next((name for name, choice in choices.items() if role and choice["role"] == role), "")
     kind = "unit" if flag and flag[2] else "role"
     at = f"{kind}:{name}" if name else "file:"
-    title = "Time runs backwards." if re.search(r"back|not ascend", text) else "It cannot be read so."
+    title = "Time is out of order." if role == "time" and not flag else "It cannot be read so."
     said = re.sub(r"[,;:]?\s*(say|or say|name it with|choose with)\s+--.*", "", text)
     return Fault(at, title, said[:1].upper() + said[1:], f"{role or 'the log'}: {title.lower().rstrip('.')}")
 
