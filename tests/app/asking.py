@@ -60,7 +60,7 @@ class Asked:
         async def receive() -> dict[str, Any]:
             return waiting.pop(0) if waiting else {"type": "http.disconnect"}
 
-        async def send(message: dict[str, Any]) -> None:  # noqa: RUF029 - as a server has it
+        async def send(message: dict[str, Any]) -> None:
             sent.append(message)
 
         await self.app(scope, receive, send)

@@ -27,7 +27,11 @@ class Started:
 
 def start(folder: Path) -> Started:
     process = subprocess.Popen(
-        [*HERSEY, "app", "--no-browser"], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        [*HERSEY, "app", "--no-browser"],
+        cwd=folder,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
     )
     assert process.stdout is not None
     first = process.stdout.readline()

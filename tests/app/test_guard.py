@@ -24,7 +24,15 @@ def test_the_page_of_this_start_is_answered(asked: Asked) -> None:
     assert page.headers["x-content-type-options"] == "nosniff"
     assert page.headers["referrer-policy"] == "no-referrer"
     assert "access-control-allow-origin" not in page.headers
-    for name in ("app.js", "building.js", "channels.js", "machine.js", "analyses.js", "app.css", "tokens.css"):
+    for name in (
+        "app.js",
+        "building.js",
+        "channels.js",
+        "machine.js",
+        "analyses.js",
+        "app.css",
+        "tokens.css",
+    ):
         assert asked.ask("GET", f"/{name}", x_hersey_token=None, origin=None).status == 200
     assert asked.ask("GET", "/api/state", origin=None).status == 200
     assert asked.ask("POST", "/api/analyses").status == 200
@@ -72,10 +80,15 @@ def test_hostile_requests_are_refused(asked: Asked, wrong: dict[str, str | None]
 
 def test_two_hosts_are_none(asked: Asked) -> None:
     async def twice() -> int:
-        scope = {"type": "http", "method": "GET", "path": "/", "headers": [(b"host", OWN["host"].encode())] * 2}
+        scope = {
+            "type": "http",
+            "method": "GET",
+            "path": "/",
+            "headers": [(b"host", OWN["host"].encode())] * 2,
+        }
         sent: list[int] = []
 
-        async def send(message: dict[str, int]) -> None:  # noqa: RUF029
+        async def send(message: dict[str, int]) -> None:
             sent.append(message.get("status", 0))
 
         await asked.app(scope, None, send)  # type: ignore[arg-type]
@@ -91,11 +104,19 @@ def test_a_token_in_the_address_is_none(asked: Asked) -> None:
 @pytest.mark.parametrize(
     "path",
     [
-        "/../../etc/passwd", "/static/../app.py", "/..%2f..%2fetc/passwd", "/report/../../etc/passwd",
-        "/report/..%2f..%2fetc%2fpasswd", "/report//etc/passwd", "/app.html/../../guard.py", "/guard.py",
-        "/static/app.js", "//etc/passwd", "/report/" + "x" * 5000,
+        "/../../etc/passwd",
+        "/static/../app.py",
+        "/..%2f..%2fetc/passwd",
+        "/report/../../etc/passwd",
+        "/report/..%2f..%2fetc%2fpasswd",
+        "/report//etc/passwd",
+        "/app.html/../../guard.py",
+        "/guard.py",
+        "/static/app.js",
+        "//etc/passwd",
+        "/report/" + "x" * 5000,
     ],
-)  # fmt: skip
+)
 def test_no_path_of_the_disk_can_be_asked_for(asked: Asked, path: str) -> None:
     answer = asked.ask("GET", path)
     assert answer.status == 404
@@ -106,7 +127,13 @@ def test_no_path_of_the_disk_can_be_asked_for(asked: Asked, path: str) -> None:
 
 @pytest.mark.parametrize(
     ("method", "path"),
-    [("GET", "/api/analyses"), ("PUT", "/api/state"), ("POST", "/"), ("DELETE", "/report/x"), ("OPTIONS", "/api/state")],
+    [
+        ("GET", "/api/analyses"),
+        ("PUT", "/api/state"),
+        ("POST", "/"),
+        ("DELETE", "/report/x"),
+        ("OPTIONS", "/api/state"),
+    ],
 )
 def test_another_method_is_refused(asked: Asked, method: str, path: str) -> None:
     answer = asked.ask(method, path)
@@ -117,11 +144,19 @@ def test_another_method_is_refused(asked: Asked, method: str, path: str) -> None
 @pytest.mark.parametrize(
     ("name", "clean"),
     [
-        ("../../etc/passwd", "passwd"), ("..\\..\\boot.ini", "boot.ini"), ("..", "log"), ("", "log"),
-        ("/etc/cron.d/x", "x"), (".bashrc", "bashrc"), ("a\x00b.csv", "a_x00b.csv"), ("nul:stream.csv", "nul_stream.csv"),
-        ("x" * 300 + ".csv", "x" * 116 + ".csv"), ("\u202egpj.exe", "_u202egpj.exe"), ("Maß 3.csv", "Maß 3.csv"),
+        ("../../etc/passwd", "passwd"),
+        ("..\\..\\boot.ini", "boot.ini"),
+        ("..", "log"),
+        ("", "log"),
+        ("/etc/cron.d/x", "x"),
+        (".bashrc", "bashrc"),
+        ("a\x00b.csv", "a_x00b.csv"),
+        ("nul:stream.csv", "nul_stream.csv"),
+        ("x" * 300 + ".csv", "x" * 116 + ".csv"),
+        ("\u202egpj.exe", "_u202egpj.exe"),
+        ("Maß 3.csv", "Maß 3.csv"),
     ],
-)  # fmt: skip
+)
 def test_names_lead_nowhere(name: str, clean: str, tmp_path: Path) -> None:
     cleaned = clean_name(name)
     assert cleaned.replace("\\", "_") == clean
@@ -151,7 +186,9 @@ def test_what_is_too_large_is_refused_as_it_comes(tmp_path: Path, length: str | 
     assert answer.status == 413
     (file,) = asked.ask("GET", f"/api/analyses/{asked.first}").json["files"]
     assert (file["state"], file["name"]) == ("fault", "long.csv")
-    assert not [each for each in asked.session.folder.rglob("*") if each.is_file() and each.stat().st_size > 0]
+    assert not [
+        each for each in asked.session.folder.rglob("*") if each.is_file() and each.stat().st_size > 0
+    ]
 
 
 def test_no_more_files_and_analyses_than_bounds_allow(tmp_path: Path) -> None:
@@ -166,13 +203,22 @@ def test_no_more_files_and_analyses_than_bounds_allow(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("what", "body"),
     [
-        ("choices", b"[]"), ("choices", b"{"), ("choices", b'{"roles": {"none": "torque"}}'),
-        ("choices", b'{"options": {"tare": "rm -rf"}}'), ("choices", b'{"corrections": {"x.y": "1"}}'),
-        ("choices", b'{"roles": 3}'), ("machine", b'{"answers": {"__class__": "x"}}'), ("machine", b'{"remove": 99}'),
-        ("machine", b'{"remove": -1}'), ("machine", b'{"answers": {"drivetrain.mass": 3}}'), ("mend", b"{}"),
-        ("mend", b'{"fault": "none"}'), ("run", b""), ("machine", b"\xff\xfe"),
+        ("choices", b"[]"),
+        ("choices", b"{"),
+        ("choices", b'{"roles": {"none": "torque"}}'),
+        ("choices", b'{"options": {"tare": "rm -rf"}}'),
+        ("choices", b'{"corrections": {"x.y": "1"}}'),
+        ("choices", b'{"roles": 3}'),
+        ("machine", b'{"answers": {"__class__": "x"}}'),
+        ("machine", b'{"remove": 99}'),
+        ("machine", b'{"remove": -1}'),
+        ("machine", b'{"answers": {"drivetrain.mass": 3}}'),
+        ("mend", b"{}"),
+        ("mend", b'{"fault": "none"}'),
+        ("run", b""),
+        ("machine", b"\xff\xfe"),
     ],
-)  # fmt: skip
+)
 def test_what_no_page_of_ours_sends_is_refused_in_words(asked: Asked, what: str, body: bytes) -> None:
     answer = asked.ask("POST", f"/api/analyses/{asked.first}/{what}", body)
     assert answer.status in (400, 404, 409), answer.body
@@ -191,7 +237,9 @@ def test_a_report_is_nobody_s(asked: Asked, tmp_path: Path) -> None:
 
 
 def test_a_machine_s_file_names_only_what_was_dropped(asked: Asked) -> None:
-    machine = '[drivetrain]\nstiffness = "11 N/mm"\nmass = "11 kg"\nroll_radius = "15 mm"\nstick_speed = "3 mm/s"\n'
+    machine = (
+        '[drivetrain]\nstiffness = "11 N/mm"\nmass = "11 kg"\nroll_radius = "15 mm"\nstick_speed = "3 mm/s"\n'
+    )
     for named in ("/etc/passwd", "../../../etc/passwd", "other.csv"):
         text = f'{machine}[rest]\nlog = "{named}"\n'
         one = asked.session.get(asked.first)

@@ -17,7 +17,10 @@ from tests.cli.test_bad_input import staircase
 ROWS = staircase()
 
 
-def log(header: str = "Time [s],Torque [N*m],Speed [rpm],Temperature [degC]", change: Callable[..., Any] = lambda *c: c) -> bytes:
+def log(
+    header: str = "Time [s],Torque [N*m],Speed [rpm],Temperature [degC]",
+    change: Callable[..., Any] = lambda *c: c,
+) -> bytes:
     """A log whose cells are changed row by row."""
     rows = [",".join(map(str, change(*row.split(",")))) for row in ROWS]
     return "\n".join([header, *rows, ""]).encode()
@@ -61,60 +64,95 @@ def test_a_sound_log_is_ready(tmp_path: Path) -> None:
 MISTAKES: dict[str, tuple[bytes, str, str, str]] = {
     "kelvin without a unit": (
         log("Time [s],Torque [N*m],Speed [rpm],Heater", lambda t, q, n, c: (t, q, n, float(c) + 273)),
-        "unit:Heater", "no unit in the file", "Read as K",
+        "unit:Heater",
+        "no unit in the file",
+        "Read as K",
     ),
     "kelvin called Celsius": (
         log(change=lambda t, q, n, c: (t, q, n, float(c) + 273)),
-        "unit:Temperature", "423 °C is hotter than any belt here. Read as K it is 100 to 150 °C.", "Read as K",
+        "unit:Temperature",
+        "423 °C is hotter than any belt here. Read as K it is 100 to 150 °C.",
+        "Read as K",
     ),
     "Celsius called kelvin": (
         log("Time [s],Torque [N*m],Speed [rpm],Temperature [K]"),
-        "unit:Temperature", "colder than any belt here", "Read as °C",
+        "unit:Temperature",
+        "colder than any belt here",
+        "Read as °C",
     ),
     "another unit for torque": (
         log("Time [s],Torque [rpm],Speed [rpm],Temperature [degC]"),
-        "unit:Torque", "rpm is no unit of torque", "Read as N·m",
+        "unit:Torque",
+        "rpm is no unit of torque",
+        "Read as N·m",
     ),
     "no temperature": (
         log("Time [s],Torque [N*m],Speed [rpm]", lambda t, q, n, _: (t, q, n)),
-        "lacking:temperature", "No channel is the temperature.", "Run without temperature",
+        "lacking:temperature",
+        "No channel is the temperature.",
+        "Run without temperature",
     ),
     "two torques": (
-        log("Time [s],Torque A [N*m],Speed [rpm],Temperature [degC],Torque B [N*m]", lambda t, q, n, c: (t, q, n, c, 1.5 * float(q))),
-        "role:Torque A", "Two channels claim torque.", "Keep this one",
+        log(
+            "Time [s],Torque A [N*m],Speed [rpm],Temperature [degC],Torque B [N*m]",
+            lambda t, q, n, c: (t, q, n, c, 1.5 * float(q)),
+        ),
+        "role:Torque A",
+        "Two channels claim torque.",
+        "Keep this one",
     ),
     "no speed": (
         log("Time [s],Torque [N*m],Foo,Temperature [degC]"),
-        "lacking:speed", "No channel is the speed. Choose one", "",
+        "lacking:speed",
+        "No channel is the speed. Choose one",
+        "",
     ),
     "a speed of another name": (
-        log("Time [s],Torque [N*m],Foo,Temperature [degC],n [Hz]", lambda t, q, n, c: (t, q, n, c, float(n) / 60)),
-        "unit:n", "Hz is no unit of speed", "Read as rev/s",
+        log(
+            "Time [s],Torque [N*m],Foo,Temperature [degC],n [Hz]",
+            lambda t, q, n, c: (t, q, n, c, float(n) / 60),
+        ),
+        "unit:n",
+        "Hz is no unit of speed",
+        "Read as rev/s",
     ),
     "a dead speed": (
-        log("Time [s],Torque [N*m],Speed [rpm],Temperature [degC],Shaft [rad/s]", lambda t, q, n, c: (t, q, 0, c, float(n) / 9)),
-        "role:Speed", "It holds 0 rpm throughout. A dead channel", "Use “Shaft”",
+        log(
+            "Time [s],Torque [N*m],Speed [rpm],Temperature [degC],Shaft [rad/s]",
+            lambda t, q, n, c: (t, q, 0, c, float(n) / 9),
+        ),
+        "role:Speed",
+        "It holds 0 rpm throughout. A dead channel",
+        "Use “Shaft”",
     ),
     "rows without a number": (
         log(change=lambda t, q, n, c: (t, "" if float(t) % 1 < 0.25 else q, n, c)),
-        "role:Torque", "rows lack a number", "Leave these rows out",
+        "role:Torque",
+        "rows lack a number",
+        "Leave these rows out",
     ),
     "a clock in milliseconds called seconds": (
         log(change=lambda t, q, n, c: (1000 * float(t), q, n, c)),
-        "unit:Time", "Rows come every 100 s.", "Read as ms",
+        "unit:Time",
+        "Rows come every 100 s.",
+        "Read as ms",
     ),
     "time backwards": (
         log(change=lambda t, q, n, c: (round(60 - float(t), 1) if 20 < float(t) < 30 else t, q, n, c)),
-        "role:Time", "Time is out of order. Line 203: time runs ahead", "",
+        "role:Time",
+        "Time is out of order. Line 203: time runs ahead",
+        "",
     ),
     "a friction force": (
         log("Time [s],Friction force [N],Speed [rpm],Temperature [degC]"),
-        "field:radius.value", "A friction force needs its radius.", "",
+        "field:radius.value",
+        "A friction force needs its radius.",
+        "",
     ),
     "not a log": (b"%PDF-1.4\n1 0 obj\n<<>>\nendobj\n", "file:", "holds no table of numbers", "Remove"),
     "an empty file": (b"", "file:", "is empty", "Remove"),
     "a damaged file": (b"\x89HDF\r\n\x1a\n" + bytes(200), "file:", "damaged", "Remove"),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("mistake", MISTAKES)
@@ -168,16 +206,36 @@ DRIVETRAIN = {
     "drivetrain.stick_speed": "0.1 to 1",
 }
 MACHINES: dict[str, tuple[dict[str, Any], str, str]] = {
-    "a value that is missing": ({"answers": {"drivetrain.mass": ""}}, "field:drivetrain.mass", "This is needed. Such as 11 kg"),
-    "a value of another kind": ({"answers": {"drivetrain.mass": "11 N"}}, "field:drivetrain.mass", "'N' is not a unit of mass"),
+    "a value that is missing": (
+        {"answers": {"drivetrain.mass": ""}},
+        "field:drivetrain.mass",
+        "This is needed. Such as 11 kg",
+    ),
+    "a value of another kind": (
+        {"answers": {"drivetrain.mass": "11 N"}},
+        "field:drivetrain.mass",
+        "'N' is not a unit of mass",
+    ),
     "a word": ({"answers": {"limits.roll_friction": "low"}}, "field:limits.roll_friction", "write a number"),
-    "a negative value": ({"answers": {"drivetrain.roll_radius": "-15"}}, "field:drivetrain.roll_radius", "greater than 0"),
+    "a negative value": (
+        {"answers": {"drivetrain.roll_radius": "-15"}},
+        "field:drivetrain.roll_radius",
+        "greater than 0",
+    ),
     "a point without a speed": ({"add": True}, "field:points.0.speed", "This is needed."),
-    "half a nip": ({"answers": {"contact.length": "220"}}, "field:contact.rubber_thickness", "say nothing without it"),
+    "half a nip": (
+        {"answers": {"contact.length": "220"}},
+        "field:contact.rubber_thickness",
+        "say nothing without it",
+    ),
     "TOML that breaks off": ({"text": "[drivetrain]\nmass = \n"}, "toml", "line 2"),
-    "TOML without a unit": ({"text": "[drivetrain]\nmass = 11\n"}, "toml", "drivetrain.mass is 11: write a string with its unit"),
+    "TOML without a unit": (
+        {"text": "[drivetrain]\nmass = 11\n"},
+        "toml",
+        "drivetrain.mass is 11: write a string with its unit",
+    ),
     "a log in its place": ({"text": "a,b\n1,2\n"}, "toml", "not valid TOML"),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("mistake", MACHINES)

@@ -28,13 +28,13 @@ class Done:
     stderr: str
 
 
-def run(*arguments: str | Path, cwd: Path) -> Done:
-    """Type a command in a folder; it runs in this process, warnings printed as they would be."""
+def run(*arguments: str | Path, cwd: Path, answers: str = "") -> Done:
+    """Type a command in a folder, and answers; it runs in this process, warnings printed as they would be."""
     stdout, stderr = io.StringIO(), io.StringIO()
     with (
         contextlib.chdir(cwd),
         mock.patch.object(sys, "argv", ["hersey", *map(str, arguments)]),
-        mock.patch.object(sys, "stdin", io.StringIO()),
+        mock.patch.object(sys, "stdin", io.StringIO(answers)),
         contextlib.redirect_stdout(stdout),
         contextlib.redirect_stderr(stderr),
         _handlers_kept(),

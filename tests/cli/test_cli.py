@@ -17,7 +17,6 @@ from tests.cli.test_json import figure
 from tests.conftest import ROOT
 from tests.life import shipped
 
-
 #: Verbs that wait for a person: tests/app types them.
 LASTING = {"app", "new"}
 

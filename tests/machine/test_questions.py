@@ -1,4 +1,4 @@
-"""The table of questions: each asks for a key that there is, and what is written reads back to the answers."""
+"""The table of questions: each asks for a key that there is, and what is written reads back."""
 
 from __future__ import annotations
 

@@ -1,0 +1,145 @@
+"""``hersey new``: asks in a terminal or takes answers from a pipe, and writes all or nothing."""
+
+from __future__ import annotations
+
+import os
+import select
+import signal
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from hersey.log.mapping import read_mapping
+from hersey.machine.machine import read_machine
+from tests.cli.command import HERSEY, run
+from tests.cli.test_bad_input import staircase, text
+
+#: Eight answers about channels, all as proposed; then the machine, one point.
+CHANNELS = [""] * 8
+MACHINE = [
+    "11 N/mm ± 10 %",
+    "11 kg",
+    "15 mm",
+    "0.1 mm/s to 1 mm/s",
+    "300 N",
+    "200 mm/s",
+    "180 degC",
+    "full",
+    "",
+]
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "log.csv").write_bytes(text(staircase()))
+    return tmp_path
+
+
+def lines(*answers: str) -> str:
+    return "".join(f"{answer}\n" for answer in answers)
+
+
+def test_answers_from_a_pipe_become_two_files_with_comments(folder: Path) -> None:
+    done = run("new", "log.csv", cwd=folder, answers=lines(*CHANNELS, *MACHINE))
+    assert done.returncode == 0, done.stderr
+    assert "channel of the torque [Torque]" in done.stderr
+    assert done.stdout.splitlines() == [
+        "mapping: hersey.toml", "machine: machine.toml", "now: hersey report log.csv --machine machine.toml",
+    ]  # fmt: skip
+    assert read_mapping(folder / "hersey.toml").channels["speed"] == "Speed"
+    machine = read_machine(folder / "machine.toml")
+    assert (machine.stiffness, machine.limits.nip_load, machine.points[0].name) == (11000, 300, "full")
+    assert "# motor_torque" in (folder / "machine.toml").read_text()
+    report = run("report", "log.csv", "--machine", "machine.toml", "--json", cwd=folder)
+    assert report.returncode == 0, report.stderr
+
+
+def test_a_dash_leaves_out_and_the_end_leaves_out_the_rest(folder: Path) -> None:
+    answers = ["", "", "", "", "-", "", "", "", ""]
+    done = run("new", "log.csv", "--mapping", "own.toml", cwd=folder, answers=lines(*answers))
+    assert done.returncode == 0, done.stderr
+    assert read_mapping(folder / "own.toml").channels == {
+        "torque": "Torque",
+        "speed": "Speed",
+        "time": "Time",
+    }
+    assert "no machine's file" in done.stderr
+    assert done.stdout.endswith("now: hersey report log.csv --mapping own.toml\n")
+
+
+@pytest.mark.parametrize(
+    ("answers", "said"),
+    [
+        ([], "hersey new asks questions: type it in a terminal, or pipe the answers"),
+        (["Moment"], "answer 1, channel of the torque: log.csv: --torque: there is no column 'Moment'"),
+        (["", "rpm"], "answer 2, unit of the torque: unit 'rpm' is not a unit of torque"),
+        ([*CHANNELS, "11"], "answer 9, k stiffness: stiffness: '11' needs a number and a unit"),
+        ([*CHANNELS, "11 N/mm", ""], "answer 10, m mass: this is needed: nothing is written"),
+        ([*CHANNELS, "11 N/mm", "11 kg"], "the answers end before 'R roll radius'"),
+    ],
+)
+def test_a_wrong_answer_from_a_pipe_writes_nothing(folder: Path, answers: list[str], said: str) -> None:
+    done = run("new", "log.csv", cwd=folder, answers=lines(*answers))
+    assert (done.returncode, done.stdout) == (2, "")
+    assert said in done.stderr
+    assert [path.name for path in folder.iterdir()] == ["log.csv"]
+
+
+def test_what_the_answers_do_not_fit_is_said_at_once(folder: Path) -> None:
+    machine = [*MACHINE[:4], "", MACHINE[4], *[""] * 9]
+    oil = ["", "40 degC: 400 mm^2/s, 100 degC: 40 mm^2/s"]
+    done = run("new", "--all", cwd=folder, answers=lines(*machine, *oil))
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "a kinematic viscosity needs 'density'" in done.stderr
+
+
+def test_files_that_are_there_are_not_replaced_unasked(folder: Path) -> None:
+    (folder / "machine.toml").write_text("mine")
+    done = run("new", "log.csv", cwd=folder, answers=lines(*CHANNELS, *MACHINE))
+    assert done.returncode == 2
+    assert "say --force to replace it" in done.stderr
+    assert (folder / "machine.toml").read_text() == "mine"
+    assert run("new", "--force", cwd=folder, answers=lines(*MACHINE)).returncode == 0
+    assert read_machine(folder / "machine.toml").mass == 11.0
+    done = run("new", "--mapping", "x.toml", cwd=folder)
+    assert "name the LOG too" in done.stderr
+
+
+class Terminal:
+    """A command in a terminal of its own."""
+
+    def __init__(self, folder: Path, *typed: str) -> None:
+        self._ours, theirs = os.openpty()
+        self.process = subprocess.Popen(
+            [*HERSEY, *typed], cwd=folder, stdin=theirs, stdout=theirs, stderr=theirs, start_new_session=True
+        )
+        os.close(theirs)
+        self.seen = ""
+
+    def until(self, words: str) -> None:
+        """Wait for what it says."""
+        while words not in self.seen:
+            assert select.select([self._ours], [], [], 120)[0], self.seen
+            try:
+                self.seen += os.read(self._ours, 4096).decode()
+            except OSError:
+                raise AssertionError(self.seen) from None
+
+    def type(self, line: str) -> None:
+        self.seen = ""
+        os.write(self._ours, f"{line}\n".encode())
+
+
+def test_in_a_terminal_a_wrong_answer_is_asked_again_and_ctrl_c_leaves_nothing(folder: Path) -> None:
+    terminal = Terminal(folder, "new", "--machine", "m.toml")
+    terminal.until("k stiffness")
+    terminal.type("11")
+    terminal.until("needs a number and a unit of stiffness")
+    terminal.until("k stiffness")
+    terminal.type("11 N/mm")
+    terminal.until("m mass")
+    terminal.process.send_signal(signal.SIGINT)
+    terminal.until("hersey: interrupted")
+    assert terminal.process.wait() == 130
+    assert [path.name for path in folder.iterdir()] == ["log.csv"]
