@@ -74,6 +74,7 @@ class Analysis:
     step: str = ""
     share: float | None = None
     started: float = 0.0
+    lasts: float = 0.0
     result: dict[str, Any] = field(default_factory=dict)
     reason: str = ""
     report: str = ""
@@ -291,16 +292,18 @@ class Analysis:
 
     def line(self) -> dict[str, Any]:
         """Return what the list shows."""
-        left = None
-        if self.state == "running" and self.share and self.share > 0.03:
-            left = (time.monotonic() - self.started) * (1 - self.share) / self.share
+        left = (
+            None
+            if self.state != "running" or not self.lasts
+            else self.started + self.lasts - time.monotonic()
+        )
         return {
             "id": self.id,
             "name": self.name,
             "state": self.state,
             "step": self.step,
             "share": self.share,
-            "left": left,
+            "left": left if left is not None and left > 1.0 else None,
             "signal": self.result.get("signal", ""),
             "words": self.result.get("words", ""),
             "report": self.report,

@@ -227,6 +227,9 @@ def _unit_faults(role: str, channel: Mapping[str, Any], unit: str, options: Mapp
     if not unit:
         usual = _usual(role, channel)
         text = "A number without a unit could be any."
+        if role == "temperature" and channel["most"] is not None:
+            ends = _celsius(channel, usual)
+            text = f"Read as {sign(usual)} it is {ends[0]:.0f} to {ends[1]:.0f} °C."
         return [
             Fault(
                 at,
@@ -273,15 +276,14 @@ def _doubtful_heat(channel: Mapping[str, Any], unit: str, scale: float, offset: 
         return []
     hot = most >= ZERO_CELSIUS + TOO_HOT
     for other in ("K", "degC", "degF"):
-        line = role_conversion("temperature", other)[1]
-        low, high = (line.scale * channel[end] + line.offset for end in ("low", "most"))
-        if other != unit and low > _TOO_COLD and high < ZERO_CELSIUS + TOO_HOT:
+        low, high = _celsius(channel, other)
+        if other != unit and low > _TOO_COLD - ZERO_CELSIUS and high < TOO_HOT:
             title = (
                 f"{channel['most']:.4g} {sign(unit)} is hotter than any belt here."
                 if hot
                 else f"{channel['median']:.4g} {sign(unit)} is colder than any belt here."
             )
-            text = f"Read as {sign(other)} it is {low - ZERO_CELSIUS:.0f} to {high - ZERO_CELSIUS:.0f} °C."
+            text = f"Read as {sign(other)} it is {low:.0f} to {high:.0f} °C."
             return [
                 Fault(
                     f"unit:{name}", title, text, f"unit of {name}", f"Read as {sign(other)}",
@@ -289,6 +291,13 @@ def _doubtful_heat(channel: Mapping[str, Any], unit: str, scale: float, offset: 
                 )
             ]  # fmt: skip
     return []
+
+
+def _celsius(channel: Mapping[str, Any], unit: str) -> tuple[float, float]:
+    """The least and nearly the greatest temperature of a channel, degC, if it is read in a unit."""
+    line = role_conversion("temperature", unit)[1]
+    low, most = (line.scale * channel[end] + line.offset - ZERO_CELSIUS for end in ("low", "most"))
+    return low, most
 
 
 def _rare(channel: Mapping[str, Any], unit: str, look: Mapping[str, Any]) -> list[Fault]:

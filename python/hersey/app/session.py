@@ -18,7 +18,9 @@ from hersey.app.workers import EndedError, Refused, ask
 from hersey.errors import HerseyError, OutputError
 from hersey.files.writing import write_atomically
 
-#: What cannot be done is said so: no such analysis, or it is running.
+#: Share of a run from which on the rest can be told.
+_TELLING = 0.2
+#: Analyses that run beside each other.
 _AT_ONCE = max(1, (os.cpu_count() or 1) // 2)
 
 
@@ -239,6 +241,8 @@ class Session:
 
     async def _run(self, one: Analysis) -> None:
         def said(step: str, share: float | None) -> None:
+            if share and share != one.share and share > _TELLING:
+                one.lasts = (time.monotonic() - one.started) / share
             one.step, one.share = step, share
 
         page = one.folder / f"{number()}.html"
@@ -254,7 +258,7 @@ class Session:
         }
         try:
             async with self._running:
-                one.state, one.step, one.started = "running", "starting", time.monotonic()
+                one.state, one.step, one.started, one.lasts = "running", "starting", time.monotonic(), 0.0
                 one.result = await ask(request, one.folder, said)
             one.saved = await asyncio.to_thread(self._kept, one, page)
             self.shown.pop(one.report, None)

@@ -61,7 +61,7 @@ async def ask(
     )
     assert process.stdin is not None
     assert process.stdout is not None
-    refused = None
+    refused, ended = None, False
     try:
         process.stdin.write(json.dumps(request | {"result": str(result)}).encode() + b"\n")
         await process.stdin.drain()
@@ -72,11 +72,15 @@ async def ask(
             elif "step" in word:
                 said(word["step"], word["share"])
             elif word.get("done"):
+                ended = True
                 return dict(json.loads(await asyncio.to_thread(result.read_text)))
-        raise Refused(refused) if refused is not None else EndedError(await process.wait())
+        ended = True
+        raise Refused(refused) if refused is not None else EndedError("it ended without a result")
     except (ConnectionError, ValueError) as error:
         raise EndedError(str(error)) from None
     finally:
-        with suppress(ProcessLookupError):
-            process.kill()
+        process.stdin.close()  # which it takes for the end
+        if not ended:
+            with suppress(ProcessLookupError):
+                process.kill()
         await process.wait()

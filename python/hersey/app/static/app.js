@@ -79,8 +79,10 @@ const act = {
 
 async function send(files) {
   say("");
+  const dropped = [...files]; // a list of the browser's may change
+  await queue; // a new analysis may just be made
   const one = current;
-  const sent = [...files].map((file) => ask("POST", `analyses/${one}/files`, file, { "X-Name": encodeURIComponent(file.name), "Content-Type": "application/octet-stream" }));
+  const sent = dropped.map((file) => ask("POST", `analyses/${one}/files`, file, { "X-Name": encodeURIComponent(file.name), "Content-Type": "application/octet-stream" }));
   setTimeout(refresh, SOON / 2);
   await Promise.all(sent);
   await refresh();
@@ -150,7 +152,17 @@ function theme(dark) {
 function listen() {
   const drop = at("drop");
   at("theme").addEventListener("click", () => theme(document.documentElement.dataset.theme !== "dark"));
-  at("new").addEventListener("click", async () => { const made = await post("analyses"); if (made) { current = made.id; view = made; } await refresh(); at("choose").focus(); });
+  at("new").addEventListener("click", () => {
+    queue = queue.then(async () => {
+      const made = await post("analyses");
+      if (made) {
+        current = made.id;
+        view = made;
+      }
+      await refresh();
+      at("choose").focus();
+    });
+  });
   at("choose").addEventListener("change", async (event) => { const files = [...event.target.files]; event.target.value = ""; await send(files); });
   document.addEventListener("dragover", (event) => { event.preventDefault(); drop.classList.add("over"); });
   document.addEventListener("dragleave", (event) => { if (!event.relatedTarget) drop.classList.remove("over"); });
