@@ -3,6 +3,7 @@
 =============  =========================================================
 dwells         dwells, reduced to steady points with honest errors
 estimate       a number with its uncertainty
+distributions  quantiles and tails of normal, t, F and chi-square laws
 rest           the rest of the drive: what it takes besides the film
 smoothing      a smooth curve through dwells, and where it is least
 scaled         dwells of all temperatures on one curve
