@@ -372,12 +372,9 @@ fn lower_edges(
         laps.iter().enumerate().filter_map(|(i, lap)| Some((i, (*lap)?))).unzip();
     // (slowest speed, drive speed) of the cycles looked at, by slowest speed
     let mut seen: Vec<Vec<(f64, f64)>> = vec![Vec::new(); known.len()];
-    let look = |seen: &mut Vec<Vec<(f64, f64)>>, at: &[Option<f64>]| {
-        let (which, with): (Vec<usize>, Vec<SlipLap>) = at
-            .iter()
-            .enumerate()
-            .filter_map(|(i, slowest)| Some((i, SlipLap { slowest: (*slowest)?, ..known[i] })))
-            .unzip();
+    let look = |seen: &mut Vec<Vec<(f64, f64)>>, at: &[(usize, f64)]| {
+        let (which, with): (Vec<usize>, Vec<SlipLap>) =
+            at.iter().map(|(i, slowest)| (*i, SlipLap { slowest: *slowest, ..known[*i] })).unzip();
         for ((i, lap), fold) in which.iter().zip(&with).zip(cycles(&with, tolerance, work)?) {
             if let Some(fold) = fold {
                 let place = seen[*i].partition_point(|(slowest, _)| *slowest < lap.slowest);
@@ -386,15 +383,16 @@ fn lower_edges(
         }
         Ok(())
     };
-    for share in FIRST_LOOKS {
-        let at: Vec<Option<f64>> = known
-            .iter()
-            .map(|lap| Some(lap.slowest + share * (lap.rising_from() - lap.slowest)))
-            .collect();
-        look(&mut seen, &at)?;
-    }
+    // all at once, so that a single belt has company in the lanes
+    let first = known.iter().enumerate().flat_map(|(i, lap)| {
+        let reach = lap.rising_from() - lap.slowest;
+        FIRST_LOOKS.map(|share| (i, lap.slowest + share * reach))
+    });
+    look(&mut seen, &first.collect::<Vec<_>>())?;
     for _ in 0..PARABOLAS {
-        let at: Vec<Option<f64>> = seen.iter().map(|points| below_three(points)).collect();
+        let bottoms = seen.iter().enumerate();
+        let at: Vec<(usize, f64)> =
+            bottoms.filter_map(|(i, points)| Some((i, below_three(points)?))).collect();
         look(&mut seen, &at)?;
     }
     let rising_from = |place: usize| laps[place].map_or(1.0, |lap: SlipLap| lap.rising_from());
