@@ -25,8 +25,6 @@ DRAWS, FOLD_DRAWS = 1000, 200
 FOLD_TEMPERATURES = 13
 #: Transition speeds at which the search for V* ends.
 _FARTHEST = 1e4
-#: Tolerance for draws: where the band opens, looser laps do not meet, and simulation takes 100 times as long.
-_TIGHT = 1e-13
 #: Drawn stick speeds stay below this share of the transition speed drawn with them.
 _BELOW = 0.999
 
@@ -86,7 +84,6 @@ def intervals(
             mixed_exponent=map_["mixed_exponent"],
             zip=True,
             lower=False,
-            tolerance=_TIGHT,
             threads=threads,
         )
         require_all(band)
