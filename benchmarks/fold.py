@@ -3,8 +3,8 @@
 W3: the fold speed V*(k, B0) on 64 x 64 points (k 500 to 2000, B0 25 to 100). Peers halve the drive speed
 between 1.01 and 4 with 15 runs of 5 s each, on some of the points, scaled to all.
 
-The machine's law of examples/machine.toml and examples/bench.csv beside it: a steep mixed branch, a rest of the
-drive that rises with speed, and the grip of the roll; 200 draws at each of 13 temperatures, and one belt.
+The law of examples/bench.csv on the drive of examples/machine.toml beside it: a steep mixed branch, a rest of
+the drive that rises with speed, and the grip of the roll; 200 draws at each of 13 temperatures, and one belt.
 
 Usage: python -m benchmarks.fold
 """
@@ -24,7 +24,7 @@ from hersey.motion.parameters import MOST_STEPS
 SIDE, RUNS, DURATION = 64, 15, 5.0
 #: Temperatures (K) and draws of the machine's law.
 LEVELS, DRAWS = np.linspace(363.15, 455.15, 13), 200
-#: Seconds for the same before half laps knew a rest of the drive: all draws (from 5 at each temperature), one belt.
+#: Seconds for the same before half laps knew a rest of the drive: all draws (from 5 at each level), one belt.
 BEFORE = {1e-13: (15.3, 8.9e-3), 1e-11: (27.0, 6.7e-3), 1e-8: (69.0, 4.8e-3)}
 
 
@@ -166,9 +166,9 @@ hersey's time includes the check whether a deeper stick-slip lasts above each fo
 
 {table(measure())}
 
-The machine's law: that of examples/bench.csv on the drive of examples/machine.toml, with the rest of the drive that rises
-with speed and the grip of the roll. {len(LEVELS)} temperatures, {DRAWS} draws at each: fit, stiffness and stick speed. Before, a rest that
-rises with speed sent every belt to simulation.
+The machine's law: that of examples/bench.csv on the drive of examples/machine.toml, with the rest of the
+drive that rises with speed and the grip of the roll. {len(LEVELS)} temperatures, {DRAWS} draws at each: fit,
+stiffness and stick speed. Before, a rest that rises with speed sent every belt to simulation.
 
 {machine_table(measure_machine())}
 """
