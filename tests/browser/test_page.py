@@ -107,7 +107,7 @@ def test_each_section_states_its_finding(each: tuple[Opened, Analysis]) -> None:
         ("command", "reproduce"),
     ):
         assert name in names, part
-    for part, name in (("map", "band"), ("models", "candidates"), ("compare", "compare")):
+    for part, name in (("map", "band"), ("compare", "compare")):
         assert (name in names) == bool(getattr(document, part)), part
     findings = opened.page.locator("section > .finding").all_text_contents()
     assert len(findings) == len(names)

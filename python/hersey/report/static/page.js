@@ -150,7 +150,6 @@ async function regimeSection(parent) {
   verdict.id = "verdict";
   data.verdict.forEach((text) => add(verdict, "p", pretty(text), "text"));
   hypotheses(all);
-  tried(all);
   if (data.film) explanations(all);
 }
 function misfits(parent) {
@@ -174,15 +173,6 @@ function hypotheses(parent) {
   const tested = data.fit.transition ? "of the rising branch" : "over all speeds";
   add(parent, "p", `Tested is the exponent c ${tested}, ${interval(data.fit.coefficients.c)}. p-values count all regimes tested, and allow for what the sensors do not know.`, "note");
 }
-// Laws that were fitted to the rising branch, the likeliest first.
-function tried(parent) {
-  const all = data.regime.tried ?? [];
-  if (!all.length) return;
-  const least = Math.min(...all.map((each) => each.aicc));
-  table(parent, ["Law of the rising branch", "ΔAICc", "Constant share, %", "p of its bend", "Verdict"], all.map((each) => [
-    each.name, digits(each.aicc - least), each.constant_share === null ? "–" : digits(100 * each.constant_share), each.curvature === null ? "–" : digits(each.curvature, 2), pretty(each.verdict)]),
-  [1, 2, 3], { name: "laws-tried", label: "Laws tried" });
-}
 function explanations(parent) {
   const box = add(parent, "div");
   add(box, "h3", "What the dwells do not exclude");
@@ -194,9 +184,27 @@ function explanations(parent) {
 
 // Candidates
 
+// Laws that were fitted to the rising branch, the likeliest first.
+function tried(parent) {
+  const all = data.regime.tried ?? [];
+  if (!all.length) return;
+  const count = plural(all.length, "law");
+  const held = all.filter((each) => each.verdict === "not excluded");
+  const next = held[1] ? `; the next is worse by ${digits(held[1].aicc - held[0].aicc, 2)} in AICc` : "";
+  const part = section(parent, "candidates", "Candidates", held.length
+    ? `Of ${count} tried ${held.length === 1 ? "one is" : `${plural(held.length, "law").split(" ")[0]} are`} not excluded, the likeliest: ${held[0].name}${next}.`
+    : `Of ${count} tried none holds; the nearest is ${all[0].name}.`);
+  const least = Math.min(...all.map((each) => each.aicc));
+  table(fold(part, `The ${count}`), ["Law", "ΔAICc", "Constant share, %", "p of its bend", "Result"], all.map((each) => [
+    each.name, digits(each.aicc - least), each.constant_share === null ? "–" : digits(100 * each.constant_share), each.curvature === null ? "–" : digits(each.curvature, 2), pretty(each.verdict)]),
+  [1, 2, 3], { name: "candidates", label: "Candidates" });
+}
 function candidates(parent) {
   const { models } = data;
-  if (!models) return;
+  if (!models) {
+    tried(parent);
+    return;
+  }
   const order = [...models.candidates].sort((a, b) => (a.delta_aicc ?? 1e9) - (b.delta_aicc ?? 1e9));
   const best = models.candidates.find((each) => each.key === models.chosen);
   const next = order.find((each) => each.key !== models.chosen && each.delta_aicc !== null);
