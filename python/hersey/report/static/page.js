@@ -192,7 +192,7 @@ function tried(parent) {
   const held = all.filter((each) => each.verdict === "not excluded");
   const next = held[1] ? `; the next is worse by ${digits(held[1].aicc - held[0].aicc, 2)} in AICc` : "";
   const part = section(parent, "candidates", "Candidates", held.length
-    ? `Of ${count} tried ${held.length === 1 ? "one is" : `${plural(held.length, "law").split(" ")[0]} are`} not excluded, the likeliest: ${held[0].name}${next}.`
+    ? `Of ${count} tried ${held.length === 1 ? "one is not excluded" : `${plural(held.length, "law").split(" ")[0]} are not excluded, the likeliest`}: ${held[0].name}${next}.`
     : `Of ${count} tried none holds; the nearest is ${all[0].name}.`);
   const least = Math.min(...all.map((each) => each.aicc));
   table(fold(part, `The ${count}`), ["Law", "ΔAICc", "Constant share, %", "p of its bend", "Result"], all.map((each) => [
