@@ -16,6 +16,7 @@ film           the regime chart, over the Stribeck curve
 friction       the Stribeck curve: dwells, model, regimes, stall
 mixed          torque of film and asperities against speed
 transition     transition speed against temperature
+stick_speed    V* against the stick speed
 carried        what film, contact and rest of the drive take, stacked
 motion         a trajectory, and the lap to which it settles
 cycles         trace, cycles and fitted motion
