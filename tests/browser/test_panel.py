@@ -8,6 +8,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -83,7 +84,7 @@ def page(opened: Opened) -> Iterator[Page]:
 def native(part: MapPart) -> OperatingMap:
     """The map of the document, as Python has it."""
     fields = part.model_dump(exclude={"train", "drag", "temperature", "points"})
-    arrays = {
+    arrays: dict[str, Any] = {
         k: np.asarray(v, float) if isinstance(v, list) and k not in ("uncertain", "warnings") else v
         for k, v in fields.items()
     }

@@ -29,7 +29,10 @@ function answers(core) {
     const run = (length) => drawn(core.motion({ train, law, schedule, start: "rest", duration: length, samples: SAMPLES, ...work }));
     let motion = run(duration);
     // One that slides in the end is followed until it does.
-    if (!profile && !job.slow && cycle.kind === "steady_sliding" && swings(motion, speed)) motion = run(duration = LENGTHS.find((each) => each >= 4 * duration) ?? duration);
+    if (!profile && !job.slow && cycle.kind === "steady_sliding" && swings(motion, speed)) {
+      duration = LENGTHS.find((each) => each >= 4 * duration) ?? duration;
+      motion = run(duration);
+    }
     yield { motion, duration };
     if (cycle.frequency > 0 && !profile) {
       const last = SAMPLES - 1, start = [motion.belt_speed[last], motion.spring_force[last] / train.stiffness];
@@ -38,7 +41,8 @@ function answers(core) {
     }
     if (cycle.kind === "steady_sliding" && !profile) {
       const length = law.holding_force / (train.stiffness * speed) + DECAY * 2 * Math.PI * Math.sqrt(train.mass / train.stiffness);
-      yield { decay: drawn(core.motion({ train, law, schedule, start: "rest", duration: Math.min(length, duration), samples: 2 * LAP_SAMPLES, ...work })) };
+      const part = { duration: Math.min(length, duration), samples: 2 * LAP_SAMPLES };
+      yield { decay: drawn(core.motion({ train, law, schedule, start: "rest", ...part, ...work })) };
     }
     if (!profile && above.kind !== cycle.kind) {
       // An unstable balance is left a little, or rounding would decide.

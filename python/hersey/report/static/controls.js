@@ -44,7 +44,8 @@ function control(place, { name, label, unit, low, high, logarithmic = true, coun
     },
     // Colours of the track: [[share from, share to, colour], ...] of values.
     track(bands) {
-      const stops = bands.map(([from, to, colour]) => [from, to].map((v) => `var(--${colour}) ${(Math.min(Math.max(position(v) / STEPS, 0), 1) * 100).toFixed(1)}%`).join(", "));
+      const place_of = (v) => `${(Math.min(Math.max(position(v) / STEPS, 0), 1) * 100).toFixed(1)}%`;
+      const stops = bands.map(([from, to, colour]) => `var(--${colour}) ${place_of(from)}, var(--${colour}) ${place_of(to)}`);
       const colours = bands.length ? `linear-gradient(90deg, ${stops.join(", ")})` : "";
       if (colours !== tracked) slider.style.setProperty("--track", tracked = colours);
     },

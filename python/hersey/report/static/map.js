@@ -23,7 +23,9 @@ function operatingMap(place, map, move = null) {
   add(caption, "h2", "Operating map");
   const hint = add(caption, "span", move ? "drag the ring, or arrow keys on it" : "", "hint");
   const drawing = svg("svg", { role: "group", "aria-label": "Operating map" }, place);
-  const hatch = svg("pattern", { id: named, width: 7, height: 7, patternUnits: "userSpaceOnUse", patternTransform: "rotate(45)" }, svg("defs", {}, drawing));
+  const hatch = svg("pattern", {
+    id: named, width: 7, height: 7, patternUnits: "userSpaceOnUse", patternTransform: "rotate(45)",
+  }, svg("defs", {}, drawing));
   svg("path", { d: "M0 0v7", class: "hatch" }, hatch);
   const picture = svg("g", { role: "img" }, drawing);
   const ring = move ? held() : null;
@@ -196,7 +198,8 @@ function operatingMap(place, map, move = null) {
       svg("text", { x: right + 7, y: y + 4, class: "ticks" }, picture, digits(value, 4));
     }
     if (!hot) {
-      svg("text", { x: (left + right) / 2, y: bottom + 18, "text-anchor": "middle", class: "axis" }, picture, "one law for all temperatures of the log");
+      const words = "one law for all temperatures of the log";
+      svg("text", { x: (left + right) / 2, y: bottom + 18, "text-anchor": "middle", class: "axis" }, picture, words);
       return;
     }
     for (const value of ticks(celsius(columns[0]), celsius(columns.at(-1)), frame.width / 90)) {
@@ -306,7 +309,8 @@ function operatingMap(place, map, move = null) {
     const [first, last] = [over[0], over.at(-1)], middle = ([, low, high]) => (low + high) / 2;
     if (last[0] - first[0] < 0.8 * width) return null;
     const slope = (middle(last) - middle(first)) / (last[0] - first[0]), centre = middle(first) + slope * (x - first[0]);
-    const room = 2 * Math.min(...over.map(([a, low, high]) => { const y = centre + slope * (a - x); return Math.min(low - y, y - high); })) / Math.hypot(1, slope);
+    const spare = ([a, low, high]) => Math.min(low - centre - slope * (a - x), centre + slope * (a - x) - high);
+    const room = 2 * Math.min(...over.map(spare)) / Math.hypot(1, slope);
     if (room < 15 || Math.abs(slope) > 1) return null;
     const rise = Math.abs(slope) * width / 2;
     return { y: centre, turn: Math.atan(slope) * 180 / Math.PI, room, box: [x - width / 2, centre - 8 - rise, x + width / 2, centre + 8 + rise] };
@@ -330,7 +334,9 @@ function operatingMap(place, map, move = null) {
     };
     entry("transition", `transition${valued(edges.transition)}`);
     if (edges.upper.some((v, i) => v > 1.01 * edges.transition[i])) entry("fold", `V*${valued(edges.upper)}`);
-    if (intervals[3].some((v, i) => v > 1.01 * intervals[1][i])) entry("fold-interval", changed ? "its 95 % interval in the report" : "its 95 % interval");
+    if (intervals[3].some((v, i) => v > 1.01 * intervals[1][i])) {
+      entry("fold-interval", changed ? "its 95 % interval in the report" : "its 95 % interval");
+    }
     entry("torque", "drag torque");
     entry("measured", "measured");
     entry("hatched", "extrapolated");
@@ -355,7 +361,8 @@ function operatingMap(place, map, move = null) {
     const rows = columns.map((_, i) => i).filter((i) => (hot ? i % every === 0 : i === 0));
     const value = (v) => (Number.isFinite(v) ? digits(millimetres(v)) : "never");
     const range = (i, low, high) => `${value(intervals[low][i])} to ${value(intervals[high][i])}`;
-    const heads = ["Sticks below (mm/s)", "Transition", "95 % in the report", "Smooth above V*", "95 % in the report", `${map.torque_limit === null ? "Stall" : "Stall from"}`];
+    const known = map.torque_limit !== null;
+    const heads = ["Sticks below (mm/s)", "Transition", "95 % in the report", "Smooth above V*", "95 % in the report", known ? "Stall from" : "Stall"];
     table(figures, [...(hot ? ["°C"] : []), ...heads], rows.map((i) => [
       ...(hot ? [celsius(columns[i]).toFixed(0)] : []), value(edges.lower[i]), value(edges.transition[i]), range(i, 0, 1),
       value(edges.upper[i]), range(i, 2, 3), map.torque_limit === null ? "not known" : edges.starts[i] ? value(above[i]) : "not started"]),
@@ -374,7 +381,8 @@ function operatingMap(place, map, move = null) {
       svg("text", { x: 17, y: 12, "text-anchor": "middle" }, tag);
     }
     const handle = svg("g", { class: "ring", tabindex: 0, role: "slider", "aria-label": "Setting tried: drive speed and temperature",
-      "aria-orientation": "vertical", "aria-valuemin": digits(millimetres(slowest)), "aria-valuemax": digits(millimetres(fastest)), "aria-valuenow": 0 }, group);
+      "aria-orientation": "vertical", "aria-valuenow": 0,
+      "aria-valuemin": digits(millimetres(slowest)), "aria-valuemax": digits(millimetres(fastest)) }, group);
     svg("circle", { r: 22, class: "reach" }, handle);
     svg("circle", { r: 9, class: "round" }, handle);
     svg("circle", { r: 3, class: "dot" }, handle);
@@ -394,7 +402,8 @@ function operatingMap(place, map, move = null) {
     for (const end of ["pointerup", "pointercancel"]) handle.addEventListener(end, () => { from = null; });
     handle.addEventListener("keydown", (event) => {
       const times = event.shiftKey ? 10 : 1;
-      const [factor, kelvin] = { ArrowUp: [1.02 ** times, 0], ArrowDown: [1.02 ** -times, 0], ArrowLeft: [1, -times], ArrowRight: [1, times] }[event.key] ?? [];
+      const step = 1.02 ** times, keys = { ArrowUp: [step, 0], ArrowDown: [1 / step, 0], ArrowLeft: [1, -times], ArrowRight: [1, times] };
+      const [factor, kelvin] = keys[event.key] ?? [];
       if (factor === undefined) return;
       event.preventDefault();
       moved(setting.speed * factor, (setting.temperature ?? 0) + kelvin);

@@ -24,7 +24,9 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
   const limit = map.torque_limit === null ? Infinity : map.torque_limit / map.roll_radius;
   const known = settings(analysis), questions = answers(core);
   const SLOW = ["stribeck", "lugre"], QUICK_BAND = 5, FRAME = 20_000;
-  const CLOSURES = { retained: "retained: keeps its creep", stiction: "stiction: stops dead", stribeck: "Stribeck, smooth", lugre: "LuGre, bristles" };
+  const CLOSURES = {
+    retained: "retained: keeps its creep", stiction: "stiction: stops dead", stribeck: "Stribeck, smooth", lugre: "LuGre, bristles",
+  };
   const ZONES = { stick_slip: "sticks", swing: "depends", bistable: "depends", smooth: "smooth", stall: "stall", motor: "stall" };
   let point = worst(), base = known.own(point), setting = known.read(location.hash, base) ?? { ...base };
   let answer = null, found = null, kicked = null, spread = null, asked = 0, drawn = 0, mapped = "", bandCost = 0, spoken = 0, open = "";
@@ -41,7 +43,9 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
   });
   const foot = add(place, "div", "", "foot"), out = add(place, "div", "", "out");
   out.hidden = true;
-  const outs = { Link: () => link(), Command: () => known.command(setting, answer.law, answer.duration), TOML: () => known.toml(setting, answer.law) };
+  const outs = {
+    Link: () => link(), Command: () => known.command(setting, answer.law, answer.duration), TOML: () => known.toml(setting, answer.law),
+  };
   const buttons = Object.keys(outs).map((name) => {
     const each = button(foot, name, () => { open = open === name ? "" : name; output(); });
     each.setAttribute("aria-expanded", "false");
@@ -69,7 +73,7 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
       made[name].scale = scale;
     };
     one(place, "speed", "Drive speed", "mm/s", 1e-3, map.speed[0], map.speed.at(-1), {
-      given: (value) => ({ speed: value / 1e3, ...(setting.profile ? { profile: setting.profile.with(-1, [setting.profile.at(-1)[0], value / 1e3]) } : {}) }) });
+      given: (value) => ({ speed: value / 1e3, profile: setting.profile?.with(-1, [setting.profile.at(-1)[0], value / 1e3]) ?? null }) });
     if (hot) {
       one(place, "temperature", "Temperature", "°C", 1, map.temperature[0] - 273.15, map.temperature.at(-1) - 273.15, {
         logarithmic: false, step: 1, given: (value) => ({ temperature: value + 273.15 }) });
@@ -87,13 +91,17 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
     const further = add(place, "div", "", "further");
     further.id = "further";
     further.hidden = true;
-    const more = button(row, "Mass, spread…", () => { further.hidden = !further.hidden; more.setAttribute("aria-expanded", String(!further.hidden)); });
+    const more = button(row, "Mass, spread…", () => {
+      further.hidden = !further.hidden;
+      more.setAttribute("aria-expanded", String(!further.hidden));
+    });
     more.setAttribute("aria-expanded", "false");
     more.setAttribute("aria-controls", "further");
     one(further, "mass", "Mass", "kg", 1, base.mass / 10, base.mass * 10);
     const ranges = Object.keys(rangesOf(base));
     if (ranges.length) one(further, "spread", "Spread", "×", 1, 0.1, 3, { count: 2 });
-    add(further, "p", ranges.length ? `Spread 1 is what the machine’s file states of ${ranges.map((name) => name.replace("_", " ")).join(" and ")} (95 %).`
+    const stated = ranges.map((name) => name.replace("_", " ")).join(" and ");
+    add(further, "p", ranges.length ? `Spread 1 is what the machine’s file states of ${stated} (95 %).`
       : "The machine’s file states no [uncertainty]: V* has no spread to show.", "hint");
     const told_spread = add(further, "p", "", "hint");
     one(further, "bristle_stiffness", "Bristles", "N/mm", 1e3, base.bristle_stiffness / 100, base.bristle_stiffness * 100);
@@ -114,7 +122,7 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
 
   function tried(change) {
     setting = { ...setting, ...change };
-    if (setting.temperature !== null && hot) setting.temperature = Math.min(Math.max(setting.temperature, map.temperature[0]), map.temperature.at(-1));
+    if (hot) setting.temperature = Math.min(Math.max(setting.temperature, map.temperature[0]), map.temperature.at(-1));
     if (!asked) asked = requestAnimationFrame(() => { asked = 0; update(); });
   }
 
@@ -122,7 +130,8 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
     train: known.train(setting), drag: known.drag(setting), temperature: setting.temperature, rule: map.stick_speed_rule,
     speed: setting.speed, stick_speed: setting.stick_speed, profile: setting.profile, limit, motor, slow: SLOW.includes(setting.closure),
   });
-  const machineKey = (s) => [s.stiffness, s.mass, s.stick_speed, s.closure, ...(s.closure === "lugre" ? [s.bristle_stiffness, s.bristle_damping] : [])].join(" ");
+  const bristlesOf = (s) => (s.closure === "lugre" ? [s.bristle_stiffness, s.bristle_damping] : []);
+  const machineKey = (s) => [s.stiffness, s.mass, s.stick_speed, s.closure, ...bristlesOf(s)].join(" ");
   const bandKey = (s) => `${machineKey(s)} ${s.temperature}`;
 
   function update() {
@@ -147,7 +156,8 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
       }
       if (whole) picture.show({ ...setting, zone: null });
       else showAnswer();
-      after.ask("after", { ...task, whole, band: !found || found.stale, kick: !whole && between(), ranges: Object.entries(rangesOf(setting)) }, { number, key: bandKey(setting), task: { ...task, whole } });
+      const asked_too = { whole, band: !found || found.stale, kick: !whole && between(), ranges: Object.entries(rangesOf(setting)) };
+      after.ask("after", { ...task, ...asked_too }, { number, key: bandKey(setting), task: { ...task, whole } });
       askEdges(task);
     } catch (error) {
       failed(reason(error));
@@ -171,7 +181,8 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
     return true;
   }
   // Whether a motion slides in the end: what swings by less than a thousandth of its speed does, too.
-  const slides = (motion) => motion?.kind === "steady_sliding" || (motion?.kind === "oscillation" && motion.speed_max - motion.speed_min < 1e-3 * setting.speed);
+  const slides = (motion) => motion?.kind === "steady_sliding"
+    || (motion?.kind === "oscillation" && motion.speed_max - motion.speed_min < 1e-3 * setting.speed);
   const between = () => answer && slides(answer.above) && !slides(answer.cycle);
 
   function heard({ part, failure }, about) {
@@ -182,13 +193,15 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
       return;
     }
     if (!part) return;
-    if (part.law) answer = { train: about.task.train, unstable: null };
-    if ("band" in part) found = part.band && { ...part.band, key: about.key };
-    if (part.band) bandCost *= 0.9;
-    if ("kick" in part) kicked = { value: part.kick };
-    if (part.spread) spread = spreadOf(part.spread);
-    for (const name of ["law", "force", "cycle", "above", "motion", "duration", "lap", "decay", "steady"]) if (name in part) answer[name] = part[name];
-    if (part.unstable && answer && between()) answer.unstable = part.unstable;
+    const { band, kick, spread: ends, unstable, ...motion } = part;
+    if (motion.law) answer = { train: about.task.train, unstable: null };
+    if (band !== undefined) found = band && { ...band, key: about.key };
+    if (band) bandCost *= 0.9;
+    if (kick !== undefined) kicked = { value: kick };
+    if (ends) spread = spreadOf(ends);
+    if (!answer) return;
+    Object.assign(answer, motion);
+    if (unstable && between()) answer.unstable = unstable;
     if (answer?.motion && (part.motion || part.lap || part.steady || part.unstable)) {
       chart.lag(false);
       chart.draw(answer, setting);
@@ -229,7 +242,8 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
     if (found && !found.stale && answer.law) return questions.zone({ speed: setting.speed, limit, motor }, answer.law, answer.force, found);
     const starts = answer.law.holding_force <= limit, beyond = motor ? "motor" : "stall";
     const rest = slides(answer.cycle), above = slides(answer.above);
-    const moving = answer.force > limit ? beyond : rest && above ? "smooth" : above ? "bistable" : answer.above.kind === "oscillation" ? "swing" : "stick_slip";
+    const sliding = rest && above ? "smooth" : above ? "bistable" : answer.above.kind === "oscillation" ? "swing" : "stick_slip";
+    const moving = answer.force > limit ? beyond : sliding;
     return { state: starts ? moving : beyond, moving, starts };
   }
 
@@ -241,11 +255,14 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
     if (setting.profile) return { zone, ...follows() };
     if (!zone.starts) {
       const holds = `a belt at rest bears ${torqueText(law.holding_force * radius)}, the ${motor ? "motor" : "grip"} ${torqueText(limit * radius)}`;
-      return { zone, signal: "act", words: `does not start from rest${["bistable", "smooth"].includes(zone.moving) ? "; slides on once it slides" : ""}`, sub: [torque, holds] };
+      const on = ["bistable", "smooth"].includes(zone.moving) ? "; slides on once it slides" : "";
+      return { zone, signal: "act", words: `does not start from rest${on}`, sub: [torque, holds] };
     }
     switch (zone.state) {
-      case "stall": return { zone, signal: "act", words: "stalls: the roll slips on the belt", sub: [torque, `the roll grips ${torqueText(limit * radius)}`] };
-      case "motor": return { zone, signal: "act", words: "stalls: more than the motor bears", sub: [torque, `the motor bears ${torqueText(limit * radius)}`] };
+      case "stall":
+        return { zone, signal: "act", words: "stalls: the roll slips on the belt", sub: [torque, `the roll grips ${torqueText(limit * radius)}`] };
+      case "motor":
+        return { zone, signal: "act", words: "stalls: more than the motor bears", sub: [torque, `the motor bears ${torqueText(limit * radius)}`] };
       case "smooth": return { zone, signal: "good", words: "smooth from any start", sub: [torque, settles(motion)] };
       case "bistable": {
         const kick = kicked ? (kicked.value === null ? "bears any kick" : `bears a kick of ${digits(1e3 * kicked.value, 2)} mm/s`) : "";
@@ -264,7 +281,8 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
     while (off >= 0 && Math.abs(v[off] / setting.speed - 1) <= 0.02) off -= 1;
     while (slip < v.length && v[slip] < setting.speed) slip += 1;
     if (slip >= v.length) return "";
-    return off > 0.97 * v.length ? `not settled after ${digits(time.at(-1))} s` : `settles ${digits(Math.max(time[off + 1] - time[slip], 0), 2)} s after the first slip`;
+    if (off > 0.97 * v.length) return `not settled after ${digits(time.at(-1))} s`;
+    return `settles ${digits(Math.max(time[off + 1] - time[slip], 0), 2)} s after the first slip`;
   }
   function follows() {
     const { motion, law } = answer, { time, belt_speed: v } = motion, last = setting.profile.at(-1)[0];
@@ -274,7 +292,8 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
     const peak = v.reduce((a, b) => Math.max(a, b), 0), pull = motion.spring_force.reduce((a, b) => Math.max(a, b), 0);
     const sub = [`belt peaks at ${speedText(peak)}`, `spring pulls ${digits(pull)} N`];
     if (first >= v.length) return { signal: "act", words: "does not move under this profile", sub };
-    if (time[v.length - 1] - time[Math.max(stuck, 0)] > 3 * 2 * Math.PI * Math.sqrt(answer.train.mass / answer.train.stiffness) && time.at(-1) > last) {
+    const watched = 3 * 2 * Math.PI * Math.sqrt(answer.train.mass / answer.train.stiffness);
+    if (time.at(-1) - time[Math.max(stuck, 0)] > watched && time.at(-1) > last) {
       return { signal: "good", words: `slides from ${digits(time[Math.min(stuck + 1, v.length - 1)], 3)} s on under this profile`, sub };
     }
     return { signal: "act", words: "still sticks and slips at the end of this profile", sub };
@@ -282,7 +301,8 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
 
   function showAnswer() {
     const { zone, signal: kind, words, sub } = told();
-    controls.spread.textContent = spread ? `With this spread V* is ${digits(1e3 * found.upper)} [${digits(1e3 * spread[0])}, ${digits(1e3 * spread[1])}] mm/s.` : "\u00a0";
+    const [least, most] = (spread ?? []).map((v) => digits(1e3 * v));
+    controls.spread.textContent = spread ? `With this spread V* is ${digits(1e3 * found.upper)} [${least}, ${most}] mm/s.` : "\u00a0";
     const far = extrapolated() ? " (extrapolated)" : "";
     verdict.replaceChildren();
     const word = add(verdict, "span", "", `signal ${kind}`);
@@ -338,13 +358,15 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
     more.textContent = `${hidden ? "◆ " : ""}Mass, spread…`;
     courses.textContent = `${setting.profile ? "◆ " : ""}Profile`;
     courses.setAttribute("aria-pressed", String(Boolean(setting.profile)));
-    const name = map.points[point]?.name, changed = ["speed", "temperature", "stiffness", "mass", "stick_speed", "closure", "spread", "profile"].some(differs) || hidden;
+    const name = map.points[point]?.name;
+    const changed = ["speed", "temperature", "stiffness", "mass", "stick_speed", "closure", "spread", "profile"].some(differs) || hidden;
     hint.textContent = changed ? "◆ differs from the report" : name ? `as in the report: ${name}` : "as in the report";
     back.disabled = !changed;
   }
   function inWords() {
     const parts = [`Drive speed ${speedText(setting.speed)}`, ...(hot ? [`temperature ${digits(setting.temperature - 273.15)} °C`] : []),
-      `stiffness ${digits(setting.stiffness / 1e3)} N/mm`, `mass ${digits(setting.mass)} kg`, `stick speed ${speedText(setting.stick_speed)}`, `closure ${setting.closure}`];
+      `stiffness ${digits(setting.stiffness / 1e3)} N/mm`, `mass ${digits(setting.mass)} kg`,
+      `stick speed ${speedText(setting.stick_speed)}`, `closure ${setting.closure}`];
     return `${parts.join(", ")}.`;
   }
 
@@ -370,7 +392,8 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
       out.save = button(line, "Save", () => save(open === "TOML" ? "setting.toml" : `${open.toLowerCase()}.txt`, field.value, "text/plain"));
     }
     const field = out.querySelector("textarea");
-    field.setAttribute("aria-label", { Link: "Address of this setting", Command: "Command that reproduces this setting", TOML: "Machine’s file of this setting" }[open]);
+    const names = { Link: "Address of this setting", Command: "Command that reproduces this setting", TOML: "Machine’s file of this setting" };
+    field.setAttribute("aria-label", names[open]);
     field.value = outs[open]();
   }
 

@@ -59,14 +59,17 @@ function profile(place, chart, { change, leave }) {
     if (armed) { paper(scales); return; }
     rows.forEach(([t, v], i) => {
       if (t > scales.t.end) return;
-      const handle = svg("g", { class: "handle", tabindex: 0, role: "slider", "data-row": i, transform: `translate(${scales.t(t)} ${scales.y(Math.min(v, scales.top))})`,
+      const handle = svg("g", { class: "handle", tabindex: 0, role: "slider", "data-row": i,
+        transform: `translate(${scales.t(t)} ${scales.y(Math.min(v, scales.top))})`,
         "aria-label": `Row ${i + 1} of the profile`, "aria-valuemin": 0, "aria-valuemax": digits(1e3 * scales.top), "aria-valuenow": digits(1e3 * v),
         "aria-valuetext": `${digits(1e3 * v)} mm/s at ${digits(t)} s` }, chart.over);
       svg("circle", { r: 14, class: "reach" }, handle);
       svg("circle", { r: 4.5, class: "round" }, handle);
       handle.addEventListener("keydown", (event) => {
         const times = event.shiftKey ? 10 : 1;
-        const [dt, factor] = { ArrowLeft: [-0.01 * times, 1], ArrowRight: [0.01 * times, 1], ArrowUp: [0, 1.02 ** times], ArrowDown: [0, 1.02 ** -times] }[event.key] ?? [];
+        const later = 0.01 * times, faster = 1.02 ** times;
+        const keys = { ArrowLeft: [-later, 1], ArrowRight: [later, 1], ArrowUp: [0, faster], ArrowDown: [0, 1 / faster] };
+        const [dt, factor] = keys[event.key] ?? [];
         if (dt === undefined) return;
         event.preventDefault();
         move(i, t + dt, v === 0 && factor > 1 ? 0.001 : v * factor);
@@ -74,10 +77,12 @@ function profile(place, chart, { change, leave }) {
       handle.addEventListener("pointerdown", (event) => {
         event.preventDefault();
         const follow = (moved) => move(i, ...chart.at(moved));
-        const stop = () => { removeEventListener("pointermove", follow); removeEventListener("pointerup", stop); removeEventListener("pointercancel", stop); };
+        const stop = () => {
+          removeEventListener("pointermove", follow);
+          for (const end of ["pointerup", "pointercancel"]) removeEventListener(end, stop);
+        };
         addEventListener("pointermove", follow);
-        addEventListener("pointerup", stop);
-        addEventListener("pointercancel", stop);
+        for (const end of ["pointerup", "pointercancel"]) addEventListener(end, stop);
       });
       handle.addEventListener("touchstart", (event) => event.preventDefault(), { passive: false });
       if (active === String(i)) handle.focus({ preventScroll: true });
@@ -93,7 +98,11 @@ function profile(place, chart, { change, leave }) {
     sheet = svg("rect", { x: left, y: 0, width: scales.right - left, height: scales.bottom, class: "sheet drawing" }, chart.over);
     const line_drawn = svg("path", { class: "drive" }, chart.over);
     let points = null;
-    sheet.addEventListener("pointerdown", (event) => { points = [[0, chart.at(event)[1]], chart.at(event)]; sheet.setPointerCapture(event.pointerId); event.preventDefault(); });
+    sheet.addEventListener("pointerdown", (event) => {
+      points = [[0, chart.at(event)[1]], chart.at(event)];
+      sheet.setPointerCapture(event.pointerId);
+      event.preventDefault();
+    });
     sheet.addEventListener("touchstart", (event) => event.preventDefault(), { passive: false });
     sheet.addEventListener("pointermove", (event) => {
       if (!points) return;

@@ -29,7 +29,8 @@ function settings(analysis) {
   const train = (setting) => ({ ...map.train, stiffness: setting.stiffness, mass: setting.mass });
 
   function link(setting) {
-    const said = (name) => setting[name] !== null && (setting.closure === "lugre" || !name.startsWith("bristle")) && (name !== "spread" || setting.spread !== 1);
+    const said = (name) => setting[name] !== null && (setting.closure === "lugre" || !name.startsWith("bristle"))
+      && (name !== "spread" || setting.spread !== 1);
     const words = NUMBERS.filter(said).map((name) => `${name}=${setting[name]}`);
     if (setting.profile) words.push(`profile=${setting.profile.map((row) => row.join(":")).join(",")}`);
     return `#setting?${[...words, `closure=${setting.closure}`].join("&")}`;
@@ -61,7 +62,8 @@ function settings(analysis) {
     if (setting.profile) return script(setting, law, duration);
     const amounts = [["drive-speed", setting.speed, "m/s"], ["stiffness", setting.stiffness, "N/m"], ["mass", setting.mass, "kg"],
       ["transition-force", law.transition_force, "N"], ["transition-speed", law.transition_speed, "m/s"], ["stick-speed", law.stick_speed, "m/s"],
-      ...(setting.closure === "lugre" ? [["bristle-stiffness", setting.bristle_stiffness, "N/m"], ["bristle-damping", setting.bristle_damping, "N*s/m"]] : [])];
+      ...(setting.closure === "lugre"
+        ? [["bristle-stiffness", setting.bristle_stiffness, "N/m"], ["bristle-damping", setting.bristle_damping, "N*s/m"]] : [])];
     const words = amounts.map(([name, value, unit]) => `--${name} "${value} ${unit}"`);
     const plain = [`--ehl-exponent=${map.drag.ehl_exponent}`, `--mixed-exponent=${map.drag.mixed_exponent}`, `--closure ${setting.closure}`];
     const machine = beside(law) ? ["--machine setting.toml"] : [];
@@ -69,7 +71,8 @@ function settings(analysis) {
   }
   // A profile has no command of its own: the same in Python.
   function script(setting, law, duration) {
-    const bristles = setting.closure === "lugre" ? `, bristle_stiffness=${setting.bristle_stiffness}, bristle_damping=${setting.bristle_damping}` : "";
+    const bristles = setting.closure === "lugre"
+      ? `, bristle_stiffness=${setting.bristle_stiffness}, bristle_damping=${setting.bristle_damping}` : "";
     const grip = map.train.grip === null ? "" : `, grip=${map.train.grip}`;
     return `python -c "import hersey; drag = hersey.Drag(${law.transition_force}, ${law.transition_speed}, ehl_exponent=${map.drag.ehl_exponent}, `
       + `mixed_exponent=${map.drag.mixed_exponent}, stick_speed=${law.stick_speed}, closure='${setting.closure}', rest_force=${law.rest_force}, `
@@ -80,7 +83,8 @@ function settings(analysis) {
   function toml(setting, law) {
     const radius = map.roll_radius, at = setting.temperature === null ? "" : ` at ${digits(setting.temperature - 273.15)} °C`;
     const lines = ["# The setting tried, for the machine's file (hersey map, plan and report) and for hersey simulate --machine.", "[drivetrain]",
-      `stiffness = "${setting.stiffness} N/m"`, `mass = "${setting.mass} kg"`, `roll_radius = "${radius} m"`, `stick_speed = "${law.stick_speed} m/s"`];
+      `stiffness = "${setting.stiffness} N/m"`, `mass = "${setting.mass} kg"`, `roll_radius = "${radius} m"`,
+      `stick_speed = "${law.stick_speed} m/s"`];
     if (setting.temperature !== null) lines.push(`stick_speed_temperature = "${setting.temperature} K"`);
     if (map.stick_speed_rule === "fixed") lines.push('stick_speed_rule = "fixed"');
     const limits = [...(map.limited_by === "motor torque" ? [`motor_torque = "${map.torque_limit} N*m"`] : []),
@@ -88,12 +92,15 @@ function settings(analysis) {
       ...(map.speed_limit === null ? [] : [`speed = "${map.speed_limit} m/s"`])];
     if (limits.length) lines.push("", "[limits]", ...limits);
     if (law.rest_force !== 0 || law.rest_damping !== 0) {
-      lines.push("", `[rest]  # of the drive${at}`, `torque = "${law.rest_force * radius} N*m"`, `damping = "${law.rest_damping * radius ** 2} N*m*s/rad"`);
+      lines.push("", `[rest]  # of the drive${at}`, `torque = "${law.rest_force * radius} N*m"`,
+        `damping = "${law.rest_damping * radius ** 2} N*m*s/rad"`);
     }
     if (setting.temperature !== null) {
       lines.push("", "[[points]]", 'name = "tried"', `speed = "${setting.speed} m/s"`, `temperature = "${setting.temperature} K"`);
     }
-    if (setting.profile) lines.push("", "# The profile tried, times and speeds of the drive:", ...setting.profile.map(([t, v]) => `# ${t} s  ${v} m/s`));
+    if (setting.profile) {
+      lines.push("", "# The profile tried, times and speeds of the drive:", ...setting.profile.map(([t, v]) => `# ${t} s  ${v} m/s`));
+    }
     return `${lines.join("\n")}\n`;
   }
   return { own, drag, train, link, read, rows, command, toml, stick, closures: CLOSURES };

@@ -13,12 +13,14 @@ function traces(place) {
     const edge = svg("rect", { y: TOP }, svg("clipPath", { id: name }, picture));
     const inside = svg("g", { "clip-path": `url(#${name})` }, picture);
     const line = (kind) => svg("path", { class: kind }, inside);
-    return { box, drawing, picture, axes, edge, below, lines: ["drive", "unstable", "from-rest", "from-above"].reduce((all, kind) => ({ ...all, [kind]: line(kind) }), {}),
+    const lines = Object.fromEntries(["drive", "unstable", "from-rest", "from-above"].map((kind) => [kind, line(kind)]));
+    return { box, drawing, picture, axes, edge, below, lines,
       dot: svg("circle", { r: 4.5, visibility: "hidden" }, inside), peak: svg("text", { class: "peak" }, picture), over: svg("g", {}, drawing) };
   });
   const [time, plane] = panes;
   const key = add(place, "ul", "", "key");
-  const entries = [["from-rest", "from rest"], ["from-above", "from above"], ["unstable", "edge: outside it sticks"], ["drive", "drive"]].map(([kind, text]) => {
+  const named = { "from-rest": "from rest", "from-above": "from above", unstable: "edge: outside it sticks", drive: "drive" };
+  const entries = Object.entries(named).map(([kind, text]) => {
     const item = add(key, "li");
     svg("path", { d: "M1 6h24", class: kind }, svg("svg", { viewBox: "0 0 26 12", "aria-hidden": "true" }, item));
     item.append(text);
@@ -35,14 +37,20 @@ function traces(place) {
     return i < v.length ? i : 0;
   }
   const ends = (values, about) => values.reduce(([low, high], v) => [Math.min(low, v), Math.max(high, v)], [0.8 * about, 1.2 * about]);
-  const nice = (least) => { const power = 10 ** Math.floor(Math.log10(least)); return power * [1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10].find((m) => m * power >= least * (1 - 1e-9)); };
+  function nice(least) {
+    const power = 10 ** Math.floor(Math.log10(least));
+    return power * [1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10].find((m) => m * power >= least * (1 - 1e-9));
+  }
 
   function scale(answer, setting) {
     const { motion, cycle, lap, unstable, train } = answer, k = train.stiffness;
-    const swings = cycle.frequency > 0 && cycle.speed_max > 0, fastest = setting.profile ? Math.max(...setting.profile.map((row) => row[1])) : setting.speed;
+    const lasts = cycle.frequency > 0 && cycle.speed_max > 0 && !setting.profile;
+    const fastest = setting.profile ? Math.max(...setting.profile.map((row) => row[1])) : setting.speed;
     const lively = setting.profile ? Math.min(peakOf(motion.belt_speed, afterFirst(motion, fastest)), 2.4 * fastest) : 0;
-    const most = Math.max(swings && !setting.profile ? 1.1 * cycle.speed_max : 1.9 * fastest, 1.25 * fastest, 1.05 * lively, unstable ? 1.1 * peakOf(unstable.speed) : 0);
-    let forces = swings && !setting.profile ? [k * cycle.stretch_min, k * cycle.stretch_max] : ends(motion.spring_force.subarray(afterFirst(motion, setting.speed)), answer.force);
+    const edge = unstable ? peakOf(unstable.speed) : 0;
+    const most = Math.max(lasts ? 1.1 * cycle.speed_max : 1.9 * fastest, 1.25 * fastest, 1.05 * lively, 1.1 * edge);
+    let forces = lasts ? [k * cycle.stretch_min, k * cycle.stretch_max]
+      : ends(motion.spring_force.subarray(afterFirst(motion, setting.speed)), answer.force);
     if (unstable) forces = [Math.min(forces[0], ...unstable.force), Math.max(forces[1], ...unstable.force)];
     if (setting.profile) forces = [Math.min(0, ...motion.spring_force), Math.max(...motion.spring_force)];
     const room = 0.08 * (forces[1] - forces[0]);
@@ -77,7 +85,7 @@ function traces(place) {
     const { motion, lap, decay, steady, unstable, force } = answer;
     scales = scale(answer, setting);
     const bottom = HEIGHT - BOTTOM, y = (v) => bottom - v / scales.top * (bottom - TOP);
-    const paper = printing ? paperWidth(two) - 32 : 0, widths = paper ? [0.61 * paper, 0.39 * paper] : seen ??= panes.map(({ box }) => Math.max(box.clientWidth, 120));
+    const paper = paperWidth(two) - 32, widths = printing ? [0.61 * paper, 0.39 * paper] : seen ??= panes.map(({ box }) => Math.max(box.clientWidth, 120));
     const t = (s) => LEFT + s / scales.duration * (widths[0] - 6 - LEFT);
     const f = (n) => LEFT + (n - scales.low) / (scales.high - scales.low) * (widths[1] - 6 - LEFT);
     scales = { ...scales, t, y, right: widths[0] - 6, bottom };
@@ -85,7 +93,7 @@ function traces(place) {
     axes(plane, widths[1], ticks(scales.low, scales.high, 4).map((n) => [n, f(n)]), plane.below, y);
     put(time, "from-rest", track(motion.time, motion.belt_speed, t, y));
     put(time, "from-above", steady ? track(steady.time, steady.belt_speed, t, y) : "");
-    const drive = setting.profile ? [...setting.profile, [scales.duration, setting.profile.at(-1)[1]]] : [[0, setting.speed], [scales.duration, setting.speed]];
+    const rows = setting.profile ?? [[0, setting.speed]], drive = [...rows, [scales.duration, rows.at(-1)[1]]];
     put(time, "drive", shape.path([...(drive[0][0] > 0 ? [[0, drive[0][1]]] : []), ...drive].map(([s, v]) => [t(s), y(v)])));
     const lapped = lap ?? decay ?? motion, from = lap || setting.profile ? 0 : afterFirst(lapped, setting.speed);
     put(plane, "from-rest", track(lapped.spring_force.subarray(from), lapped.belt_speed.subarray(from), f, y));
@@ -129,7 +137,8 @@ function traces(place) {
     // Pixels of the drawing as seconds and m/s.
     at(event) {
       const box = time.drawing.getBoundingClientRect();
-      const share = (event.clientX - box.left - LEFT) / (scales.right - LEFT), up = (scales.bottom - (event.clientY - box.top)) / (scales.bottom - TOP);
+      const share = (event.clientX - box.left - LEFT) / (scales.right - LEFT);
+      const up = (scales.bottom - (event.clientY - box.top)) / (scales.bottom - TOP);
       return [Math.min(Math.max(share, 0), 1) * scales.duration, Math.min(Math.max(up, 0), 1) * scales.top];
     },
     say(text, phase) {
