@@ -138,7 +138,7 @@ def test_a_fault_stands_under_its_row_and_a_button_mends_it(watched: Watched) ->
     accessible(page)
     page.click("#why button:has-text('unit of Heater')")
     assert page.evaluate("document.activeElement.dataset.control") == "unit:Heater"
-    page.click("text=Read as K")
+    page.click("button:text-is('Read as K')")
     page.wait_for_selector("tr.fault", state="detached")
     assert page.locator('[data-control="unit:Heater"]').input_value() == "K"
     page.click("#files li:has-text('notes.pdf') >> text=Remove")

@@ -19,7 +19,7 @@ from hersey.units import parse
 
 #: Units in which a person may answer, by question; the first is that of the form.
 UNITS = {
-    "drivetrain.stiffness": ("stiffness", ["N/mm", "N/m", "kN/m", "lbf/in"], (0.1, 1000)),
+    "drivetrain.stiffness": ("stiffness", ["N/mm", "N/m", "kN/m", "lbf/in"], (2, 1000)),
     "drivetrain.mass": ("mass", ["kg", "g", "lb"], (0.1, 1000)),
     "drivetrain.roll_radius": ("length", ["mm", "m", "in"], (0.5, 50)),
     "drivetrain.stick_speed": ("belt speed", ["mm/s", "in/s", "m/s"], (0.001, 9)),

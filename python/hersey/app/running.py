@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from datetime import UTC, datetime
@@ -41,18 +40,14 @@ def run(request: Mapping[str, Any], step: Step) -> dict[str, Any]:
     """
     machine = None if request["machine"] is None else read_machine(request["machine"])
     points = _points(request, machine, step)
-    given: dict[str, Any] = {
-        "machine_file": None if machine is None else Path(request["machine"]),
-        "made": datetime.now(UTC).isoformat(timespec="seconds"),
-        "step": _shared(step, 0 if machine is None else len(machine.points)),
-    }
-    known = inspect.signature(analyse).parameters
     document = analyse(
         points.log,
         points,
         command=request["command"],
         machine=machine,
-        **{name: value for name, value in given.items() if name in known},
+        machine_file=None if machine is None else Path(request["machine"]),
+        made=datetime.now(UTC).isoformat(timespec="seconds"),
+        step=_shared(step, 0 if machine is None else len(machine.points)),
     )
     step("drawing the page", _DRAWING)
     write_atomically(Path(request["report"]), render(document), overwrite=True)
