@@ -189,6 +189,17 @@ def test_the_radius_of_a_friction_force_is_given_in_words_of_its_reader(tmp_path
     assert 'value = "25 mm"' in one.mapping_file()
 
 
+def test_a_motor_s_current_becomes_a_torque(tmp_path: Path) -> None:
+    one = dropped(tmp_path, log("Time [s],Motor [A],Speed [rpm],Temperature [degC]"))
+    one.choose({"roles": {"Motor": "torque"}})
+    one.check()
+    assert only(one).at == "field:torque.motor_constant"
+    one.choose({"corrections": {"torque.motor_constant": "35"}})
+    one.check()
+    assert one.faults == []
+    assert 'motor_constant = "35 mN*m/A"' in one.mapping_file()
+
+
 def test_a_log_that_is_unlike_the_first_says_so(tmp_path: Path) -> None:
     one = dropped(tmp_path, log(), log("Time [s],Moment [N*m],Speed [rpm],Temperature [degC]"))
     fault = only(one)

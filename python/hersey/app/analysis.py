@@ -167,6 +167,7 @@ class Analysis:
             **self.options,
             "every": self.corrections.get("time.every", ""),
             "radius": self.corrections.get("radius.value", ""),
+            "motor_constant": self.corrections.get("torque.motor_constant", ""),
         }
         faults = channel_faults(logs[0].look, self.choices, options)
         used = {name for name, choice in self.choices.items() if choice["role"] in ROLES}

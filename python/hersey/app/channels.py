@@ -72,7 +72,8 @@ def channel_faults(
     choices
         ``role`` and ``unit`` of each channel by name.
     options
-        ``isothermal``, ``drop_missing``, ``every``, ``radius`` (texts; empty where nothing is said).
+        ``isothermal``, ``drop_missing``, and texts, empty where nothing is said: ``every``, ``radius``,
+        ``motor_constant``.
     """
     channels = {channel["name"]: channel for channel in look["channels"]}
     faults: list[Fault] = []
@@ -240,6 +241,10 @@ def _unit_faults(role: str, channel: Mapping[str, Any], unit: str, options: Mapp
                 {"units": {name: usual}},
             )
         ]
+    if role == "torque" and unit in ("A", "mA"):
+        text = f"“{name}” is a current: the constant of the motor makes a torque of it."
+        at, said = "field:torque.motor_constant", "A motor's current needs its motor constant."
+        return [] if options["motor_constant"].strip() else [Fault(at, said, text, "motor constant")]
     try:
         kind, line = role_conversion(role, unit)
     except UnitError as error:

@@ -20,8 +20,8 @@ from hersey.report.page import render
 
 Step = Callable[[str, float | None], None]
 #: Share of the whole at which each step begins, as it is for a log of some minutes.
-_READING, _DWELLS, _PLANS, _DRAWING = 0.0, 0.1, 0.5, 0.95
-_BEGINS = {"fitting the surface": 0.15, "judging the regime": 0.25, "finding the bands": 0.35}
+_READING, _DWELLS, _PLANS, _DRAWING = 0.1, 0.2, 0.5, 0.93
+_BEGINS = {"fitting the surface": 0.25, "judging the regime": 0.32, "finding the bands": 0.45}
 
 
 def run(request: Mapping[str, Any], step: Step) -> dict[str, Any]:
@@ -103,7 +103,7 @@ def _log(request: Mapping[str, Any], paths: list[Path], step: Step) -> TorqueLog
         return replace(table, sensors=mapping.sensors)
 
     def progress(done: int, total: int) -> None:
-        step("reading", _DWELLS * done / max(total, 1))
+        step("reading", _READING + (_DWELLS - _READING) * done / max(total, 1))
 
     done = read_with_mapping(
         paths,

@@ -19,7 +19,7 @@ from hersey.errors import HerseyError, OutputError
 from hersey.files.writing import write_atomically
 
 #: Share of a run from which on the rest can be told.
-_TELLING = 0.2
+_TELLING = 0.25
 #: Analyses that run beside each other.
 _AT_ONCE = max(1, (os.cpu_count() or 1) // 2)
 
