@@ -95,6 +95,7 @@ def machine_law() -> tuple[hersey.Drivetrain, list[tuple[Any, dict[str, Any]]]]:
     from hersey.machine import read_machine
 
     stated = read_machine("examples/machine.toml")
+    assert stated.rest is not None
     log = hersey.read("examples/bench.csv").steady(tare="standing").without(stated.rest)
     surface, rng = hersey.fit(log), np.random.default_rng(1)
     train, laws = stated.limits.gripping(stated.train), []
