@@ -175,22 +175,69 @@ def test_a_safe_speed_beyond_the_drive_is_not_asked_for(
     assert said.points[-1].words.startswith("faster than the drive")
     bare = decide(replace(slow, points=()))
     assert bare.signal == "act"
-    assert "come from above" in bare.instruction
+    safe = figures(1e3 * float(map_.upper_interval[1, -1]), up=True)
+    assert f"give the drive {safe} mm/s: up to its 60 mm/s" in bare.instruction
+    assert "[[points]]" in bare.otherwise
 
 
-def test_a_belt_that_is_not_started_comes_first(document: Analysis) -> None:
-    said = document.decision
-    assert said is not None
+def _with_limit(map_: OperatingMap, share: float, by: str = "motor torque") -> OperatingMap:
+    """The map of a drive that bears a share of the way from the least to the most that a belt may ask."""
+    low, high = map_.holding_interval[:, -1]
+    return replace(map_, torque_limit=float(low + share * (high - low)), limited_by=by)
+
+
+@pytest.mark.parametrize(("share", "signal"), [(-0.1, "act"), (0.2, "watch"), (0.9, "watch"), (1.1, "good")])
+def test_a_start_is_as_sure_as_the_drag_of_a_belt_at_rest(
+    decide: Decide, found: Behaviour, map_: OperatingMap, share: float, signal: str
+) -> None:
+    """By the interval, whatever the estimate says: good above it, act below it, watch within."""
+    fast = tuple(each for each in found.points if each.point.speed == FAST)
+    said = decide(replace(found, points=fast, map=_with_limit(map_, share)))
+    assert said.signal == said.points[0].signal == signal
+    if signal == "watch":
+        assert "make sure that it starts: a belt at rest bears" in said.instruction
+        assert "but may not start: a belt at rest bears" in said.points[0].words
+        assert said.flags[0].title == "The motor may not start the belt."
+
+
+def test_a_wider_stick_speed_widens_what_a_belt_at_rest_bears(
+    surface: DampingSurface, machine: Machine, map_: OperatingMap
+) -> None:
+    exact = operating_map(surface, machine.train, **machine.belt, temperatures=[HOT - 10, HOT], draws=40)
+    (low, high), (least, most) = exact.holding_interval[:, -1], map_.holding_interval[:, -1]
+    assert least < low <= float(exact.holding[-1]) <= high < most
+    # A = e F(v_s): by the ends of the range of the stick speed, a factor of ten
+    power = -1.0 - surface.transition.mixed_exponent.value  # type: ignore[union-attr]
+    assert most / least == pytest.approx(10.0**power, rel=0.25)
+
+
+def test_v_star_is_that_of_the_draws_that_start(
+    surface: DampingSurface, machine: Machine, map_: OperatingMap
+) -> None:
+    """Draws that the grip does not start have no V*, and do not draw its interval down."""
+    grip = float(map_.holding[-1]) / machine.roll_radius
+    tight = operating_map(
+        surface,
+        replace(machine.train, grip=grip),
+        **machine.belt,
+        uncertainty=machine.uncertainty,
+        temperatures=[HOT - 10, HOT],
+        draws=40,
+    )
+    assert np.all(tight.upper_interval[0] > 1.1 * tight.transition)
+
+
+def test_a_belt_that_is_not_started_comes_first(decide: Decide, found: Behaviour, map_: OperatingMap) -> None:
+    said = decide(replace(found, map=_with_limit(map_, -0.2, "roll friction")))
     assert said.signal == "act"
     assert said.instruction.startswith("At 180 °C let the roll grip more than ")
-    assert [point.signal for point in said.points] == ["act", "act"]
-    assert said.points[0].words.startswith("not started: a belt at rest bears ")
+    assert {point.signal for point in said.points} == {"act"}
+    assert said.points[-1].words.startswith("not started: a belt at rest bears ")
     assert any(flag.title == "The roll slips at the start." for flag in said.flags)
 
 
 def test_a_motor_that_is_too_weak_is_named(decide: Decide, found: Behaviour, map_: OperatingMap) -> None:
-    weak = replace(map_, torque_limit=0.9 * float(map_.holding[-1]), limited_by="motor torque")
-    said = decide(replace(found, map=weak))
+    said = decide(replace(found, map=_with_limit(map_, -0.1)))
     assert "give the roll more than" in said.instruction
     assert said.flags[0].title == "The motor does not start the belt."
 

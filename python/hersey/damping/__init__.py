@@ -2,6 +2,7 @@
 
 =============  =========================================================
 dwells         dwells, reduced to steady points with honest errors
+distributions  Student's t and the like, from scipy.special
 estimate       a number with its uncertainty
 distributions  quantiles and tails of normal, t, F and chi-square laws
 rest           the rest of the drive: what it takes besides the film

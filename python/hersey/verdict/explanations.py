@@ -8,6 +8,7 @@ sole film listed and one exponent holds over all the speeds.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import NamedTuple
@@ -39,6 +40,8 @@ FORMULA = 0.01
 CONSTANT = " + constant torque"
 COULOMB_VISCOUS, STRIBECK = "Coulomb + viscous", "Stribeck curve"
 THINNING, HEATING, OTHER = "shear thinning", "shear heating", "other curvature"
+#: A logarithm beyond this is that of nothing, or of no bound.
+_ANYTHING = 1e3
 UNTRIED, POWER = "film" + CONSTANT, "one power of speed"
 _WORDS = {
     POWER: "one power of speed",
@@ -171,7 +174,8 @@ def _laws_tried(fitted: list[_Fitted]) -> tuple[Tried, ...]:
             verdict = "less likely"
         else:
             verdict = "no more than the film alone"
-        values = dict(zip(fit.law.names, fit.values.tolist(), strict=True))
+        told = [value if abs(value) < _ANYTHING else math.nan for value in fit.values.tolist()]
+        values = dict(zip(fit.law.names, told, strict=True))
         out.append(Tried(said.name, values, said.constant_share, fit.aicc, p, verdict))
     return tuple(out)
 

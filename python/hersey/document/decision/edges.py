@@ -30,13 +30,24 @@ class Edge:
 
 @dataclass(frozen=True)
 class Edges:
-    """Transition and V* at a temperature; ``greatest`` is the speed (m/s) that the drive reaches."""
+    """Transition and V* at a temperature; ``greatest`` is the speed (m/s) that the drive reaches.
+
+    ``holding`` is what a belt at rest bears (N m), ``limit`` what the drive can. V* has no estimate (not a
+    number) where the nominal belt is not started.
+    """
 
     transition: Edge
     fold: Edge
     greatest: float
-    holding: float
-    starts: bool
+    holding: Edge
+    limit: float
+
+    @property
+    def starts(self) -> bool | None:
+        """Whether the drive starts a belt at rest; None where it may or may not."""
+        if self.holding.high <= self.limit:
+            return True
+        return False if self.holding.low > self.limit else None
 
     @property
     def safe(self) -> float:
@@ -56,12 +67,17 @@ def edges_of(map_: OperatingMap, kelvin: float | None) -> Edges:
     fold = _ends(map_, map_.upper_interval, kelvin)
     upper, far = max(state.upper, state.transition), _TOLD * state.transition
     stall = _at(map_, map_.stall_above, kelvin)
+    bears = _ends(map_, map_.holding_interval, kelvin)
+    limit = math.inf if map_.torque_limit is None else map_.torque_limit
+    edge = Edge(upper, min(fold[0], upper), max(fold[1], upper))
+    if state.holding > limit >= bears[0]:  # the bands of a belt that is not started are none of one that is
+        edge = Edge(math.nan, max(fold[0], state.transition), max(fold[1], state.transition))
     return Edges(
         transition=Edge(state.transition, min(turn[0], state.transition), max(turn[1], state.transition)),
-        fold=Edge(upper, min(fold[0], upper), math.inf if fold[1] > far else max(fold[1], upper)),
+        fold=edge if edge.high <= far else Edge(edge.value, edge.low, math.inf),
         greatest=min(map_.speed_limit or math.inf, stall),
-        holding=state.holding,
-        starts=state.starts,
+        holding=Edge(state.holding, min(bears[0], state.holding), max(bears[1], state.holding)),
+        limit=limit,
     )
 
 

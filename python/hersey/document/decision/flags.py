@@ -9,9 +9,9 @@ from hersey.damping.dwells.doubtful import doubtful_order, doubtful_tare
 from hersey.damping.surface import DampingSurface
 from hersey.document.decision.behaviour import Behaviour
 from hersey.document.decision.edges import edges_of
-from hersey.document.decision.words import at, figures, listed, mm, signed
+from hersey.document.decision.words import at, bearing, figures, listed, mm, signed
 from hersey.document.parts import CarriedPart, FilmPart, RegimePart
-from hersey.document.parts.decision import FlagPart
+from hersey.document.parts.decision import FlagPart, Signal
 from hersey.log.doubtful import doubtful_units
 from hersey.stability.operating_map import OperatingMap
 
@@ -69,14 +69,16 @@ def _contradictions(film: FilmPart | None, carried: CarriedPart | None) -> list[
 def _of_machine(found: Behaviour, map_: OperatingMap) -> list[FlagPart]:
     edges, kelvin = edges_of(map_, found.temperature), found.temperature
     out = []
-    if not edges.starts:
-        gives = "motor" if map_.limited_by == "motor torque" else "grip"
-        text = (
-            f"{at(kelvin)}a belt at rest bears {figures(edges.holding)} N·m, the {gives} "
-            f"{figures(map_.torque_limit or 0.0)}."
-        )
-        title = "The motor does not start the belt." if gives == "motor" else "The roll slips at the start."
-        out.append(FlagPart(signal="act", title=title, text=_sentence(text), section="band"))
+    if edges.starts is not True:
+        held, motor = edges.holding, map_.limited_by == "motor torque"
+        bears = bearing(held.low, held.value, held.high, edges.limit, map_.limited_by)
+        surely = edges.starts is False
+        title = f"The roll {'slips' if surely else 'may slip'} at the start."
+        if motor:
+            title = f"The motor {'does' if surely else 'may'} not start the belt."
+        signal: Signal = "act" if surely else "watch"
+        text = _sentence(f"{at(kelvin)}{bears}.")
+        out.append(FlagPart(signal=signal, title=title, text=text, section="band"))
     stick = found.stick_speeds
     if stick is not None and edges.bistable:
         upper = np.array(stick.upper)
@@ -105,7 +107,8 @@ def _plans(found: Behaviour) -> list[FlagPart]:
     for each in found.points:
         if each.plan is not None and not each.plan.found:
             text = _sentence("; ".join(obstacle.text for obstacle in each.plan.obstacles)) + "."
-            title = f"No start for {each.point.name}."
+            below = any(obstacle.limit == "target_speed" for obstacle in each.plan.obstacles)
+            title = f"{'No plan' if below else 'No start'} for {each.point.name}."
             out.append(FlagPart(signal="act", title=title, text=text, section="plan"))
     return out
 

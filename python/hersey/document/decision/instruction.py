@@ -8,13 +8,15 @@ from dataclasses import dataclass
 from hersey.damping.surface import DampingSurface
 from hersey.document.decision.behaviour import Behaviour, PointBehaviour
 from hersey.document.decision.edges import Edge, Edges, edges_of
-from hersey.document.decision.words import at, degrees, figures, mm, roll, signed, within
+from hersey.document.decision.words import at, bearing, between, degrees, figures, mm, roll, signed, within
 from hersey.document.parts import RegimePart
 from hersey.document.parts.decision import Signal
 from hersey.stability.operating_map import OperatingMap
 
 #: Temperatures that are alike, K.
 _ALIKE = 0.5
+#: Starts that are named in one sentence.
+_NAMED = 2
 #: p-value of one exponent over all speeds, below which it does not hold.
 _SURE = 0.05
 
@@ -34,7 +36,7 @@ def of_machine(found: Behaviour, map_: OperatingMap) -> Instruction:
     kelvin = found.temperature
     edges = edges_of(map_, kelvin)
     where, fold, turn = at(kelvin), edges.fold, edges.transition
-    if not edges.starts:
+    if edges.starts is False:
         return _not_started(where, edges, map_)
     interval = _interval("V* is", fold) if edges.bistable else _interval("the transition is", turn)
     starts = _starts(found, kelvin)
@@ -42,13 +44,23 @@ def of_machine(found: Behaviour, map_: OperatingMap) -> Instruction:
         lead = _lead(where, "measure the stick speed before you count on a start from rest")
         return Instruction("watch", lead, interval, _otherwise(edges, starts))
     if edges.safe > edges.greatest:
-        planned = any(each.plan is not None and each.plan.found for each in found.points)
-        what = "start as the plan says" if planned else f"come from above {mm(turn.high)} mm/s"
-        why = f"no speed up to {mm(edges.greatest)} mm/s, the most that the drive gives, is surely smooth"
-        lead = _lead(where, f"{what}: {why}")
-        return Instruction("watch" if planned else "act", lead, interval, _otherwise(edges, starts))
-    lead = _lead(where, f"run above {_up(edges.safe)} mm/s")
-    return Instruction("good", lead, interval, _otherwise(edges, starts))
+        return _out_of_reach(found, where, edges, interval, _otherwise(edges, starts))
+    run = f"run above {_up(edges.safe)} mm/s"
+    if edges.starts is None:
+        text = _lead(where, f"{run}, and make sure that it starts: {_bearing(edges, map_)}")
+        return Instruction("watch", text, interval, _otherwise(edges, starts))
+    return Instruction("good", _lead(where, run), interval, _otherwise(edges, starts))
+
+
+def _out_of_reach(found: Behaviour, where: str, edges: Edges, interval: str, otherwise: str) -> Instruction:
+    """What to do where no speed that the drive reaches is surely smooth."""
+    most = f"{mm(edges.greatest)} mm/s"
+    if any(each.plan is not None and each.plan.found for each in found.points):
+        what = f"start as the plan says: no speed up to {most}, all that the drive gives, is surely smooth"
+        return Instruction("watch", _lead(where, what), interval, otherwise)
+    what = f"give the drive {_up(edges.safe)} mm/s: up to its {most} no speed is surely smooth"
+    more = "" if found.points else " State your speeds as [[points]] for a plan that starts them."
+    return Instruction("act", _lead(where, what), interval, f"{otherwise}{more}")
 
 
 def of_log(surface: DampingSurface, seen: RegimePart) -> Instruction:
@@ -113,14 +125,19 @@ def _local(seen: RegimePart) -> float | None:
 
 
 def _not_started(where: str, edges: Edges, map_: OperatingMap) -> Instruction:
-    holding, limit = figures(edges.holding, up=True), figures(map_.torque_limit or math.nan)
+    holding, limit = figures(edges.holding.high, up=True), figures(edges.limit)
     if map_.limited_by == "motor torque":
         what = f"give the roll more than {holding} N·m: the motor's {limit} N·m do not start a belt at rest"
     else:
         what = f"let the roll grip more than {holding} N·m: at {limit} N·m it slips on a belt at rest"
-    turn = mm(edges.transition.high)
-    moving = "A belt that slides already goes on sliding above" if edges.starts is False else ""
-    return Instruction("act", _lead(where, what), "", f"{moving} {turn} mm/s.")
+    turn = figures(1e3 * edges.transition.high, up=True)
+    otherwise = f"A belt that slides already goes on sliding above {turn} mm/s."
+    return Instruction("act", _lead(where, what), _bearing(edges, map_), otherwise)
+
+
+def _bearing(edges: Edges, map_: OperatingMap) -> str:
+    held = edges.holding
+    return bearing(held.low, held.value, held.high, edges.limit, map_.limited_by)
 
 
 def _otherwise(edges: Edges, starts: str) -> str:
@@ -136,7 +153,8 @@ def _otherwise(edges: Edges, starts: str) -> str:
 def _starts(found: Behaviour, kelvin: float | None) -> str:
     """How the plans start the points that need one."""
     said = [text for each in found.points if (text := _start(each, kelvin))]
-    return f": {'; '.join(said)}" if said else ""
+    more = f"; and {len(said) - _NAMED} more" if len(said) > _NAMED else ""
+    return f": {'; '.join(said[:_NAMED])}{more}" if said else ""
 
 
 def _start(found: PointBehaviour, kelvin: float | None) -> str:
@@ -149,12 +167,14 @@ def _start(found: PointBehaviour, kelvin: float | None) -> str:
         return f"for {goal} overshoot to {mm(plan.peak_speed)} mm/s first (plan)"
     if plan.kind == "direct":
         return f"for {goal} come straight up in {figures(plan.rise)} s (plan)" if plan.rise else ""
+    if any(each.limit == "target_speed" for each in plan.obstacles):
+        return f"{goal} may lie below the transition"
     return f"for {goal} no start within the limits works"
 
 
 def _interval(what: str, edge: Edge) -> str:
     if edge.told:
-        return f"{what} {mm(edge.value)} {within(edge.low, edge.high, 1e3)} mm/s"
+        return between(what, edge.value, edge.low, edge.high)
     least = figures(1e3 * edge.low, up=False)
     value = f"{mm(edge.value)} mm/s" if math.isfinite(edge.value) else "not found"
     return f"{what} {value}, at least {least}; its upper end is not told"

@@ -8,7 +8,7 @@ import numpy as np
 
 from hersey.document.decision.behaviour import PointBehaviour
 from hersey.document.decision.edges import Edges, edges_of
-from hersey.document.decision.words import figures, mm, within
+from hersey.document.decision.words import bearing, between, figures, mm
 from hersey.document.parts.decision import PointDecisionPart, Signal, StartPart
 from hersey.document.parts.stability import DisturbancePart, PlanPart, StepPart
 from hersey.document.thinning import kept
@@ -52,26 +52,31 @@ def point_decision(found: PointBehaviour, map_: OperatingMap) -> PointDecisionPa
 
 def _judged(found: PointBehaviour, state: MapState, edges: Edges, map_: OperatingMap) -> tuple[Signal, str]:
     speed, fold, turn = found.point.speed, edges.fold, edges.transition
+    transition = between("the transition is", turn.value, turn.low, turn.high)
+    upper = between("V* is", fold.value, fold.low, fold.high)
+    held = edges.holding
+    bears = bearing(held.low, held.value, held.high, edges.limit, map_.limited_by)
     if map_.speed_limit is not None and speed > map_.speed_limit:
         return "act", f"faster than the drive, {mm(map_.speed_limit)} mm/s"
-    if not state.starts:
-        return "act", f"not started: {_beyond(map_, 'a belt at rest bears', state.holding)}"
-    if state.state in ("stall", "motor"):
+    if edges.starts is False:
+        return "act", f"not started: {bears}"
+    if state.torque > edges.limit:
         return "act", f"stalls: {_beyond(map_, 'sliding takes', state.torque)}"
-    if state.state in ("stick_slip", "swing"):
-        return (
-            "act",
-            f"sticks: below the transition, {mm(turn.value)} {within(turn.low, turn.high, 1e3)} mm/s",
-        )
+    if speed < state.transition:
+        return "act", f"sticks: {transition}"
+    if edges.starts is None:
+        if speed >= edges.safe:
+            return "watch", f"smooth once it slides, but may not start: {bears}"
+        return "watch", f"may not start: {bears}; {upper}"
     if state.state == "smooth":
         if speed >= edges.safe:
             return "good", "smooth from any start"
-        ends = within(fold.low, fold.high, 1e3)
-        return "watch", f"smooth by the estimate; V* is {mm(fold.value)} {ends} mm/s"
-    near = f"; the transition is {mm(turn.value)} {within(turn.low, turn.high, 1e3)} mm/s"
-    doubt = near if speed < turn.high else ""
+        return "watch", f"smooth by the estimate; {upper}"
+    doubt = f"; {transition}" if speed < turn.high else ""
     if found.plan is None:
         return "watch", f"depends: only from above{doubt}"
+    if not found.plan.found and any(each.limit == "target_speed" for each in found.plan.obstacles):
+        return "act", f"may stick: no plan, for it may lie below the transition; {transition}"
     if not found.plan.found:
         return "act", f"depends: only from above, and no start within the limits gets there{doubt}"
     way = "only from above" if found.plan.kind == "overshoot" else "only if it starts gently"

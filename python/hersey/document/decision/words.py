@@ -56,6 +56,22 @@ def within(low: float, high: float, factor: float) -> str:
     return f"[{figures(low * factor, up=False)}, {figures(high * factor, up=True)}]"
 
 
+def between(what: str, value: float, low: float, high: float) -> str:
+    """Return a speed (m/s) with its interval in mm/s; the interval alone where there is no estimate."""
+    if math.isnan(value):
+        ends = figures(1e3 * low, up=False), figures(1e3 * high, up=True)
+        return f"{what} {ends[0]} to {ends[1]} mm/s"
+    return f"{what} {mm(value)} {within(low, high, 1e3)} mm/s"
+
+
+def bearing(low: float, value: float, high: float, limit: float, by: str) -> str:
+    """Return what a belt at rest bears beside what the drive does, N m; ``by`` is what limits it."""
+    ends = within(low, high, 1.0) if low < high else ""
+    gives = "the motor gives" if by == "motor torque" else "the roll grips"
+    said = " ".join(filter(None, ("a belt at rest bears", figures(value), ends, "N·m")))
+    return f"{said}, {gives} {figures(limit)}"
+
+
 def listed(parts: list[str]) -> str:
     """Return parts as a sentence lists them."""
     return parts[0] if len(parts) == 1 else f"{', '.join(parts[:-1])} and {parts[-1]}"

@@ -15,7 +15,7 @@ class DisturbancePart(Part):
 
     drive_speed: float
     kick: float | None = Field(description="sudden loss of belt speed, m/s")
-    step: float | None = Field(description="sudden fall of the drive speed, m/s")
+    step: float | None = Field(description="sudden fall of the drive from so much faster to this speed, m/s")
 
 
 class StepPart(Part):
@@ -91,6 +91,7 @@ class MapPart(Part):
     stall_above: Holed
     torque: list[Numbers] = Field(description="of steady sliding, N m, shape (n, m)")
     holding: Numbers = Field(description="what a belt at rest bears, N m, shape (n,)")
+    holding_interval: list[Holed] = Field(default=[], description="95 %, N m, shape (2, n)")
     torque_limit: float | None = Field(description="N m")
     limited_by: str
     speed_limit: float | None = Field(description="m/s")

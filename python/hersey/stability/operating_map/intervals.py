@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import asdict
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -25,8 +25,23 @@ DRAWS, FOLD_DRAWS = 1000, 200
 FOLD_TEMPERATURES = 13
 #: Transition speeds at which the search for V* ends.
 _FARTHEST = 1e4
+#: Share of the draws that must start the belt for V* to be told of these alone.
+_COUNTED = 0.1
 #: Drawn stick speeds stay below this share of the transition speed drawn with them.
 _BELOW = 0.999
+
+
+class Intervals(NamedTuple):
+    """95 % of the draws at each temperature, shape (2, n): speeds in m/s, what a belt at rest bears in N m.
+
+    V* is that of the draws that start, where a tenth of them do.
+    """
+
+    transition: FloatArray
+    upper: FloatArray
+    holding: FloatArray
+    uncertain: tuple[str, ...]
+    warnings: tuple[str, ...]
 
 
 def intervals(
@@ -40,8 +55,8 @@ def intervals(
     seed: int,
     draws: int,
     threads: int,
-) -> tuple[FloatArray, FloatArray, tuple[str, ...], tuple[str, ...]]:
-    """Intervals of the transition speed and of V*, shape (2, n) each, what was varied, and warnings."""
+) -> Intervals:
+    """Return the intervals at each temperature, from draws of the fit and of what is uncertain beside it."""
     said: dict[str, None] = {}
 
     def samples(t: float | None, count: int) -> dict[str, FloatArray]:
@@ -66,7 +81,7 @@ def intervals(
     few = levels
     if kelvin is not None and kelvin.size > FOLD_TEMPERATURES:
         few = np.linspace(kelvin[0], kelvin[-1], FOLD_TEMPERATURES).tolist()
-    ratios = []
+    ratios, holdings = [], []
     for t in few:
         law, map_ = law_at(drag, t, rule), samples(t, draws)
         stick = (
@@ -89,15 +104,31 @@ def intervals(
         require_all(band)
         # without stick-slip the belt slides from the transition speed up, if anything moves it
         upper = np.where(band.columns["upper"] > 0, band.columns["upper"], band.columns["transition"])
-        low, high = _middle(upper / law.transition_speed)
+        starts = ~band.columns["stalls"]  # a belt that is not started has no V*
+        counted = upper[starts] if np.count_nonzero(starts) >= _COUNTED * draws else upper
+        low, high = _middle(counted / law.transition_speed)
         ratios.append((min(low, _FARTHEST), min(high, _FARTHEST)))
-    upper = np.array(ratios).T
+        holdings.append(_middle(_holding(law, stick, map_)))
+    upper, holding = np.array(ratios).T, np.array(holdings).T
     if kelvin is not None:
-        upper = np.array(
-            [np.exp(np.interp(kelvin, np.array(few, dtype=float), np.log(edge))) for edge in upper]
+        at = np.array(few, dtype=float)
+        upper, holding = (
+            np.array([np.exp(np.interp(kelvin, at, np.log(edge))) for edge in ends])
+            for ends in (upper, holding)
         )
     bend = np.array([law.transition_speed for law in laws_at(drag, kelvin, rule)])
-    return transition, upper * bend, tuple(uncertainties), tuple(said)
+    return Intervals(transition, upper * bend, holding * roll_radius, tuple(uncertainties), tuple(said))
+
+
+def _holding(law: Drag, stick: FloatArray, drawn: Mapping[str, FloatArray]) -> FloatArray:
+    """What a belt at rest bears (N) in each draw; unless stated it goes as the drag at the stick speed."""
+    rest = law.holding_force - law.breakaway_force
+    if law.static_force is not None:
+        return np.full(drawn["transition_force"].size, law.holding_force)
+    nominal = law.transition_force * (law.stick_speed / law.transition_speed) ** (1.0 + law.mixed_exponent)
+    power = 1.0 + drawn["mixed_exponent"]
+    slow = drawn["transition_force"] * (stick / drawn["transition_speed"]) ** power
+    return np.asarray(law.breakaway_force * slow / nominal + rest)
 
 
 def _middle(values: FloatArray) -> tuple[float, float]:

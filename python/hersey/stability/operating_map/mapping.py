@@ -119,7 +119,7 @@ def operating_map(
     laws = laws_at(drag, kelvin, stick_speed_rule)
     limit, limited_by = torque_limit(train.grip, limits.motor_torque, roll_radius)
     below, above = contour(laws, np.inf if limit is None else limit / roll_radius)
-    transition_interval, upper_interval, uncertain, warned = intervals(
+    found = intervals(
         surface,
         train,
         drag,
@@ -135,19 +135,20 @@ def operating_map(
         temperature=kelvin,
         speed=speed_grid,
         **edges,
-        transition_interval=transition_interval,
-        upper_interval=upper_interval,
+        transition_interval=found.transition,
+        upper_interval=found.upper,
         stall_below=below,
         stall_above=above,
         torque=np.array([law.force(speed_grid) for law in laws]) * roll_radius,
         holding=np.array([law.holding_force for law in laws]) * roll_radius,
+        holding_interval=found.holding,
         torque_limit=limit,
         limited_by=limited_by,
         speed_limit=limits.speed,
         measured_temperature=surface.temperature_range if drag.varies_with_temperature else None,
         measured_speed=reach,
         points=(),
-        uncertain=uncertain,
+        uncertain=found.uncertain,
         warnings=(),
         roll_radius=float(roll_radius),
         train=train,
@@ -155,7 +156,7 @@ def operating_map(
         stick_speed_rule=stick_speed_rule,
     )
     placed = tuple(_placed(map_, point) for point in points)
-    return replace(map_, points=placed, warnings=(*warned, *_remarks(map_, placed)))
+    return replace(map_, points=placed, warnings=(*found.warnings, *_remarks(map_, placed)))
 
 
 def torque_limit(

@@ -35,7 +35,8 @@ class OperatingMap(Result):
     ``stall_above`` up (infinite if never) and, on the falling branch, up to ``stall_below`` (0 if never).
     ``torque`` in N m, shape (n, m), is that of steady sliding at ``speed``, shape (m,). The measured ranges
     bound the dwells. ``holding`` (N m, shape (n,)) is what a belt at rest bears, the rest of the drive
-    counted: where it exceeds ``torque_limit`` the drive does not start the belt. The bands are those of the
+    counted: where it exceeds ``torque_limit`` the drive does not start the belt;
+    ``holding_interval`` counts what that of V* does. The bands are those of the
     roll with its grip (``train``), on which the belt slips where a lap asks for more; ``lower`` is zero where
     no belt sticks and slips in turn, as one that sticks is held for good. ``stick_speed_rule`` says how the
     stick speed goes with temperature.
@@ -52,6 +53,7 @@ class OperatingMap(Result):
     stall_above: FloatArray
     torque: FloatArray
     holding: FloatArray
+    holding_interval: FloatArray
     torque_limit: float | None
     limited_by: str
     speed_limit: float | None
