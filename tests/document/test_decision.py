@@ -298,6 +298,22 @@ def test_no_falling_branch_says_how_far_down() -> None:
     assert any(part.file == "hersey.toml" for part in falling.decision.missing)
 
 
+def test_a_law_that_does_not_hold_is_never_called_safe(machine: Machine) -> None:
+    """Dwells of several temperatures fitted without: scatter hides the falling branches of each."""
+    speeds = np.geomspace(1.0, 30.0, 12)
+    levels = [speeds**0.3 + (turn / speeds) ** 1.5 for turn in (0.5, 1.0, 2.0, 4.0)]
+    heights = (4.0, 2.0, 1.0, 0.5)
+    torques = np.concatenate([0.2 * h * level for h, level in zip(heights, levels, strict=True)])
+    document = _table(np.tile(speeds, 4), torques, replace(machine, uncertainty={}, rest=None))
+    said = document.decision
+    assert said is not None
+    assert document.fit.transition is None
+    assert said.signal == "watch"
+    assert "nothing sticks" not in said.instruction
+    assert [point.name for point in said.points] == list(_POINTS)
+    assert {point.signal for point in said.points} == {"watch"}
+
+
 def test_one_temperature_is_not_named(points: hersey.SteadyPoints, machine: Machine) -> None:
     """An isothermal fit with a machine: the sentence begins with what to do."""
     hot = points.column("temperature") > points.column("temperature").max() - 5.0
@@ -326,7 +342,7 @@ def test_what_cannot_be_computed_is_said(
     assert "planning thick paper" in steps
     said = decide(found)
     assert "rpm" in said.instruction
-    assert said.points == []
+    assert {point.words for point in said.points} == {"not judged: there is no map"}
     assert any("the bands cannot be computed: set 3" in flag.text.lower() for flag in said.flags)
     assert found.points[1].reason.startswith("the bands cannot")
     assert found.stick_speeds is not None

@@ -8,7 +8,7 @@ from hersey.document.decision.behaviour import Behaviour
 from hersey.document.decision.flags import flags
 from hersey.document.decision.instruction import of_log, of_machine
 from hersey.document.decision.missing import missing
-from hersey.document.decision.points import point_decision, worst
+from hersey.document.decision.points import point_decision, points_of_log, worst
 from hersey.document.parts import CarriedPart, DecisionPart, FilmPart, RegimePart
 from hersey.document.parts.decision import Signal
 from hersey.machine.machine import Machine
@@ -32,7 +32,12 @@ def decision(
     """
     map_ = None if found is None else found.map
     said = of_log(surface, seen) if found is None or map_ is None else of_machine(found, map_)
-    of_points = [] if found is None or map_ is None else [point_decision(p, map_) for p in found.points]
+    if found is not None and map_ is not None:
+        of_points = [point_decision(point, map_) for point in found.points]
+    elif machine is not None:
+        of_points = points_of_log(surface, machine, said.signal, falls=surface.transition is not None)
+    else:
+        of_points = []
     against = flags(points, surface, seen, film, carried, found, why)
     signals: list[Signal] = [said.signal, *(point.signal for point in of_points)]
     signals += [flag.signal for flag in against if flag.signal == "act"]

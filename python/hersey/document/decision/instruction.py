@@ -15,6 +15,8 @@ from hersey.stability.operating_map import OperatingMap
 
 #: Temperatures that are alike, K.
 _ALIKE = 0.5
+#: Scatter of dwells about one law, from which it cannot be counted on.
+_FAR_OFF = 0.1
 #: Starts that are named in one sentence.
 _NAMED = 2
 #: p-value of one exponent over all speeds, below which it does not hold.
@@ -108,12 +110,32 @@ def _one_branch(surface: DampingSurface, seen: RegimePart) -> Instruction:
             f"exponent of damping {signed(slow)} at the slow end, {signed(c.value)} over all",
             "Where torque falls with speed the drive can stick and slip; no transition is told.",
         )
+    if doubt := _doubt(surface, seen):
+        what = "Fit with temperature" if surface.b is None else f"Record more dwells near {low} rpm"
+        return Instruction(
+            "watch", f"{what}: {doubt}", interval, "Whether torque falls anywhere is not told: it may stick."
+        )
     return Instruction(
         "good",
         f"Keep the roll at {low} rpm or faster: no falling branch down to there, so nothing sticks",
         interval,
         f"Slower than {low} rpm is not known.",
     )
+
+
+def _doubt(surface: DampingSurface, seen: RegimePart) -> str:
+    """Why one rising law cannot be counted on to hold down to the slowest dwell; nothing where it can."""
+    lack, scatter = seen.lack_of_fit, surface.statistics.scatter
+    if scatter > _FAR_OFF:
+        return f"dwells stand {100 * scatter:.0f} % off one law"
+    if lack is None:
+        return "too few speeds tell whether one law holds"
+    tested = (lack.curvature, lack.exponent_with_temperature, lack.temperature)
+    if any(p is not None and p < _SURE for p in tested):
+        return "one law does not hold over all dwells"
+    if not (surface.c.told and surface.c.low > -1.0):
+        return "that torque rises with speed is not sure"
+    return ""
 
 
 def _local(seen: RegimePart) -> float | None:

@@ -6,12 +6,14 @@ import math
 
 import numpy as np
 
+from hersey.damping.surface import DampingSurface
 from hersey.document.decision.behaviour import PointBehaviour
 from hersey.document.decision.edges import Edges, edges_of
 from hersey.document.decision.words import bearing, between, figures, mm
 from hersey.document.parts.decision import PointDecisionPart, Signal, StartPart
 from hersey.document.parts.stability import DisturbancePart, PlanPart, StepPart
 from hersey.document.thinning import kept
+from hersey.machine.machine import Machine
 from hersey.result import json_record
 from hersey.stability.operating_map import OperatingMap
 from hersey.stability.operating_map.state import MapState
@@ -48,6 +50,33 @@ def point_decision(found: PointBehaviour, map_: OperatingMap) -> PointDecisionPa
         motion=_motion(found),
         reason=found.reason,
     )
+
+
+def points_of_log(
+    surface: DampingSurface, machine: Machine, signal: Signal, *, falls: bool
+) -> list[PointDecisionPart]:
+    """Return what is said of the points where there is no map: only whether torque falls in the log."""
+    out = []
+    (slowest, fastest), heat = surface.speed_range, surface.temperature_range
+    for point in machine.points:
+        speed = point.speed / machine.roll_radius
+        measured = slowest <= speed <= fastest
+        measured &= heat is None or heat[0] - 1.0 <= point.temperature <= heat[1] + 1.0
+        sure = measured and signal == "good" and not falls
+        if sure:
+            words = "no falling branch there: nothing sticks"
+        else:
+            words = f"not judged: {'there is no map' if measured else 'no dwell lies that far out'}"
+        out.append(
+            PointDecisionPart(
+                name=point.name,
+                speed=point.speed,
+                temperature=point.temperature,
+                signal="good" if sure else "watch",
+                words=words,
+            )
+        )
+    return out
 
 
 def _judged(found: PointBehaviour, state: MapState, edges: Edges, map_: OperatingMap) -> tuple[Signal, str]:
