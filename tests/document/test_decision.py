@@ -156,6 +156,22 @@ def test_a_plan_that_is_impossible_is_something_to_act_on(
     assert said.flags[0].section == "plan"
 
 
+def test_a_point_that_may_lie_below_the_transition_is_not_blamed_on_a_limit(
+    decide: Decide, found: Behaviour, surface: DampingSurface, machine: Machine
+) -> None:
+    """And of many starts two are named in the sentence."""
+    drag = surface.drag(**machine.belt, temperature=HOT)
+    below = plan_profile(machine.train, drag, target_speed=SLOW, limits=machine.limits, roll_radius=0.015)
+    points = [OperatingPoint(f"point {i}", BETWEEN + 1e-3 * i, HOT) for i in range(4)]
+    said = decide(replace(found, points=tuple(PointBehaviour(point, plan=below) for point in points)))
+    assert "for 45 mm/s" not in said.otherwise
+    assert "45 mm/s may lie below the transition; 46 mm/s may lie below the transition; and 2 more" in (
+        said.otherwise
+    )
+    assert said.points[0].words.startswith("may stick: no plan, for it may lie below the transition")
+    assert said.flags[0].title.startswith("No plan for point")
+
+
 def test_v_star_that_is_not_told_gives_no_speed(decide: Decide, found: Behaviour, map_: OperatingMap) -> None:
     wide = map_.upper_interval.copy()
     wide[1] = 1e4 * map_.transition
