@@ -131,7 +131,7 @@ def _analysed(
         found = None if working is None else working.result(step)
         document["simulation"] = _simulation(surface, machine)
     except HerseyError as error:  # a stick speed above the transition, say: the log can be told all the same
-        why = str(error)
+        why = _in_words(error)
     decided = decision(
         points,
         surface,
@@ -144,6 +144,14 @@ def _analysed(
         machine_file="" if machine_file is None else machine_file.name,
     )
     return Analysis(**document, decision=decided, **behaviour_parts(found))
+
+
+def _in_words(error: HerseyError) -> str:
+    """An error of the machine's drag, speeds in mm/s."""
+    if isinstance(error, ParameterError) and error.quantity == "stick_speed" and error.value and error.limit:
+        stated, turn = (f"{1e3 * speed:.3g} mm/s" for speed in (error.value, error.limit))
+        return f"the stick speed, {stated} there, is not below the transition speed, {turn}: state less"
+    return str(error)
 
 
 def _machine_file(path: Path) -> MachineFilePart:

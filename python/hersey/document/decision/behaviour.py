@@ -155,7 +155,8 @@ class Working:
         grid = grid[grid < drag.transition_speed]
         bands = sweep_bands(machine.train, drag, stick_speed=grid, lower=False, threads=os.cpu_count() or 1)
         edges = [bands.columns[name] for name in ("transition", "upper")]
-        upper = np.maximum(*edges)
+        # a belt that is not started has no V*
+        upper = np.where(bands.columns["stalls"], np.nan, np.maximum(*edges))
         return StickSpeeds(drag.stick_speed, known, grid.tolist(), edges[0].tolist(), upper.tolist())
 
     def _at(self, point: OperatingPoint) -> float | None:

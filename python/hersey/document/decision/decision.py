@@ -6,7 +6,7 @@ from hersey.damping.dwells import SteadyPoints
 from hersey.damping.surface import DampingSurface
 from hersey.document.decision.behaviour import Behaviour
 from hersey.document.decision.flags import flags
-from hersey.document.decision.instruction import of_log, of_machine
+from hersey.document.decision.instruction import doubt_of, of_log, of_machine
 from hersey.document.decision.missing import missing
 from hersey.document.decision.points import point_decision, points_of_log, worst
 from hersey.document.parts import CarriedPart, DecisionPart, FilmPart, RegimePart
@@ -35,7 +35,7 @@ def decision(
     if found is not None and map_ is not None:
         of_points = [point_decision(point, map_) for point in found.points]
     elif machine is not None:
-        of_points = points_of_log(surface, machine, said.signal, falls=surface.transition is not None)
+        of_points = points_of_log(surface, machine, rises=_rises(surface, seen))
     else:
         of_points = []
     against = flags(points, surface, seen, film, carried, found, why)
@@ -52,3 +52,8 @@ def decision(
         flags=against,
         missing=missing(points, surface, machine, machine_file),
     )
+
+
+def _rises(surface: DampingSurface, seen: RegimePart) -> bool:
+    """Whether torque surely rises with speed over all dwells."""
+    return surface.transition is None and surface.c.value > -1.0 and not doubt_of(surface, seen)

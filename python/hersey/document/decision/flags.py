@@ -19,6 +19,8 @@ from hersey.stability.operating_map import OperatingMap
 MOST = 3
 #: Measured over stated torque beyond which the file does not make the log.
 _FAR = 2.0
+#: Dwells of a falling branch that are few: a transition is told from four on.
+_FEW = 4
 #: Scatter between dwells that is spoken of.
 _SCATTER = 0.05
 
@@ -34,7 +36,7 @@ def flags(
 ) -> list[FlagPart]:
     """Return the gravest warnings, each with the section of the page that holds its evidence."""
     map_ = None if found is None else found.map
-    out = [*_contradictions(film, carried), *_of_log(points)]
+    out = [*_contradictions(film, carried), *_of_log(points, surface)]
     if why:
         out.append(FlagPart(signal="act", title="No band.", text=f"{_sentence(why)}.", section="band"))
     if found is not None and map_ is not None:
@@ -81,12 +83,23 @@ def _of_machine(found: Behaviour, map_: OperatingMap) -> list[FlagPart]:
         out.append(FlagPart(signal=signal, title=title, text=text, section="band"))
     stick = found.stick_speeds
     if stick is not None and edges.bistable:
-        upper = np.array(stick.upper)
         ends = stick.known or (stick.stick_speed[0], stick.stick_speed[-1])
-        moved = np.exp(np.interp(np.log(ends), np.log(stick.stick_speed), np.log(np.maximum(upper, 1e-12))))
-        within = f"{mm(ends[0])} to {mm(ends[1])} mm/s"
+        within = [
+            upper
+            for speed, upper in zip(stick.stick_speed, stick.upper, strict=True)
+            if ends[0] * (1 - 1e-9) <= speed <= ends[1] * (1 + 1e-9)
+        ]
+        started = [upper for upper in within if np.isfinite(upper)]
+        moves = (
+            f"moves V* from {mm(min(started))} to {mm(max(started))} mm/s" if started else "starts nowhere"
+        )
+        stalled = (
+            f", where the belt starts ({len(started)} of {len(within)})"
+            if 0 < len(started) < len(within)
+            else ""
+        )
         counted = "" if stick.known else "; the interval does not count it"
-        text = f"Nobody measures it; {within} moves V* from {mm(moved[0])} to {mm(moved[1])}{counted}."
+        text = f"Nobody measures it; {mm(ends[0])} to {mm(ends[1])} mm/s {moves}{stalled}{counted}."
         out.append(FlagPart(signal="watch", title="V* hangs on the stick speed.", text=text, section="band"))
     if map_.train.grip is None:
         pulls = [p.plan.peak_force for p in found.points if p.plan is not None and p.plan.found]
@@ -97,7 +110,7 @@ def _of_machine(found: Behaviour, map_: OperatingMap) -> list[FlagPart]:
         )
     far = [p.name for p in map_.points if p.at.extrapolated]
     if far:
-        text = f"{_sentence(listed(far))}: no dwell lies that far out."
+        text = f"No dwell lies as far out as {listed(far)}."
         out.append(FlagPart(signal="watch", title="Points are extrapolated.", text=text, section="data"))
     return out
 
@@ -113,7 +126,7 @@ def _plans(found: Behaviour) -> list[FlagPart]:
     return out
 
 
-def _of_log(points: SteadyPoints) -> list[FlagPart]:
+def _of_log(points: SteadyPoints, surface: DampingSurface) -> list[FlagPart]:
     """What is doubtful in the log itself: a unit or a zero shifts every number."""
     titled = {
         "A unit is doubtful.": doubtful_units(points.log),
@@ -124,10 +137,23 @@ def _of_log(points: SteadyPoints) -> list[FlagPart]:
         for title, texts in titled.items()
         for text in texts[:1]
     ]
+    if surface.transition is not None and (below := _below(points, surface)) <= _FEW:
+        text = f"{below} of {len(points)} dwells lie below the transition: measure slower ones."
+        title = "Few dwells hold the falling branch."
+        out.append(FlagPart(signal="watch", title=title, text=text, section="torque"))
     if loads := points.varying_load:
         text = f"From {figures(loads[0])} to {figures(loads[1])} N: fit each load alone."
         out.append(FlagPart(signal="watch", title="The load differs.", text=text, section="data"))
     return out
+
+
+def _below(points: SteadyPoints, surface: DampingSurface) -> int:
+    """How many dwells lie below the transition at their temperature."""
+    speed = np.abs(points.column("speed"))
+    if surface.b is None:
+        return int(np.count_nonzero(speed < surface.transition_speed()))
+    at = [surface.transition_speed(float(t)) for t in points.column("temperature")]
+    return int(np.count_nonzero(speed < np.array(at)))
 
 
 def _left_open(points: SteadyPoints, surface: DampingSurface, seen: RegimePart) -> list[FlagPart]:

@@ -39,7 +39,7 @@ def of_machine(found: Behaviour, map_: OperatingMap) -> Instruction:
     edges = edges_of(map_, kelvin)
     where, fold, turn = at(kelvin), edges.fold, edges.transition
     if edges.starts is False:
-        return _not_started(where, edges, map_)
+        return _not_started(where, kelvin, edges, map_)
     interval = _interval("V* is", fold) if edges.bistable else _interval("the transition is", turn)
     starts = _starts(found, kelvin)
     if not math.isfinite(edges.safe):
@@ -110,21 +110,22 @@ def _one_branch(surface: DampingSurface, seen: RegimePart) -> Instruction:
             f"exponent of damping {signed(slow)} at the slow end, {signed(c.value)} over all",
             "Where torque falls with speed the drive can stick and slip; no transition is told.",
         )
-    if doubt := _doubt(surface, seen):
-        what = "Fit with temperature" if surface.b is None else f"Record more dwells near {low} rpm"
+    if doubt := doubt_of(surface, seen):
+        what = "Fit with temperature" if surface.b is None else f"Measure dwells slower than {low} rpm"
         return Instruction(
             "watch", f"{what}: {doubt}", interval, "Whether torque falls anywhere is not told: it may stick."
         )
     return Instruction(
-        "good",
-        f"Keep the roll at {low} rpm or faster: no falling branch down to there, so nothing sticks",
+        "watch",
+        f"Measure dwells slower than {low} rpm: down to there torque rises with speed",
         interval,
-        f"Slower than {low} rpm is not known.",
+        f"A belt that slides already goes on sliding down to {low} rpm. From rest it may stick: "
+        "where torque falls is not known.",
     )
 
 
-def _doubt(surface: DampingSurface, seen: RegimePart) -> str:
-    """Why one rising law cannot be counted on to hold down to the slowest dwell; nothing where it can."""
+def doubt_of(surface: DampingSurface, seen: RegimePart) -> str:
+    """Return why one rising law may not hold down to the slowest dwell; nothing where it does."""
     lack, scatter = seen.lack_of_fit, surface.statistics.scatter
     if scatter > _FAR_OFF:
         return f"dwells stand {100 * scatter:.0f} % off one law"
@@ -146,14 +147,18 @@ def _local(seen: RegimePart) -> float | None:
     return lack.local_exponents[0]
 
 
-def _not_started(where: str, edges: Edges, map_: OperatingMap) -> Instruction:
+def _not_started(where: str, kelvin: float | None, edges: Edges, map_: OperatingMap) -> Instruction:
     holding, limit = figures(edges.holding.high, up=True), figures(edges.limit)
     if map_.limited_by == "motor torque":
         what = f"give the roll more than {holding} N·m: the motor's {limit} N·m do not start a belt at rest"
     else:
         what = f"let the roll grip more than {holding} N·m: at {limit} N·m it slips on a belt at rest"
     turn = figures(1e3 * edges.transition.high, up=True)
-    otherwise = f"A belt that slides already goes on sliding above {turn} mm/s."
+    takes = map_.state_at(kelvin, edges.transition.high).torque
+    if takes <= edges.limit:
+        otherwise = f"A belt that slides already goes on sliding above {turn} mm/s."
+    else:
+        otherwise = f"It does not slide on either: sliding takes {figures(takes)} N·m at {turn} mm/s."
     return Instruction("act", _lead(where, what), _bearing(edges, map_), otherwise)
 
 
@@ -163,7 +168,7 @@ def _bearing(edges: Edges, map_: OperatingMap) -> str:
 
 
 def _otherwise(edges: Edges, starts: str) -> str:
-    turn = mm(edges.transition.value)
+    turn = figures(1e3 * edges.transition.low, up=False)
     sticks = f"Below {turn} mm/s it sticks."
     if not edges.bistable:
         return f"{sticks} The way there does not matter."
@@ -174,7 +179,7 @@ def _otherwise(edges: Edges, starts: str) -> str:
 
 def _starts(found: Behaviour, kelvin: float | None) -> str:
     """How the plans start the points that need one."""
-    said = [text for each in found.points if (text := _start(each, kelvin))]
+    said = list(dict.fromkeys(text for each in found.points if (text := _start(each, kelvin))))
     more = f"; and {len(said) - _NAMED} more" if len(said) > _NAMED else ""
     return f": {'; '.join(said[:_NAMED])}{more}" if said else ""
 

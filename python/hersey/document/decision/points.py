@@ -52,9 +52,7 @@ def point_decision(found: PointBehaviour, map_: OperatingMap) -> PointDecisionPa
     )
 
 
-def points_of_log(
-    surface: DampingSurface, machine: Machine, signal: Signal, *, falls: bool
-) -> list[PointDecisionPart]:
+def points_of_log(surface: DampingSurface, machine: Machine, *, rises: bool) -> list[PointDecisionPart]:
     """Return what is said of the points where there is no map: only whether torque falls in the log."""
     out = []
     (slowest, fastest), heat = surface.speed_range, surface.temperature_range
@@ -62,17 +60,18 @@ def points_of_log(
         speed = point.speed / machine.roll_radius
         measured = slowest <= speed <= fastest
         measured &= heat is None or heat[0] - 1.0 <= point.temperature <= heat[1] + 1.0
-        sure = measured and signal == "good" and not falls
-        if sure:
-            words = "no falling branch there: nothing sticks"
+        if not measured:
+            words = "not judged: no dwell lies that far out"
+        elif rises:
+            words = "slides on once it slides; from rest it may stick"
         else:
-            words = f"not judged: {'there is no map' if measured else 'no dwell lies that far out'}"
+            words = "not judged: there is no map"
         out.append(
             PointDecisionPart(
                 name=point.name,
                 speed=point.speed,
                 temperature=point.temperature,
-                signal="good" if sure else "watch",
+                signal="watch",
                 words=words,
             )
         )
