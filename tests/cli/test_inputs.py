@@ -11,8 +11,8 @@ import pytest
 
 import hersey
 from hersey.cli.application import VERBS, load
-from hersey.cli.plan import _drag
 from hersey.machine.machine import read_machine
+from hersey.stability.plan.of_log import drag_and_draws
 from tests.cli.command import run
 from tests.conftest import ROOT
 
@@ -107,7 +107,7 @@ def test_the_stick_speed_moves_with_the_temperature_asked_for(points: hersey.Ste
     machine = read_machine(ROOT / "tests" / "stand" / "machine.toml")
     whole = surface.drag(roll_radius=0.015, stick_speed=machine.stick_speed)
     for kelvin in (373.15, 453.15):
-        drag, samples = _drag(surface, machine, kelvin, 3, varies=False)
+        drag, samples = drag_and_draws(surface, machine, kelvin, 3, varies=False)
         at = whole.at(kelvin)
         for name in ("transition_force", "transition_speed", "stick_speed"):
             assert getattr(drag, name) == pytest.approx(getattr(at, name), rel=1e-12)
@@ -117,9 +117,9 @@ def test_the_stick_speed_moves_with_the_temperature_asked_for(points: hersey.Ste
         )
         for name, values in expected.items():
             assert samples[name].tolist() == values.tolist()
-        other = _drag(surface, machine, kelvin, 4, varies=False)[1]
+        other = drag_and_draws(surface, machine, kelvin, 4, varies=False)[1]
         assert other["transition_speed"].tolist() != samples["transition_speed"].tolist()
-    drag, samples = _drag(surface, machine, None, 3, varies=True)
+    drag, samples = drag_and_draws(surface, machine, None, 3, varies=True)
     assert drag == whole
     at_reference = surface.drag_samples(
         4000, 3, roll_radius=0.015, stick_speed=machine.stick_speed, temperature=whole.reference_temperature

@@ -24,6 +24,7 @@ from hersey.errors import ParameterError
 from hersey.log.means import read_means
 from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.machine import Machine, read_machine
+from hersey.machine.uncertainty import Uncertainty
 from hersey.stability.hysteresis import hysteresis
 from hersey.stability.operating_map import OperatingMap, operating_map
 from hersey.stability.plan import plan_profile
@@ -437,3 +438,14 @@ def test_the_laws_tried_stand_in_their_order(document: Analysis) -> None:
     listed = {each.name for each in document.regime.explanations}
     kept = {law.name for law in tried if law.verdict == "not excluded"}
     assert kept - {"one power of speed"} <= listed
+
+
+def test_a_range_of_the_stick_speed_above_the_transition_is_named(
+    surface: DampingSurface, machine: Machine
+) -> None:
+    """It lets no plan be drawn: said with its unit, at the point."""
+    wide = Uncertainty(limits=(1e-5, 0.06))
+    point = machine.points[1]
+    found = Working(surface, replace(machine, points=(point,), uncertainty={"stick_speed": wide})).result()
+    assert found.points[0].plan is None
+    assert "reaches the transition speed, 32.6 mm/s: state less" in found.points[0].reason

@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from hersey.damping.surface import DampingSurface
-from hersey.errors import HerseyError
+from hersey.errors import HerseyError, ParameterError
 from hersey.machine.limits import OperatingPoint
 from hersey.machine.machine import Machine
 from hersey.motion.schedule import Schedule
@@ -169,7 +169,14 @@ class Working:
         band = hysteresis(machine.train, drag, sensitivity=False)
         if not (band.transition <= point.speed < band.upper and _starts(machine, drag.holding_force)):
             return None, None
-        plan = plan_of_log(self._surface, machine, target_speed=point.speed, temperature=kelvin)
+        try:
+            plan = plan_of_log(self._surface, machine, target_speed=point.speed, temperature=kelvin)
+        except ParameterError as error:
+            if error.quantity != "stick_speed":
+                raise
+            turn = f"{1e3 * drag.transition_speed:.3g} mm/s"
+            text = f"no plan: the range of stick_speed reaches the transition speed, {turn}: state less"
+            raise ParameterError(text) from None
         if plan.response is None:
             return plan, None
         rise = point.speed / machine.limits.acceleration if machine.limits.acceleration else 0.0

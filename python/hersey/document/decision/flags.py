@@ -83,13 +83,14 @@ def _of_machine(found: Behaviour, map_: OperatingMap) -> list[FlagPart]:
         out.append(FlagPart(signal=signal, title=title, text=text, section="band"))
     stick = found.stick_speeds
     if stick is not None and edges.bistable:
+        # what of the range lies below the transition
         ends = stick.known or (stick.stick_speed[0], stick.stick_speed[-1])
         within = [
-            upper
+            (speed, upper)
             for speed, upper in zip(stick.stick_speed, stick.upper, strict=True)
             if ends[0] * (1 - 1e-9) <= speed <= ends[1] * (1 + 1e-9)
-        ]
-        started = [upper for upper in within if np.isfinite(upper)]
+        ] or list(zip(stick.stick_speed, stick.upper, strict=True))
+        started = [upper for _, upper in within if np.isfinite(upper)]
         moves = (
             f"moves V* from {mm(min(started))} to {mm(max(started))} mm/s" if started else "starts nowhere"
         )
@@ -99,7 +100,9 @@ def _of_machine(found: Behaviour, map_: OperatingMap) -> list[FlagPart]:
             else ""
         )
         counted = "" if stick.known else "; the interval does not count it"
-        text = f"Nobody measures it; {mm(ends[0])} to {mm(ends[1])} mm/s {moves}{stalled}{counted}."
+        text = (
+            f"Nobody measures it; {mm(within[0][0])} to {mm(within[-1][0])} mm/s {moves}{stalled}{counted}."
+        )
         out.append(FlagPart(signal="watch", title="V* hangs on the stick speed.", text=text, section="band"))
     if map_.train.grip is None:
         pulls = [p.plan.peak_force for p in found.points if p.plan is not None and p.plan.found]

@@ -111,7 +111,9 @@ def _one_branch(surface: DampingSurface, seen: RegimePart) -> Instruction:
             "Where torque falls with speed the drive can stick and slip; no transition is told.",
         )
     if doubt := doubt_of(surface, seen):
-        what = "Fit with temperature" if surface.b is None else f"Measure dwells slower than {low} rpm"
+        what = f"Measure dwells slower than {low} rpm"
+        if surface.b is None and surface.statistics.scatter > _FAR_OFF:
+            what = "Fit with temperature"
         return Instruction(
             "watch", f"{what}: {doubt}", interval, "Whether torque falls anywhere is not told: it may stick."
         )

@@ -53,13 +53,7 @@ def plan_of_log(
     """
     varies = heat is not None or isinstance(temperature, Schedule)
     kelvin = None if isinstance(temperature, Schedule) else temperature
-    if surface.b is not None and kelvin is None and not varies:
-        raise ParameterError(
-            "the drag varies with temperature: give --at '150 degC', --temperature-profile or --heat"
-        )
-    if surface.b is None and (kelvin is not None or varies):
-        raise ParameterError("the log is isothermal: leave out --at, --temperature-profile and --heat")
-    drag = surface.drag(**machine.belt, temperature=kelvin)
+    drag, samples = drag_and_draws(surface, machine, kelvin, seed, varies=varies)
     return plan_profile(
         machine.train,
         drag,
@@ -69,7 +63,7 @@ def plan_of_log(
         limits=machine.limits,
         roll_radius=machine.roll_radius,
         uncertainty=_uncertainty(machine, drag),
-        samples=_samples(surface, machine, drag.reference_temperature if varies else kelvin, seed),
+        samples=samples,
         confidence=confidence,
         seed=seed,
         progress=progress,
@@ -84,12 +78,28 @@ def _uncertainty(machine: Machine, drag: Drag) -> dict[str, Uncertainty]:
     return known
 
 
-def _samples(
-    surface: DampingSurface, machine: Machine, kelvin: float | None, seed: int
-) -> dict[str, FloatArray]:
-    """Draws of what the fit leaves open."""
+def drag_and_draws(
+    surface: DampingSurface, machine: Machine, kelvin: float | None, seed: int, *, varies: bool
+) -> tuple[Drag, dict[str, FloatArray]]:
+    """Return the fitted drag, at one temperature (K) or varying with it, and draws of what the fit leaves.
+
+    Raises
+    ------
+    InsufficientDataError
+        If the data show no falling branch.
+    ParameterError
+        If temperature and fit do not go together.
+    """
+    if surface.b is not None and kelvin is None and not varies:
+        raise ParameterError(
+            "the drag varies with temperature: give --at '150 degC', --temperature-profile or --heat"
+        )
+    if surface.b is None and (kelvin is not None or varies):
+        raise ParameterError("the log is isothermal: leave out --at, --temperature-profile and --heat")
+    drag = surface.drag(**machine.belt, temperature=kelvin)
+    at = drag.reference_temperature if varies else kelvin
     # the fit's own command says how many draws have no falling branch
-    samples, _ = surface.drawn_drag(_DRAWS, seed, **machine.belt, temperature=kelvin)
+    samples, _ = surface.drawn_drag(_DRAWS, seed, **machine.belt, temperature=at)
     if surface.rest is not None:
-        samples |= surface.rest.samples(_DRAWS, seed, roll_radius=machine.roll_radius, temperature=kelvin)
-    return samples
+        samples |= surface.rest.samples(_DRAWS, seed, roll_radius=machine.roll_radius, temperature=at)
+    return drag, samples
