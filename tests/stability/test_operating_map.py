@@ -464,6 +464,8 @@ def fit_json(bench_csv: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_a_fit_is_read_back_as_it_was(surface: DampingSurface, fit_json: Path) -> None:
     again = read_fit(fit_json)
     for name, value in vars(surface).items():
+        if name == "_rounds":  # draws that are kept once they were asked for
+            continue
         if isinstance(value, np.ndarray):
             assert np.array_equal(getattr(again, name), value), name
         elif name == "freedoms":
