@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 import hersey
-from hersey.cli.plan import _drag, _uncertainty
 from hersey.damping.surface import FIXED, WITH_TRANSITION
 from hersey.document.assembly import _simulation
 from hersey.errors import ParameterError
+from hersey.stability.plan.of_log import _uncertainty, drag_and_draws
 from tests.conftest import ROOT
 from tests.damping.test_surface import points_of
 
@@ -48,7 +48,7 @@ def test_map_band_plan_and_simulation_agree(
     """At one temperature and drive speed, to the ninth digit, whichever way the drag is asked for."""
     m = machine(rule, at)
     by_itself = fitted.drag(**m.belt, temperature=HOT)
-    planned, _ = _drag(fitted, m, HOT, 1, varies=False)
+    planned, _ = drag_and_draws(fitted, m, HOT, 1, varies=False)
     map_ = hersey.operating_map(fitted, m.train, **m.belt, temperatures=[430.0, HOT], draws=2)
     state = map_.state_at(HOT, 0.03)
     laws = [by_itself, planned]
@@ -86,7 +86,7 @@ def test_a_fixed_stick_speed_needs_one_temperature(fitted: hersey.DampingSurface
     with pytest.raises(ParameterError, match="give one temperature, or stick_speed_rule 'with transition'"):
         fitted.drag(**machine(FIXED).belt)
     with pytest.raises(ParameterError, match="give one temperature"):
-        _drag(fitted, machine(FIXED), None, 1, varies=True)
+        drag_and_draws(fitted, machine(FIXED), None, 1, varies=True)
 
 
 def test_a_range_of_the_stick_speed_moves_with_it(fitted: hersey.DampingSurface) -> None:

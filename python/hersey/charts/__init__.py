@@ -31,6 +31,7 @@ drift          what moved with age, a panel per quantity
 film_life      the film of units that age, and the layer of oil that feeds it
 growth         growth with age, and the ages at a limit
 endings        ways to fail against age
+other_uses     the ages in other uses of the machine
 =============  ====================================================
 """
 
