@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import re
 from collections.abc import Callable, Iterator
@@ -315,9 +316,20 @@ def test_dwells_to_record_and_what_they_are_worth() -> None:
 def test_exponents_and_names_that_do_not_overlap() -> None:
     result = result_of("Regime")
     assert column("Regime", "value", "branch") == [b.exponent.value for b in result.exponents]
-    heights = sorted(column("Regime", "down"))
-    assert len(heights) == len(result.hypotheses)
-    assert min(np.diff(heights)) >= 15.0 - 1e-9
+    chart = specification("Regime")
+    named = [part for part in chart["layer"] if isinstance(part["encoding"].get("y", {}).get("value"), int)]
+    assert len(named) == len(result.hypotheses)
+    low, high = named[0]["encoding"]["x"]["scale"]["domain"]
+    rows: dict[int, list[tuple[float, float]]] = {}
+    for part in named:
+        ((row,),) = [part["data"]["values"]]
+        at, width = chart["width"] * (row["low"] - low) / (high - low), 6.0 * len(row["text"])
+        left = at - width * {"left": 0.0, "center": 0.5, "right": 1.0}[part["mark"]["align"]]
+        rows.setdefault(part["encoding"]["y"]["value"], []).append((left, left + width))
+    assert min(np.diff(sorted(rows)), default=15) >= 14
+    for spans in rows.values():
+        ordered = sorted(spans)
+        assert all(one[1] < other[0] for one, other in itertools.pairwise(ordered))
 
 
 def test_films_on_their_chart() -> None:

@@ -77,7 +77,7 @@ LOADS = {
     "inspect examples/bench.csv": "numpy odrpack polars scipy",
     f"fit {LOG}": "numpy odrpack polars scipy",
     f"compare {LOG} examples/bench.csv": "numpy odrpack polars scipy",
-    f"film {MACHINE}": "numpy odrpack pint polars scipy",
+    f"film {MACHINE}": "numpy odrpack polars scipy",
     "cycles examples/stick-slip.csv": "numpy polars scipy",
     "testbench": "numpy polars scipy",
 }

@@ -11,6 +11,7 @@ import pytest
 
 import hersey
 from hersey.charts.operating_map import map_chart
+from hersey.charts.style import BLUE
 from hersey.damping.candidates.shared_errors import Freedom
 from hersey.damping.surface import DampingSurface
 from hersey.machine.limits import Limits, OperatingPoint
@@ -372,7 +373,7 @@ def test_lines_of_the_picture_are_those_of_the_map(few: OperatingMap) -> None:
 
 
 def test_contours_of_the_picture_are_lines_of_their_torque(few: OperatingMap) -> None:
-    blue = [layer for layer in layers(few) if layer.get("mark", {}).get("color") == "#1f4e9c"]
+    blue = [layer for layer in layers(few) if layer.get("mark", {}).get("color") == BLUE]
     drawn = [layer for layer in blue if layer["mark"]["type"] == "line"]
     assert len(drawn) >= 3
     levels = []
