@@ -47,7 +47,9 @@ _COLUMNS = (
 )
 #: Kinds of the units of what a sweep of bands varies.
 _PARAMETER_KINDS = {name: kind for name in OF_THE_BELT if (kind := KINDS[name]) is not None}
-#: Those that are no decimal numbers.
+#: Parameters that follow from a temperature.
+_MOVED = ("transition_force", "transition_speed", "stick_speed")
+#: Columns that are no decimal numbers.
 _WHOLE = {"stalls": bool, "half_laps": bool, "deeper": bool, "laps": int}
 
 
@@ -322,16 +324,19 @@ def hysteresis_sweep(
     """
     import xarray as xr
 
+    varied = {
+        "stiffness": stiffness,
+        "mass": mass,
+        "transition_force": transition_force,
+        "transition_speed": transition_speed,
+        "ehl_exponent": ehl_exponent,
+        "mixed_exponent": mixed_exponent,
+        "stick_speed": stick_speed,
+    }
     swept = sweep_bands(
         train,
         drag,
-        stiffness=stiffness,
-        mass=mass,
-        transition_force=transition_force,
-        transition_speed=transition_speed,
-        ehl_exponent=ehl_exponent,
-        mixed_exponent=mixed_exponent,
-        stick_speed=stick_speed,
+        varied,
         temperature=temperature,
         zip=zip,
         lower=lower,
@@ -365,14 +370,8 @@ class SweptBands:
 def sweep_bands(
     train: Drivetrain,
     drag: Drag,
+    varied: Mapping[str, ArrayLike | None],
     *,
-    stiffness: ArrayLike | None = None,
-    mass: ArrayLike | None = None,
-    transition_force: ArrayLike | None = None,
-    transition_speed: ArrayLike | None = None,
-    ehl_exponent: ArrayLike | None = None,
-    mixed_exponent: ArrayLike | None = None,
-    stick_speed: ArrayLike | None = None,
     temperature: ArrayLike | None = None,
     zip: bool = False,  # noqa: A002 - NumPy users know what it means
     lower: bool = True,
@@ -381,28 +380,21 @@ def sweep_bands(
     progress: Callable[[int, int], object] | None = None,
     most_steps: float = MOST_STEPS,
 ) -> SweptBands:
-    """Return what `hysteresis_sweep` does, as arrays: xarray takes long to import."""
+    """Return what `hysteresis_sweep` does, as arrays: xarray takes long to import.
+
+    ``varied`` holds parameters by the names of that; one that is None or not there is that of train or drag.
+    """
     if not isinstance(drag, Drag):
         raise ParameterError("a sweep needs a Drag")
     if drag.varies_with_temperature != (temperature is not None):
         drag.law_at(None if temperature is None else 300.0)
-    varied: dict[str, ArrayLike | None] = {
-        "stiffness": stiffness,
-        "mass": mass,
-        "transition_force": transition_force,
-        "transition_speed": transition_speed,
-        "ehl_exponent": ehl_exponent,
-        "mixed_exponent": mixed_exponent,
-        "stick_speed": stick_speed,
-    }
     if temperature is not None:
-        clash = [n for n in ("transition_force", "transition_speed", "stick_speed") if varied[n] is not None]
+        clash = [n for n in _MOVED if varied.get(n) is not None]
         if clash:
             raise ParameterError(f"{clash[0]} follows from the temperature: give one of them")
     parameters = {**vars(train), **vars(drag)}
-    given = {
-        name: numbers_of(name, parameters[name] if value is None else value) for name, value in varied.items()
-    }
+    asked = {name: values for name, values in varied.items() if values is not None}
+    given = {name: numbers_of(name, asked.get(name, parameters[name])) for name in OF_THE_BELT}
     if temperature is not None:
         given["temperature"] = numbers_of("temperature", temperature)
     refuse_too_many(given.values(), zip=zip)
@@ -414,7 +406,7 @@ def sweep_bands(
     coordinates = {
         name: (axes, columns[name]) if zip and values.ndim else values
         for name, values in given.items()
-        if temperature is None or name not in ("transition_force", "transition_speed", "stick_speed")
+        if temperature is None or name not in _MOVED
     }
     return SweptBands(
         tuple(axes),

@@ -153,7 +153,9 @@ class Working:
         high = min(max(ends[1], 2.0 * drag.stick_speed), _BELOW * drag.transition_speed)
         grid = np.unique(np.append(np.geomspace(low, max(high, drag.stick_speed), _STICK_SPEEDS), ends))
         grid = grid[grid < drag.transition_speed]
-        bands = sweep_bands(machine.train, drag, stick_speed=grid, lower=False, threads=os.cpu_count() or 1)
+        bands = sweep_bands(
+            machine.train, drag, {"stick_speed": grid}, lower=False, threads=os.cpu_count() or 1
+        )
         edges = [bands.columns[name] for name in ("transition", "upper")]
         # a belt that is not started has no V*
         upper = np.where(bands.columns["stalls"], np.nan, np.maximum(*edges))

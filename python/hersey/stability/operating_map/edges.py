@@ -34,7 +34,7 @@ def edges_at(
         bands = [hysteresis(train, law, sensitivity=False) for law in laws_at(drag, kelvin, rule)]
         edges = {name: np.array([getattr(band, name) for band in bands]) for name in names}
     else:
-        band = sweep_bands(train, drag, temperature=kelvin)
+        band = sweep_bands(train, drag, {}, temperature=kelvin)
         require_all(band)
         edges = {name: np.atleast_1d(band.columns[name]) for name in names}
     # Without a band the three speeds are one, up to the last digit.

@@ -90,13 +90,11 @@ def intervals(
         band = sweep_bands(
             train,
             law,
-            stiffness=uncertainties.get("stiffness"),
-            mass=uncertainties.get("mass"),
-            stick_speed=np.minimum(stick, _BELOW * map_["transition_speed"]),
-            transition_force=map_["transition_force"],
-            transition_speed=map_["transition_speed"],
-            ehl_exponent=map_["ehl_exponent"],
-            mixed_exponent=map_["mixed_exponent"],
+            {
+                **uncertainties,
+                **map_,
+                "stick_speed": np.minimum(stick, _BELOW * map_["transition_speed"]),
+            },
             zip=True,
             lower=False,
             threads=threads,
