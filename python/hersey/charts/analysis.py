@@ -57,8 +57,8 @@ _TALL = 290
 _AXIS = 42
 
 
-def charts(document: Analysis) -> dict[str, Chart]:
-    """Return every chart of a document by name, in the order of the report."""
+def charts(document: Analysis, *, but: tuple[str, ...] = ()) -> dict[str, Chart]:
+    """Return every chart of a document by name, in the order of the report, ``but`` names that begin so."""
     makers: dict[str, Callable[[Analysis], Chart | None]] = {
         "torque": torque,
         "damping": damping,
@@ -77,7 +77,7 @@ def charts(document: Analysis) -> dict[str, Chart]:
         "timeline_temperature": timeline_temperature,
     }
     with unchecked():
-        made = {name: make(document) for name, make in makers.items()}
+        made = {name: make(document) for name, make in makers.items() if not name.startswith(but)}
         made |= {f"plan_{i}": profile_chart(*each) for i, each in enumerate(_plans(document))}
     return {name: chart for name, chart in made.items() if chart is not None}
 

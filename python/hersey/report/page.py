@@ -41,9 +41,9 @@ _DRAWN: Any = {"fit": {"cells"}, "simulation": True}
 
 def render(document: Analysis) -> str:
     """Return the page of a log as HTML text."""
-    shown = {name: chart for name, chart in charts(document).items() if not name.startswith(_OTHERWISE)}
+    shown = charts(document, but=_OTHERWISE)
     core = resources.files("hersey.report") / "static" / "physics.wasm"
-    physics = base64.b64encode(core.read_bytes()).decode() if core.is_file() and document.map else None
+    physics = base64.b64encode(core.read_bytes()).decode() if document.map else None
     return drawn(
         _REPORT, "hersey report", document.model_dump(mode="json", exclude=_DRAWN), shown, physics=physics
     )
@@ -78,7 +78,6 @@ def drawn(
 
 
 def _static(names: tuple[str, ...]) -> str:
-    """The pieces one after another, as far as they are there."""
+    """The pieces one after another."""
     folder = resources.files("hersey.report") / "static"
-    files = [folder / name for name in names]
-    return "\n".join(file.read_text(encoding="utf-8") for file in files if file.is_file())
+    return "\n".join((folder / name).read_text(encoding="utf-8") for name in names)
