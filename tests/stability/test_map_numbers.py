@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 import hersey
 from hersey.charts.operating_map import map_chart
@@ -63,6 +64,32 @@ def middle(values: np.ndarray) -> list[float]:
     """The 2.5 and 97.5 % points of a sorted sample, as the inverse of its distribution."""
     ordered = np.sort(values)
     return [ordered[math.ceil(share * values.size) - 1] for share in (0.025, 0.975)]
+
+
+def test_the_interval_of_the_fold_is_that_of_the_draws_that_are_started(
+    surface: DampingSurface, machine: Machine
+) -> None:
+    """A slow stick speed makes a belt with a high V*, which the roll does not start: it has none."""
+    wide = {"stick_speed": hersey.Uncertainty(limits=(5e-5, 1e-3))}
+    grip = 0.9 * drag_of(surface).at(450.0).holding_force
+    given: dict[str, Any] = {
+        **AT,
+        "uncertainty": wide,
+        "temperatures": [440.0, 450.0],
+        "draws": 40,
+        "seed": 5,
+    }
+    weak = operating_map(surface, replace(machine.train, grip=grip), **given)
+    strong = operating_map(surface, machine.train, **given)
+    low, high = weak.holding_interval[:, 1] / AT["roll_radius"]
+    assert low < grip < high  # some of the draws are started, some are not
+    drag = drag_of(surface).at(450.0)
+    ends = np.array([0.2, 4.0]) * drag.stick_speed
+    slowest = brentq(lambda v: replace(drag, stick_speed=v).holding_force - grip, *ends)
+    gripping, law = replace(machine.train, grip=grip), replace(drag, stick_speed=slowest)
+    bound = hysteresis(gripping, law, sensitivity=False)
+    assert weak.upper_interval[1, 1] < 1.1 * bound.upper
+    assert strong.upper_interval[1, 1] > 1.2 * bound.upper
 
 
 def test_edges_are_the_bands_at_each_temperature(
