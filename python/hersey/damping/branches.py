@@ -16,7 +16,7 @@ from scipy import optimize
 
 from hersey.arrays import BoolArray, FloatArray
 from hersey.damping.candidates.branched import HELD, Bend, Law, transition_exponent
-from hersey.damping.candidates.fitting import LawFit, fit_law
+from hersey.damping.candidates.fitting import LawFit, fit_law, starts_of
 from hersey.damping.candidates.intervals import profile_interval
 from hersey.damping.candidates.likelihood import EVIDENCE, scatter_beyond
 from hersey.damping.candidates.observations import Observations
@@ -28,11 +28,12 @@ from hersey.units import rpm
 
 #: Widths of a bend, in the logarithm of speed, that a corner is compared with.
 BEND_WIDTHS = (0.15, 0.3, 0.6)
-#: Points and distinct speeds that each branch needs.
-MIN_BRANCH_POINTS, MIN_BRANCH_SPEEDS = 4, 3
+#: Points and distinct speeds that each branch needs: a line through two would fit any.
+MIN_BRANCH_POINTS, MIN_BRANCH_SPEEDS = 3, 2
 #: Twice the logarithm of likelihood by which a corner leaves a trend: by chance one time in a hundred, and
 #: in a thousand.
 TREND, PROVEN_TREND = 5.4, 9.6
+_NOT_TOLD = (-np.inf, np.inf)
 
 
 @dataclass(frozen=True)
@@ -42,6 +43,7 @@ class Branches:
     fit: LawFit
     least: float  #: not a number if a smooth curve has no minimum
     ends: tuple[float, float]  #: 95 % interval
+    mixed: Estimate  #: exponent of the falling branch
     closure: Closure | None  #: None where the branches meet in a corner
 
 
@@ -75,18 +77,17 @@ def fit_branches(data: Observations, single: LawFit) -> Branches | None:
             break
         powers = powers_of(trend)
     assert trend is not None
-    corner = fit_law(law, data, [trend.values])
-    below = np.asarray(scaled_speed(data, corner) < corner.values[-1])
-    parted = _parted(data, trend, splits)
-    if not (_enough(data, below) and _enough(data, ~below)):
-        return _around_a_bend(data, trend, parted, None)
-    return _bent(data, law, corner, trend, parted)
+    # the split may hold a dwell of the other branch, so that the corner is searched from elsewhere as well
+    corner = fit_law(law, data, [trend.values, *starts_of(law, data)])
+    return _bent(data, law, corner, trend, _parted(data, trend, splits))
 
 
 def why_no_transition(data: Observations, single: LawFit, branches: Branches) -> str:
     """Return why a second branch is not announced; empty if torque falls and rises beyond doubt."""
     fit = branches.fit
-    below, above, at = fit.estimate("c_mixed"), fit.estimate("c"), branches.least
+    below, above, at = branches.mixed, fit.estimate("c"), branches.least
+    if branches.closure is None and (few := _few(data, fit)):
+        return few
     gain = single.aicc - fit.aicc
     if gain < EVIDENCE:
         return f"a second branch does not pay: its AICc is better by {gain:.1f}, {EVIDENCE:g} are asked"
@@ -113,7 +114,7 @@ def transition(data: Observations, single: LawFit, branches: Branches) -> Transi
     return Transition(
         speed=Estimate(best, best * float(np.log(high / low)) / (2 * reach), low, high),
         meeting_speed=meeting,
-        mixed_exponent=fit.estimate("c_mixed"),
+        mixed_exponent=branches.mixed,
         temperature_exponent=transition_exponent(*powers_of(fit)),
         evidence=single.aicc - fit.aicc,
         closure=branches.closure,
@@ -144,14 +145,26 @@ def _bent(
     trend_of_corner = trend_left(data, corner)
     if gain > EVIDENCE or trend_of_corner > PROVEN_TREND:
         return _around_a_bend(data, trend, parted, None)
+    if _few(data, corner):
+        return Branches(corner, float(corner.values[-1]), _NOT_TOLD, corner.estimate("c_mixed"), None)
     ends = profile_interval(corner, data, law.index("at"))
-    sharp = Branches(corner, float(corner.values[-1]), ends, None)
+    sharp = Branches(corner, float(corner.values[-1]), ends, _mixed(data, corner), None)
     if min(bend.deviance for bend in bends) >= corner.deviance and trend_of_corner < TREND:
         return sharp
     gradual = _around_a_bend(data, trend, parted, ends)
     if max(gain, trend_of_corner - TREND) > 0.0 and gradual.closure is not None:
         return gradual
     return sharp if gradual.closure is None else replace(sharp, ends=_both(ends, gradual.ends))
+
+
+def _mixed(data: Observations, corner: LawFit) -> Estimate:
+    """The exponent below a corner: also where a dwell beside it may be of either branch (by its profile)."""
+    by_slope = corner.estimate("c_mixed")
+    low, high = _both(
+        (by_slope.low, by_slope.high), profile_interval(corner, data, law_of(corner).index("c_mixed"))
+    )
+    error = (high - low) / (2.0 * quantile(by_slope.freedom))
+    return replace(by_slope, low=low, high=high, error=error if np.isfinite(error) else by_slope.error)
 
 
 def _around_a_bend(
@@ -164,14 +177,15 @@ def _around_a_bend(
     """
     least, groups = least_around(data, trend)
     if least is None:
-        return Branches(trend, np.nan, (-np.inf, np.inf), None)
+        return Branches(trend, np.nan, _NOT_TOLD, trend.estimate("c_mixed"), None)
     low, high = least.ends
     ends = (
         low if np.isfinite(low) else min(parted[0], least.log_speed),
         high if np.isfinite(high) else max(parted[1], least.log_speed),
     )
     ends = ends if corner is None else _both(ends, corner)
-    return Branches(trend, least.log_speed, ends, closure_at(data, trend, least, groups, ends))
+    closure = closure_at(data, trend, least, groups, ends)
+    return Branches(trend, least.log_speed, ends, trend.estimate("c_mixed"), closure)
 
 
 def _both(one: tuple[float, float], other: tuple[float, float]) -> tuple[float, float]:
@@ -229,6 +243,20 @@ def _unimodal_residuals(torque: FloatArray) -> FloatArray:
         if residuals @ residuals < best @ best:
             best = np.asarray(residuals)
     return best
+
+
+def _few(data: Observations, corner: LawFit) -> str:
+    """Return which side of a corner has too few dwells to be a branch; empty if both have enough."""
+    away = scaled_speed(data, corner) - corner.values[-1]
+    speed = f"{rpm(data.reference_speed * float(np.exp(corner.values[-1]))):.3g} rpm"
+    for side, where, what in ((away < 0.0, "below", "slower"), (away >= 0.0, "above", "faster")):
+        if not _enough(data, side):
+            held, levels = int(np.count_nonzero(side)), distinct_speeds(data.speed[side])
+            return (
+                f"{where} {speed}, where two branches would meet, lie {held} dwells at {levels} speeds, and "
+                f"{MIN_BRANCH_POINTS} at {MIN_BRANCH_SPEEDS} are asked: record {what} dwells"
+            )
+    return ""
 
 
 def _enough(data: Observations, side: BoolArray) -> bool:

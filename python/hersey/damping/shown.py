@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from hersey.arrays import BoolArray, FloatArray
-from hersey.damping.branches import MIN_BRANCH_SPEEDS, Branches
+from hersey.damping.branches import Branches
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.dwells import SAME_SPEED, SteadyPoints, distinct_speeds
 from hersey.damping.estimate import quantile
@@ -20,6 +20,8 @@ from hersey.units import rpm
 ABOVE_LEAST = 2
 #: Standard errors by which it must fall and rise in each direction that has enough speeds.
 _IN_EACH = 1.0
+#: Speeds on either side from which on a direction is asked.
+_SPEEDS_OF_A_WAY = 3
 
 
 def why_not_shown(points: SteadyPoints, data: Observations, branches: Branches) -> str:
@@ -92,7 +94,7 @@ def _directions(points: SteadyPoints) -> list[tuple[list[tuple[str, BoolArray]],
 
 
 def _enough(data: Observations, members: BoolArray) -> bool:
-    return distinct_speeds(data.speed[members]) >= MIN_BRANCH_SPEEDS
+    return distinct_speeds(data.speed[members]) >= _SPEEDS_OF_A_WAY
 
 
 def _trend(z: FloatArray, y: FloatArray, branches: Branches, members: BoolArray) -> float:

@@ -42,10 +42,20 @@ class DampingSurface(FittedLaw):
 
     @property
     def _closure(self) -> tuple[FloatArray, FloatArray]:
-        """Values and covariance of the law with a corner at the transition."""
-        assert self.transition is not None
-        closure = self.transition.closure
-        return (self.values, self.covariance) if closure is None else (closure.values, closure.covariance)
+        """Values and covariance of the law with a corner at the transition.
+
+        The likelihood of a corner is less sharp than its curvature, which the covariance is: it is widened to
+        what the intervals of the corner and of the exponent below it have.
+        """
+        t = self.transition
+        assert t is not None
+        values, covariance = self.values, self.covariance
+        if t.closure is not None:
+            values, covariance = t.closure.values, t.closure.covariance
+        told = np.array([t.mixed_exponent.error, t.speed.error / t.speed.value])
+        wider = np.ones(values.size)
+        wider[-2:] = np.maximum(told / np.sqrt(np.maximum(np.diag(covariance)[-2:], 1e-300)), 1.0)
+        return values, covariance * np.outer(wider, wider)
 
     @takes_si(temperature="temperature")
     def transition_speed(self, temperature: float | None = None) -> float:
@@ -75,10 +85,6 @@ class DampingSurface(FittedLaw):
             return self.transition.speed
         x = self._checked_temperature(temperature)
         values, covariance = self._closure
-        covariance = covariance.copy()
-        covariance[-1, -1] = max(
-            covariance[-1, -1], (self.transition.speed.error / self.transition.speed.value) ** 2
-        )
         _, b, c, *_ = values
         away = np.zeros(values.size)
         away[-1] = 1.0
@@ -354,10 +360,6 @@ class DampingSurface(FittedLaw):
     def _drawn_rounds(self, count: int, seed: int, rounds: int) -> list[FloatArray]:
         assert self.transition is not None
         centre, covariance = self._closure
-        covariance = covariance.copy()
-        # The likelihood of a corner is less sharp than its curvature.
-        error = self.transition.speed.error / self.transition.speed.value
-        covariance[-1, -1] = max(covariance[-1, -1], error**2)
         freedoms = [self.freedoms.of(row) for row in np.eye(self.values.size)]
         rng = np.random.default_rng(seed)
         out = []

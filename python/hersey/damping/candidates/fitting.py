@@ -140,8 +140,7 @@ def fit_law(law: AnyLaw, data: Observations, starts: list[FloatArray] | None = N
     grouped = groupings(data)
     shared = tuple(SharedScatter(g.name, 0.0, 1.0, told=True) for g in grouped)
     columns = disturbances(data, grouped, shared, np.zeros(len(data)))
-    weights = 1.0 / (data.torque_error**2 + _FIRST_SCATTER**2)
-    tried = starts or law.starts(data.inputs, data.log_torque, weights)
+    tried = starts or starts_of(law, data)
     errors = np.array(data.torque_error)
     scatter = _FIRST_SCATTER
     sigma = np.sqrt(errors**2 + scatter**2)
@@ -172,6 +171,12 @@ def fit_law(law: AnyLaw, data: Observations, starts: list[FloatArray] | None = N
         if _settled(scatter, scatter_before, shared, shared_before, float(np.max(errors))):
             break
     return _law_fit(law, data, grouped, shared, columns, errors, scatter, best)
+
+
+def starts_of(law: AnyLaw, data: Observations) -> list[FloatArray]:
+    """Return where the search for the likeliest values of a law begins, from linear fits."""
+    weights = 1.0 / (data.torque_error**2 + _FIRST_SCATTER**2)
+    return law.starts(data.inputs, data.log_torque, weights)
 
 
 def _law_fit(

@@ -237,7 +237,7 @@ def _crossing(fit: LawFit, data: Observations, parameter: int, error: float, tar
     """Follow the profile outward in steps; the last crossing within reach, interpolated."""
     value = float(fit.values[parameter])
     start = np.append(fit.values, fit.effects)
-    kinked = fit.law.broken and fit.law.names[parameter] == "at"
+    kinked = fit.law.broken and fit.law.names[parameter] in ("at", "c_mixed")
     warm, inside, outside = start, 0.0, None
     before, rise_before = 0.0, 0.0
     for step in np.arange(_STEP, _FARTHEST * np.sqrt(target) / 2.0, _STEP):
