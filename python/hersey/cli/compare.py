@@ -32,7 +32,7 @@ def compare(
     """
     from hersey.damping.compare import compare as compared
 
-    of_a, of_b = (reading.points(reading.log([path])) for path in (a, b))
+    of_a, of_b = (reading.points_of([path]) for path in (a, b))
     with working("comparing"):
         comparison = compared(of_a, of_b, names=(str(a), str(b)))
     if as_json:

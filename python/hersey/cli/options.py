@@ -223,6 +223,17 @@ class Reading:
         points = self._dwells(log)
         return points if rest is None else points.without(rest)
 
+    def points_of(self, paths: list[Path], machine: Machine | None = None) -> SteadyPoints:
+        """Read one of several logs and reduce it; what is wrong with it begins with its name."""
+        from hersey.errors import HerseyError
+
+        try:
+            return self.points(self.log(paths, machine), machine)
+        except HerseyError as error:
+            if any(path.name in str(error) for path in paths):
+                raise
+            raise error.within(str(paths[0])) from None
+
     def _rest(self, stated: RestOfDrive | None) -> RestOfDrive:
         """What the log without the film says."""
         from hersey.damping.no_load import rest_of_drive

@@ -33,6 +33,14 @@ def report(
         typer.Option("--figures", metavar="DIR", help="Also write each chart as SVG, PNG and PDF."),
     ] = None,
     machine_file: MachineFile = None,
+    against: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--against",
+            metavar="LOG",
+            help="An earlier log, read alike, to compare this one with; again for each further file of it.",
+        ),
+    ] = None,
     as_json: AsJson = False,
     force: Force = False,
 ) -> None:
@@ -44,7 +52,7 @@ def report(
     """
     page = out or (None if as_json else Path("report.html"))
     if page is not None:
-        may_write(page, force, inputs=reading.inputs(logs, machine_file))
+        may_write(page, force, inputs=reading.inputs(logs, machine_file, against))
     if figures is not None:
         may_write_folder(figures, force)
 
@@ -55,6 +63,7 @@ def report(
 
     machine = None if machine_file is None else read_machine(machine_file)
     log = reading.log(logs, machine)
+    other = reading.points_of(against, machine) if against else None
     with steps() as step:
         step("finding the dwells")
         points = reading.points(log, machine)
@@ -65,6 +74,7 @@ def report(
             temperature_scale=reading.temperature_scale,
             machine=machine,
             machine_file=machine_file,
+            against=other,
             made=datetime.now(UTC).isoformat(timespec="seconds"),
             step=step,
         )
@@ -84,6 +94,8 @@ def report(
         say(f"{told.instruction}{f' ({told.interval})' if told.interval else ''}. {told.otherwise}")
         for point in told.points:
             say(f"{point.name}: {point.words}")
+    if document.compare is not None:
+        say(f"Against {document.compare.a}: {document.compare.verdict}")
     for paragraph in document.verdict:
         say(paragraph)
     for warning in document.warnings:

@@ -26,7 +26,7 @@ from hersey.damping.candidates.observations import Inputs, Observations
 from hersey.damping.distributions import ratio_quantile, student_above, student_quantile
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.estimate import CONFIDENCE, Estimate
-from hersey.errors import InsufficientDataError
+from hersey.errors import HerseyError, InsufficientDataError
 from hersey.result import Result, json_record
 from hersey.units import convert, rpm
 
@@ -152,12 +152,12 @@ def compare(
     Raises
     ------
     InsufficientDataError
-        If the two share no range of speed or temperature, or no law fits both.
+        If the two share no range of speed or temperature, or no law fits both; it names the log.
     """
-    data = [points if isinstance(points, Observations) else Observations.of(points) for points in (a, b)]
-    speeds, temperatures = _shared(*data)
-    first, second = (compare_models(each, bootstrap=0, cross_validate=False) for each in data)
-    of_a, of_b = _common_candidate(first, second)
+    data = [_observed(points, name) for points, name in zip((a, b), names, strict=True)]
+    speeds, temperatures = _shared(data[0], data[1], names)
+    first, second = (_fitted(each, name) for each, name in zip(data, names, strict=True))
+    of_a, of_b = _common_candidate(first, second, names)
     if of_a.fit.law.thermal is None:
         temperatures = np.empty(0)
     flat = _flat(speeds, temperatures)
@@ -192,6 +192,22 @@ def compare(
     )
 
 
+def _observed(points: SteadyPoints | Observations, name: str) -> Observations:
+    if isinstance(points, Observations):
+        return points
+    try:
+        return Observations.of(points)
+    except HerseyError as error:
+        raise error.within(name) from None
+
+
+def _fitted(data: Observations, name: str) -> ModelComparison:
+    try:
+        return compare_models(data, bootstrap=0, cross_validate=False)
+    except HerseyError as error:
+        raise error.within(name) from None
+
+
 def _once(candidate: CandidateFit, data: Observations) -> bool:
     """Whether a log does not tell how far visits scatter."""
     return np.unique(data.visit).size == 1 or any(not shared.told for shared in candidate.fit.shared)
@@ -205,33 +221,38 @@ def _of_visits(names: list[str]) -> str:
     )
 
 
-def _shared(a: Observations, b: Observations) -> tuple[FloatArray, FloatArray]:
+def _shared(a: Observations, b: Observations, names: tuple[str, str]) -> tuple[FloatArray, FloatArray]:
     slow, fast = max(a.speed.min(), b.speed.min()), min(a.speed.max(), b.speed.max())
     if fast < LEAST_SPAN * slow:
         raise InsufficientDataError(
             "the logs share no range of speed: "
-            f"A has {rpm(a.speed.min()):.3g} to {rpm(a.speed.max()):.3g} rpm, "
-            f"B {rpm(b.speed.min()):.3g} to {rpm(b.speed.max()):.3g} rpm; "
+            f"{names[0]} has {rpm(a.speed.min()):.3g} to {rpm(a.speed.max()):.3g} rpm, "
+            f"{names[1]} {rpm(b.speed.min()):.3g} to {rpm(b.speed.max()):.3g} rpm; "
             "record one of them at speeds of the other"
         )
     speeds = np.geomspace(slow, fast, SPEEDS)
     if a.inputs.kelvin is None or b.inputs.kelvin is None:
         if (a.inputs.kelvin is None) != (b.inputs.kelvin is None):
+            bare = names[0] if a.inputs.kelvin is None else names[1]
             raise InsufficientDataError(
-                "only one of the logs has a temperature: compare both with --isothermal, at one temperature"
+                f"only one of the logs has a temperature, {bare} has none: compare both with --isothermal, "
+                "at one temperature"
             )
         return speeds, np.empty(0)
     cold = max(float(a.inputs.kelvin.min()), float(b.inputs.kelvin.min()))
     hot = min(float(a.inputs.kelvin.max()), float(b.inputs.kelvin.max()))
     if hot < cold - 3.0:
+        below, above = names if a.inputs.kelvin.max() < b.inputs.kelvin.min() else names[::-1]
         raise InsufficientDataError(
-            f"the logs share no temperature: one ends at {convert(hot, 'K', 'degC'):.0f} degC, the other "
-            f"begins at {convert(cold, 'K', 'degC'):.0f} degC"
+            f"the logs share no temperature: {below} ends at {convert(hot, 'K', 'degC'):.0f} degC, {above} "
+            f"begins at {convert(cold, 'K', 'degC'):.0f} degC; record one at temperatures of the other"
         )
     return speeds, np.linspace(min(cold, hot), max(cold, hot), TEMPERATURES)
 
 
-def _common_candidate(a: ModelComparison, b: ModelComparison) -> tuple[CandidateFit, CandidateFit]:
+def _common_candidate(
+    a: ModelComparison, b: ModelComparison, names: tuple[str, str]
+) -> tuple[CandidateFit, CandidateFit]:
     """The candidate with the least sum of AICc, of those determined in both logs."""
     pairs = []
     for one in a.candidates:
@@ -239,7 +260,9 @@ def _common_candidate(a: ModelComparison, b: ModelComparison) -> tuple[Candidate
         if other is not None and not one.not_identified and not other.not_identified:
             pairs.append((one.fit.aicc + other.fit.aicc, one, other))
     if not pairs:
-        raise InsufficientDataError("no law is determined by both logs: record more dwells of each")
+        raise InsufficientDataError(
+            f"no law is determined by both {names[0]} and {names[1]}: record more dwells of each"
+        )
     least = min(total for total, _, _ in pairs)
     tied = [p for p in pairs if p[0] <= least + EVIDENCE]
     _, one, other = min(tied, key=lambda p: (p[1].fit.parameters, p[0]))

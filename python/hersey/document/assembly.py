@@ -12,6 +12,7 @@ import numpy as np
 
 from hersey import _core
 from hersey.arrays import FloatArray
+from hersey.damping.compare import compare
 from hersey.damping.dwells import SteadyPoints, groups_of_temperature
 from hersey.damping.fit import fit
 from hersey.damping.surface import DampingSurface
@@ -24,6 +25,7 @@ from hersey.document.parts import (
     Analysis,
     Cell,
     ChannelUse,
+    ComparisonPart,
     Curve,
     FitDocument,
     FitPart,
@@ -64,6 +66,7 @@ def analyse(
     temperature_scale: str = "degC",
     machine: Machine | None = None,
     machine_file: Path | None = None,
+    against: SteadyPoints | None = None,
     made: str | None = None,
     step: Step = lambda _what: None,
 ) -> Analysis:
@@ -73,6 +76,8 @@ def analyse(
     ----------
     machine_file
         Where the machine was read, for its name and hash.
+    against
+        Steady points of another log, which this one is compared with as `hersey.compare` does (this is B).
     made
         When, as the document shall say.
     step
@@ -81,13 +86,19 @@ def analyse(
     Raises
     ------
     InsufficientDataError
-        If the points cannot determine the surface.
+        If the points cannot determine the surface, or share nothing with those of the other log.
+    ParameterError
+        If a file is in both logs.
     """
+    beside: dict[str, Any] = {}
+    if against is not None:
+        step("comparing the two logs")
+        beside = _compared(log, points, against)
     step("fitting the surface")
     surface = fit(points, temperature_scale=temperature_scale)
     working = None if machine is None or surface.transition is None else Working(surface, machine)
     with nullcontext() if working is None else working:
-        return _analysed(log, points, surface, command, machine, machine_file, made, step, working)
+        return _analysed(log, points, surface, command, machine, machine_file, made, step, working, beside)
 
 
 def _analysed(
@@ -100,8 +111,9 @@ def _analysed(
     made: str | None,
     step: Step,
     working: Working | None,
+    beside: dict[str, Any],
 ) -> Analysis:
-    """The document of a fit, while the behaviour of its machine is worked out."""
+    """The document of a fit, and what is there ``beside`` it, while its machine is worked out."""
     nip = (machine.contact, machine.lubricant) if machine is not None else (None, None)
     step("judging the regime")
     seen = regime(points, surface, contact=nip[0], lubricant=nip[1])
@@ -125,6 +137,7 @@ def _analysed(
         "carried": carried,
         "timeline": _timeline(log),
         "uncertainty": {} if machine is None else ranges(machine),
+        **beside,
     }
     found, why = None, ""
     try:
@@ -139,11 +152,29 @@ def _analysed(
         seen=regime_part,
         film=film,
         carried=carried,
+        compared=beside.get("compare"),
         found=found,
         why=why,
         machine_file="" if machine_file is None else machine_file.name,
     )
     return Analysis(**document, decision=decided, **behaviour_parts(found))
+
+
+def _compared(log: TorqueLog | MeansTable, points: SteadyPoints, against: SteadyPoints) -> dict[str, Any]:
+    """What this log has against another, and the files of that one."""
+    earlier = against.log.files
+    here = {file.sha256 for file in log.files}
+    for file in earlier:
+        if file.sha256 in here:
+            raise ParameterError(f"{file.name} is in both logs: name another to compare this one with")
+    names = _title(against.log), _title(log)
+    if names[0] == names[1]:
+        names = f"{names[0]} (earlier)", names[1]
+    found = compare(against, points, names=names)
+    return {
+        "compare": ComparisonPart.model_validate(found.to_dict()),
+        "against": [_file(against.log, i) for i in range(len(earlier))],
+    }
 
 
 def _in_words(error: HerseyError) -> str:

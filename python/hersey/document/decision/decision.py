@@ -9,7 +9,7 @@ from hersey.document.decision.flags import flags
 from hersey.document.decision.instruction import doubt_of, of_log, of_machine
 from hersey.document.decision.missing import missing
 from hersey.document.decision.points import point_decision, points_of_log, worst
-from hersey.document.parts import CarriedPart, DecisionPart, FilmPart, RegimePart
+from hersey.document.parts import CarriedPart, ComparisonPart, DecisionPart, FilmPart, RegimePart
 from hersey.document.parts.decision import Signal
 from hersey.machine.machine import Machine
 
@@ -23,12 +23,14 @@ def decision(
     film: FilmPart | None,
     carried: CarriedPart | None,
     found: Behaviour | None,
+    compared: ComparisonPart | None = None,
     why: str = "",
     machine_file: str = "",
 ) -> DecisionPart:
     """Return what to do, why, and what stands against it.
 
-    ``found`` is None without machine or transition, or where nothing can be computed, for the reason ``why``.
+    ``found`` is None without machine or transition, or where nothing can be computed, for the reason ``why``;
+    ``compared`` is this log over an earlier one.
     """
     map_ = None if found is None else found.map
     said = of_log(surface, seen) if found is None or map_ is None else of_machine(found, map_)
@@ -38,9 +40,9 @@ def decision(
         of_points = points_of_log(surface, machine, rises=_rises(surface, seen))
     else:
         of_points = []
-    against = flags(points, surface, seen, film, carried, found, why)
+    against = flags(points, surface, seen, film, carried, found, why, compared)
     signals: list[Signal] = [said.signal, *(point.signal for point in of_points)]
-    signals += [flag.signal for flag in against if flag.signal == "act"]
+    signals += [flag.signal for flag in against if flag.signal == "act" or flag.section == "compare"]
     if map_ is not None and "stick_speed" not in map_.uncertain:
         signals.append("watch")  # the safe end does not count what V* hangs on most
     return DecisionPart(

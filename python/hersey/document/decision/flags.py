@@ -10,7 +10,7 @@ from hersey.damping.surface import DampingSurface
 from hersey.document.decision.behaviour import Behaviour
 from hersey.document.decision.edges import edges_of
 from hersey.document.decision.words import at, bearing, figures, listed, mm, signed
-from hersey.document.parts import CarriedPart, FilmPart, RegimePart
+from hersey.document.parts import CarriedPart, ComparisonPart, FilmPart, RegimePart
 from hersey.document.parts.decision import FlagPart, Signal
 from hersey.log.doubtful import doubtful_units
 from hersey.stability.operating_map import OperatingMap
@@ -33,8 +33,12 @@ def flags(
     carried: CarriedPart | None,
     found: Behaviour | None,
     why: str = "",
+    compared: ComparisonPart | None = None,
 ) -> list[FlagPart]:
-    """Return the gravest warnings, each with the section of the page that holds its evidence."""
+    """Return the gravest warnings, each with the section of the page that holds its evidence.
+
+    What a comparison says was asked for, and stands among them whatever it is, first of its kind.
+    """
     map_ = None if found is None else found.map
     out = [*_contradictions(film, carried), *_of_log(points, surface)]
     if why:
@@ -49,7 +53,19 @@ def flags(
         out += _plans(found)
     out += _left_open(points, surface, seen)
     grave = {"act": 0, "watch": 1, "good": 2}
-    return sorted(out, key=lambda flag: grave[flag.signal])[:MOST]
+    asked = [] if compared is None else [_compared(compared)]
+    kept = sorted(out, key=lambda flag: grave[flag.signal])[: MOST - len(asked)]
+    return sorted([*asked, *kept], key=lambda flag: grave[flag.signal])
+
+
+def _compared(found: ComparisonPart) -> FlagPart:
+    """What really changed since an earlier log."""
+    differs = [each for each in found.changes if each.real]
+    drags = any(low is not None and low > 1.0 for row in found.low for low in row)
+    drags |= any(high is not None and high < 1.0 for row in found.high for high in row)
+    signal: Signal = "watch" if drags or differs else "good"
+    what = "Damping has changed" if drags else "The law has changed" if differs else "Nothing really changed"
+    return FlagPart(signal=signal, title=f"{what} since {found.a}.", text=found.verdict, section="compare")
 
 
 def _contradictions(film: FilmPart | None, carried: CarriedPart | None) -> list[FlagPart]:

@@ -51,7 +51,8 @@ class Analysis(Part):
     timeline: Timeline
     inspection: InspectionPart | None = None
     models: ModelsPart | None = None
-    compare: ComparisonPart | None = None
+    compare: ComparisonPart | None = Field(default=None, description="this log (B) over another (A)")
+    against: list[InputFile] | None = Field(default=None, description="files of the log compared with")
     campaign: CampaignPart | None = None
     life: LifeTestPart | None = None
     design: DesignPart | None = None
