@@ -90,3 +90,10 @@ def test_the_film_of_the_nip_is_part_of_it(document: Analysis) -> None:
     assert [point.name for point in part.points] == ["full speed", "thick paper"]
     assert len(part.dwells) == len(document.points)
     assert any("alpha p" in note for note in part.notes)
+
+
+def test_what_does_not_fit_is_told_once_and_the_farthest_off_first(document: Analysis) -> None:
+    assert document.film is not None
+    off = document.film.misfits
+    assert [each.size for each in off] == sorted((each.size for each in off), reverse=True)
+    assert not {each.text for each in off} & set(document.film.notes)

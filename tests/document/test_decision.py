@@ -19,7 +19,7 @@ from hersey.document.assembly import analyse, load
 from hersey.document.decision import behaviour, decision
 from hersey.document.decision.behaviour import Behaviour, PointBehaviour, Working, ranges
 from hersey.document.decision.words import figures, within
-from hersey.document.parts import Analysis, DecisionPart, RegimePart
+from hersey.document.parts import Analysis, DecisionPart, FilmPart, MisfitPart, RegimePart
 from hersey.errors import ParameterError
 from hersey.log.means import read_means
 from hersey.machine.limits import Limits, OperatingPoint
@@ -90,9 +90,9 @@ Decide = Callable[..., DecisionPart]
 def decide(
     points: hersey.SteadyPoints, surface: DampingSurface, seen: RegimePart, machine: Machine
 ) -> Decide:
-    def decided(found: Behaviour, **changed: object) -> DecisionPart:
+    def decided(found: Behaviour, film: FilmPart | None = None, **changed: object) -> DecisionPart:
         of = replace(machine, **changed)  # type: ignore[arg-type]
-        return decision(points, surface, of, seen=seen, film=None, carried=None, found=found)
+        return decision(points, surface, of, seen=seen, film=film, carried=None, found=found)
 
     return decided
 
@@ -428,6 +428,19 @@ def test_a_machine_that_does_not_fit_the_log_is_said(log: hersey.TorqueLog, mach
     assert "is not below the transition speed" in document.decision.flags[0].text
     assert " mm/s" in document.decision.flags[0].text
     assert "rpm" in document.decision.instruction
+
+
+def test_what_of_the_nip_cannot_be_is_a_warning(decide: Decide, found: Behaviour, document: Analysis) -> None:
+    """The farthest off, where no exponent and no torque is flagged already; a formula's range is none."""
+    assert document.film is not None
+    off = MisfitPart(signal="act", text="friction coefficient 0.5 is not a fluid film", size=1.7)
+    film = document.film.model_copy(update={"misfits": [off], "contradicted": False})
+    shown = [flag for flag in decide(found, film=film).flags if flag.section == "regime"]
+    assert [(flag.title, flag.text) for flag in shown] == [
+        ("Nip and log disagree.", "Friction coefficient 0.5 is not a fluid film.")
+    ]
+    mild = film.model_copy(update={"misfits": [off.model_copy(update={"signal": "watch"})]})
+    assert "Nip and log disagree." not in {flag.title for flag in decide(found, film=mild).flags}
 
 
 def test_the_laws_tried_stand_in_their_order(document: Analysis) -> None:

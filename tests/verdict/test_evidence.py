@@ -18,9 +18,10 @@ from hersey.lubrication.contact import Contact
 from hersey.lubrication.film import Correction, Film, drag_torque, film_thickness
 from hersey.lubrication.lubricant import Lubricant
 from hersey.machine.machine import Machine, read_machine
-from hersey.verdict.checks import check_film
+from hersey.verdict.checks import Misfit, misfits, remarks
 from hersey.verdict.evidence import MeasuredFilm, Verdict, measured_film, verdict
 from hersey.verdict.regime import Regime, regime
+from hersey.verdict.transition import ContactTransition
 from tests.conftest import ROOT
 from tests.verdict.cases import RANGES, alone, holm, seen
 
@@ -268,6 +269,11 @@ def film_at(
 EXTRAPOLATED = "viscosity is extrapolated: known from 40 to 100 degC, used from {} to {} degC"
 
 
+def check_film(machine: Machine, film: Film, measured: MeasuredFilm | None = None) -> tuple[str, ...]:
+    """All that is said of a nip."""
+    return (*(each.text for each in misfits(machine, film, measured)), *remarks(machine, film))
+
+
 @pytest.mark.parametrize(
     ("celsius", "shown"),
     [
@@ -290,10 +296,8 @@ def test_extrapolation_is_said_of_the_cold_and_the_hot(
 def test_statements_that_disagree(machine: Machine, contact: Contact, oil: Lubricant) -> None:
     other = replace(contact, roll_radius=16e-3, load=310.0)
     notes = check_film(replace(machine, contact=other), film_at(other, oil))
-    assert notes[0] == (
-        "[contact] roll_radius is 16 mm, [drivetrain] roll_radius 15 mm: one roll has one radius"
-    )
-    assert notes[1] == "[contact] load is 310 N, [limits] nip_load 300 N: say which"
+    assert "[contact] roll_radius is 16 mm, [drivetrain] roll_radius 15 mm: one roll has one radius" in notes
+    assert "[contact] load is 310 N, [limits] nip_load 300 N: say which" in notes
     near = replace(contact, roll_radius=15.1e-3, load=302.0)
     assert not [
         n for n in check_film(replace(machine, contact=near), film_at(near, oil)) if n.startswith("[")
@@ -379,14 +383,16 @@ def test_what_is_said_of_a_log(machine: Machine, measured: MeasuredFilm) -> None
         return check_film(machine, film, replace(measured, **(quiet | changed)))  # type: ignore[arg-type]
 
     alone = check_film(machine, film)
+
+    def more(**changed: object) -> tuple[str, ...]:
+        return tuple(note for note in notes(**changed) if note not in alone)
+
     assert notes() == alone
-    assert notes(friction=np.full(on.size, 0.35))[len(alone) :] == (
+    assert more(friction=np.full(on.size, 0.35)) == (
         "friction coefficient 0.35 is not a fluid film: above 0.3 surfaces touch, or torque holds more than "
         "the nip's drag",
     )
-    assert notes(grip=0.15)[len(alone) :] == (
-        "friction coefficient 0.2 exceeds that of belt on roll, 0.15: it would slip",
-    )
+    assert more(grip=0.15) == ("friction coefficient 0.2 exceeds that of belt on roll, 0.15: it would slip",)
     assert notes(grip=0.25) == alone
     for value, said in ((3.1, True), (2.9, False), (0.3, True), (0.35, False)):
         text = (
@@ -396,11 +402,69 @@ def test_what_is_said_of_a_log(machine: Machine, measured: MeasuredFilm) -> None
         )
         assert (text in notes(calibration=Estimate(value, 0.1, value, value))) == said
     rough = np.where(on > 0.5, 0.8, 0.1)
-    assert notes(lambda_ratio=rough)[len(alone) :] == (
+    assert more(lambda_ratio=rough) == (
         "the measured film is down to 0.8 of the roughness (1.5 um) where torque rises with speed: not "
         "thickness alone makes this drag",
     )
     assert notes(lambda_ratio=np.where(on > 0.5, 1.1, 0.1)) == alone
+
+
+def test_what_does_not_fit_is_ranked(machine: Machine, measured: MeasuredFilm) -> None:
+    """By how many times it is off: torque of 58 times is farther off than friction of 0.5."""
+    changed = replace(
+        measured,
+        friction=np.full(measured.friction.size, 0.5),
+        calibration=Estimate(58.0, 1.0, 55.0, 61.0),
+        grip=None,
+        lambda_ratio=np.full(measured.friction.size, 0.75),
+    )
+    found = misfits(machine, measured.predicted, changed)
+    sizes = [each.size for each in found]
+    assert sizes == sorted(sizes, reverse=True)
+    assert found[0].text.startswith("measured torque is 58 times")
+    assert found[0].size == pytest.approx(58 / 3)
+    assert found[0].grave
+    by_start = {each.text[:8]: each for each in found}
+    assert by_start["friction"].size == pytest.approx(0.5 / 0.3)
+    assert by_start["the meas"].size == pytest.approx(1 / 0.75)
+    assert not by_start["the meas"].grave
+    weak = replace(changed, calibration=Estimate(1 / 58, 0.1, 0.01, 0.02))
+    assert misfits(machine, measured.predicted, weak)[0].size == pytest.approx(58 / 3)
+
+
+def test_an_exponent_is_off_by_its_interval(machine: Machine, measured: MeasuredFilm) -> None:
+    c, thermal = Estimate(-0.9, 0.02, -0.94, -0.86), Estimate(-5.0, 0.25, -5.5, -4.5, None, 0.1)
+
+    def off(text: str, expected: float, solved: float | None, heat: float) -> list[Misfit]:
+        says = Verdict(c, expected, solved, (), thermal, heat, None, 1.0, text)
+        found = misfits(machine, measured.predicted, None, says)
+        return [each for each in found if "to the power" in each.text]
+
+    [one] = off("Log and film theory contradict each other: x", -0.6, -0.58, -5.6)
+    assert "the film of this nip gives -0.58" in one.text
+    assert one.size == pytest.approx(0.32 / 0.04)
+    assert off("The log names no regime.", -0.6, None, -4.4) == []
+    [other] = off("", -0.6, None, -3.5)
+    assert other.size == pytest.approx(1.5 / 0.5)
+    assert "predicts -3.50" in other.text
+
+
+def test_a_transition_is_off_by_the_interval_of_the_log(machine: Machine, measured: MeasuredFilm) -> None:
+    def turn(speed: list[float], low: list[float], high: list[float]) -> list[Misfit]:
+        kelvin, ones = np.array([363.0, 453.0]), np.ones(2)
+        of = ContactTransition(kelvin, np.array(speed), ones, np.array(low), np.array(high), ones, ones)
+        found = misfits(machine, measured.predicted, turn=of)
+        return [each for each in found if "by the contact" in each.text]
+
+    assert turn([1.05, 0.95], [0.9, 0.9], [1.1, 1.1]) == []
+    [one] = turn([1.05, 1.21], [0.9, 0.9], [1.1, 1.1])
+    assert "at 180 degC" in one.text
+    assert one.size == pytest.approx(2.0)
+    [slow] = turn([0.81, 1.0], [0.9, 0.9], [1.2, 1.2])
+    assert slow.size == pytest.approx(2.0)
+    assert turn([9.0, 9.0], [0.0, 0.1], [np.inf, np.inf]) == []  # not told
+    [none] = turn([np.nan, 1.0], [0.9, 0.9], [1.1, 1.1])
+    assert "drag falls nowhere at 90 degC" in none.text
 
 
 def test_a_machine_without_its_tables(machine: Machine, contact: Contact, oil: Lubricant) -> None:

@@ -73,7 +73,7 @@ def film(
     from hersey.files.writing import write_atomically
     from hersey.machine.machine import read_machine
     from hersey.verdict.cautions import cautions
-    from hersey.verdict.checks import check_film
+    from hersey.verdict.checks import misfits, remarks
     from hersey.verdict.evidence import measured_film, verdict
     from hersey.verdict.regime import regime
 
@@ -108,8 +108,9 @@ def film(
         says = verdict(measured, surface, machine.contact, machine.lubricant, seen)
         doubts = cautions(points, surface)
     predicted, names = _predicted(machine, measured, kelvin, belt_speed)
-    notes = (*check_film(machine, predicted, measured), *doubts)
+    notes = (*remarks(machine, predicted), *doubts)
     shared = shared_load(machine, predicted, measured, surface)
+    off = misfits(machine, predicted, measured, says, None if shared is None else shared.transition)
     if figure is not None:
         from hersey.charts import chart_of
         from hersey.charts.render import picture
@@ -120,9 +121,9 @@ def film(
             content = picture(chart, figure.suffix)
         write_atomically(figure, content, overwrite=True)
     if as_json:
-        print_json("film", film_document(predicted, names, measured, says, notes, shared))
+        print_json("film", film_document(predicted, names, measured, says, notes, shared, off))
         return
-    say(_text(predicted, names, measured, says, notes, shared))
+    say(_text(predicted, names, measured, says, (*(each.text for each in off), *notes), shared))
     if figure is not None:
         say(f"figure: {figure}")
 

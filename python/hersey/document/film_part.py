@@ -14,7 +14,7 @@ from hersey.lubrication.film import REGIMES, Film, film_thickness
 from hersey.lubrication.film_temperature import film_temperature
 from hersey.lubrication.mixed import MixedFilm
 from hersey.machine.machine import Machine
-from hersey.verdict.checks import check_film
+from hersey.verdict.checks import Misfit, misfits, remarks
 from hersey.verdict.evidence import CONTRADICTION, MeasuredFilm, Verdict, measured_film, verdict
 from hersey.verdict.regime import Regime
 from hersey.verdict.transition import ContactTransition, contact_transition
@@ -39,10 +39,10 @@ def film_part(
         film = film_thickness(contact, lubricant, speed=speed, temperature=inside)
     names = [point.name for point in machine.points]
     shared = shared_load(machine, film, measured, surface)
-    notes = [*check_film(machine, film, measured), *(() if shared is None else shared.notes(names))]
-    return film_document(
-        film, names, measured, verdict(measured, surface, contact, lubricant, seen), notes, shared
-    )
+    notes = [*remarks(machine, film), *(() if shared is None else shared.notes(names))]
+    says = verdict(measured, surface, contact, lubricant, seen)
+    off = misfits(machine, film, measured, says, None if shared is None else shared.transition)
+    return film_document(film, names, measured, says, notes, shared, off)
 
 
 @dataclass(frozen=True)
@@ -95,8 +95,9 @@ def film_document(
     says: Verdict | None = None,
     notes: Sequence[str] = (),
     shared: SharedLoad | None = None,
+    off: Sequence[Misfit] = (),
 ) -> FilmPart:
-    """Return a film at named points, and what a log says of it if there is one."""
+    """Return a film at named points, what a log says of it if there is one, and what does not fit."""
     document = film.to_dict()
     document["film"]["names"] = names
     return FilmPart.model_validate(
@@ -108,6 +109,10 @@ def film_document(
             "contradicted": says is not None and says.text.startswith(CONTRADICTION),
             "mixed": None if shared is None else shared.film.to_dict(),
             "transition": None if shared is None else shared.transition.to_dict(),
+            "misfits": [
+                {"signal": "act" if each.grave else "watch", "text": each.text, "size": each.size}
+                for each in off
+            ],
             "notes": list(notes),
             "points": film_points(film, names),
             "dwells": [] if measured is None else film_points(measured.predicted, [""] * measured.speed.size),

@@ -8,6 +8,6 @@ regime           exponents against named regimes, and a verdict in words
 evidence         the film that a log measures, and what its exponents speak for
 transition       where drag is least, by the contact and by a log
 cautions         what must be known before a fit is trusted
-checks           what in the numbers of a nip cannot be
+checks           what in the numbers of a nip does not fit, the farthest off first
 ===============  =======================================================================
 """

@@ -352,8 +352,12 @@ def _agreement(measured: Estimate, expected: float) -> str:
     """Whether an exponent agrees with the one expected, errors of the sensors allowed for."""
     if not measured.told:
         return "which these data do not test"
-    inside = measured.low - measured.systematic <= expected <= measured.high + measured.systematic
-    return "which agrees" if inside else "which disagrees"
+    return "which agrees" if agrees(measured, expected) else "which disagrees"
+
+
+def agrees(measured: Estimate, expected: float) -> bool:
+    """Return whether a value lies in an interval, errors of the sensors allowed for."""
+    return measured.low - measured.systematic <= expected <= measured.high + measured.systematic
 
 
 def _dwell_lines(measured: MeasuredFilm) -> list[str]:

@@ -81,6 +81,9 @@ def _contradictions(film: FilmPart | None, carried: CarriedPart | None) -> list[
         low, mean, high = (figures(ratio) for ratio in carried.ratio)
         text = f"Measured torque is {mean} times what the file states, {low} to {high} by dwell."
         out.append(FlagPart(signal="watch", title="Torque and file disagree.", text=text, section="regime"))
+    if not out and film is not None and film.misfits and film.misfits[0].signal == "act":
+        text = f"{_sentence(film.misfits[0].text)}."
+        out.append(FlagPart(signal="watch", title="Nip and log disagree.", text=text, section="regime"))
     return out
 
 

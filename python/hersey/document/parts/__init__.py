@@ -36,7 +36,14 @@ from hersey.document.parts.decision import DecisionPart, FlagPart, MissingPart, 
 from hersey.document.parts.drift import DriftPart
 from hersey.document.parts.ending import AgesPart, EndingsPart, GrowthPart
 from hersey.document.parts.figures import FiguresPart
-from hersey.document.parts.film import FilmPart, FilmPoint, FilmStatesPart, MeasuredFilmPart, VerdictPart
+from hersey.document.parts.film import (
+    FilmPart,
+    FilmPoint,
+    FilmStatesPart,
+    MeasuredFilmPart,
+    MisfitPart,
+    VerdictPart,
+)
 from hersey.document.parts.film_life import FilmLifePart
 from hersey.document.parts.fit import (
     BranchPart,
@@ -142,6 +149,7 @@ __all__ = [
     "MachineFilePart",
     "MapPart",
     "MeasuredFilmPart",
+    "MisfitPart",
     "MissingPart",
     "MixedPart",
     "ModelsPart",

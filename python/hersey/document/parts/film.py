@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 from pydantic import Field
 
 from hersey.document.parts.fit import HypothesisPart
@@ -153,6 +155,14 @@ class ContactTransitionPart(Part):
     by_boundary: Holed = Field(description="d ln speed/d ln boundary friction; by viscosity it is -1")
 
 
+class MisfitPart(Part):
+    """A number of a nip that does not fit."""
+
+    signal: Literal["watch", "act"] = Field(description="act: it cannot be")
+    text: str
+    size: float = Field(description="how many times its bound, or its interval, it is off; 1: just not")
+
+
 class FilmPart(Part):
     """The film that theory gives this nip, and what a log says of it if there is one."""
 
@@ -167,7 +177,8 @@ class FilmPart(Part):
     contradicted: bool = Field(default=False, description="the log excludes the film of this nip")
     mixed: MixedPart | None = Field(default=None, description="who carries what, at the points")
     transition: ContactTransitionPart | None = Field(default=None, description="where drag is least")
-    notes: list[str] = Field(default=[], description="what in the numbers cannot be, and cautions of the log")
+    misfits: list[MisfitPart] = Field(default=[], description="what does not fit, the farthest off first")
+    notes: list[str] = Field(default=[], description="what else is to be known, and cautions of the log")
     points: list[FilmPoint] = Field(default=[], description="points of interest on the regime chart")
     dwells: list[FilmPoint] = Field(default=[], description="dwells on the regime chart")
 
