@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import ast
+import io
 import json
+import os
+import subprocess
 import warnings
 from pathlib import Path
 
 import pytest
 
 from hersey.cli.application import VERBS
-from hersey.cli.terminal import say, warnings_said
+from hersey.cli.terminal import say, spelled, warnings_said
 from hersey.spelling import printable
-from tests.cli.command import run
+from tests.cli.command import HERSEY, run
 from tests.cli.test_bad_input import staircase
 from tests.conftest import ROOT
 
@@ -133,6 +136,22 @@ def test_codes_for_what_is_no_visible_character(capsys: pytest.CaptureFixture[st
     say("Drehzahl\u00a0µ\tn", "\x1b[2J\udcff")
     assert capsys.readouterr().out == "Drehzahl µ n\n\\x1b[2J\\udcff\n"
     assert_plain(printable(HOSTILE))
+
+
+def test_a_terminal_without_the_signs_prints_letters(folder: Path) -> None:
+    """Without any sign beyond ASCII, and with those of Latin-1 only."""
+    said = "At 180 °C: \N{MINUS SIGN}0.60, 1.5 N·m, 3 µm, \N{INFINITY}, \u20ac"
+    assert spelled(said, "ascii") == "At 180 degC: -0.60, 1.5 N m, 3 um, inf, ?"
+    assert spelled(said, "latin-1") == "At 180 °C: -0.60, 1.5 N·m, 3 µm, inf, ?"
+    assert spelled(said, "utf-8") == said
+    stream = io.TextIOWrapper(io.BytesIO(), encoding="ascii")
+    say("At 180 °C", file=stream)
+    stream.flush()
+    assert stream.buffer.getvalue() == b"At 180 degC\n"  # type: ignore[attr-defined]
+    env = {**os.environ, "PYTHONIOENCODING": "ascii", "LANG": "C"}
+    typed = [*HERSEY, "fit", "--torque", "Tq °C", LOG]
+    done = subprocess.run(typed, cwd=folder, env=env, capture_output=True, check=False)
+    assert b"'Tq degC'" in done.stderr, done.stderr
 
 
 def test_warnings_too() -> None:

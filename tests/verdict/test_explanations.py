@@ -107,6 +107,13 @@ def test_torque_falls_over_the_whole_range_only_if_it_falls_at_both_ends() -> No
     assert said == {True, False}
 
 
+def test_an_exponent_between_two_regimes_says_why_none_is_named() -> None:
+    """One law holds, and it is that of no regime: the reason is never empty."""
+    found = seen(2.0 * SPEEDS**0.2)
+    assert found.named is None
+    assert found.why_unnamed.startswith(("none that is known", "the dwells do not exclude "))
+
+
 def test_too_few_speeds_name_nothing() -> None:
     w, t = grid(np.array([1.0, 4.0, 12.0]), np.array([90.0, 120.0, 150.0]))
     points = points_of(w, 62.0 * t**-0.9 * w**0.3, t, error=0.002)

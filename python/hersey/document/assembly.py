@@ -20,6 +20,8 @@ from hersey.document.carried_part import carried_part
 from hersey.document.decision import decision
 from hersey.document.decision.behaviour import Step, Working, ranges
 from hersey.document.decision.parts import behaviour_parts
+from hersey.document.decision.reasons import in_words
+from hersey.document.display_units import display_units
 from hersey.document.film_part import film_part
 from hersey.document.parts import (
     Analysis,
@@ -144,7 +146,8 @@ def _analysed(
         found = None if working is None else working.result(step)
         document["simulation"] = _simulation(surface, machine)
     except HerseyError as error:  # a stick speed above the transition, say: the log can be told all the same
-        why = _in_words(error)
+        why = in_words(error)
+    shown = display_units(points, None if found is None else found.map)
     decided = decision(
         points,
         surface,
@@ -156,8 +159,9 @@ def _analysed(
         found=found,
         why=why,
         machine_file="" if machine_file is None else machine_file.name,
+        unit=shown["torque"],
     )
-    return Analysis(**document, decision=decided, **behaviour_parts(found))
+    return Analysis(**document, units=shown, decision=decided, **behaviour_parts(found))
 
 
 def _compared(log: TorqueLog | MeansTable, points: SteadyPoints, against: SteadyPoints) -> dict[str, Any]:
@@ -175,14 +179,6 @@ def _compared(log: TorqueLog | MeansTable, points: SteadyPoints, against: Steady
         "compare": ComparisonPart.model_validate(found.to_dict()),
         "against": [_file(against.log, i) for i in range(len(earlier))],
     }
-
-
-def _in_words(error: HerseyError) -> str:
-    """An error of the machine's drag, speeds in mm/s."""
-    if isinstance(error, ParameterError) and error.quantity == "stick_speed" and error.value and error.limit:
-        stated, turn = (f"{1e3 * speed:.3g} mm/s" for speed in (error.value, error.limit))
-        return f"the stick speed, {stated} there, is not below the transition speed, {turn}: state less"
-    return str(error)
 
 
 def _machine_file(path: Path) -> MachineFilePart:

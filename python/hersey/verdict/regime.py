@@ -127,7 +127,7 @@ def regime(
         hypotheses,
         by.explanations,
         by.named,
-        by.why_unnamed,
+        by.why_unnamed or _left(by),
         by.lack_of_fit,
         " ".join(filter(None, (_verdict(surface, by, table), _taken_off(points), points.dropped()))),
         by.tried,
@@ -218,6 +218,15 @@ def _exponent(surface: DampingSurface, by: Explained, table: tuple[RegimeRow, ..
     if not _films(by, table):
         return f"{said}, {_between(surface.c.value, table)}; not excluded: {_or(others)}."
     return f"{said}, which does not exclude {_or(others)}."
+
+
+def _left(by: Explained) -> str:
+    """Why no regime is named where the data speak against none of several, or against all; else nothing."""
+    if by.named:
+        return ""
+    if not by.explanations:
+        return "none that is known explains the dwells"
+    return f"the dwells do not exclude {_or([each.name for each in by.explanations])}"
 
 
 def _films(by: Explained, table: tuple[RegimeRow, ...]) -> list[Explanation]:

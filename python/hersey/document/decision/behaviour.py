@@ -5,13 +5,14 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
 import numpy as np
 
 from hersey.damping.surface import DampingSurface
-from hersey.errors import HerseyError, ParameterError
+from hersey.document.decision.reasons import in_words
+from hersey.errors import HerseyError
 from hersey.machine.limits import OperatingPoint
 from hersey.machine.machine import Machine
 from hersey.motion.schedule import Schedule
@@ -44,18 +45,23 @@ class PointBehaviour:
     steps: tuple[SafeStep, ...] = ()
     plan: Plan | None = None
     straight: Trajectory | None = None  #: straight up to the point, beside the plan
+    stiction: float | None = None  #: V* (m/s) there of a belt that stops dead, None where it does not start
     reason: str = ""  #: why something of it is missing
 
 
 @dataclass(frozen=True)
 class StickSpeeds:
-    """V* against the stick speed at the temperature of a band: speeds in m/s."""
+    """V* against the stick speed at the temperature of a band: speeds in m/s.
+
+    ``stiction`` is V* of a belt that stops dead, at the stick speed stated; None where it does not start.
+    """
 
     stated: float
     known: tuple[float, float] | None
     stick_speed: list[float]
     transition: list[float]
     upper: list[float]
+    stiction: float | None = None
 
 
 @dataclass(frozen=True)
@@ -113,9 +119,9 @@ class Working:
             of_plan, no_plan = _done(planned)
             plan, straight = of_plan if of_plan is not None else (None, None)
             of_point, no_figure = _done(borne)
-            bears, steps = of_point if of_point is not None else (None, ())
+            bears, steps, stiction = of_point if of_point is not None else (None, (), None)
             reason = "; ".join(filter(None, (no_plan, no_figure)))
-            points.append(PointBehaviour(point, bears, steps, plan, straight, reason))
+            points.append(PointBehaviour(point, bears, steps, plan, straight, stiction, reason))
         return Behaviour(temperature, band, stick, map_, tuple(points), (f"no map: {why}",) if why else ())
 
     def _begin(self, work: Callable[..., _T], *given: object) -> Future[_T]:
@@ -159,7 +165,14 @@ class Working:
         edges = [bands.columns[name] for name in ("transition", "upper")]
         # a belt that is not started has no V*
         upper = np.where(bands.columns["stalls"], np.nan, np.maximum(*edges))
-        return StickSpeeds(drag.stick_speed, known, grid.tolist(), edges[0].tolist(), upper.tolist())
+        curve = grid.tolist(), edges[0].tolist(), upper.tolist()
+        return StickSpeeds(drag.stick_speed, known, *curve, self._stopping(kelvin))
+
+    def _stopping(self, kelvin: float | None) -> float | None:
+        """V* of a belt that stops dead below the stick speed, where nobody knows how it comes to rest."""
+        drag = self._surface.drag(**self._machine.belt, temperature=kelvin)
+        band = hysteresis(self._machine.train, replace(drag, closure="stiction"), sensitivity=False)
+        return None if band.stalls else max(band.upper, band.transition)
 
     def _at(self, point: OperatingPoint) -> float | None:
         return None if self._surface.b is None else point.temperature
@@ -171,14 +184,7 @@ class Working:
         band = hysteresis(machine.train, drag, sensitivity=False)
         if not (band.transition <= point.speed < band.upper and _starts(machine, drag.holding_force)):
             return None, None
-        try:
-            plan = plan_of_log(self._surface, machine, target_speed=point.speed, temperature=kelvin)
-        except ParameterError as error:
-            if error.quantity != "stick_speed":
-                raise
-            turn = f"{1e3 * drag.transition_speed:.3g} mm/s"
-            text = f"no plan: the range of stick_speed reaches the transition speed, {turn}: state less"
-            raise ParameterError(text) from None
+        plan = plan_of_log(self._surface, machine, target_speed=point.speed, temperature=kelvin)
         if plan.response is None:
             return plan, None
         rise = point.speed / machine.limits.acceleration if machine.limits.acceleration else 0.0
@@ -191,13 +197,13 @@ class Working:
         )
         return plan, straight
 
-    def _borne(self, point: OperatingPoint) -> tuple[Disturbance | None, tuple[SafeStep, ...]]:
-        """What sliding at a point bears, and how to come there from the others at its temperature."""
+    def _borne(self, point: OperatingPoint) -> tuple[Disturbance | None, tuple[SafeStep, ...], float | None]:
+        """What sliding at a point bears, how to come there from others, and V* of a belt that stops dead."""
         kelvin, machine = self._at(point), self._machine
         drag = self._surface.drag(**machine.belt, temperature=kelvin)
         turn = drag.transition_speed
         if point.speed < turn:
-            return None, ()
+            return None, (), None
         others = [
             other.speed
             for other in machine.points
@@ -209,7 +215,8 @@ class Working:
             safe_step(machine.train, drag, from_speed=speed, to_speed=point.speed)
             for speed in dict.fromkeys(others)
         ]
-        return disturbance(machine.train, drag, drive_speed=point.speed), tuple(steps)
+        bears = disturbance(machine.train, drag, drive_speed=point.speed)
+        return bears, tuple(steps), self._stopping(kelvin)
 
 
 def ranges(machine: Machine) -> dict[str, tuple[float, float]]:
@@ -243,4 +250,4 @@ def _done(work: Future[Any]) -> tuple[Any, str]:
     try:
         return work.result(), ""
     except HerseyError as error:
-        return None, str(error)
+        return None, in_words(error)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.surface import DampingSurface
 from hersey.document.decision.behaviour import Behaviour
+from hersey.document.decision.edges import edges_of
 from hersey.document.decision.flags import flags
 from hersey.document.decision.instruction import doubt_of, of_log, of_machine
 from hersey.document.decision.missing import missing
@@ -26,25 +27,29 @@ def decision(
     compared: ComparisonPart | None = None,
     why: str = "",
     machine_file: str = "",
+    unit: str = "N·m",
 ) -> DecisionPart:
     """Return what to do, why, and what stands against it.
 
     ``found`` is None without machine or transition, or where nothing can be computed, for the reason ``why``;
-    ``compared`` is this log over an earlier one.
+    ``compared`` is this log over an earlier one, ``unit`` that of torques in words.
     """
     map_ = None if found is None else found.map
-    said = of_log(surface, seen) if found is None or map_ is None else of_machine(found, map_)
+    said = of_log(surface, seen) if found is None or map_ is None else of_machine(found, map_, unit)
     if found is not None and map_ is not None:
-        of_points = [point_decision(point, map_) for point in found.points]
+        of_points = [point_decision(point, map_, unit) for point in found.points]
     elif machine is not None:
         of_points = points_of_log(surface, machine, rises=_rises(surface, seen))
     else:
         of_points = []
-    against = flags(points, surface, seen, film, carried, found, why, compared)
+    against = flags(points, surface, seen, film, carried, found, why, compared, unit)
     signals: list[Signal] = [said.signal, *(point.signal for point in of_points)]
     signals += [flag.signal for flag in against if flag.signal == "act" or flag.section == "compare"]
-    if map_ is not None and "stick_speed" not in map_.uncertain:
-        signals.append("watch")  # the safe end does not count what V* hangs on most
+    if found is not None and map_ is not None:
+        stopping = None if found.stick_speeds is None else found.stick_speeds.stiction
+        beyond = stopping is not None and stopping > edges_of(map_, found.temperature).safe
+        if beyond or "stick_speed" not in map_.uncertain:
+            signals.append("watch")  # the safe end does not count what V* hangs on most
     return DecisionPart(
         signal=worst(signals),
         instruction=said.instruction,

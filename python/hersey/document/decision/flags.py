@@ -7,9 +7,10 @@ import numpy as np
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.dwells.doubtful import doubtful_order, doubtful_tare
 from hersey.damping.surface import DampingSurface
-from hersey.document.decision.behaviour import Behaviour
-from hersey.document.decision.edges import edges_of
-from hersey.document.decision.words import at, bearing, figures, listed, mm, signed
+from hersey.document.decision.behaviour import Behaviour, StickSpeeds
+from hersey.document.decision.edges import Edges, edges_of
+from hersey.document.decision.instruction import start_unsure
+from hersey.document.decision.words import at, figures, listed, mm, signed, starting
 from hersey.document.parts import CarriedPart, ComparisonPart, FilmPart, RegimePart
 from hersey.document.parts.decision import FlagPart, Signal
 from hersey.log.doubtful import doubtful_units
@@ -34,6 +35,7 @@ def flags(
     found: Behaviour | None,
     why: str = "",
     compared: ComparisonPart | None = None,
+    unit: str = "N·m",
 ) -> list[FlagPart]:
     """Return the gravest warnings, each with the section of the page that holds its evidence.
 
@@ -44,13 +46,13 @@ def flags(
     if why:
         out.append(FlagPart(signal="act", title="No band.", text=f"{_sentence(why)}.", section="band"))
     if found is not None and map_ is not None:
-        out += _of_machine(found, map_)
+        out += _of_machine(found, map_, unit)
     if found is not None:
         out += [
             FlagPart(signal="watch", title="No map.", text=_sentence(reason), section="band")
             for reason in found.reasons
         ]
-        out += _plans(found)
+        out += _plans(found, map_)
     out += _left_open(points, surface, seen)
     grave = {"act": 0, "watch": 1, "good": 2}
     asked = [] if compared is None else [_compared(compared)]
@@ -87,42 +89,21 @@ def _contradictions(film: FilmPart | None, carried: CarriedPart | None) -> list[
     return out
 
 
-def _of_machine(found: Behaviour, map_: OperatingMap) -> list[FlagPart]:
+def _of_machine(found: Behaviour, map_: OperatingMap, unit: str) -> list[FlagPart]:
     edges, kelvin = edges_of(map_, found.temperature), found.temperature
     out = []
     if edges.starts is not True:
         held, motor = edges.holding, map_.limited_by == "motor torque"
-        bears = bearing(held.low, held.value, held.high, edges.limit, map_.limited_by)
+        needs = starting(held.low, held.value, held.high, edges.limit, map_.limited_by, unit)
         surely = edges.starts is False
         title = f"The roll {'slips' if surely else 'may slip'} at the start."
         if motor:
             title = f"The motor {'does' if surely else 'may'} not start the belt."
         signal: Signal = "act" if surely else "watch"
-        text = _sentence(f"{at(kelvin)}{bears}.")
+        text = _sentence(f"{at(kelvin)}{needs}.")
         out.append(FlagPart(signal=signal, title=title, text=text, section="band"))
-    stick = found.stick_speeds
-    if stick is not None and edges.bistable:
-        # what of the range lies below the transition
-        ends = stick.known or (stick.stick_speed[0], stick.stick_speed[-1])
-        within = [
-            (speed, upper)
-            for speed, upper in zip(stick.stick_speed, stick.upper, strict=True)
-            if ends[0] * (1 - 1e-9) <= speed <= ends[1] * (1 + 1e-9)
-        ] or list(zip(stick.stick_speed, stick.upper, strict=True))
-        started = [upper for _, upper in within if np.isfinite(upper)]
-        moves = (
-            f"moves V* from {mm(min(started))} to {mm(max(started))} mm/s" if started else "starts nowhere"
-        )
-        stalled = (
-            f", where the belt starts ({len(started)} of {len(within)})"
-            if 0 < len(started) < len(within)
-            else ""
-        )
-        counted = "" if stick.known else "; the interval does not count it"
-        text = (
-            f"Nobody measures it; {mm(within[0][0])} to {mm(within[-1][0])} mm/s {moves}{stalled}{counted}."
-        )
-        out.append(FlagPart(signal="watch", title="V* hangs on the stick speed.", text=text, section="band"))
+    if found.stick_speeds is not None:
+        out += _unmeasured(found.stick_speeds, edges, kelvin)
     if map_.train.grip is None:
         pulls = [p.plan.peak_force for p in found.points if p.plan is not None and p.plan.found]
         force = f"The first slip pulls {figures(max(pulls))} N; " if pulls else ""
@@ -137,10 +118,44 @@ def _of_machine(found: Behaviour, map_: OperatingMap) -> list[FlagPart]:
     return out
 
 
-def _plans(found: Behaviour) -> list[FlagPart]:
+def _unmeasured(stick: StickSpeeds, edges: Edges, kelvin: float | None) -> list[FlagPart]:
+    """What V* hangs on and no steady log shows: the stick speed, and how the belt comes to rest."""
+    titles, texts = [], []
+    if edges.bistable:
+        # what of the range lies below the transition
+        ends = stick.known or (stick.stick_speed[0], stick.stick_speed[-1])
+        within = [
+            (speed, upper)
+            for speed, upper in zip(stick.stick_speed, stick.upper, strict=True)
+            if ends[0] * (1 - 1e-9) <= speed <= ends[1] * (1 + 1e-9)
+        ] or list(zip(stick.stick_speed, stick.upper, strict=True))
+        started = [upper for _, upper in within if np.isfinite(upper)]
+        there = f" {at(kelvin, first=False)}".rstrip() if kelvin is not None and stick.known else ""
+        moves = (
+            f"V* lies between {mm(min(started))} and {mm(max(started))} mm/s" if started else "none starts"
+        )
+        stalled = f", where the belt starts ({len(started)} of {len(within)})"
+        counted = "" if stick.known else "; the interval does not count it"
+        text = f"between {mm(within[0][0])} and {mm(within[-1][0])} mm/s{there} {moves}"
+        texts.append(f"{text}{stalled if 0 < len(started) < len(within) else ''}{counted}")
+        titles.append("the stick speed")
+    if stick.stiction is not None and stick.stiction > edges.safe:
+        creeps = (
+            "" if np.isnan(edges.fold.value) else f", {mm(edges.fold.value)} if it creeps to rest (retained)"
+        )
+        texts.append(f"V* is {mm(stick.stiction)} mm/s if the belt stops dead (stiction){creeps}")
+        titles.append("how the belt stops")
+    if not titles:
+        return []
+    text = f"Nobody measures {'them' if len(titles) > 1 else 'it'}: {'; '.join(texts)}."
+    return [FlagPart(signal="watch", title=f"V* hangs on {listed(titles)}.", text=text, section="band")]
+
+
+def _plans(found: Behaviour, map_: OperatingMap | None) -> list[FlagPart]:
+    """Points that no start reaches; where the belt may not break loose the flag of the start says it."""
     out = []
     for each in found.points:
-        if each.plan is not None and not each.plan.found:
+        if each.plan is not None and not each.plan.found and not (map_ and start_unsure(each, map_)):
             text = _sentence("; ".join(obstacle.text for obstacle in each.plan.obstacles)) + "."
             below = any(obstacle.limit == "target_speed" for obstacle in each.plan.obstacles)
             title = f"{'No plan' if below else 'No start'} for {each.point.name}."

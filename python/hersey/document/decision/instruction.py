@@ -8,7 +8,18 @@ from dataclasses import dataclass
 from hersey.damping.surface import DampingSurface
 from hersey.document.decision.behaviour import Behaviour, PointBehaviour
 from hersey.document.decision.edges import Edge, Edges, edges_of
-from hersey.document.decision.words import at, bearing, between, degrees, figures, mm, roll, signed, within
+from hersey.document.decision.words import (
+    at,
+    between,
+    degrees,
+    figures,
+    mm,
+    roll,
+    signed,
+    starting,
+    torque,
+    within,
+)
 from hersey.document.parts import RegimePart
 from hersey.document.parts.decision import Signal
 from hersey.stability.operating_map import OperatingMap
@@ -33,15 +44,15 @@ class Instruction:
     otherwise: str
 
 
-def of_machine(found: Behaviour, map_: OperatingMap) -> Instruction:
-    """Return what to do with a machine whose band is known."""
+def of_machine(found: Behaviour, map_: OperatingMap, unit: str) -> Instruction:
+    """Return what to do with a machine whose band is known; torques in a unit."""
     kelvin = found.temperature
     edges = edges_of(map_, kelvin)
     where, fold, turn = at(kelvin), edges.fold, edges.transition
     if edges.starts is False:
-        return _not_started(where, kelvin, edges, map_)
+        return _not_started(where, kelvin, edges, map_, unit)
     interval = _interval("V* is", fold) if edges.bistable else _interval("the transition is", turn)
-    starts = _starts(found, kelvin)
+    starts = _starts(found, kelvin, map_)
     if not math.isfinite(edges.safe):
         lead = _lead(where, "measure the stick speed before you count on a start from rest")
         return Instruction("watch", lead, interval, _otherwise(edges, starts))
@@ -49,7 +60,7 @@ def of_machine(found: Behaviour, map_: OperatingMap) -> Instruction:
         return _out_of_reach(found, where, edges, interval, _otherwise(edges, starts))
     run = f"run above {_up(edges.safe)} mm/s"
     if edges.starts is None:
-        text = _lead(where, f"{run}, and make sure that it starts: {_bearing(edges, map_)}")
+        text = _lead(where, f"{run}, and make sure that it starts: {_starting(edges, map_, unit)}")
         return Instruction("watch", text, interval, _otherwise(edges, starts))
     return Instruction("good", _lead(where, run), interval, _otherwise(edges, starts))
 
@@ -93,12 +104,11 @@ def _one_branch(surface: DampingSurface, seen: RegimePart) -> Instruction:
     c = surface.c
     interval = f"exponent of damping {signed(c.value)}"
     interval += f" [{signed(c.low)}, {signed(c.high)}]" if c.told else ", interval not told"
-    if c.value < -1.0:
-        sure = c.told and c.high < -1.0
-        falls = "torque falls" if sure else "torque does not rise"
+    if c.told and c.high < -1.0:
+        measured = f"over all that was measured, {low} to {high} rpm"
         return Instruction(
             "watch",
-            f"Measure faster dwells: {falls} as speed rises, over all that was measured, {low} to {high} rpm",
+            f"Measure faster dwells: torque falls as speed rises, {measured}",
             interval,
             "Where torque falls with speed the drive can stick and slip; where it ends to fall is not known.",
         )
@@ -113,7 +123,9 @@ def _one_branch(surface: DampingSurface, seen: RegimePart) -> Instruction:
     if doubt := doubt_of(surface, seen):
         what = f"Measure dwells slower than {low} rpm"
         if surface.b is None and surface.statistics.scatter > _FAR_OFF:
-            what = "Fit with temperature"
+            what = "Fit with temperature, or record it"
+        elif not (c.told and c.low > -1.0):
+            what = f"Record dwells slower than {low} and faster than {high} rpm"
         return Instruction(
             "watch", f"{what}: {doubt}", interval, "Whether torque falls anywhere is not told: it may stick."
         )
@@ -137,7 +149,7 @@ def doubt_of(surface: DampingSurface, seen: RegimePart) -> str:
     if any(p is not None and p < _SURE for p in tested):
         return "one law does not hold over all dwells"
     if not (surface.c.told and surface.c.low > -1.0):
-        return "that torque rises with speed is not sure"
+        return "whether torque rises with speed is not told"
     return ""
 
 
@@ -149,24 +161,26 @@ def _local(seen: RegimePart) -> float | None:
     return lack.local_exponents[0]
 
 
-def _not_started(where: str, kelvin: float | None, edges: Edges, map_: OperatingMap) -> Instruction:
-    holding, limit = figures(edges.holding.high, up=True), figures(edges.limit)
+def _not_started(
+    where: str, kelvin: float | None, edges: Edges, map_: OperatingMap, unit: str
+) -> Instruction:
+    needed, limit = torque(edges.holding.high, unit, up=True), torque(edges.limit, unit)
     if map_.limited_by == "motor torque":
-        what = f"give the roll more than {holding} N·m: the motor's {limit} N·m do not start a belt at rest"
+        what = f"give the roll more than {needed}: the motor's {limit} do not start a belt at rest"
     else:
-        what = f"let the roll grip more than {holding} N·m: at {limit} N·m it slips on a belt at rest"
+        what = f"let the roll grip more than {needed}: at {limit} it slips on a belt at rest"
     turn = figures(1e3 * edges.transition.high, up=True)
     takes = map_.state_at(kelvin, edges.transition.high).torque
     if takes <= edges.limit:
         otherwise = f"A belt that slides already goes on sliding above {turn} mm/s."
     else:
-        otherwise = f"It does not slide on either: sliding takes {figures(takes)} N·m at {turn} mm/s."
-    return Instruction("act", _lead(where, what), _bearing(edges, map_), otherwise)
+        otherwise = f"It does not slide on either: sliding takes {torque(takes, unit)} at {turn} mm/s."
+    return Instruction("act", _lead(where, what), _starting(edges, map_, unit), otherwise)
 
 
-def _bearing(edges: Edges, map_: OperatingMap) -> str:
+def _starting(edges: Edges, map_: OperatingMap, unit: str) -> str:
     held = edges.holding
-    return bearing(held.low, held.value, held.high, edges.limit, map_.limited_by)
+    return starting(held.low, held.value, held.high, edges.limit, map_.limited_by, unit)
 
 
 def _otherwise(edges: Edges, starts: str) -> str:
@@ -176,29 +190,38 @@ def _otherwise(edges: Edges, starts: str) -> str:
         return f"{sticks} The way there does not matter."
     upper = f"{turn} and {_up(edges.safe)} mm/s" if math.isfinite(edges.safe) else ""
     between = f"Between {upper}" if upper else f"Above {turn} mm/s"
-    return f"{between} it depends on how you get there{starts}. {sticks}"
+    return f"{between} it may depend on how you get there{starts}. {sticks}"
 
 
-def _starts(found: Behaviour, kelvin: float | None) -> str:
+def _starts(found: Behaviour, kelvin: float | None, map_: OperatingMap) -> str:
     """How the plans start the points that need one."""
-    said = list(dict.fromkeys(text for each in found.points if (text := _start(each, kelvin))))
+    said = list(dict.fromkeys(text for each in found.points if (text := _start(each, kelvin, map_))))
     more = f"; and {len(said) - _NAMED} more" if len(said) > _NAMED else ""
     return f": {'; '.join(said[:_NAMED])}{more}" if said else ""
 
 
-def _start(found: PointBehaviour, kelvin: float | None) -> str:
+def _start(found: PointBehaviour, kelvin: float | None, map_: OperatingMap) -> str:
     plan, point = found.plan, found.point
     if plan is None:
         return ""
     apart = kelvin is not None and abs(point.temperature - kelvin) > _ALIKE
     goal = f"{mm(point.speed)} mm/s" + (f" at {degrees(point.temperature)}" if apart else "")
     if plan.kind == "overshoot":
-        return f"for {goal} overshoot to {mm(plan.peak_speed)} mm/s first (plan)"
+        slowly = f" in {figures(plan.rise)} s" if plan.rise else ""
+        return f"for {goal} overshoot to {mm(plan.peak_speed)} mm/s{slowly} first (plan)"
     if plan.kind == "direct":
         return f"for {goal} come straight up in {figures(plan.rise)} s (plan)" if plan.rise else ""
     if any(each.limit == "target_speed" for each in plan.obstacles):
         return f"{goal} may lie below the transition"
+    if start_unsure(found, map_):
+        return f"for {goal} no start is sure: the belt may not break loose"
     return f"for {goal} no start within the limits works"
+
+
+def start_unsure(found: PointBehaviour, map_: OperatingMap) -> bool:
+    """Return whether the drive may or may not start the belt at a point, so that no plan is sure of it."""
+    kelvin = found.point.temperature if map_.drag.varies_with_temperature else None
+    return edges_of(map_, kelvin).starts is None
 
 
 def _interval(what: str, edge: Edge) -> str:

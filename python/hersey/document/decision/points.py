@@ -9,7 +9,7 @@ import numpy as np
 from hersey.damping.surface import DampingSurface
 from hersey.document.decision.behaviour import PointBehaviour
 from hersey.document.decision.edges import Edges, edges_of
-from hersey.document.decision.words import bearing, between, figures, mm
+from hersey.document.decision.words import between, mm, starting, torque
 from hersey.document.parts.decision import PointDecisionPart, Signal, StartPart
 from hersey.document.parts.stability import DisturbancePart, PlanPart, StepPart
 from hersey.document.thinning import kept
@@ -29,12 +29,12 @@ def worst(signals: list[Signal]) -> Signal:
     return max(signals, key=_ORDER.index, default="good")
 
 
-def point_decision(found: PointBehaviour, map_: OperatingMap) -> PointDecisionPart:
-    """Return what is said of an operating point."""
+def point_decision(found: PointBehaviour, map_: OperatingMap, unit: str) -> PointDecisionPart:
+    """Return what is said of an operating point; torques in a unit."""
     point = found.point
     kelvin = point.temperature if map_.drag.varies_with_temperature else None
     state, edges = map_.state_at(kelvin, point.speed), edges_of(map_, kelvin)
-    signal, words = _judged(found, state, edges, map_)
+    signal, words = _judged(found, state, edges, map_, unit)
     if state.extrapolated:
         signal, words = worst([signal, "watch"]), f"{words}; extrapolated"
     bears, plan = found.disturbance, found.plan
@@ -78,25 +78,32 @@ def points_of_log(surface: DampingSurface, machine: Machine, *, rises: bool) -> 
     return out
 
 
-def _judged(found: PointBehaviour, state: MapState, edges: Edges, map_: OperatingMap) -> tuple[Signal, str]:
+def _judged(
+    found: PointBehaviour, state: MapState, edges: Edges, map_: OperatingMap, unit: str
+) -> tuple[Signal, str]:
     speed, fold, turn = found.point.speed, edges.fold, edges.transition
     transition = between("the transition is", turn.value, turn.low, turn.high)
     upper = between("V* is", fold.value, fold.low, fold.high)
     held = edges.holding
-    bears = bearing(held.low, held.value, held.high, edges.limit, map_.limited_by)
+    needs = starting(held.low, held.value, held.high, edges.limit, map_.limited_by, unit)
     if map_.speed_limit is not None and speed > map_.speed_limit:
         return "act", f"faster than the drive, {mm(map_.speed_limit)} mm/s"
     if edges.starts is False:
-        return "act", f"not started: {bears}"
+        return "act", f"not started: {needs}"
     if state.torque > edges.limit:
-        return "act", f"stalls: {_beyond(map_, 'sliding takes', state.torque)}"
+        return "act", f"stalls: {_beyond(map_, state.torque, unit)}"
     if speed < state.transition:
         return "act", f"sticks: {transition}"
     if edges.starts is None:
         if speed >= edges.safe:
-            return "watch", f"smooth once it slides, but may not start: {bears}"
-        return "watch", f"may not start: {bears}; {upper}"
+            return "watch", f"smooth once it slides, but may not start: {needs}"
+        return "watch", f"may not start: {needs}; {upper}"
     if state.state == "smooth":
+        if speed >= edges.safe and found.stiction is not None and speed < found.stiction:
+            return (
+                "watch",
+                f"smooth, unless the belt stops dead: then it sticks up to {mm(found.stiction)} mm/s",
+            )
         if speed >= edges.safe:
             return "good", "smooth from any start"
         return "watch", f"smooth by the estimate; {upper}"
@@ -111,10 +118,9 @@ def _judged(found: PointBehaviour, state: MapState, edges: Edges, map_: Operatin
     return "watch", f"depends: {way} (plan){doubt}"
 
 
-def _beyond(map_: OperatingMap, what: str, torque: float) -> str:
-    limit = figures(map_.torque_limit or math.nan)
+def _beyond(map_: OperatingMap, takes: float, unit: str) -> str:
     gives = "the motor gives" if map_.limited_by == "motor torque" else "the roll grips"
-    return f"{what} {figures(torque)} N·m, {gives} {limit}"
+    return f"sliding takes {torque(takes, unit)}, {gives} {torque(map_.torque_limit or math.nan, unit)}"
 
 
 def _motion(found: PointBehaviour) -> StartPart | None:

@@ -7,6 +7,8 @@ import math
 from hersey.units import celsius
 from hersey.units import rpm as in_rpm
 
+#: Units of a torque, and how many of them a N m is.
+PER = {"N·m": 1.0, "mN·m": 1e3}
 _MINUS = "\N{MINUS SIGN}"
 
 
@@ -64,12 +66,17 @@ def between(what: str, value: float, low: float, high: float) -> str:
     return f"{what} {mm(value)} {within(low, high, 1e3)} mm/s"
 
 
-def bearing(low: float, value: float, high: float, limit: float, by: str) -> str:
-    """Return what a belt at rest bears beside what the drive does, N m; ``by`` is what limits it."""
-    ends = within(low, high, 1.0) if low < high else ""
+def torque(value: float, unit: str, *, up: bool | None = None) -> str:
+    """Return a torque (N m) in the unit of the document."""
+    return f"{figures(value * PER[unit], up=up)} {unit}"
+
+
+def starting(low: float, value: float, high: float, limit: float, by: str, unit: str) -> str:
+    """Return what starts a belt beside what the drive gives (N m, in a unit); ``by`` is what limits it."""
+    ends = within(low, high, PER[unit]) if low < high else ""
     gives = "the motor gives" if by == "motor torque" else "the roll grips"
-    said = " ".join(filter(None, ("a belt at rest bears", figures(value), ends, "N·m")))
-    return f"{said}, {gives} {figures(limit)}"
+    said = " ".join(filter(None, ("a belt at rest needs", figures(value * PER[unit]), ends, unit)))
+    return f"{said} to break loose, {gives} {figures(limit * PER[unit])}"
 
 
 def listed(parts: list[str]) -> str:

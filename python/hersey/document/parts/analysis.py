@@ -35,6 +35,9 @@ class Analysis(Part):
     made: str | None = Field(default=None, description="when, UTC, ISO 8601; null where nobody said so")
     machine: MachineFilePart | None = None
     synthetic: bool = Field(default=False, description="a log says of itself that it is no measurement")
+    units: dict[str, str] = Field(
+        default={}, description="in which torque, belt_speed, roll_speed, temperature and force are shown"
+    )
     decision: DecisionPart | None = None
     verdict: list[str] = Field(description="in paragraphs; a contradiction first")
     warnings: list[str]

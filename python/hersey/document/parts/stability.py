@@ -115,6 +115,9 @@ class StickSpeedPart(Part):
     stick_speed: Numbers
     transition: Numbers
     upper: Holed = Field(description="V*; null beyond the search")
+    stiction: float | None = Field(
+        default=None, description="V* at the stated stick speed of a belt that stops dead; null: not started"
+    )
 
 
 class WarmUpPart(Part):
