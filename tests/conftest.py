@@ -59,6 +59,11 @@ def points(log: hersey.TorqueLog) -> hersey.SteadyPoints:
 
 
 @pytest.fixture(scope="session")
+def surface(points: hersey.SteadyPoints) -> hersey.DampingSurface:
+    return hersey.fit(points)
+
+
+@pytest.fixture(scope="session")
 def document(log: hersey.TorqueLog, points: hersey.SteadyPoints) -> Analysis:
     machine = read_machine(ROOT / "tests" / "stand" / "machine.toml")
     return analyse(log, points, command="hersey report bench.csv", machine=machine)

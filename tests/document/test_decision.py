@@ -39,11 +39,6 @@ SLOW, BETWEEN, FAST = 0.02, 0.045, 0.12
 
 
 @pytest.fixture(scope="module")
-def surface(points: hersey.SteadyPoints) -> DampingSurface:
-    return fit(points)
-
-
-@pytest.fixture(scope="module")
 def seen(points: hersey.SteadyPoints, surface: DampingSurface) -> RegimePart:
     return RegimePart.model_validate(regime(points, surface).to_dict())
 
@@ -232,22 +227,6 @@ def test_a_wider_stick_speed_widens_what_a_belt_at_rest_bears(
     # A = e F(v_s): by the ends of the range of the stick speed, a factor of ten
     power = -1.0 - surface.transition.mixed_exponent.value  # type: ignore[union-attr]
     assert most / least == pytest.approx(10.0**power, rel=0.25)
-
-
-def test_v_star_is_that_of_the_draws_that_start(
-    surface: DampingSurface, machine: Machine, map_: OperatingMap
-) -> None:
-    """Draws that the grip does not start have no V*, and do not draw its interval down."""
-    grip = float(map_.holding[-1]) / machine.roll_radius
-    tight = operating_map(
-        surface,
-        replace(machine.train, grip=grip),
-        **machine.belt,
-        uncertainty=machine.uncertainty,
-        temperatures=[HOT - 10, HOT],
-        draws=40,
-    )
-    assert np.all(tight.upper_interval[0] > 1.1 * tight.transition)
 
 
 def test_a_belt_that_is_not_started_comes_first(decide: Decide, found: Behaviour, map_: OperatingMap) -> None:

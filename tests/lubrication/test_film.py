@@ -29,11 +29,6 @@ def machine() -> Machine:
     return read_machine(ROOT / "tests" / "stand" / "machine.toml")
 
 
-@pytest.fixture(scope="module")
-def surface(points: hersey.SteadyPoints) -> DampingSurface:
-    return fit(points)
-
-
 def test_the_tables_are_read(machine: Machine) -> None:
     assert machine.contact is not None
     assert machine.lubricant is not None

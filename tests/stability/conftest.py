@@ -6,15 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-import hersey
-from hersey.damping.surface import DampingSurface
 from hersey.machine.machine import Machine, read_machine
 from tests.conftest import ROOT
-
-
-@pytest.fixture(scope="module")
-def surface(points: hersey.SteadyPoints) -> DampingSurface:
-    return hersey.fit(points)
 
 
 @pytest.fixture(scope="module")

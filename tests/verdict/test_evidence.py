@@ -11,7 +11,6 @@ from scipy import stats
 import hersey
 from hersey.charts.film import film_chart
 from hersey.damping.estimate import Estimate
-from hersey.damping.fit import fit
 from hersey.damping.surface import DampingSurface
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.lubrication.contact import Contact
@@ -43,11 +42,6 @@ def contact(machine: Machine) -> Contact:
 def oil(machine: Machine) -> Lubricant:
     assert machine.lubricant is not None
     return machine.lubricant
-
-
-@pytest.fixture(scope="module")
-def surface(points: hersey.SteadyPoints) -> DampingSurface:
-    return fit(points)
 
 
 @pytest.fixture(scope="module")
