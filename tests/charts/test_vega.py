@@ -42,10 +42,15 @@ def answer(request, content):
 BROKEN = """
 import os, signal
 def answer(request, content):
-    if request["what"] == "png":
+    if request["kinds"] == ["png"]:
         raise ValueError("no such mark\\nand a stack")
-    os.kill(os.getpid(), signal.SIGKILL if request["what"] == "svg" else signal.SIGTRAP)
+    os.kill(os.getpid(), signal.SIGKILL if request["kinds"] == ["svg"] else signal.SIGTRAP)
 """
+MARK = {
+    "data": {"values": [{"a": 1}]},
+    "mark": "point",
+    "encoding": {"x": {"field": "a", "type": "quantitative"}},
+}
 TRACE = ["cycles", str(ROOT / "examples" / "stick-slip.csv"), "--figure", "x.png"]
 REPORT = ["report", str(ROOT / "examples" / "bench.csv"), "--out", "r.html", "--figures", "figures"]
 
@@ -117,9 +122,16 @@ def test_what_became_of_the_renderer(
     script.write_text(BROKEN)
     monkeypatch.setattr(vega, "_process", Child(script))
     with pytest.raises(OutputError, match=told):
-        drawn({}, kind)
+        drawn({}, [kind])
 
 
-def test_a_request_that_is_unknown_is_told() -> None:
-    with pytest.raises(OutputError, match="no such request: gif"):
-        drawn({}, "gif")
+def test_a_picture_that_is_unknown_is_told() -> None:
+    with pytest.raises(OutputError, match="no such picture: gif"):
+        drawn(MARK, ["gif"])
+
+
+def test_all_kinds_come_of_one_drawing() -> None:
+    kinds = ["png", "svg", "pdf"]
+    together = drawn(MARK, kinds)
+    assert [content[:4] for content in together] == [b"\x89PNG", b"<svg", b"%PDF"]
+    assert together[:2] == [drawn(MARK, [kind])[0] for kind in kinds[:2]]

@@ -48,15 +48,16 @@ def picture(chart: Chart, suffix: str) -> bytes:
     specification = specification_of(chart)
     if suffix == ".html":
         return _page(specification).encode()
-    return drawn(specification, suffix.removeprefix("."))
+    return drawn(specification, [suffix.removeprefix(".")])[0]
 
 
 def write_pictures(charts: Mapping[str, Chart], folder: Path) -> list[Path]:
     """Write every chart as SVG, PNG and PDF and return the paths; all are drawn before one is written."""
+    kinds = [suffix.removeprefix(".") for suffix in FIGURES]
     pictures = {
-        folder / f"{name}{suffix}": picture(chart, suffix)
+        folder / f"{name}{suffix}": content
         for name, chart in charts.items()
-        for suffix in FIGURES
+        for suffix, content in zip(FIGURES, drawn(specification_of(chart), kinds), strict=True)
     }
     folder.mkdir(parents=True, exist_ok=True)
     write_all(pictures, overwrite=True)

@@ -44,9 +44,28 @@ class _Inline:
         return self._rows
 
 
+class _Plot(alt.Chart):
+    """A chart that altair takes as it is: it would look each channel up in its whole schema, and copy all."""
+
+    def encode(self, *args: Any, **channels: Any) -> Any:
+        """Add channels, those written short or as values as the classes that altair finds for them."""
+        return super().encode(*args, **{name: _channel(name, given) for name, given in channels.items()})
+
+    def copy(self, deep: Any = True, ignore: list[str] | None = None) -> Any:
+        """Return a copy that shares what no chart changes: its pieces."""
+        return super().copy(deep=False if deep is True else deep, ignore=ignore)
+
+
+def _channel(name: str, given: Any) -> Any:
+    kind = name[0].upper() + name[1:]
+    if isinstance(given, str):
+        return getattr(alt, kind)(given)
+    return getattr(alt, f"{kind}Value")(**given) if isinstance(given, dict) else given
+
+
 def plot(rows: list[Row]) -> alt.Chart:
     """Return a chart of rows, to which marks and channels are given."""
-    return alt.Chart(alt.Data(values=_Inline(rows)))
+    return _Plot(alt.Data(values=_Inline(rows)))
 
 
 def temperature_name(kelvin: float | None) -> float:

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import json
 import signal
+from collections.abc import Sequence
+from itertools import accumulate, pairwise
 from pathlib import Path
 
 import altair as alt
@@ -21,15 +23,18 @@ VEGA_LITE = alt.SCHEMA_VERSION.removeprefix("v").rsplit(".", 1)[0]
 _process = Child(Path(__file__).with_name("vega_script.py"))
 
 
-def drawn(specification: Row, kind: str) -> bytes:
-    """Return a chart as a file of a kind: svg, pdf, or png with two pixels per point.
+def drawn(specification: Row, kinds: Sequence[str]) -> list[bytes]:
+    """Return a chart as a file of each kind: svg, pdf, or png with two pixels per point.
 
     Raises
     ------
     OutputError
         If it cannot be drawn, such as for lack of memory.
     """
-    return _asked(kind, json.dumps(specification, allow_nan=False).encode())
+    content = json.dumps(specification, allow_nan=False).encode()
+    reply, files = _asked({"what": "draw", "kinds": list(kinds)}, content)
+    ends = accumulate(reply["lengths"], initial=0)
+    return [files[start:end] for start, end in pairwise(ends)]
 
 
 def bundled(snippet: str) -> str:
@@ -40,12 +45,13 @@ def bundled(snippet: str) -> str:
     OutputError
         If it cannot be bundled, such as for lack of memory.
     """
-    return _asked("bundle", snippet.encode()).decode()
+    return _asked({"what": "bundle"}, snippet.encode())[1].decode()
 
 
-def _asked(what: str, content: bytes) -> bytes:
+def _asked(request: Row, content: bytes) -> tuple[Row, bytes]:
     try:
-        return bytes(_process.ask({"what": what, "version": VEGA_LITE}, content)[1])
+        reply, block = _process.ask(request | {"version": VEGA_LITE}, content)
+        return reply, bytes(block)
     except LostError as error:
         raise OutputError(f"the figures cannot be drawn: {_why(error)}") from None
     except FailedError as error:

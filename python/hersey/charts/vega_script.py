@@ -8,15 +8,21 @@ import vl_convert
 
 
 def answer(request: dict[str, Any], content: bytes) -> tuple[dict[str, Any], bytes]:
-    """Return a chart's picture, or a bundled script, as bytes."""
+    """Return a chart's pictures one after another, with their lengths, or a bundled script, as bytes."""
     text, version = content.decode(), request["version"]
-    match request["what"]:
+    if request["what"] == "bundle":
+        return {}, vl_convert.javascript_bundle(text, vl_version=version).encode()
+    svg = vl_convert.vegalite_to_svg(text, vl_version=version)
+    pictures = [_picture(svg, kind) for kind in request["kinds"]]
+    return {"lengths": [len(each) for each in pictures]}, b"".join(pictures)
+
+
+def _picture(svg: str, kind: str) -> bytes:
+    match kind:
         case "svg":
-            return {}, vl_convert.vegalite_to_svg(text, vl_version=version).encode()
+            return svg.encode()
         case "png":
-            return {}, vl_convert.vegalite_to_png(text, vl_version=version, scale=2)
+            return bytes(vl_convert.svg_to_png(svg, scale=2))
         case "pdf":
-            return {}, vl_convert.vegalite_to_pdf(text, vl_version=version)
-        case "bundle":
-            return {}, vl_convert.javascript_bundle(text, vl_version=version).encode()
-    raise ValueError(f"no such request: {request['what']}")
+            return bytes(vl_convert.svg_to_pdf(svg))
+    raise ValueError(f"no such picture: {kind}")
