@@ -41,6 +41,7 @@ physics: ## compile the core for the page anew (rustup target add wasm32-unknown
 	@test "$$(head -n 1 $(PHYSICS).sha256)" = "$$($(SUM_OF_SOURCES))" || { $(HAS_WEB) && $(MAKE) --no-print-directory physics; } || \
 	  echo "the page keeps its committed core, though the sources are others: make physics renews it" >&2
 	PIP_CONSTRAINT=$(CURDIR)/constraints.txt $(BIN)/maturin develop --release --quiet
+	@$(BIN)/python -m compileall -q -j 0 python/hersey # as pip does: else a start compiles 200 modules where none are kept
 	@touch $@
 
 demo: build ## run the main job on the shipped log
@@ -76,7 +77,7 @@ test-rust: ## tests of the core
 	cargo test --release --quiet --package hersey-core
 
 test-python: build browser ## tests of the package and the page
-	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --dist worksteal
+	PYTHONDONTWRITEBYTECODE= OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --dist worksteal
 
 quick: build ## the tests of the package that take a moment, while working
 	$(BIN)/python -m pytest -n auto --dist worksteal -m "not slow" --ignore tests/browser

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import gc
 import io
 import signal
 import subprocess
@@ -45,6 +46,8 @@ def run(*arguments: str | Path, cwd: Path, answers: str = "") -> Done:
             code: object = 0
         except SystemExit as end:
             code = end.code or 0
+        finally:
+            gc.unfreeze()  # what a process of its own would keep to its end
     assert isinstance(code, int)
     return Done(code, stdout.getvalue(), stderr.getvalue())
 

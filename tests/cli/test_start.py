@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import json
 import sys
 from pathlib import Path
@@ -9,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from hersey.cli.application import VERBS, load
+from hersey.cli.loading import loading
 from tests.cli.command import run, run_apart
 from tests.conftest import ROOT
 
@@ -87,6 +89,22 @@ LOADS = {
 def test_what_a_verb_loads(typed: str, examples_here: Path) -> None:
     modules = loaded(*typed.split(), cwd=examples_here)
     assert modules & HEAVY - {"pydantic"} == set(LOADS[typed].split())
+
+
+def test_what_a_report_loads() -> None:
+    """Of SciPy only what its fits need, and nothing of what reads other files or draws other pictures."""
+    code = "import sys, hersey.document.assembly, hersey.report.page; print(*sys.modules)"
+    modules = set(run_apart("-c", code, cwd=ROOT, command=[sys.executable]).stdout.split())
+    assert modules & HEAVY == {"altair", "numpy", "odrpack", "polars", "pydantic", "scipy"}
+    rarer = ("integrate", "interpolate", "io", "ndimage", "signal", "stats")
+    assert not {f"scipy.{name}" for name in rarer} & modules
+    assert not {"h5py", "openpyxl", "pandas", "matplotlib", "uvicorn", "starlette"} & modules
+
+
+def test_the_collector_rests_while_much_is_loaded() -> None:
+    with loading():
+        assert not gc.isenabled()
+    assert gc.isenabled()
 
 
 @pytest.mark.parametrize(

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.ndimage import percentile_filter
 
 import hersey
 from hersey import testbench
 from hersey.damping.dwells import groups_of_temperature, mean_and_error
+from hersey.damping.dwells.segments import local_noise
 from hersey.errors import InsufficientDataError
 from hersey.log.torque_log import LogFile, Run, TorqueLog
 
@@ -24,6 +26,14 @@ def log_of(
 
 def dwells(*rpm: float, seconds: float = 10.0, dt: float = 0.02) -> np.ndarray:
     return np.concatenate([np.full(round(seconds / dt), v * RPM) for v in rpm])
+
+
+@pytest.mark.parametrize("blocks", [1, 2, 3, 24, 25, 26, 400])
+def test_the_noise_of_the_speed_is_that_of_the_blocks_about(blocks: int) -> None:
+    means = np.random.default_rng(blocks).normal(size=blocks)
+    changes = np.abs(np.diff(means, prepend=means[:1]))
+    near = percentile_filter(changes, 75, size=min(25, blocks)) / 1.627
+    assert np.array_equal(local_noise(means), near)
 
 
 def test_every_row_is_accounted_for(log: hersey.TorqueLog, points: hersey.SteadyPoints) -> None:

@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from hersey.cli.loading import loading
 from hersey.cli.options import (
     AsJson,
     Force,
@@ -56,10 +57,11 @@ def report(
     if figures is not None:
         may_write_folder(figures, force)
 
-    from hersey.document.assembly import analyse
-    from hersey.files.writing import write_atomically
-    from hersey.machine.machine import read_machine
-    from hersey.report.page import render
+    with loading():
+        from hersey.document.assembly import analyse
+        from hersey.files.writing import write_atomically
+        from hersey.machine.machine import read_machine
+        from hersey.report.page import render
 
     machine = None if machine_file is None else read_machine(machine_file)
     log = reading.log(logs, machine)

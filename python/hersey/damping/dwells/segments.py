@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.ndimage import percentile_filter
+from numpy.lib.stride_tricks import sliding_window_view
 
 from hersey.arrays import FloatArray
 from hersey.damping.dwells.groups import MIN_SAMPLES
@@ -43,7 +43,7 @@ def segments_of(run: Run) -> list[Segment]:
     starts = np.arange(0, rows, block)
     counts = np.diff(starts, append=rows)
     means = np.add.reduceat(run.speed, starts) / counts
-    noise = _local_noise(means)
+    noise = local_noise(means)
     cuts = [0]
     total, count = means[0], 1
     for i in range(1, means.size):
@@ -64,13 +64,17 @@ def segments_of(run: Run) -> list[Segment]:
     return _joined(run, _surely_standing(segments))
 
 
-def _local_noise(means: FloatArray) -> FloatArray:
+def local_noise(means: FloatArray) -> FloatArray:
     """Standard deviation of block means about the speed held, near each block.
 
     Three quarters of the changes between neighbours are noise: 1.627 turns that quantile into a deviation.
     """
     changes = np.abs(np.diff(means, prepend=means[:1]))
-    return np.asarray(percentile_filter(changes, 75, size=min(25, changes.size)) / 1.627)
+    window = min(25, changes.size)
+    # as `scipy.ndimage.percentile_filter`, which takes longer to import than this to run
+    around = np.pad(changes, (window // 2, window - 1 - window // 2), mode="symmetric")
+    place = 3 * window // 4
+    return np.partition(sliding_window_view(around, window), place, axis=1)[:, place] / 1.627
 
 
 def _surely_standing(segments: list[Segment]) -> list[Segment]:
