@@ -40,6 +40,7 @@ __all__ = [
     "MixedTransition",
     "Pair",
     "ShearHeating",
+    "StartingBelt",
     "State",
     "Sweep",
     "Swings",
@@ -165,6 +166,10 @@ class Pair:
     def slower(self) -> float: ...
     @property
     def faster(self) -> float: ...
+
+@final
+class StartingBelt:
+    def __new__(cls, train: _Train, law: Law) -> StartingBelt: ...
 
 @final
 class State:
@@ -526,7 +531,7 @@ def simulate(
     heat: _Heat | None = None,
 ) -> Trajectory: ...
 def start_ups(
-    belts: Sequence[tuple[_Train, Law]],
+    belts: Sequence[StartingBelt],
     drives: Sequence[tuple[_Schedule, float]],
     temperature: _Schedule | None,
     heat: _Heat | None,

@@ -129,14 +129,15 @@ def test_a_trial_that_ends_early_ends_as_the_motion_does(closure: str, target: f
 
 def test_the_number_of_threads_changes_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     unknown = Unknown(TRAIN, DRAG, {"mass": Uncertainty(share=0.5)}, {}, 3)
-    machines, shape = unknown.draws(1, 80), Shape(1.9, 2.8, 0.3, 0.3, 0.25)
+    machines, shape = unknown.draws(1, 600), Shape(1.9, 2.8, 0.3, 0.3, 0.25)
     found = []
     for threads in (1, 3):
         monkeypatch.setattr("hersey.stability.plan.trial._THREADS", threads)
-        rows = outcomes(machines, [shape], TemperatureProfile(None), allowed=9)
-        found.append([(row.ready, row.why) for row in rows])
-    assert found[0] == found[1]
-    assert 9 < sum(ready == math.inf for ready, _ in found[0]) < len(found[0]) < 80
+        for allowed in (9, 500):
+            rows = outcomes(machines, [shape], TemperatureProfile(None), allowed=allowed)
+            found.append([(row.ready, row.why) for row in rows])
+    assert found[:2] == found[2:]
+    assert 9 < sum(ready == math.inf for ready, _ in found[0]) < len(found[0]) < len(found[1]) == 600
 
 
 def test_why_a_trial_fails() -> None:

@@ -43,7 +43,7 @@ mod _core {
     #[pymodule_export]
     use super::stability::{Band, Bands, Swings, band, bands, swings};
     #[pymodule_export]
-    use super::start_up::start_ups;
+    use super::start_up::{StartingBelt, start_ups};
 
     use numpy::PyArrayMethods;
     use pyo3::prelude::*;

@@ -1,8 +1,9 @@
 //! One course of a drive on many belts.
 
 use hersey_core::Error;
-use hersey_core::drag::Drag;
-use hersey_core::motion::{self, Drive, Drivetrain, Ending, StartUp, Started, System};
+use hersey_core::motion::{
+    self, BeltAtRest, Drive, Ending, Schedule, StartUp, Started, Starting, System,
+};
 use hersey_core::work::Work;
 use pyo3::prelude::*;
 
@@ -15,11 +16,23 @@ use crate::motion::{
 };
 
 /// Belts followed before it is asked whether enough of them have failed: first, and then at most.
-const FIRST: usize = 4;
-const BLOCK: usize = 32;
+const FIRST: usize = 16;
+const BLOCK: usize = 64;
 /// From so many on a block is spread over threads, of which one takes so many at a time.
-const SPREAD: usize = 16;
-const CHUNK: usize = 4;
+const SPREAD: usize = 256;
+const CHUNK: usize = 64;
+
+/// A belt that is to be started: it remembers what sticking settles to.
+#[pyclass(frozen, module = "hersey._core")]
+pub struct StartingBelt(BeltAtRest);
+
+#[pymethods]
+impl StartingBelt {
+    #[new]
+    fn new(train: TrainArguments, law: &Law) -> PyResult<Self> {
+        Ok(Self(BeltAtRest::new(drivetrain_from(train)?, law.0.clone())))
+    }
+}
 
 /// When each belt is let go for the last time, its greatest pull, and how it ends.
 type Starts = (Vec<f64>, Vec<f64>, Vec<&'static str>);
@@ -32,7 +45,7 @@ type Starts = (Vec<f64>, Vec<f64>, Vec<&'static str>);
 #[allow(clippy::too_many_arguments)] // the Python layer names them all
 pub fn start_ups(
     py: Python<'_>,
-    belts: Vec<(TrainArguments, Py<Law>)>,
+    belts: Vec<Py<StartingBelt>>,
     drives: Vec<(ScheduleArguments, f64)>,
     temperature: Option<ScheduleArguments>,
     heat: Option<HeatArguments>,
@@ -46,30 +59,35 @@ pub fn start_ups(
     let temperature = temperature.map(|t| schedule_from("temperature", t)).transpose()?;
     let heat = heat.map(heat_from).transpose()?;
     let (target, until, latest) = asked;
-    let belts: Vec<(Drivetrain, &Drag)> = belts
-        .iter()
-        .map(|(train, law)| Ok((drivetrain_from(*train)?, &law.get().0)))
-        .collect::<PyResult<_>>()?;
-    let drives: Vec<(Drive, f64)> = drives
+    let belts: Vec<&BeltAtRest> = belts.iter().map(|belt| &belt.get().0).collect();
+    let drives: Vec<(Schedule, f64)> = drives
         .into_iter()
-        .map(|(speed, ramps)| Ok((Drive::Speed(schedule_from("drive_speed", speed)?), ramps)))
+        .map(|(speed, ramps)| Ok((schedule_from("drive_speed", speed)?, ramps)))
         .collect::<PyResult<_>>()?;
     let count = if belts.len() == 1 { drives.len() } else { belts.len() };
     if belts.is_empty() || !(drives.len() == count || drives.len() == 1) {
         return Err(refused("drives", "one for each belt, or one for all".to_owned()));
     }
-    let follow = |i: usize, work: &Work| -> Result<Started, Error> {
-        let (train, drag) = belts[if belts.len() == 1 { 0 } else { i }];
+    let starting = |i: usize| {
         let (drive, ramps) = &drives[if drives.len() == 1 { 0 } else { i }];
-        let system = match &heat {
-            Some(heat) => System::with_heat(train, drag, drive.clone(), heat.clone()),
-            None => System::new(train, drag, drive.clone(), temperature.clone()),
-        }?;
         let asked = StartUp { target, ramps: *ramps, until, latest, peak };
+        Starting { belt: belts[if belts.len() == 1 { 0 } else { i }], drive, asked }
+    };
+    let warmed = |i: usize, work: &Work| -> Result<Started, Error> {
+        let Starting { belt, drive, asked } = starting(i);
+        let (train, drag, drive) = (belt.train, &belt.drag, Drive::Speed(drive.clone()));
+        let system = match &heat {
+            Some(heat) => System::with_heat(train, drag, drive, heat.clone()),
+            None => System::new(train, drag, drive, temperature.clone()),
+        }?;
         motion::start_up(&system, &asked, tolerance, &work.apart(work.allowed()))
     };
     let follow_all = |which: &[usize], work: &Work| {
-        which.iter().map(|i| follow(*i, work)).collect::<Result<Vec<_>, _>>()
+        if temperature.is_some() || heat.is_some() {
+            return which.iter().map(|i| warmed(*i, work)).collect();
+        }
+        let each: Vec<Starting> = which.iter().map(|i| starting(*i)).collect();
+        motion::start_ups(&each, tolerance, work)
     };
     let all: Vec<usize> = (0..count).collect();
     let (mut done, mut failed) = (Vec::with_capacity(count), 0);

@@ -105,7 +105,7 @@ const ONCE: f64 = 1e-6;
 /// Laps after which a motion with memory may repeat itself.
 const MAX_PERIOD: usize = 16;
 /// Swing of the belt speed, relative to the drive speed, below which it counts as steady.
-const STEADY: f64 = 1e-7;
+pub(super) const STEADY: f64 = 1e-7;
 /// Swing, relative to the drive speed, below which a lap on the falling branch is still growing out of rounding.
 const GROWING: f64 = 1e-6;
 

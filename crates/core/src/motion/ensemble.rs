@@ -53,7 +53,7 @@ pub fn ensemble(
             member.start(belt.start, lanes, l, tolerance, work).then_some(member)
         })
     };
-    run_lanes(tolerance, work, admit, |member, lanes, l| {
+    run_lanes::<false, _>(tolerance, work, admit, |member, lanes, l| {
         let verdict = member.follow(lanes, l, span, tolerance, work);
         match verdict {
             // a grip that the belt never needed changes nothing; else the motion is another

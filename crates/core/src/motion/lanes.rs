@@ -9,6 +9,9 @@
 //!
 //! A step ends at the next level of the speed (`v_s`, `v_t`, the drive speed) or at a turning point, found
 //! by Newton's method on the polynomial of the step, on which the speed is monotone.
+//!
+//! Lanes with `STARTS` start a belt besides: the speed of their drive moves, a step ends at a time of its schedule too,
+//! below the stick speed the contact drags as `exp(-u/scale)`, and how hard the spring pulls at most is kept.
 
 use super::polynomial::fused;
 use crate::error::Error;
@@ -71,23 +74,32 @@ pub(crate) struct Lanes {
     pub turned: Row,
     /// Integral of the pull.
     pub impulse: Row,
+    /// Rate of the drive speed.
+    pub ramp: Row,
+    /// Time at which a step ends.
+    pub end: Row,
+    /// Speed over which drag falls by a factor `e`; zero on a power branch.
+    pub decay: Row,
+    /// Greatest and least pull so far.
+    pub most: Row,
+    pub least: Row,
     /// See [`arrival`].
     pub arrival: Row,
 }
 
 /// One step of every lane, as work for the best instruction set.
-struct LaneStep<'a> {
+struct LaneStep<'a, const STARTS: bool> {
     lanes: &'a mut Lanes,
     tolerance: f64,
 }
 
-impl pulp::WithSimd for LaneStep<'_> {
+impl<const STARTS: bool> pulp::WithSimd for LaneStep<'_, STARTS> {
     type Output = ();
 
     #[inline(always)]
     #[allow(clippy::inline_always)] // all of a step is compiled for the instruction set it is dispatched to
     fn with_simd<S: pulp::Simd>(self, _: S) {
-        self.lanes.step(self.tolerance);
+        self.lanes.step::<STARTS>(self.tolerance);
     }
 }
 
@@ -95,7 +107,7 @@ impl pulp::WithSimd for LaneStep<'_> {
 ///
 /// `admit` may pass over members; none means that no more wait. The lanes stop when `work` is stopped; how many
 /// steps a member may take is for `follow` to say.
-pub(crate) fn run_lanes<R>(
+pub(crate) fn run_lanes<const STARTS: bool, R>(
     tolerance: f64,
     work: &Work,
     mut admit: impl FnMut(&mut Lanes, usize) -> Option<R>,
@@ -115,7 +127,7 @@ pub(crate) fn run_lanes<R>(
             return Ok(());
         }
         work.take(1)?;
-        arch.dispatch(LaneStep { lanes: &mut lanes, tolerance });
+        arch.dispatch(LaneStep::<STARTS> { lanes: &mut lanes, tolerance });
         for (l, seat) in members.iter_mut().enumerate() {
             if seat.as_mut().is_some_and(|member| !follow(member, &mut lanes, l)) {
                 *seat = None;
@@ -141,6 +153,11 @@ impl Lanes {
             floor: [0.01; LANES],
             turned: [0.0; LANES],
             impulse: [0.0; LANES],
+            ramp: [0.0; LANES],
+            end: [f64::INFINITY; LANES],
+            decay: [0.0; LANES],
+            most: [0.0; LANES],
+            least: [0.0; LANES],
             arrival: [arrival::NONE; LANES],
         }
     }
@@ -152,14 +169,24 @@ impl Lanes {
 
     /// One step of every lane.
     #[inline(always)]
-    #[allow(clippy::inline_always)]
-    pub(crate) fn step(&mut self, tolerance: f64) {
-        let series = self.series();
+    #[allow(clippy::inline_always, clippy::float_cmp)] // the time that is left was assigned
+    pub(crate) fn step<const STARTS: bool>(&mut self, tolerance: f64) {
+        let series = self.series::<STARTS>();
         let mut h = step_size(&series.pull, &series.speed, &self.floor, tolerance);
+        let mut left = [f64::INFINITY; LANES];
+        if STARTS {
+            for l in 0..LANES {
+                left[l] = self.end[l] - self.time[l];
+                h[l] = if h[l] < left[l] { h[l] } else { left[l] };
+            }
+        }
         let turning = self.end_at_extreme(&series, &mut h);
         let mut end = value(&series.speed, 0, &h);
         let (crossing, lost) = self.end_at_level(&series, &mut h, &mut end);
         let (pull, drag) = (value(&series.pull, 0, &h), value(&series.drag, 0, &h));
+        if STARTS {
+            self.keep_pull(&series, &h, &end, &pull);
+        }
         let mut impulse = [0.0; LANES];
         for n in (0..=ORDER).rev() {
             for l in 0..LANES {
@@ -167,7 +194,8 @@ impl Lanes {
             }
         }
         for l in 0..LANES {
-            self.time[l] += h[l];
+            self.time[l] =
+                if STARTS && h[l] == left[l] { self.end[l] } else { self.time[l] + h[l] };
             self.pull[l] = pull[l];
             self.drag[l] = drag[l];
             self.speed[l] = end[l];
@@ -182,13 +210,17 @@ impl Lanes {
     /// The motion from the present state on; `u f' = e f u'` gives the drag `f` of the contact.
     #[inline(always)]
     #[allow(clippy::inline_always, clippy::needless_range_loop)]
-    fn series(&self) -> LaneSeries {
+    fn series<const STARTS: bool>(&self) -> LaneSeries {
         let (mut p, mut u) = ([[0.0; LANES]; ORDER + 1], [[0.0; LANES]; ORDER + 1]);
         let (mut iu, mut f) = (p, u);
         (p[0], u[0], f[0]) = (self.pull, self.speed, self.drag);
-        let mut inverse = [0.0; LANES];
+        let (mut inverse, mut weight, mut back) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
         for l in 0..LANES {
-            inverse[l] = 1.0 / self.speed[l];
+            // an exponential `f' = -f u'/decay` beside the power
+            let power = !STARTS || self.decay[l] == 0.0;
+            inverse[l] = 1.0 / if power { self.speed[l] } else { self.decay[l] };
+            weight[l] = if power { self.exponent[l] + 1.0 } else { -1.0 };
+            back[l] = if power { inverse[l] } else { 0.0 };
         }
         // sorted so that each coefficient waits for the one before through two operations only
         for n in 1..=ORDER {
@@ -201,14 +233,18 @@ impl Lanes {
                 }
             }
             for l in 0..LANES {
-                let share = (self.exponent[l] + 1.0) * inverse[l] * per;
-                let early = share * weighted[l] - inverse[l] * plain[l];
-                let from_last = if n > 1 { u[1][l] * (share - inverse[l]) } else { 0.0 };
-                let from_rate = f[0][l] * (share - inverse[l] * per);
+                let share = weight[l] * inverse[l] * per;
+                let early = share * weighted[l] - back[l] * plain[l];
+                let from_last = if n > 1 { u[1][l] * (share - back[l]) } else { 0.0 };
+                let from_rate = f[0][l] * (share - back[l] * per);
                 let net = fused(-self.rest[l], u[n - 1][l], p[n - 1][l]) - f[n - 1][l];
                 iu[n][l] = net;
                 u[n][l] = net * per;
-                let driven = if n == 1 { self.drive[l] - self.speed[l] } else { -u[n - 1][l] };
+                let driven = match n {
+                    1 => self.drive[l] - self.speed[l],
+                    2 if STARTS => self.ramp[l] - u[1][l],
+                    _ => -u[n - 1][l],
+                };
                 p[n][l] = driven * per;
                 f[n][l] = fused(from_rate, net, fused(from_last, f[n - 1][l], early));
             }
@@ -262,6 +298,43 @@ impl Lanes {
             h[l] = if turning[l] > 0.0 { t[l] } else { h[l] };
         }
         turning
+    }
+
+    /// Keep the greatest and the least pull over a step to where the belt has the speed `end`, and bring its drive there.
+    #[inline(always)]
+    #[allow(clippy::inline_always, clippy::needless_range_loop)]
+    fn keep_pull(&mut self, series: &LaneSeries, h: &Row, end: &Row, pull: &Row) {
+        let mut t = [0.0; LANES];
+        let mut any = 0;
+        for l in 0..LANES {
+            let (before, after) =
+                (self.drive[l] - self.speed[l], self.drive[l] + self.ramp[l] * h[l] - end[l]);
+            let turns = before * after < 0.0;
+            t[l] = if turns { h[l] * before / (before - after) } else { 0.0 };
+            any |= t[l].to_bits();
+        }
+        let mut extreme = *pull;
+        if any != 0 {
+            for _ in 0..TURNING_NEWTON {
+                let (v, rate) = (value(&series.speed, 0, &t), value(&series.weighted_speed, 1, &t));
+                for l in 0..LANES {
+                    let off = self.drive[l] + self.ramp[l] * t[l] - v[l];
+                    let next = t[l] - off / (self.ramp[l] - rate[l]);
+                    t[l] = if t[l] > 0.0 && next > 0.0 && next < h[l] { next } else { t[l] };
+                }
+            }
+            let turned = value(&series.pull, 0, &t);
+            for l in 0..LANES {
+                extreme[l] = if t[l] > 0.0 { turned[l] } else { pull[l] };
+            }
+        }
+        for l in 0..LANES {
+            let (low, high) =
+                if extreme[l] < pull[l] { (extreme[l], pull[l]) } else { (pull[l], extreme[l]) };
+            self.most[l] = if high > self.most[l] { high } else { self.most[l] };
+            self.least[l] = if low < self.least[l] { low } else { self.least[l] };
+            self.drive[l] += self.ramp[l] * h[l];
+        }
     }
 
     /// End steps over a level there, on it exactly: +1 or -1 for each lane that does, and one for each lane

@@ -23,6 +23,7 @@
 //! | `cycle`       | what the motion settles to: steady sliding, oscillation, stick-slip       |
 //! | `returning`   | where a belt that overtakes the drive overtakes it again                  |
 //! | `start_up`    | from when on a belt that starts from rest slides for good                 |
+//! | `start_ups`   | many of them at once, in lanes                                            |
 //!
 //! The state is the pull of the spring and the belt speed (and the deflection of the bristles, with
 //! `LuGre`). A torque on a rotor is the same equation: `J` for the mass, `K` for the stiffness.
@@ -42,6 +43,7 @@ mod runge_kutta;
 mod schedule;
 mod sharing;
 mod start_up;
+mod start_ups;
 mod steps;
 mod surroundings;
 mod system;
@@ -57,6 +59,7 @@ pub(crate) use hybrid::first_slide;
 pub(crate) use returning::{Return, next_return};
 pub use schedule::{Cubic, Schedule};
 pub use start_up::{Ending, StartUp, Started, start_up};
+pub use start_ups::{BeltAtRest, Starting, start_ups};
 pub(crate) use system::checked_tolerance;
 pub use system::{Drive, Drivetrain, Integrator, NUDGE, Start, System};
 pub use trajectory::{Energy, Trajectory, simulate};

@@ -108,6 +108,19 @@ impl Schedule {
         self.segments.iter().all(|(_, c)| *c == [value, 0.0, 0.0, 0.0]).then_some(value)
     }
 
+    /// The same, its time counted from `time` on.
+    pub(super) fn from(&self, time: f64) -> Self {
+        Self {
+            starts: self.starts.iter().map(|start| start - time).collect(),
+            segments: self.segments.iter().map(|(origin, cubic)| (origin - time, *cubic)).collect(),
+        }
+    }
+
+    /// Whether it is made of straight lines.
+    pub(super) fn is_linear(&self) -> bool {
+        self.segments.iter().all(|(_, [_, _, c, d])| *c == 0.0 && *d == 0.0)
+    }
+
     /// Least and greatest value.
     #[must_use]
     pub fn range(&self) -> (f64, f64) {

@@ -15,8 +15,8 @@ use crate::error::{Error, above};
 use crate::work::Work;
 
 /// Laps followed after the last ramp at first, laps without sticking that end the start-up, doublings at most.
-const WATCH: f64 = 3.0;
-const CALM: f64 = 1.5;
+pub(super) const WATCH: f64 = 3.0;
+pub(super) const CALM: f64 = 1.5;
 const DOUBLINGS: usize = 6;
 
 /// What is asked of a start-up.
@@ -128,7 +128,7 @@ pub fn start_up(
     Ok(Started { ending: Ending::Sticking, released, peak })
 }
 
-fn holds(mode: Mode) -> bool {
+pub(super) fn holds(mode: Mode) -> bool {
     matches!(mode, Mode::Stuck | Mode::Microslip)
 }
 
@@ -149,7 +149,7 @@ fn settled(motion: &Motion, target: f64, tolerance: f64, work: &Work) -> Result<
 }
 
 /// Greatest magnitude of the pull along a piece.
-fn greatest_pull(piece: &Piece) -> f64 {
+pub(super) fn greatest_pull(piece: &Piece) -> f64 {
     let pull = |elapsed: f64| piece.at(elapsed).1.abs();
     let turning = piece.turning_points()[1];
     pull(0.0).max(pull(piece.duration)).max(turning.map_or(0.0, pull))

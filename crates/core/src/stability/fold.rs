@@ -221,13 +221,15 @@ fn seek(
         seekers.find_map(|mut seeker| seeker.forward(lanes, l, &start).then_some(seeker))
     };
     let steps = (SHARE * tolerance).max(TIGHTEST);
-    run_lanes(steps, work, admit, |seeker, lanes, l| match seeker.follow(lanes, l, &start) {
-        Next::Goes => true,
-        Next::Found(fold) => {
-            found[seeker.index] = Some(fold);
-            false
+    run_lanes::<false, _>(steps, work, admit, |seeker, lanes, l| {
+        match seeker.follow(lanes, l, &start) {
+            Next::Goes => true,
+            Next::Found(fold) => {
+                found[seeker.index] = Some(fold);
+                false
+            }
+            Next::Fails => false,
         }
-        Next::Fails => false,
     })?;
     Ok(found)
 }

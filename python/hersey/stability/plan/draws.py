@@ -121,15 +121,21 @@ class Trials:
         count = len(self.machines)
         return min(_FEW + 2 * self.allowed + count // _ONE_IN, count)
 
-    def time(
-        self, shape: Shape, best: float = math.inf, *, few: bool = False, tolerance: float = COARSE
-    ) -> float:
-        """Return the time at which all but the allowed machines are ready, infinite if not below ``best``.
+    def time(self, shape: Shape, best: float = math.inf, *, tolerance: float = COARSE) -> float:
+        """Return the time at which all but the allowed machines are ready, infinite if not below ``best``."""
+        return self._time(self._tried(self.machines, shape, best, tolerance), best)
 
-        ``few``: of those that refused others before only, so that it is no later than that of all.
-        """
+    def may(self, shape: Shape, best: float, nominal: MachineSample) -> float:
+        """Return no more than that, of the nominal machine and those that refused others before."""
+        alone, *ready = self._tried([nominal, *self.machines[: self.few]], shape, best, COARSE)
+        return self._time(ready, best) if alone < best else math.inf
+
+    def _tried(
+        self, machines: Sequence[MachineSample], shape: Shape, best: float, tolerance: float
+    ) -> list[float]:
+        """When each machine is ready, until more than the allowed fail."""
         found = outcomes(
-            self.machines[: self.few] if few else self.machines,
+            machines,
             [shape],
             self.thermal,
             self.force_limit,
@@ -137,7 +143,11 @@ class Trials:
             allowed=self.allowed,
             tolerance=tolerance,
         )
-        ready, late = [outcome.ready for outcome in found], []
+        return [outcome.ready for outcome in found]
+
+    def _time(self, ready: list[float], best: float) -> float:
+        """When all but the allowed are ready; those that are not come to the front."""
+        late = []
         for i, time in enumerate(ready):
             self.count += 1
             if time >= best:
@@ -157,6 +167,7 @@ class Trials:
         return sorted(values)[len(values) - 1 - self.allowed]
 
     def _to_front(self, late: list[int]) -> None:
-        hard = set(late)
-        rest = [m for i, m in enumerate(self.machines) if i not in hard]
-        self.machines = [self.machines[i] for i in late] + rest
+        hard = [self.machines[i] for i in late]
+        for i in reversed(late):
+            del self.machines[i]
+        self.machines[:0] = hard

@@ -33,6 +33,8 @@ Progress = Callable[[int, int], object]
 _RISES = (0.0, 0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0)
 _HOLDS = (0.0, 0.1, 0.2, 0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 3.0, 5.0, 8.0)
 _FALLS = (0.0, 0.1, 0.2, 0.35, 0.5, 0.75, 1.0, 1.5, 2.5, 4.0, 7.0)
+#: One in so many of them is tried first, all of them only if none of these works.
+_EVERY = 8
 #: Factors on these durations: each only if those before find nothing.
 _STRETCHES = (1.0, 6.0, 40.0)
 #: Shares of them in the profiles tried for the number that would do: the longest take the longest.
@@ -243,8 +245,7 @@ class Search:
         if not self._is_worth(shape, below):
             return math.inf
         self.count += 1
-        alone = self._alone([shape], below)[0]
-        return self.trials.time(shape, below, few=True) if alone < below else math.inf
+        return self.trials.may(shape, below, self.nominal)
 
     def _confirmed(self, way: list[tuple[float, Shape]]) -> tuple[float, Shape]:
         """Return the quickest of ever quicker profiles that works on all machines, as the first does."""
@@ -291,6 +292,8 @@ class Search:
         waits = [wait for wait in self.waits() if self._may_start(wait)]
         if len(waits) > 1 or stretch > 1.0:
             grid = grid[:: max(1, len(grid) // _THINNED)]
+        elif waits and self._at_wait(grid[::_EVERY], waits[0], 0, len(grid)):
+            return
         for i, wait in enumerate(waits):
             self._at_wait(grid, wait, i * len(grid), len(waits) * len(grid))
             if self.best is not None:
@@ -366,7 +369,7 @@ class Search:
         assert self.best is not None
         most, seen = self.time * _VALLEYS, set[float]()
         slower: list[tuple[float, Shape]] = []
-        for j, shape in enumerate(self.grid()):
+        for j, shape in enumerate(self.grid()[::_EVERY]):
             moved = replace(shape, wait=self.best.wait)
             if j % 64 == 0:
                 self._report(j, _OTHERS * 1000)

@@ -32,7 +32,7 @@ _THREADS = os.cpu_count() or 1
 #: Tolerance of the motions of the search, and of what is said of them.
 COARSE, FINE = 1e-7, 1e-9
 #: Machines that a profile is tried on, at first and in all, while so many fail as may.
-_BLOCKS = (4, 36, None)
+_BLOCKS = (16, 80, None)
 #: Laps within which a temperature changes quickly: a swing that dies out at one may not at the next.
 _QUICK = 100.0
 #: What is said of a spring force that reaches the limit, and of other endings of a trial.
@@ -195,9 +195,8 @@ class MachineSample:
         """Take the parameters of one draw."""
         self.train, self.drag = train, drag
         self.lap = 2.0 * math.pi * math.sqrt(train.mass / train.stiffness)
-        self._law = drag.law()
         self._laws: dict[float | None, tuple[float, float]] = {}
-        self._gripping = math.nan, self._belt(math.inf)
+        self._belts: dict[float, _core.StartingBelt] = {}
 
     def at(self, temperature: float | None, target: float) -> tuple[float, float]:
         """Return transition speed and steady drag at the target speed, at a temperature."""
@@ -220,15 +219,13 @@ class MachineSample:
         """Return what the profile does to this machine."""
         return outcomes([self], [shape], thermal, force_limit, force=force, tolerance=tolerance)[0]
 
-    def belt(self, force_limit: float) -> tuple[tuple[float, float, float | None], _core.Law]:
+    def belt(self, force_limit: float) -> _core.StartingBelt:
         """Return the machine as the core takes it: the limit of force is the grip of the roll."""
-        if self._gripping[0] != force_limit:
-            self._gripping = force_limit, self._belt(force_limit)
-        return self._gripping[1]
-
-    def _belt(self, force_limit: float) -> tuple[tuple[float, float, float | None], _core.Law]:
-        grip = force_limit if force_limit < math.inf else None
-        return (float(self.train.stiffness), float(self.train.mass), grip), self._law
+        if force_limit not in self._belts:
+            train, grip = self.train, force_limit if force_limit < math.inf else None
+            given = float(train.stiffness), float(train.mass), grip
+            self._belts[force_limit] = _core.StartingBelt(given, self.drag.law())
+        return self._belts[force_limit]
 
     def for_good(
         self,
