@@ -69,6 +69,8 @@ def test_the_band_is_printed_and_piped(tmp_path: Path) -> None:
     text = run("hysteresis", *steps, cwd=tmp_path).stdout
     assert "upper fold V*     2.1734934" in text
     assert all(name in text for name in ("stick_speed", "mixed_exponent", "at once it sticks"))
+    assert "ramps of 0.0698 s and longer are safe" in text
+    assert text.endswith("the defaults are the paper's: inches, ounces of force, seconds\n")
     band = json.loads(run("hysteresis", *steps, "--json", cwd=tmp_path).stdout)
     assert band["upper"] == pytest.approx(2.173493478, rel=1e-7)
     assert band["step"]["sticks"]

@@ -1,4 +1,4 @@
-"""The fit and the machine that maps are drawn of."""
+"""The machine that maps are drawn of."""
 
 from __future__ import annotations
 

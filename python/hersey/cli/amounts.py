@@ -48,6 +48,7 @@ _OF_THE_PAPER = {
     "belt speed": "in/s",
     "time": "s",
 }
+_BARE = "in the units of the numbers given; the defaults are the paper's: inches, ounces of force, seconds"
 #: What a machine's file states of a belt.
 _OF_A_MACHINE = ("stiffness", "mass", "stick_speed")
 #: Where numbers come from that are not stated by a machine.
@@ -68,7 +69,8 @@ class Amounts:
     @property
     def words(self) -> list[str]:
         """What to say of them below a result."""
-        return [f"- {text}" for text in ("in SI: m, s, N, kg" if self.in_si else "", self.filled) if text]
+        units = "in SI: m, s, N, kg" if self.in_si else _BARE
+        return [f"- {text}" for text in (units, self.filled) if text]
 
 
 def amounts(

@@ -70,7 +70,7 @@ def hysteresis(
         ramp = (
             "no ramp is slow enough"
             if step.ramp_time == float("inf")
-            else f"ramps of {step.ramp_time:.6g} and longer are safe"
+            else f"ramps of {step.ramp_time:.3g} s and longer are safe"
             if step.ramp_time > 0
             else "any ramp is safe"
         )
