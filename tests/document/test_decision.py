@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 
 import hersey
 from hersey.damping.fit import fit
+from hersey.damping.rest import RestOfDrive
 from hersey.damping.surface import DampingSurface
 from hersey.document.assembly import analyse, load
 from hersey.document.decision import behaviour, decision
@@ -87,11 +88,17 @@ Decide = Callable[..., DecisionPart]
 def decide(
     points: hersey.SteadyPoints, surface: DampingSurface, seen: RegimePart, machine: Machine
 ) -> Decide:
+    known = replace(points, rest=RestOfDrive.stated(constant=1e-9))
+
     def decided(
-        found: Behaviour, film: FilmPart | None = None, unit: str = "N·m", **changed: object
+        found: Behaviour,
+        film: FilmPart | None = None,
+        unit: str = "N·m",
+        dwells: hersey.SteadyPoints = known,
+        **changed: object,
     ) -> DecisionPart:
         of = replace(machine, **changed)  # type: ignore[arg-type]
-        return decision(points, surface, of, seen=seen, film=film, carried=None, found=found, unit=unit)
+        return decision(dwells, surface, of, seen=seen, film=film, carried=None, found=found, unit=unit)
 
     return decided
 
@@ -429,13 +436,27 @@ def test_how_the_belt_stops_is_told_where_it_moves_v_star(decide: Decide, found:
     assert "V* is 200 mm/s if the belt stops dead (stiction), 53 if it creeps to rest (retained)" in flag.text
     assert said.signal == said.points[0].signal == "watch"
     assert said.points[0].words == "smooth, unless the belt stops dead: then it sticks up to 200 mm/s"
-    assert decide(replace(found, points=(), stick_speeds=stick)).signal == "watch"
+    plain = tuple(replace(each, stiction=None) for each in fast)
+    assert decide(replace(found, points=plain, stick_speeds=stick)).signal == "watch"
     # where it stops does not matter up to there, or is not known
     for stiction in (0.06, None):
         points = tuple(replace(each, stiction=stiction) for each in fast)
         calm = decide(replace(found, points=points, stick_speeds=replace(stick, stiction=stiction)))
         assert calm.signal == calm.points[0].signal == "good"
         assert not any("stops dead" in flag.text for flag in calm.flags)
+
+
+def test_torque_of_the_whole_drive_is_never_good(
+    decide: Decide, found: Behaviour, points: hersey.SteadyPoints
+) -> None:
+    """Who states less is told less: bearings in the torque draw V* down."""
+    fast = replace(found, points=tuple(each for each in found.points if each.point.speed == FAST))
+    assert decide(fast).signal == "good"
+    whole = decide(fast, dwells=points)
+    assert whole.signal == whole.points[0].signal == "watch"
+    assert whole.points[0].words == "smooth from any start, if the torque is of the film alone"
+    assert whole.flags[0].title == "Torque may hold more than the film."
+    assert decide(replace(found, points=())).signal == "watch"  # good for what?
 
 
 def test_v_star_of_a_belt_that_stops_dead_is_that_of_stiction(

@@ -37,7 +37,9 @@ def decision(
     map_ = None if found is None else found.map
     said = of_log(surface, seen) if found is None or map_ is None else of_machine(found, map_, unit)
     if found is not None and map_ is not None:
-        of_points = [point_decision(point, map_, unit) for point in found.points]
+        of_points = [
+            point_decision(point, map_, unit, film_alone=points.rest is not None) for point in found.points
+        ]
     elif machine is not None:
         of_points = points_of_log(surface, machine, rises=_rises(surface, seen))
     else:
@@ -50,6 +52,8 @@ def decision(
         beyond = stopping is not None and stopping > edges_of(map_, found.temperature).safe
         if beyond or "stick_speed" not in map_.uncertain:
             signals.append("watch")  # the safe end does not count what V* hangs on most
+        if points.rest is None or not found.points:
+            signals.append("watch")  # torque of more than the film draws V* down; or nothing is asked for
     return DecisionPart(
         signal=worst(signals),
         instruction=said.instruction,

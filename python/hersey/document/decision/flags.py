@@ -46,7 +46,7 @@ def flags(
     if why:
         out.append(FlagPart(signal="act", title="No band.", text=f"{_sentence(why)}.", section="band"))
     if found is not None and map_ is not None:
-        out += _of_machine(found, map_, unit)
+        out += [*_whole(points), *_of_machine(found, map_, unit)]
     if found is not None:
         out += [
             FlagPart(signal="watch", title="No map.", text=_sentence(reason), section="band")
@@ -87,6 +87,14 @@ def _contradictions(film: FilmPart | None, carried: CarriedPart | None) -> list[
         text = f"{_sentence(film.misfits[0].text)}."
         out.append(FlagPart(signal="watch", title="Nip and log disagree.", text=text, section="regime"))
     return out
+
+
+def _whole(points: SteadyPoints) -> list[FlagPart]:
+    """Bearings and gears in the torque flatten its fall: V* is told too low."""
+    if points.rest is not None:
+        return []
+    text = "V* is of the whole torque, and too low if bearings, rubber or gears are in it: state [rest]."
+    return [FlagPart(signal="watch", title="Torque may hold more than the film.", text=text, section="data")]
 
 
 def _of_machine(found: Behaviour, map_: OperatingMap, unit: str) -> list[FlagPart]:

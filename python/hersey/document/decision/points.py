@@ -29,12 +29,19 @@ def worst(signals: list[Signal]) -> Signal:
     return max(signals, key=_ORDER.index, default="good")
 
 
-def point_decision(found: PointBehaviour, map_: OperatingMap, unit: str) -> PointDecisionPart:
-    """Return what is said of an operating point; torques in a unit."""
+def point_decision(
+    found: PointBehaviour, map_: OperatingMap, unit: str, *, film_alone: bool
+) -> PointDecisionPart:
+    """Return what is said of an operating point; torques in a unit.
+
+    Where torque holds more than that of the film (not ``film_alone``) V* is too low: nothing is good.
+    """
     point = found.point
     kelvin = point.temperature if map_.drag.varies_with_temperature else None
     state, edges = map_.state_at(kelvin, point.speed), edges_of(map_, kelvin)
     signal, words = _judged(found, state, edges, map_, unit)
+    if signal == "good" and not film_alone:
+        signal, words = "watch", f"{words}, if the torque is of the film alone"
     if state.extrapolated:
         signal, words = worst([signal, "watch"]), f"{words}; extrapolated"
     bears, plan = found.disturbance, found.plan
