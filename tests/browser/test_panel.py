@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import polars as pl
 import pytest
 from playwright.sync_api import Browser, Page
 
@@ -24,6 +25,7 @@ from hersey.stability.disturbance import disturbance
 from hersey.stability.operating_map import OperatingMap
 from hersey.stability.operating_map.edges import edges_at
 from tests.browser.opening import Opened
+from tests.cli.command import run
 
 #: What the verdict says of each state of the map.
 WORDS = {
@@ -272,7 +274,7 @@ def test_the_command_reproduces_the_setting(page: Page, tmp_path: Path) -> None:
     assert float(shown[2]) == float(f"{100 * float(numbers['stuck fraction']):.2g}")
 
 
-def test_a_profile_is_followed_and_edited(page: Page) -> None:
+def test_a_profile_is_followed_and_edited(page: Page, tmp_path: Path) -> None:
     page.click("#panel button:text-is('Profile')")
     page.fill("[aria-label='Row 2, time in s']", "0.4")
     page.press("[aria-label='Row 2, time in s']", "Enter")
@@ -282,9 +284,18 @@ def test_a_profile_is_followed_and_edited(page: Page) -> None:
     rested(page)
     assert "under this profile" in verdict(page) or "of this profile" in verdict(page)
     assert page.input_value("#try-speed") == "20"
-    script = shlex.split(written(page, "Command"))
-    ran = subprocess.run([sys.executable, *script[1:]], capture_output=True, text=True, check=True)
-    assert ran.stdout
+    (tmp_path / "setting.toml").write_text(written(page, "TOML"), encoding="utf-8")
+    words = shlex.split(written(page, "Command"))
+    with page.expect_download() as download:
+        page.click("#profile button:text-is('Save CSV')")
+    assert download.value.suggested_filename == "profile.csv"
+    download.value.save_as(tmp_path / "profile.csv")
+    done = run(*words[1:], "--csv", "motion.csv", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    peak = pl.read_csv(tmp_path / "motion.csv")["belt_speed"].max()
+    told = re.search(r"belt peaks at ([\d.]+) mm/s", verdict(page))
+    assert told is not None
+    assert 1e3 * float(peak) == pytest.approx(float(told[1]), rel=0.01)  # type: ignore[arg-type]
     page.fill("[aria-label='Row 2, time in s']", "7")
     page.press("[aria-label='Row 2, time in s']", "Enter")
     assert page.get_attribute("[aria-label='Row 2, time in s']", "aria-invalid") == "true"
@@ -333,6 +344,54 @@ def test_a_smooth_closure_is_drawn_by_a_worker_and_can_be_overtaken(page: Page) 
     page.select_option("#try-closure", "retained")
     rested(page)
     assert page.locator(".back").is_disabled()
+
+
+def test_a_closure_whose_band_is_not_computed_shows_none(page: Page) -> None:
+    """No V* of another closure stands in its place: not as a line, nor as a zone, nor in key and table."""
+    page.select_option("#try-closure", "stribeck")
+    page.wait_for_selector("#map .key >> text=not computed for this closure")
+    rested(page)
+    assert page.locator("#map .zone.sticks").count() >= 1
+    assert page.locator("#map .zone.smooth, #map .zone.depends").count() == 0
+    lines = page.locator("#map [role=img] .fold, #map [role=img] .fold-interval")
+    assert [line.get_attribute("d") for line in lines.all() if line.get_attribute("d")] == []
+    assert "not computed" in (page.get_attribute("#map [role=img]", "aria-label") or "")
+    page.select_option("#try-closure", "retained")
+    rested(page)
+    assert page.locator("#map .zone.smooth").count() >= 1
+
+
+def test_torques_have_one_unit(page: Page, document: Analysis) -> None:
+    """That of the sections: in the verdict with its number, and on the lines of the map."""
+    per, unit = (1.0, "N·m") if max(abs(p.torque) for p in document.points) >= 1 else (1e3, "mN·m")
+    enter(page, "speed", "40")
+    said = re.search(r"torque ([\d.]+) (m?N·m)", verdict(page))
+    assert said is not None
+    on_map = " ".join(page.locator("#map .torque-name").all_text_contents())
+    assert {said[2], *re.findall(r"m?N·m", on_map)} == {unit}
+    drag = Drag(**document.map.drag.model_dump())  # type: ignore[union-attr]
+    kelvin = float(page.input_value("#try-temperature")) + 273.15
+    radius = document.map.roll_radius  # type: ignore[union-attr]
+    assert float(said[1]) == pytest.approx(per * radius * drag.force(0.04, kelvin), rel=0.006)
+
+
+def test_the_numbers_behind_a_motion(page: Page) -> None:
+    enter(page, "speed", "20")
+    page.click("#panel .numbers summary")
+    table = page.locator("#panel .numbers table")
+    assert table.locator("tbody tr").count() > 200
+    with page.expect_download() as download:
+        page.click("#panel .numbers button:text-is('Save CSV')")
+    rows = pl.read_csv(download.value.path())
+    assert rows.columns == ["Time, s", "Drive, mm/s", "Belt, mm/s", "Spring, N", "Stuck"]
+    assert set(rows["Drive, mm/s"]) == {20}
+    assert set(rows["Stuck"]) == {"yes", "no"}
+    assert rows["Time, s"].is_sorted()
+    enter(page, "speed", "25")
+    page.wait_for_function(
+        "() => document.querySelector('#panel .numbers td:nth-child(2)').textContent === '25'"
+    )
+    page.click("#panel .numbers summary")
 
 
 def test_sixty_settings_in_a_row(page: Page) -> None:

@@ -78,7 +78,7 @@ def charts(document: Analysis, *, but: tuple[str, ...] = ()) -> dict[str, Chart]
     }
     with unchecked():
         made = {name: make(document) for name, make in makers.items() if not name.startswith(but)}
-        made |= {f"plan_{i}": profile_chart(*each) for i, each in enumerate(_plans(document))}
+        made |= {f"plan_{i}": profile_chart(*each) for i, each in enumerate(_plans(document)) if each[0].rows}
     return {name: chart for name, chart in made.items() if chart is not None}
 
 
@@ -294,7 +294,12 @@ def write_figures(document: Analysis, folder: Path) -> list[Path]:
 
 def _torque_unit(document: Analysis) -> tuple[float, str]:
     """Factor from N m, and the unit in which the torques of a document read best."""
-    return torque_unit(max(abs(p.torque) for p in document.points))
+    told = getattr(document, "units", {}).get("torque")
+    return (
+        (1e3 if told == "mN·m" else 1.0, told)
+        if told
+        else torque_unit(max(abs(p.torque) for p in document.points))
+    )
 
 
 def _against_speed(

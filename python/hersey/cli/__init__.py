@@ -6,6 +6,7 @@ interruption  Ctrl-C, whatever the program is in the midst of
 asking        questions in a terminal, or answers from a pipe
 amounts       numbers of a belt: with units, bare, or from the machine's file
 loading       what a verb needs, loaded at once
+profile       a drive's speed over time, from a CSV
 options       options that several verbs share, and the reading of a log by them
 outputs       files that a verb writes: refused early, never replaced unasked
 progress      spinner and bar on a terminal

@@ -37,6 +37,14 @@ def simulate(
     drive_speed: Annotated[
         str | None, typer.Option(help="Speed of the drive, as '30 mm/s'.  [default: 1]")
     ] = None,
+    profile: Annotated[
+        Path | None,
+        typer.Option(
+            "--profile",
+            metavar="FILE",
+            help="Instead of it: a CSV of drive speeds, columns 'time (s)' and 'speed (mm/s)'.",
+        ),
+    ] = None,
     start: Annotated[str, typer.Option(help="rest, or steady (sliding with the drive).")] = "rest",
     duration: Annotated[
         str | None, typer.Option(help="Time simulated, for --csv and --check, as '2 s'.  [default: 2]")
@@ -63,18 +71,20 @@ def simulate(
     as_json: AsJson = False,
     force: Force = False,
 ) -> None:
-    """Simulate the belt at constant drive speed and say what it settles to (defaults: the paper's baseline).
+    """Simulate the belt at a drive speed or over a profile: what it settles to (defaults: the paper's).
 
     Numbers carry units, as '11 N/mm', or are bare in any consistent set of units; those of the paper are
     inches, ounces of force and seconds. With units, results are in SI.
 
     Example: [bold]hersey simulate --stiffness 2000 --drive-speed 1.3[/bold]
     """
-    inputs = [path for path in (belt.machine, fit_file) if path is not None]
+    inputs = [path for path in (belt.machine, fit_file, profile) if path is not None]
     if csv is not None:
         may_write(csv, force, inputs)
     if figure is not None:
         may_draw(figure, force, inputs)
+    if profile is not None and (heat or drive_speed is not None):
+        raise ParameterError(f"--profile and {'--heat' if heat else '--drive-speed'} exclude each other")
     if heat:
         _warming(belt, fit_file, drive_speed, duration, start, begin, check, csv, figure, as_json)
         return
@@ -84,15 +94,27 @@ def simulate(
     from hersey.motion import simulation as motion
     from hersey.result import json_value
 
+    course = None
+    if profile is not None:
+        from hersey.cli.profile import read_profile
+
+        course = read_profile(profile)
+        # the last speed stays, and has a unit: so must all others
+        drive_speed = f"{course.at(float('inf'))} m/s"
     train, drag, numbers = belt.parts(
         needed=("drive_speed", "duration"), drive_speed=drive_speed, duration=duration
     )
     speed, time = (numbers.values[name] or 0.0 for name in ("drive_speed", "duration"))
-    cycle = motion.stick_slip(train, drag, drive_speed=speed, start=start)
     run = None
     motor = None
-    if csv is not None or check or figure is not None or belt.machine is not None:
-        run = motion.simulate(train, drag, drive_speed=speed, duration=time, start=start, check=check)
+    if any((csv, check, figure, belt.machine, course)):
+        run = motion.simulate(
+            train, drag, drive_speed=course or speed, duration=time, start=start, check=check
+        )
+    state: str | tuple[float, float] = start
+    if course is not None and run is not None:
+        state = float(run.belt_speed[-1]), float(run.stretch[-1])
+    cycle = motion.stick_slip(train, drag, drive_speed=speed, start=state)
     if run is not None:
         motor = belt.motor_use(run)
         _write(run, csv, figure)
@@ -101,7 +123,11 @@ def simulate(
         ran |= {} if motor is None else {"motor": json_value(motor)}
         print_json("simulate", cycle.to_dict() | ran)
         return
-    lines = [cycle.summary()]
+    lines = [
+        cycle.summary()
+        if course is None
+        else f"After {time:g} s of the profile it settles:\n{cycle.summary()}"
+    ]
     if run is not None:
         lines.append(f"energy balance: {run.energy.residual:.1e} of the energy turned over is missing")
     if run is not None and run.check is not None:

@@ -28,6 +28,7 @@ _LIVE = (
     "map.js",
     "settings.js",
     "traces.js",
+    "numbers.js",
     "profile.js",
     "controls.js",
     "panel.js",

@@ -155,7 +155,7 @@ function paperWidth(place) {
 // What scrolls can be reached by keyboard.
 function reachable(element) {
   new ResizeObserver(() => {
-    if (element.scrollWidth > element.clientWidth + 1) element.tabIndex = 0;
+    if (element.scrollWidth > element.clientWidth + 1 || element.scrollHeight > element.clientHeight + 1) element.tabIndex = 0;
     else element.removeAttribute("tabindex");
   }).observe(element);
 }

@@ -7,7 +7,8 @@ const degrees = (kelvin) => data.fit.temperature_scale === "K" ? `${digits(kelvi
 const perSecond = (speed) => speed === null || speed === undefined ? "–" : digits(speed * 1e3, 3);
 // The unit in which the torques of the document read best, with its factor from N·m.
 function torqueUnit() {
-  return Math.max(...data.points.map((p) => Math.abs(p.torque))) >= 1 ? [1, "N·m"] : [1e3, "mN·m"];
+  const unit = data.units?.torque ?? (Math.max(...data.points.map((p) => Math.abs(p.torque))) >= 1 ? "N·m" : "mN·m");
+  return [unit === "mN·m" ? 1e3 : 1, unit];
 }
 function seconds(value) {
   return value >= 600 ? `${(value / 60).toFixed(1)} min` : `${digits(value)} s`;

@@ -7,7 +7,7 @@ function operatingMap(place, map, move = null) {
   const wide = (values) => Array.from(hot ? values : [values[0], values[0]], (v) => v ?? Infinity);
   const [slowest, fastest] = [map.speed[0], map.speed.at(-1)];
   const given = {
-    lower: wide(map.lower), transition: wide(map.transition), upper: wide(map.upper),
+    lower: wide(map.lower), transition: wide(map.transition), upper: wide(map.upper), folds: true,
     starts: wide(map.holding).map((torque) => torque <= (map.torque_limit ?? Infinity)),
   };
   const [below, above] = [wide(map.stall_below), wide(map.stall_above)];
@@ -16,7 +16,7 @@ function operatingMap(place, map, move = null) {
   const rpm = 60 / (2 * Math.PI * map.roll_radius);
   const named = `hatch-${Math.random().toString(36).slice(2)}`;
   const beyond = map.limited_by === "motor torque" ? "motor stops" : "stall";
-  let edges = given, lagging = false, changed = false, setting = null, frame = null, printing = false, unnamed = [], keyed = "";
+  let edges = given, lagging = false, changed = false, setting = null, frame = null, printing = false, unnamed = [], keyed = "", tickWords = [];
 
   place.classList.add("map");
   const caption = add(place, "div", "", "cap");
@@ -81,6 +81,7 @@ function operatingMap(place, map, move = null) {
     const middle = Math.floor(columns.length / 2), ends = hot ? [0, columns.length - 1] : [0];
     const told = (edge) => ends.map((i) => digits(millimetres(edges[edge][i]))).join(" to ");
     const from = hot ? ` from ${celsius(columns[0]).toFixed(0)} to ${celsius(columns.at(-1)).toFixed(0)} °C` : "";
+    if (!edges.folds) return `Operating map: the belt sticks below ${told("transition")} mm/s${from}; V* is not computed for this closure`;
     const band = edges.upper[middle] > 1.01 * edges.transition[middle] || edges.upper.at(-1) > 1.01 * edges.transition.at(-1);
     return `Operating map: the belt sticks below ${told("transition")} mm/s${from}`
       + (band ? `, and slides from any start above ${told("upper")} mm/s` : ", and slides above");
@@ -142,7 +143,7 @@ function operatingMap(place, map, move = null) {
     const all = rising.flat();
     if (!all.length) return [];
     const low = Math.min(...all), high = Math.min(Math.max(...all), map.torque_limit ?? Infinity);
-    const scale = high < 0.1 ? 1e3 : 1, unit = scale === 1 ? "N·m" : "mN·m";
+    const [scale, unit] = torqueUnit();
     if (!(high > low)) return [];
     const step = ticks(0, scale * (high - low), 6)[1];
     const lines = [];
@@ -174,8 +175,7 @@ function operatingMap(place, map, move = null) {
     const faint = changed ? " lags" : "";
     svg("path", { d: `${shape.path(band)}Z`, class: `interval${faint}` }, inside);
     const beyond_bend = (edge) => edge.map((v, i) => (v > 1.01 * high[i] ? v : NaN));
-    draw_line(beyond_bend(vLow), `fold-interval${faint}`);
-    draw_line(beyond_bend(vHigh), `fold-interval${faint}`);
+    for (const end of edges.folds ? [vLow, vHigh] : []) draw_line(beyond_bend(end), `fold-interval${faint}`);
     for (const edge of [below, above]) draw_line(edge.map((v) => v || NaN), "stall-edge");
     const lags = lagging ? " lags" : "";
     draw_line(edges.upper.map((v, i) => (v > 1.01 * edges.transition[i] ? v : NaN)), `fold${lags}`);
@@ -185,12 +185,13 @@ function operatingMap(place, map, move = null) {
 
   function drawAxes() {
     const { left, right, top, bottom } = frame;
+    tickWords = [];
     svg("text", { x: 0, y: 12, class: "axis" }, picture, frame.width > 420 ? "Drive speed at the belt (mm/s)" : "Drive speed (mm/s)");
     svg("text", { x: right + 34, y: 12, "text-anchor": "end", class: "axis" }, picture, "roll (rpm)");
     for (const value of logTicks(1e3 * slowest, 1e3 * fastest)) {
       const y = up(value / 1e3);
       svg("path", { d: `M${left} ${y}h-4`, class: "tick" }, picture);
-      svg("text", { x: left - 7, y: y + 4, "text-anchor": "end", class: "ticks" }, picture, digits(value, 4));
+      tickWords.push([null, y, svg("text", { x: left - 7, y: y + 4, "text-anchor": "end", class: "ticks" }, picture, digits(value, 4))]);
     }
     for (const value of logTicks(rpm * slowest, rpm * fastest)) {
       const y = up(value / rpm);
@@ -205,7 +206,7 @@ function operatingMap(place, map, move = null) {
     for (const value of ticks(celsius(columns[0]), celsius(columns.at(-1)), frame.width / 90)) {
       const x = across(value + 273.15);
       svg("path", { d: `M${x} ${bottom}v4`, class: "tick" }, picture);
-      svg("text", { x, y: bottom + 16, "text-anchor": "middle", class: "ticks" }, picture, digits(value, 4));
+      tickWords.push([x, null, svg("text", { x, y: bottom + 16, "text-anchor": "middle", class: "ticks" }, picture, digits(value, 4))]);
     }
     svg("text", { x: (left + right) / 2, y: bottom + 31, "text-anchor": "middle", class: "axis" }, picture, "Temperature (°C)");
   }
@@ -264,7 +265,8 @@ function operatingMap(place, map, move = null) {
   // The zone below a name.
   function groundAt(x, y) {
     const speed = speedAt(y), at = columnAt(x);
-    return speed >= valueAt(edges.upper, at) ? "smooth" : speed >= valueAt(edges.lower, at) ? "depends" : "sticks";
+    if (speed < valueAt(edges.lower, at)) return "sticks";
+    return speed < valueAt(edges.upper, at) ? "depends" : "smooth";
   }
 
   // The word of each zone where it has the most room, upright or along the zone; else it stands in the key.
@@ -333,8 +335,9 @@ function operatingMap(place, map, move = null) {
       return `, ${digits(value, value >= 100 ? 3 : 2)}${at}`;
     };
     entry("transition", `transition${valued(edges.transition)}`);
-    if (edges.upper.some((v, i) => v > 1.01 * edges.transition[i])) entry("fold", `V*${valued(edges.upper)}`);
-    if (intervals[3].some((v, i) => v > 1.01 * intervals[1][i])) {
+    if (!edges.folds) entry("fold", "V* over temperature: not computed for this closure");
+    else if (edges.upper.some((v, i) => v > 1.01 * edges.transition[i])) entry("fold", `V*${valued(edges.upper)}`);
+    if (edges.folds && intervals[3].some((v, i) => v > 1.01 * intervals[1][i])) {
       entry("fold-interval", changed ? "its 95 % interval in the report" : "its 95 % interval");
     }
     entry("torque", "drag torque");
@@ -359,7 +362,7 @@ function operatingMap(place, map, move = null) {
     for (const old of figures.querySelectorAll(".wide")) old.remove();
     const every = Math.max(1, Math.round((columns.length - 1) / 10));
     const rows = columns.map((_, i) => i).filter((i) => (hot ? i % every === 0 : i === 0));
-    const value = (v) => (Number.isFinite(v) ? digits(millimetres(v)) : "never");
+    const value = (v) => (Number.isFinite(v) ? digits(millimetres(v)) : Number.isNaN(v) ? "not computed" : "never");
     const range = (i, low, high) => `${value(intervals[low][i])} to ${value(intervals[high][i])}`;
     const known = map.torque_limit !== null;
     const heads = ["Sticks below (mm/s)", "Transition", "95 % in the report", "Smooth above V*", "95 % in the report", known ? "Stall from" : "Stall"];
@@ -428,6 +431,11 @@ function operatingMap(place, map, move = null) {
     ring.handle.setAttribute("transform", `translate(${x} ${y})`);
     ring.across.setAttribute("d", `M${frame.left} ${y}H${x - 10}`);
     ring.down.setAttribute("d", hot ? `M${x} ${frame.bottom}V${y + 10}` : "");
+    // A number of an axis half under a tag is not read.
+    for (const [at, level, word] of tickWords) {
+      const under = at === null ? Math.abs(level - y) < 13 : Math.abs(at - x) < 28;
+      word.setAttribute("visibility", under ? "hidden" : "inherit");
+    }
     ring.speed.setAttribute("transform", `translate(${frame.left - 34} ${y - 8})`);
     ring.speed.lastChild.textContent = digits(millimetres(setting.speed));
     ring.temperature.setAttribute("transform", `translate(${x - 17} ${frame.bottom + 4})`);
@@ -453,11 +461,12 @@ function operatingMap(place, map, move = null) {
       drawRing();
       drawKey();
     },
-    // Edges of another machine, at the temperatures of the map; null for those of the report.
-    edges(other) {
+    // Edges of another machine, at the temperatures of the map; null for those of the report. Without `folds` it is
+    // not known from which speed on it slides from any start.
+    edges(other, folds = true) {
       edges = other ? {
-        lower: wide(other.lower), transition: wide(other.transition), upper: wide(other.upper),
-        starts: wide(other.holding).map((force) => force <= (map.torque_limit ?? Infinity) / map.roll_radius),
+        lower: wide(other.lower), transition: wide(other.transition), folds,
+        upper: folds ? wide(other.upper) : columns.map(() => NaN), starts: wide(other.holding).map((force) => force <= (map.torque_limit ?? Infinity) / map.roll_radius),
       } : given;
       changed = Boolean(other);
       lagging = false;

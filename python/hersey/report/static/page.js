@@ -243,7 +243,9 @@ function dataSection(parent) {
     + (q.standing_torque === null ? "" : ` Torque while the drive stood: ${digits(q.standing_torque * 1e3)} mN·m, ${q.tare ? "taken off everywhere" : "not taken off"}.`), "note");
   if (data.warnings.length) {
     add(part, "h3", "What to know before trusting the numbers");
-    checks(part, data.warnings.map((text) => ["watch", pretty(text)])).id = "warnings";
+    const list = add(part, "ul", "", "checks plain");
+    list.id = "warnings";
+    for (const text of data.warnings) add(list, "li", pretty(text));
   }
   if (q.rejected.length) {
     const all = fold(part, `Every stretch that is not used, and why (${q.rejected.length})`);
@@ -398,8 +400,10 @@ async function comparison(parent) {
   if (!compare) return;
   const part = section(parent, "compare", "Comparison", compare.verdict.split(". ")[0].replace(/\.?$/, "."));
   await chart(part, "compare", { says: compare.verdict });
+  // What is compared as a ratio is a speed of the roll.
+  const of = (c) => c.is_ratio ? [`${c.name}, rpm`, digits(c.of_a * TO_RPM), digits(c.of_b * TO_RPM)] : [c.name, digits(c.of_a), digits(c.of_b)];
   table(part, ["Number", compare.a, compare.b, "Change", "95 % interval", "p-value", "Real"], compare.changes.map((c) => [
-    c.name, digits(c.of_a), digits(c.of_b), `${c.is_ratio ? "× " : ""}${digits(c.change.value)}`, bounds(c.change), c.p_value === null ? "–" : digits(c.p_value, 2),
+    ...of(c), `${c.is_ratio ? "× " : ""}${digits(c.change.value)}`, bounds(c.change), c.p_value === null ? "–" : digits(c.p_value, 2),
     c.real ? judged("watch", "yes") : "no"]), [1, 2, 3, 4, 5], { name: "comparison", label: "What changed" });
   const all = fold(part, "In full");
   add(all, "p", pretty(compare.verdict), "text");
@@ -413,7 +417,7 @@ async function warmUp(parent) {
   checks(part, data.warm_up.warnings.map((text) => ["watch", pretty(text)]));
 }
 const SHOWN = new Set(["schema_version", "hersey_version", "title", "command", "made", "machine", "synthetic", "decision", "verdict", "warnings", "files", "quality", "points", "fit",
-  "regime", "film", "carried", "simulation", "timeline", "stick_speed_sweep", "models", "compare", "band", "map", "plan", "warm_up", "uncertainty"]);
+  "regime", "film", "carried", "simulation", "timeline", "stick_speed_sweep", "models", "compare", "against", "units", "band", "map", "plan", "warm_up", "uncertainty"]);
 function others(parent) {
   const left = Object.entries(data).filter(([name, part]) => part !== null && !SHOWN.has(name));
   if (!left.length) return;
@@ -422,8 +426,10 @@ function others(parent) {
 }
 
 function reproduce(parent) {
-  const inputs = [...data.files, ...(data.machine ? [data.machine] : [])];
-  const part = section(parent, "reproduce", "Reproduce", `One command, ${plural(inputs.length, "file")}${data.decision?.points.some((p) => p.plan) ? ", one seed" : ""}.`);
+  const { rest } = data.fit;
+  const inputs = [...data.files, ...(data.against ?? []), ...(data.machine ? [data.machine] : []), ...(rest?.sha256 ?? []).map((sha256) => ({ name: rest.source, sha256 }))];
+  const seed = data.decision?.points.find((p) => p.plan)?.plan.seed;
+  const part = section(parent, "reproduce", "Reproduce", `One command, ${plural(inputs.length, "file")}${seed === undefined ? "" : `, one seed (${seed})`}.`);
   if (data.command) add(part, "pre", data.command).id = "command";
   const all = inputs.length > 8 ? fold(part, `${inputs.length} files and their hashes`) : part;
   table(all, ["File", "sha256"], inputs.map((f) => {

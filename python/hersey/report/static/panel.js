@@ -40,12 +40,14 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
   const course = profile(place, chart, {
     change: (rows) => tried({ profile: rows, speed: rows.at(-1)[1] }),
     leave: () => tried({ profile: null }),
+    written: (rows) => known.course(rows),
   });
   const foot = add(place, "div", "", "foot"), out = add(place, "div", "", "out");
   out.hidden = true;
   const outs = {
     Link: () => link(), Command: () => known.command(setting, answer.law, answer.duration), TOML: () => known.toml(setting, answer.law),
   };
+  const behind = numbers(place);
   const buttons = Object.keys(outs).map((name) => {
     const each = button(foot, name, () => { open = open === name ? "" : name; output(); });
     each.setAttribute("aria-expanded", "false");
@@ -80,7 +82,8 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
       made.temperature.shift = 273.15;
     }
     one(place, "stiffness", "Stiffness", "N/mm", 1e3, base.stiffness / 10, base.stiffness * 10);
-    one(place, "stick_speed", "Stick speed", "mm/s", 1e-3, base.stick_speed / 10, base.stick_speed * 10);
+    const level = hot ? ` at ${digits(known.stick.temperature - 273.15)} °C` : "";
+    one(place, "stick_speed", hot ? `Stick,${level.slice(3)}` : "Stick speed", "mm/s", 1e-3, base.stick_speed / 10, base.stick_speed * 10, { spoken: `Stick speed${level}` });
     const row = add(place, "div", "", "chosen"), label = add(row, "label", "Closure"), select = add(row, "select");
     label.htmlFor = select.id = "try-closure";
     const mark = document.createElement("span");
@@ -139,6 +142,7 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
     const task = job(), number = drawn += 1;
     let whole = task.slow;
     kicked = spread = null;
+    said.textContent = "";
     if (found?.key !== bandKey(setting)) found = found && { ...found, stale: true };
     try {
       if (!whole) whole = !answered(task);
@@ -223,14 +227,13 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
     mapped = key;
     if (key === machineKey(base)) { edges.forget(); picture.edges(null); return; }
     picture.lag();
-    // The folds of a smooth closure take minutes at all temperatures: those of the same belt that retains its creep stay.
+    // The folds of a smooth closure take minutes at all temperatures: they are left out.
     const drag = task.slow ? { ...task.drag, closure: "retained" } : task.drag;
     edges.ask("edges", { train: task.train, drag, temperatures: map.temperature, rule: map.stick_speed_rule }, { key, slow: task.slow });
   }
   function heardEdges({ part, failure }, about) {
     if (failure || !part || about.key !== mapped) return;
-    picture.edges(part);
-    if (about.slow) picture.lag();
+    picture.edges(part, !about.slow);
   }
 
   const speedText = (v) => `${digits(1e3 * v)} mm/s`;
@@ -274,14 +277,15 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
         return { zone, signal: "act", words: "sticks and slips from any start", sub: [laps && `${laps} of the time`, cycle.speed_max > 0 ? `belt peaks at ${speedText(cycle.speed_max)}` : torque] };
     }
   }
-  const torqueText = (value) => (Math.abs(value) < 0.1 ? `${digits(1e3 * value)} mN·m` : `${digits(value)} N·m`);
+  const [perNewtonMetre, torqueName] = torqueUnit();
+  const torqueText = (value) => `${digits(perNewtonMetre * value)} ${torqueName}`;
   // When the belt stays within 2 % of the drive, counted from its first slip.
   function settles({ time, belt_speed: v }) {
     let off = v.length - 1, slip = 0;
     while (off >= 0 && Math.abs(v[off] / setting.speed - 1) <= 0.02) off -= 1;
     while (slip < v.length && v[slip] < setting.speed) slip += 1;
     if (slip >= v.length) return "";
-    if (off > 0.97 * v.length) return `not settled after ${digits(time.at(-1))} s`;
+    if (off > 0.97 * v.length) return `settles later than the ${digits(time.at(-1))} s drawn`;
     return `settles ${digits(Math.max(time[off + 1] - time[slip], 0), 2)} s after the first slip`;
   }
   function follows() {
@@ -317,6 +321,7 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
       said.textContent = verdict.textContent;
       printed.textContent = inWords();
       if (open) output();
+      if (answer.motion) behind.show(answer.motion, setting);
       chart.say(`Belt speed: ${words} at ${speedText(setting.speed)}`, `Phase plane at ${speedText(setting.speed)}: ${words}`);
     }, 500);
     trackColours();
@@ -352,7 +357,6 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
     select.value = setting.closure;
     mark.textContent = differs("closure") ? "◆ " : "";
     const lugre = setting.closure === "lugre";
-    picture.hint.textContent = SLOW.includes(setting.closure) ? "edges of the map: as for retained" : "drag the ring, or arrow keys on it";
     for (const each of [made.bristle_stiffness.row, made.bristle_damping.row, bristles]) each.hidden = !lugre;
     const hidden = ["mass", "spread", ...(lugre ? ["bristle_stiffness", "bristle_damping"] : [])].some(differs);
     more.textContent = `${hidden ? "◆ " : ""}Mass, spread…`;

@@ -1,6 +1,6 @@
 // A profile of the drive's speed: drawn by hand into the chart, moved at its handles, or written into a table.
 
-function profile(place, chart, { change, leave }) {
+function profile(place, chart, { change, leave, written }) {
   const box = add(place, "div", "", "profile");
   box.hidden = true;
   box.id = "profile";
@@ -8,6 +8,7 @@ function profile(place, chart, { change, leave }) {
   const draws = button(line, "Draw by hand", () => arm(!armed));
   draws.setAttribute("aria-pressed", "false");
   button(line, "Add a row", () => { const [t, v] = rows.at(-1); emit([...rows, [t + 0.2, v]]); });
+  button(line, "Save CSV", () => save("profile.csv", written(rows), "text/csv"));
   button(line, "Without a profile", () => leave());
   const note = add(box, "p", "Straight lines between the rows; the last speed stays.", "hint");
   const cells = add(box, "div", "", "rows");

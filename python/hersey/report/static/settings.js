@@ -57,34 +57,26 @@ function settings(analysis) {
     return sound && given.at(-1)[1] > 0 ? given : null;
   }
 
+  // Six digits: more are not known, and differ in nothing that is shown.
+  const neat = (value) => Number(value.toPrecision(6));
   const beside = (law) => map.train.grip !== null || law.rest_force !== 0 || law.rest_damping !== 0;
   function command(setting, law, duration) {
-    if (setting.profile) return script(setting, law, duration);
-    const amounts = [["drive-speed", setting.speed, "m/s"], ["stiffness", setting.stiffness, "N/m"], ["mass", setting.mass, "kg"],
+    const amounts = [...(setting.profile ? [] : [["drive-speed", setting.speed, "m/s"]]), ["stiffness", setting.stiffness, "N/m"], ["mass", setting.mass, "kg"],
       ["transition-force", law.transition_force, "N"], ["transition-speed", law.transition_speed, "m/s"], ["stick-speed", law.stick_speed, "m/s"],
       ...(setting.closure === "lugre"
         ? [["bristle-stiffness", setting.bristle_stiffness, "N/m"], ["bristle-damping", setting.bristle_damping, "N*s/m"]] : [])];
-    const words = amounts.map(([name, value, unit]) => `--${name} "${value} ${unit}"`);
-    const plain = [`--ehl-exponent=${map.drag.ehl_exponent}`, `--mixed-exponent=${map.drag.mixed_exponent}`, `--closure ${setting.closure}`];
+    const words = amounts.map(([name, value, unit]) => `--${name} "${neat(value)} ${unit}"`);
+    const plain = [`--ehl-exponent=${neat(map.drag.ehl_exponent)}`, `--mixed-exponent=${neat(map.drag.mixed_exponent)}`, `--closure ${setting.closure}`];
     const machine = beside(law) ? ["--machine setting.toml"] : [];
-    return ["hersey simulate", ...machine, ...words, ...plain].join(" ");
-  }
-  // A profile has no command of its own: the same in Python.
-  function script(setting, law, duration) {
-    const bristles = setting.closure === "lugre"
-      ? `, bristle_stiffness=${setting.bristle_stiffness}, bristle_damping=${setting.bristle_damping}` : "";
-    const grip = map.train.grip === null ? "" : `, grip=${map.train.grip}`;
-    return `python -c "import hersey; drag = hersey.Drag(${law.transition_force}, ${law.transition_speed}, ehl_exponent=${map.drag.ehl_exponent}, `
-      + `mixed_exponent=${map.drag.mixed_exponent}, stick_speed=${law.stick_speed}, closure='${setting.closure}', rest_force=${law.rest_force}, `
-      + `rest_damping=${law.rest_damping}${bristles}); train = hersey.Drivetrain(${setting.stiffness}, ${setting.mass}${grip}); `
-      + `drive = hersey.Schedule([${setting.profile.map((row) => row[0]).join(", ")}], [${setting.profile.map((row) => row[1]).join(", ")}]); `
-      + `print(hersey.simulate(train, drag, drive_speed=drive, duration=${duration}).summary())"`;
+    const course = setting.profile ? ["--profile profile.csv", `--duration "${duration} s"`] : [];
+    return ["hersey simulate", ...course, ...machine, ...words, ...plain].join(" ");
   }
   function toml(setting, law) {
     const radius = map.roll_radius, at = setting.temperature === null ? "" : ` at ${digits(setting.temperature - 273.15)} °C`;
-    const lines = ["# The setting tried, for the machine's file (hersey map, plan and report) and for hersey simulate --machine.", "[drivetrain]",
-      `stiffness = "${setting.stiffness} N/m"`, `mass = "${setting.mass} kg"`, `roll_radius = "${radius} m"`,
-      `stick_speed = "${law.stick_speed} m/s"`];
+    const closed = setting.closure === "retained" ? [] : [`# The panel's closure is ${setting.closure}; files and hersey map, plan and report know only retained.`];
+    const lines = [...closed, "# The setting tried, for the machine's file (hersey map, plan and report) and for hersey simulate --machine.", "[drivetrain]",
+      `stiffness = "${neat(setting.stiffness)} N/m"`, `mass = "${neat(setting.mass)} kg"`, `roll_radius = "${radius} m"`,
+      `stick_speed = "${neat(law.stick_speed)} m/s"`];
     if (setting.temperature !== null) lines.push(`stick_speed_temperature = "${setting.temperature} K"`);
     if (map.stick_speed_rule === "fixed") lines.push('stick_speed_rule = "fixed"');
     const limits = [...(map.limited_by === "motor torque" ? [`motor_torque = "${map.torque_limit} N*m"`] : []),
@@ -92,16 +84,15 @@ function settings(analysis) {
       ...(map.speed_limit === null ? [] : [`speed = "${map.speed_limit} m/s"`])];
     if (limits.length) lines.push("", "[limits]", ...limits);
     if (law.rest_force !== 0 || law.rest_damping !== 0) {
-      lines.push("", `[rest]  # of the drive${at}`, `torque = "${law.rest_force * radius} N*m"`,
-        `damping = "${law.rest_damping * radius ** 2} N*m*s/rad"`);
+      lines.push("", `[rest]  # of the drive${at}`, `torque = "${neat(law.rest_force * radius)} N*m"`,
+        `damping = "${neat(law.rest_damping * radius ** 2)} N*m*s/rad"`);
     }
     if (setting.temperature !== null) {
       lines.push("", "[[points]]", 'name = "tried"', `speed = "${setting.speed} m/s"`, `temperature = "${setting.temperature} K"`);
     }
-    if (setting.profile) {
-      lines.push("", "# The profile tried, times and speeds of the drive:", ...setting.profile.map(([t, v]) => `# ${t} s  ${v} m/s`));
-    }
     return `${lines.join("\n")}\n`;
   }
-  return { own, drag, train, link, read, rows, command, toml, stick, closures: CLOSURES };
+  // The profile as a file of the command.
+  const course = (profile) => csv(["time (s)", "speed (mm/s)"], profile.map(([t, v]) => [String(t), String(neat(1e3 * v))]));
+  return { own, drag, train, link, read, rows, command, toml, course, stick, closures: CLOSURES };
 }

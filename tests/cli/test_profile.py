@@ -1,0 +1,60 @@
+"""A profile of the drive as a file: followed as the library follows it, or refused by line and column."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from hersey import Drag, Drivetrain, Schedule, simulate, stick_slip
+from hersey.cli.profile import read_profile
+from hersey.errors import HerseyError
+from tests.cli.command import run
+
+BELT = ["--stiffness", "11 N/mm", "--mass", "11 kg", "--transition-force", "14 N"]
+BELT += ["--transition-speed", "25 mm/s", "--stick-speed", "1 mm/s"]
+
+
+def test_it_is_followed_to_its_end(tmp_path: Path) -> None:
+    (tmp_path / "profile.csv").write_text("speed (m/min),time (ms)\n0,0\n6,400\n\n1.8,1000\n")
+    done = run("simulate", *BELT, "--profile", "profile.csv", "--duration", "3 s", "--json", cwd=tmp_path)
+    answer = json.loads(done.stdout)
+    train = Drivetrain(11e3, 11.0)
+    drag = Drag(14.0, 0.025, ehl_exponent=-0.7, mixed_exponent=-1.2, stick_speed=0.001)
+    drive = Schedule([0.0, 0.4, 1.0], [0.0, 0.1, 0.03])
+    motion = simulate(train, drag, drive_speed=drive, duration=3.0)
+    assert answer["energy"]["work"] == pytest.approx(motion.energy.work, rel=1e-6)
+    state = float(motion.belt_speed[-1]), float(motion.stretch[-1])
+    settled = stick_slip(train, drag, drive_speed=0.03, start=state)
+    assert answer["kind"] == settled.kind
+    assert answer["frequency"] == pytest.approx(settled.frequency)
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("", r"line 1: add a column 'time \(s\)'"),
+        ("time (s)\n0\n", r"line 1: add a column 'speed \(mm/s\)'"),
+        ("time (s),speed\n0,0\n", r"line 1: add a column 'speed \(mm/s\)'"),
+        ("time (s),speed (rpm)\n0,0\n", r"column 'speed \(rpm\)': unit 'rpm' is not a unit of belt speed"),
+        ("time (s),speed (mm/s)\n", "has no rows"),
+        ("time (s),speed (mm/s)\n0,1\n1,x\n", "line 3: 'x' is no number"),
+        ("time (s),speed (mm/s)\n0,1\n1\n", "line 3: '' is no number"),
+        ("time (s),speed (mm/s)\n0,1\n1,nan\n", "a number is not finite"),
+        ("time (s),speed (mm/s)\n1,1\n0,1\n", "time runs backwards"),
+        ("time (s),speed (mm/s)\n0,1\n1,0\n", "the last must be greater than 0"),
+        ("time (s),speed (mm/s)\n0,-1\n1,2\n", "no speed may be less than 0"),
+    ],
+)
+def test_what_is_wrong_is_named(tmp_path: Path, text: str, told: str) -> None:
+    file = tmp_path / "profile.csv"
+    file.write_text(text)
+    with pytest.raises(HerseyError, match=rf"^profile\.csv.*{told}"):
+        read_profile(file)
+
+
+def test_one_speed_or_a_profile(tmp_path: Path) -> None:
+    (tmp_path / "p.csv").write_text("time (s),speed (mm/s)\n0,5\n")
+    done = run("simulate", "--profile", "p.csv", "--drive-speed", "1 mm/s", cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (2, "hersey: --profile and --drive-speed exclude each other\n")
