@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,15 +13,14 @@ from hypothesis import strategies as st
 
 import hersey
 from hersey.damping.fit import fit
-from hersey.damping.rest import RestOfDrive
 from hersey.damping.surface import DampingSurface
 from hersey.document.assembly import analyse, load
-from hersey.document.decision import behaviour, decision
+from hersey.document.decision import behaviour
 from hersey.document.decision.behaviour import Behaviour, PointBehaviour, StickSpeeds, Working, ranges
 from hersey.document.decision.reasons import in_words
 from hersey.document.decision.words import figures, within
 from hersey.document.display_units import display_units
-from hersey.document.parts import Analysis, DecisionPart, FilmPart, MisfitPart, RegimePart
+from hersey.document.parts import Analysis, MisfitPart
 from hersey.errors import HerseyError, ParameterError, UnfinishedError
 from hersey.log.means import read_means
 from hersey.machine.limits import Limits, OperatingPoint
@@ -31,76 +29,8 @@ from hersey.machine.uncertainty import Uncertainty
 from hersey.stability.hysteresis import hysteresis
 from hersey.stability.operating_map import OperatingMap, operating_map
 from hersey.stability.plan import plan_profile
-from hersey.verdict.regime import regime
 from tests.conftest import ROOT
-
-HOT = 453.15
-ROOMY = Limits(motor_torque=8.0, acceleration=0.5, speed=0.4)
-SLOW, BETWEEN, FAST = 0.02, 0.045, 0.12
-
-
-@pytest.fixture(scope="module")
-def seen(points: hersey.SteadyPoints, surface: DampingSurface) -> RegimePart:
-    return RegimePart.model_validate(regime(points, surface).to_dict())
-
-
-@pytest.fixture(scope="module")
-def machine() -> Machine:
-    states = [OperatingPoint(name, speed, HOT) for name, speed in _POINTS.items()]
-    stated = read_machine(ROOT / "tests" / "stand" / "machine.toml")
-    return replace(stated, limits=ROOMY, points=tuple(states))
-
-
-_POINTS = {"crawl": SLOW, "thick paper": BETWEEN, "near": 0.07, "full speed": FAST}
-
-
-@pytest.fixture(scope="module")
-def map_(surface: DampingSurface, machine: Machine) -> OperatingMap:
-    return operating_map(
-        surface,
-        machine.train,
-        **machine.belt,
-        limits=machine.limits,
-        points=machine.points,
-        uncertainty=machine.uncertainty,
-        temperatures=[HOT - 10.0, HOT],
-        draws=40,
-    )
-
-
-@pytest.fixture(scope="module")
-def found(surface: DampingSurface, machine: Machine, map_: OperatingMap) -> Behaviour:
-    """What the machine does, its plan that of the nominal parameters."""
-    drag = surface.drag(**machine.belt, temperature=HOT)
-    plan = plan_profile(
-        machine.train, drag, target_speed=BETWEEN, limits=machine.limits, roll_radius=machine.roll_radius
-    )
-    planned = {"plan": plan, "straight": plan.response}
-    of_points = [PointBehaviour(p, **(planned if p.speed == BETWEEN else {})) for p in machine.points]
-    band = hysteresis(machine.train, drag)
-    return Behaviour(HOT, band, None, map_, tuple(of_points), ())
-
-
-Decide = Callable[..., DecisionPart]
-
-
-@pytest.fixture(scope="module")
-def decide(
-    points: hersey.SteadyPoints, surface: DampingSurface, seen: RegimePart, machine: Machine
-) -> Decide:
-    known = replace(points, rest=RestOfDrive.stated(constant=1e-9))
-
-    def decided(
-        found: Behaviour,
-        film: FilmPart | None = None,
-        unit: str = "N·m",
-        dwells: hersey.SteadyPoints = known,
-        **changed: object,
-    ) -> DecisionPart:
-        of = replace(machine, **changed)  # type: ignore[arg-type]
-        return decision(dwells, surface, of, seen=seen, film=film, carried=None, found=found, unit=unit)
-
-    return decided
+from tests.document.conftest import BETWEEN, FAST, HOT, POINTS, SLOW, Decide
 
 
 def test_the_instruction_takes_the_safe_end_and_the_plans_overshoot(
@@ -326,7 +256,7 @@ def test_a_law_that_does_not_hold_is_never_called_safe(machine: Machine) -> None
     assert document.fit.transition is None
     assert said.signal == "watch"
     assert "nothing sticks" not in said.instruction
-    assert [point.name for point in said.points] == list(_POINTS)
+    assert [point.name for point in said.points] == list(POINTS)
     assert {point.signal for point in said.points} == {"watch"}
 
 

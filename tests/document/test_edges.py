@@ -1,0 +1,208 @@
+"""The speeds that a decision stands on: which end of which interval, and which way a comparison goes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import polars as pl
+import pytest
+
+import hersey
+from hersey.damping.estimate import Estimate
+from hersey.damping.surface import DampingSurface
+from hersey.document.decision.behaviour import Behaviour, PointBehaviour
+from hersey.document.decision.edges import Edge, Edges, edges_of
+from hersey.document.decision.flags import flags
+from hersey.document.decision.instruction import of_log
+from hersey.document.decision.words import figures
+from hersey.document.parts import CarriedPart, RegimePart
+from hersey.document.parts.fit import LackOfFitPart
+from hersey.machine.limits import OperatingPoint
+from hersey.stability.operating_map import OperatingMap
+from tests.document.conftest import BETWEEN, HOT, Decide
+
+
+def test_safe_is_the_greater_of_both_upper_ends() -> None:
+    """An interval of the transition may reach beyond that of V*."""
+    held = Edge(1.0, 0.5, 2.0)
+    edges = Edges(Edge(0.03, 0.02, 0.09), Edge(0.05, 0.04, 0.07), 1.0, held, 3.0)
+    assert edges.safe == 0.09
+    assert not edges.bistable
+    assert replace(edges, transition=Edge(0.03, 0.02, 0.04)).safe == 0.07
+    assert [replace(edges, limit=limit).starts for limit in (2.0, 1.9, 0.5, 0.4)] == [True, None, None, False]
+
+
+def test_a_belt_that_is_not_started_has_no_estimate_of_v_star(map_: OperatingMap) -> None:
+    """Its interval is that of the draws that start, down to the transition."""
+    held = float(map_.holding_interval[0, -1]), float(map_.holding[-1])
+    weak = replace(map_, torque_limit=0.5 * sum(held), limited_by="motor torque")
+    assert math.isnan(edges_of(weak, HOT).fold.value)
+    assert edges_of(weak, HOT).fold.low >= edges_of(weak, HOT).transition.value
+    for limit in (1.01 * held[1], 0.9 * held[0]):
+        told = edges_of(replace(weak, torque_limit=limit), HOT).fold
+        assert math.isfinite(told.value)
+        assert told.low <= told.value <= told.high
+
+
+def test_the_drive_reaches_what_limits_it_first(map_: OperatingMap) -> None:
+    for speed, stall in ((0.4, 0.2), (0.2, 0.4), (None, 0.3)):
+        limited = replace(map_, speed_limit=speed, stall_above=np.full(2, stall))
+        assert edges_of(limited, HOT).greatest == min(speed or math.inf, stall)
+
+
+def test_an_end_that_is_not_finite_at_one_temperature_does_not_hide_the_other(map_: OperatingMap) -> None:
+    """Between two temperatures of the map an infinite end holds as far as the nearer one."""
+    assert map_.temperature is not None
+    cold, hot = map_.temperature
+    ends = replace(map_, speed_limit=None, stall_above=np.array([0.3, np.inf]))
+    assert edges_of(ends, float(cold)).greatest == 0.3
+    assert edges_of(ends, float(hot)).greatest == math.inf
+    middle = replace(map_, stall_above=np.array([0.2, 0.4]), speed_limit=None)
+    assert edges_of(middle, float(cold + hot) / 2).greatest == pytest.approx(0.3)
+
+
+def test_what_the_drive_cannot_slide_at_stalls(decide: Decide, found: Behaviour, map_: OperatingMap) -> None:
+    """So fast that sliding takes more than the start."""
+    fast = 100.0
+    takes = map_.state_at(HOT, fast).torque
+    limit = 0.5 * (takes + float(map_.holding_interval[1, -1]))
+    assert takes > limit > float(map_.holding_interval[1, -1])
+    weak = replace(map_, torque_limit=limit, limited_by="roll friction", speed_limit=None)
+    point = PointBehaviour(OperatingPoint("fast", fast, HOT))
+    [said] = decide(replace(found, points=(point,), map=weak)).points
+    assert said.signal == "act"
+    assert said.words.startswith(f"stalls: sliding takes {figures(takes)} N·m, the roll grips")
+
+
+def test_a_point_far_out_is_not_good(decide: Decide, found: Behaviour) -> None:
+    """No dwell lies that fast: said at the point, and by a warning."""
+    point = OperatingPoint("very fast", 0.38, HOT)
+    said = decide(replace(found, points=(PointBehaviour(point),)))
+    assert said.points[0].signal == "watch"
+    assert said.points[0].words.endswith("; extrapolated")
+
+
+def test_a_point_within_the_interval_of_the_transition_is_told_so(
+    decide: Decide, found: Behaviour, map_: OperatingMap
+) -> None:
+    wide = map_.transition_interval.copy()
+    wide[1] = 1.5 * BETWEEN
+    point = tuple(each for each in found.points if each.point.speed == BETWEEN)
+    said = decide(replace(found, points=point, map=replace(map_, transition_interval=wide)))
+    assert said.points[0].words.startswith("depends: only from above (plan); the transition is 33 [")
+    assert "the transition" not in decide(replace(found, points=point)).points[0].words
+
+
+def test_a_plan_at_another_temperature_names_it(decide: Decide, found: Behaviour) -> None:
+    [planned] = [each for each in found.points if each.plan is not None]
+    cooler = replace(planned, point=replace(planned.point, temperature=HOT - 5.0))
+    assert "for 45 mm/s at 175 °C overshoot" in decide(replace(found, points=(cooler,))).otherwise
+    assert "for 45 mm/s overshoot" in decide(replace(found, points=(planned,))).otherwise
+
+
+def test_warnings_of_the_machine(decide: Decide, found: Behaviour, map_: OperatingMap) -> None:
+    """Points that no dwell reaches, and a roll whose grip nobody stated."""
+    bare = replace(map_, train=replace(map_.train, grip=None))
+    far = tuple(replace(p, at=replace(p.at, extrapolated=p.name == "crawl")) for p in map_.points)
+    titles = {f.title: f.text for f in decide(replace(found, points=(), map=replace(bare, points=far))).flags}
+    assert titles["Points are extrapolated."] == "No dwell lies as far out as crawl."
+    assert titles["The roll may slip at the start."].startswith("The roll's grip is not stated")
+    gripping = replace(map_, train=replace(map_.train, grip=1e6))
+    assert "The roll may slip at the start." not in {
+        flag.title for flag in decide(replace(found, points=(), map=gripping)).flags
+    }
+
+
+def _lack(**changed: object) -> LackOfFitPart:
+    """What is told of one law over all dwells, which holds unless changed."""
+    plain: dict[str, object] = {
+        "curvature": 0.5,
+        "exponent_with_temperature": 0.5,
+        "temperature": 0.5,
+        "local_exponents": (-0.7, -0.7),
+        "by_temperature": (-0.7, -0.7),
+    }
+    return LackOfFitPart.model_validate(plain | changed)
+
+
+def test_a_slow_end_at_which_torque_falls_is_told_only_where_it_is_bent(
+    surface: DampingSurface, seen: RegimePart
+) -> None:
+    straight = replace(surface, transition=None)
+    falls = (-1.3, -0.6)
+    for p_value, told in ((0.01, True), (0.5, False), (None, False)):
+        bent = seen.model_copy(update={"lack_of_fit": _lack(curvature=p_value, local_exponents=falls)})
+        said = of_log(straight, bent)
+        assert (
+            said.instruction.startswith("Keep the roll well above")
+            and "1.30 at the slow end" in said.interval
+        ) == told
+        assert said.signal == "watch"
+
+
+def test_a_law_without_temperature_is_asked_for_one_only_where_it_may_help(
+    surface: DampingSurface, seen: RegimePart
+) -> None:
+    """Dwells far off one law: of a fit without temperature that is its first cause."""
+    told = seen.model_copy(update={"lack_of_fit": _lack()})
+    for scatter, b, wanted in (
+        (0.2, None, "Fit with temperature, or record it: dwells stand 20 % off one law"),
+        (0.2, surface.b, "Measure dwells slower than"),
+        (0.02, None, "Measure dwells slower than"),
+    ):
+        of = replace(surface.statistics, scatter=scatter)
+        log = replace(surface, transition=None, b=b, statistics=of)
+        assert of_log(log, told).instruction.startswith(wanted)
+
+
+def test_an_interval_of_the_transition_that_is_not_told_gives_no_speed(
+    surface: DampingSurface, seen: RegimePart, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    open_ended = Estimate(1.0, 0.1, -math.inf, math.inf)
+    monkeypatch.setattr(DampingSurface, "transition_estimate", lambda *_: open_ended)
+    said = of_log(surface, seen)
+    assert "keep the roll well above 9.5 rpm" in said.instruction
+    assert said.interval.endswith("interval not told")
+
+
+def test_warnings_of_the_log(points: hersey.SteadyPoints, surface: DampingSurface, seen: RegimePart) -> None:
+    """Few dwells, loads that differ, scatter, a regime that is not told: each where it is, and only there."""
+
+    def told(
+        dwells: hersey.SteadyPoints = points, fit: DampingSurface = surface, **of: str
+    ) -> dict[str, str]:
+        log = seen.model_copy(update=of)
+        return {flag.title: flag.text for flag in flags(dwells, fit, log, None, None, None)}
+
+    calm = told(named="soft EHL")
+    titles = ("Few dwells hold the falling branch.", "The load differs.", "No regime is told.")
+    assert not {*titles, "Dwells stand off the law."} & calm.keys()
+    noisy = replace(surface, statistics=replace(surface.statistics, scatter=0.06))
+    shown = told(fit=noisy, named="soft EHL")
+    assert shown["Dwells stand off the law."].startswith("By 6 %, more than their noise")
+    unnamed = seen.model_copy(update={"named": None, "why_unnamed": "two explain it"})
+    [flag] = [f for f in flags(points, surface, unnamed, None, None, None) if f.section == "regime"]
+    assert (flag.title, flag.text) == ("No regime is told.", "Two explain it.")
+    loads = np.linspace(10.0, 20.0, len(points))
+    loaded = replace(points, table=points.table.with_columns(load=pl.Series(loads)))
+    assert (
+        told(dwells=loaded, named="soft EHL")["The load differs."] == "From 10 to 20 N: fit each load alone."
+    )
+    fast = points.table.filter(pl.col("speed").abs() > 1.2 * surface.transition_speed(HOT + 30.0))
+    few = replace(points, table=pl.concat([points.table.filter(pl.col("speed").abs() < 0.6).head(2), fast]))
+    text = told(dwells=few, named="soft EHL")["Few dwells hold the falling branch."]
+    assert text == f"1 of {len(few)} dwells lie below the transition: measure slower ones."
+
+
+@pytest.mark.parametrize(
+    ("ratio", "told"),
+    [((0.4, 0.8, 1.2), True), ((0.6, 1.0, 1.9), False), ((0.8, 1.5, 2.1), True)],
+)
+def test_torque_far_from_the_file_is_a_warning(
+    decide: Decide, found: Behaviour, ratio: tuple[float, float, float], told: bool
+) -> None:
+    carried = CarriedPart.model_construct(ratio=ratio)
+    titles = {flag.title for flag in decide(replace(found, points=()), carried=carried).flags}
+    assert ("Torque and file disagree." in titles) == told
