@@ -273,6 +273,26 @@ def test_a_table_sorts_by_its_heads(demo: Opened) -> None:
     assert table.locator("th[aria-sort]").get_attribute("aria-sort") == "descending"
 
 
+def test_the_contents_lead_to_their_headings(demo: Opened) -> None:
+    """From the top of the page, whatever heights stand in for what is not drawn yet."""
+    page = demo.page
+    page.reload()
+    page.wait_for_selector("body[data-ready=true]")
+    for link in reversed(page.locator("#contents a").all()):
+        page.evaluate("scrollTo(0, 0)")
+        link.click()
+        name = link.get_attribute("href")
+        page.wait_for_function(
+            """(name) => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => {
+                 const top = document.querySelector(`${name} h2`).getBoundingClientRect().top;
+                 const end = scrollY + innerHeight >= document.documentElement.scrollHeight - 2;
+                 done(Math.abs(top - 12) < 8 || (end && top > 0 && top < innerHeight));
+               })))""",
+            arg=name,
+            timeout=5000,
+        )
+
+
 def saved(page: Page, button: Any) -> bytes:
     with page.expect_download() as download:
         button.click()

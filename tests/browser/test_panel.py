@@ -299,6 +299,7 @@ def test_a_profile_is_followed_and_edited(page: Page, tmp_path: Path) -> None:
     page.fill("[aria-label='Row 2, time in s']", "7")
     page.press("[aria-label='Row 2, time in s']", "Enter")
     assert page.get_attribute("[aria-label='Row 2, time in s']", "aria-invalid") == "true"
+    assert "Times must ascend" in (page.text_content("#panel .refused") or "")
     handle = page.locator("#panel .handle").nth(1)
     handle.focus()
     handle.press("Shift+ArrowUp")
@@ -329,9 +330,11 @@ def test_a_wrong_number_is_refused_in_its_field(page: Page) -> None:
     page.fill("#try-stiffness", "stiff")
     page.press("#try-stiffness", "Enter")
     assert page.get_attribute("#try-stiffness", "aria-invalid") == "true"
+    assert page.text_content("#panel .refused") == "Stiffness: a number from 1.1 to 110 N/mm"
     assert verdict(page) == before
     enter(page, "stiffness", "12")
     assert page.get_attribute("#try-stiffness", "aria-invalid") == "false"
+    assert page.locator("#panel .refused").count() == 0
 
 
 def test_a_smooth_closure_is_drawn_by_a_worker_and_can_be_overtaken(page: Page) -> None:

@@ -102,7 +102,7 @@ def profile_chart(plan: PlanPart, motion: StartPart | None) -> Chart:
         *_peaks(rows, top, x),
     ]
     if plan.duration is not None:
-        mark = plot([{"time": plan.duration, "name": f"slides from here on, {plan.duration:.2g} s"}])
+        mark = plot([{"time": plan.duration, "name": f"slides by {plan.duration:.2g} s at the latest"}])
         late = plan.duration > 0.55 * last
         look: Row = {"align": "right" if late else "left", "dx": -5 if late else 5, "baseline": "top"}
         text = mark.encode(x=x, y=alt.value(4), text="name:N")

@@ -25,15 +25,19 @@ _LIVE = (
     "answers.js",
     "labour.js",
     "shape.js",
+    "mapnames.js",
+    "ring.js",
     "map.js",
     "settings.js",
     "traces.js",
     "numbers.js",
     "profile.js",
     "controls.js",
+    "verdict.js",
     "panel.js",
 )
-_REPORT = ("panel.css", "timeline.js", *_LIVE, "first.js", "page.js")
+_SECTIONS = ("section.js", "torque.js", "regime.js", "quality.js", "band.js", "plans.js")
+_REPORT = ("panel.css", "timeline.js", *_LIVE, "first.js", *_SECTIONS, "page.js")
 #: Charts that the page has otherwise: the log on one axis, motion by the core itself.
 _OTHERWISE = ("timeline_", "simulation_")
 #: Samples that only charts need.

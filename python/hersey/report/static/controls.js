@@ -1,7 +1,7 @@
 // A slider with its number field and unit. What differs from the report carries a mark, in words for a reader of
 // the screen too.
 
-function control(place, { name, label, unit, low, high, logarithmic = true, count = 3, step = null, spoken = label, change }) {
+function control(place, { name, label, unit, low, high, logarithmic = true, count = 3, step = null, spoken = label, change, refused }) {
   const STEPS = 1000;
   const row = add(place, "div", "", "control");
   const caption = add(row, "label");
@@ -24,8 +24,8 @@ function control(place, { name, label, unit, low, high, logarithmic = true, coun
     const typed = Number(field.value.trim().replace(",", ".").replace("−", "-"));
     const fits = field.value.trim() !== "" && Number.isFinite(typed) && typed >= low * (1 - 1e-9) && typed <= high * (1 + 1e-9);
     field.setAttribute("aria-invalid", String(!fits));
-    field.title = fits ? "" : `from ${digits(low)} to ${digits(high)} ${unit}`;
-    if (fits) change(typed);
+    if (fits) { change(typed); return; }
+    refused(`${spoken}: a number from ${digits(low)} to ${digits(high)} ${unit}`);
   });
   return {
     row, field, slider,

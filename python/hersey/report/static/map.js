@@ -28,7 +28,6 @@ function operatingMap(place, map, move = null) {
   }, svg("defs", {}, drawing));
   svg("path", { d: "M0 0v7", class: "hatch" }, hatch);
   const picture = svg("g", { role: "img" }, drawing);
-  const ring = move ? held() : null;
   const key = add(place, "ul", "", "key");
   const figures = fold(place, "Table of the map");
   figures.className = "figures";
@@ -45,6 +44,8 @@ function operatingMap(place, map, move = null) {
     return hot ? point.temperature : (number + 1) / (map.points.length + 1);
   }
 
+  const ring = move ? mapRing(drawing, { map, hot, columns, slowest, fastest, across, up, speedAt, columnAt, kept, place_of }, move) : null;
+
   function draw() {
     const room = printing ? paperWidth(place) : place.clientWidth;
     if (!room) return;
@@ -59,7 +60,6 @@ function operatingMap(place, map, move = null) {
     const clip = svg("rect", { x: left, y: top, width: frame.width, height: frame.height }, svg("clipPath", { id: `${named}-frame` }, picture));
     clip.parentNode.setAttribute("clipPathUnits", "userSpaceOnUse");
     const inside = svg("g", { "clip-path": `url(#${named}-frame)` }, picture);
-    const taken = [];
     const zones = drawZones(inside);
     drawHatch(inside);
     const torques = drawTorques(inside);
@@ -68,13 +68,14 @@ function operatingMap(place, map, move = null) {
     svg("rect", { x: box[0], y: box[1], width: Math.max(box[2] - box[0], 0), height: Math.max(box[3] - box[1], 0), class: "measured" }, inside);
     svg("rect", { x: left, y: top, width: frame.width, height: frame.height, class: "box" }, picture);
     drawAxes();
-    drawPoints(taken);
-    nameLimit(taken);
-    nameTorques(torques, taken);
-    unnamed = nameZones(zones, box, taken);
+    const names = mapNames({ map, frame, picture, edges, beyond, slowest, fastest, across, up, speedAt, columnAt, place_of, valueAt });
+    names.drawPoints();
+    names.nameLimit();
+    names.nameTorques(torques);
+    unnamed = names.nameZones(zones, box);
     drawKey();
     if (figures.open) drawTable();
-    if (ring) drawRing();
+    ring?.draw(setting, frame, tickWords);
   }
 
   function finding() {
@@ -211,113 +212,6 @@ function operatingMap(place, map, move = null) {
     svg("text", { x: (left + right) / 2, y: bottom + 31, "text-anchor": "middle", class: "axis" }, picture, "Temperature (°C)");
   }
 
-  const free = (box, taken) => taken.every((b) => box[2] < b[0] || box[0] > b[2] || box[3] < b[1] || box[1] > b[3]);
-  const within = (box) => box[0] >= frame.left + 2 && box[2] <= frame.right - 2 && box[1] >= frame.top + 2 && box[3] <= frame.bottom - 2;
-
-  function drawPoints(taken) {
-    const shown = map.points.map((point, i) => [point, across(place_of(point, i)), up(point.speed)])
-      .filter(([, x, y]) => x >= frame.left && x <= frame.right && y >= frame.top && y <= frame.bottom);
-    for (const [, x, y] of shown) taken.push([x - 13, y - 13, x + 13, y + 13]);
-    for (const [point, x, y] of shown) {
-      const width = shape.width(point.name, 12.5, 700);
-      const places = [[x - 15 - width, y], [x + 15, y], [x - width / 2, y - 20], [x - width / 2, y + 20], [x - 15 - width, y - 13],
-        [x - 15 - width, y + 14], [x - 15 - width, y - 26], [x - 15 - width, y + 28], [x + 15, y - 18], [x + 15, y + 18]];
-      const boxed = ([a, b]) => [a - 2, b - 7, a + width + 2, b + 7];
-      const best = places.find((p) => within(boxed(p)) && free(boxed(p), taken));
-      if (best) {
-        taken.push(boxed(best));
-        svg("text", { x: best[0], y: best[1] + 4.5, class: "name" }, picture, point.name);
-      }
-    }
-    for (const [point, x, y] of shown) {
-      const mark = svg("path", { d: `M${x} ${y - 6.5}l6.5 6.5l-6.5 6.5l-6.5 -6.5Z`, class: "point" }, picture);
-      svg("title", {}, mark, point.name);
-    }
-  }
-
-  function nameLimit(taken) {
-    if (map.speed_limit === null || !(map.speed_limit > slowest && map.speed_limit < fastest)) return;
-    const text = `greatest drive speed ${digits(millimetres(map.speed_limit))}`, width = shape.width(text, 11.5);
-    const y = up(map.speed_limit);
-    for (const offset of [-5, 13]) {
-      for (const share of [0.5, 0.3, 0.7, 0.2, 0.8]) {
-        const x = frame.left + share * frame.width - width / 2, box = [x - 2, y + offset - 10, x + width + 2, y + offset + 3];
-        if (!within(box) || !free(box, taken)) continue;
-        taken.push(box, [frame.left, y - 2, frame.right, y + 2]);
-        svg("text", { x, y: y + offset, class: "limit-name" }, picture, text);
-        return;
-      }
-    }
-  }
-
-  function nameTorques(lines, taken) {
-    for (const [text, points] of lines) {
-      const width = shape.width(text, 11.5);
-      const order = points.map((p, i) => [Math.abs(i / points.length - 0.3), p]).sort((a, b) => a[0] - b[0]);
-      const found = order.map(([, [x, y]]) => [x - width / 2 - 2, y - 7, x + width / 2 + 2, y + 7]).find((box) => within(box) && free(box, taken));
-      if (!found) continue;
-      taken.push(found);
-      const [x, y] = [(found[0] + found[2]) / 2, found[3] - 3];
-      svg("text", { x, y, "text-anchor": "middle", class: `torque-name on-${groundAt(x, y - 4)}` }, picture, text);
-    }
-  }
-
-  // The zone below a name.
-  function groundAt(x, y) {
-    const speed = speedAt(y), at = columnAt(x);
-    if (speed < valueAt(edges.lower, at)) return "sticks";
-    return speed < valueAt(edges.upper, at) ? "depends" : "smooth";
-  }
-
-  // The word of each zone where it has the most room, upright or along the zone; else it stands in the key.
-  function nameZones(zones, box, taken) {
-    const nameless = [];
-    for (const [name, bands] of Object.entries(zones)) {
-      const word = name === "stall" ? beyond : name, size = 14, width = shape.width(word, size, 700) + 6;
-      let best = null, thick = 0;
-      for (const band of bands.flatMap(runs)) {
-        thick = Math.max(thick, ...band.map(([, low, high]) => low - high));
-        for (let x = frame.left + width / 2 + 4; x < frame.right - width / 2 - 4; x += 8) {
-          for (const spot of [upright(band, x, width), along(band, x, width)]) {
-            if (!spot || !free(spot.box, taken)) continue;
-            const inside = x > box[0] && x < box[2] && spot.y > box[1] && spot.y < box[3];
-            const score = Math.min(spot.room, 90) + (inside ? 30 : 0) - Math.abs(x - frame.left - 0.4 * frame.width) / 20 - (spot.turn ? 45 : 0);
-            if (!best || score > best.score) best = { ...spot, x, score };
-          }
-        }
-      }
-      if (best) {
-        taken.push(best.box);
-        svg("text", { x: best.x, y: best.y + 5, "text-anchor": "middle", class: `word ${name}`,
-          ...(best.turn ? { transform: `rotate(${best.turn} ${best.x} ${best.y})` } : {}) }, picture, word);
-      } else if (thick > 2) nameless.push([name, word]);
-    }
-    return nameless;
-  }
-
-  function heights(band, from, to) {
-    return band.filter(([x]) => x >= from - frame.width / band.length && x <= to + frame.width / band.length);
-  }
-  function upright(band, x, width) {
-    const over = heights(band, x - width / 2, x + width / 2);
-    const top = Math.max(...over.map(([, , high]) => high)), bottom = Math.min(...over.map(([, low]) => low));
-    if (bottom - top < 18) return null;
-    const y = (top + bottom) / 2;
-    return { y, turn: 0, room: bottom - top, box: [x - width / 2, y - 9, x + width / 2, y + 9] };
-  }
-  function along(band, x, width) {
-    const over = heights(band, x - width / 2, x + width / 2).filter(([, low, high]) => low - high > 10);
-    if (over.length < 2) return null;
-    const [first, last] = [over[0], over.at(-1)], middle = ([, low, high]) => (low + high) / 2;
-    if (last[0] - first[0] < 0.8 * width) return null;
-    const slope = (middle(last) - middle(first)) / (last[0] - first[0]), centre = middle(first) + slope * (x - first[0]);
-    const spare = ([a, low, high]) => Math.min(low - centre - slope * (a - x), centre + slope * (a - x) - high);
-    const room = 2 * Math.min(...over.map(spare)) / Math.hypot(1, slope);
-    if (room < 15 || Math.abs(slope) > 1) return null;
-    const rise = Math.abs(slope) * width / 2;
-    return { y: centre, turn: Math.atan(slope) * 180 / Math.PI, room, box: [x - width / 2, centre - 8 - rise, x + width / 2, centre + 8 + rise] };
-  }
-
   function drawKey() {
     const words = [];
     const entry = (kind, text) => words.push([kind, text]);
@@ -372,80 +266,6 @@ function operatingMap(place, map, move = null) {
     [0, 1, 2, 3, 4, 5, 6]);
   }
 
-  // The ring: the setting tried. Only it takes a drag; everything else scrolls.
-  function held() {
-    const group = svg("g", { class: "tried" }, drawing);
-    const parts_ = {
-      across: svg("path", { class: "lead" }, group), down: svg("path", { class: "lead" }, group),
-      speed: svg("g", { class: "tag" }, group), temperature: svg("g", { class: "tag" }, group),
-    };
-    for (const tag of [parts_.speed, parts_.temperature]) {
-      svg("rect", { width: 34, height: 16, rx: 2 }, tag);
-      svg("text", { x: 17, y: 12, "text-anchor": "middle" }, tag);
-    }
-    const handle = svg("g", { class: "ring", tabindex: 0, role: "slider", "aria-label": "Setting tried: drive speed and temperature",
-      "aria-orientation": "vertical", "aria-valuenow": 0,
-      "aria-valuemin": digits(millimetres(slowest)), "aria-valuemax": digits(millimetres(fastest)) }, group);
-    svg("circle", { r: 22, class: "reach" }, handle);
-    svg("circle", { r: 9, class: "round" }, handle);
-    svg("circle", { r: 3, class: "dot" }, handle);
-    let from = null;
-    handle.addEventListener("pointerdown", (event) => {
-      from = { x: event.clientX - across(column()), y: event.clientY - up(kept(setting.speed)) };
-      handle.setPointerCapture(event.pointerId);
-      handle.focus({ preventScroll: true });
-      event.preventDefault();
-    });
-    handle.addEventListener("pointermove", (event) => {
-      if (!from) return;
-      const speed = kept(speedAt(event.clientY - from.y)), x = columnAt(event.clientX - from.x);
-      moved(Number(speed.toPrecision(3)), Math.round(celsius(x)) + 273.15);
-    });
-    handle.addEventListener("touchstart", (event) => event.preventDefault(), { passive: false });
-    for (const end of ["pointerup", "pointercancel"]) handle.addEventListener(end, () => { from = null; });
-    handle.addEventListener("keydown", (event) => {
-      const times = event.shiftKey ? 10 : 1;
-      const step = 1.02 ** times, keys = { ArrowUp: [step, 0], ArrowDown: [1 / step, 0], ArrowLeft: [1, -times], ArrowRight: [1, times] };
-      const [factor, kelvin] = keys[event.key] ?? [];
-      if (factor === undefined) return;
-      event.preventDefault();
-      moved(setting.speed * factor, (setting.temperature ?? 0) + kelvin);
-    });
-    return { ...parts_, handle };
-  }
-  function moved(speed, kelvin) {
-    const within_map = Math.min(Math.max(kelvin, columns[0]), columns.at(-1));
-    setting = { ...setting, speed: kept(speed), temperature: hot ? within_map : null };
-    move(setting.speed, setting.temperature);
-  }
-  function column() {
-    if (hot) return Math.min(Math.max(setting.temperature, columns[0]), columns.at(-1));
-    const same = map.points.findIndex((point) => point.speed === setting.speed);
-    return same < 0 ? 0.5 : place_of(map.points[same], same);
-  }
-
-  function drawRing() {
-    ring.handle.parentNode.setAttribute("visibility", setting ? "visible" : "hidden");
-    if (!setting) return;
-    const x = across(column()), y = up(kept(setting.speed));
-    ring.handle.setAttribute("transform", `translate(${x} ${y})`);
-    ring.across.setAttribute("d", `M${frame.left} ${y}H${x - 10}`);
-    ring.down.setAttribute("d", hot ? `M${x} ${frame.bottom}V${y + 10}` : "");
-    // A number of an axis half under a tag is not read.
-    for (const [at, level, word] of tickWords) {
-      const under = at === null ? Math.abs(level - y) < 13 : Math.abs(at - x) < 28;
-      word.setAttribute("visibility", under ? "hidden" : "inherit");
-    }
-    ring.speed.setAttribute("transform", `translate(${frame.left - 34} ${y - 8})`);
-    ring.speed.lastChild.textContent = digits(millimetres(setting.speed));
-    ring.temperature.setAttribute("transform", `translate(${x - 17} ${frame.bottom + 4})`);
-    ring.temperature.setAttribute("visibility", hot ? "inherit" : "hidden");
-    if (hot) ring.temperature.lastChild.textContent = celsius(setting.temperature).toFixed(0);
-    ring.handle.setAttribute("aria-valuenow", digits(millimetres(setting.speed)));
-    const where = hot ? ` at ${celsius(setting.temperature).toFixed(0)} °C` : "";
-    ring.handle.setAttribute("aria-valuetext", `${digits(millimetres(setting.speed))} mm/s${where}, ${setting.zone ?? "not known"}`);
-  }
-
   figures.addEventListener("toggle", () => { if (figures.open) drawTable(); });
   new ResizeObserver(() => { if (!printing && frame && place.clientWidth !== frame.right + 34) draw(); }).observe(place);
   addEventListener("beforeprint", () => { printing = true; draw(); });
@@ -458,7 +278,7 @@ function operatingMap(place, map, move = null) {
     // The setting tried: speed (m/s), temperature (K) and the word of its zone.
     show(tried) {
       setting = tried;
-      drawRing();
+      ring?.draw(setting, frame, tickWords);
       drawKey();
     },
     // Edges of another machine, at the temperatures of the map; null for those of the report. Without `folds` it is

@@ -22,7 +22,7 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
   const hint = add(heading, "span", "", "hint");
   const { map } = analysis, motor = map.limited_by === "motor torque", hot = map.temperature !== null;
   const limit = map.torque_limit === null ? Infinity : map.torque_limit / map.roll_radius;
-  const known = settings(analysis), questions = answers(core);
+  const known = settings(analysis), questions = answers(core), { slides, told, speedText } = verdicts({ map, limit, motor, questions });
   const SLOW = ["stribeck", "lugre"], QUICK_BAND = 5, FRAME = 20_000;
   const CLOSURES = {
     retained: "retained: keeps its creep", stiction: "stiction: stops dead", stribeck: "Stribeck, smooth", lugre: "LuGre, bristles",
@@ -41,6 +41,7 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
     change: (rows) => tried({ profile: rows, speed: rows.at(-1)[1] }),
     leave: () => tried({ profile: null }),
     written: (rows) => known.course(rows),
+    refused: refuse,
   });
   const foot = add(place, "div", "", "foot"), out = add(place, "div", "", "out");
   out.hidden = true;
@@ -70,7 +71,7 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
   function controlsOf() {
     const made = {};
     const one = (where, name, label, unit, scale, low, high, options = {}) => {
-      made[name] = control(where, { name, label, unit, low: low / scale, high: high / scale, ...options,
+      made[name] = control(where, { name, label, unit, low: low / scale, high: high / scale, refused: refuse, ...options,
         change: (value) => tried(options.given ? options.given(value) : { [name]: value * scale }) });
       made[name].scale = scale;
     };
@@ -111,6 +112,13 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
     one(further, "bristle_damping", "Their damping", "N·s/m", 1, base.bristle_damping / 100, base.bristle_damping * 100);
     const bristles = add(further, "p", "Bristles: 100 times the stiffness until measured; damping 2 √(bristles × mass).", "hint");
     return { made, select, mark, more, further, bristles, spread: told_spread };
+  }
+
+  // Why a number was not taken, in the place of the hint until the next setting.
+  function refuse(text) {
+    hint.textContent = text;
+    hint.classList.add("refused");
+    said.textContent = text;
   }
 
   // Ends of what is stated of each parameter, spread about the value set.
@@ -184,10 +192,7 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
     answer = next;
     return true;
   }
-  // Whether a motion slides in the end: what swings by less than a thousandth of its speed does, too.
-  const slides = (motion) => motion?.kind === "steady_sliding"
-    || (motion?.kind === "oscillation" && motion.speed_max - motion.speed_min < 1e-3 * setting.speed);
-  const between = () => answer && slides(answer.above) && !slides(answer.cycle);
+  const between = () => answer && slides(answer.above, setting) && !slides(answer.cycle, setting);
 
   function heard({ part, failure }, about) {
     if (!about || about.number !== drawn) return;
@@ -236,75 +241,12 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
     picture.edges(part, !about.slow);
   }
 
-  const speedText = (v) => `${digits(1e3 * v)} mm/s`;
   function extrapolated() {
     const [slow, fast] = map.measured_speed, [cold, warm] = map.measured_temperature ?? [-Infinity, Infinity];
     return setting.speed < slow || setting.speed > fast || (hot && (setting.temperature < cold || setting.temperature > warm));
   }
-  function zoneNow() {
-    if (found && !found.stale && answer.law) return questions.zone({ speed: setting.speed, limit, motor }, answer.law, answer.force, found);
-    const starts = answer.law.holding_force <= limit, beyond = motor ? "motor" : "stall";
-    const rest = slides(answer.cycle), above = slides(answer.above);
-    const sliding = rest && above ? "smooth" : above ? "bistable" : answer.above.kind === "oscillation" ? "swing" : "stick_slip";
-    const moving = answer.force > limit ? beyond : sliding;
-    return { state: starts ? moving : beyond, moving, starts };
-  }
-
-  // Signal, word and the line below it.
-  function told() {
-    const { cycle, motion, force, law } = answer, radius = map.roll_radius, zone = zoneNow();
-    const torque = `torque ${torqueText(force * radius)}`;
-    const laps = cycle.frequency > 0 ? `${digits(cycle.frequency)} Hz, stuck ${digits(100 * cycle.stuck_fraction, 2)} %` : "";
-    if (setting.profile) return { zone, ...follows() };
-    if (!zone.starts) {
-      const holds = `a belt at rest bears ${torqueText(law.holding_force * radius)}, the ${motor ? "motor" : "grip"} ${torqueText(limit * radius)}`;
-      const on = ["bistable", "smooth"].includes(zone.moving) ? "; slides on once it slides" : "";
-      return { zone, signal: "act", words: `does not start from rest${on}`, sub: [torque, holds] };
-    }
-    switch (zone.state) {
-      case "stall":
-        return { zone, signal: "act", words: "stalls: the roll slips on the belt", sub: [torque, `the roll grips ${torqueText(limit * radius)}`] };
-      case "motor":
-        return { zone, signal: "act", words: "stalls: more than the motor bears", sub: [torque, `the motor bears ${torqueText(limit * radius)}`] };
-      case "smooth": return { zone, signal: "good", words: "smooth from any start", sub: [torque, settles(motion)] };
-      case "bistable": {
-        const kick = kicked ? (kicked.value === null ? "bears any kick" : `bears a kick of ${digits(1e3 * kicked.value, 2)} mm/s`) : "";
-        return { zone, signal: "watch", words: "sticks from rest, slides from above", sub: [torque, laps, kick] };
-      }
-      case "swing": return { zone, signal: "watch", words: "swings from above; sticks once it has stuck", sub: [torque, laps] };
-      default:
-        if (setting.speed <= law.stick_speed) return { zone, signal: "act", words: "creeps, slower than the stick speed", sub: [torque] };
-        return { zone, signal: "act", words: "sticks and slips from any start", sub: [laps && `${laps} of the time`, cycle.speed_max > 0 ? `belt peaks at ${speedText(cycle.speed_max)}` : torque] };
-    }
-  }
-  const [perNewtonMetre, torqueName] = torqueUnit();
-  const torqueText = (value) => `${digits(perNewtonMetre * value)} ${torqueName}`;
-  // When the belt stays within 2 % of the drive, counted from its first slip.
-  function settles({ time, belt_speed: v }) {
-    let off = v.length - 1, slip = 0;
-    while (off >= 0 && Math.abs(v[off] / setting.speed - 1) <= 0.02) off -= 1;
-    while (slip < v.length && v[slip] < setting.speed) slip += 1;
-    if (slip >= v.length) return "";
-    if (off > 0.97 * v.length) return `settles later than the ${digits(time.at(-1))} s drawn`;
-    return `settles ${digits(Math.max(time[off + 1] - time[slip], 0), 2)} s after the first slip`;
-  }
-  function follows() {
-    const { motion, law } = answer, { time, belt_speed: v } = motion, last = setting.profile.at(-1)[0];
-    let stuck = v.length - 1, first = 0;
-    while (stuck >= 0 && v[stuck] > law.stick_speed * (1 + 1e-6)) stuck -= 1;
-    while (first < v.length && !(v[first] > law.stick_speed * (1 + 1e-6))) first += 1;
-    const peak = v.reduce((a, b) => Math.max(a, b), 0), pull = motion.spring_force.reduce((a, b) => Math.max(a, b), 0);
-    const sub = [`belt peaks at ${speedText(peak)}`, `spring pulls ${digits(pull)} N`];
-    if (first >= v.length) return { signal: "act", words: "does not move under this profile", sub };
-    const watched = 3 * 2 * Math.PI * Math.sqrt(answer.train.mass / answer.train.stiffness);
-    if (time.at(-1) - time[Math.max(stuck, 0)] > watched && time.at(-1) > last) {
-      return { signal: "good", words: `slides from ${digits(time[Math.min(stuck + 1, v.length - 1)], 3)} s on under this profile`, sub };
-    }
-    return { signal: "act", words: "still sticks and slips at the end of this profile", sub };
-  }
-
   function showAnswer() {
-    const { zone, signal: kind, words, sub } = told();
+    const { zone, signal: kind, words, sub } = told({ setting, answer, found, kicked });
     const [least, most] = (spread ?? []).map((v) => digits(1e3 * v));
     controls.spread.textContent = spread ? `With this spread V* is ${digits(1e3 * found.upper)} [${least}, ${most}] mm/s.` : "\u00a0";
     const far = extrapolated() ? " (extrapolated)" : "";
@@ -364,6 +306,7 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
     courses.setAttribute("aria-pressed", String(Boolean(setting.profile)));
     const name = map.points[point]?.name;
     const changed = ["speed", "temperature", "stiffness", "mass", "stick_speed", "closure", "spread", "profile"].some(differs) || hidden;
+    hint.classList.remove("refused");
     hint.textContent = changed ? "◆ differs from the report" : name ? `as in the report: ${name}` : "as in the report";
     back.disabled = !changed;
   }

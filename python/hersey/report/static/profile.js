@@ -1,6 +1,6 @@
 // A profile of the drive's speed: drawn by hand into the chart, moved at its handles, or written into a table.
 
-function profile(place, chart, { change, leave, written }) {
+function profile(place, chart, { change, leave, written, refused }) {
   const box = add(place, "div", "", "profile");
   box.hidden = true;
   box.id = "profile";
@@ -10,7 +10,7 @@ function profile(place, chart, { change, leave, written }) {
   button(line, "Add a row", () => { const [t, v] = rows.at(-1); emit([...rows, [t + 0.2, v]]); });
   button(line, "Save CSV", () => save("profile.csv", written(rows), "text/csv"));
   button(line, "Without a profile", () => leave());
-  const note = add(box, "p", "Straight lines between the rows; the last speed stays.", "hint");
+  add(box, "p", "Straight lines between the rows; the last speed stays.", "hint");
   const cells = add(box, "div", "", "rows");
   cells.setAttribute("role", "group");
   cells.setAttribute("aria-label", "Rows of the profile");
@@ -33,8 +33,8 @@ function profile(place, chart, { change, leave, written }) {
           const next = rows.map((each, j) => (j === i ? each.with(column, typed / scale) : each));
           const fits = field.value.trim() !== "" && sound(next);
           field.setAttribute("aria-invalid", String(!fits));
-          note.textContent = fits ? "" : "Times must ascend from 0, and the last speed must be greater than 0.";
           if (fits) change(next);
+          else refused("Times must ascend from 0, and the last speed be greater than 0");
         });
       }
       const drop = button(cells, "Remove", () => emit(rows.filter((_, j) => j !== i)));

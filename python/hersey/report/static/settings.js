@@ -12,9 +12,10 @@ function settings(analysis) {
   const middle = (ends) => Math.sqrt(ends[0] * ends[1]);
 
   function own(point) {
+    // Without a point: the middle of what was measured, in round numbers.
     const at = map.points[point] ?? {
-      speed: middle(map.measured_speed),
-      temperature: map.temperature && (map.measured_temperature[0] + map.measured_temperature[1]) / 2,
+      speed: Number(middle(map.measured_speed).toPrecision(2)),
+      temperature: map.temperature && Math.round((map.measured_temperature[0] + map.measured_temperature[1]) / 2 - 273.15) + 273.15,
     };
     return {
       speed: at.speed, temperature: map.temperature ? at.temperature : null, stiffness: map.train.stiffness, mass: map.train.mass,

@@ -1,0 +1,35 @@
+// What the sections of a report are made of: words, intervals, a topic with its finding.
+
+function interval(e, scale = 1, count = 3) {
+  if (e.low === null || e.high === null) return `${digits(e.value * scale, count)} (interval not told)`;
+  return `${digits(e.value * scale, count)} [${digits(e.low * scale, count)}, ${digits(e.high * scale, count)}]`;
+}
+const bounds = (e, scale = 1, count = 3) => e.low === null || e.high === null ? "not told" : `[${digits(e.low * scale, count)}, ${digits(e.high * scale, count)}]`;
+const twoPlaces = (value) => value.toFixed(2).replace("-", "−");
+const share = (part, whole) => `${digits((100 * part) / whole, 2)} %`;
+const NUMBERS = ["no", "one", "two", "three", "four", "five", "six"];
+const plural = (count, word, words = `${word}s`) => `${NUMBERS[count] ?? count} ${count === 1 ? word : words}`;
+const capital = (text) => `${text.slice(0, 1).toUpperCase()}${text.slice(1)}`;
+const radius = data.map?.roll_radius ?? null;
+// A speed of the roll, at the belt where its radius is known.
+const rolled = (speed) => radius === null ? `${digits(speed * TO_RPM, 2)} rpm` : `${digits(1e3 * speed * radius, 2)} mm/s`;
+const whole = (kelvin) => data.fit.temperature_scale === "K" ? degrees(kelvin) : `${Math.round(celsius(kelvin))} °C`;
+
+// A section with its topic and its finding; listed in the contents.
+const made = [];
+function section(parent, id, topic, finding) {
+  const element = add(parent, "section");
+  element.id = id;
+  element.setAttribute("aria-labelledby", `${id}-topic`);
+  add(element, "h2", topic).id = `${id}-topic`;
+  if (finding) add(element, "p", pretty(finding), "finding");
+  made.push({ id, topic, element });
+  return element;
+}
+function judged(kind, text) {
+  const cell = document.createElement("b");
+  cell.className = kind;
+  cell.append(signal(kind), text);
+  cell.dataset.text = text;
+  return cell;
+}

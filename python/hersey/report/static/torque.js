@@ -1,0 +1,78 @@
+// Torque and damping: the charts, what they say, exponents and dwells.
+
+function torqueNote() {
+  const dwells = plural(data.points.length, "dwell");
+  const level = radius === null ? "" : ` 10 rpm is ${perSecond((10 / TO_RPM) * radius)} mm/s at the belt.`;
+  return `${dwells}; filled: reached from below, open: from above, bars: two standard errors. Lines: the fitted law.${data.fit.rest ? " The rest of the drive is taken off." : ""}${level}`;
+}
+// Transition speeds over temperature, by the map as far as dwells were measured.
+function transitions() {
+  const { map, fit } = data;
+  if (!map?.temperature || !map.measured_temperature) return fit.transition_curve;
+  const [low, high] = map.measured_temperature;
+  return map.temperature.map((temperature, i) => ({ temperature, speed: (map.transition[i] ?? 0) / map.roll_radius }))
+    .filter((each) => each.speed > 0 && each.temperature >= low - 1 && each.temperature <= high + 1);
+}
+function torqueFinding() {
+  const { transition, reference_temperature: level } = data.fit;
+  const curve = transitions();
+  if (!transition) return untoldFinding();
+  if (curve.length < 2) return `Torque falls up to ${rolled(transition.speed.value)}${level === null ? "" : ` at ${degrees(level)}`} and rises above.`;
+  const [cold, hot] = [curve[0], curve.at(-1)];
+  const way = hot.speed > cold.speed ? "climbs" : "falls";
+  return `Torque rises with speed above the transition and falls below it; the transition ${way} from ${rolled(cold.speed)} at ${whole(cold.temperature)} to ${rolled(hot.speed)} at ${whole(hot.temperature)}.`;
+}
+// Without a transition: where torque falls with speed, damping falls faster than as its inverse.
+function untoldFinding() {
+  const c = data.fit.coefficients.c.value;
+  const [slow, fast] = data.regime.lack_of_fit?.local_exponents ?? [c, c];
+  const fallsSlow = slow < -1;
+  if (fallsSlow !== fast < -1) {
+    const [falls, rises] = fallsSlow ? ["slow", "fast"] : ["fast", "slow"];
+    return `Torque falls with speed at the ${falls} end (exponent of damping ${twoPlaces(fallsSlow ? slow : fast)}) and rises at the ${rises} one; no transition is told.`;
+  }
+  return fallsSlow ? "Torque falls with speed over all speeds measured." : "Torque rises with speed over all speeds measured; no falling branch is seen.";
+}
+async function torqueSection(parent) {
+  const finding = torqueFinding();
+  const part = section(parent, "torque", "Torque and damping", finding);
+  const columns = add(part, "div", "", "columns");
+  if (data.map) await chart(columns, "torque", { heading: "Drag torque", note: "", says: finding });
+  await chart(columns, "damping", { heading: "Damping = torque / speed", note: data.map ? "" : "Dashed: slope −1, where torque does not depend on speed.", says: finding });
+  if (!data.map) await chart(columns, "residuals");
+  if (data.map) add(part, "p", `${torqueNote()} Dashed: slope −1, where torque does not depend on speed.`, "note");
+  const all = fold(part, `Exponents, statistics and ${data.points.length === 1 ? "the dwell" : `all ${data.points.length} dwells`}`, async (inside) => {
+    exponents(inside);
+    add(inside, "pre", data.fit.summary).id = "summary";
+    dwells(inside);
+    const pair = add(inside, "div", "", "columns");
+    if (data.map) await chart(pair, "residuals");
+    await chart(pair, "surface", { behind: false });
+  });
+  all.id = "statistics";
+}
+function exponents(parent) {
+  const { coefficients: c, transition } = data.fit;
+  const rows = [["exponent of speed, c", digits(c.c.value), bounds(c.c), transition ? "damping above the transition" : "damping, over all speeds"]];
+  if (transition) {
+    const at = data.fit.reference_temperature === null ? "" : ` at ${degrees(data.fit.reference_temperature)}`;
+    rows.push(["exponent below it", digits(transition.mixed_exponent.value), bounds(transition.mixed_exponent), "below −1: torque falls with speed"]);
+    rows.push([`transition${at}, rpm`, digits(transition.speed.value * TO_RPM), bounds(transition.speed, TO_RPM),
+      transition.closure === null ? "where the branches meet" : `least torque of a gradual bend; the trend lines meet at ${digits(transition.meeting_speed * TO_RPM)} rpm`]);
+    rows.push(["gain in AICc of the second branch", digits(transition.evidence), "", "over a single power law"]);
+  }
+  if (c.b) rows.push(["exponent of temperature, b", digits(c.b.value), bounds(c.b), `in ${data.fit.temperature_scale === "K" ? "K" : "°C"}`]);
+  rows.push(["R² of torque", digits(data.fit.r_squared_torque, 4), "", `of damping: ${digits(data.fit.r_squared_damping, 4)}`]);
+  table(parent, ["Number", "Value", "95 % interval", "Meaning"], rows, [1, 2], { label: "Exponents and transition" });
+  if (data.fit.no_transition) add(parent, "p", pretty(`No falling branch is announced: ${data.fit.no_transition}.`), "text");
+}
+function dwells(parent) {
+  const hot = data.points.some((p) => p.temperature !== null);
+  const [factor, unit] = torqueUnit();
+  table(parent, ["Roll, rpm", ...(hot ? ["°C"] : []), `Torque, ${unit}`, "± (1 s.e.)", `Damping, ${unit}·s/rad`, "Off the fit, %", "Approached", "From, s", "To, s"],
+    data.points.map((p) => [
+      digits(p.speed * TO_RPM, 4), ...(hot ? [celsius(p.temperature).toFixed(1)] : []), digits(p.torque * factor, 4),
+      digits(p.torque_error * factor, 2), digits(p.damping * factor, 4), (100 * Math.expm1(p.residual)).toFixed(1).replace("-", "−"),
+      p.approach, p.start.toFixed(1), p.end.toFixed(1)]),
+    [0, 1, 2, 3, 4, ...(hot ? [5, 7, 8] : [6, 7])], { name: "dwells", label: "All dwells" });
+}

@@ -1,0 +1,71 @@
+// What is said of a setting: its zone, a signal, a word and the line below it.
+
+function verdicts({ map, limit, motor, questions }) {
+  const speedText = (v) => `${digits(1e3 * v)} mm/s`;
+  // Whether a motion slides in the end: what swings by less than a thousandth of its speed does, too.
+  const slides = (motion, { speed }) => motion?.kind === "steady_sliding"
+    || (motion?.kind === "oscillation" && motion.speed_max - motion.speed_min < 1e-3 * speed);
+  function zoneNow({ setting, answer, found }) {
+    if (found && !found.stale && answer.law) return questions.zone({ speed: setting.speed, limit, motor }, answer.law, answer.force, found);
+    const starts = answer.law.holding_force <= limit, beyond = motor ? "motor" : "stall";
+    const rest = slides(answer.cycle, setting), above = slides(answer.above, setting);
+    const sliding = rest && above ? "smooth" : above ? "bistable" : answer.above.kind === "oscillation" ? "swing" : "stick_slip";
+    const moving = answer.force > limit ? beyond : sliding;
+    return { state: starts ? moving : beyond, moving, starts };
+  }
+
+  // Signal, word and the line below it.
+  function told(now) {
+    const { setting, answer, kicked } = now;
+    const { cycle, motion, force, law } = answer, radius = map.roll_radius, zone = zoneNow(now);
+    const torque = `torque ${torqueText(force * radius)}`;
+    const laps = cycle.frequency > 0 ? `${digits(cycle.frequency)} Hz, stuck ${digits(100 * cycle.stuck_fraction, 2)} %` : "";
+    if (setting.profile) return { zone, ...follows(now) };
+    if (!zone.starts) {
+      const holds = `a belt at rest needs ${torqueText(law.holding_force * radius)} to break loose, the ${motor ? "motor" : "grip"} gives ${torqueText(limit * radius)}`;
+      const on = ["bistable", "smooth"].includes(zone.moving) ? "; slides on once it slides" : "";
+      return { zone, signal: "act", words: `does not start from rest${on}`, sub: [torque, holds] };
+    }
+    switch (zone.state) {
+      case "stall":
+        return { zone, signal: "act", words: "stalls: the roll slips on the belt", sub: [torque, `the roll grips ${torqueText(limit * radius)}`] };
+      case "motor":
+        return { zone, signal: "act", words: "stalls: more than the motor bears", sub: [torque, `the motor bears ${torqueText(limit * radius)}`] };
+      case "smooth": return { zone, signal: "good", words: "smooth from any start", sub: [torque, settles(motion, setting)] };
+      case "bistable": {
+        const kick = kicked ? (kicked.value === null ? "bears any kick" : `bears a kick of ${digits(1e3 * kicked.value, 2)} mm/s`) : "";
+        return { zone, signal: "watch", words: "sticks from rest, slides from above", sub: [torque, laps, kick] };
+      }
+      case "swing": return { zone, signal: "watch", words: "swings from above; sticks once it has stuck", sub: [torque, laps] };
+      default:
+        if (setting.speed <= law.stick_speed) return { zone, signal: "act", words: "creeps, slower than the stick speed", sub: [torque] };
+        return { zone, signal: "act", words: "sticks and slips from any start", sub: [laps && `${laps} of the time`, cycle.speed_max > 0 ? `belt peaks at ${speedText(cycle.speed_max)}` : torque] };
+    }
+  }
+  const [perNewtonMetre, torqueName] = torqueUnit();
+  const torqueText = (value) => `${digits(perNewtonMetre * value)} ${torqueName}`;
+  // When the belt stays within 2 % of the drive, counted from its first slip.
+  function settles({ time, belt_speed: v }, setting) {
+    let off = v.length - 1, slip = 0;
+    while (off >= 0 && Math.abs(v[off] / setting.speed - 1) <= 0.02) off -= 1;
+    while (slip < v.length && v[slip] < setting.speed) slip += 1;
+    if (slip >= v.length) return "";
+    if (off > 0.97 * v.length) return `settles later than the ${digits(time.at(-1))} s drawn`;
+    return `settles ${digits(Math.max(time[off + 1] - time[slip], 0), 2)} s after the first slip`;
+  }
+  function follows({ setting, answer }) {
+    const { motion, law } = answer, { time, belt_speed: v } = motion, last = setting.profile.at(-1)[0];
+    let stuck = v.length - 1, first = 0;
+    while (stuck >= 0 && v[stuck] > law.stick_speed * (1 + 1e-6)) stuck -= 1;
+    while (first < v.length && !(v[first] > law.stick_speed * (1 + 1e-6))) first += 1;
+    const peak = v.reduce((a, b) => Math.max(a, b), 0), pull = motion.spring_force.reduce((a, b) => Math.max(a, b), 0);
+    const sub = [`belt peaks at ${speedText(peak)}`, `spring pulls ${digits(pull)} N`];
+    if (first >= v.length) return { signal: "act", words: "does not move under this profile", sub };
+    const watched = 3 * 2 * Math.PI * Math.sqrt(answer.train.mass / answer.train.stiffness);
+    if (time.at(-1) - time[Math.max(stuck, 0)] > watched && time.at(-1) > last) {
+      return { signal: "good", words: `slides from ${digits(time[Math.min(stuck + 1, v.length - 1)], 3)} s on under this profile`, sub };
+    }
+    return { signal: "act", words: "still sticks and slips at the end of this profile", sub };
+  }
+  return { slides, told, speedText };
+}
