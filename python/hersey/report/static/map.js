@@ -68,7 +68,7 @@ function operatingMap(place, map, move = null) {
     svg("rect", { x: box[0], y: box[1], width: Math.max(box[2] - box[0], 0), height: Math.max(box[3] - box[1], 0), class: "measured" }, inside);
     svg("rect", { x: left, y: top, width: frame.width, height: frame.height, class: "box" }, picture);
     drawAxes();
-    const names = mapNames({ map, frame, picture, edges, beyond, slowest, fastest, across, up, speedAt, columnAt, place_of, valueAt });
+    const names = mapNames({ map, frame, picture, edges, beyond, slowest, fastest, across, up, speedAt, columnAt, place_of, valueAt, runs });
     names.drawPoints();
     names.nameLimit();
     names.nameTorques(torques);

@@ -1,7 +1,7 @@
 // Names in the map, each where it covers no other: points, limit, torques, and the word of each zone where it has
 // the most room.
 
-function mapNames({ map, frame, picture, edges, beyond, slowest, fastest, across, up, speedAt, columnAt, place_of, valueAt }) {
+function mapNames({ map, frame, picture, edges, beyond, slowest, fastest, across, up, speedAt, columnAt, place_of, valueAt, runs }) {
   // Boxes that hold something.
   const taken = [];
   const free = (box) => taken.every((b) => box[2] < b[0] || box[0] > b[2] || box[3] < b[1] || box[1] > b[3]);
