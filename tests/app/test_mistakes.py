@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import tomllib
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -13,6 +15,7 @@ from hersey.app.channels import Fault
 from hersey.app.looking import look
 from hersey.errors import HerseyError
 from tests.cli.test_bad_input import staircase
+from tests.conftest import ROOT
 
 ROWS = staircase()
 
@@ -275,17 +278,157 @@ def test_form_and_text_say_the_same(tmp_path: Path) -> None:
     assert one.faults == []
     assert one.turn("form") == ""
     assert one.machine_file() == text
-    one.take_machine({"text": f'{text}\n[heat]\nfilm_capacity = "1 J/K"\n'})
-    one.faults = []
-    assert "the form does not ask for heat.film_capacity" in one.turn("form")
-    assert one.mode == "toml"
 
 
 def test_a_machine_s_file_that_is_dropped_is_taken(tmp_path: Path) -> None:
-    path = tmp_path / "mine.toml"
-    path.write_text('[drivetrain]\nmass = "11 kg"\n')
     one = Analysis(tmp_path)
-    assert one.take_file(Dropped("mine.toml", path))
-    assert (one.mode, one.text) == ("toml", path.read_text())
-    path.write_text("[torque]\n")
-    assert not one.take_file(Dropped("mine.toml", path))
+    assert toml(one, '[drivetrain]\nmass = "11 kg"\n').name == "mine.toml"
+    assert (one.mode, one.text, one.files) == ("toml", '[drivetrain]\nmass = "11 kg"\n', {})
+
+
+def toml(one: Analysis, text: str) -> Dropped:
+    """Drop a TOML file, as the app takes one."""
+    file = Dropped("mine.toml", one.folder / "mine.toml")
+    file.path.write_text(text)
+    one.files[file.id] = file
+    if not one.take_file(file):
+        file.state, file.fault = "fault", "none"
+    one.check()
+    return file
+
+
+#: All tables that a machine's file knows, most of them without a field in the form.
+WHOLE = (ROOT / "examples" / "machine.toml").read_text()
+
+
+def test_what_the_form_has_no_field_for_is_kept(tmp_path: Path) -> None:
+    one = dropped(tmp_path, log(), (ROOT / "examples" / "no-load.csv").read_bytes())
+    list(one.files.values())[1].name = "no-load.csv"
+    before = tomllib.loads(WHOLE)
+    assert {"heat", "life", "asperities", "boundary", "uncertainty"} <= set(before)
+    toml(one, WHOLE)
+    assert one.faults == []
+    assert one.turn("form") == ""
+    assert tomllib.loads(one.machine_file()) == before
+    assert any(each.startswith("[heat] ") for each in one.view()["machine"]["kept"])
+    one.take_machine({"answers": {"drivetrain.mass": "12 kg"}})
+    one.check()
+    assert one.faults == []
+    after = tomllib.loads(one.machine_file())
+    assert after["drivetrain"].pop("mass") == "12 kg"
+    del before["drivetrain"]["mass"]
+    assert after == before
+
+
+@pytest.mark.parametrize(
+    "odd",
+    [
+        'stick_speed = "1.5 mm/s"\n[uncertainty]\nstick_speed = "1 mm/s to 4 mm/s"',
+        'stick_speed = "2 mm/s"\n[uncertainty]\nstick_speed = "1 mm/s to 4 mm/s"\nexponent_speed = "0.1"',
+        'stick_speed = "2 mm/s"\n[[points]]\nspeed = "1 m/s"\ntemperature = "180 degC"\nshare = 0.25',
+        'stick_speed = "2 mm/s"\n[heat]\non = true\n"of both" = [{a = 1}, {b = [1.5, "x"]}]',
+    ],
+)
+def test_form_and_text_hold_the_same_values(odd: str, tmp_path: Path) -> None:
+    text = f'[drivetrain]\nstiffness = "11 N/mm"\nmass = "11 kg"\nroll_radius = "15 mm"\n{odd}\n'
+    one = Analysis(tmp_path)
+    one.take_machine({"text": text})
+    assert one.turn("form") == ""
+    assert tomllib.loads(one.machine_file()) == tomllib.loads(text)
+
+
+MAPPING = """[torque]
+channel = "Moment"
+unit = "mN*m"
+tare = "4 mN*m"
+gain_error = "1 %"
+[speed]
+channel = "shaft"
+unit = "rpm"
+gear_ratio = 12.5
+[load]
+channel = "Press"
+unit = "N"
+"""
+OF_MAPPING = log(
+    "Time [s],Torque [N*m],Speed [rpm],Temperature [degC],Moment,Shaft,Press",
+    lambda t, q, n, c: (t, q, n, c, q, float(n) * 12, 40 + float(t) % 2),
+)
+
+
+@pytest.mark.parametrize("first", ["log", "mapping"])
+def test_a_mapping_that_is_dropped_fills_the_channels(first: str, tmp_path: Path) -> None:
+    one = dropped(tmp_path, OF_MAPPING)
+    if first == "mapping":
+        (log_file,) = one.files.values()
+        one.files, one.choices = {}, {}
+        toml(one, MAPPING)
+        one.files[log_file.id] = log_file
+        one.propose(log_file)
+        one.check()
+    else:
+        toml(one, MAPPING)
+    roles = {choice["role"]: (name, choice["unit"]) for name, choice in one.choices.items() if choice["role"]}
+    assert roles == {
+        "time": ("Time", "s"), "torque": ("Moment", "mN*m"), "speed": ("Shaft", "rpm"),
+        "temperature": ("Temperature", "degC"), "load": ("Press", "N"),
+    }  # fmt: skip
+    assert one.corrections == {"torque.tare": "4 mN*m", "speed.gear_ratio": "12.5"}
+    assert one.faults == []
+    again = tomllib.loads(one.mapping_file())
+    assert again["torque"] == {**tomllib.loads(MAPPING)["torque"]}
+    assert again["load"] == {"channel": "Press", "unit": "N"}
+    assert again["speed"] == {"channel": "Shaft", "unit": "rpm", "gear_ratio": 12.5}
+    assert [(f["state"], f["name"]) for f in one.view()["files"]].count(("mapping", "mine.toml")) == 1
+    assert one.view()["mapping_kept"] == ["[torque] 1 value"]
+    assert "mine.toml" not in one.command()
+
+
+def test_a_mapping_of_another_log_says_so_at_the_channels(tmp_path: Path) -> None:
+    one = dropped(tmp_path, log())
+    toml(one, MAPPING)
+    said = {fault.at: fault for fault in one.faults}
+    assert set(said) == {"lacking:torque", "lacking:speed", "lacking:load"}
+    assert "calls the torque “Moment”, and this log has no such channel" in said["lacking:torque"].title
+    assert not one.line()["ready"]
+    one.choose(said["lacking:torque"].mend)
+    one.choose(said["lacking:speed"].mend)
+    one.check()
+    assert [fault.at for fault in one.faults] == ["lacking:load"]
+    (mapping,) = [file for file in one.files.values() if file.state == "mapping"]
+    one.remove(mapping.id)
+    one.check()
+    assert (one.faults, one.corrections) == ([], {})
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("[torque]\ntare = 4\n", "tare"),
+        ('[torque]\nunit = "kg"\n', "'kg'"),
+        ("[torque]\nsing = -1\n", "did you mean 'sign'"),
+        ("[torque\n", "not valid TOML"),
+    ],
+)
+def test_a_mistake_in_a_mapping_is_told_at_the_file(text: str, said: str, tmp_path: Path) -> None:
+    one = dropped(tmp_path, log())
+    with pytest.raises(HerseyError, match=re.escape(said)):
+        toml(one, text)
+    assert one.corrections == {}
+
+
+def test_a_mapping_names_only_what_was_dropped(tmp_path: Path) -> None:
+    one = dropped(tmp_path, log(), log())
+    beside = list(one.files.values())[1]
+    for named in ("/etc/passwd", "free.csv"):
+        toml(one, f'[torque]\nno_load = "{named}"\n')
+        assert f"the log {named}: drop that file here too" in only(one).text
+    beside.name = "free.csv"
+    one.check()
+    assert one.faults == []
+    assert len(one.logs) == 1
+    assert 'no_load = "free.csv"' in one.mapping_file()
+
+
+def test_a_file_of_other_tables_is_neither(tmp_path: Path) -> None:
+    assert toml(Analysis(tmp_path), "[project]\n").state == "fault"

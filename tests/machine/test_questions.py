@@ -99,7 +99,7 @@ def test_the_file_of_all_examples_is_read_and_gives_the_answers_again() -> None:
     import tomllib
 
     again, states, others = answers_of(tomllib.loads(text))
-    assert others == []
+    assert others == {}
     assert (again, states) == (answers, points)
 
 

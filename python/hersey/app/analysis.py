@@ -14,16 +14,20 @@ from typing import Any
 
 from hersey.app.channels import UNITS, Fault, channel_faults
 from hersey.app.machine import (
+    POINT_FIELDS,
     answer_faults,
     file_faults,
     form_text,
+    kept_beside,
     mapping_faults,
     mapping_of_form,
+    mapping_said,
     named_logs,
 )
 from hersey.errors import HerseyError
 from hersey.files.text import read_text
-from hersey.log.channels import OTHER_ROLES, ROLES
+from hersey.log.channels import OTHER_ROLES, ROLES, called
+from hersey.log.text.layout import Column
 from hersey.machine.questions import BY_KEY, MAPPING
 from hersey.machine.writing import answers_of
 
@@ -43,7 +47,7 @@ def number() -> str:
 
 @dataclass
 class Dropped:
-    """A file as it came: ``state`` is arriving, looking, ready or fault."""
+    """A file as it came: ``state`` is arriving, looking, ready or fault, or mapping where it is one."""
 
     name: str
     path: Path
@@ -68,7 +72,13 @@ class Analysis:
     kept: set[str] = field(default_factory=set)
     mode: str = "form"
     answers: dict[str, str] = field(default_factory=dict)
-    points: list[dict[str, str]] = field(default_factory=list)
+    points: list[dict[str, Any]] = field(default_factory=list)
+    machine_others: dict[str, Any] = field(default_factory=dict)  #: of a TOML, what the form has no field for
+    mapped: dict[str, str] = field(
+        default_factory=dict
+    )  #: channel of each role by a mapping that was dropped
+    mapped_units: dict[str, str] = field(default_factory=dict)
+    mapping_others: dict[str, Any] = field(default_factory=dict)  #: what else it says
     text: str = ""
     state: str = "editing"
     step: str = ""
@@ -87,13 +97,18 @@ class Analysis:
     @property
     def name(self) -> str:
         """Return what the list calls it."""
-        return ", ".join(file.name for file in self.files.values()) or "new analysis"
+        return ", ".join(f.name for f in self.files.values() if f.state != "mapping") or "new analysis"
 
     @property
     def logs(self) -> list[Dropped]:
         """Return the files that can be read, but for those that the machine's file names."""
-        beside = named_logs(self.machine_file())
+        beside = self.beside
         return [f for f in self.files.values() if f.state == "ready" and f.name not in beside]
+
+    @property
+    def beside(self) -> set[str]:
+        """Return the names of logs that the machine's file or the mapping names."""
+        return named_logs(self.machine_file(), self.mapping_others)
 
     @property
     def busy(self) -> bool:
@@ -105,7 +120,7 @@ class Analysis:
         if self.mode == "toml":
             return self.text
         try:
-            return form_text(self.answers, self.points)
+            return form_text(self.answers, self.points, self.machine_others)
         except HerseyError:
             return ""
 
@@ -123,7 +138,16 @@ class Analysis:
 
     def mapping_file(self) -> str:
         """Return ``hersey.toml`` as it stands."""
-        return mapping_of_form(self.mapping_answers())
+        return mapping_of_form(self.mapping_answers(), self._mapping_others())
+
+    def _mapping_others(self) -> dict[str, Any]:
+        """What no question asks: channels of the other roles, and what a mapping that was dropped said."""
+        out = {section: dict(table) for section, table in self.mapping_others.items()}
+        for name, choice in self.choices.items():
+            if choice["role"] in OTHER_ROLES:
+                unit = {"unit": choice["unit"]} if choice["unit"] and choice["role"] != "run" else {}
+                out[choice["role"]] = {**out.get(choice["role"], {}), "channel": name, **unit}
+        return out
 
     def command(self) -> str:
         """Return the command that gives the same report from the files and what can be saved here."""
@@ -140,6 +164,21 @@ class Analysis:
         for channel in file.look["channels"]:
             role = channel["role"] or claimed.get(channel["name"], "")
             self.choices.setdefault(channel["name"], {"role": role, "unit": channel["unit"]})
+        self._as_mapped(file)
+
+    def _as_mapped(self, file: Dropped) -> None:
+        """Give the channels of a file the roles and units that the mapping states."""
+        for role in (*ROLES, *OTHER_ROLES):
+            stated = self.mapped.get(role, "")
+            name = _called(stated, file) if stated else ""
+            if name:
+                for choice in self.choices.values():
+                    choice["role"] = "" if choice["role"] == role else choice["role"]
+                self.choices[name]["role"] = role
+            unit = self.mapped_units.get(role, "")
+            if unit and (name or not stated):
+                for choice in self.choices.values():
+                    choice["unit"] = unit if choice["role"] == role else choice["unit"]
 
     def check(self) -> None:
         """Look again for what stands before a run; it may take a moment where the machine names a log."""
@@ -185,13 +224,21 @@ class Analysis:
                         {"remove": other.id},
                     )
                 )
-        return faults or mapping_faults(self.mapping_answers(), self.folder)
+        for role, stated in self.mapped.items():
+            if not _called(stated, logs[0]) and (role != "temperature" or not self.options["isothermal"]):
+                faults = [fault for fault in faults if fault.at != f"lacking:{role}"]
+                faults.append(_not_there(role, stated, self.choices))
+        return faults or mapping_faults(
+            self.mapping_answers(), self._mapping_others(), self.folder, self._dropped()
+        )
+
+    def _dropped(self) -> dict[str, Path]:
+        return {file.name: file.path for file in self.files.values() if file.state == "ready"}
 
     def _machine_faults(self) -> list[Fault]:
         if self.mode == "form" and (faults := answer_faults(self.answers, self.points)):
             return faults
-        dropped = {file.name: file.path for file in self.files.values() if file.state == "ready"}
-        return file_faults(self.machine_file(), self.folder, dropped)
+        return file_faults(self.machine_file(), self.folder, self._dropped())
 
     def choose(self, given: Mapping[str, Any]) -> None:
         """Take what the page changes: ``roles``, ``units`` by channel, ``options``, ``corrections``.
@@ -207,6 +254,7 @@ class Analysis:
             self.choices[name]["role"] = role
             if role in ROLES:
                 self.options |= {"isothermal": False} if role == "temperature" else {}
+            self.mapped.pop(role, None)
         for name, unit in _texts(given.get("units", {})).items():
             if name not in self.choices:
                 raise ValueError(name)
@@ -258,33 +306,71 @@ class Analysis:
         if mode == "toml" and self.mode == "form":
             if faults := answer_faults(self.answers, self.points):
                 return f"first put right: {', '.join(fault.link for fault in faults)}"
-            self.text = form_text(self.answers, self.points)
+            self.text = form_text(self.answers, self.points, self.machine_others)
         if mode == "form" and self.mode == "toml" and self.text.strip():
             if any(fault.at == "toml" for fault in self.faults):
                 return "first put the text right"
             import tomllib
 
-            answers, points, others = answers_of(tomllib.loads(self.text))
-            if others:
-                return f"the form does not ask for {', '.join(others[:5])}: keep the text"
-            self.answers, self.points = answers, points
+            document = tomllib.loads(self.text)
+            answers, points, others = answers_of(document)
+            if (
+                answer_faults(answers, points)
+                or tomllib.loads(form_text(answers, points, others)) != document
+            ):
+                return "the form cannot hold all that the text says: keep the text"
+            self.answers, self.points, self.machine_others = answers, points, others
         elif mode == "form" and self.mode == "toml":
-            self.answers, self.points = {}, []
+            self.answers, self.points, self.machine_others = {}, [], {}
         self.mode = mode
         return ""
 
     def take_file(self, file: Dropped) -> bool:
-        """Take a dropped TOML file as the machine or the mapping; return whether it is one."""
+        """Take a dropped TOML file as the machine or the mapping; return whether it is one.
+
+        Raises
+        ------
+        HerseyError
+            If it is a mapping with a mistake, in the words of its reader.
+        """
         text = read_text(file.path, most=1_000_000)
         if re.search(r"^\s*\[\s*drivetrain\s*\]", text, re.M):
             self.mode, self.text = "toml", text
+            del self.files[file.id]
+            file.path.unlink()
             return True
-        return False
+        said = mapping_said(file.path)
+        if said is None:
+            return False
+        for older in [other for other in self.files.values() if other.state == "mapping"]:
+            self.remove(older.id)
+        file.state = "mapping"
+        answers, self.mapping_others = said
+        self._take_mapping(answers)
+        return True
+
+    def _take_mapping(self, answers: Mapping[str, str]) -> None:
+        stated: dict[str, dict[str, str]] = {"channel": {}, "unit": {}}
+        for role in (*ROLES, *OTHER_ROLES):
+            of_other = self.mapping_others.get(role, {})
+            for key, taken in stated.items():
+                text = answers.get(f"{role}.{key}", "") or of_other.get(key, "")
+                if text:
+                    taken[role] = text
+                of_other.pop(key, None)
+            if not of_other:
+                self.mapping_others.pop(role, None)
+        self.mapped, self.mapped_units = stated["channel"], stated["unit"]
+        self.corrections = {key: answers[key] for key in CORRECTIONS if key in answers}
+        for log in self.logs:
+            self._as_mapped(log)
 
     def remove(self, file: str) -> None:
         """Leave a file out."""
         gone = self.files.pop(file)
         gone.path.unlink(missing_ok=True)
+        if gone.state == "mapping":
+            self.mapped, self.mapped_units, self.mapping_others, self.corrections = {}, {}, {}, {}
         if not self.files:
             self.choices, self.corrections, self.options = {}, {}, dict(_OPTIONS)
         elif gone.look:
@@ -327,7 +413,8 @@ class Analysis:
         look = logs[0].look if logs else None
         return self.line() | {
             "files": [_file_view(file) for file in self.files.values()],
-            "beside": sorted(named_logs(self.machine_file())),
+            "beside": sorted(self.beside),
+            "mapping_kept": kept_beside([], self.mapping_others),
             "log": None if look is None else {key: look[key] for key in ("name", "means", "own_clock")},
             "channels": [] if look is None else self._channels(look),
             "hidden": 0 if look is None else max(0, len(look["channels"]) - _SHOWN),
@@ -337,7 +424,8 @@ class Analysis:
             "machine": {
                 "mode": self.mode,
                 "answers": self.answers,
-                "points": self.points,
+                "points": [{key: point.get(key, "") for key in POINT_FIELDS} for point in self.points],
+                "kept": kept_beside(self.points, self.machine_others),
                 "text": self.text,
                 "blank": not self.machine_file().strip(),
             },
@@ -364,6 +452,24 @@ class Analysis:
 
 def _names(file: Dropped) -> set[str]:
     return {channel["name"] for channel in file.look["channels"]}
+
+
+def _called(name: str, file: Dropped) -> str:
+    """The channel of a file that a mapping means by a name, or nothing."""
+    channels = [(c["name"], c["written"]) for c in file.look["channels"]]
+    meant = called(name, tuple(Column(i, *channel) for i, channel in enumerate(channels)))
+    return str(meant[0].name) if meant else ""
+
+
+def _not_there(role: str, stated: str, choices: Mapping[str, Mapping[str, str]]) -> Fault:
+    """The fault of a channel that the mapping names and the log does not have."""
+    now = next((name for name, choice in choices.items() if choice["role"] == role), "")
+    title = f"The mapping calls the {role} “{stated}”, and this log has no such channel."
+    link = f"choose the {role} channel"
+    text = "Choose one in the column Role."
+    if not now:
+        return Fault(f"lacking:{role}", title, text, link)
+    return Fault(f"lacking:{role}", title, "", link, f"Use “{now}”", {"roles": {now: role}})
 
 
 def _short(fault: str) -> str:

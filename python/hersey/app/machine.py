@@ -10,14 +10,19 @@ from typing import Any
 
 from hersey.app.channels import Fault
 from hersey.errors import HerseyError
+from hersey.files.toml import read_toml
 from hersey.files.writing import write_atomically
+from hersey.log.channels import OTHER_ROLES, ROLES
 from hersey.log.mapping import read_mapping
+from hersey.log.quantities import amount
 from hersey.machine.machine import read_machine
-from hersey.machine.questions import BY_KEY, lacking
-from hersey.machine.writing import machine_text, mapping_text
+from hersey.machine.questions import BY_KEY, POINT, lacking
+from hersey.machine.writing import answers_of, machine_text, mapping_text
 
 #: Names of the files in the folder of an analysis, as commands call them.
 MACHINE_FILE, MAPPING_FILE = "machine.toml", "hersey.toml"
+#: What the form asks of an operating point.
+POINT_FIELDS = tuple(q.field for q in POINT)
 
 
 def answer_faults(answers: Mapping[str, str], points: Sequence[Mapping[str, str]]) -> list[Fault]:
@@ -27,7 +32,7 @@ def answer_faults(answers: Mapping[str, str], points: Sequence[Mapping[str, str]
         if text.strip():
             faults += _of_answer(f"field:{key}", key, text)
     for number, point in enumerate(points):
-        for field in ("name", "speed", "temperature"):
+        for field in POINT_FIELDS:
             text = point.get(field, "").strip()
             at = f"field:points.{number}.{field}"
             if text:
@@ -58,8 +63,12 @@ def label(key: str) -> str:
     return key.split(".")[-1].replace("_", " ")
 
 
-def form_text(answers: Mapping[str, str], points: Sequence[Mapping[str, str]]) -> str:
+def form_text(
+    answers: Mapping[str, str], points: Sequence[Mapping[str, Any]], others: Mapping[str, Any]
+) -> str:
     """Return the machine's file that the form makes, units as they stand beside the fields; empty if blank.
+
+    ``others`` and what a point holds beside its answers are what a TOML said that the form has no field for.
 
     Raises
     ------
@@ -68,10 +77,24 @@ def form_text(answers: Mapping[str, str], points: Sequence[Mapping[str, str]]) -
     """
     given = {key: BY_KEY[key].with_unit(text) for key, text in answers.items() if text.strip()}
     named = [
-        {field: BY_KEY[f"points.{field}"].with_unit(text) for field, text in point.items() if text.strip()}
+        {
+            field: BY_KEY[f"points.{field}"].with_unit(value) if field in POINT_FIELDS else value
+            for field, value in point.items()
+            if field not in POINT_FIELDS or value.strip()
+        }
         for point in points
     ]
-    return machine_text(given, named) if given or named else ""
+    return machine_text(given, named, others) if given or named or others else ""
+
+
+def kept_beside(points: Sequence[Mapping[str, Any]], others: Mapping[str, Any]) -> list[str]:
+    """Return what the form carries without a field for it, a table with the number of its values."""
+    tables = [
+        f"[{name}] {len(table)} value{'s' * (len(table) != 1)}" if isinstance(table, dict) else name
+        for name, table in others.items()
+    ]
+    of_points = sorted({field for point in points for field in point if field not in POINT_FIELDS})
+    return [*tables, *(f"{field} of points" for field in of_points)]
 
 
 def file_faults(text: str, folder: Path, dropped: Mapping[str, Path]) -> list[Fault]:
@@ -96,15 +119,27 @@ def file_faults(text: str, folder: Path, dropped: Mapping[str, Path]) -> list[Fa
 
 def _place_named(text: str, folder: Path, dropped: Mapping[str, Path]) -> None:
     """Lay the logs that the file names beside it; refuse all that was not dropped."""
+    for section, named in _named(_document(text)).items():
+        _lay(named, folder, dropped, f"[{section}] names the log")
+
+
+def _document(text: str) -> dict[str, Any]:
+    """A file that was read; nothing where it is none, of which whoever reads it says where."""
     try:
-        document: dict[str, Any] = tomllib.loads(text)
+        return tomllib.loads(text)
     except (tomllib.TOMLDecodeError, RecursionError, ValueError):
-        return  # whoever reads it says where
-    for section, key in (("rest", "log"), ("gear", "duty")):
+        return {}
+
+
+def _named(document: Mapping[str, Any]) -> dict[str, str]:
+    """The logs that a machine's file or a mapping names, by the table."""
+    out = {}
+    for section, key in (("rest", "log"), ("gear", "duty"), ("torque", "no_load")):
         table = document.get(section)
         named = table.get(key) if isinstance(table, dict) else None
-        if isinstance(named, str):
-            _lay(named, folder, dropped, f"[{section}] names the log")
+        if isinstance(named, str) and not amount(named):
+            out[section] = named
+    return out
 
 
 def _lay(named: str, folder: Path, dropped: Mapping[str, Path], what: str) -> None:
@@ -115,26 +150,27 @@ def _lay(named: str, folder: Path, dropped: Mapping[str, Path], what: str) -> No
         beside.symlink_to(dropped[named])
 
 
-def named_logs(text: str) -> set[str]:
-    """Return the names of the logs that a machine's file names: they are no logs of the run."""
-    try:
-        document = tomllib.loads(text)
-    except (tomllib.TOMLDecodeError, RecursionError, ValueError):
-        return set()
-    tables = ((document.get("rest"), "log"), (document.get("gear"), "duty"))
-    return {
-        table[key] for table, key in tables if isinstance(table, dict) and isinstance(table.get(key), str)
-    }
+def named_logs(text: str, others: Mapping[str, Any]) -> set[str]:
+    """Return the names of the logs that a machine's file or a mapping names: they are no logs of the run."""
+    return {*_named(_document(text)).values(), *_named(others).values()}
 
 
-def mapping_faults(answers: Mapping[str, str], folder: Path) -> list[Fault]:
-    """Write the mapping and return what its reader says of it, at the field it speaks of."""
+def mapping_faults(
+    answers: Mapping[str, str], others: Mapping[str, Any], folder: Path, dropped: Mapping[str, Path]
+) -> list[Fault]:
+    """Write the mapping and return what its reader says of it, at the field it speaks of.
+
+    ``others`` is what a mapping that was dropped said beside the answers, ``dropped`` the files that it may
+    name, by name.
+    """
     path = folder / MAPPING_FILE
     for key, text in answers.items():
         if text.strip() and (faults := _of_answer(f"field:{key}", key, text)):
             return faults
     try:
-        write_atomically(path, mapping_of_form(answers), overwrite=True)
+        for section, named in _named(others).items():
+            _lay(named, folder, dropped, f"[{section}] names the log")
+        write_atomically(path, mapping_of_form(answers, others), overwrite=True)
         read_mapping(path)
     except HerseyError as error:
         said = str(error).removeprefix(f"{MAPPING_FILE}: ")
@@ -144,8 +180,8 @@ def mapping_faults(answers: Mapping[str, str], folder: Path) -> list[Fault]:
     return []
 
 
-def mapping_of_form(answers: Mapping[str, str]) -> str:
-    """Return ``hersey.toml`` with units as they stand beside the fields.
+def mapping_of_form(answers: Mapping[str, str], others: Mapping[str, Any]) -> str:
+    """Return ``hersey.toml``: answers with units as they stand beside the fields, and what no question asks.
 
     Raises
     ------
@@ -153,4 +189,35 @@ def mapping_of_form(answers: Mapping[str, str]) -> str:
         If an answer cannot be read.
     """
     given = {key: BY_KEY[key].with_unit(text) for key, text in answers.items() if text.strip()}
-    return mapping_text(given, title="Channels of the log, as chosen in hersey app.")
+    return mapping_text(given, title="Channels of the log, as chosen in hersey app.", others=others)
+
+
+def mapping_said(path: Path) -> tuple[dict[str, str], dict[str, Any]] | None:
+    """Return answers and all else of a mapping that was dropped, or None if it is none.
+
+    Raises
+    ------
+    HerseyError
+        In the words of its reader.
+    """
+    document = read_toml(path)
+    if not set(document) & {*ROLES, *OTHER_ROLES}:
+        return None
+    plain = {
+        section: {
+            key: value for key, value in table.items() if (section, value) not in _named(document).items()
+        }
+        if isinstance(table, dict)
+        else table
+        for section, table in document.items()
+    }
+    answers, _, others = answers_of(plain)
+    beside = path.with_name("read.toml")
+    try:  # as it is written anew, without the log that it names, which may be dropped later
+        write_atomically(beside, mapping_text(answers, others=others), overwrite=True)
+        read_mapping(beside)
+    except HerseyError as error:
+        raise type(error)(str(error).removeprefix("read.toml: ").removeprefix("read.toml ")) from None
+    finally:
+        beside.unlink(missing_ok=True)
+    return answers_of(document)[::2]

@@ -143,15 +143,15 @@ class Session:
 
     async def _take_toml(self, one: Analysis, file: Dropped) -> None:
         async with one.lock:
+            wrong = (
+                "no machine's file and no mapping: it has no table [drivetrain], and none such as [torque]"
+            )
             try:
                 taken = one.take_file(file)
-            except (HerseyError, ValueError):
-                taken = False
-            if taken:
-                one.remove(file.id)
-            else:
-                file.state = "fault"
-                file.fault = "no machine's file: it has no table [drivetrain]"
+            except (HerseyError, ValueError) as error:
+                taken, wrong = False, str(error).removeprefix(f"{file.name}: ")
+            if not taken:
+                file.state, file.fault = "fault", wrong
             await self._check(one)
 
     async def _look(self, one: Analysis, file: Dropped) -> None:

@@ -32,12 +32,13 @@ export function showFiles(place, view, act) {
 function about(file, view) {
   if (file.state === "arriving") return file.size ? "arriving" : `arriving, ${size(file.received)}`;
   if (file.state === "looking") return `${size(file.size)} · looking at the channels`;
+  if (file.state === "mapping") return ["roles, units and corrections are those below", ...(view.mapping_kept.length ? [`kept without a field: ${view.mapping_kept.join(", ")}`] : [])].join(" · ");
   const parts = [size(file.size), `${file.rows.toLocaleString("en").replace(/,/g, " ")} rows`];
   if (file.means) parts.push("a table of means");
   if (file.duration) parts.push(file.duration < 120 ? `${digits(file.duration, 3)} s` : `${digits(file.duration / 60, 3)} min`);
   if (file.gaps) parts.push(`${file.gaps} gap${file.gaps > 1 ? "s" : ""}, ${digits((100 * file.lost) / file.duration, 2)} % of the time`);
   if (file.cut_off) parts.push("cut off at its end");
-  if (view.beside.includes(file.name)) parts.push("named by the machine's file");
+  if (view.beside.includes(file.name)) parts.push("named by the machine's file or the mapping");
   return parts.join(" · ");
 }
 

@@ -48,7 +48,8 @@ function form(view, questions, act) {
   const summary = make("summary", { text: "Limits, nip, lubricant, rest of the drive", "data-control": "more" });
   const more = make("details", { open: open.has("more") || guilty, ontoggle: () => (more.open ? open.add("more") : open.delete("more")) }, summary,
     ...sections.flatMap((section) => [make("h3", { text: GROUPS[section] }), ...others.filter((q) => q.section === section).map(line)]));
-  const place = make("div", {}, drawing, ...questions.machine.filter((q) => q.first).map(line), points(), more,
+  const kept = machine.kept.length ? make("p", { class: "note", "data-kept": "", text: `Kept from the TOML as it is: ${machine.kept.join(", ")}. The form has no fields for it: change it in the TOML.` }) : null;
+  const place = make("div", {}, drawing, ...questions.machine.filter((q) => q.first).map(line), points(), more, kept,
     ...of(view, "toml").map((fault) => make("div", { class: "alone", text: `${fault.title} ${fault.text}` })));
   return [place];
 
