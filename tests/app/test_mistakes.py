@@ -266,6 +266,22 @@ def test_a_mistake_about_the_machine_stands_at_its_field(mistake: str, tmp_path:
     assert not one.line()["ready"]
 
 
+@pytest.mark.parametrize(
+    ("field", "text"), [("roll_radius", "15000"), ("mass", "11 mg"), ("stick_speed", "2 m/s to 4 m/s")]
+)
+def test_a_value_that_no_machine_has_can_be_kept(field: str, text: str, tmp_path: Path) -> None:
+    one = dropped(tmp_path, log())
+    one.take_machine({"answers": {**DRIVETRAIN, f"drivetrain.{field}": text}})
+    one.check()
+    fault = only(one)
+    assert fault.at == f"field:drivetrain.{field}"
+    assert "far from what such a drive has" in fault.title
+    assert fault.keep.startswith("Keep ")
+    one.kept.add(fault.key)
+    one.check()
+    assert one.faults == []
+
+
 def test_form_and_text_say_the_same(tmp_path: Path) -> None:
     one = Analysis(tmp_path)
     one.take_machine({"answers": {**DRIVETRAIN, "drivetrain.mass": "11 kg ± 10 %"}})

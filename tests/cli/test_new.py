@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from hersey.cli.asking import Asking
 from hersey.log.mapping import read_mapping
 from hersey.machine.machine import read_machine
 from tests.cli.command import HERSEY, run
@@ -74,7 +75,7 @@ def test_a_dash_leaves_out_and_the_end_leaves_out_the_rest(folder: Path) -> None
         ([], "hersey new asks questions: type it in a terminal, or pipe the answers"),
         (["Moment"], "answer 1, channel of the torque: log.csv: --torque: there is no column 'Moment'"),
         (["", "rpm"], "answer 2, unit of the torque: unit 'rpm' is not a unit of torque"),
-        ([*CHANNELS, "11"], "answer 9, k stiffness: stiffness: '11' needs a number and a unit"),
+        ([*CHANNELS, "11"], "answer 9, k stiffness: '11' has no unit: write one, as in '11 N/mm'"),
         ([*CHANNELS, "11 N/mm", ""], "answer 10, m mass: this is needed: nothing is written"),
         ([*CHANNELS, "11 N/mm", "11 kg"], "the answers end before 'R roll radius'"),
     ],
@@ -131,11 +132,25 @@ class Terminal:
         os.write(self._ours, f"{line}\n".encode())
 
 
+def test_by_hand_one_stick_speed_is_asked_for_its_range_and_a_point_gets_a_name(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(Asking, "by_hand", True)
+    answers = [*MACHINE[:3], "2 mm/s", "± 50 %", MACHINE[4], *MACHINE[5:7], "", ""]
+    assert run("new", cwd=folder, answers=lines(*answers)).returncode == 0
+    machine = read_machine(folder / "machine.toml")
+    assert (machine.stick_speed, machine.uncertainty["stick_speed"].share) == (0.002, 0.5)
+    assert machine.points[0].name == "200 mm/s at 180 degC"
+    answers[4] = "1 mm/s to 4 mm/s"
+    assert run("new", "--force", cwd=folder, answers=lines(*answers)).returncode == 0
+    assert read_machine(folder / "machine.toml").uncertainty["stick_speed"].limits == (0.001, 0.004)
+
+
 def test_in_a_terminal_a_wrong_answer_is_asked_again_and_ctrl_c_leaves_nothing(folder: Path) -> None:
     terminal = Terminal(folder, "new", "--machine", "m.toml")
     terminal.until("k stiffness")
     terminal.type("11")
-    terminal.until("needs a number and a unit of stiffness")
+    terminal.until("'11' has no unit: write one, as in '11 N/mm'")
     terminal.until("k stiffness")
     terminal.type("11 N/mm")
     terminal.until("m mass")

@@ -8,6 +8,7 @@ uploads   dropped files, to disk as they come, within bounds
 session   the analyses of one start
 analysis  one analysis: files, choices, machine, and how far it is
 channels  what is wrong with the choices, where, and what mends it
+course    how long a run takes, once one like it has ended
 machine   what is wrong with the answers about the machine
 workers   processes that read and compute, ended by whoever waits for them
 worker    what runs in such a process

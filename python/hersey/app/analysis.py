@@ -13,9 +13,11 @@ from pathlib import Path
 from typing import Any
 
 from hersey.app.channels import UNITS, Fault, channel_faults
+from hersey.app.course import Course
 from hersey.app.machine import (
     POINT_FIELDS,
     answer_faults,
+    doubtful,
     file_faults,
     form_text,
     kept_beside,
@@ -83,8 +85,7 @@ class Analysis:
     state: str = "editing"
     step: str = ""
     share: float | None = None
-    started: float = 0.0
-    lasts: float = 0.0
+    course: Course | None = None
     result: dict[str, Any] = field(default_factory=dict)
     reason: str = ""
     report: str = ""
@@ -238,7 +239,8 @@ class Analysis:
     def _machine_faults(self) -> list[Fault]:
         if self.mode == "form" and (faults := answer_faults(self.answers, self.points)):
             return faults
-        return file_faults(self.machine_file(), self.folder, self._dropped())
+        faults = file_faults(self.machine_file(), self.folder, self._dropped())
+        return faults + (doubtful(self.answers) if self.mode == "form" else [])
 
     def choose(self, given: Mapping[str, Any]) -> None:
         """Take what the page changes: ``roles``, ``units`` by channel, ``options``, ``corrections``.
@@ -379,17 +381,15 @@ class Analysis:
 
     def line(self) -> dict[str, Any]:
         """Return what the list shows."""
-        left = (
-            None
-            if self.state != "running" or not self.lasts
-            else self.started + self.lasts - time.monotonic()
-        )
+        course = self.course if self.state == "running" else None
+        left = None if course is None or course.ends is None else course.ends - time.monotonic()
         return {
             "id": self.id,
             "name": self.name,
             "state": self.state,
             "step": self.step,
             "share": self.share,
+            "spent": None if course is None else time.monotonic() - course.began,
             "left": left if left is not None and left > 1.0 else None,
             "signal": self.result.get("signal", ""),
             "words": self.result.get("words", ""),

@@ -18,9 +18,17 @@ from hersey.log.quantities import amount
 from hersey.machine.machine import read_machine
 from hersey.machine.questions import BY_KEY, POINT, lacking
 from hersey.machine.writing import answers_of, machine_text, mapping_text
+from hersey.units import parse
 
 #: Names of the files in the folder of an analysis, as commands call them.
 MACHINE_FILE, MAPPING_FILE = "machine.toml", "hersey.toml"
+#: Between which values (SI) the drives lie that anybody has: beyond them a unit is wrong.
+_USUAL = {
+    "drivetrain.stiffness": ("stiffness", 1.0, 1e8),
+    "drivetrain.mass": ("mass", 1e-3, 1e4),
+    "drivetrain.roll_radius": ("length", 5e-4, 1.0),
+    "drivetrain.stick_speed": ("belt speed", 1e-7, 1.0),
+}
 #: What the form asks of an operating point.
 POINT_FIELDS = tuple(q.field for q in POINT)
 
@@ -46,6 +54,24 @@ def answer_faults(answers: Mapping[str, str], points: Sequence[Mapping[str, str]
         if question.section not in ("drivetrain", "limits"):
             text = f"Such as {question.example}; the others of its group say nothing without it."
         faults.append(Fault(f"field:{question.key}", "This is needed.", text, label(question.key)))
+    return faults
+
+
+def doubtful(answers: Mapping[str, str]) -> list[Fault]:
+    """Return answers that no such machine has, which can be kept; of those that cannot be read, none."""
+    faults = []
+    for key, (kind, low, high) in _USUAL.items():
+        question, text = BY_KEY[key], answers.get(key, "").strip()
+        try:
+            value = str(question.values(question.with_unit(text))[key]) if text else ""
+            doubt = bool(value) and not low <= parse(kind, value) <= high
+        except HerseyError:
+            continue
+        if doubt:
+            title = f"{value} is far from what such a drive has."
+            faults.append(
+                Fault(f"field:{key}", title, f"Such as {question.example}.", label(key), keep=f"Keep {value}")
+            )
     return faults
 
 

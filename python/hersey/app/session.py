@@ -12,14 +12,13 @@ from typing import Any
 
 from hersey.app.analysis import Analysis, Dropped, number
 from hersey.app.channels import of_problem
+from hersey.app.course import Courses
 from hersey.app.machine import MACHINE_FILE, MAPPING_FILE
 from hersey.app.uploads import Bounds, TooMuchError, clean_name, megabytes, receive
 from hersey.app.workers import EndedError, Refused, ask
 from hersey.errors import HerseyError, OutputError
 from hersey.files.writing import write_atomically
 
-#: Share of a run from which on the rest can be told.
-_TELLING = 0.25
 #: Analyses that run beside each other.
 _AT_ONCE = max(1, (os.cpu_count() or 1) // 2)
 
@@ -50,6 +49,7 @@ class Session:
         self.folder, self.reports, self.bounds = folder, reports, bounds or Bounds()
         self.analyses: dict[str, Analysis] = {}
         self.shown: dict[str, Path] = {}  #: reports by the number in their address
+        self._courses = Courses()
         self._tasks: dict[str, asyncio.Task[None]] = {}
         self._running = asyncio.Semaphore(_AT_ONCE)
         self._looking = asyncio.Semaphore(2)
@@ -241,8 +241,7 @@ class Session:
 
     async def _run(self, one: Analysis) -> None:
         def said(step: str, share: float | None) -> None:
-            if share and share != one.share and share > _TELLING:
-                one.lasts = (time.monotonic() - one.started) / share
+            course.step(step)
             one.step, one.share = step, share
 
         page = one.folder / f"{number()}.html"
@@ -258,8 +257,11 @@ class Session:
         }
         try:
             async with self._running:
-                one.state, one.step, one.started, one.lasts = "running", "starting", time.monotonic(), 0.0
+                alike = (len(one.logs), bool(request["machine"]), one.machine_file().count("[[points]]"))
+                one.state, one.step = "running", "starting"
+                one.course = course = self._courses.begin(alike)
                 one.result = await ask(request, one.folder, said)
+                self._courses.keep(alike, course)
             one.saved = await asyncio.to_thread(self._kept, one, page)
             self.shown.pop(one.report, None)
             one.report = number()
@@ -281,7 +283,7 @@ class Session:
             one.state, one.step = "editing", ""
             raise
         finally:
-            one.share = None
+            one.share = one.course = None
             one.finished = time.strftime("%H:%M")
             one.revision += 1
 

@@ -23,6 +23,11 @@ class Asking:
         self._order, self._count = order, 0
         self._terminal = sys.stdin.isatty()
 
+    @property
+    def by_hand(self) -> bool:
+        """Whether a person answers, who can be asked more than is listed for a pipe."""
+        return self._terminal
+
     def ask(
         self,
         what: str,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shlex
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -127,6 +128,7 @@ def _machine(asked: list[Question], asking: Asking, path: Path) -> str:
         needed = bool(answers) and question in lacking(answers)
 
         def read(text: str, question: Question = question) -> str:
+            _with_unit(question, text)
             question.values(text)
             with_it = {**answers, question.key: text}
             if not lacking(with_it):  # what fits no other answer is said here
@@ -136,6 +138,10 @@ def _machine(asked: list[Question], asking: Asking, path: Path) -> str:
         text = asking.ask(question.name, read, words=_words(question), needed=needed)
         if text:
             answers[question.key] = text
+            if question.field == "stick_speed" and asking.by_hand and len(question.values(text)) == 1:
+                words = "left out, V* takes it as exact; as 1 mm/s to 4 mm/s, or ± 50 %"
+                told = asking.ask("how far it is known", _known(text, read), words=words)
+                answers[question.key] = told or text
         elif not answers:
             say(f"no machine's file is written: {path} would begin with it", file=sys.stderr)
             return ""
@@ -145,17 +151,30 @@ def _machine(asked: list[Question], asking: Asking, path: Path) -> str:
         for question in sorted(POINT, key=lambda q: not q.needed):
 
             def read(text: str, question: Question = question) -> str:
+                _with_unit(question, text)
                 question.values(text)
                 return text
 
             what = f"operating point {len(points) + 1}, {question.name}"
             needed = bool(point) and question.needed
-            text = asking.ask(what, read, words=_words(question), needed=needed)
+            name = "" if question.needed else f"{point['speed']} at {point['temperature']}"
+            text = asking.ask(what, read, words=_words(question), proposed=name, needed=needed)
             if text:
                 point[question.field] = text
             elif not point:
                 return machine_text(answers, points)
         points.append(point)
+
+
+def _known(value: str, read: Callable[[str], str]) -> Callable[[str], str]:
+    """Read a range in the place of a value, or a share behind it."""
+    return lambda told: read(f"{value} {told}" if told.startswith(("±", "+")) else told)
+
+
+def _with_unit(question: Question, text: str) -> None:
+    """Refuse a bare number where a unit is needed, with the one that is usual there."""
+    if question.with_unit(text) != text:
+        raise ParameterError(f"'{text}' has no unit: write one, as in '{question.with_unit(text)}'")
 
 
 def _refuse_wrong(text: str) -> None:

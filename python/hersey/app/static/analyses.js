@@ -5,8 +5,10 @@ import { button, link, make, renew, signal } from "./building.js";
 const WORDS = { good: "Good", watch: "Watch", act: "Act" };
 const plural = (count, one) => `${count} ${one}${count === 1 ? "" : "s"}`;
 
-/** What is left, where it is known. */
-export const left = (seconds) => (seconds === null ? "" : seconds < 90 ? `about ${Math.max(1, Math.round(seconds))} s left` : `about ${Math.round(seconds / 60)} min left`);
+const lasting = (seconds) => (seconds < 90 ? `${Math.max(1, Math.round(seconds))} s` : `${Math.round(seconds / 60)} min`);
+
+/** What is left, where a run like it has ended before; else how long it has been at work. */
+export const left = (one) => (one.left !== null ? `about ${lasting(one.left)} left` : one.spent !== null ? `${lasting(one.spent)} so far` : "");
 
 export function showAnalyses(place, analyses, current, act) {
   renew(place, ...analyses.map((one) => {
@@ -26,7 +28,7 @@ function state(one, act) {
     const bar = make("progress", { max: 1, "aria-label": `Progress of ${one.name}` });
     if (one.share !== null) bar.value = one.share;
     return [make("span", { class: "note", text: one.state === "preparing" ? `preparing: ${one.step}` : one.step }), bar,
-      make("div", { class: "row" }, make("span", { class: "note", text: left(one.left) }),
+      make("div", { class: "row" }, make("span", { class: "note", text: left(one) }),
         button("Cancel", () => act.cancel(one.id), { "aria-label": `Cancel ${one.name}` }))];
   }
   if (one.state === "done") {

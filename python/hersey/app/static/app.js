@@ -7,6 +7,7 @@ import { showMachine } from "./machine.js";
 
 const at = (id) => document.getElementById(id);
 const SOON = 400;
+let refused = false; // what is said was refused while something ran: it no longer holds when nothing does
 let token = "", questions = null, analyses = [], current = "", view = null, timer = 0;
 
 /** Ask the server; what it refuses is said above the page. */
@@ -21,11 +22,14 @@ async function ask(method, path, body, headers = {}) {
   const said = await answer.json();
   if (answer.ok) return said;
   say(said.error);
+  refused = busy();
   return null;
 }
+const busy = () => analyses.some((one) => one.state === "running" || one.state === "preparing");
 const post = (path, given = {}) => ask("POST", path, JSON.stringify(given), { "Content-Type": "application/json" });
 
 function say(words) {
+  refused = false;
   at("problem").textContent = words;
   at("problem").hidden = !words;
 }
@@ -35,13 +39,14 @@ async function refresh() {
   const state = await ask("GET", "state");
   if (!state || pending) return;
   analyses = state.analyses;
-  if (!analyses.some((one) => one.id === current)) current = analyses[0]?.id ?? "";
+  if (!analyses.some((one) => one.id === current)) current = analyses.at(-1)?.id ?? "";
   const line = analyses.find((one) => one.id === current);
   if (line && (view?.id !== current || view.revision !== line.revision)) await look();
-  else if (line) Object.assign(view, { state: line.state, step: line.step, share: line.share, left: line.left });
+  else if (line) Object.assign(view, { state: line.state, step: line.step, share: line.share, spent: line.spent, left: line.left });
   show();
-  const busy = analyses.some((one) => one.state === "running" || one.state === "preparing") || view?.files.some((file) => file.state === "arriving" || file.state === "looking");
-  if (busy) timer = setTimeout(refresh, SOON);
+  if (refused && !busy()) say("");
+  const more = busy() || view?.files.some((file) => file.state === "arriving" || file.state === "looking");
+  if (more) timer = setTimeout(refresh, SOON);
 }
 
 async function look() {
@@ -123,7 +128,7 @@ function showBar() {
 }
 
 function why(busy) {
-  if (busy) return [make("b", { text: view.state === "running" ? "Running: " : "Preparing: " }), [view.step, left(view.left)].filter(Boolean).join(", ") + " ", button("Cancel", () => act.cancel(current), { "data-control": "cancel" })];
+  if (busy) return [make("b", { text: view.state === "running" ? "Running: " : "Preparing: " }), [view.step, left(view)].filter(Boolean).join(", ") + " ", button("Cancel", () => act.cancel(current), { "data-control": "cancel" })];
   if (view.all_faults.length) {
     const stopped = view.state === "stopped" ? [make("b", { class: "act", text: `Stopped: ${view.reason} ` })] : [];
     return [...stopped, make("b", { class: "act" }, signal("act"), "Before a run: "), ...view.all_faults.flatMap((fault, number) => [number ? ", " : "", link(fault.link, () => lead(fault.at))])];

@@ -43,14 +43,15 @@ function about(file, view) {
 }
 
 export function showChannels(place, view, questions, act) {
+  const title = (note) => make("h2", {}, make("span", { class: "number", text: "2" }), " Channels ", make("span", { class: "note", text: note }));
   if (!view.log) {
-    renew(place);
+    renew(place, title("those of the log, once it is here"));
     return;
   }
   const rows = view.channels.flatMap((channel) => row(channel, view, act));
   const lacking = view.all_faults.filter((fault) => fault.at.startsWith("lacking:") || fault.at === "file:");
   renew(place,
-    make("h2", {}, make("span", { class: "number", text: "2" }), " Channels ", make("span", { class: "note", text: "roles and units are proposals" })),
+    title("roles and units are proposals"),
     ...lacking.map((fault) => make("div", { class: "alone", "data-control": fault.at, tabindex: "-1" }, words(fault, act))),
     make("table", { class: "channels" },
       make("caption", { class: "hidden", text: `Channels of ${view.log.name}` }),

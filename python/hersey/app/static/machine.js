@@ -1,6 +1,6 @@
 // The machine: a form with a sketch of what each number is, or its file as text.
 
-import { button, draw, make, renew, sign, typed } from "./building.js";
+import { button, draw, link, make, renew, sign, typed } from "./building.js";
 
 const open = new Set();
 const GROUPS = { limits: "Limits", contact: "Nip", lubricant: "Lubricant", rest: "Rest of the drive", drivetrain: "Stick speed" };
@@ -40,7 +40,7 @@ function form(view, questions, act) {
       make("input", { class: `field${faults.length ? " wrong" : ""}`, id, "data-control": `field:${q.key}`, value: machine.answers[q.key] ?? "", autocomplete: "off",
         "aria-invalid": faults.length ? "true" : null, "aria-describedby": `${id}-hint`, ...typed((field) => act.machine({ answers: { [q.key]: field.value } })), onfocus: () => meant(q.letter), onblur: () => meant("") }),
       make("span", { class: "unit", text: sign(q.unit) }),
-      make("p", { class: `hint${faults.length ? " act" : ""}`, id: `${id}-hint` }, hint, hint ? "" : make("span", { class: "hidden", text: q.words })));
+      make("p", { class: `hint${faults.length ? " act" : ""}`, id: `${id}-hint` }, hint, ...faults.filter((fault) => fault.keep).flatMap((fault) => [" ", link(fault.keep, () => act.keep(fault))]), hint ? "" : make("span", { class: "hidden", text: q.words })));
   };
   const others = questions.machine.filter((q) => !q.first);
   const sections = [...new Set(others.map((q) => q.section))];
