@@ -232,7 +232,7 @@ def test_an_exponent_of_the_transition_keeps_one_hersey_number() -> None:
     at_reference = 1.5 * ((float(surface.reference_temperature or 0.0) - 273.15) / 150) ** 3.0
     assert surface.transition.speed.value == pytest.approx(at_reference, rel=0.01)
     assert surface.transition.mixed_exponent.value == surface.values[3]
-    assert surface.transition.mixed_exponent.error == pytest.approx(surface.covariance[3, 3] ** 0.5, rel=1e-6)
+    assert surface.transition.mixed_exponent.error == pytest.approx(surface.covariance[3, 3] ** 0.5, rel=1e-3)
 
 
 def test_a_corner_is_as_uncertain_as_the_profile_of_its_likelihood() -> None:
@@ -258,7 +258,7 @@ def test_a_corner_is_as_uncertain_as_the_profile_of_its_likelihood() -> None:
 
 
 def test_why_no_transition_is_said() -> None:
-    few = hersey.fit(points_of(SPEEDS[:6], SPEEDS[:6] ** 0.3, error=0.01))
+    few = hersey.fit(points_of(SPEEDS[:5], SPEEDS[:5] ** 0.3, error=0.01))
     assert few.rejected_transition == "too few points for a second branch"
     straight = hersey.fit(points_of(SPEEDS, SPEEDS**0.3 * np.exp(wave(8, 0.01)), error=0.03))
     assert "a second branch does not pay: its AICc is better by -" in straight.rejected_transition

@@ -15,7 +15,7 @@ import numpy as np
 from scipy import optimize
 
 from hersey.arrays import BoolArray, FloatArray
-from hersey.damping.candidates.branched import HELD, Bend, Law, transition_exponent
+from hersey.damping.candidates.branched import FREE, HELD, Bend, Law, transition_exponent
 from hersey.damping.candidates.fitting import LawFit, fit_law, starts_of
 from hersey.damping.candidates.intervals import profile_interval
 from hersey.damping.candidates.likelihood import EVIDENCE, scatter_beyond
@@ -23,7 +23,7 @@ from hersey.damping.candidates.observations import Observations
 from hersey.damping.dwells import SAME_SPEED, distinct_speeds
 from hersey.damping.estimate import Estimate, quantile
 from hersey.damping.gradual import Closure, closure_at, least_around, trend_left
-from hersey.damping.scaled import law_of, powers_of, scaled_speed, temperatures_of
+from hersey.damping.scaled import law_of, move_of, powers_of, scaled_speed, temperatures_of
 from hersey.units import rpm
 
 #: Widths of a bend, in the logarithm of speed, that a corner is compared with.
@@ -45,6 +45,7 @@ class Branches:
     ends: tuple[float, float]  #: 95 % interval
     mixed: Estimate  #: exponent of the falling branch
     closure: Closure | None  #: None where the branches meet in a corner
+    freed: float | None = None  #: as `Transition` has it
 
 
 @dataclass(frozen=True)
@@ -57,6 +58,8 @@ class Transition:
     temperature_exponent: float  #: transition speed varies as T to this power
     evidence: float  #: AICc of the single power law minus that of the two branches
     closure: Closure | None = None  #: what motion is given in the place of a gradual bend
+    #: AICc of a transition at one Hersey number minus that of this one, where it moves by itself
+    freed: float | None = None
 
     @property
     def gradual(self) -> bool:
@@ -79,7 +82,9 @@ def fit_branches(data: Observations, single: LawFit) -> Branches | None:
     assert trend is not None
     # the split may hold a dwell of the other branch, so that the corner is searched from elsewhere as well
     corner = fit_law(law, data, [trend.values, *starts_of(law, data)])
-    return _bent(data, law, corner, trend, _parted(data, trend, splits))
+    free, gain = _freed(data, corner)
+    branches = _bent(data, free, trend, _parted(data, trend, splits))
+    return replace(branches, freed=gain) if branches.fit is free else branches
 
 
 def why_no_transition(data: Observations, single: LawFit, branches: Branches) -> str:
@@ -92,7 +97,7 @@ def why_no_transition(data: Observations, single: LawFit, branches: Branches) ->
     if gain < EVIDENCE:
         return f"a second branch does not pay: its AICc is better by {gain:.1f}, {EVIDENCE:g} are asked"
     if below.high >= -1.0:
-        bend = rpm(data.reference_speed * float(np.exp(fit.values[-1])))
+        bend = rpm(data.reference_speed * float(np.exp(_corner_of(fit))))
         return f"below {bend:.3g} rpm the exponent is {below}: torque does not fall with speed beyond doubt"
     if above.low <= -1.0:
         return f"above the bend the exponent is {above}: torque does not rise with speed beyond doubt"
@@ -108,16 +113,17 @@ def transition(data: Observations, single: LawFit, branches: Branches) -> Transi
     """Return the transition that branches show."""
     fit = branches.fit
     best, low, high, meeting = (
-        data.reference_speed * float(np.exp(v)) for v in (branches.least, *branches.ends, fit.values[-1])
+        data.reference_speed * float(np.exp(v)) for v in (branches.least, *branches.ends, _corner_of(fit))
     )
     reach = quantile(fit.freedom_of("at"))
     return Transition(
         speed=Estimate(best, best * float(np.log(high / low)) / (2 * reach), low, high),
         meeting_speed=meeting,
         mixed_exponent=branches.mixed,
-        temperature_exponent=transition_exponent(*powers_of(fit)),
+        temperature_exponent=move_of(fit),
         evidence=single.aicc - fit.aicc,
         closure=branches.closure,
+        freed=branches.freed,
     )
 
 
@@ -136,19 +142,28 @@ def _parted(data: Observations, trend: LawFit, splits: list[tuple[float, BoolArr
     return min(float(scaled[b].max()) for b in kept), max(float(scaled[~b].min()) for b in kept)
 
 
-def _bent(
-    data: Observations, law: Law, corner: LawFit, trend: LawFit, parted: tuple[float, float]
-) -> Branches:
+def _freed(data: Observations, corner: LawFit) -> tuple[LawFit, float | None]:
+    """The corner, or one that moves by itself where one Hersey number is excluded, and its gain in AICc."""
+    law = replace(law_of(corner), branches=FREE)
+    if law.thermal is None:
+        return corner, None
+    free = fit_law(law, data, [np.append(corner.values, move_of(corner)), *starts_of(law, data)])
+    gain = corner.aicc - free.aicc
+    return (free, gain) if gain > EVIDENCE else (corner, None)
+
+
+def _bent(data: Observations, corner: LawFit, trend: LawFit, parted: tuple[float, float]) -> Branches:
     """A corner, or trend lines about a gradual bend; while neither is excluded, the interval holds both."""
+    law, at = law_of(corner), _corner_of(corner)
     bends = [fit_law(replace(law, bend=Bend(width)), data, [corner.values]) for width in BEND_WIDTHS]
     gain = corner.aicc - min(bend.aicc_with(1) for bend in bends)
     trend_of_corner = trend_left(data, corner)
     if gain > EVIDENCE or trend_of_corner > PROVEN_TREND:
         return _around_a_bend(data, trend, parted, None)
     if _few(data, corner):
-        return Branches(corner, float(corner.values[-1]), _NOT_TOLD, corner.estimate("c_mixed"), None)
+        return Branches(corner, at, _NOT_TOLD, corner.estimate("c_mixed"), None)
     ends = profile_interval(corner, data, law.index("at"))
-    sharp = Branches(corner, float(corner.values[-1]), ends, _mixed(data, corner), None)
+    sharp = Branches(corner, at, ends, _mixed(data, corner), None)
     if min(bend.deviance for bend in bends) >= corner.deviance and trend_of_corner < TREND:
         return sharp
     gradual = _around_a_bend(data, trend, parted, ends)
@@ -245,10 +260,16 @@ def _unimodal_residuals(torque: FloatArray) -> FloatArray:
     return best
 
 
+def _corner_of(fit: LawFit) -> float:
+    """Where the lines of the branches meet, logarithm of scaled speed."""
+    return float(fit.values[law_of(fit).index("at")])
+
+
 def _few(data: Observations, corner: LawFit) -> str:
     """Return which side of a corner has too few dwells to be a branch; empty if both have enough."""
-    away = scaled_speed(data, corner) - corner.values[-1]
-    speed = f"{rpm(data.reference_speed * float(np.exp(corner.values[-1]))):.3g} rpm"
+    at = _corner_of(corner)
+    away = scaled_speed(data, corner) - at
+    speed = f"{rpm(data.reference_speed * float(np.exp(at))):.3g} rpm"
     for side, where, what in ((away < 0.0, "below", "slower"), (away >= 0.0, "above", "faster")):
         if not _enough(data, side):
             held, levels = int(np.count_nonzero(side)), distinct_speeds(data.speed[side])

@@ -114,6 +114,7 @@ def _surface(
         measured_transition = _with_sensors(measured_transition, fit, shifts)
     gradual = measured_transition is not None and measured_transition.gradual
     labels = {"level": "ln B_ref", "e": "b", "at": "ln(w_meet/w_ref)" if gradual else "ln(w_t/w_ref)"}
+    labels["d"] = "exponent of w_t in T"
     residuals = data.log_torque - law.predict(fit.values, data.inputs)
     return DampingSurface(
         a=coefficients["a"],

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from hersey import _core
 from hersey.arrays import FloatArray
 from hersey.damping.branches import Transition
-from hersey.damping.candidates.branched import HELD, ONE, Law
+from hersey.damping.candidates.branched import FREE, HELD, ONE, Law
 from hersey.damping.candidates.intervals import Band, band_of, of_one_dwell
 from hersey.damping.candidates.observations import Inputs
 from hersey.damping.candidates.shared_errors import Freedom, SharedScatter
@@ -101,7 +101,9 @@ class FittedLaw(Result):
         thermal = None
         if self.reference_temperature is not None:
             thermal = Thermal(SCALES[self.temperature_scale], self.reference_temperature)
-        return Law(thermal, HELD if self.transition else ONE)
+        if self.transition is None:
+            return Law(thermal, ONE)
+        return Law(thermal, HELD if self.transition.freed is None else FREE)
 
     @cached_property
     def _law_values(self) -> FloatArray:

@@ -113,6 +113,9 @@ def _by_move(data: Observations, fit: LawFit) -> FloatArray:
 def _by_power(fit: LawFit) -> FloatArray:
     """Derivative of that exponent by the values of the fit; zeros if isothermal or bounded."""
     law, out = law_of(fit), np.zeros(fit.values.size)
+    if "d" in law.names:
+        out[law.index("d")] = 1.0
+        return out
     e, c = powers_of(fit)
     if law.thermal and 1.0 + c > LEAST_POWER:
         out[law.index("e")], out[law.index("c")] = -1.0 / (1.0 + c), e / (1.0 + c) ** 2

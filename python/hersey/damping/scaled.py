@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.damping.candidates.branched import Law, transition_exponent
+from hersey.damping.candidates.branched import FREE, Law, transition_exponent
 from hersey.damping.candidates.fitting import LawFit
 from hersey.damping.candidates.observations import Observations
 
@@ -23,6 +23,14 @@ def powers_of(fit: LawFit) -> tuple[float, float]:
     return e, float(fit.values[law.index("c")])
 
 
+def move_of(fit: LawFit) -> float:
+    """Return the exponent of the transition speed in temperature: that of one Hersey number, or its own."""
+    law = law_of(fit)
+    if law.branches == FREE and law.thermal:
+        return float(fit.values[law.index("d")])
+    return transition_exponent(*powers_of(fit))
+
+
 def temperatures_of(data: Observations, law: Law) -> FloatArray:
     """Return ln temperature about the reference, in the scale of the law; zeros if isothermal."""
     if law.thermal is None or data.inputs.kelvin is None:
@@ -32,7 +40,7 @@ def temperatures_of(data: Observations, law: Law) -> FloatArray:
 
 def scaled_speed(data: Observations, fit: LawFit) -> FloatArray:
     """Return ln(w/w_ref) at the same Hersey number at the reference temperature, shape (points,)."""
-    shift = transition_exponent(*powers_of(fit)) * temperatures_of(data, law_of(fit))
+    shift = move_of(fit) * temperatures_of(data, law_of(fit))
     return np.asarray(data.inputs.log_speed - shift)
 
 
@@ -42,5 +50,5 @@ def scaled_torque(data: Observations, fit: LawFit) -> FloatArray:
     It is the ln torque measured unless 1 + c is so small that the move of the transition is bounded.
     """
     e, c = powers_of(fit)
-    power = e + (1.0 + c) * transition_exponent(e, c)
+    power = e + (1.0 + c) * move_of(fit)
     return np.asarray(data.log_torque - power * temperatures_of(data, law_of(fit)))

@@ -67,11 +67,11 @@ def _least(branches: Branches, log_reference: float) -> tuple[float, float]:
     fit, closure = branches.fit, branches.closure
     values = fit.values if closure is None else closure.values
     covariance = fit.covariance if closure is None else closure.covariance
-    c = fit.law.index("c")
+    c, at = fit.law.index("c"), fit.law.index("at")
     by = np.zeros(values.size)
-    by[0], by[c], by[-1] = 1.0, values[-1], 1.0 + values[c]
+    by[0], by[c], by[at] = 1.0, values[at], 1.0 + values[c]
     level = values[0] + (0.0 if closure is None else log_reference)  # of torque, not of damping
-    torque = float(level + (1.0 + values[c]) * values[-1])
+    torque = float(level + (1.0 + values[c]) * values[at])
     return torque, float(np.sqrt(max(float(by @ covariance @ by), 0.0)))
 
 

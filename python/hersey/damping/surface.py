@@ -34,6 +34,8 @@ if TYPE_CHECKING:
 
 #: How a stick speed goes with temperature: as the transition speed does, or not at all.
 WITH_TRANSITION, FIXED = "with transition", "fixed"
+#: Numbers of a law with temperature whose transition is at one Hersey number.
+_HELD = 5
 
 
 @dataclass(frozen=True, repr=False)
@@ -53,8 +55,8 @@ class DampingSurface(FittedLaw):
         if t.closure is not None:
             values, covariance = t.closure.values, t.closure.covariance
         told = np.array([t.mixed_exponent.error, t.speed.error / t.speed.value])
-        wider = np.ones(values.size)
-        wider[-2:] = np.maximum(told / np.sqrt(np.maximum(np.diag(covariance)[-2:], 1e-300)), 1.0)
+        wider, of = np.ones(values.size), [self._law.index(name) for name in ("c_mixed", "at")]
+        wider[of] = np.maximum(told / np.sqrt(np.maximum(np.diag(covariance)[of], 1e-300)), 1.0)
         return values, covariance * np.outer(wider, wider)
 
     @takes_si(temperature="temperature")
@@ -87,9 +89,12 @@ class DampingSurface(FittedLaw):
         values, covariance = self._closure
         _, b, c, *_ = values
         away = np.zeros(values.size)
-        away[-1] = 1.0
-        away[1] = x * transition_exponent(1.0, c)
-        away[2] = x * b / (1.0 + c) ** 2 if 1.0 + c > LEAST_POWER else 0.0
+        away[self._law.index("at")] = 1.0
+        if self.transition.freed is not None:
+            away[self._law.index("d")] = x
+        else:
+            away[1] = x * transition_exponent(1.0, c)
+            away[2] = x * b / (1.0 + c) ** 2 if 1.0 + c > LEAST_POWER else 0.0
         error = float(np.sqrt(away @ covariance @ away))
         speed, freedom = self.transition_speed(temperature), self.freedoms.of(away)
         reach = np.exp(quantile(freedom) * error)
@@ -213,22 +218,9 @@ class DampingSurface(FittedLaw):
         )
         return film if self.rest is None else with_rest(film, self.rest, roll_radius, temperature)
 
-    @takes_si(
-        roll_radius="length",
-        stick_speed="belt speed",
-        temperature="temperature",
-        stick_speed_temperature="temperature",
-    )
+    @takes_si(roll_radius="length", temperature="temperature")
     def drag_samples(
-        self,
-        count: int,
-        seed: int,
-        *,
-        roll_radius: float,
-        stick_speed: float,
-        temperature: float | None = None,
-        stick_speed_temperature: float | None = None,
-        stick_speed_rule: str = WITH_TRANSITION,
+        self, count: int, seed: int, *, roll_radius: float, temperature: float | None = None, **sticking: Any
     ) -> dict[str, FloatArray]:
         """Return draws of the drag that the fit's covariance allows, for `hysteresis` and the like.
 
@@ -244,10 +236,11 @@ class DampingSurface(FittedLaw):
             Of the random draws, at least 0.
         roll_radius
             m, as in `drag`.
-        stick_speed, stick_speed_temperature, stick_speed_rule
-            As in `drag`; a transition speed below the stick speed leaves no falling branch.
         temperature
             K; needed if the law depends on it.
+        sticking
+            ``stick_speed`` and what else `drag` takes; a transition speed below the stick speed leaves no
+            falling branch.
 
         Returns
         -------
@@ -264,28 +257,14 @@ class DampingSurface(FittedLaw):
             If a value is out of range, with its name.
         """
         drawn, said = self.drawn_drag(
-            count,
-            seed,
-            roll_radius=roll_radius,
-            stick_speed=stick_speed,
-            temperature=temperature,
-            stick_speed_temperature=stick_speed_temperature,
-            stick_speed_rule=stick_speed_rule,
+            count, seed, roll_radius=roll_radius, temperature=temperature, **sticking
         )
         for warning in said:
             warnings.warn(warning, stacklevel=3)
         return drawn
 
     def drawn_drag(
-        self,
-        count: int,
-        seed: int,
-        *,
-        roll_radius: float,
-        stick_speed: float,
-        temperature: float | None = None,
-        stick_speed_temperature: float | None = None,
-        stick_speed_rule: str = WITH_TRANSITION,
+        self, count: int, seed: int, *, roll_radius: float, temperature: float | None = None, **sticking: Any
     ) -> tuple[dict[str, FloatArray], tuple[Warning, ...]]:
         """Return the draws of `drag_samples`, and what that warns of: for threads, which share warnings."""
         if self.transition is None:
@@ -300,13 +279,7 @@ class DampingSurface(FittedLaw):
             reason = "this law depends on temperature: give it one, in K"
             other = "temperature is given, but this law does not depend on it"
             raise ParameterError(reason if self.b is not None else other)
-        at = self.drag(
-            roll_radius=roll_radius,
-            stick_speed=stick_speed,
-            temperature=temperature,
-            stick_speed_temperature=stick_speed_temperature,
-            stick_speed_rule=stick_speed_rule,
-        )
+        at = self.drag(roll_radius=roll_radius, temperature=temperature, **sticking)
         x = 0.0
         if temperature is not None and self.reference_temperature is not None:
             x = self._checked_temperature(temperature)
@@ -319,8 +292,8 @@ class DampingSurface(FittedLaw):
                 "the intervals hold for fits that have one"
             )
             said.append(UserWarning(again))
-        level, b, c, mixed, corner = kept.T
-        z = corner + _transition_exponents(b, c) * x
+        level, b, c, mixed, corner, move = kept.T
+        z = corner + move * x
         speed = self.reference_speed * np.exp(z)
         torque = np.exp(level + b * x + c * z) * speed
         drawn = {
@@ -332,12 +305,12 @@ class DampingSurface(FittedLaw):
         return drawn, tuple(said)
 
     def _draws(self, count: int, seed: int, x: float, slowest: float) -> tuple[FloatArray, int, int]:
-        """Draws of level, b, c, c_mixed and at that have both branches; how many were drawn, and refused."""
-        kept, total = np.empty((0, 5)), 0
+        """Draws of `_round` that have both branches; how many were drawn, and refused."""
+        kept, total = np.empty((0, 6)), 0
         while len(kept) < count:
             values = self._round(count, seed, total // count)
-            _, b, c, mixed, at = values.T
-            falls = (c > -1.0) & (mixed < -1.0) & (at + _transition_exponents(b, c) * x > slowest)
+            _, _, c, mixed, at, move = values.T
+            falls = (c > -1.0) & (mixed < -1.0) & (at + move * x > slowest)
             kept, total = np.concatenate([kept, values[falls]]), total + count
             if 2 * len(kept) < total:
                 raise InsufficientDataError(
@@ -347,7 +320,7 @@ class DampingSurface(FittedLaw):
         return kept[:count], total, total - len(kept)
 
     def _round(self, count: int, seed: int, number: int) -> FloatArray:
-        """So many draws of level, b, c, c_mixed and at, which are the same at any temperature."""
+        """So many draws of level, b, c, c_mixed, at and how it moves with temperature, the same at any."""
         if number >= len(self._rounds.get((count, seed), ())):
             self._rounds[count, seed] = self._drawn_rounds(count, seed, number + 1)
         return self._rounds[count, seed][number]
@@ -368,7 +341,12 @@ class DampingSurface(FittedLaw):
             share = rng.random(count)  # one quantile of chi-square for all values of a draw
             by_freedom = {f: np.sqrt(f / square_quantile(share, f)) for f in set(freedoms)}
             values = centre + values * np.column_stack([by_freedom[f] for f in freedoms])
-            out.append(np.insert(values, 1, 0.0, axis=1) if self.b is None else values)
+            if self.b is None:
+                values = np.insert(values, 1, 0.0, axis=1)
+            if values.shape[1] == _HELD:
+                b, c = values[:, 1], values[:, 2]
+                values = np.column_stack([values, -b / np.maximum(1.0 + c, LEAST_POWER)])
+            out.append(values)
         return out
 
     def _checked_temperature(self, temperature: float) -> float:
@@ -396,7 +374,3 @@ class DampingSurface(FittedLaw):
     def to_frame(self) -> pl.DataFrame:
         """Return the coefficients with error and 95 % interval; T of the law in its scale, w in rad/s."""
         return table_of(self)
-
-
-def _transition_exponents(b: FloatArray, c: FloatArray) -> FloatArray:
-    return np.asarray(-b / np.maximum(1.0 + c, LEAST_POWER))

@@ -64,7 +64,11 @@ def summary_of(s: FittedLaw) -> str:
             _variable("w_t", s.transition.speed) + f"  rad/s{at}",
         ]
         if s.b:
-            lines.append(f"    w_t varies as T^{s.transition.temperature_exponent:.3g} (fixed Hersey number)")
+            freed = s.transition.freed
+            why = "fixed Hersey number"
+            if freed is not None:
+                why = f"by itself: one Hersey number does not hold, its AICc is worse by {freed:.1f}"
+            lines.append(f"    w_t varies as T^{s.transition.temperature_exponent:.3g} ({why})")
         lines.append("    below w_t the exponent is c_mixed")
         if s.transition.gradual:
             lines.append("    the bend is gradual: w_t is where a smooth curve through the dwells is least,")

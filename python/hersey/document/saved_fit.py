@@ -68,7 +68,8 @@ def _check(path: Path, document: _FitFile) -> None:
     """Refuse what the schema allows and no fit can be."""
     fit = document.fit
     thermal = "b" in fit.coefficients
-    size = 2 + thermal + 2 * (fit.transition is not None)
+    freed = fit.transition is not None and fit.transition.freed is not None
+    size = 2 + thermal + 2 * (fit.transition is not None) + freed
     covariance = np.array(fit.covariance) if {len(row) for row in fit.covariance} == {size} else np.zeros(0)
     speed = None if fit.transition is None else fit.transition.speed
     ranges = [("speed_range", fit.speed_range), ("temperature_range", fit.temperature_range)]
@@ -166,7 +167,7 @@ def _derived(fit: FitPart) -> list[tuple[str, float, float]]:
     if thermal:
         derived.append(("coefficients.b", fit.coefficients["b"].value, b))
     if fit.transition is not None:
-        mixed, meeting = fit.values[-2:]
+        mixed, meeting, *moves = fit.values[1 + thermal + 1 :]
         closure = fit.transition.closure
         at = meeting if closure is None else closure.values[-1]
         derived += [
@@ -180,7 +181,7 @@ def _derived(fit: FitPart) -> list[tuple[str, float, float]]:
             (
                 "transition.temperature_exponent",
                 fit.transition.temperature_exponent,
-                transition_exponent(b, c),
+                moves[0] if moves else transition_exponent(b, c),
             ),
         ]
     return derived
@@ -210,6 +211,7 @@ def _transition(part: TransitionPart) -> Transition:
         closure=None
         if part.closure is None
         else Closure(np.array(part.closure.values), np.array(part.closure.covariance)),
+        freed=part.freed,
     )
 
 

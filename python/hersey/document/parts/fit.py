@@ -29,6 +29,10 @@ class TransitionPart(Part):
     closure: ClosurePart | None = Field(
         description="what motion is given of a gradual bend, its branches trend lines; null for a corner"
     )
+    freed: float | None = Field(
+        default=None,
+        description="where one Hersey number does not hold: by how much its AICc is worse",
+    )
 
 
 class Curve(Part):
