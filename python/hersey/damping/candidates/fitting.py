@@ -39,6 +39,9 @@ AnyLaw = Law | StribeckLaw | ConstantPlusLaw | RestLaw | SharedLoadLaw
 _ROUNDS = 8
 #: Relative error assumed of a dwell while the search for a start goes on.
 _FIRST_SCATTER = 0.03
+#: Standard errors of the zero or the rest beyond which a fit is tried from a wide scatter too: of a law that
+#: does not hold, an error of the zero by tens of them can make up for a part, and then leaves little scatter.
+_STRAINED, _WIDE_SCATTER = 4.0, 0.3
 #: Variance of a value by a scatter of groups that is not told, over that by as much of dwells, that is
 #: little: groups may scatter several times as much as dwells.
 _LITTLE = 0.1
@@ -136,13 +139,26 @@ def fit_law(law: AnyLaw, data: Observations, starts: list[FloatArray] | None = N
     starts
         Where to search from; found from linear fits if not given.
     """
+    tried = starts or starts_of(law, data)
+    fit = _fit_from(law, data, tried, _FIRST_SCATTER)
+    stated = _stated(data)
+    if not np.any(np.abs(fit.effects[:stated]) > _STRAINED):
+        return fit
+    return min((fit, _fit_from(law, data, tried, _WIDE_SCATTER)), key=lambda found: found.deviance)
+
+
+def _stated(data: Observations) -> int:
+    """How many disturbances come first whose size is no guess of the fit: zero, rest and heating."""
+    return int(data.tare.shape[1] + bool(data.heating.size))
+
+
+def _fit_from(law: AnyLaw, data: Observations, tried: list[FloatArray], scatter: float) -> LawFit:
+    """Fit and scatter in turn, until they settle, from a scatter on."""
     size = len(law.names)
     grouped = groupings(data)
     shared = tuple(SharedScatter(g.name, 0.0, 1.0, told=True) for g in grouped)
     columns = disturbances(data, grouped, shared, np.zeros(len(data)))
-    tried = starts or starts_of(law, data)
     errors = np.array(data.torque_error)
-    scatter = _FIRST_SCATTER
     sigma = np.sqrt(errors**2 + scatter**2)
     roughly = partial(search, law, data, columns, sigma, precision=1e-4, calls=8)
     nothing = np.zeros(columns.shape[1])
@@ -195,7 +211,7 @@ def _law_fit(
     bread = np.asarray(np.linalg.pinv(best.jacobian.T @ best.jacobian, rcond=1e-14), dtype=np.float64)
     slopes = np.column_stack([law.jacobian(best.values[:size], data.inputs), columns])
     effects = best.values[size:]
-    known = data.tare.shape[1] + bool(data.heating.size)  # disturbances whose size is no guess of the fit
+    known = _stated(data)
     stated = columns[:, :known] @ effects[:known]
     return LawFit(
         law=law,
