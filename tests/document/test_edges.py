@@ -20,7 +20,10 @@ from hersey.document.decision.words import figures
 from hersey.document.parts import CarriedPart, RegimePart
 from hersey.document.parts.fit import LackOfFitPart
 from hersey.machine.limits import OperatingPoint
+from hersey.machine.machine import Machine
 from hersey.stability.operating_map import OperatingMap
+from hersey.stability.plan import of_log as plans
+from hersey.stability.plan import plan_of_log
 from tests.document.conftest import BETWEEN, HOT, Decide
 
 
@@ -206,3 +209,14 @@ def test_torque_far_from_the_file_is_a_warning(
     carried = CarriedPart.model_construct(ratio=ratio)
     titles = {flag.title for flag in decide(replace(found, points=()), carried=carried).flags}
     assert ("Torque and file disagree." in titles) == told
+
+
+def test_a_plan_says_of_which_belt_it_is(
+    surface: DampingSurface, machine: Machine, found: Behaviour, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """No share of draws counts how a belt comes to rest."""
+    [plan] = [each.plan for each in found.points if each.plan is not None]
+    for made, said in ((plan, True), (replace(plan, schedule=None), False)):
+        monkeypatch.setattr(plans, "plan_profile", lambda *_, made=made, **__: made)
+        told = plan_of_log(surface, machine, target_speed=BETWEEN, temperature=HOT)
+        assert any("creeps to rest (retained)" in text for text in told.warnings) == said

@@ -434,7 +434,7 @@ def test_what_a_plan_says(plan: Plan) -> None:
     hold = f"hold {plan.hold:.4g} s, " if plan.hold > 0 else ""
     assert plan.verdict() == (
         f"Go up to {plan.peak_speed:.4g} m/s in {plan.rise:.4g} s, {hold}come down to 1.9 m/s in "
-        f"{plan.fall:.4g} s. From {plan.duration:.5g} s on the belt slides for good."
+        f"{plan.fall:.4g} s. From {plan.duration:.5g} s on the drive is there and the belt slides for good."
     )
     drawn_often = replace(plan, draws=1500, share=0.97, share_low=0.96178)
     assert drawn_often.proof() == (

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from hersey.arrays import FloatArray
 from hersey.damping.surface import DampingSurface
 from hersey.errors import ParameterError
@@ -15,6 +17,8 @@ from hersey.stability.plan.result import Plan
 from hersey.stability.plan.search import Progress
 from hersey.units import takes_si
 
+#: What no share of draws counts: how a belt comes to rest.
+_CREEPS = "this is of a belt that creeps to rest (retained): one that stops dead (stiction) may stick on"
 #: Draws of the fit from which those of the plan are taken.
 _DRAWS = 4000
 
@@ -54,7 +58,7 @@ def plan_of_log(
     varies = heat is not None or isinstance(temperature, Schedule)
     kelvin = None if isinstance(temperature, Schedule) else temperature
     drag, samples = drag_and_draws(surface, machine, kelvin, seed, varies=varies)
-    return plan_profile(
+    plan = plan_profile(
         machine.train,
         drag,
         target_speed=target_speed,
@@ -68,6 +72,7 @@ def plan_of_log(
         seed=seed,
         progress=progress,
     )
+    return replace(plan, warnings=(*plan.warnings, _CREEPS)) if plan.found else plan
 
 
 def _uncertainty(machine: Machine, drag: Drag) -> dict[str, Uncertainty]:

@@ -98,7 +98,7 @@ class Plan(Result):
             way = f"Go up to {speed_text(self.peak_speed)} {up}, {held}"
             way += f"come down to {speed_text(self.target_speed)} {down}"
         start = f"Wait {self.wait:.5g} s. " if self.wait > 0 else ""
-        return f"{start}{way}. From {self.duration:.5g} s on the belt slides for good."
+        return f"{start}{way}. From {self.duration:.5g} s on the drive is there and the belt slides for good."
 
     def proof(self) -> str:
         """Return how far the plan is verified, in a sentence."""
