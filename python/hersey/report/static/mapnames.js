@@ -64,6 +64,9 @@ function mapNames({ map, frame, picture, edges, beyond, slowest, fastest, across
 
   // The word of each zone where it has the most room, upright or along the zone; else it stands in the key.
   function nameZones(zones, box) {
+    // A word on the edge of what was measured would be crossed out.
+    const [left, top, right, bottom] = box;
+    taken.push([left - 1, top, left + 1, bottom], [right - 1, top, right + 1, bottom], [left, top - 1, right, top + 1], [left, bottom - 1, right, bottom + 1]);
     const nameless = [];
     for (const [name, bands] of Object.entries(zones)) {
       const word = name === "stall" ? beyond : name, size = 14, width = shape.width(word, size, 700) + 6;
