@@ -127,7 +127,9 @@ def fresh_share(given: Case, plan: Plan, draws: int = FRESH, seed: int = 990_001
     if given.limits.acceleration is not None:
         assert np.all(np.abs(np.diff(speeds)) <= given.limits.acceleration * steps * (1 + 1e-6))
     rng = np.random.default_rng(seed)
-    machines = drawn(given.train, given.drag, given.uncertainty, {}, rng, draws if given.uncertainty else 1)
+    machines, _ = drawn(
+        given.train, given.drag, given.uncertainty, {}, rng, draws if given.uncertainty else 1
+    )
     good = 0
     for machine in machines:
         course_end = 0.0 if given.temperature is None else 30.0

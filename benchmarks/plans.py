@@ -191,7 +191,7 @@ def first_slide(given: Asked, plan: Plan) -> float:
 def holds(given: Asked, plan: Plan, count: int, seed: int) -> float:
     """Return the share of fresh draws that slide for good from the plan's end on and exceed nothing."""
     assert plan.schedule is not None
-    machines = drawn(given.train, given.drag, given.uncertainty, {}, np.random.default_rng(seed), count)
+    machines, _ = drawn(given.train, given.drag, given.uncertainty, {}, np.random.default_rng(seed), count)
     good = 0
     for machine in machines:
         train, lap = replace(machine.train, grip=given.bears), machine.lap

@@ -239,13 +239,20 @@ def test_states_and_torques_go_with_their_temperatures(few: OperatingMap) -> Non
     for state, t, v in zip(many, kelvin, speed, strict=True):
         assert state == few.state_at(float(t), float(v))
     assert few.states(kelvin[:, None], speed).shape == (3, 3)
+    # of a motor of 4.5 N m and a belt that bears 4.18 N m by the estimate, of one of 9 N m for certain
+    strong = replace(few, torque_limit=9.0)
+    assert not any(state.doubtful for state in strong.look_up(467.0, [0.01, 0.3]))
+    assert strong.look_up(467.0, 0.3)[0].verdict() == "Smooth."
+    weak = replace(few, torque_limit=3.0)
+    assert weak.look_up(467.0, 0.3)[0].verdict().startswith("The motor does not start")
+    may = "The drive may not start a belt at rest. If it does:"
     words = {
         s: few.look_up(467.0, v)[0].verdict() for s, v in (("slow", 0.01), ("band", 0.045), ("fast", 0.3))
     }
     assert words == {
-        "slow": "Stick-slip is certain.",
-        "band": "Smooth only if it comes from above; from rest it sticks and slips.",
-        "fast": "Smooth.",
+        "slow": f"{may} Stick-slip is certain.",
+        "band": f"{may} Smooth only if it comes from above; from rest it sticks and slips.",
+        "fast": f"{may} Smooth.",
     }
 
 
@@ -260,7 +267,8 @@ def test_every_sentence_of_a_map(few: OperatingMap, surface: DampingSurface) -> 
         f"V* depends on the stick speed, 0.3 mm/s at {hot - 273.15:.0f} degC here (with the transition speed "
         f"it moves from {cold_stick:.3g} to {hot_stick:.3g} mm/s), which nobody measures; its "
         "interval counts the fit and stiffness and stick speed",
-        f"the drive bears 4.5 N m (motor torque); a belt at rest bears {rest:.3g} N m before it starts",
+        f"the drive bears 4.5 N m (motor torque); a belt at rest bears {rest:.3g} N m before it starts, "
+        "so it may not start",
         f"thick paper: within the 95 % interval of V* ({1e3 * low:.3g} to {1e3 * high:.3g} mm/s), so the "
         "verdict is not certain",
     )
@@ -329,15 +337,16 @@ def test_the_summary_is_a_table_of_the_map(few: OperatingMap) -> None:
         mm(few.lower[i]),
         f"{mm(few.transition[i])} [{mm(few.transition_interval[0, i])}, {mm(few.transition_interval[1, i])}]",
         f"{mm(few.upper[i])} [{mm(few.upper_interval[0, i])}, {mm(few.upper_interval[1, i])}]",
-        mm(few.stall_above[i]),
+        f"{mm(few.stall_above[i])}, may not start",
     ]
     assert "".join(f"{cell:<26s}" for cell in cells).rstrip() in lines
     torque = 0.015 * float(few.drag.at(453.15).force(0.12))
-    assert f"full speed (120 mm/s, 180 degC, {torque:.3g} N m): Smooth." in lines
+    may = "The drive may not start a belt at rest. If it does:"
+    assert f"full speed (120 mm/s, 180 degC, {torque:.3g} N m): {may} Smooth." in lines
     free = replace(few, torque_limit=None, stall_above=np.full(3, np.inf))
     assert free.summary().splitlines()[2].endswith("not known")
     never = replace(few, stall_above=np.full(3, np.inf))
-    assert never.summary().splitlines()[2].endswith("never")
+    assert never.summary().splitlines()[2].endswith("never, may not start")
 
 
 # --- the picture -------------------------------------------------------------------------------------------

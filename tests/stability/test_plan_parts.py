@@ -11,6 +11,7 @@ import pytest
 
 import hersey
 from hersey.charts.plan import plan_chart
+from hersey.errors import ParameterError
 from hersey.machine.limits import Limits
 from hersey.machine.uncertainty import Uncertainty
 from hersey.motion.schedule import Schedule
@@ -182,7 +183,7 @@ def test_draws_of_machines() -> None:
         "transition_speed": [0.9, 1.1, 1.2],
         "mass": [1.0, 2.0, 3.0],
     }
-    machines = drawn(TRAIN, DRAG, uncertainties, samples, np.random.default_rng(4), 30)
+    machines, _ = drawn(TRAIN, DRAG, uncertainties, samples, np.random.default_rng(4), 30)
     rng = np.random.default_rng(4)
     stick = uncertainties["stick_speed"].draw(rng, 0.01, 30)  # mass is among the samples, which hold
     picked = rng.integers(0, 3, 30)
@@ -193,6 +194,23 @@ def test_draws_of_machines() -> None:
         assert drag.transition_speed == samples["transition_speed"][picked[i]]
         assert machine.train == replace(TRAIN, mass=samples["mass"][picked[i]])
         assert drag.ehl_exponent == -0.7
+
+
+def test_draws_that_are_no_belt_are_left_out_and_counted() -> None:
+    """Stick speeds above the transition speed of 1: half of each range, or nearly all."""
+    spread = {"stick_speed": Uncertainty(limits=(0.1, 10.0))}
+    machines, none = drawn(TRAIN, DRAG, spread, {}, np.random.default_rng(4), 400)
+    assert len(machines) == 400
+    assert none == pytest.approx(0.5, abs=0.05)
+    stick = [machine.drag.law_at(None).stick_speed for machine in machines]
+    assert max(stick) < 1.0
+    assert np.mean(np.array(stick) < 0.1**0.5) == pytest.approx(0.5, abs=0.08)
+    with pytest.raises(ParameterError, match="hardly a draw is possible: state less"):
+        drawn(
+            TRAIN, DRAG, {"stick_speed": Uncertainty(limits=(0.9, 90.0))}, {}, np.random.default_rng(4), 400
+        )
+    with pytest.raises(ParameterError, match="uncertainty: a draw is impossible"):
+        drawn(TRAIN, DRAG, {"mass": Uncertainty(limits=(-2.0, -1.0))}, {}, np.random.default_rng(4), 4)
 
 
 def test_neighbours_differ_in_one_number_by_a_thousandth() -> None:
@@ -559,13 +577,13 @@ def test_a_chart_with_a_wait_and_a_course(plan: Plan) -> None:
 def test_each_proof_has_draws_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
     """The search draws from stream 0; every proof asks for a stream that it has not seen."""
     asked: list[int] = []
-    draws = Unknown.draws
+    draw = Unknown.drawn
 
-    def watched(self: Unknown, number: int, count: int) -> list[MachineSample]:
+    def watched(self: Unknown, number: int, count: int) -> tuple[list[MachineSample], float]:
         asked.append(number)
-        return draws(self, number, count)
+        return draw(self, number, count)
 
-    monkeypatch.setattr(Unknown, "draws", watched)
+    monkeypatch.setattr(Unknown, "drawn", watched)
     unknown = Unknown(TRAIN, DRAG, {"mass": Uncertainty(share=0.2)}, {}, 1)
     shape, steady = Shape(1.9, 3.0, 0.3, 0.4, 0.5), TemperatureProfile(None)
     unknown.trials(0.9, steady, math.inf)

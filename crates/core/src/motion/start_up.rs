@@ -16,7 +16,7 @@ use crate::work::Work;
 
 /// Laps followed after the last ramp at first, laps without sticking that end the start-up, doublings at most.
 pub(super) const WATCH: f64 = 3.0;
-pub(super) const CALM: f64 = 1.5;
+const CALM: f64 = 1.5;
 const DOUBLINGS: usize = 6;
 
 /// What is asked of a start-up.

@@ -13,7 +13,7 @@ use super::event::Guard;
 use super::hybrid::Motion;
 use super::lanes::{Lanes, arrival, run_lanes};
 use super::schedule::Schedule;
-use super::start_up::{CALM, Ending, StartUp, Started, WATCH, greatest_pull, holds, start_up};
+use super::start_up::{Ending, StartUp, Started, WATCH, greatest_pull, holds, start_up};
 use super::system::{Drive, Drivetrain, Integrator, Start, System, checked_tolerance};
 use crate::drag::{Closure, Drag, Mode, Rest};
 use crate::error::{Error, above, unless_stopped};
@@ -21,6 +21,8 @@ use crate::work::Work;
 
 /// Steps after which a belt is followed alone.
 const MAX_STEPS: u32 = 4000;
+/// Laps after the last ramp after which it is, too: swings that hardly die out.
+const LONGEST: f64 = 50.0;
 /// Pieces of motion off the lanes after which it is.
 const MAX_PIECES: usize = 200;
 /// Damping of the rising branch, in scaled units, from which the motion is stiff, and as much of the falling one.
@@ -164,8 +166,9 @@ struct Rider<'a> {
     ramps: f64,
     until: f64,
     latest: f64,
-    /// When the belt is followed alone.
+    /// When a belt that is held is judged in any case, and when one that slides is followed alone.
     watched: f64,
+    given_up: f64,
     range: Range,
     released: f64,
     /// Whether it is known that a belt that sticks comes to slide, or not asked.
@@ -200,6 +203,7 @@ impl<'a> Rider<'a> {
             return None;
         }
         let scaled = |time: f64| time / time_scale;
+        let (ramps, until) = (scaled(asked.ramps), scaled(asked.until));
         Some(Box::new(Self {
             index,
             belt,
@@ -219,10 +223,11 @@ impl<'a> Rider<'a> {
             target,
             steady: drag.force(asked.target) / pull_scale,
             foot: drag.rising_from() / speed_scale,
-            ramps: scaled(asked.ramps),
-            until: scaled(asked.until),
+            ramps,
+            until,
             latest: scaled(asked.latest),
-            watched: scaled((asked.ramps + WATCH * TAU * time_scale).max(asked.until)),
+            watched: ramps + WATCH * TAU,
+            given_up: ramps.max(until) + LONGEST * TAU,
             range: Range::Creep,
             released: f64::INFINITY,
             judged: asked.peak,
@@ -302,7 +307,7 @@ impl<'a> Rider<'a> {
     /// Take the drive from its segment.
     fn drive_on(&self, lanes: &mut Lanes, l: usize) {
         (lanes.drive[l], lanes.ramp[l]) = self.drive_at(lanes.time[l]);
-        lanes.end[l] = self.segment_end().min(self.watched);
+        lanes.end[l] = self.segment_end().min(self.given_up);
     }
 
     /// The belt goes on over a range of speeds.
@@ -349,8 +354,8 @@ impl<'a> Rider<'a> {
         if !held && time >= self.ramps.max(self.until) && self.dies_out(lanes, l) {
             return Next::Ends(Ending::Slides);
         }
-        if time >= self.watched {
-            return self.end_of_watch(lanes, l, tolerance, work);
+        if time >= self.given_up {
+            return Next::Leaves;
         }
         if time >= self.segment_end() {
             self.segment += 1;
@@ -388,34 +393,17 @@ impl<'a> Rider<'a> {
         if end >= self.latest {
             return Next::Ends(Ending::Late);
         }
-        if end >= self.watched {
+        if end >= self.watched.max(self.until) {
             self.judged = false;
-            return self.judge(None, tolerance, work).unwrap_or(Next::Leaves);
+            if let Some(end) = self.judge(None, tolerance, work) {
+                return end;
+            }
         }
         lanes.most[l] = lanes.most[l].max(self.release);
         self.released = end;
         self.let_go(lanes, l, end, (self.release, self.stick_speed));
         self.enter(lanes, l, Range::Mixed);
         Next::Rides
-    }
-
-    /// What a belt comes to that slides, at the end of the time for which it is watched.
-    fn end_of_watch(&self, lanes: &Lanes, l: usize, tolerance: f64, work: &Work) -> Next {
-        let BeltAtRest { train, drag, .. } = self.belt;
-        let start = Start {
-            belt_speed: lanes.speed[l] * self.speed_scale,
-            stretch: (lanes.pull[l] + self.rest.force) * self.pull_scale / train.stiffness(),
-        };
-        let work = work.apart(work.allowed());
-        let target = self.asked.target;
-        match settle(train, drag, target, start, Span::UntilClosed, tolerance, &work) {
-            Ok(cycle) if cycle.kind != CycleKind::SteadySliding => {
-                Next::Ends(Ending::Settles(cycle.kind))
-            }
-            Ok(_) if lanes.time[l] - self.released >= CALM * TAU => Next::Ends(Ending::Slides),
-            Ok(_) => Next::Leaves,
-            Err(error) => Next::Fails(error),
-        }
     }
 
     /// The end of a belt that is held while the drive moves as it will, at the stick speed or where `held` says.
@@ -461,7 +449,7 @@ impl<'a> Rider<'a> {
                 return Next::Ends(Ending::Late);
             }
             if !holds(phase.mode) {
-                if phase.direction < 0.0 || phase.mode != Mode::Mixed || time >= self.watched {
+                if phase.direction < 0.0 || phase.mode != Mode::Mixed || time >= self.given_up {
                     return Next::Leaves;
                 }
                 let state = (phase.pull / self.pull_scale - self.rest.force, self.stick_speed);

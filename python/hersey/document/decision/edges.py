@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import numpy as np
-
 from hersey.arrays import FloatArray
 from hersey.stability.operating_map import OperatingMap
 
@@ -66,7 +64,7 @@ def edges_of(map_: OperatingMap, kelvin: float | None) -> Edges:
     turn = _ends(map_, map_.transition_interval, kelvin)
     fold = _ends(map_, map_.upper_interval, kelvin)
     upper, far = max(state.upper, state.transition), _TOLD * state.transition
-    stall = _at(map_, map_.stall_above, kelvin)
+    stall = map_.at(map_.stall_above, kelvin)
     bears = _ends(map_, map_.holding_interval, kelvin)
     limit = math.inf if map_.torque_limit is None else map_.torque_limit
     edge = Edge(upper, min(fold[0], upper), max(fold[1], upper))
@@ -82,15 +80,5 @@ def edges_of(map_: OperatingMap, kelvin: float | None) -> Edges:
 
 
 def _ends(map_: OperatingMap, interval: FloatArray, kelvin: float | None) -> tuple[float, float]:
-    low, high = (_at(map_, edge, kelvin) for edge in interval)
+    low, high = (map_.at(edge, kelvin) for edge in interval)
     return low, high
-
-
-def _at(map_: OperatingMap, values: FloatArray, kelvin: float | None) -> float:
-    if map_.temperature is None or kelvin is None:
-        return float(values[0])
-    right = int(np.searchsorted(map_.temperature, kelvin).clip(1, map_.temperature.size - 1))
-    ends = values[right - 1 : right + 1]
-    if not np.all(np.isfinite(ends)):
-        return float(ends[0] if kelvin <= map_.temperature[right - 1] else ends[1])
-    return float(np.interp(kelvin, map_.temperature, values))

@@ -61,6 +61,7 @@ class StatePart(Part):
     torque: float
     holding: float = Field(description="what a belt at rest bears before it starts")
     starts: bool = Field(description="whether the drive starts a belt at rest")
+    doubtful: bool = Field(default=False, description="whether the 95 % interval of holding says otherwise")
     lower: float | None
     transition: float
     upper: float | None

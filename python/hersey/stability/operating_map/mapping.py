@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from hersey.damping.surface import FIXED, WITH_TRANSITION, DampingSurface
 from hersey.errors import InsufficientDataError, ParameterError
@@ -218,13 +218,18 @@ def _remarks(map_: OperatingMap, points: Sequence[PlacedPoint]) -> list[str]:
 
 def _started(map_: OperatingMap) -> str:
     """Where the drive does not start a belt at rest, if anywhere."""
-    if map_.starts.all():
-        return ""
-    if not map_.starts.any():
-        return ", so it is not started at all"
+    doubtful, never = map_.doubtful, ~map_.starts & ~map_.doubtful
+    said = [_stands(map_, never, "it is not started"), _stands(map_, doubtful, "it may not start")]
+    return "".join(f", so {words}" for words in said if words)
+
+
+def _stands(map_: OperatingMap, where: NDArray[np.bool_], words: str) -> str:
+    """The words with the temperatures of which they are said, nothing if of none."""
+    if where.all() or not where.any():
+        return (words if "may" in words else f"{words} at all") if where.any() else ""
     assert map_.temperature is not None  # one column starts or does not
-    stands = [f"{convert(t, 'K', 'degC'):.0f}" for t in map_.temperature[~map_.starts][[0, -1]]]
-    return f", so it is not started from {stands[0]} to {stands[1]} degC"
+    ends = [f"{convert(t, 'K', 'degC'):.0f}" for t in map_.temperature[where][[0, -1]]]
+    return f"{words} from {ends[0]} to {ends[1]} degC" if ends[0] != ends[1] else f"{words} at {ends[0]} degC"
 
 
 def _within(map_: OperatingMap, point: PlacedPoint) -> str:

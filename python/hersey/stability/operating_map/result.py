@@ -72,6 +72,24 @@ class OperatingMap(Result):
         """Whether the drive starts a belt at rest, at each temperature."""
         return self.holding <= (np.inf if self.torque_limit is None else self.torque_limit)
 
+    @property
+    def doubtful(self) -> NDArray[np.bool_]:
+        """Whether it starts some of the belts drawn and others not."""
+        low, high = self.holding_interval
+        limit = np.inf if self.torque_limit is None else self.torque_limit
+        within = (np.minimum(low, self.holding) <= limit) & (limit < np.maximum(high, self.holding))
+        return np.asarray(within)
+
+    def at(self, values: FloatArray, kelvin: float | None) -> float:
+        """Return one of the rows of the map at a temperature (K; None if isothermal), interpolated."""
+        if self.temperature is None or kelvin is None:
+            return float(values[0])
+        right = int(np.searchsorted(self.temperature, kelvin).clip(1, self.temperature.size - 1))
+        ends = values[right - 1 : right + 1]
+        if not np.all(np.isfinite(ends)):
+            return float(ends[0] if kelvin <= self.temperature[right - 1] else ends[1])
+        return float(np.interp(kelvin, self.temperature, values))
+
     @takes_si(temperature="temperature", speed="belt speed")
     def state_at(self, temperature: float | None, speed: float) -> MapState:
         """Return the state at a temperature (K; None for an isothermal fit) and a drive speed (m/s).
@@ -175,6 +193,8 @@ class OperatingMap(Result):
         torque, holding = (force * self.roll_radius for force in (float(law.force(speed)), law.holding_force))
         limit = np.inf if self.torque_limit is None else self.torque_limit
         starts = bool(holding <= limit)
+        bears = [self.at(edge, kelvin) for edge in self.holding_interval]
+        doubtful = bool(min(bears[0], holding) <= limit < max(bears[1], holding))
         held = edges["lower"] == 0 and speed < edges["transition"]
         if torque > limit or (held and not starts):
             moving = self.beyond
@@ -189,7 +209,15 @@ class OperatingMap(Result):
         cold, hot = self.measured_temperature or (-np.inf, np.inf)
         outside = not (low <= speed <= high and cold <= kelvin <= hot)
         return MapState(
-            state, moving, torque, holding, starts, **edges, stick_speed=law.stick_speed, extrapolated=outside
+            state,
+            moving,
+            torque,
+            holding,
+            starts,
+            doubtful,
+            **edges,
+            stick_speed=law.stick_speed,
+            extrapolated=outside,
         )
 
 
@@ -200,12 +228,14 @@ def _summary(map_: OperatingMap) -> str:
         columns = np.unique(np.searchsorted(map_.temperature, asked).clip(0, map_.lower.size - 1)).tolist()
     head = ("temperature", "stick-slip below", "transition [95 %]", "smooth above V* [95 %]", "stall from")
     lines = ["".join(f"{text:<26s}" for text in head) + "(speeds in mm/s)"]
+    starts, doubtful = map_.starts, map_.doubtful
     for i in columns:
         edges = (map_.transition, map_.transition_interval), (map_.upper, map_.upper_interval)
         speeds = [f"{_mm(e[i])} [{_mm(low[i])}, {_mm(high[i])}]" for e, (low, high) in edges]
         where = "as in the log" if map_.temperature is None else _celsius(map_.temperature[i])
         stall = "never" if np.isinf(map_.stall_above[i]) else _mm(map_.stall_above[i])
-        stall = stall if map_.starts[i] else "not started"
+        sure = stall if starts[i] else "not started"
+        stall = f"{stall}, may not start" if doubtful[i] else sure
         cells = (where, _mm(map_.lower[i]), *speeds, stall if map_.torque_limit else "not known")
         lines.append("".join(f"{text:<26s}" for text in cells).rstrip())
     for point in map_.points:

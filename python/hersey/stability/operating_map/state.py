@@ -26,13 +26,18 @@ _NOT_STARTED = {
 }
 
 
+#: Where the belts drawn do not agree.
+_MAY_NOT_START = "The drive may not start a belt at rest. If it does:"
+
+
 @dataclass(frozen=True)
 class MapState:
     """What the belt does at one temperature and drive speed; speeds in m/s, torque in N m.
 
     ``state`` is one of `STATES`. ``torque`` is that of steady sliding, with which the drive must cope, and
     ``holding`` that which a belt at rest bears before it starts; where the drive cannot bear it (``starts``
-    is false) the state is ``stall`` or ``motor``, and ``moving`` that of a belt which moves already.
+    is false) the state is ``stall`` or ``motor``, and ``moving`` that of a belt which moves already;
+    ``doubtful`` says that the limit lies within the 95 % interval of ``holding``.
     ``stick_speed`` is that at this temperature. ``extrapolated`` says that no dwell of the
     fit lies that far out.
     """
@@ -42,6 +47,7 @@ class MapState:
     torque: float
     holding: float
     starts: bool
+    doubtful: bool
     lower: float
     transition: float
     upper: float
@@ -50,6 +56,8 @@ class MapState:
 
     def verdict(self) -> str:
         """Return what the state means, in one sentence."""
+        if self.doubtful:
+            return f"{_MAY_NOT_START} {_VERDICTS[self.moving]}"
         if self.starts:
             return _VERDICTS[self.state]
         slides = self.moving in ("bistable", "smooth")

@@ -22,6 +22,8 @@ from hersey.stability.plan.trial import COARSE, MachineSample, Shape, Temperatur
 _EDGE = 1e-3
 #: Machines that say soon whether a profile may work on all: so many, and one in so many.
 _FEW, _ONE_IN = 6, 16
+#: Least share of the draws that must be machines.
+_POSSIBLE = 0.1
 
 
 def needed(confidence: float, level: float, failures: int) -> int:
@@ -58,12 +60,45 @@ def drawn(
     samples: Mapping[str, ArrayLike],
     rng: np.random.Generator,
     count: int,
-) -> list[MachineSample]:
-    """Return machines drawn from what is not known of one.
+) -> tuple[list[MachineSample], float]:
+    """Return machines drawn from what is not known of one, and the share of the draws that are none.
 
     ``samples`` holds draws that go together (of equal length): rows of it are taken at random. Where it and
-    ``uncertainty`` name the same parameter, the samples hold.
+    ``uncertainty`` name the same parameter, the samples hold. A stick speed that is not below the transition
+    speed is that of no belt: others are drawn in its place.
+
+    Raises
+    ------
+    ParameterError
+        If no parameter has such a name, or fewer than a tenth of the draws are possible.
     """
+    machines, made = list[MachineSample](), 0
+    while len(machines) < count:
+        rows = _rows(train, drag, uncertainty, samples, rng, count)
+        for values in rows:
+            try:
+                machines.append(_machine(train, drag, values))
+            except ParameterError as error:
+                if error.quantity != "stick_speed":
+                    raise error.within("uncertainty: a draw is impossible") from None
+        made += count
+        if len(machines) < _POSSIBLE * made:
+            raise ParameterError(
+                "the range of stick_speed reaches so far beyond the transition speed that hardly a draw is "
+                "possible: state less"
+            )
+    return machines[:count], 1.0 - len(machines) / made
+
+
+def _rows(
+    train: Drivetrain,
+    drag: AnyDrag,
+    uncertainty: Mapping[str, Uncertainty],
+    samples: Mapping[str, ArrayLike],
+    rng: np.random.Generator,
+    count: int,
+) -> list[dict[str, float]]:
+    """The values of so many draws, by name."""
     nominal = {**vars(train), **vars(drag)}
     columns: dict[str, FloatArray] = {}
     for name in [*uncertainty, *samples]:
@@ -79,7 +114,7 @@ def drawn(
             raise ParameterError("samples: the arrays differ in length, or are empty")
         picked = rng.integers(0, sizes.pop(), count)
         columns |= {name: values[picked] for name, values in rows.items()}
-    return [_machine(train, drag, {n: float(v[i]) for n, v in columns.items()}) for i in range(count)]
+    return [{name: float(values[i]) for name, values in columns.items()} for i in range(count)]
 
 
 def neighbours(train: Drivetrain, drag: AnyDrag) -> list[MachineSample]:
@@ -93,10 +128,10 @@ def neighbours(train: Drivetrain, drag: AnyDrag) -> list[MachineSample]:
 def _machine(train: Drivetrain, drag: AnyDrag, values: Mapping[str, float]) -> MachineSample:
     of_train = {name: value for name, value in values.items() if hasattr(train, name)}
     of_drag = {name: value for name, value in values.items() if name not in of_train}
-    try:
-        changed: AnyDrag = replace(drag, **of_drag) if of_drag else drag  # type: ignore[type-var]
-    except ParameterError as error:
-        raise error.within("uncertainty: a draw is impossible") from None
+    for name, value in of_train.items():
+        if value <= 0:
+            raise ParameterError(f"{name} is {value:g}: it must be greater than 0")
+    changed: AnyDrag = replace(drag, **of_drag) if of_drag else drag  # type: ignore[type-var]
     return MachineSample(replace(train, **of_train), changed)
 
 

@@ -189,7 +189,7 @@ class _Asked:
                     duration = float(shape.points()[0][-1])
                 proof = unknown.verify(shape, duration, thermal, reach.force, self.confidence, number)
                 if proof.accepted:
-                    facts |= {"tried": search.count, "warnings": _warnings(reach)}
+                    facts |= {"tried": search.count, "warnings": _warnings(reach, proof.impossible)}
                     machine = MachineSample(self.gripping, unknown.drag)
                     return _found(machine, shape, thermal, proof, reach, facts), shape
                 if number == _VERIFIED:
@@ -254,6 +254,7 @@ class Proof:
     peak_force: float
     accepted: bool
     machines: list[MachineSample]
+    impossible: float
 
 
 @dataclass(frozen=True)
@@ -268,8 +269,12 @@ class Unknown:
 
     def draws(self, stream: int, count: int) -> list[MachineSample]:
         """Return machines of a stream of random draws; the nominal one alone if all is known."""
+        return self.drawn(stream, count)[0]
+
+    def drawn(self, stream: int, count: int) -> tuple[list[MachineSample], float]:
+        """Return the same with the share of the draws that are no machine."""
         if not self.uncertainty and not self.samples:
-            return [MachineSample(self.train, self.drag)]
+            return [MachineSample(self.train, self.drag)], 0.0
         rng = np.random.default_rng([self.seed, stream])
         return drawn(self.train, self.drag, self.uncertainty, self.samples, rng, count)
 
@@ -292,7 +297,7 @@ class Unknown:
         heat: HeatBalance | None = None,
     ) -> Proof:
         """Try a profile on draws that the search has not seen; with ``heat`` each makes its temperature."""
-        machines = self.draws(number, max(_FRESH, math.ceil(10.0 / (1.0 - confidence))))
+        machines, impossible = self.drawn(number, max(_FRESH, math.ceil(10.0 / (1.0 - confidence))))
         laps = thermal.end / machines[0].lap
         long = 0 if heat is not None else _LONG if laps < _LONG_LAPS else 1
 
@@ -323,6 +328,7 @@ class Unknown:
             accepted=nominal.ready < math.inf
             and (good == 1 if len(found) == 1 else lower_bound(good, len(found), _LEVEL) >= confidence),
             machines=machines,
+            impossible=impossible,
         )
 
 
@@ -374,10 +380,18 @@ def _found(
     )
 
 
-def _warnings(reach: Reach) -> tuple[str, ...]:
-    if "grip" in reach.forces:
-        return ()
-    return ("the roll's grip is not stated (roll_friction and nip_load): it is taken to hold throughout",)
+def _warnings(reach: Reach, impossible: float) -> tuple[str, ...]:
+    said = []
+    if "grip" not in reach.forces:
+        said.append(
+            "the roll's grip is not stated (roll_friction and nip_load): it is taken to hold throughout"
+        )
+    if impossible > 0:
+        said.append(
+            f"{100 * impossible:.2g} % of what is stated is no belt, for its stick speed is not below the "
+            "transition speed: left out"
+        )
+    return tuple(said)
 
 
 def _check(drag: AnyDrag, target_speed: float, limits: Limits, confidence: float, seed: int) -> None:

@@ -34,7 +34,7 @@ _RISES = (0.0, 0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0)
 _HOLDS = (0.0, 0.1, 0.2, 0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 3.0, 5.0, 8.0)
 _FALLS = (0.0, 0.1, 0.2, 0.35, 0.5, 0.75, 1.0, 1.5, 2.5, 4.0, 7.0)
 #: One in so many of them is tried first, all of them only if none of these works.
-_EVERY = 8
+_EVERY = 4
 #: Factors on these durations: each only if those before find nothing.
 _STRETCHES = (1.0, 6.0, 40.0)
 #: Shares of them in the profiles tried for the number that would do: the longest take the longest.
