@@ -16,6 +16,7 @@ from hersey.document.decision.behaviour import Behaviour, PointBehaviour
 from hersey.document.decision.edges import Edge, Edges, edges_of
 from hersey.document.decision.flags import flags
 from hersey.document.decision.instruction import of_log
+from hersey.document.decision.points import points_of_log
 from hersey.document.decision.words import figures
 from hersey.document.parts import CarriedPart, RegimePart
 from hersey.document.parts.fit import LackOfFitPart
@@ -220,3 +221,13 @@ def test_a_plan_says_of_which_belt_it_is(
         monkeypatch.setattr(plans, "plan_profile", lambda *_, made=made, **__: made)
         told = plan_of_log(surface, machine, target_speed=BETWEEN, temperature=HOT)
         assert any("creeps to rest (retained)" in text for text in told.warnings) == said
+
+
+def test_without_a_map_only_what_was_measured_is_judged(surface: DampingSurface, machine: Machine) -> None:
+    """Speed and temperature of a point both within the log."""
+    speed = 1.0 * machine.roll_radius
+    states = {(speed, HOT): "slides on", (speed, 600.0): "not judged", (99.0, HOT): "not judged"}
+    points = tuple(OperatingPoint("any", *state) for state in states)
+    said = points_of_log(surface, replace(machine, points=points), rises=True)
+    assert [each.words.split(" once")[0].split(":")[0] for each in said] == list(states.values())
+    assert {each.signal for each in said} == {"watch"}

@@ -139,23 +139,19 @@ def _unmeasured(stick: StickSpeeds, edges: Edges, kelvin: float | None) -> list[
         ] or list(zip(stick.stick_speed, stick.upper, strict=True))
         started = [upper for _, upper in within if np.isfinite(upper)]
         there = f" {at(kelvin, first=False)}".rstrip() if kelvin is not None and stick.known else ""
-        moves = (
-            f"V* lies between {mm(min(started))} and {mm(max(started))} mm/s" if started else "none starts"
-        )
+        moves = f"V* is {mm(min(started))} to {mm(max(started))} mm/s" if started else "nothing starts"
         stalled = f", where the belt starts ({len(started)} of {len(within)})"
         counted = "" if stick.known else "; the interval does not count it"
-        text = f"between {mm(within[0][0])} and {mm(within[-1][0])} mm/s{there} {moves}"
+        text = f"over {mm(within[0][0])} to {mm(within[-1][0])} mm/s{there} {moves}"
         texts.append(f"{text}{stalled if 0 < len(started) < len(within) else ''}{counted}")
         titles.append("the stick speed")
     if stick.stiction is not None and stick.stiction > edges.safe:
-        creeps = (
-            "" if np.isnan(edges.fold.value) else f", {mm(edges.fold.value)} if it creeps to rest (retained)"
-        )
-        texts.append(f"V* is {mm(stick.stiction)} mm/s if the belt stops dead (stiction){creeps}")
+        what = "and" if titles else "V* is"
+        texts.append(f"{what} {mm(stick.stiction)} mm/s if the belt stops dead (stiction)")
         titles.append("how the belt stops")
     if not titles:
         return []
-    text = f"Nobody measures {'them' if len(titles) > 1 else 'it'}: {'; '.join(texts)}."
+    text = f"Nobody measures {'them' if len(titles) > 1 else 'it'}: {', '.join(texts)}."
     return [FlagPart(signal="watch", title=f"V* hangs on {listed(titles)}.", text=text, section="band")]
 
 

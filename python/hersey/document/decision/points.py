@@ -100,7 +100,7 @@ def _judged(
     if state.torque > edges.limit:
         return "act", f"stalls: {_beyond(map_, state.torque, unit)}"
     if speed < state.transition:
-        return "act", f"sticks: {transition}"
+        return "act", f"sticks from any start: {transition}"
     if edges.starts is None:
         if speed >= edges.safe:
             return "watch", f"smooth once it slides, but may not start: {needs}"
@@ -109,7 +109,7 @@ def _judged(
         if speed >= edges.safe and found.stiction is not None and speed < found.stiction:
             return (
                 "watch",
-                f"smooth, unless the belt stops dead: then it sticks up to {mm(found.stiction)} mm/s",
+                f"smooth unless the belt stops dead: V* is {mm(found.stiction)} mm/s then",
             )
         if speed >= edges.safe:
             return "good", "smooth from any start"
