@@ -203,6 +203,22 @@ def test_a_motor_s_current_becomes_a_torque(tmp_path: Path) -> None:
     assert 'motor_constant = "35 mN*m/A"' in one.mapping_file()
 
 
+def test_of_two_logs_one_can_be_compared_with_the_other(tmp_path: Path) -> None:
+    one = dropped(tmp_path, log(), log(change=lambda t, q, n, c: (t, 1.1 * float(q), n, c)))
+    first, second = one.logs
+    assert [file["name"] for file in one.view()["pair"]] == ["log0.csv", "log1.csv"]
+    assert "log0.csv log1.csv" in one.command()
+    one.choose({"options": {"against": first.id}})
+    assert (one.earlier, one.told_of) == (first, [second])
+    assert one.command() == "hersey report log1.csv --mapping hersey.toml --against log0.csv"
+    one.choose({"options": {"against": second.id}})
+    assert (one.earlier, one.told_of) == (second, [first])
+    with pytest.raises(ValueError, match="against"):
+        one.choose({"options": {"against": "/etc/passwd"}})
+    one.remove(second.id)
+    assert (one.earlier, one.told_of, one.view()["pair"]) == (None, [first], [])
+
+
 def test_a_log_that_is_unlike_the_first_says_so(tmp_path: Path) -> None:
     one = dropped(tmp_path, log(), log("Time [s],Moment [N*m],Speed [rpm],Temperature [degC]"))
     fault = only(one)

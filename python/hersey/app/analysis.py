@@ -37,7 +37,8 @@ from hersey.machine.writing import answers_of
 _SHOWN = 200
 #: Operating points of a machine at the most.
 _MOST_POINTS = 50
-_OPTIONS: dict[str, Any] = {"isothermal": False, "drop_missing": False, "tare": "none"}
+#: ``against`` is the file that the other of two logs is compared with, or empty: runs of one machine.
+_OPTIONS: dict[str, Any] = {"isothermal": False, "drop_missing": False, "tare": "none", "against": ""}
 #: What is asked between sensor and roll, beside channels and units.
 CORRECTIONS = tuple(q.key for q in MAPPING if not q.first)
 
@@ -107,6 +108,17 @@ class Analysis:
         return [f for f in self.files.values() if f.state == "ready" and f.name not in beside]
 
     @property
+    def earlier(self) -> Dropped | None:
+        """Return the log that the other one of two is compared with, if so chosen."""
+        logs = self.logs
+        return next((f for f in logs if len(logs) == 2 and f.id == self.options["against"]), None)
+
+    @property
+    def told_of(self) -> list[Dropped]:
+        """Return the logs that the report is about."""
+        return [file for file in self.logs if file is not self.earlier]
+
+    @property
     def beside(self) -> set[str]:
         """Return the names of logs that the machine's file or the mapping names."""
         return named_logs(self.machine_file(), self.mapping_others)
@@ -152,7 +164,9 @@ class Analysis:
 
     def command(self) -> str:
         """Return the command that gives the same report from the files and what can be saved here."""
-        parts = ["hersey", "report", *(file.name for file in self.logs), "--mapping", "hersey.toml"]
+        earlier = self.earlier
+        parts = ["hersey", "report", *(file.name for file in self.told_of), "--mapping", "hersey.toml"]
+        parts += ["--against", earlier.name] if earlier is not None else []
         parts += ["--machine", "machine.toml"] if self.machine_file() else []
         parts += ["--isothermal"] if self.options["isothermal"] else []
         parts += ["--drop-missing"] if self.options["drop_missing"] else []
@@ -262,8 +276,10 @@ class Analysis:
                 raise ValueError(name)
             self.choices[name]["unit"] = unit[:100]
         for key, value in dict(given.get("options", {})).items():
-            if (key == "tare" and value in ("none", "standing")) or (
-                key in ("isothermal", "drop_missing") and isinstance(value, bool)
+            if (
+                (key == "tare" and value in ("none", "standing"))
+                or (key in ("isothermal", "drop_missing") and isinstance(value, bool))
+                or (key == "against" and (value == "" or value in self.files))
             ):
                 self.options[key] = value
             else:
@@ -414,6 +430,7 @@ class Analysis:
         return self.line() | {
             "files": [_file_view(file) for file in self.files.values()],
             "beside": sorted(self.beside),
+            "pair": [{"id": f.id, "name": f.name} for f in logs] if len(logs) == 2 else [],
             "mapping_kept": kept_beside([], self.mapping_others),
             "log": None if look is None else {key: look[key] for key in ("name", "means", "own_clock")},
             "channels": [] if look is None else self._channels(look),

@@ -20,7 +20,7 @@ from hersey.report.page import render
 
 Step = Callable[[str, float | None], None]
 #: Share of the whole at which each step begins, as measured on the shipped log with a machine and two points.
-_READING, _DWELLS, _PLANS, _DRAWING = 0.39, 0.42, 0.62, 0.93
+_READING, _DWELLS, _EARLIER, _PLANS, _DRAWING = 0.39, 0.42, 0.46, 0.62, 0.93
 _BEGINS = {"fitting the surface": 0.48, "judging the regime": 0.52, "finding the bands": 0.61}
 
 
@@ -31,7 +31,8 @@ def run(request: Mapping[str, Any], step: Step) -> dict[str, Any]:
     ----------
     request
         ``logs`` (paths), ``mapping`` and ``machine`` (paths; the machine's may be None), ``isothermal``,
-        ``drop_missing``, ``tare``, ``command``, and ``report``, the path to write.
+        ``drop_missing``, ``tare``, ``command``, ``report``, the path to write, and ``against``, an earlier
+        log to compare with, or None.
 
     Raises
     ------
@@ -40,6 +41,10 @@ def run(request: Mapping[str, Any], step: Step) -> dict[str, Any]:
     """
     machine = None if request["machine"] is None else read_machine(request["machine"])
     points = _points(request, machine, step)
+    earlier = None
+    if request["against"] is not None:
+        step("reading the earlier log", _EARLIER)
+        earlier = _points({**request, "logs": [request["against"]]}, machine, lambda _name, _share: None)
     document = analyse(
         points.log,
         points,
@@ -47,6 +52,7 @@ def run(request: Mapping[str, Any], step: Step) -> dict[str, Any]:
         machine=machine,
         machine_file=None if machine is None else Path(request["machine"]),
         made=datetime.now(UTC).isoformat(timespec="seconds"),
+        against=earlier,
         step=_shared(step, 0 if machine is None else len(machine.points)),
     )
     step("drawing the page", _DRAWING)

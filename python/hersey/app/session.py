@@ -248,7 +248,8 @@ class Session:
         machine = one.folder / MACHINE_FILE
         request = {
             "task": "run",
-            "logs": [str(file.path) for file in one.logs],
+            "logs": [str(file.path) for file in one.told_of],
+            "against": None if one.earlier is None else str(one.earlier.path),
             "mapping": str(one.folder / MAPPING_FILE),
             "machine": str(machine) if machine.exists() else None,
             "command": one.command(),
@@ -257,7 +258,12 @@ class Session:
         }
         try:
             async with self._running:
-                alike = (len(one.logs), bool(request["machine"]), one.machine_file().count("[[points]]"))
+                alike = (
+                    len(one.logs),
+                    bool(request["against"]),
+                    bool(request["machine"]),
+                    one.machine_file().count("[[points]]"),
+                )
                 one.state, one.step = "running", "starting"
                 one.course = course = self._courses.begin(alike)
                 one.result = await ask(request, one.folder, said)
@@ -290,7 +296,7 @@ class Session:
     def _kept(self, one: Analysis, page: Path) -> str:
         """Keep a finished report beyond this start, under a name that is free; return what the page says."""
         self.reports.mkdir(parents=True, exist_ok=True)
-        stem = clean_name(Path(one.logs[0].name).stem)
+        stem = clean_name(Path(one.told_of[0].name).stem)
         text = page.read_bytes()
         for count in range(1, 1000):
             path = self.reports / (f"{stem}.html" if count == 1 else f"{stem}-{count}.html")

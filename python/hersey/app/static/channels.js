@@ -52,6 +52,7 @@ export function showChannels(place, view, questions, act) {
   const lacking = view.all_faults.filter((fault) => fault.at.startsWith("lacking:") || fault.at === "file:");
   renew(place,
     title("roles and units are proposals"),
+    pair(view, act),
     ...lacking.map((fault) => make("div", { class: "alone", "data-control": fault.at, tabindex: "-1" }, words(fault, act))),
     make("table", { class: "channels" },
       make("caption", { class: "hidden", text: `Channels of ${view.log.name}` }),
@@ -59,6 +60,17 @@ export function showChannels(place, view, questions, act) {
       make("tbody", {}, ...rows)),
     view.hidden ? make("p", { class: "note", text: `and ${view.hidden} more channels, none of them proposed` }) : null,
     corrections(view, questions, act));
+}
+
+/** Whether two logs are runs of one machine, or one is compared with the other. */
+function pair(view, act) {
+  if (!view.pair.length) return null;
+  const [one, other] = view.pair;
+  const compared = (later, earlier) => make("option", { value: earlier.id, text: `compare ${later.name} with ${earlier.name}` });
+  const select = make("select", { id: "pair", "data-control": "option:against", onchange: (event) => act.choose({ options: { against: event.target.value } }) },
+    make("option", { value: "", text: "runs of one machine, both together" }), compared(other, one), compared(one, other));
+  select.value = view.options.against;
+  return make("p", { class: "pairing" }, make("label", { for: "pair", text: "These two logs: " }), select);
 }
 
 function row(channel, view, act) {
