@@ -109,6 +109,10 @@ pub(super) const STEADY: f64 = 1e-7;
 /// Swing, relative to the drive speed, below which a lap on the falling branch is still growing out of rounding.
 const GROWING: f64 = 1e-6;
 
+/// Relative change of the swing from lap to lap from which it is another: where an orbit closes but for less than its
+/// steps resolve, a small swing that dies out, or grows, comes back as near as one that stays.
+const SAME_SWING: f64 = 1e-3;
+
 /// How long a motion is followed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Span {
@@ -173,6 +177,8 @@ struct Laps<'a> {
     lap: Lap,
     /// Where the lap under way began, if it began at a section.
     previous: Option<Section>,
+    /// Swing of the belt speed in the lap before.
+    swing: f64,
     /// Whether the drag remembers, so that laps may repeat in groups; those before, each with its begin.
     memory: bool,
     past: VecDeque<(Section, Lap)>,
@@ -210,6 +216,7 @@ impl<'a> Laps<'a> {
             most,
             lap: Lap::starting_at(0.0),
             previous: None,
+            swing: f64::NAN,
             memory: system.drag.closure().has_memory(),
             past: VecDeque::new(),
             whole: None,
@@ -317,8 +324,9 @@ impl<'a> Laps<'a> {
 
     /// What the motion is if its orbit has closed with this lap, or will not.
     fn verdict(&self, section: &Section) -> Option<CycleKind> {
-        let (low, high) = self.lap.speed;
-        let grown = section.stuck || high - low > GROWING * self.drive_speed.abs();
+        let swing = self.lap.swing();
+        let stays = (swing - self.swing).abs() <= SAME_SWING * swing;
+        let grown = section.stuck || (stays && swing > GROWING * self.drive_speed.abs());
         let repeats = |p: Section| section.repeats(&p, self.drag, self.train, self.near);
         let closed = grown && self.previous.is_some_and(repeats);
         match (closed, section.stuck) {
@@ -337,7 +345,7 @@ impl<'a> Laps<'a> {
         let laps = 1 + self.past.iter().position(|(begin, _)| repeats(begin)).filter(|i| *i > 0)?;
         let group = self.past.iter().take(laps).map(|(_, lap)| *lap).rev();
         let joined = group.reduce(|all, next| all.joined(&next))?;
-        if joined.speed.1 - joined.speed.0 <= GROWING * self.drive_speed.abs() {
+        if joined.swing() <= GROWING * self.drive_speed.abs() {
             return None;
         }
         let kind =
@@ -362,7 +370,7 @@ impl<'a> Laps<'a> {
 
     /// The next lap, with the rest of the piece in which the last one ended.
     fn begin_lap(&mut self, section: Section, piece: &Piece) {
-        self.previous = Some(section);
+        (self.previous, self.swing) = (Some(section), self.lap.swing());
         self.lap = Lap::starting_at(section.time);
         self.lap.add_rest_of(piece, section.time);
     }

@@ -147,6 +147,11 @@ impl Lap {
         Self { begin: time, stick_duration, slipping, speed: none, pull: none, impulse }
     }
 
+    /// Swing of the belt speed.
+    pub(super) fn swing(&self) -> f64 {
+        self.speed.1 - self.speed.0
+    }
+
     pub(super) fn add(&mut self, piece: &Piece, smooth: bool) {
         if piece.start.mode == Mode::Stuck || (smooth && piece.start.mode == Mode::Microslip) {
             self.stick_duration += piece.duration;

@@ -372,22 +372,43 @@ impl<'a> Rider<'a> {
         if pull + self.rest.force < -(self.release + self.rest.force) {
             return self.off_lane(lanes, l, tolerance, work);
         }
-        if time >= self.segment_end() {
+        self.hold(lanes, l, (time, pull, self.stick_speed), tolerance, work)
+    }
+
+    /// The belt is held at a speed from a time on, until the spring has stretched.
+    fn hold(
+        &mut self,
+        lanes: &mut Lanes,
+        l: usize,
+        (time, pull, speed): (f64, f64, f64),
+        tolerance: f64,
+        work: &Work,
+    ) -> Next {
+        let BeltAtRest { train, drag, .. } = self.belt;
+        let slower = speed < self.stick_speed;
+        let release = if slower {
+            drag.holding_force(speed * self.speed_scale) / self.pull_scale - self.rest.force
+        } else {
+            self.release
+        };
+        let held = slower.then(|| Start {
+            belt_speed: speed * self.speed_scale,
+            stretch: (pull + self.rest.force) * self.pull_scale / train.stiffness(),
+        });
+        while time >= self.segment_end() {
             self.segment += 1;
         }
-        let Some(end) = self.held_until(time, pull, self.stick_speed, self.release) else {
-            return Next::Leaves;
-        };
+        let Some(end) = self.held_until(time, pull, speed, release) else { return Next::Leaves };
         if end > self.ramps {
             // held when the drive moves as it will
             if time.max(self.ramps) >= self.latest {
                 return Next::Ends(Ending::Late);
             }
-            if let Some(end) = self.judge(None, tolerance, work) {
+            if let Some(end) = self.judge(held, tolerance, work) {
                 return end;
             }
         }
-        if self.release + self.rest.force >= self.grip {
+        if release + self.rest.force >= self.grip {
             return Next::Ends(Ending::GripLost);
         }
         if end >= self.latest {
@@ -395,14 +416,14 @@ impl<'a> Rider<'a> {
         }
         if end >= self.watched.max(self.until) {
             self.judged = false;
-            if let Some(end) = self.judge(None, tolerance, work) {
+            if let Some(end) = self.judge(held, tolerance, work) {
                 return end;
             }
         }
-        lanes.most[l] = lanes.most[l].max(self.release);
+        lanes.most[l] = lanes.most[l].max(release);
         self.released = end;
-        self.let_go(lanes, l, end, (self.release, self.stick_speed));
-        self.enter(lanes, l, Range::Mixed);
+        self.let_go(lanes, l, end, (release, speed));
+        self.enter(lanes, l, if slower { Range::Creep } else { Range::Mixed });
         Next::Rides
     }
 
@@ -428,7 +449,7 @@ impl<'a> Rider<'a> {
         }
     }
 
-    /// Follow a belt that the spring pulls back harder than it is held with the full motion until it slides forward.
+    /// Follow a belt that the spring pulls back harder than it is held with the full motion until it is held.
     fn off_lane(&mut self, lanes: &mut Lanes, l: usize, tolerance: f64, work: &Work) -> Next {
         let (origin, BeltAtRest { train, drag, .. }) = (lanes.time[l], self.belt);
         let scale = self.time_scale;
@@ -448,26 +469,13 @@ impl<'a> Rider<'a> {
             if time >= self.latest && (holds(phase.mode) || self.released >= self.latest) {
                 return Next::Ends(Ending::Late);
             }
-            if !holds(phase.mode) {
-                if phase.direction < 0.0 || phase.mode != Mode::Mixed || time >= self.given_up {
-                    return Next::Leaves;
-                }
-                let state = (phase.pull / self.pull_scale - self.rest.force, self.stick_speed);
-                while time >= self.segment_end() {
-                    self.segment += 1;
-                }
-                self.let_go(lanes, l, time, state);
-                self.enter(lanes, l, Range::Mixed);
-                lanes.drag[l] = self.release - self.rest.damping * self.stick_speed;
-                lanes.turned[l] = 0.0;
-                return Next::Rides;
+            if !holds(phase.mode) || phase.direction < 0.0 {
+                return Next::Leaves;
             }
-            if phase.mode == Mode::Stuck && time >= self.ramps {
-                let stretch = phase.direction * phase.pull / train.stiffness();
-                let held = Start { belt_speed: phase.direction * phase.speed, stretch };
-                if let Some(end) = self.judge(Some(held), tolerance, &work) {
-                    return end;
-                }
+            if phase.mode == Mode::Stuck {
+                let pull = phase.pull / self.pull_scale - self.rest.force;
+                let state = (time, pull, phase.speed / self.speed_scale);
+                return self.hold(lanes, l, state, tolerance, &work);
             }
             let Ok((piece, event)) = motion.advance(f64::INFINITY) else { return Next::Leaves };
             if piece.duration.is_infinite() {
@@ -477,9 +485,6 @@ impl<'a> Rider<'a> {
             lanes.most[l] = lanes.most[l].max(hardest - self.rest.force);
             if event.is_some_and(|e| e.guard == Guard::GripLost) {
                 return Next::Ends(Ending::GripLost);
-            }
-            if event.is_some_and(|e| holds(e.from)) {
-                self.released = scaled(motion.time());
             }
         }
         Next::Leaves

@@ -25,6 +25,7 @@ from hersey.stability.plan.trial import (
     Shape,
     TemperatureProfile,
     outcomes,
+    rounded,
 )
 
 Progress = Callable[[int, int], object]
@@ -306,7 +307,8 @@ class Search:
         before = self.time
         for j in range(0, len(grid), _TOGETHER):
             self._report(done + j, total)
-            moved = [replace(shape, wait=wait) for shape in grid[j : j + _TOGETHER]]
+            some = grid[j : j + _TOGETHER]
+            moved = [replace(shape, wait=wait) for shape in some] if wait > 0 else some
             if moved[0].end >= self.time:
                 break
             below = self.time * _NEAR
@@ -452,23 +454,16 @@ class Search:
         return None
 
     def _moved(self, shape: Shape, up: float, rise: float, hold: float, fall: float, wait: float) -> Shape:
-        """The profile with its numbers changed by so much, kept within the room."""
-        return self._within(
-            Shape(
-                self.target,
-                min(shape.peak + up, self.room.speed),
-                shape.rise + rise,
-                max(shape.hold + hold, 0.0),
-                shape.fall + fall,
-                max(shape.wait + wait, 0.0),
-            )
+        """The profile with its numbers changed by so much, its ramps as long as they must be."""
+        peak = rounded(max(min(shape.peak + up, self.room.speed), self.target))
+        return Shape(
+            self.target,
+            peak,
+            max(shape.rise + rise, peak / self.room.acceleration),
+            max(shape.hold + hold, 0.0),
+            max(shape.fall + fall, (peak - self.target) / self.room.acceleration),
+            max(shape.wait + wait, 0.0),
         )
-
-    def _within(self, shape: Shape) -> Shape:
-        """Return the profile with ramps as long as the acceleration demands."""
-        rise = max(shape.rise, shape.peak / self.room.acceleration)
-        fall = max(shape.fall, (shape.peak - shape.target) / self.room.acceleration)
-        return replace(shape, rise=rise, fall=fall)
 
 
 def _time(row: tuple[float, Shape]) -> float:
