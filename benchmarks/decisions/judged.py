@@ -60,7 +60,11 @@ def judged(machine: Machine, number: int, seed: int, folder: Path) -> Judged:
         out.fault = made.stderr.strip()[-300:]
         return out
     (folder / "document.json").write_text(made.stdout)
-    decision = json.loads(made.stdout)["decision"]
+    return tried(out, machine, json.loads(made.stdout)["decision"])
+
+
+def tried(out: Judged, machine: Machine, decision: dict[str, Any]) -> Judged:
+    """Try what a decision says on its machine."""
     _instruction(out, machine, decision)
     for point, part in zip(machine.points, decision["points"], strict=True):
         _point(out, machine, point, part)
@@ -110,15 +114,14 @@ def _starts(machine: Machine, belt: Belt) -> bool:
 
 
 def _smooth(out: Judged, machine: Machine, belt: Belt, speed: float, words: str, *, sure: bool) -> None:
-    """Try a speed that is to be smooth from any start; from rest only where it is said to start."""
-    tried = {"from above": from_above(belt, speed)}
+    """Try a speed that is to be smooth from any start; from rest where it starts, or is said to."""
+    fates = {"from above": from_above(belt, speed)}
+    starts = _starts(machine, belt)
     if sure:
-        tried |= {
-            "ramp": from_rest(belt, speed, machine.acceleration),
-            "step": from_rest(belt, speed),
-        }
-        out.claim("starts", _starts(machine, belt), words)
-    for name, fate in tried.items():
+        out.claim("starts", starts, words)
+    if sure or starts:
+        fates |= {"ramp": from_rest(belt, speed, machine.acceleration), "step": from_rest(belt, speed)}
+    for name, fate in fates.items():
         out.claim(f"run above, {name}", fate.outcome == "slides", f"{words} ({fate.outcome})")
 
 
