@@ -142,6 +142,21 @@ def test_numbers_match_the_document(each: tuple[Opened, Analysis]) -> None:
     assert len(page.locator("#verdict p").all()) == len(document.verdict)
 
 
+def test_plans_and_steps_are_those_of_the_document(demo: Opened, report: Report) -> None:
+    """Speeds in mm/s at the belt, and whether it sticks, row by row."""
+    decision = report("demo")[1].decision
+    assert decision is not None
+    for point in decision.points:
+        if point.plan:
+            cells = demo.page.locator(f"table[aria-label='Profile of {point.name}'] td:nth-child(2)")
+            shown = [float(text) for text in cells.all_text_contents()]
+            assert shown == pytest.approx([1e3 * row.drive_speed for row in point.plan.rows], rel=5e-3)
+    ends = demo.page.locator("table[aria-label='Steps from steady sliding'] td:last-child")
+    sticks = [text.startswith("sticks") for text in ends.all_text_contents()]
+    assert sticks == [step.sticks for point in decision.points for step in point.steps]
+    assert sticks
+
+
 def test_marks_and_words_lie_inside_their_charts(each: tuple[Opened, Analysis]) -> None:
     """No mark or word of a chart is cut off by its frame."""
     cut = each[0].page.evaluate(
