@@ -142,6 +142,16 @@ def test_numbers_match_the_document(each: tuple[Opened, Analysis]) -> None:
     assert len(page.locator("#verdict p").all()) == len(document.verdict)
 
 
+def test_the_transition_is_told_at_the_belt(demo: Opened, report: Report) -> None:
+    part = report("demo")[1].map
+    assert part is not None
+    assert part.temperature is not None
+    assert part.measured_temperature is not None
+    hottest = part.measured_temperature[1] + 1
+    speed = [v for t, v in zip(part.temperature, part.transition, strict=True) if v and t <= hottest][-1]
+    assert f" {1e3 * (speed or 0):.2g} mm/s at 180" in (demo.page.text_content("#torque .finding") or "")
+
+
 def test_plans_and_steps_are_those_of_the_document(demo: Opened, report: Report) -> None:
     """Speeds in mm/s at the belt, and whether it sticks, row by row."""
     decision = report("demo")[1].decision
