@@ -98,21 +98,25 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
 
 
 @pytest.mark.parametrize("name", PRINTED)
-def test_a_command_prints_its_part(name: str, files: dict[str, str], monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_command_prints_its_part(
+    name: str, files: dict[str, str], document: Analysis, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The whole document is one that is made once for all tests; `test_cli` has the command make its own."""
+    monkeypatch.setattr("hersey.document.assembly.analyse", lambda *_, **__: document)
     monkeypatch.setattr("hersey.paper_figures.all_figures", lambda: [figure()])
     monkeypatch.setattr("hersey.paper_figures.drive_figures", lambda *_: ((), ()))
-    document = printed([name, *(files.get(argument, argument) for argument in ARGUMENTS[name])])
-    assert document["schema_version"] == SCHEMA_VERSION
-    assert document["hersey_version"] == hersey.__version__
-    assert document["command"].startswith("hersey")
+    told = printed([name, *(files.get(argument, argument) for argument in ARGUMENTS[name])])
+    assert told["schema_version"] == SCHEMA_VERSION
+    assert told["hersey_version"] == hersey.__version__
+    assert told["command"].startswith("hersey")
     part = PRINTED[name]
     if part is not Analysis:
-        document = {key: value for key, value in document.items() if key not in HEADER}
-    jsonschema.validate(document, part.model_json_schema())
-    again = part.model_validate(document)
-    assert json.loads(again.model_dump_json()) == document
+        told = {key: value for key, value in told.items() if key not in HEADER}
+    jsonschema.validate(told, part.model_json_schema())
+    again = part.model_validate(told)
+    assert json.loads(again.model_dump_json()) == told
     with pytest.raises(ValueError, match="unheard_of"):
-        part.model_validate({**document, "unheard_of": 1})
+        part.model_validate({**told, "unheard_of": 1})
 
 
 def parameters(name: str) -> list[Any]:
