@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import functools
 import inspect
 import pickle
 import re
@@ -79,6 +80,7 @@ def imported(path: Path, known: set[str]) -> set[str]:
     return found
 
 
+@functools.cache
 def imports() -> dict[str, set[str]]:
     """Every module of the package with those that it imports."""
     named = modules()
