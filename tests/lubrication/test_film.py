@@ -16,10 +16,10 @@ from hersey.damping.surface import DampingSurface
 from hersey.errors import HerseyError, ParameterError, UnitError
 from hersey.lubrication.lubricant import EXAMPLES, ShearThinning
 from hersey.machine.machine import Machine, read_machine
-from hersey.verdict.checks import check_film
 from hersey.verdict.evidence import measured_film, solved_exponent, verdict
 from tests.cli.command import run
 from tests.conftest import ROOT
+from tests.verdict.said import check_film
 
 TOML = (ROOT / "tests" / "stand" / "machine.toml").read_text()
 

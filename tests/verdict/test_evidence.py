@@ -17,12 +17,13 @@ from hersey.lubrication.contact import Contact
 from hersey.lubrication.film import Correction, Film, drag_torque, film_thickness
 from hersey.lubrication.lubricant import Lubricant
 from hersey.machine.machine import Machine, read_machine
-from hersey.verdict.checks import Misfit, misfits, remarks
+from hersey.verdict.checks import Misfit, misfits
 from hersey.verdict.evidence import MeasuredFilm, Verdict, measured_film, verdict
 from hersey.verdict.regime import Regime, regime
 from hersey.verdict.transition import ContactTransition
 from tests.conftest import ROOT
 from tests.verdict.cases import RANGES, alone, holm, seen
+from tests.verdict.said import check_film
 
 GAS = 8.31446261815324
 
@@ -261,11 +262,6 @@ def film_at(
 
 
 EXTRAPOLATED = "viscosity is extrapolated: known from 40 to 100 degC, used from {} to {} degC"
-
-
-def check_film(machine: Machine, film: Film, measured: MeasuredFilm | None = None) -> tuple[str, ...]:
-    """All that is said of a nip."""
-    return (*(each.text for each in misfits(machine, film, measured)), *remarks(machine, film))
 
 
 @pytest.mark.parametrize(
