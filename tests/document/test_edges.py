@@ -12,7 +12,7 @@ import pytest
 import hersey
 from hersey.damping.estimate import Estimate
 from hersey.damping.surface import DampingSurface
-from hersey.document.decision.behaviour import Behaviour, PointBehaviour
+from hersey.document.decision.behaviour import Behaviour, PointBehaviour, Working
 from hersey.document.decision.edges import Edge, Edges, edges_of
 from hersey.document.decision.flags import flags
 from hersey.document.decision.instruction import of_log
@@ -20,12 +20,12 @@ from hersey.document.decision.points import points_of_log
 from hersey.document.decision.words import figures
 from hersey.document.parts import CarriedPart, RegimePart
 from hersey.document.parts.fit import LackOfFitPart
-from hersey.machine.limits import OperatingPoint
+from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.machine import Machine
 from hersey.stability.operating_map import OperatingMap
 from hersey.stability.plan import of_log as plans
 from hersey.stability.plan import plan_of_log
-from tests.document.conftest import BETWEEN, HOT, Decide
+from tests.document.conftest import BETWEEN, FAST, HOT, Decide
 
 
 def test_safe_is_the_greater_of_both_upper_ends() -> None:
@@ -189,6 +189,11 @@ def test_warnings_of_the_log(points: hersey.SteadyPoints, surface: DampingSurfac
     unnamed = seen.model_copy(update={"named": None, "why_unnamed": "two explain it"})
     [flag] = [f for f in flags(points, surface, unnamed, None, None, None) if f.section == "regime"]
     assert (flag.title, flag.text) == ("No regime is told.", "Two explain it.")
+    assert surface.transition is not None
+    by_itself = replace(surface, transition=replace(surface.transition, freed=24.0))
+    freed = "One Hersey number does not hold."
+    assert freed in told(fit=by_itself, named="soft EHL")
+    assert freed not in calm
     loads = np.linspace(10.0, 20.0, len(points))
     loaded = replace(points, table=points.table.with_columns(load=pl.Series(loads)))
     assert (
@@ -231,3 +236,29 @@ def test_without_a_map_only_what_was_measured_is_judged(surface: DampingSurface,
     said = points_of_log(surface, replace(machine, points=points), rises=True)
     assert [each.words.split(" once")[0].split(":")[0] for each in said] == list(states.values())
     assert {each.signal for each in said} == {"watch"}
+
+
+def test_a_step_is_taken_between_points_of_one_temperature(surface: DampingSurface, machine: Machine) -> None:
+    states = (("slow", 0.06, HOT), ("fast", FAST, HOT), ("cool", FAST, HOT - 20.0))
+    points = tuple(OperatingPoint(*state) for state in states)
+    working = Working(surface, replace(machine, points=points, uncertainty={}))
+    stepped = [working._borne(point)[1] for point in points]
+    assert [[step.from_speed for step in steps] for steps in stepped] == [[FAST], [0.06], []]
+
+
+def test_no_plan_is_sought_where_the_belt_is_not_started(surface: DampingSurface, machine: Machine) -> None:
+    point = OperatingPoint("thick paper", BETWEEN, HOT)
+    weak = replace(machine, points=(), limits=Limits(motor_torque=0.1), uncertainty={})
+    assert Working(surface, weak)._planned(point) == (None, None)
+
+
+def test_a_belt_that_is_not_started_has_no_v_star_of_stiction(
+    surface: DampingSurface, machine: Machine
+) -> None:
+    slipping = Limits(roll_friction=0.1, nip_load=10.0)
+    told = [
+        Working(surface, replace(machine, points=(), limits=limits))._stopping(HOT)
+        for limits in (machine.limits, slipping)
+    ]
+    assert told[0] is not None
+    assert told[1] is None

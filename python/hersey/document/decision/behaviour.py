@@ -139,14 +139,14 @@ class Working:
             threads=os.cpu_count() or 1,
         )
 
-    def _band(self, kelvin: float | None, *, sensitivity: bool = False) -> HysteresisBand:
+    def _band(self, kelvin: float | None, *, sensitivity: bool | None = False) -> HysteresisBand:
         drag = self._surface.drag(**self._machine.belt, temperature=kelvin)
         return hysteresis(self._machine.train, drag, sensitivity=sensitivity)
 
     def _at_the_band(self) -> tuple[float | None, HysteresisBand, StickSpeeds]:
         bands = [(self._band(kelvin), kelvin) for kelvin in self._kelvins]
         _, kelvin = max(bands, key=lambda each: (each[0].upper, each[0].transition))
-        return kelvin, self._band(kelvin, sensitivity=True), self._against_stick_speed(kelvin)
+        return kelvin, self._band(kelvin, sensitivity=None), self._against_stick_speed(kelvin)
 
     def _against_stick_speed(self, kelvin: float | None) -> StickSpeeds:
         machine = self._machine

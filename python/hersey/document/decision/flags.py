@@ -20,7 +20,7 @@ from hersey.stability.operating_map import OperatingMap
 MOST = 3
 #: Measured over stated torque beyond which the file does not make the log.
 _FAR = 2.0
-#: Dwells of a falling branch that are few: a transition is told from four on.
+#: Dwells of a falling branch that are few: a transition is told from three on.
 _FEW = 4
 #: Scatter between dwells that is spoken of.
 _SCATTER = 0.05
@@ -181,6 +181,10 @@ def _of_log(points: SteadyPoints, surface: DampingSurface) -> list[FlagPart]:
     if surface.transition is not None and (below := _below(points, surface)) <= _FEW:
         text = f"{below} of {len(points)} dwells lie below the transition: measure slower ones."
         title = "Few dwells hold the falling branch."
+        out.append(FlagPart(signal="watch", title=title, text=text, section="torque"))
+    if surface.transition is not None and surface.transition.freed is not None:
+        text = "The transition moves with temperature otherwise than viscosity does: it is fitted by itself."
+        title = "One Hersey number does not hold."
         out.append(FlagPart(signal="watch", title=title, text=text, section="torque"))
     if loads := points.varying_load:
         text = f"From {figures(loads[0])} to {figures(loads[1])} N: fit each load alone."
