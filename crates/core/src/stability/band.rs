@@ -1,7 +1,8 @@
 //! The band of drive speeds where the past decides whether a belt sticks.
 
 use super::cycles;
-use super::fold::{Fold, Gripped, SlipLap, SlippingFold, folds, gripped};
+use super::fold::{Fold, Gripped, SlippingFold, folds, gripped};
+use super::slip_lap::SlipLap;
 use crate::drag::{Closure, Drag};
 use crate::error::{Error, unless_stopped};
 use crate::motion::{

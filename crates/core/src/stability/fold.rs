@@ -14,87 +14,11 @@
 //! Where the roll slips before the belt is as fast as the drive, both meet with just the pull that the grip
 //! bears, whatever came before: the lap then begins there.
 
+use super::secant::{Outcome, Search, Step};
+use super::slip_lap::SlipLap;
 use crate::error::Error;
 use crate::motion::lanes::{Lanes, arrival, run_lanes};
 use crate::work::Work;
-
-/// What remains of a belt with two power branches once units are chosen to suit it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SlipLap {
-    /// Drag at the transition over `v_t sqrt(k m)`.
-    pub damping: f64,
-    /// Slowest speed of the lap over `v_t`.
-    pub slowest: f64,
-    /// Exponent of drag on the mixed branch, negative.
-    pub mixed: f64,
-    /// Exponent of drag on the EHL branch.
-    pub ehl: f64,
-    /// Drag of the rest of the drive per speed, over `sqrt(k m)`.
-    pub rest: f64,
-}
-
-impl SlipLap {
-    /// Whether steady sliding just below the transition is an unstable node, `|F'| >= 2` there: then no belt comes
-    /// back from below the transition.
-    #[must_use]
-    pub fn is_node(&self) -> bool {
-        -self.mixed * self.damping - self.rest >= 2.0
-    }
-
-    /// Drag at `u` on the mixed branch, the rest of the drive counted.
-    #[must_use]
-    pub fn mixed_force(&self, u: f64) -> f64 {
-        self.damping * u.powf(self.mixed) + self.rest * u
-    }
-
-    /// Drag at `u`.
-    fn force(&self, u: f64) -> f64 {
-        if u < 1.0 { self.mixed_force(u) } else { self.damping * u.powf(self.ehl) + self.rest * u }
-    }
-
-    /// Speed from which on drag rises: the transition, or less where the rest of the drive rises faster than the
-    /// mixed branch falls. No swing stays above it.
-    #[must_use]
-    pub fn rising_from(&self) -> f64 {
-        if self.rest == 0.0 {
-            return 1.0;
-        }
-        (self.rest / (-self.mixed * self.damping)).powf(1.0 / (self.mixed - 1.0)).min(1.0)
-    }
-
-    /// Speed from which on drag, where it rises, is more than `force`.
-    fn drags(&self, force: f64) -> f64 {
-        let Self { damping, ehl, rest, .. } = *self;
-        if rest == 0.0 {
-            return (force / damping).powf(1.0 / ehl);
-        }
-        if force < self.mixed_force(1.0) {
-            let (mut low, mut high) = (self.rising_from(), 1.0);
-            for _ in 0..MAX_NEWTON {
-                let middle = 0.5 * (low + high);
-                if self.mixed_force(middle) < force { low = middle } else { high = middle }
-            }
-            return low;
-        }
-        // from below, where Newton's method keeps to its side of the root or comes back from the other
-        let mut u = (0.5 * force / damping).powf(1.0 / ehl).min(0.5 * force / rest);
-        for _ in 0..MAX_NEWTON {
-            let contact = damping * u.powf(ehl);
-            let next = u - (contact + rest * u - force) / (ehl * contact / u + rest);
-            let near = (next - u).abs() <= 2.0 * f64::EPSILON * u;
-            u = next;
-            if near {
-                break;
-            }
-        }
-        u
-    }
-
-    /// A drive speed close to the baseline's fold, so that few laps are needed.
-    fn guess(&self) -> f64 {
-        0.45 + 0.52 * self.slowest.powf(-0.26)
-    }
-}
 
 /// A drive speed at which the lap comes back to its start.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -107,25 +31,17 @@ pub struct Fold {
     pub laps: usize,
 }
 
-/// Laps after which a search is given up.
-const MAX_LAPS: usize = 80;
 /// Tolerance of the steps, whose errors add up along a lap, over that asked for, and the tightest.
 const SHARE: f64 = 0.1;
 const TIGHTEST: f64 = 1e-14;
 /// Steps of one lap after which a search is given up.
 const MAX_STEPS: u32 = 20_000;
-/// Most iterations for the speed that drags with a given force.
-const MAX_NEWTON: usize = 50;
 /// Halvings, in logarithms, of the range of speeds where the way back may begin: nobody sees more.
 const MAX_HALVINGS: usize = 12;
-/// Greatest drive speed looked at, over `v_t`; a fold beyond is said to lie at infinity.
-const FASTEST: f64 = 1e4;
 /// Closeness of laps to the curve of slow motion, in e-folds, from which they are the same.
 const FORGOTTEN: f64 = 45.0;
 /// Room left beside the greatest speed of a lap near the fold.
 const CLOSE: f64 = 0.01;
-/// Error of the drive speed, foretold by the secant method, at which it ends.
-const FOUND: f64 = 1e-12;
 
 /// The fold of each of `laps`; none where they cannot be followed.
 ///
@@ -247,15 +163,6 @@ struct Seeker {
     steps: u32,
     /// Pull of the grip with which the lap is to end at the drive speed, and begin anew, if not at its slowest point.
     meets: Option<f64>,
-}
-
-/// What a lap did at the drive speed that is looked at.
-#[derive(Clone, Copy)]
-enum Outcome {
-    /// Pull at the section less that of the lap which just comes back: negative if the belt sticks.
-    Gap(f64),
-    /// The belt ends in steady sliding or a smaller swing.
-    Escapes,
 }
 
 enum Next {
@@ -514,75 +421,6 @@ impl Seeker {
     }
 }
 
-/// A root of the gap by the secant method, kept inside a bracket once there is one.
-///
-/// The gap is negative where the belt sticks, and has no value where it escapes.
-struct Search {
-    /// Drive speed that is looked at.
-    at: f64,
-    /// Drive speed above which none is looked for.
-    most: f64,
-    sticks: f64,
-    escapes: Option<f64>,
-    last: Option<(f64, f64)>,
-    laps: usize,
-}
-
-enum Step {
-    Again,
-    At(f64),
-    Nowhere,
-}
-
-impl Search {
-    fn new(sticks: f64, at: f64) -> Self {
-        Self { at, most: f64::INFINITY, sticks, escapes: None, last: None, laps: 0 }
-    }
-
-    fn take(&mut self, outcome: Outcome) -> Step {
-        self.laps += 1;
-        let x = self.at;
-        let gap = match outcome {
-            Outcome::Gap(gap) => Some(gap),
-            Outcome::Escapes => None,
-        };
-        let sticks = gap.is_some_and(|g| g < 0.0);
-        if gap == Some(0.0) || (sticks && x >= self.most) {
-            return Step::At(x);
-        }
-        if sticks {
-            self.sticks = self.sticks.max(x);
-        } else {
-            self.escapes = Some(self.escapes.map_or(x, |e| e.min(x)));
-        }
-        let middle = self.escapes.map_or(1.5 * x, |e| 0.5 * (self.sticks + e));
-        let inside = |y: f64| y > self.sticks && self.escapes.is_none_or(|e| y < e);
-        let secant = gap.zip(self.last).map(|(g, (y, h))| x - g * (x - y) / (g - h));
-        if let (Some(y), Some((before, _))) = (secant, self.last)
-            && (y - x).abs() * (x - before).abs() <= FOUND * x * x
-            && (y - x).abs() <= 1e-3 * x
-        {
-            return Step::At(y);
-        }
-        if self.escapes.is_some_and(|e| e - self.sticks <= FOUND * e) {
-            return Step::At(middle);
-        }
-        // without a slope yet, a first guess at it
-        let nearby = gap.map(|_| x * if sticks { 1.03 } else { 0.97 });
-        let fits = |y: &f64| inside(*y) && *y <= 2.0 * x;
-        let next = secant.or(nearby).filter(fits).unwrap_or(middle);
-        if next > FASTEST {
-            return Step::At(f64::INFINITY);
-        }
-        if self.laps >= MAX_LAPS || !next.is_finite() {
-            return Step::Nowhere;
-        }
-        self.last = gap.map(|g| (x, g)).or(self.last);
-        self.at = next;
-        Step::Again
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -635,21 +473,6 @@ mod tests {
         assert!((at(5.196_846_5, 0.004_172_21, 0.616_805_63, 1e-7) - 0.967_789).abs() < 1e-5);
         // steady sliding that is looked at first is just no node
         assert!((at(3.514_712_4, 0.019_925_71, 0.691_635_395, 1e-11) - 0.917_444_1).abs() < 1e-6);
-    }
-
-    #[test]
-    fn the_speed_that_drags_with_a_force_is_found_on_either_branch() {
-        for (damping, ehl, rest) in
-            [(0.3, 0.3, 0.1), (2.0, 1.7, 5.0), (0.1, 0.5, 0.0), (1.0, 0.3, 0.9)]
-        {
-            let lap = SlipLap { damping, ehl, rest, ..BASELINE };
-            for u in [0.9, 1.0, 1.5, 40.0] {
-                let force = lap.force(u);
-                if u > lap.rising_from() {
-                    assert!((lap.drags(force) - u).abs() < 1e-12 * u, "{lap:?} {u}");
-                }
-            }
-        }
     }
 
     #[test]

@@ -2,6 +2,8 @@
 //!
 //! | module | responsibility                                                                     |
 //! |--------|------------------------------------------------------------------------------------|
+//! | `slip_lap` | a belt on two power branches in units that suit it                             |
+//! | `secant` | the drive speed at which a lap just comes back, from laps at others              |
 //! | `fold` | drive speed at which a slip lap comes back to its start, many at once              |
 //! | `cycles` | swings that never stick, by their slowest speed                                 |
 //! | `band` | lower edge, transition and upper fold of a belt, for every closure                 |
@@ -10,9 +12,12 @@
 mod band;
 mod cycles;
 mod fold;
+mod secant;
+mod slip_lap;
 mod unstable;
 
 pub use band::{Band, Method, bands, slip_lap};
 pub use cycles::{Swing, cycles, swings};
-pub use fold::{Fold, SlipLap};
+pub use fold::Fold;
+pub use slip_lap::SlipLap;
 pub use unstable::{UnstableLap, unstable_lap};
