@@ -3,12 +3,21 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import hersey
+from hersey.damping.branches import fit_branches
+from hersey.damping.candidates import Observations
+from hersey.damping.candidates.branched import ONE
+from hersey.damping.candidates.candidate import Candidate
+from hersey.damping.candidates.fitting import fit_law
+from hersey.damping.candidates.thermal import CELSIUS as CELSIUS_SCALE
+from hersey.damping.gradual import _by_power
+from hersey.damping.scaled import move_of, scaled_speed, scaled_torque
 from hersey.damping.surface import DampingSurface
 from hersey.document.assembly import fit_document
 from hersey.document.parts import PRINTED
@@ -98,14 +107,19 @@ def test_the_exponent_of_few_dwells_knows_that_the_corner_may_move() -> None:
 
 
 @pytest.fixture(scope="module")
-def freed() -> DampingSurface:
+def freed_points() -> hersey.SteadyPoints:
     """The transition moves as T^1.2, where one Hersey number has T^3."""
     w, t = (each.ravel() for each in np.meshgrid(np.geomspace(0.4, 16.0, 9), CELSIUS))
     turn, level = 2.0 * (t / 130.0) ** 1.2, (t / 130.0) ** (-1.2 + 0.4 * 1.2)
     z = np.log(w / turn)
     noise = 0.004 * np.random.default_rng(25).standard_normal(w.size)
     torque = level * np.exp(np.where(z < 0.0, -0.5, 0.4) * z + noise)
-    return hersey.fit(points_of(w, torque, t, error=0.002))
+    return points_of(w, torque, t, error=0.002)
+
+
+@pytest.fixture(scope="module")
+def freed(freed_points: hersey.SteadyPoints) -> DampingSurface:
+    return hersey.fit(freed_points)
 
 
 def test_a_transition_is_freed_where_one_hersey_number_is_excluded(freed: DampingSurface) -> None:
@@ -136,6 +150,23 @@ def test_a_freed_transition_is_as_uncertain_at_each_temperature_as_its_draws(fre
     warm = freed.drag(roll_radius=RADIUS, stick_speed=STICK)
     assert warm.at(kelvin).transition_speed == pytest.approx(drag.transition_speed, rel=1e-9)
     assert warm.at(kelvin).transition_force == pytest.approx(drag.transition_force, rel=1e-9)
+
+
+def test_dwells_of_a_freed_transition_lie_on_one_curve(freed_points: hersey.SteadyPoints) -> None:
+    """At the same distance from the transition torque is the same, what it varies by with temperature off."""
+    data = Observations.of(freed_points)
+    law = Candidate(CELSIUS_SCALE, ONE).law(data)
+    branches = fit_branches(data, fit_law(law, data))
+    assert branches is not None
+    fit = branches.fit
+    z, y = scaled_speed(data, fit), scaled_torque(data, fit)
+    at, c, mixed = branches.least, *(fit.values[fit.law.index(name)] for name in ("c", "c_mixed"))
+    curve = np.where(z < at, 1.0 + mixed, 1.0 + c) * (z - at)
+    assert np.std(y - curve) < 0.01
+    by = [
+        (move_of(replace(fit, values=fit.values + step)) - move_of(fit)) / 1e-6 for step in 1e-6 * np.eye(6)
+    ]
+    assert _by_power(fit) == pytest.approx(np.array(by), abs=1e-6)
 
 
 def test_a_saved_fit_keeps_its_freed_transition(
