@@ -106,6 +106,15 @@ def test_the_exponent_of_few_dwells_knows_that_the_corner_may_move() -> None:
     assert high - low == pytest.approx(mixed.high - mixed.low, rel=0.12)
 
 
+def test_the_exponent_is_followed_beyond_the_kink_of_a_corner() -> None:
+    """The likelihood of the exponent rises, then falls again as a dwell changes its branch: both count."""
+    rng, w = np.random.default_rng(538), 0.6 * 1.35 ** np.arange(9)
+    turn = rng.uniform(0.85, 1.2) * w[3]
+    found = fitted(w, np.full(9, turn), -0.4, 0.05 * rng.standard_normal(9)).transition
+    assert found is not None
+    assert found.mixed_exponent.low == pytest.approx(-1.77, abs=0.01)  # -1.64 is where it first rises by t^2
+
+
 @pytest.fixture(scope="module")
 def freed_points() -> hersey.SteadyPoints:
     """The transition moves as T^1.2, where one Hersey number has T^3."""
