@@ -367,6 +367,8 @@ def test_form_and_text_hold_the_same_values(odd: str, tmp_path: Path) -> None:
     one.take_machine({"text": text})
     assert one.turn("form") == ""
     assert tomllib.loads(one.machine_file()) == tomllib.loads(text)
+    one.take_machine({"answers": {"drivetrain.stick_speed": "2 mm/s to 8 mm/s"}})  # what is said later holds
+    assert tomllib.loads(one.machine_file())["uncertainty"]["stick_speed"] == "2 mm/s to 8 mm/s"
 
 
 MAPPING = """[torque]

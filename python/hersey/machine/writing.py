@@ -45,7 +45,7 @@ def machine_text(
     values = _values(answers)
     known = {key: values.pop(key) for key in list(values) if key.startswith("uncertainty.")}
     others = dict(others or {})
-    known |= {f"uncertainty.{key}": value for key, value in others.pop("uncertainty", {}).items()}
+    known = {f"uncertainty.{key}": value for key, value in others.pop("uncertainty", {}).items()} | known
     lines = _tables(MACHINE, values, others)
     if known:
         lines += ["", f"# {TITLES['uncertainty']}", "[uncertainty]"]
