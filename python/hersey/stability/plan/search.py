@@ -34,7 +34,7 @@ Progress = Callable[[int, int], object]
 _RISES = (0.0, 0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0)
 _HOLDS = (0.0, 0.1, 0.2, 0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 3.0, 5.0, 8.0)
 _FALLS = (0.0, 0.1, 0.2, 0.35, 0.5, 0.75, 1.0, 1.5, 2.5, 4.0, 7.0)
-#: One in so many of them is tried first, all of them only if none of these works.
+#: One in so many that overshoot is tried first, all of them only if none of these works.
 _EVERY = 4
 #: Factors on these durations: each only if those before find nothing.
 _STRETCHES = (1.0, 6.0, 40.0)
@@ -293,7 +293,7 @@ class Search:
         waits = [wait for wait in self.waits() if self._may_start(wait)]
         if len(waits) > 1 or stretch > 1.0:
             grid = grid[:: max(1, len(grid) // _THINNED)]
-        elif waits and self._at_wait(grid[::_EVERY], waits[0], 0, len(grid)):
+        elif waits and self._at_wait(_thinned(grid), waits[0], 0, len(grid)):
             return
         for i, wait in enumerate(waits):
             self._at_wait(grid, wait, i * len(grid), len(waits) * len(grid))
@@ -371,7 +371,7 @@ class Search:
         assert self.best is not None
         most, seen = self.time * _VALLEYS, set[float]()
         slower: list[tuple[float, Shape]] = []
-        for j, shape in enumerate(self.grid()[::_EVERY]):
+        for j, shape in enumerate(_thinned(self.grid())):
             moved = replace(shape, wait=self.best.wait)
             if j % 64 == 0:
                 self._report(j, _OTHERS * 1000)
@@ -464,6 +464,11 @@ class Search:
             max(shape.fall + fall, (peak - self.target) / self.room.acceleration),
             max(shape.wait + wait, 0.0),
         )
+
+
+def _thinned(grid: Sequence[Shape]) -> list[Shape]:
+    """The profiles of a grid that are tried first: straight up to the target, and one in so many others."""
+    return [shape for i, shape in enumerate(grid) if i % _EVERY == 0 or shape.peak == shape.target]
 
 
 def _time(row: tuple[float, Shape]) -> float:
