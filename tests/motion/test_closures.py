@@ -85,6 +85,23 @@ def test_two_integrators_agree(closure: str, extra: dict[str, float]) -> None:
     assert abs(run.energy.residual) < 1e-8
 
 
+@pytest.mark.parametrize("drive_speed", [0.033, 0.045, 0.1])
+def test_bristles_slide_steadily_where_torque_rises(drive_speed: float) -> None:
+    """A nudge dies out slowly, lap by lap less: a swing of 1e-6 that hardly shrinks is none that stays."""
+    law = hersey.Drag(
+        0.77,
+        0.029,
+        ehl_exponent=-0.6,
+        mixed_exponent=-1.98,
+        stick_speed=0.003,
+        closure="lugre",
+        bristle_stiffness=1.1e6,
+        bristle_damping=6957.0,
+    )
+    slides = hersey.stick_slip(hersey.Drivetrain(11e3, 11.0), law, drive_speed=drive_speed, start="steady")
+    assert slides.kind == "steady_sliding"
+
+
 @pytest.mark.parametrize("closure", ["stiction", "stribeck"])
 def test_reversal_mirrors_every_closure(closure: str) -> None:
     runs = [
