@@ -294,7 +294,7 @@ def write_figures(document: Analysis, folder: Path) -> list[Path]:
 
 def _torque_unit(document: Analysis) -> tuple[float, str]:
     """Factor from N m, and the unit in which the torques of a document read best."""
-    told = getattr(document, "units", {}).get("torque")
+    told = document.units.get("torque")
     return (
         (1e3 if told == "mN·m" else 1.0, told)
         if told

@@ -7,7 +7,7 @@ async function comparison(parent) {
   const { compare } = data;
   if (!compare) return;
   const part = section(parent, "compare", "Comparison", compare.verdict.split(". ")[0].replace(/\.?$/, "."));
-  await chart(part, "compare", { says: compare.verdict });
+  await chart(part, "compare", { says: compare.verdict, note: `A: ${compare.a}, B: ${compare.b}; bars: simultaneous 95 % limits, temperatures beside each other.` });
   // What is compared as a ratio is a speed of the roll.
   const of = (c) => c.is_ratio ? [`${c.name}, rpm`, digits(c.of_a * TO_RPM), digits(c.of_b * TO_RPM)] : [c.name, digits(c.of_a), digits(c.of_b)];
   table(part, ["Number", compare.a, compare.b, "Change", "95 % interval", "p-value", "Real"], compare.changes.map((c) => [

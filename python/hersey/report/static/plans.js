@@ -24,7 +24,7 @@ async function planSection(parent) {
   for (const point of all.filter((p) => !p.plan)) {
     add(part, "h3", pointName(point));
     const line = add(part, "p");
-    line.append(signal(point.signal), point.reason ? pretty(point.reason) : `Needs no plan: ${pretty(point.words)}.`);
+    line.append(signal(point.signal), point.reason ? pretty(point.reason) : `${point.signal === "act" ? "" : "Needs no plan: "}${pretty(point.words)}.`);
   }
 }
 const pointName = (p) => `${capital(p.name)}, ${perSecond(p.speed)} mm/s${p.temperature === null ? "" : ` at ${degrees(p.temperature)}`}`;
@@ -50,7 +50,7 @@ async function onePlan(parent, point, i) {
   const all = fold(columns, "How sure, in full");
   all.classList.add("across");
   add(all, "p", pretty(plan.verdict), "text");
-  add(all, "p", `${digits(100 * plan.share, 3)} % of ${plural(plan.draws, "draw")} slide; the true share exceeds ${digits(100 * plan.share_low, 3)} % with 95 % confidence. `
+  add(all, "p", `${digits(100 * plan.share, 3)} % of ${plural(plan.draws, "draw")} slide; the true share exceeds ${digits(Math.floor(1000 * plan.share_low) / 10, 3)} % with 95 % confidence. `
     + `${failuresOf(plan) ? `Others: ${failuresOf(plan)}. ` : ""}Seed ${plan.seed}, ${plural(plan.tried, "profile")} tried.`, "text");
 }
 // A value and its unit.
