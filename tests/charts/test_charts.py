@@ -218,7 +218,10 @@ def test_timelines_shade_the_dwells(document: Analysis, name: str) -> None:
 
 def test_small_torques_are_shown_in_millinewton_metres(document: Analysis) -> None:
     small = document.model_copy(
-        update={"points": [p.model_copy(update={"torque": 1e-3 * p.torque}) for p in document.points]}
+        update={
+            "points": [p.model_copy(update={"torque": 1e-3 * p.torque}) for p in document.points],
+            "units": document.units | {"torque": "mN·m"},
+        }
     )
     dots = panel(small, "torque")[-1]
     assert rows(dots)[0]["y"] == pytest.approx(1e3 * abs(small.points[0].torque))
