@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import json
+from collections.abc import Coroutine
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -29,6 +31,12 @@ class Answer:
         return json.loads(self.body)
 
 
+def run(course: Coroutine[Any, Any, Any]) -> Any:
+    """Run a course to its end, in a thread: the browser of another test may hold the loop of this one."""
+    with ThreadPoolExecutor(1) as pool:
+        return pool.submit(asyncio.run, course).result()
+
+
 class Asked:
     """A session and its server."""
 
@@ -40,7 +48,7 @@ class Asked:
 
     def ask(self, method: str, path: str, body: bytes = b"", **headers: str | None) -> Answer:
         """Ask with the headers of the page; ``None`` leaves one out, ``_`` stands for ``-``."""
-        return asyncio.run(self.asked(method, path, [body], **headers))
+        return run(self.asked(method, path, [body], **headers))
 
     async def asked(self, method: str, path: str, parts: list[bytes], **headers: str | None) -> Answer:
         given = OWN | {name.replace("_", "-"): value for name, value in headers.items()}

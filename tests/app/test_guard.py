@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import asyncio
 from pathlib import Path
 
 import pytest
 
 from hersey.app.guard import POLICY, SANDBOX
 from hersey.app.uploads import Bounds, clean_name
-from tests.app.asking import OWN, PORT, TOKEN, Asked
+from tests.app.asking import OWN, PORT, TOKEN, Asked, run
 
 
 @pytest.fixture
@@ -94,7 +93,7 @@ def test_two_hosts_are_none(asked: Asked) -> None:
         await asked.app(scope, None, send)  # type: ignore[arg-type]
         return sent[0]
 
-    assert asyncio.run(twice()) == 403
+    assert run(twice()) == 403
 
 
 def test_a_token_in_the_address_is_none(asked: Asked) -> None:
@@ -171,7 +170,7 @@ def test_a_file_lies_in_the_private_folder_whatever_it_is_called(asked: Asked) -
         await asked.session.close()
         return file.path
 
-    path = asyncio.run(dropped())
+    path = run(dropped())
     assert path.is_relative_to(asked.session.folder)
     assert path.name == "escape.csv"
     view = asked.ask("GET", f"/api/analyses/{asked.first}").body.decode()
@@ -188,7 +187,7 @@ def test_what_is_too_large_is_refused_as_it_comes(tmp_path: Path, length: str | 
         await asked.session.close()  # what is taken would be looked at
         return answer.status
 
-    assert asyncio.run(dropped()) == 413
+    assert run(dropped()) == 413
     (file,) = asked.ask("GET", f"/api/analyses/{asked.first}").json["files"]
     assert (file["state"], file["name"]) == ("fault", "long.csv")
     assert not [

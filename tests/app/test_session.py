@@ -15,6 +15,7 @@ from hersey.app.analysis import Analysis
 from hersey.app.looking import look
 from hersey.app.session import NotNowError, Session
 from hersey.app.workers import EndedError, Refused
+from tests.app.asking import run
 from tests.app.test_mistakes import log
 
 Said = Callable[[str, float | None], None]
@@ -71,7 +72,7 @@ def test_a_finished_run_is_kept_under_a_name_that_is_free(
         assert not file.path.exists()
         assert not session.shown
 
-    asyncio.run(course())
+    run(course())
 
 
 def test_a_cancelled_run_is_not_done_and_leaves_nothing(
@@ -102,7 +103,7 @@ def test_a_cancelled_run_is_not_done_and_leaves_nothing(
         assert not session.shown
         assert not (tmp_path / "reports").exists()
 
-    asyncio.run(course())
+    run(course())
 
 
 @pytest.mark.parametrize(
@@ -123,7 +124,7 @@ def test_a_run_that_fails_says_why_and_is_not_done(
         assert reason in one.reason
         assert not session.shown
 
-    asyncio.run(course())
+    run(course())
 
 
 def test_what_is_chosen_reaches_the_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -143,7 +144,7 @@ def test_what_is_chosen_reaches_the_run(tmp_path: Path, monkeypatch: pytest.Monk
         await session.run(one)
         await over(one)
 
-    asyncio.run(course())
+    run(course())
     assert (seen["isothermal"], seen["tare"], seen["against"], seen["machine"]) == (
         True,
         "standing",
@@ -162,4 +163,4 @@ def test_the_folder_of_an_analysis_is_private(tmp_path: Path, monkeypatch: pytes
         (file,) = one.files.values()
         assert {oct(path.stat().st_mode & 0o777) for path in (one.folder, file.path.parent)} == {"0o700"}
 
-    asyncio.run(course())
+    run(course())

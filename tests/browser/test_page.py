@@ -338,8 +338,8 @@ def test_a_table_is_saved(demo: Opened, report: Report) -> None:
     rows = list(csv.reader(text.decode().splitlines()))
     assert len(rows) == 1 + len(document.points)
     head = {name: i for i, name in enumerate(rows[0])}
-    torques = sorted(float(row[head["Torque, mN·m"]]) for row in rows[1:])
-    assert torques == pytest.approx(sorted(1e3 * p.torque for p in document.points), rel=1e-3)
+    torques = sorted(float(row[head["Torque, N·m"]]) for row in rows[1:])
+    assert torques == pytest.approx(sorted(p.torque for p in document.points), rel=1e-3)
     assert demo.violations == []
 
 
@@ -390,7 +390,7 @@ def test_one_cursor_reads_all_rows_of_the_log(demo: Opened) -> None:
     place.scroll_into_view_if_needed()
     place.hover(position={"x": 500, "y": 120})
     read = place.locator(".cursor text").all_text_contents()
-    assert [re.sub(r"[\d.\u2212]+ ", "", text) for text in read] == ["rpm", "mN·m", "°C", "s"]
+    assert [re.sub(r"[\d.\u2212]+ ", "", text) for text in read] == ["rpm", "N·m", "°C", "s"]
     first = read[-1]
     place.focus()
     demo.page.keyboard.press("ArrowRight")

@@ -150,7 +150,7 @@ def recorded(it: Refused) -> list[str]:
     lasts = re.search(r"holds one speed for at least ([\d.]+) s", it.message)
     three = "at three speeds or more" in it.message
     of_other = re.search(
-        r"A has ([\d.]+) to ([\d.]+) rpm.*record one of them at speeds of the other", it.message
+        r"csv has ([\d.]+) to ([\d.]+) rpm.*record one of them at speeds of the other", it.message
     )
     assert lasts or three or of_other, it.message
     slow, fast = map(float, of_other.groups()) if of_other else (10.0, 120.0)
@@ -435,7 +435,7 @@ MISTAKES: dict[str, Mistake] = {
     "logs without common speeds": Mistake(
         {"a.csv": table(rows()), "log.csv": table(rows((200, 300, 400, 500)))},
         "compare a.csv log.csv",
-        ("share no range of speed", "A has 10 to 120 rpm, B 200 to 500 rpm"),
+        ("share no range of speed", "a.csv has 10 to 120 rpm, log.csv 200 to 500 rpm"),
         recorded,
     ),
     "machine and log swapped": Mistake(

@@ -311,5 +311,5 @@ def test_draws_of_the_rest_have_its_errors() -> None:
         drawn,
         np.random.default_rng(1),
         1,
-    )[0]
+    )[0][0]
     assert vars(machine.drag)["rest_force"] in drawn["rest_force"]

@@ -49,8 +49,7 @@ VERBS = {
     ),
     "cycles": "Find the slips of a stick-slip trace, and with --identify the drive that makes them.",
     "simulate": (
-        "Simulate the belt at constant drive speed and say what it settles to (defaults: the "
-        "paper's baseline)."
+        "Simulate the belt at a drive speed or over a profile: what it settles to (defaults: the paper's)."
     ),
     "sweep": "Find what every combination of parameters settles to, and count the outcomes.",
     "hysteresis": "Find the drive speeds between which the past decides whether the belt sticks.",
