@@ -423,6 +423,7 @@ def test_the_numbers_behind_a_motion(page: Page) -> None:
     enter(page, "speed", "20")
     page.click("#panel .numbers summary")
     table = page.locator("#panel .numbers table")
+    table.locator("tbody tr").first.wait_for()
     assert table.locator("tbody tr").count() > 200
     with page.expect_download() as download:
         page.click("#panel .numbers button:text-is('Save CSV')")

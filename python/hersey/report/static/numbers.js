@@ -4,7 +4,7 @@ function numbers(place) {
   const ROWS = 300;
   const box = fold(place, "Numbers of this motion");
   box.className = "numbers behind";
-  let last = null;
+  let last = null, soon = 0;
   function speedAt(profile, time) {
     const next = profile.findIndex((row) => row[0] > time);
     if (next <= 0) return profile.at(next)[1];
@@ -25,9 +25,11 @@ function numbers(place) {
   }
   box.addEventListener("toggle", () => { if (box.open) fill(); });
   return {
+    // The motion is taken at once, so that what is opened is of now; a table that is open follows when it rests.
     show(motion, setting) {
       last = { motion, setting };
-      if (box.open) fill();
+      clearTimeout(soon);
+      if (box.open) soon = setTimeout(fill, 300);
     },
   };
 }

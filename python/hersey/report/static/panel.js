@@ -258,12 +258,12 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
     sub.filter(Boolean).forEach((text, i) => add(below, "span", `${i ? " · " : ""}${text}`));
     setting.zone = ZONES[zone.state];
     picture.show(setting);
+    if (answer.motion) behind.show(answer.motion, { ...setting });
     clearTimeout(spoken);
     spoken = setTimeout(() => {
       said.textContent = verdict.textContent;
       printed.textContent = inWords();
       if (open) output();
-      if (answer.motion) behind.show(answer.motion, setting);
       chart.say(`Belt speed: ${words} at ${speedText(setting.speed)}`, `Phase plane at ${speedText(setting.speed)}: ${words}`);
     }, 500);
     trackColours();
