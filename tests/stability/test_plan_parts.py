@@ -197,7 +197,7 @@ def test_draws_of_machines() -> None:
 
 
 def test_draws_that_are_no_belt_are_left_out_and_counted() -> None:
-    """Stick speeds above the transition speed of 1: half of each range, or nearly all."""
+    """Stick speeds above the transition speed of 1: half of a range, a third, nearly all."""
     spread = {"stick_speed": Uncertainty(limits=(0.1, 10.0))}
     machines, none = drawn(TRAIN, DRAG, spread, {}, np.random.default_rng(4), 400)
     assert len(machines) == 400
@@ -205,6 +205,9 @@ def test_draws_that_are_no_belt_are_left_out_and_counted() -> None:
     stick = [machine.drag.law_at(None).stick_speed for machine in machines]
     assert max(stick) < 1.0
     assert np.mean(np.array(stick) < 0.1**0.5) == pytest.approx(0.5, abs=0.08)
+    lower = {"stick_speed": Uncertainty(limits=(0.05, 5.0))}
+    _, none = drawn(TRAIN, DRAG, lower, {}, np.random.default_rng(4), 400)
+    assert none == pytest.approx(math.log(5) / math.log(100), abs=0.05)
     with pytest.raises(ParameterError, match="hardly a draw is possible: state less"):
         drawn(
             TRAIN, DRAG, {"stick_speed": Uncertainty(limits=(0.9, 90.0))}, {}, np.random.default_rng(4), 400

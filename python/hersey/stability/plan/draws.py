@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -73,9 +74,9 @@ def drawn(
         If no parameter has such a name, or fewer than a tenth of the draws are possible.
     """
     machines, made = list[MachineSample](), 0
+    nominal = {**vars(train), **vars(drag)}
     while len(machines) < count:
-        rows = _rows(train, drag, uncertainty, samples, rng, count)
-        for values in rows:
+        for values in _rows(nominal, uncertainty, samples, rng, count):
             try:
                 machines.append(_machine(train, drag, values))
             except ParameterError as error:
@@ -91,15 +92,13 @@ def drawn(
 
 
 def _rows(
-    train: Drivetrain,
-    drag: AnyDrag,
+    nominal: Mapping[str, Any],
     uncertainty: Mapping[str, Uncertainty],
     samples: Mapping[str, ArrayLike],
     rng: np.random.Generator,
     count: int,
 ) -> list[dict[str, float]]:
     """The values of so many draws, by name."""
-    nominal = {**vars(train), **vars(drag)}
     columns: dict[str, FloatArray] = {}
     for name in [*uncertainty, *samples]:
         if name not in (*OF_THE_BELT, *BESIDE) or name not in nominal:
