@@ -240,7 +240,10 @@ def test_states_and_torques_go_with_their_temperatures(few: OperatingMap) -> Non
         assert state == few.state_at(float(t), float(v))
     assert few.states(kelvin[:, None], speed).shape == (3, 3)
     # of a motor of 4.5 N m and a belt that bears 4.18 N m by the estimate, of one of 9 N m for certain
+    assert few.doubtful.tolist() == [few.state_at(float(t), 0.3).doubtful for t in KELVIN]
+    assert few.doubtful[-1]
     strong = replace(few, torque_limit=9.0)
+    assert not strong.doubtful.any()
     assert not any(state.doubtful for state in strong.look_up(467.0, [0.01, 0.3]))
     assert strong.look_up(467.0, 0.3)[0].verdict() == "Smooth."
     weak = replace(few, torque_limit=3.0)

@@ -70,15 +70,22 @@ class OperatingMap(Result):
     @property
     def starts(self) -> NDArray[np.bool_]:
         """Whether the drive starts a belt at rest, at each temperature."""
-        return self.holding <= (np.inf if self.torque_limit is None else self.torque_limit)
+        return self.holding <= self._limit
+
+    @property
+    def _limit(self) -> float:
+        """The torque (N m) that the drive cannot exceed."""
+        return np.inf if self.torque_limit is None else self.torque_limit
+
+    def _may_start(self, low: ArrayLike, holding: ArrayLike, high: ArrayLike) -> NDArray[np.bool_] | np.bool_:
+        """Whether the limit lies within the interval of what a belt at rest bears."""
+        return (np.minimum(low, holding) <= self._limit) & (self._limit < np.maximum(high, holding))
 
     @property
     def doubtful(self) -> NDArray[np.bool_]:
         """Whether it starts some of the belts drawn and others not."""
         low, high = self.holding_interval
-        limit = np.inf if self.torque_limit is None else self.torque_limit
-        within = (np.minimum(low, self.holding) <= limit) & (limit < np.maximum(high, self.holding))
-        return np.asarray(within)
+        return np.asarray(self._may_start(low, self.holding, high))
 
     def at(self, values: FloatArray, kelvin: float | None) -> float:
         """Return one of the rows of the map at a temperature (K; None if isothermal), interpolated."""
@@ -191,12 +198,11 @@ class OperatingMap(Result):
 
     def _state(self, law: Drag, edges: Mapping[str, float], kelvin: float, speed: float) -> MapState:
         torque, holding = (force * self.roll_radius for force in (float(law.force(speed)), law.holding_force))
-        limit = np.inf if self.torque_limit is None else self.torque_limit
-        starts = bool(holding <= limit)
+        starts = bool(holding <= self._limit)
         bears = [self.at(edge, kelvin) for edge in self.holding_interval]
-        doubtful = bool(min(bears[0], holding) <= limit < max(bears[1], holding))
+        doubtful = bool(self._may_start(bears[0], holding, bears[1]))
         held = edges["lower"] == 0 and speed < edges["transition"]
-        if torque > limit or (held and not starts):
+        if torque > self._limit or (held and not starts):
             moving = self.beyond
         elif speed < edges["lower"]:
             moving = "stick_slip"
