@@ -10,6 +10,7 @@ arrays          numbers or arrays as arguments
 result          what every result can do
 files           text, TOML with units, writing whole or not at all
 processes       processes of our own for libraries that may break down
+scale           work cut into tasks: for threads, or for the workers of a cluster
 log             a `TorqueLog` from any file
 motion          drag against speed, schedules, the motion of the belt, sweeps
 damping         dwells, the damping surface, candidate laws, comparison, design of tests
@@ -20,6 +21,7 @@ verdict         what exponents and film say together
 identification  the cycles of a trace, and the drive behind them
 stability       hysteresis, disturbances, the operating map, drive profiles, warm-ups
 life            runs of many units at many ages, fatigue, populations: what ends a drive, and when
+exchange        the drive as a unit that other tools of simulation run
 document        the analysis document: the contract with the page
 charts          one chart per result
 report          the page

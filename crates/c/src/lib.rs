@@ -1,0 +1,1 @@
+//! The core for C: plain functions, and those of the Functional Mock-up Interface.
