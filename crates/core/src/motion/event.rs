@@ -25,6 +25,15 @@ pub enum Guard {
 }
 
 impl Guard {
+    /// The condition that parts two modes, for a change that something jumped has made.
+    pub(super) fn between(from: Mode, to: Mode) -> Self {
+        match (from, to) {
+            (Mode::Ehl | Mode::Mixed, Mode::Ehl | Mode::Mixed) => Self::TransitionSpeed,
+            (Mode::Stuck, _) | (Mode::Microslip, Mode::Stuck) => Self::HoldingForce,
+            _ => Self::StickSpeed,
+        }
+    }
+
     /// Name of the guard as documents print it.
     #[must_use]
     pub fn name(self) -> &'static str {

@@ -4,11 +4,13 @@
 //! other quantity is mirrored with it, so that speed `u >= 0` here and one set of guards serves both.
 
 use super::event::{Event, Guard};
+use super::moment::Moment;
 use super::piece::{Path, Phase, Piece};
 use super::polynomial::{ORDER, Polynomial, derivative, first_crossing, value};
 use super::schedule::Cubic;
-use super::surroundings::Surroundings;
+use super::surroundings::{Jump, Surroundings};
 use super::system::{Integrator, Start, System, checked_tolerance};
+use super::taylor::rough_root;
 use crate::drag::Mode;
 use crate::error::{Error, above};
 use crate::work::Work;
@@ -47,6 +49,9 @@ pub(crate) fn first_slide(
     None
 }
 
+/// When a piece meets a guard, in time since its start.
+pub(super) type Met = (f64, Guard);
+
 /// The motion, from one piece to the next.
 pub(super) struct Motion<'a> {
     pub now: Surroundings<'a>,
@@ -61,7 +66,7 @@ pub(super) struct Motion<'a> {
     crawled: u32,
     unit: f64,
     /// Least and greatest temperature at which the law is known to be one.
-    checked: Option<(f64, f64)>,
+    pub checked: Option<(f64, f64)>,
     /// Pieces made.
     pub steps: usize,
     pub work: &'a Work<'a>,
@@ -81,6 +86,23 @@ impl<'a> Motion<'a> {
     ) -> Result<Self, Error> {
         let mut motion = Self {
             phase: phase_at(start, system.pull(start)?),
+            ..Self::blank(system, tolerance, integrator, work)?
+        };
+        motion.bend_bristles();
+        motion.take_grip();
+        motion.enter_mode_at_start();
+        Ok(motion)
+    }
+
+    /// A motion that has not begun.
+    fn blank(
+        system: &'a System,
+        tolerance: f64,
+        integrator: Integrator,
+        work: &'a Work<'a>,
+    ) -> Result<Self, Error> {
+        Ok(Self {
+            phase: phase_at(Start::REST, 0.0),
             tolerance: checked_tolerance(tolerance)?,
             integrator,
             arch: pulp::Arch::new(),
@@ -94,11 +116,43 @@ impl<'a> Motion<'a> {
             work,
             stopped: 0.0,
             temperatures: [[0.0; ORDER + 1]; 2],
-        };
-        motion.bend_bristles();
-        motion.take_grip();
-        motion.enter_mode_at_start();
-        Ok(motion)
+        })
+    }
+
+    /// Go on from `moment`, in its mode.
+    ///
+    /// # Errors
+    /// If the law of drag has ended there.
+    pub(super) fn at(
+        system: &'a System,
+        moment: &Moment,
+        tolerance: f64,
+        integrator: Integrator,
+        work: &'a Work<'a>,
+    ) -> Result<Self, Error> {
+        Ok(Self {
+            now: Surroundings::at(system, moment.start, moment.segments)?,
+            phase: moment.phase,
+            next_step: moment.next_step,
+            events_at_once: moment.events_at_once,
+            crawled: moment.crawled,
+            ..Self::blank(system, tolerance, integrator, work)?
+        })
+    }
+
+    /// What is needed to go on from here; drive and temperature are those of the system.
+    pub(super) fn moment(&self) -> Moment {
+        Moment {
+            phase: self.phase,
+            start: self.now.time,
+            time: self.now.time,
+            segments: self.now.segments(),
+            next_step: self.next_step,
+            events_at_once: self.events_at_once,
+            crawled: self.crawled,
+            drive: None,
+            temperature: None,
+        }
     }
 
     /// Go on from another state.
@@ -125,30 +179,46 @@ impl<'a> Motion<'a> {
 
     /// The next piece, no longer than `longest`, and the event that ends it, if one does.
     pub(super) fn advance(&mut self, longest: f64) -> Result<(Piece<'a>, Option<Event>), Error> {
+        let (mut piece, guard) = self.look_ahead(longest)?;
+        let event = self.follow(&mut piece, guard)?;
+        Ok((piece, event))
+    }
+
+    /// The next piece, no longer than `longest`, and when it meets a guard, if it does.
+    pub(super) fn look_ahead(&mut self, longest: f64) -> Result<(Piece<'a>, Option<Met>), Error> {
         self.steps += 1;
         self.work.take(1).map_err(|error| error.at_time(self.now.time))?;
         self.now.take_temperature()?;
         if self.phase.creeping {
             self.creep_on();
         }
-        let until_change = self.now.next_change - self.now.time;
-        let longest = longest.min(until_change);
-        let mut piece = if self.now.heat.is_some() {
+        let longest = longest.min(self.now.until_change());
+        let piece = if self.now.heat.is_some() {
             self.warmed_piece(longest)?
+        } else if self.now.system.is_open {
+            self.piece_within_law(longest)?
         } else {
             self.piece(longest)?
         };
-        let Some((elapsed, guard)) = self.first_guard(&piece) else {
-            if piece.duration < until_change {
+        let guard = self.first_guard(&piece);
+        Ok((piece, guard))
+    }
+
+    /// To the end of the piece, which is where it meets a guard, and into what follows.
+    pub(super) fn follow(
+        &mut self,
+        piece: &mut Piece,
+        guard: Option<Met>,
+    ) -> Result<Option<Event>, Error> {
+        let Some((elapsed, guard)) = guard else {
+            if piece.duration < self.now.until_change() {
                 self.check_progress(piece.duration)?;
             }
-            self.go_on(&piece, until_change);
-            return Ok((piece, None));
+            return self.go_on(piece);
         };
         piece.duration = elapsed;
         self.check_progress(elapsed)?;
-        let event = self.meet(guard, &piece)?;
-        Ok((piece, event))
+        self.meet(guard, piece)
     }
 
     /// Refuse to go on in pieces that lead nowhere, one after the other.
@@ -209,6 +279,32 @@ impl<'a> Motion<'a> {
         Err(self.stalled())
     }
 
+    /// The next piece, over which the temperature keeps to where there is a law of drag.
+    #[cold]
+    fn piece_within_law(&mut self, mut longest: f64) -> Result<Piece<'a>, Error> {
+        let Some((course, _)) = self.now.temperature_law() else { return self.piece(longest) };
+        for (c, n) in course.iter().zip(0..).skip(1).filter(|(c, _)| **c != 0.0) {
+            longest = longest.min(rough_root(course[0] / c.abs(), n));
+        }
+        let (step, mut rounds) = (self.next_step, 0);
+        loop {
+            self.next_step = step;
+            let piece = self.piece(longest)?;
+            match self.check_law(piece.duration) {
+                Err(error) if rounds == MAX_ROUNDS => return Err(error),
+                Err(_) => longest = 0.5 * piece.duration,
+                Ok(()) => return Ok(piece),
+            }
+            rounds += 1;
+        }
+    }
+
+    /// Drive and temperature at `time`, not far from now.
+    pub(super) fn inputs_at(mut self, time: f64) -> [f64; 2] {
+        self.now.time = time;
+        self.now.inputs()
+    }
+
     /// The temperature that the law followed along the last piece, in its scale.
     pub(super) fn law_temperature(&self) -> Polynomial {
         let mut course = self.temperatures[0];
@@ -245,18 +341,31 @@ impl<'a> Motion<'a> {
 
     /// To the end of a piece that no guard ends, and into the next segment of the schedules if it reaches there.
     #[inline]
-    fn go_on(&mut self, piece: &Piece, until_change: f64) {
+    fn go_on(&mut self, piece: &Piece) -> Result<Option<Event>, Error> {
+        let until_change = self.now.until_change();
         [self.phase.pull, self.phase.speed, self.phase.bristle] = piece.state(piece.duration);
         self.phase.released = false;
         self.now.pass(piece.duration);
         if piece.duration < until_change || until_change.is_infinite() {
-            return;
+            return Ok(None);
         }
         self.now.time = self.now.next_change;
         self.next_step = f64::INFINITY;
-        if let Some(jump) = self.now.pass_change() {
-            self.phase.pull += self.phase.direction * jump;
+        let jump = self.now.pass_change();
+        self.take_jump(jump)
+    }
+
+    /// Go on after a jump of the driving force or of the law: pull and speed stay, but for that, and the mode may not.
+    pub(super) fn take_jump(&mut self, jump: Jump) -> Result<Option<Event>, Error> {
+        self.phase.pull += self.phase.direction * jump.pull;
+        if !jump.is_felt {
+            return Ok(None);
         }
+        self.now.take_temperature()?;
+        let from = self.phase.mode;
+        self.enter_mode_after_jump();
+        let to = self.phase.mode;
+        Ok((from != to).then(|| self.event(from, Guard::between(from, to))))
     }
 
     /// To the end of a piece, where `guard` is met, and across it; no event if the mode does not change.
@@ -278,15 +387,20 @@ impl<'a> Motion<'a> {
         if guard == Guard::TablePoint {
             return Ok(None);
         }
+        Ok(Some(self.event(from, guard)))
+    }
+
+    /// What has just happened to a belt that was in the mode `from`.
+    fn event(&self, from: Mode, guard: Guard) -> Event {
         let Phase { mode: to, direction, pull, speed, .. } = self.phase;
-        Ok(Some(Event {
+        Event {
             time: self.now.time,
             from,
             to,
             guard,
             stretch: self.now.system.stretch(direction * pull, self.now.time),
             belt_speed: direction * speed,
-        }))
+        }
     }
 
     /// Rate of the pull if the belt stood still, about now, mirrored; nil while the roll slips.

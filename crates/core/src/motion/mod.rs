@@ -16,6 +16,8 @@
 //! | `modes`       | modes, the guards that end them, and which mode follows                   |
 //! | `steps`       | the next piece: held, as a Taylor series, or by a Runge-Kutta step        |
 //! | `hybrid`      | the motion as a chain of pieces between located events                    |
+//! | `moment`      | all of a motion that changes, as numbers                                 |
+//! | `stepper`     | the motion from call to call, its drive and temperature given on the way  |
 //! | `trajectory`  | the motion sampled at given times, with its event table and energies      |
 //! | `lanes`       | slip laps of many belts at once, several to a register                    |
 //! | `ensemble`    | what thousands of belts settle to                                         |
@@ -36,6 +38,7 @@ mod hybrid;
 pub(crate) mod lanes;
 mod lap;
 mod modes;
+mod moment;
 mod piece;
 mod polynomial;
 mod returning;
@@ -44,6 +47,7 @@ mod schedule;
 mod sharing;
 mod start_up;
 mod start_ups;
+mod stepper;
 mod steps;
 mod surroundings;
 mod system;
@@ -56,10 +60,12 @@ pub use ensemble::{Belt, Outcome, ensemble};
 pub use event::{Event, Guard};
 pub use heat::{HeatBalance, Heater};
 pub(crate) use hybrid::first_slide;
+pub use moment::Moment;
 pub(crate) use returning::{Return, next_return};
 pub use schedule::{Cubic, Schedule};
 pub use start_up::{Ending, StartUp, Started, start_up};
 pub use start_ups::{BeltAtRest, Starting, start_ups};
+pub use stepper::{State, Stepper};
 pub(crate) use system::checked_tolerance;
 pub use system::{Drive, Drivetrain, Integrator, NUDGE, Start, System};
 pub use trajectory::{Energy, Trajectory, simulate};

@@ -92,6 +92,46 @@ impl Motion<'_> {
         };
     }
 
+    /// Enter the mode that pull and speed ask for, where the law or the pull has jumped: a held belt stays so if it can.
+    #[cold]
+    pub(super) fn enter_mode_after_jump(&mut self) {
+        (self.phase.released, self.phase.creeping) = (false, false);
+        self.next_step = f64::INFINITY;
+        let Phase { mode: from, pull, speed, .. } = self.phase;
+        if from == Mode::Stuck {
+            if pull.abs() <= self.holding_force() {
+                return;
+            }
+            self.phase.strength = self.strength_now();
+            if speed == 0.0 && pull < 0.0 {
+                self.mirror();
+            }
+        }
+        let slow = speed < self.now.speed(self.now.system.drag.stick_speed());
+        let closure = self.now.system.drag.closure();
+        if slow && closure != Closure::Stiction && !closure.is_smooth() {
+            // what holds it is its own drag, which a rest before has made larger
+            let held = from != Mode::Stuck && pull.abs() <= self.microslip_drag();
+            self.phase.mode = if held { Mode::Stuck } else { Mode::Microslip };
+        } else {
+            self.enter_mode_at_start();
+        }
+        if self.phase.mode != Mode::Microslip {
+            self.phase.strength = 1.0;
+        }
+        if self.phase.mode == Mode::Stuck {
+            self.phase.at_rest_since = self.now.time;
+        }
+    }
+
+    /// Drag of a belt that is slower than the stick speed.
+    fn microslip_drag(&self) -> f64 {
+        let Phase { speed, strength, .. } = self.phase;
+        let x = self.now.at_reference(speed);
+        let contact = self.now.system.drag.strengthened_below(x, strength).0;
+        self.now.force_below(contact) + self.now.rest(speed)
+    }
+
     /// Mode of a belt that has slowed to the stick speed; with `Stiction` it stops dead if it can be held.
     fn mode_below_stick_speed(&mut self) -> Mode {
         let drag = &self.now.system.drag;

@@ -8,7 +8,7 @@ use super::thermal::ThermalFactors;
 use crate::drag::Mode;
 
 /// A moment of the motion, mirrored so that `speed >= 0`.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Phase {
     pub mode: Mode,
     /// Branch of the drag law, above the stick speed.
@@ -41,7 +41,7 @@ const MET: f64 = 1e-9;
 const MAX_HALVINGS: usize = 50;
 
 /// How the state is known along a piece.
-#[derive(Debug)]
+#[derive(Debug, Clone, Copy)]
 #[allow(clippy::large_enum_variant)] // the large one is the common one, and lives on the stack
 pub(super) enum Path {
     Series(Series),

@@ -23,6 +23,16 @@ impl Schedule {
         Self { starts: vec![f64::NEG_INFINITY], segments: vec![(0.0, [value, 0.0, 0.0, 0.0])] }
     }
 
+    /// A cubic in the time from `origin` on, for good.
+    pub(super) fn onward(origin: f64, cubic: Cubic) -> Self {
+        Self { starts: vec![f64::NEG_INFINITY], segments: vec![(origin, cubic)] }
+    }
+
+    /// Whether it goes on for good as `cubic` does, in the time from `time` on, where `segment` holds.
+    pub(super) fn goes_on_as(&self, segment: usize, time: f64, cubic: &Cubic) -> bool {
+        self.end(segment).is_infinite() && self.about(segment, time) == *cubic
+    }
+
     /// Straight lines through `(time, value)`.
     ///
     /// # Errors

@@ -9,9 +9,8 @@ use super::schedule::Cubic;
 use super::sharing::SharingStart;
 use super::system::Integrator;
 use super::taylor::{
-    Recurrence, Series, Slip, SlipStart, UNCHANGED, creep_series, held_series, product,
+    Recurrence, Series, Slip, SlipStart, UNCHANGED, creep_series, held_series, product, rough_root,
 };
-use super::thermal::ThermalFactors;
 use crate::drag::{Closure, Mode, Strengthening, TemperatureLaw};
 use crate::error::Error;
 
@@ -24,8 +23,8 @@ const STIFF: f64 = 30.0;
 /// What an implicit and an explicit Runge-Kutta step cost, tried and looked at for guards, in Taylor steps.
 const RUNGE_KUTTA: (u64, u64) = (40, 10);
 
-/// Time over that until a held belt is released from which the rest is left to the pieces after.
-const FAR: f64 = 1e6;
+/// Longest Runge-Kutta step.
+const FARTHEST: f64 = 1e9;
 
 /// Factor by which a series is shortened that has left the law, and how often at most.
 const SHORTENED: f64 = 0.7;
@@ -42,7 +41,9 @@ impl<'a> Motion<'a> {
             return Ok(self.held_piece(longest));
         }
         if self.on_a_corner() {
-            return Ok(self.along(Series::still(start.pull, start.speed), longest));
+            let still = Series::still(start.pull, start.speed);
+            let reach = self.reach(&still);
+            return Ok(self.along(still, longest.min(reach)));
         }
         if start.creeping {
             return Ok(self.creep_piece(longest));
@@ -80,21 +81,44 @@ impl<'a> Motion<'a> {
         }
         let duration = match &self.now.thermal {
             // the guard is found inside the piece, of which it must not be too small a part
-            None if self.is_driven_evenly() && longest > FAR * self.release_time() => {
-                1.01 * self.release_time()
+            None if self.is_driven_evenly() && !self.phase.slipping => {
+                longest.min(1.01 * self.release_time())
             }
-            None => longest,
+            None => longest.min(self.reach(&series)),
             Some(thermal) => {
                 // no longer than the series of the holding force is good for
                 let breakaway = self.now.system.drag.breakaway_force();
                 let holding = Series { pull: series.drag, ..series };
                 let scale = self.phase.pull.abs().max(1e-3 * breakaway);
-                let good = holding.step_size(self.tolerance, scale, 1.0).min(longest);
+                let good = holding.step_size(self.tolerance, scale, 1.0);
+                let good = if good.is_finite() { good } else { self.reach(&series) }.min(longest);
                 let branch = self.now.standing_branch(self.phase.speed);
-                self.until_law_changes(branch, &series.speed, thermal, good)
+                self.until_law_changes(branch, &series.speed, &thermal.speed, good)
             }
         };
         self.along(series, duration)
+    }
+
+    /// How long something takes to change by as much as it is, on a series that has no end by itself; infinite if nothing
+    /// does. Guards are looked for on pieces that end.
+    #[cold]
+    fn reach(&self, series: &Series) -> f64 {
+        let [pull, speed, _] = self.scales();
+        let pull = pull.max(series.drag[0].abs());
+        let mut reach = f64::INFINITY;
+        let mut look = |c: &[f64], scale: f64| {
+            for (c, n) in c.iter().zip(0..).skip(1).filter(|(c, _)| **c != 0.0) {
+                reach = reach.min(rough_root(scale / c.abs(), n));
+            }
+        };
+        look(&series.pull, pull);
+        look(&series.drag, pull);
+        look(&series.speed, speed);
+        if self.phase.slipping {
+            let rate = self.drive_rate();
+            look(&rate, rate[0].abs().max(self.now.system.train.stiffness() * speed));
+        }
+        reach
     }
 
     /// No longer than until a speed of the law passes a belt that is held or creeps: there another formula holds it.
@@ -102,7 +126,7 @@ impl<'a> Motion<'a> {
         &self,
         branch: Option<usize>,
         speed: &Polynomial,
-        thermal: &ThermalFactors,
+        factor: &Polynomial,
         longest: f64,
     ) -> f64 {
         let drag = &self.now.system.drag;
@@ -114,7 +138,7 @@ impl<'a> Motion<'a> {
         let passing = |limit: Option<f64>, side: f64| {
             let limit = limit?;
             let mut gap: Polynomial =
-                std::array::from_fn(|n| side * (limit * thermal.speed[n] - speed[n]));
+                std::array::from_fn(|n| side * (limit * factor[n] - speed[n]));
             if gap[0] <= ROUNDING * speed[0] {
                 gap[0] = 0.0; // it leaves the belt now, and may come back
             }
@@ -275,10 +299,11 @@ impl<'a> Motion<'a> {
     fn series_piece(&self, longest: f64) -> Piece<'a> {
         let [pull_scale, speed_scale, _] = self.scales();
         let series = self.arch.dispatch(Slip(self.slip_start()));
-        let duration = series
+        let good = series
             .step_size(self.tolerance, pull_scale, speed_scale)
-            .min(LONGEST_STEP * self.now.system.train.time_scale())
-            .min(longest);
+            .min(LONGEST_STEP * self.now.system.train.time_scale());
+        let good = if good.is_finite() { good } else { self.reach(&series) };
+        let duration = good.min(longest);
         let mut piece = self.along(series, duration);
         if self.now.system.drag.mixed_contact().is_some() {
             self.keep_to_law(&mut piece, speed_scale);
@@ -336,7 +361,10 @@ impl<'a> Motion<'a> {
             .min(LONGEST_STEP * self.now.system.train.time_scale())
             .min(longest);
         let duration = match &self.now.thermal {
-            Some(thermal) => self.until_law_changes(branch, &series.speed, thermal, good),
+            Some(thermal) => self.until_law_changes(branch, &series.speed, &thermal.speed, good),
+            None if branch.is_some() => {
+                self.until_law_changes(branch, &series.speed, &UNCHANGED, good)
+            }
             None => good,
         };
         self.along(series, duration)
@@ -349,7 +377,7 @@ impl<'a> Motion<'a> {
     }
 
     /// The equation of motion from here.
-    fn flow(&self) -> Flow<'a> {
+    pub(super) fn flow(&self) -> Flow<'a> {
         let sliding = matches!(self.phase.mode, Mode::Ehl | Mode::Mixed);
         Flow {
             drag: &self.now.system.drag,
@@ -377,7 +405,8 @@ impl<'a> Motion<'a> {
             let change = (0..3).map(|i| rates[i].abs() / scales[i]).fold(0.0, f64::max);
             duration = 0.01 / change.max(1e-3 / system.train.time_scale());
         }
-        duration = duration.min(longest);
+        // where nothing moves, one step is as good as another
+        duration = duration.min(longest).min(FARTHEST);
         let mut tries = 0;
         loop {
             tries += 1;

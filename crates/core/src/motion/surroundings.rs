@@ -25,14 +25,32 @@ pub(super) struct Surroundings<'a> {
     pub heat: Option<Heat<'a>>,
 }
 
+/// What changes at once where a schedule does.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Jump {
+    /// Jump of the pull.
+    pub pull: f64,
+    /// Whether that, or one of the temperature, is more than rounding.
+    pub is_felt: bool,
+}
+
 impl<'a> Surroundings<'a> {
     /// Those of `system` at time 0.
     pub(super) fn at_start(system: &'a System) -> Result<Self, Error> {
+        Self::at(system, 0.0, system.segments(0.0))
+    }
+
+    /// Those of `system` at `time`, where these segments of drive and temperature hold.
+    pub(super) fn at(
+        system: &'a System,
+        time: f64,
+        [drive_segment, temperature_segment]: [usize; 2],
+    ) -> Result<Self, Error> {
         let mut surroundings = Self {
             system,
-            time: 0.0,
-            drive_segment: system.drive.schedule().segment(0.0),
-            temperature_segment: system.temperature.as_ref().map_or(0, |t| t.segment(0.0)),
+            time,
+            drive_segment,
+            temperature_segment,
             next_change: f64::INFINITY,
             thermal: None,
             heat: system.heat.as_ref().map(Heat::at_start),
@@ -58,6 +76,28 @@ impl<'a> Surroundings<'a> {
         }
     }
 
+    /// Segments of drive and temperature that hold now.
+    pub(super) fn segments(&self) -> [usize; 2] {
+        [self.drive_segment, self.temperature_segment]
+    }
+
+    /// Time left until the drive or the temperature changes its formula.
+    #[inline]
+    pub(super) fn until_change(&self) -> f64 {
+        self.next_change - self.time
+    }
+
+    /// Drive and temperature now.
+    pub(super) fn inputs(&self) -> [f64; 2] {
+        let drive = self.system.drive.schedule().about(self.drive_segment, self.time)[0];
+        let temperature = self.system.temperature.as_ref();
+        let steady = || self.system.steady_temperature();
+        [
+            drive,
+            temperature.map_or_else(steady, |t| t.about(self.temperature_segment, self.time)[0]),
+        ]
+    }
+
     fn find_next_change(&mut self) {
         let drive = self.system.drive.schedule().end(self.drive_segment);
         let temperature = &self.system.temperature;
@@ -67,16 +107,11 @@ impl<'a> Surroundings<'a> {
         self.next_change = drive.min(segment_end).min(heat);
     }
 
-    /// Enter the next segment of the schedules; a jump of the driving force, which is one of the pull, is returned.
-    pub(super) fn pass_change(&mut self) -> Option<f64> {
-        let (schedule, mut jump) = (self.system.drive.schedule(), None);
-        if schedule.end(self.drive_segment) <= self.time {
-            let before = schedule.about(self.drive_segment, self.time)[0];
+    /// Enter the next segment of the schedules.
+    pub(super) fn pass_change(&mut self) -> Jump {
+        let before = self.inputs();
+        if self.system.drive.schedule().end(self.drive_segment) <= self.time {
             self.drive_segment += 1;
-            let after = schedule.about(self.drive_segment, self.time)[0];
-            if matches!(self.system.drive, Drive::Force(_)) {
-                jump = Some(after - before);
-            }
         }
         if let Some(temperature) = &self.system.temperature
             && temperature.end(self.temperature_segment) <= self.time
@@ -87,7 +122,18 @@ impl<'a> Surroundings<'a> {
             heat.pass_change(self.time);
         }
         self.find_next_change();
-        jump
+        self.jump_from(before)
+    }
+
+    /// What has changed at once, where drive and temperature were others just `before`.
+    pub(super) fn jump_from(&self, before: [f64; 2]) -> Jump {
+        let now = self.inputs();
+        let is_force = matches!(self.system.drive, Drive::Force(_));
+        let pull = if is_force { now[0] - before[0] } else { 0.0 };
+        let force = before[0].abs() + now[0].abs() + self.system.drag.transition_force();
+        let warming = (now[1] - before[1]).abs();
+        let is_felt = pull.abs() > ROUNDING * force || warming > ROUNDING * now[1].abs();
+        Jump { pull, is_felt }
     }
 
     /// Course of the temperature from now on, and how the law varies with it.

@@ -1,8 +1,9 @@
 //! The equation to solve: drivetrain, drag, drive and temperature.
 
 use super::heat::HeatBalance;
-use super::schedule::Schedule;
-use crate::drag::{Closure, Drag, SpeedLaw};
+use super::moment::Moment;
+use super::schedule::{Cubic, Schedule};
+use crate::drag::{Closure, Drag, Mode, SpeedLaw};
 use crate::error::{Error, above, at_least, at_most, below, finite};
 
 /// Spring and mass between the drive and the sliding contact; for a rotor, torsional stiffness and inertia.
@@ -130,6 +131,10 @@ pub struct System {
     pub(super) temperature: Option<Schedule>,
     /// What makes the temperature, if it is a state.
     pub(super) heat: Option<HeatBalance>,
+    /// The law as it was given and the one temperature at which `drag` is it.
+    given: Option<(Drag, f64)>,
+    /// Whether the temperature goes on without end, beyond where there is a law of drag.
+    pub(super) is_open: bool,
 }
 
 impl System {
@@ -147,16 +152,22 @@ impl System {
         if matches!(drive, Drive::Speed(_)) {
             above("stiffness", train.stiffness, 0.0)?;
         }
-        let Some(schedule) = temperature else {
-            return Ok(Self { train, drag: drag.clone(), drive, temperature: None, heat: None });
+        let mut system = Self {
+            train,
+            drag: drag.clone(),
+            drive,
+            temperature: None,
+            heat: None,
+            given: None,
+            is_open: false,
         };
+        let Some(schedule) = temperature else { return Ok(system) };
         let (low, high) = schedule.range();
         above("temperature", low, 0.0)?;
-        let mut system = Self { train, drag: drag.clone(), drive, temperature: None, heat: None };
         system.check_law_at(low)?;
         system.check_law_at(high)?;
         match schedule.steady() {
-            Some(temperature) => system.drag = drag.at(temperature)?,
+            Some(temperature) => system.keep_temperature(temperature)?,
             None => system.temperature = drag.temperature_law().map(|_| schedule),
         }
         Ok(system)
@@ -187,11 +198,97 @@ impl System {
         Ok(system)
     }
 
+    /// Take the law at one temperature.
+    fn keep_temperature(&mut self, temperature: f64) -> Result<(), Error> {
+        let law = self.law();
+        if law.temperature_law().is_none() {
+            return Ok(());
+        }
+        let law = law.clone();
+        (self.drag, self.temperature, self.is_open) = (law.at(temperature)?, None, false);
+        self.given = Some((law, temperature));
+        Ok(())
+    }
+
+    /// The law of drag as it was given.
+    fn law(&self) -> &Drag {
+        self.given.as_ref().map_or(&self.drag, |(law, _)| law)
+    }
+
+    /// The temperature that holds at all times, if one does; zero if the law does not vary.
+    pub(super) fn steady_temperature(&self) -> f64 {
+        let reference = self.drag.temperature_law().map_or(0.0, |law| law.reference);
+        self.given.as_ref().map_or(reference, |(_, temperature)| *temperature)
+    }
+
+    /// Whether the temperature, of which `segment` holds, goes on for good as `course` does, in the time from `time` on.
+    pub(super) fn temperature_goes_on_as(&self, segment: usize, time: f64, course: &Cubic) -> bool {
+        match &self.temperature {
+            Some(temperature) => temperature.goes_on_as(segment, time, course),
+            None => *course == [self.steady_temperature(), 0.0, 0.0, 0.0],
+        }
+    }
+
+    /// Drive by a cubic in the time from `since` on.
+    pub(super) fn set_drive(&mut self, since: f64, course: Cubic) {
+        let (Drive::Speed(schedule) | Drive::Force(schedule)) = &mut self.drive;
+        *schedule = Schedule::onward(since, course);
+    }
+
+    /// Let the temperature be a cubic in the time from `since` on.
+    ///
+    /// # Errors
+    /// If there is no law of drag at its start; nothing has changed then.
+    pub(super) fn set_temperature(&mut self, since: f64, course: Cubic) -> Result<(), Error> {
+        above("temperature", course[0], 0.0)?;
+        check_law(self.law(), course[0])?;
+        if course[1..] == [0.0; 3] {
+            return self.keep_temperature(course[0]);
+        }
+        if let Some((law, _)) = self.given.take() {
+            self.drag = law;
+        }
+        if self.drag.temperature_law().is_some() {
+            self.temperature = Some(Schedule::onward(since, course));
+            self.is_open = true;
+        }
+        Ok(())
+    }
+
+    /// Segments of drive and temperature at `time`.
+    pub(super) fn segments(&self, time: f64) -> [usize; 2] {
+        let temperature = self.temperature.as_ref().map_or(0, |t| t.segment(time));
+        [self.drive.schedule().segment(time), temperature]
+    }
+
+    /// Refuse a moment that no motion of the system can have.
+    pub(super) fn check_moment(&self, moment: &Moment) -> Result<(), Error> {
+        let last = self.segments(f64::INFINITY);
+        let at_most = |quantity: &'static str, value: usize, limit: usize| {
+            #[allow(clippy::cast_precision_loss)] // they are few
+            at_most(quantity, value as f64, limit as f64)
+        };
+        at_most("segment of the drive", moment.segments[0], last[0])?;
+        at_most("segment of the temperature", moment.segments[1], last[1])?;
+        at_most("branch", moment.phase.branch, self.drag.branch(f64::INFINITY))?;
+        let smooth = self.drag.closure().is_smooth();
+        at_most(
+            "sticking of a closure that has none",
+            usize::from(moment.phase.mode == Mode::Stuck),
+            usize::from(!smooth),
+        )?;
+        let grips = self.grip().is_some();
+        at_most(
+            "slip of a roll that grips for ever",
+            usize::from(moment.phase.slipping),
+            usize::from(grips),
+        )?;
+        Ok(())
+    }
+
     /// Refuse a `temperature`, in the scale of the law, at which there is no law of drag.
     pub(super) fn check_law_at(&self, temperature: f64) -> Result<(), Error> {
-        let law = self.drag.at(temperature)?;
-        let quantity = "stick speed at this temperature, against the transition speed,";
-        below(quantity, law.stick_speed(), law.transition_speed()).map(|_| ())
+        check_law(&self.drag, temperature)
     }
 
     /// A belt at constant `drive_speed` and the temperature at which the law is given.
@@ -234,6 +331,13 @@ impl System {
     pub(super) fn has_bristles(&self) -> bool {
         matches!(self.drag.closure(), Closure::LuGre { .. })
     }
+}
+
+/// Refuse a `temperature` at which `drag` is no law.
+fn check_law(drag: &Drag, temperature: f64) -> Result<(), Error> {
+    let law = drag.at(temperature)?;
+    let quantity = "stick speed at this temperature, against the transition speed,";
+    below(quantity, law.stick_speed(), law.transition_speed()).map(|_| ())
 }
 
 /// Loosest and tightest relative tolerance that the steps are built for.
