@@ -1,0 +1,380 @@
+//! The description of a drive: text of lines `name = value`, read and checked.
+//!
+//! The format stands in `include/hersey.h`, for those who write it.
+
+use crate::variables::{COUNT, DRIVE_SPEED, DRIVE_TORQUE, TEMPERATURE, VARIABLES, place_of};
+use hersey_core::work::MOST_STEPS;
+
+/// The format that this library reads.
+const FORMAT: &str = "1";
+/// Longest text, and most numbers of a list: no drive needs more.
+const MOST_BYTES: usize = 4_000_000;
+const MOST_NUMBERS: usize = 100_000;
+
+/// Values of all variables, in the order of the table; not a number where there is none.
+pub type Values = [f64; COUNT];
+
+/// Declares a choice with the word that the text has for each.
+macro_rules! choice {
+    ($(#[$doc:meta])* $name:ident { $($case:ident = $word:literal),* }) => {
+        $(#[$doc])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub enum $name { $($case),* }
+
+        impl $name {
+            fn of(line: &Line) -> Result<Self, String> {
+                match line.value {
+                    $($word => Ok(Self::$case),)*
+                    _ => Err(line.refused(&format!("is none of {}", [$($word),*].join(", ")))),
+                }
+            }
+        }
+    };
+}
+
+choice! {
+    /// What moves the belt.
+    Drive { Speed = "speed", Torque = "torque" }
+}
+choice! {
+    /// Shape of the law of drag.
+    Law { Power = "power", Table = "table", Mixed = "mixed" }
+}
+choice! {
+    /// What the belt does near rest.
+    Closure { Retained = "retained", Stiction = "stiction", Stribeck = "stribeck", LuGre = "lugre" }
+}
+choice! {
+    /// How the law varies with temperature.
+    Warmth { None = "none", Power = "power", Arrhenius = "arrhenius", Vogel = "vogel", Walther = "walther" }
+}
+choice! {
+    /// Where the motion starts.
+    Start { Rest = "rest", Steady = "steady", Given = "given" }
+}
+
+/// The choices of a drive.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Choices {
+    pub drive: Drive,
+    pub law: Law,
+    pub closure: Closure,
+    pub warmth: Warmth,
+    pub start: Start,
+}
+
+/// Whether a variable is one of such a drive, and if so whether it needs a value.
+enum Belongs {
+    No,
+    Optional,
+    Needed,
+}
+
+impl Choices {
+    fn belongs(&self, name: &str) -> Belongs {
+        let needed = match name {
+            "drive_speed" => self.drive == Drive::Speed,
+            "drive_torque" | "roll_radius" => self.drive == Drive::Torque,
+            "temperature" | "reference_temperature" => self.warmth != Warmth::None,
+            "transition_force" | "transition_speed" | "ehl_exponent" | "mixed_exponent" => {
+                self.law == Law::Power
+            }
+            "viscosity" => self.law == Law::Mixed,
+            "bristle_stiffness" | "bristle_damping" => self.closure == Closure::LuGre,
+            "force_temperature_exponent" | "speed_temperature_exponent" => {
+                self.warmth == Warmth::Power
+            }
+            "start_belt_speed" | "start_stretch" => self.start == Start::Given,
+            "stiffness" | "mass" | "stick_speed" => true,
+            _ => return if self.may_have(name) { Belongs::Optional } else { Belongs::No },
+        };
+        if needed { Belongs::Needed } else { Belongs::No }
+    }
+
+    fn may_have(&self, name: &str) -> bool {
+        match name {
+            "grip" => self.drive == Drive::Speed,
+            "temperature_zero" => self.warmth == Warmth::Power,
+            "rest_temperature_slope" => self.warmth != Warmth::None,
+            "boundary_temperature_slope" => self.law == Law::Mixed && self.warmth != Warmth::None,
+            "static_growth" | "static_growth_time" => self.closure == Closure::Stiction,
+            "static_force" | "rest_force" | "rest_damping" | "tolerance" => true,
+            _ => false,
+        }
+    }
+}
+
+/// A drive as its text describes it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Description {
+    pub choices: Choices,
+    /// What the variables start with.
+    pub values: Values,
+    /// Points of a tabulated law.
+    pub speeds: Vec<f64>,
+    pub forces: Vec<f64>,
+    /// Numbers of a contact that shares its load, in the core's order.
+    pub numbers: Vec<f64>,
+    /// Those of the viscosity that moves the law.
+    pub viscosity_numbers: Vec<f64>,
+    /// The word by which a tool makes sure that library and unit belong together.
+    pub token: Option<String>,
+    /// Steps that one call may take.
+    pub most_steps: u64,
+    /// Sum of the text, by which a saved state is known to be of this drive.
+    pub sum: u64,
+}
+
+/// One line of the text.
+struct Line<'a> {
+    number: usize,
+    name: &'a str,
+    value: &'a str,
+}
+
+impl Line<'_> {
+    fn refused(&self, why: &str) -> String {
+        let value: String = self.value.chars().take(40).collect();
+        format!("line {} of the drive: {} '{value}' {why}", self.number, self.name)
+    }
+
+    fn number(&self) -> Result<f64, String> {
+        let number = self.value.parse().map_err(|_| self.refused("is no number"))?;
+        if f64::is_finite(number) { Ok(number) } else { Err(self.refused("is not finite")) }
+    }
+
+    fn numbers(&self) -> Result<Vec<f64>, String> {
+        let one = |value| Line { value, ..*self }.number();
+        let numbers: Vec<f64> = self
+            .value
+            .split_whitespace()
+            .take(MOST_NUMBERS + 1)
+            .map(one)
+            .collect::<Result<_, _>>()?;
+        let many = || self.refused(&format!("has more than {MOST_NUMBERS} numbers"));
+        if numbers.len() > MOST_NUMBERS { Err(many()) } else { Ok(numbers) }
+    }
+
+    /// So many numbers.
+    fn exactly(&self, count: usize) -> Result<Vec<f64>, String> {
+        let numbers = self.numbers()?;
+        let found = numbers.len();
+        let other = || self.refused(&format!("has {found} numbers: {count} are needed"));
+        if found == count { Ok(numbers) } else { Err(other()) }
+    }
+}
+
+/// The lines of a text, by their names.
+struct Lines<'a>(Vec<Line<'a>>);
+
+impl<'a> Lines<'a> {
+    fn of(text: &'a str) -> Result<Self, String> {
+        if text.len() > MOST_BYTES {
+            return Err(format!(
+                "the drive has {} bytes: at most {MOST_BYTES} are read",
+                text.len()
+            ));
+        }
+        let mut lines: Vec<Line<'a>> = Vec::new();
+        for (index, line) in text.lines().enumerate() {
+            let (number, line) = (index + 1, line.trim());
+            if line.is_empty() || line.starts_with('#') {
+                continue;
+            }
+            let (name, value) = line
+                .split_once('=')
+                .ok_or_else(|| format!("line {number} of the drive is not 'name = value'"))?;
+            let line = Line { number, name: name.trim(), value: value.trim() };
+            if !KNOWN.contains(&line.name) && settable(line.name).is_none() {
+                return Err(format!(
+                    "line {number} of the drive: '{:.40}' is no name of it",
+                    line.name
+                ));
+            }
+            if let Some(first) = lines.iter().find(|other| other.name == line.name) {
+                return Err(line.refused(&format!("stands already in line {}", first.number)));
+            }
+            lines.push(line);
+        }
+        Ok(Self(lines))
+    }
+
+    fn find(&self, name: &str) -> Option<&Line<'a>> {
+        self.0.iter().find(|line| line.name == name)
+    }
+
+    fn needed(&self, name: &str) -> Result<&Line<'a>, String> {
+        self.find(name).ok_or_else(|| format!("the drive has no line '{name} = ...'"))
+    }
+
+    /// The numbers of a list that goes with a choice: as many as needed, any if that is none, or no line at all.
+    fn list(&self, name: &str, belongs: bool, count: Option<usize>) -> Result<Vec<f64>, String> {
+        match (belongs, self.find(name)) {
+            (false, None) => Ok(Vec::new()),
+            (false, Some(line)) => Err(line.refused(OUT_OF_PLACE)),
+            (true, _) => {
+                let line = self.needed(name)?;
+                count.map_or_else(|| line.numbers(), |count| line.exactly(count))
+            }
+        }
+    }
+}
+
+const OUT_OF_PLACE: &str = "does not belong to the other choices of the drive";
+
+/// Names that are no variables.
+const KNOWN: [&str; 12] = [
+    "format",
+    "token",
+    "drive",
+    "law",
+    "closure",
+    "temperature_law",
+    "start",
+    "speeds",
+    "forces",
+    "numbers",
+    "viscosity_numbers",
+    "most_steps",
+];
+
+/// Place of a variable that a text may give.
+fn settable(name: &str) -> Option<usize> {
+    use crate::variables::Causality::{Input, Parameter};
+    place_of(name).filter(|place| matches!(VARIABLES[*place].causality, Input | Parameter))
+}
+
+impl Description {
+    /// Read a text.
+    pub fn read(text: &str) -> Result<Self, String> {
+        let lines = Lines::of(text)?;
+        let format = lines.needed("format")?;
+        if format.value != FORMAT {
+            return Err(
+                format.refused(&format!("is not the format {FORMAT}, which this library reads"))
+            );
+        }
+        let choices = Choices {
+            drive: Drive::of(lines.needed("drive")?)?,
+            law: Law::of(lines.needed("law")?)?,
+            closure: Closure::of(lines.needed("closure")?)?,
+            warmth: Warmth::of(lines.needed("temperature_law")?)?,
+            start: lines.find("start").map_or(Ok(Start::Rest), Start::of)?,
+        };
+        if let (Drive::Torque, Start::Steady, Some(line)) =
+            (choices.drive, choices.start, lines.find("start"))
+        {
+            return Err(line.refused("needs drive = speed"));
+        }
+        let coefficients = match choices.warmth {
+            Warmth::None | Warmth::Power => None,
+            Warmth::Arrhenius => Some(2),
+            Warmth::Vogel | Warmth::Walther => Some(3),
+        };
+        let (table, mixed) = (choices.law == Law::Table, choices.law == Law::Mixed);
+        Ok(Self {
+            choices,
+            values: values(&lines, choices)?,
+            speeds: lines.list("speeds", table, None)?,
+            forces: lines.list("forces", table, None)?,
+            numbers: lines.list("numbers", mixed, Some(8))?,
+            viscosity_numbers: lines.list(
+                "viscosity_numbers",
+                coefficients.is_some(),
+                coefficients,
+            )?,
+            token: lines.find("token").map(|line| line.value.to_owned()),
+            most_steps: lines.find("most_steps").map_or(Ok(MOST_STEPS), |line| {
+                line.value.parse().map_err(|_| line.refused("is no whole number"))
+            })?,
+            sum: sum(text.as_bytes()),
+        })
+    }
+
+    /// Place of the variable that moves the belt.
+    pub fn drive_place(&self) -> usize {
+        match self.choices.drive {
+            Drive::Speed => DRIVE_SPEED,
+            Drive::Torque => DRIVE_TORQUE,
+        }
+    }
+
+    /// Whether the law varies with temperature.
+    pub fn is_warmed(&self) -> bool {
+        !self.values[TEMPERATURE].is_nan()
+    }
+}
+
+fn values(lines: &Lines, choices: Choices) -> Result<Values, String> {
+    let mut values = [f64::NAN; COUNT];
+    for (variable, value) in VARIABLES.iter().zip(&mut values) {
+        if settable(variable.name).is_none() {
+            continue;
+        }
+        let line = lines.find(variable.name);
+        *value = match (choices.belongs(variable.name), line) {
+            (Belongs::No, Some(line)) => return Err(line.refused(OUT_OF_PLACE)),
+            (Belongs::No, None) => continue,
+            (_, Some(line)) => line.number()?,
+            (Belongs::Needed, None) => lines.needed(variable.name)?.number()?,
+            (Belongs::Optional, None) => variable.start.unwrap_or(f64::NAN),
+        };
+    }
+    Ok(values)
+}
+
+/// A sum by which two runs of bytes are told apart: FNV-1a.
+pub fn sum(bytes: &[u8]) -> u64 {
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |sum, byte| {
+        (sum ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::samples::{BASELINE, TORQUE, WARMED};
+
+    fn refusal(text: &str) -> String {
+        Description::read(text).unwrap_err()
+    }
+
+    #[test]
+    fn a_text_is_read_with_what_it_leaves_out() {
+        let read = Description::read(BASELINE).unwrap();
+        assert_eq!(read.choices.closure, Closure::Retained);
+        assert!((read.values[place_of("stiffness").unwrap()] - 1000.0).abs() < 1e-12);
+        assert!(read.values[place_of("rest_force").unwrap()].abs() < 1e-300);
+        assert!(read.values[place_of("grip").unwrap()].is_nan() && !read.is_warmed());
+        assert_eq!((read.most_steps, read.drive_place()), (MOST_STEPS, DRIVE_SPEED));
+        assert!(Description::read(WARMED).unwrap().is_warmed());
+        assert_eq!(Description::read(TORQUE).unwrap().drive_place(), DRIVE_TORQUE);
+        let again = Description::read(&BASELINE.replace('\n', "\r\n")).unwrap();
+        assert_eq!(again.values.map(f64::to_bits), read.values.map(f64::to_bits));
+    }
+
+    #[test]
+    fn what_is_wrong_is_named_with_its_line() {
+        for (from, to, words) in [
+            ("mass = 1.0", "mass = one", "mass 'one' is no number"),
+            ("mass = 1.0", "mass = inf", "mass 'inf' is not finite"),
+            ("mass = 1.0", "", "the drive has no line 'mass = ...'"),
+            ("mass = 1.0", "mas = 1.0", "'mas' is no name of it"),
+            ("mass = 1.0", "mass", "is not 'name = value'"),
+            ("mass = 1.0", "mass = 1.0\nmass = 2", "stands already in line"),
+            ("mass = 1.0", "mass = 1.0\nbelt_speed = 2", "'belt_speed' is no name of it"),
+            ("mass = 1.0", "mass = 1.0\ntemperature = 300", OUT_OF_PLACE),
+            ("mass = 1.0", "mass = 1.0\nspeeds = 1 2", OUT_OF_PLACE),
+            ("law = power", "law = spline", "law 'spline' is none of power, table, mixed"),
+            ("format = 1", "format = 2", "is not the format 1"),
+        ] {
+            let words_found = refusal(&BASELINE.replace(from, to));
+            assert!(words_found.contains(words), "{to}: {words_found}");
+        }
+        assert!(
+            refusal(&TORQUE.replace("start = rest", "start = steady")).contains("drive = speed")
+        );
+        assert!(refusal("").contains("format"));
+        assert!(refusal(&"#".repeat(MOST_BYTES + 1)).contains("bytes"));
+    }
+}

@@ -1,0 +1,190 @@
+//! What a caller holds: an instance behind a pointer, where its words go, and the state that it saved.
+//!
+//! Nothing is shared between handles, so that each may be used by a thread of its own. A call on one that is at work in
+//! another call is refused, and so is every call after a fault of the library itself; no panic leaves a call.
+
+use std::ffi::{CStr, CString, c_char, c_int, c_void};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError, TryLockError};
+
+use crate::instance::{Instance, Saved};
+
+/// What stands at the beginning of a handle and of a saved state, as long as it is one.
+const OF_HANDLE: u64 = 0x6865_7273_6579_2d31;
+const OF_STATE: u64 = 0x6865_7273_6579_2d32;
+
+/// Logger of version 3 of the standard.
+pub type Logger3 = unsafe extern "C" fn(*mut c_void, c_int, *const c_char, *const c_char);
+/// Logger of version 2: the message is a format, and may be followed by what it names.
+pub type Logger2 =
+    unsafe extern "C" fn(*mut c_void, *const c_char, c_int, *const c_char, *const c_char, ...);
+
+/// Where words to the caller go.
+pub enum Words {
+    Version3 {
+        logger: Option<Logger3>,
+        environment: *mut c_void,
+    },
+    Version2 {
+        logger: Option<Logger2>,
+        environment: *mut c_void,
+        name: CString,
+    },
+    /// Kept until the next call, for who asks.
+    Kept(Mutex<CString>),
+}
+
+/// Status and category under which words go to a logger.
+const ERROR: c_int = 3;
+const CATEGORY: &CStr = c"logStatusError";
+
+impl Words {
+    /// Tell why a call was refused.
+    #[allow(unsafe_code)] // a function of the caller is called, as the standard has it
+    pub fn tell(&self, words: &str) {
+        let text = CString::new(words.replace('\0', " ")).unwrap_or_default();
+        match self {
+            Self::Version3 { logger, environment } => {
+                if let Some(logger) = logger {
+                    // SAFETY: the caller gave function and environment for this
+                    unsafe { logger(*environment, ERROR, CATEGORY.as_ptr(), text.as_ptr()) };
+                }
+            }
+            Self::Version2 { logger, environment, name } => {
+                let format = CString::new(words.replace(['\0', '%'], " ")).unwrap_or_default();
+                if let Some(logger) = logger {
+                    // SAFETY: as above; the format names no argument
+                    unsafe {
+                        logger(
+                            *environment,
+                            name.as_ptr(),
+                            ERROR,
+                            CATEGORY.as_ptr(),
+                            format.as_ptr(),
+                        );
+                    }
+                }
+            }
+            Self::Kept(last) => {
+                *last.lock().unwrap_or_else(PoisonError::into_inner) = text;
+            }
+        }
+    }
+}
+
+/// An instance and what belongs to it.
+pub struct Handle {
+    mark: AtomicU64,
+    words: Words,
+    instance: Mutex<Instance>,
+}
+
+/// A call was refused; why has been told.
+pub struct Refused;
+
+const FAULT: &str =
+    "a fault inside of hersey, which may be reported: this instance can only be freed";
+const BUSY: &str = "the instance is at work in another call";
+
+impl Handle {
+    /// A pointer to a new handle, or null if there is no instance, and why has been told.
+    pub fn created(words: Words, make: impl FnOnce() -> Result<Instance, String>) -> *mut c_void {
+        match catch_unwind(AssertUnwindSafe(make)).unwrap_or_else(|_| Err(FAULT.to_owned())) {
+            Ok(instance) => {
+                let mark = AtomicU64::new(OF_HANDLE);
+                let handle = Self { mark, words, instance: Mutex::new(instance) };
+                Box::into_raw(Box::new(handle)).cast()
+            }
+            Err(why) => {
+                words.tell(&why);
+                std::ptr::null_mut()
+            }
+        }
+    }
+
+    /// What `pointer` points to, if that is a handle.
+    #[allow(unsafe_code)]
+    pub fn at<'a>(pointer: *const c_void) -> Option<&'a Self> {
+        let handle = pointer.cast::<Self>();
+        if handle.is_null() || !handle.is_aligned() {
+            return None;
+        }
+        // SAFETY: a caller passes what was created above and is not yet freed; of what else it may pass, much lacks
+        // the mark
+        let handle = unsafe { &*handle };
+        (handle.mark.load(Ordering::Relaxed) == OF_HANDLE).then_some(handle)
+    }
+
+    /// Do something with the instance; `function` is the name by which it was asked for.
+    pub fn call<T>(
+        &self,
+        function: &str,
+        action: impl FnOnce(&mut Instance) -> Result<T, String>,
+    ) -> Result<T, Refused> {
+        let outcome = catch_unwind(AssertUnwindSafe(|| {
+            // a guard that is dropped by a panic marks the instance for good
+            let mut instance = self.instance.try_lock().map_err(|error| match error {
+                TryLockError::Poisoned(_) => FAULT.to_owned(),
+                TryLockError::WouldBlock => BUSY.to_owned(),
+            })?;
+            action(&mut instance)
+        }));
+        outcome.unwrap_or_else(|_| Err(FAULT.to_owned())).map_err(|why| {
+            self.words.tell(&format!("{function}: {why}"));
+            Refused
+        })
+    }
+
+    /// The words of the last refusal, if they are kept.
+    pub fn kept(&self) -> *const c_char {
+        match &self.words {
+            Words::Kept(last) => last.lock().unwrap_or_else(PoisonError::into_inner).as_ptr(),
+            _ => std::ptr::null(),
+        }
+    }
+
+    /// Give it back.
+    #[allow(unsafe_code)]
+    pub fn freed(pointer: *mut c_void) {
+        if let Some(handle) = Self::at(pointer) {
+            handle.mark.store(0, Ordering::Relaxed);
+            // SAFETY: it was made by a box, and its mark, now gone, said that it is not yet freed
+            drop(unsafe { Box::from_raw(pointer.cast::<Self>()) });
+        }
+    }
+}
+
+/// A state that a caller keeps.
+pub struct State {
+    mark: AtomicU64,
+    pub saved: Saved,
+}
+
+impl State {
+    pub fn created(saved: Saved) -> *mut c_void {
+        Box::into_raw(Box::new(Self { mark: AtomicU64::new(OF_STATE), saved })).cast()
+    }
+
+    /// The state at `pointer`, if there is one.
+    #[allow(unsafe_code)]
+    pub fn at<'a>(pointer: *const c_void) -> Result<&'a Self, String> {
+        let state = pointer.cast::<Self>();
+        if !state.is_null() && state.is_aligned() {
+            // SAFETY: as for handles
+            let state = unsafe { &*state };
+            if state.mark.load(Ordering::Relaxed) == OF_STATE {
+                return Ok(state);
+            }
+        }
+        Err("there is no saved state at the pointer".to_owned())
+    }
+
+    #[allow(unsafe_code)]
+    pub fn freed(pointer: *mut c_void) -> Result<(), String> {
+        Self::at(pointer)?.mark.store(0, Ordering::Relaxed);
+        // SAFETY: as for handles
+        drop(unsafe { Box::from_raw(pointer.cast::<Self>()) });
+        Ok(())
+    }
+}

@@ -1,0 +1,435 @@
+//! One drive under way: its phase, its values, its motion, and what of that a tool outside may see.
+
+use hersey_core::Work;
+use hersey_core::drag::Mode;
+use hersey_core::motion::{Moment, State, Stepper};
+
+use crate::description::{Description, Values};
+use crate::making::Making;
+use crate::variables::{
+    COUNT, Causality, Kind, TEMPERATURE, TIME, TOLERANCE, VARIABLES, Variable, place_at,
+};
+
+/// Phases of the standard; a plain caller knows the first and that of the steps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Phase {
+    Instantiated,
+    Initialization,
+    Event,
+    Step,
+    Terminated,
+}
+
+impl Phase {
+    pub const ALL: [Self; 5] =
+        [Self::Instantiated, Self::Initialization, Self::Event, Self::Step, Self::Terminated];
+
+    fn words(self) -> &'static str {
+        match self {
+            Self::Instantiated => "before its initialization",
+            Self::Initialization => "in its initialization",
+            Self::Event => "at an event",
+            Self::Step => "between two steps",
+            Self::Terminated => "terminated",
+        }
+    }
+}
+
+/// What changes by leaps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Discrete {
+    pub mode: Mode,
+    pub slipping: bool,
+}
+
+/// How far a step has led.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reached {
+    pub time: f64,
+    /// Whether mode or slip are others than were seen before.
+    pub changed: bool,
+    /// Whether it ended there for that reason.
+    pub early: bool,
+}
+
+/// All of an instance that changes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Saved {
+    pub phase: Phase,
+    pub values: Values,
+    /// Slopes of the drive and of the temperature, for the step to come.
+    pub slopes: [f64; 2],
+    pub origin: f64,
+    pub time: f64,
+    pub stop: f64,
+    pub seen: Option<Discrete>,
+    pub moment: Option<[f64; Moment::NUMBERS]>,
+}
+
+/// One drive under way.
+pub struct Instance {
+    description: Description,
+    phase: Phase,
+    values: Values,
+    slopes: [f64; 2],
+    /// Time at which the motion began, and now.
+    origin: f64,
+    time: f64,
+    stop: f64,
+    motion: Option<Stepper>,
+    /// The motion now, once somebody has asked.
+    now: Option<State>,
+    /// Mode and slip as they were last shown.
+    seen: Option<Discrete>,
+    /// Whether they are shown anew only in event mode, and whether a step may end at their change.
+    pub event_mode: bool,
+    pub early_return: bool,
+}
+
+/// Difference of two times that comes of rounding alone: share of the step, and of the times.
+const SAME_TIME: (f64, f64) = (1e-6, 16.0 * f64::EPSILON);
+
+impl Instance {
+    /// A drive as its text describes it.
+    pub fn new(text: &str) -> Result<Self, String> {
+        let description = Description::read(text)?;
+        let mut instance = Self {
+            values: description.values,
+            description,
+            phase: Phase::Instantiated,
+            slopes: [0.0; 2],
+            origin: 0.0,
+            time: 0.0,
+            stop: f64::INFINITY,
+            motion: None,
+            now: None,
+            seen: None,
+            event_mode: false,
+            early_return: false,
+        };
+        instance.moving()?; // a drive that cannot be is refused at once
+        instance.motion = None;
+        Ok(instance)
+    }
+
+    /// The sum of the text and the word by which a tool knows its unit.
+    pub fn identity(&self) -> (u64, Option<&str>) {
+        (self.description.sum, self.description.token.as_deref())
+    }
+
+    /// Refuse what is not allowed now.
+    pub fn must_be(&self, phases: &[Phase]) -> Result<(), String> {
+        if phases.contains(&self.phase) {
+            return Ok(());
+        }
+        Err(format!("not allowed while the instance is {}", self.phase.words()))
+    }
+
+    pub fn enter(&mut self, phase: Phase, from: &[Phase]) -> Result<(), String> {
+        self.must_be(from)?;
+        self.phase = phase;
+        Ok(())
+    }
+
+    /// From when on, how long at most, and how exactly at least.
+    pub fn set_up(
+        &mut self,
+        start: f64,
+        stop: Option<f64>,
+        tolerance: Option<f64>,
+    ) -> Result<(), String> {
+        self.must_be(&[Phase::Instantiated])?;
+        if !start.is_finite() {
+            return Err(format!("start time {start} is not finite"));
+        }
+        if let Some(stop) = stop.filter(|stop| stop.is_nan() || *stop < start) {
+            return Err(format!("stop time {stop} is not after start time {start}"));
+        }
+        if let Some(tolerance) = tolerance {
+            if !(tolerance.is_finite() && tolerance > 0.0) {
+                return Err(format!("tolerance {tolerance} is not positive"));
+            }
+            // a looser one would save next to nothing
+            let own = &mut self.values[TOLERANCE];
+            *own = own.min(tolerance.max(TIGHTEST));
+            self.motion = None;
+        }
+        (self.origin, self.time) = (start, start);
+        self.stop = stop.unwrap_or(f64::INFINITY);
+        Ok(())
+    }
+
+    /// Begin the motion with the values as they are.
+    pub fn begin(&mut self, phase: Phase) -> Result<(), String> {
+        self.must_be(&[Phase::Instantiated, Phase::Initialization])?;
+        self.moving()?;
+        self.seen = Some(self.discrete()?);
+        self.phase = phase;
+        Ok(())
+    }
+
+    /// All as it was at first.
+    pub fn reset(&mut self) {
+        self.values = self.description.values;
+        self.slopes = [0.0; 2];
+        (self.origin, self.time, self.stop) = (0.0, 0.0, f64::INFINITY);
+        (self.motion, self.now, self.seen) = (None, None, None);
+        self.phase = Phase::Instantiated;
+    }
+
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    fn making(&self) -> Making<'_> {
+        Making { description: &self.description, values: &self.values }
+    }
+
+    /// The motion, begun if it is not.
+    fn moving(&mut self) -> Result<&mut Stepper, String> {
+        if self.motion.is_none() {
+            let motion = self.making().stepper().map_err(|error| error.to_string())?;
+            self.motion = Some(motion);
+            self.now = None;
+        }
+        self.motion.as_mut().ok_or_else(|| "no motion".to_owned())
+    }
+
+    fn state(&mut self) -> Result<State, String> {
+        if let Some(now) = self.now {
+            return Ok(now);
+        }
+        let state = self.moving()?.state();
+        self.now = Some(state);
+        Ok(state)
+    }
+
+    fn discrete(&mut self) -> Result<Discrete, String> {
+        let State { mode, slipping, .. } = self.state()?;
+        Ok(Discrete { mode, slipping })
+    }
+
+    /// Whether mode or slip are others than were shown.
+    pub fn has_changed(&mut self) -> Result<bool, String> {
+        let now = self.discrete()?;
+        Ok(self.seen != Some(now))
+    }
+
+    /// Show mode and slip as they are now.
+    pub fn show(&mut self) -> Result<(), String> {
+        self.seen = Some(self.discrete()?);
+        Ok(())
+    }
+
+    /// Place of the variable that a tool names by number, if this drive has it and it is of that kind.
+    pub fn place(&self, reference: u32, kind: Kind) -> Result<usize, String> {
+        let place = place_at(reference).filter(|place| self.has(*place));
+        let place =
+            place.ok_or_else(|| format!("no variable has the value reference {reference}"))?;
+        let Variable { name, kind: own, .. } = &VARIABLES[place];
+        if *own == kind {
+            return Ok(place);
+        }
+        Err(format!("{name} (value reference {reference}) is {own:?}, not {kind:?}"))
+    }
+
+    /// Whether this drive has a variable.
+    pub fn has(&self, place: usize) -> bool {
+        let causality = VARIABLES[place].causality;
+        let stands_by_itself = matches!(causality, Causality::Independent | Causality::Output);
+        stands_by_itself || !self.values[place].is_nan()
+    }
+
+    /// The value of a variable of this drive.
+    pub fn get(&mut self, place: usize) -> Result<f64, String> {
+        if place == TIME {
+            return Ok(self.time);
+        }
+        let variable = &VARIABLES[place];
+        if variable.causality != Causality::Output {
+            return Ok(self.values[place]);
+        }
+        if self.phase == Phase::Instantiated {
+            self.must_be(&Phase::ALL[1..])?;
+        }
+        let state = self.state()?;
+        let shown = match (self.phase, self.seen) {
+            (Phase::Initialization, _) | (_, None) => {
+                Discrete { mode: state.mode, slipping: state.slipping }
+            }
+            (_, Some(seen)) => seen,
+        };
+        Ok(match variable.name {
+            "belt_speed" => state.belt_speed,
+            "spring_force" => self.making().stiffness() * state.stretch,
+            "drag" => state.drag,
+            "stretch" => state.stretch,
+            "mode" => f64::from(shown.mode as u8),
+            "stuck" => f64::from(u8::from(shown.mode == Mode::Stuck)),
+            _ => f64::from(u8::from(shown.slipping)),
+        })
+    }
+
+    /// Refuse to set a variable of this drive, or to set it now, or to such a value.
+    pub fn check(&self, place: usize, value: f64) -> Result<(), String> {
+        let Variable { name, causality, .. } = &VARIABLES[place];
+        match causality {
+            Causality::Parameter => self
+                .must_be(&[Phase::Instantiated, Phase::Initialization])
+                .map_err(|words| format!("{name} is fixed: {words}"))?,
+            Causality::Input => self.must_be(&Phase::ALL[..4])?,
+            _ => return Err(format!("{name} is computed and cannot be set")),
+        }
+        if value.is_finite() { Ok(()) } else { Err(format!("{name} {value} is not finite")) }
+    }
+
+    /// Set a variable that was checked; an input holds from now on.
+    pub fn set(&mut self, place: usize, value: f64) -> Result<(), String> {
+        self.check(place, value)?;
+        self.values[place] = value;
+        if matches!(self.phase, Phase::Instantiated | Phase::Initialization) {
+            (self.motion, self.now) = (None, None);
+        }
+        Ok(())
+    }
+
+    /// Let an input go on with a slope over the step to come.
+    pub fn set_slope(&mut self, place: usize, slope: f64) -> Result<(), String> {
+        let Variable { name, causality, .. } = &VARIABLES[place];
+        if *causality != Causality::Input {
+            return Err(format!("{name} is no input"));
+        }
+        self.check(place, slope)?;
+        self.slopes[usize::from(place == TEMPERATURE)] = slope;
+        Ok(())
+    }
+
+    /// Let the motion follow the inputs from now on: what goes on as it was cuts nothing.
+    fn follow(&mut self) -> Result<(), String> {
+        let (making, [drive_slope, slope]) = (self.making(), self.slopes);
+        let drive = self.values[self.description.drive_place()];
+        let drive = [making.drive(drive), making.drive(drive_slope), 0.0, 0.0];
+        let temperature = [making.temperature(self.values[TEMPERATURE]), slope, 0.0, 0.0];
+        let temperature = self.description.is_warmed().then_some(temperature);
+        let event = self.moving()?.set_inputs(Some(drive), temperature);
+        event.map(|_| ()).map_err(|error| error.to_string())
+    }
+
+    /// A step of the standard, `length` from `from` on.
+    pub fn step(&mut self, from: f64, length: f64) -> Result<Reached, String> {
+        self.must_be(&[Phase::Step])?;
+        let until = from + length;
+        if !(until.is_finite() && length > 0.0) {
+            return Err(format!(
+                "a step from {from:?} over {length:?} is none: its length must be positive"
+            ));
+        }
+        let same = SAME_TIME.0 * length + SAME_TIME.1 * from.abs().max(until.abs());
+        if (from - self.time).abs() > same {
+            let time = self.time;
+            return Err(format!("the step begins at {from:?}, but the instance is at {time:?}"));
+        }
+        self.advance(until, same, self.event_mode && self.early_return)
+    }
+
+    /// On to `until`, or to the first change of mode or slip before it if `stopping`.
+    ///
+    /// What fails leaves all as it was.
+    pub fn advance(&mut self, until: f64, same: f64, stopping: bool) -> Result<Reached, String> {
+        self.must_be(&[Phase::Step])?;
+        if !until.is_finite() || until < self.time {
+            return Err(format!("time {until:?} is not after {:?}", self.time));
+        }
+        if until > self.stop + same {
+            return Err(format!("time {until:?} is beyond the stop time {:?}", self.stop));
+        }
+        let moment = self.moving()?.moment();
+        self.now = None;
+        self.led(until, stopping).or_else(|words| {
+            self.now = None;
+            self.moving()?.restore(moment).map_err(|error| error.to_string())?;
+            Err(words)
+        })
+    }
+
+    fn led(&mut self, until: f64, stopping: bool) -> Result<Reached, String> {
+        self.follow()?;
+        let (origin, before) = (self.origin, self.time);
+        let work = Work::unwatched(self.description.most_steps);
+        // the mode may change at once, by a jump of an input
+        let mut early = stopping && self.has_changed()?;
+        let mut time = if early { before } else { until };
+        while !early {
+            let event = self.moving()?.advance(until - origin, &work);
+            self.now = None;
+            let Some(event) = event.map_err(|error| error.to_string())? else { break };
+            early = stopping && event.time + origin < until && self.has_changed()?;
+            time = if early { event.time + origin } else { until };
+        }
+        self.time = time;
+        let places = [self.description.drive_place(), TEMPERATURE];
+        for (slope, place) in self.slopes.iter_mut().zip(places) {
+            if *slope != 0.0 {
+                self.values[place] += *slope * (time - before);
+                *slope = if early { *slope } else { 0.0 };
+            }
+        }
+        let changed = self.has_changed()?;
+        if !self.event_mode {
+            self.show()?;
+        }
+        Ok(Reached { time, changed, early })
+    }
+
+    /// All that changes.
+    pub fn saved(&self) -> Saved {
+        Saved {
+            phase: self.phase,
+            values: self.values,
+            slopes: self.slopes,
+            origin: self.origin,
+            time: self.time,
+            stop: self.stop,
+            seen: self.seen,
+            moment: self.motion.as_ref().map(|motion| motion.moment().numbers()),
+        }
+    }
+
+    /// Go on from what was saved, of this drive, earlier or elsewhere.
+    pub fn restore(&mut self, saved: &Saved) -> Result<(), String> {
+        let (before, motion) = (self.saved(), self.motion.clone());
+        self.take(saved).inspect_err(|_| {
+            self.take_values(&before);
+            (self.motion, self.now) = (motion, None);
+        })
+    }
+
+    fn take_values(&mut self, saved: &Saved) {
+        (self.phase, self.values, self.slopes) = (saved.phase, saved.values, saved.slopes);
+        (self.seen, self.now) = (saved.seen, None);
+        (self.origin, self.time, self.stop) = (saved.origin, saved.time, saved.stop);
+    }
+
+    fn take(&mut self, saved: &Saved) -> Result<(), String> {
+        let own = self.description.values.iter().zip(&saved.values);
+        let has_all = own.clone().all(|(own, value)| own.is_nan() || value.is_finite());
+        if !has_all || own.clone().any(|(own, value)| own.is_nan() != value.is_nan()) {
+            return Err("the values saved are not those of this drive".to_owned());
+        }
+        let same = |place: usize| self.values[place].to_bits() == saved.values[place].to_bits();
+        let is_parameter = |place: &usize| VARIABLES[*place].causality == Causality::Parameter;
+        if !(0..COUNT).filter(is_parameter).all(same) {
+            self.motion = None;
+        }
+        self.take_values(saved);
+        let Some(numbers) = &saved.moment else {
+            self.motion = None;
+            return Ok(());
+        };
+        let moment = Moment::from_numbers(numbers).map_err(|error| error.to_string())?;
+        self.moving()?.restore(moment).map_err(|error| error.to_string())
+    }
+}
+
+/// Tightest tolerance that the core takes.
+const TIGHTEST: f64 = 1e-14;
