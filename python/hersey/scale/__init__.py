@@ -3,5 +3,7 @@
 ==========  ==================================================================================
 module      responsibility
 ==========  ==================================================================================
+cluster     a cluster of Dask: on this machine or by its address
+tasks       tasks done in threads or by the workers of a cluster: results as they end
 ==========  ==================================================================================
 """

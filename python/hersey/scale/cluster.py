@@ -1,0 +1,146 @@
+"""A cluster of Dask: on this machine or by its address, with workers that have the same hersey."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+from hersey import _core
+from hersey.errors import MissingFileError, ParameterError
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+#: Time within which a scheduler answers, s.
+_ANSWER = 8.0
+#: Time that workers have to come, s.
+_WORKERS = 60.0
+_WAY_OUT = "pip install 'hersey[scale]'"
+
+
+def without_workers() -> float:
+    """Return the time after which nobody is waited for any longer, s."""
+    return _WORKERS
+
+
+def needs_dask() -> None:
+    """Refuse what needs Dask where it is not.
+
+    Raises
+    ------
+    MissingFileError
+        With the way out.
+    """
+    try:
+        import distributed  # noqa: F401 - whether it is there
+    except ImportError:
+        raise MissingFileError(f"workers need Dask, which is not installed: {_WAY_OUT}") from None
+
+
+@contextmanager
+def connected(client: Client | str) -> Iterator[tuple[Client, str]]:
+    """Yield a client, made where an address is given, and the name of its scheduler.
+
+    Raises
+    ------
+    ParameterError
+        If nothing answers at the address within some seconds.
+    """
+    needs_dask()
+    if not isinstance(client, str):
+        if not hasattr(client, "submit") or not hasattr(client, "scheduler_info"):
+            raise ParameterError(
+                f"client is a {type(client).__name__}: give a distributed.Client or an address"
+            )
+        yield client, _address(client)
+        return
+    from distributed import Client
+
+    quiet()
+    try:
+        made: Client = Client(client, timeout=_ANSWER, set_as_default=False)
+    except Exception as error:  # what answers there may be anything
+        reason = str(error).partition("\n")[0]
+        raise ParameterError(
+            f"no scheduler of Dask answers at {client} ({reason}): start one with 'dask scheduler', and give "
+            f"the address that it prints, as tcp://host:8786"
+        ) from None
+    try:
+        yield made, client
+    finally:
+        made.close(timeout=2)
+
+
+@contextmanager
+def local_cluster(processes: int) -> Iterator[Client]:
+    """Yield the client of a cluster of so many processes on this machine, which end with this one."""
+    needs_dask()
+    import dask
+    from distributed import Client, LocalCluster
+
+    quiet()
+    with (
+        dask.config.set({"distributed.worker.daemon": True}),
+        LocalCluster(
+            n_workers=processes,
+            processes=True,
+            threads_per_worker=1,
+            dashboard_address=None,
+            silence_logs=logging.CRITICAL,
+        ) as cluster,
+        Client(cluster, set_as_default=False) as client,
+    ):
+        yield client
+
+
+def quiet() -> None:
+    """Let Dask print nothing: what matters is said in words of ours."""
+    import distributed  # noqa: F401 - sets up its loggers when it is imported
+
+    for name in ("distributed", "tornado", "asyncio"):
+        logging.getLogger(name).setLevel(logging.CRITICAL)
+
+
+def threads_of(client: Client) -> int:
+    """Return how many threads work for a client now."""
+    workers: dict[str, Any] = client.scheduler_info(n_workers=-1)["workers"]
+    return sum(int(worker["nthreads"]) for worker in workers.values())
+
+
+def refuse_others(client: Client) -> None:
+    """Refuse workers with another hersey, or none; wait a while for the first.
+
+    Raises
+    ------
+    ParameterError
+        It names the worker and the way out.
+    """
+    from distributed import TimeoutError as NoneCameError
+
+    try:
+        client.wait_for_workers(1, timeout=_WORKERS)
+    except NoneCameError:
+        raise ParameterError(
+            f"{_address(client)} has no worker: start some with 'dask worker {_address(client)}'"
+        ) from None
+    versions = client.run(version, on_error="return")
+    for worker, found in versions.items():
+        if isinstance(found, BaseException):
+            said = "no hersey" if isinstance(found, ImportError) else f"no hersey that works ({found})"
+            raise ParameterError(f"worker {worker} has {said}: install hersey {_core.VERSION} there, as here")
+        if found != _core.VERSION:
+            raise ParameterError(
+                f"worker {worker} has hersey {found}, not {_core.VERSION}: install the same there"
+            )
+
+
+def version() -> str:
+    """Return the version of hersey where this runs."""
+    return _core.VERSION
+
+
+def _address(client: Client) -> str:
+    scheduler = client.scheduler
+    return str(scheduler.address) if scheduler is not None else "the scheduler"
