@@ -6,6 +6,9 @@ drag        drag laws: force against belt speed and temperature
 heat        temperature as a state: two bodies, a heater and friction
 simulation  stick-slip motion of the belt, and what it settles to
 parameters  names of the parameters, and the kinds of their units
+sets        the parameter sets of a sweep, laid out only as far as they are followed
+following   following them, here or at a worker
+kept        a sweep that is kept chunk by chunk, and goes on where it stopped
 sweep       what thousands of belts settle to, in one call
 scenario    a sweep described by a file
 ==========  =====================================================

@@ -3,34 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from hersey import _core
-from hersey.arrays import crossed, numbers_of, together
+from hersey.arrays import numbers_of
 from hersey.errors import ParameterError
 from hersey.motion.drag import Drag
-from hersey.motion.parameters import KINDS, MOST_STEPS, PARAMETERS, refuse_too_many, whole
+from hersey.motion.following import NUMBERS, Rules, values_of
+from hersey.motion.parameters import KINDS, MOST_STEPS, refuse_too_many, whole
+from hersey.motion.sets import Sets
 from hersey.motion.simulation import TOLERANCE, Drivetrain
 from hersey.units import takes_si
 
 if TYPE_CHECKING:
     import xarray as xr
+    from distributed import Client
 
-#: Numbers of each cycle, in the order of the core.
-NUMBERS = (
-    "frequency",
-    "slip_duration",
-    "stick_duration",
-    "speed_min",
-    "speed_max",
-    "stretch_min",
-    "stretch_max",
-    "grip_slip_duration",
-    "drag_work",
-)
+    from hersey.motion.kept import Kept
 
 
 @takes_si(duration="time", **{name: kind for name, kind in KINDS.items() if kind is not None})
@@ -53,6 +46,11 @@ def sweep(
     tolerance: float = TOLERANCE,
     progress: Callable[[int, int], object] | None = None,
     most_steps: float = MOST_STEPS,
+    client: Client | str | None = None,
+    out: str | Path | None = None,
+    chunk: int | None = None,
+    resume: bool = True,
+    overwrite: bool = False,
 ) -> xr.Dataset:
     """Return what each combination of parameters settles to, as `stick_slip` does for one.
 
@@ -73,17 +71,37 @@ def sweep(
         Called with (done, all) some twenty times a second; what it raises ends the sweep.
     most_steps
         Work that each belt may take, as for `simulate`; one that does not suffice is among the failures.
+    client
+        A ``distributed.Client``, or the address of a scheduler: its workers follow the sets, in chunks. The
+        result is the same, bit for bit, on processors and systems of one kind.
+    out
+        A folder that ends in .zarr or .parquet, in which each chunk of sets is kept as it ends; then a sweep
+        has no limit of sets. What is there of the same sweep is not done again. See docs/scale.md.
+    chunk
+        Sets of a chunk; by default as many as take a second or two.
+    resume, overwrite
+        With ``resume=False`` what is there does not count: it is refused, or gone with ``overwrite``.
 
     Returns
     -------
     xarray.Dataset
         ``kind`` (text), ``frequency``, ``stuck_fraction``, ``speed_max`` and so on, ``laps``. A motion that
-        cannot be continued has the kind ``failed`` and no numbers; the attribute ``failures`` says why.
+        cannot be continued has the kind ``failed`` and no numbers; the attribute ``failures`` says why. With
+        ``out`` a .zarr is opened, and numbers are read from it when they are asked for: there ``kind`` is a
+        number of which the attribute ``flag_meanings`` tells the words. Of a .parquet there are coordinates
+        and attributes alone. The attributes ``kinds``, ``stick_slip`` and ``failures`` tell what came out.
 
     Raises
     ------
     ParameterError
-        If a value is out of range, with the parameter's name.
+        If a value is out of range, with the parameter's name; if ``chunk`` is, or no scheduler answers, or a
+        worker has another hersey.
+    OutputError
+        If ``out`` is of another sweep, at work elsewhere, or cannot be written.
+    UnfinishedError
+        If scheduler or workers are lost.
+    MissingFileError
+        If Dask or Zarr is needed and not installed.
 
     Examples
     --------
@@ -92,12 +110,11 @@ def sweep(
     >>> dict(grid.sizes), round(float(grid.frequency.sel(stiffness=1000, drive_speed=1.0)), 5)
     ({'stiffness': 2, 'drive_speed': 3}, 3.94031)
     """
-    import xarray as xr
-
     if not isinstance(drag, Drag) or drag.varies_with_temperature:
         raise ParameterError("a sweep needs a Drag at one temperature")
     if start not in ("rest", "steady"):
         raise ParameterError(f"start '{start}' is not known: rest or steady")
+    drag.beside(1)  # refuses what a sweep has no parameter for
     workers, steps = whole("threads", threads), whole("most_steps", most_steps)
     parameters: dict[str, Any] = {**vars(train), **vars(drag)}
     varied = {
@@ -113,39 +130,77 @@ def sweep(
     given = {
         name: numbers_of(name, parameters[name] if value is None else value) for name, value in varied.items()
     }
+    lasting = None if duration is None else float(duration)
+    rules = Rules(drag, train.grip, start, lasting, float(tolerance), steps)
+    sets = Sets(given, zip)
+    if out is not None:
+        from hersey.motion.kept import kept
+
+        more: dict[str, Any] = {"chunk": chunk, "resume": resume, "overwrite": overwrite}
+        found = kept(sets, rules, out, client=client, threads=workers, progress=progress, **more)
+        return _opened(sets, rules, found)
     refuse_too_many(given.values(), zip=zip)
-    axes, columns = together(given) if zip else crossed(given)
-    shape = next(iter(columns.values())).shape
-    motions = _core.sweep(
-        [np.ascontiguousarray(columns[name].ravel()) for name in PARAMETERS],
-        (drag.closure, drag.bristle_stiffness, drag.bristle_damping),
-        drag.beside(int(np.prod(shape))),
-        train.grip,
-        start == "steady",
-        None if duration is None else float(duration),
-        float(tolerance),
-        workers,
-        progress,
-        steps,
-    )
-    data = {name: (axes, getattr(motions, name).reshape(shape)) for name in NUMBERS}
-    stuck = motions.stick_duration * motions.frequency
-    coordinates = {
-        name: (axes, columns[name]) if zip and given[name].ndim else given[name] for name in PARAMETERS
-    }
+    if client is not None:
+        from hersey.motion.kept import gathered
+
+        columns, failures, notes = gathered(sets, rules, client=client, chunk=chunk, progress=progress)
+        return _labelled(sets, rules, columns, failures, notes)
+    if chunk is not None:
+        raise ParameterError("chunk is given, but neither out nor client: nothing is cut into chunks")
+    motions = rules.follow(sets, workers, progress)
+    failures = [f"set {failure.index}: {failure.error}" for failure in motions.failures]
+    return _labelled(sets, rules, values_of(motions), failures, [])
+
+
+def _labelled(
+    sets: Sets, rules: Rules, values: dict[str, Any], failures: list[str], notes: list[str]
+) -> xr.Dataset:
+    """The sweep in memory: values, flat, over the axes that the sets span."""
+    import xarray as xr
+
+    def over(column: Any) -> tuple[tuple[str, ...], Any]:
+        return sets.axes, column.reshape(sets.shape)
+
     return xr.Dataset(
         {
-            "kind": (axes, np.array(_core.KINDS)[motions.kind_index].reshape(shape)),
-            **data,
-            "stuck_fraction": (axes, stuck.reshape(shape)),
-            "laps": (axes, motions.laps.reshape(shape)),
+            "kind": over(np.array(_core.KINDS)[values["kind"]]),
+            **{name: over(values[name]) for name in (*NUMBERS, "stuck_fraction", "laps")},
         },
-        coords=coordinates,
+        coords=_coordinates(sets),
         attrs={
-            "closure": drag.closure,
-            "start": start,
-            "tolerance": tolerance,
-            "hersey_version": _core.VERSION,
-            "failures": [f"set {failure.index}: {failure.error}" for failure in motions.failures],
+            **_about(rules),
+            "failures": failures,
+            **({"notes": notes} if notes else {}),
         },
     )
+
+
+def _opened(sets: Sets, rules: Rules, found: Kept) -> xr.Dataset:
+    """The sweep as it is kept."""
+    import xarray as xr
+
+    if found.path.suffix == ".zarr":
+        from hersey.motion.kept import opened_dataset
+
+        result = opened_dataset(found.path)
+    else:
+        result = xr.Dataset(coords=_coordinates(sets), attrs=_about(rules))
+    return result.assign_attrs({**found.summary(), "notes": list(found.notes)})
+
+
+def _coordinates(sets: Sets) -> dict[str, Any]:
+    if not sets.zip:
+        return dict(sets.given)
+    return {
+        name: (sets.axes, np.broadcast_to(values, sets.shape)) if values.ndim else values
+        for name, values in sets.given.items()
+    }
+
+
+def _about(rules: Rules) -> dict[str, Any]:
+    return {
+        "closure": rules.drag.closure,
+        "start": rules.start,
+        "tolerance": rules.tolerance,
+        "hersey_version": _core.VERSION,
+    }

@@ -187,8 +187,8 @@ class _Window:
         except KilledWorker:
             if asked >= _ASKED:
                 raise UnfinishedError(
-                    f"item {index} has ended {4 * asked} workers of {self.name}, one after the other: does it ask "
-                    f"for more memory than they have?",
+                    f"item {index} has ended {4 * asked} workers of {self.name}, one after the other: does it "
+                    f"ask for more memory than they have?",
                     index=index,
                 ) from None
             self._begin(index, asked + 1)

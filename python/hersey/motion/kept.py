@@ -1,0 +1,288 @@
+"""A sweep that is kept chunk by chunk in a folder, and goes on where it stopped."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, nullcontext
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hersey import _core
+from hersey.errors import HerseyError, ParameterError
+from hersey.motion.following import (
+    NUMBERS,
+    Rules,
+    Tally,
+    bring,
+    hash_of,
+    hashes_differ,
+    keep,
+    probe,
+    refuse_early,
+    trial,
+    usual_chunk,
+)
+from hersey.motion.parameters import KINDS, MOST_SETS
+from hersey.motion.sets import Later, Sets
+from hersey.scale.cluster import connected, refuse_others, threads_of
+from hersey.scale.cutting import Cut
+from hersey.scale.store import (
+    Coordinate,
+    Folder,
+    Layout,
+    Variable,
+    kind_of,
+    opened,
+    sha256_of,
+)
+from hersey.scale.tasks import done
+from hersey.units import KINDS as UNITS
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from distributed import Client
+
+#: Unit and meaning of each number.
+_ABOUT = {
+    "frequency": ("Hz", "slips per time"),
+    "slip_duration": ("s", "time of a cycle in which the belt slips"),
+    "stick_duration": ("s", "time of a cycle in which it sticks"),
+    "speed_min": ("m/s", "least belt speed of a cycle"),
+    "speed_max": ("m/s", "greatest belt speed of a cycle"),
+    "stretch_min": ("m", "least stretch of the spring"),
+    "stretch_max": ("m", "greatest stretch of the spring"),
+    "grip_slip_duration": ("s", "time of a cycle in which the roll slips on the belt"),
+    "drag_work": ("J", "work of the drag in a cycle"),
+    "stuck_fraction": ("1", "part of a cycle in which the belt sticks"),
+    "laps": ("1", "laps followed"),
+}
+
+
+@dataclass(frozen=True)
+class Kept:
+    """What a sweep left in its folder: what was counted, in how many chunks, and what to tell of it."""
+
+    path: Path
+    tally: Tally
+    chunks: int
+    #: Chunks that were there before.
+    before: int
+    notes: tuple[str, ...] = ()
+
+    def summary(self) -> dict[str, Any]:
+        """Return what `hersey.motion.scenario.summary` returns of a sweep in memory."""
+        return self.tally.to_dict()
+
+
+class _Pieces(Sequence[Later]):
+    """Chunks that are still to do, each made when it is asked for."""
+
+    def __init__(self, sets: Sets, cut: Cut, numbers: Sequence[int]) -> None:
+        self._sets, self._cut, self._numbers = sets, cut, numbers
+
+    def __len__(self) -> int:
+        return len(self._numbers)
+
+    def __getitem__(self, index: Any) -> Any:
+        return Later(self._sets, self._cut, self._numbers[index])
+
+
+def kept(
+    sets: Sets,
+    rules: Rules,
+    out: str | Path,
+    *,
+    client: Client | str | None = None,
+    threads: int = 1,
+    chunk: int | None = None,
+    resume: bool = True,
+    overwrite: bool = False,
+    units: str = "SI",
+    progress: Callable[[int, int], object] | None = None,
+) -> Kept:
+    """Follow every set, keep each chunk in the folder ``out`` as it ends, and count the outcomes.
+
+    What is there of the same sweep is not done again. An error that ends it says how many chunks are kept;
+    Ctrl-C says so in a note of `KeyboardInterrupt`.
+
+    Raises
+    ------
+    ParameterError, OutputError, UnfinishedError, MissingFileError
+        As `hersey.sweep`.
+    """
+    path, kind = Path(out).absolute(), kind_of(Path(out))
+    refuse_early(rules, sets)
+    scenario = {**rules.told(), "zip": sets.zip, "units": units, "parameters": sets.told()}
+    with _connected(client) as known:
+        workers = threads if known is None else max(threads_of(known), 1)
+        sample, each = trial(rules, sets)
+        cut = None if chunk is None else partial(_cut, sets, chunk)
+        planned = cut or (lambda: Cut.into(sets.shape, usual_chunk(sets.count, each, workers)))
+        if cut is not None:
+            cut()
+        layout = partial(_layout, sets, rules, planned, units)
+        with opened(path, scenario, layout, cut=cut, resume=resume, overwrite=overwrite) as folder:
+            notes: list[str] = []
+            if known is not None:
+                notes = _probed(known, rules, sample, (path, kind, sha256_of(scenario)))
+            return _followed(sets, rules, folder, known, threads, progress, notes)
+
+
+def _followed(
+    sets: Sets,
+    rules: Rules,
+    folder: Folder,
+    client: Client | None,
+    threads: int,
+    progress: Callable[[int, int], object] | None,
+    notes: list[str],
+) -> Kept:
+    """Do what is not done."""
+    tally, count = Tally(), folder.cut.count
+    lacking = np.ones(count, dtype=bool)
+    for number in folder.finished():
+        if (note := folder.note(number)) is not None:
+            tally.add(note)
+            lacking[number] = False
+    before = count - int(lacking.sum())
+    ended, there = before, tally.sets
+    numbers = np.flatnonzero(lacking).tolist()
+    pieces = _Pieces(sets, folder.cut, numbers)
+    if progress is not None:
+        progress(there, sets.count)
+    try:
+        for _, note in done(
+            partial(keep, rules, folder),
+            pieces,
+            client=client,
+            threads=threads,
+            size=lambda later: later.size,
+            progress=None if progress is None else lambda now, _: progress(there + now, sets.count),
+        ):
+            tally.add(note)
+            ended += 1
+    except HerseyError as error:
+        again = type(error)(f"{error}; {_left(ended, count)}")
+        again.__dict__.update(error.__dict__)
+        raise again from None
+    except KeyboardInterrupt as interrupt:
+        interrupt.add_note(_left(ended, count))
+        raise
+    return Kept(folder.path, tally, count, before, tuple(notes))
+
+
+def _left(ended: int, count: int) -> str:
+    return f"{ended} of {count} chunks are kept: the same command goes on"
+
+
+def gathered(
+    sets: Sets,
+    rules: Rules,
+    *,
+    client: Client | str,
+    chunk: int | None = None,
+    progress: Callable[[int, int], object] | None = None,
+) -> tuple[dict[str, NDArray[Any]], list[str], list[str]]:
+    """Return the numbers of every set as workers find them, flat, the failures, and what to tell."""
+    with _connected(client) as known:
+        assert known is not None
+        sample, each = trial(rules, sets)
+        wished = usual_chunk(sets.count, each, max(threads_of(known), 1)) if chunk is None else chunk
+        cut = Cut.into(sets.shape, wished)
+        notes = _probed(known, rules, sample, None)
+        columns: dict[str, NDArray[Any]] = {}
+        failures: list[tuple[int, str]] = []
+        pieces = _Pieces(sets, cut, range(cut.count))
+        task = partial(bring, rules)
+        for _, (first, values, failed) in done(
+            task, pieces, client=known, progress=progress, size=lambda later: later.size
+        ):
+            for name, column in values.items():
+                if name not in columns:
+                    columns[name] = np.empty(sets.count, column.dtype)
+                columns[name][first : first + column.size] = column
+            failures.extend(failed)
+    return columns, [f"set {index}: {text}" for index, text in sorted(failures)], notes
+
+
+@contextmanager
+def _connected(client: Client | str | None) -> Iterator[Client | None]:
+    if client is None:
+        with nullcontext():
+            yield None
+        return
+    with connected(client) as (known, _name):
+        refuse_others(known)
+        yield known
+
+
+def _cut(sets: Sets, chunk: int) -> Cut:
+    if not isinstance(chunk, (int, np.integer)) or isinstance(chunk, bool):
+        raise ParameterError(f"chunk is {chunk!r}: it is a whole number of sets")
+    cut = Cut.into(sets.shape, int(chunk))
+    if chunk > MOST_SETS:
+        raise ParameterError(f"chunk is {chunk}: {MOST_SETS:.0e} sets are the most that one call takes")
+    return cut
+
+
+def _probed(client: Client, rules: Rules, sample: Sets, seen: Any) -> list[str]:
+    """Refuse a worker that does not see the folder; return what is told of those with other bits."""
+    found = client.run(probe, rules, sample, seen, on_error="return")
+    for error in found.values():
+        if isinstance(error, BaseException):
+            raise error
+    return hashes_differ(found.items(), hash_of(rules, sample))
+
+
+def _layout(sets: Sets, rules: Rules, cut: Callable[[], Cut], units: str) -> Layout:
+    """What the folder holds, with units and words."""
+
+    def unit(text: str) -> dict[str, str]:
+        return {"units": text if units == "SI" or text == "1" else "consistent"}
+
+    whole: dict[str, Any] = {
+        "kind": Variable(
+            "kind",
+            "uint8",
+            {
+                "long_name": "what the motion settles to",
+                "flag_values": list(range(len(_core.KINDS))),
+                "flag_meanings": " ".join(_core.KINDS),
+            },
+            255,
+            _core.KINDS,
+        ),
+        **{
+            name: Variable(name, "float64", {"long_name": _ABOUT[name][1], **unit(_ABOUT[name][0])}, np.nan)
+            for name in (*NUMBERS, "stuck_fraction")
+        },
+        "laps": Variable("laps", "uint32", {"long_name": _ABOUT["laps"][1], **unit("1")}, 0),
+    }
+    coordinates = {}
+    for name, values in sets.given.items():
+        kind = KINDS[name]
+        about = {"long_name": name.replace("_", " "), **unit(UNITS[kind][0] if kind else "1")}
+        axes = () if not values.ndim else sets.axes if sets.zip else (name,)
+        laid = np.broadcast_to(values, sets.shape) if axes and sets.zip else values
+        coordinates[name] = Coordinate(axes, laid, about)
+    told = {key: value for key, value in rules.told().items() if value is not None}
+    return Layout(
+        sets.axes,
+        cut(),
+        tuple(whole.values()),
+        coordinates,
+        {**told, "created_by": f"hersey {_core.VERSION}, sweep", "units": units, "sets": sets.count},
+    )
+
+
+def opened_dataset(path: Path) -> xr.Dataset:
+    """Return a kept sweep as xarray opens it: numbers are read when they are asked for."""
+    import xarray as xr
+
+    return xr.open_zarr(os.fspath(path), chunks=None, decode_times=False)

@@ -1,0 +1,85 @@
+"""A grid cut into chunks, each contiguous in the order in which the grid lies (C order)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import ceil, prod
+
+from hersey.errors import ParameterError
+
+#: More chunks than this no folder takes gladly.
+MOST_CHUNKS = 1_000_000
+
+
+@dataclass(frozen=True)
+class Cut:
+    """A grid of ``shape`` in chunks of ``chunk``: (1, .., 1, k, whole axes); one at an end may be smaller."""
+
+    shape: tuple[int, ...]
+    chunk: tuple[int, ...]
+
+    @classmethod
+    def into(cls, shape: tuple[int, ...], sets: int) -> Cut:
+        """Return the grid in chunks of at most ``sets`` points, as alike as may be.
+
+        Raises
+        ------
+        ParameterError
+            If that is none, more than all, or so few that there would be over a million chunks.
+        """
+        every = prod(shape)
+        if not 1 <= sets <= every:
+            raise ParameterError(f"chunk is {sets}: of {every} sets a chunk takes 1 to {every}")
+        chunk, whole = [1] * len(shape), 1
+        for axis in reversed(range(len(shape))):
+            most = max(sets // whole, 1)
+            if most < shape[axis]:
+                chunk[axis] = ceil(shape[axis] / ceil(shape[axis] / most))
+                break
+            chunk[axis] = shape[axis]
+            whole *= shape[axis]
+        cut = cls(shape, tuple(chunk))
+        if cut.count > MOST_CHUNKS:
+            raise ParameterError(
+                f"chunk is {sets}: that makes {cut.count} chunks of {every} sets, and {MOST_CHUNKS} are "
+                f"the most: take {ceil(2 * every / MOST_CHUNKS)}"
+            )
+        return cut
+
+    @property
+    def grid(self) -> tuple[int, ...]:
+        """How many chunks lie along each axis."""
+        return tuple(-(-length // each) for length, each in zip(self.shape, self.chunk, strict=True))
+
+    @property
+    def count(self) -> int:
+        """How many chunks there are."""
+        return prod(self.grid)
+
+    def place(self, number: int) -> tuple[int, ...]:
+        """Return where a chunk lies among the chunks, one index per axis."""
+        place = []
+        for length in reversed(self.grid):
+            number, index = divmod(number, length)
+            place.append(index)
+        return tuple(reversed(place))
+
+    def slices(self, number: int) -> tuple[slice, ...]:
+        """Return what a chunk takes of each axis."""
+        bounds = zip(self.place(number), self.chunk, self.shape, strict=True)
+        return tuple(slice(i * each, min((i + 1) * each, length)) for i, each, length in bounds)
+
+    def shape_of(self, number: int) -> tuple[int, ...]:
+        """Return the shape of a chunk."""
+        return tuple(part.stop - part.start for part in self.slices(number))
+
+    def size(self, number: int) -> int:
+        """Return how many points a chunk has."""
+        return prod(self.shape_of(number))
+
+    def first(self, number: int) -> int:
+        """Return the index of the first point of a chunk among all, in C order."""
+        index = 0
+        for part, length in zip(self.slices(number), self.shape, strict=True):
+            index = index * length + part.start
+        return index

@@ -1,0 +1,87 @@
+"""A folder of Parquet files, one per chunk, one row per point; what is told of a chunk stands in its file."""
+
+from __future__ import annotations
+
+import io
+import json
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hersey.errors import OutputError
+from hersey.scale.cutting import Cut
+from hersey.scale.store import Columns, Layout, Note, Scenario, Variable, write_file
+
+#: Key of the note among what a file says of itself.
+_NOTE = "hersey"
+
+
+class ParquetKind:
+    """Makes and opens such folders."""
+
+    manifest = "manifest.json"
+    lock = ".lock"
+
+    def create(self, path: Path, layout: Layout, manifest: Scenario) -> None:
+        """Make an empty folder."""
+        units = {name: each.attributes.get("units") for name, each in layout.coordinates.items()}
+        units |= {each.name: each.attributes.get("units") for each in layout.variables}
+        about = {**layout.attributes, "units_of_columns": units}
+        write_file(path / self.manifest, json.dumps({**manifest, "about": about}, indent=1).encode())
+
+    def read_manifest(self, path: Path) -> Scenario | None:
+        """Return the manifest, if there is one."""
+        with suppress(OSError, ValueError):
+            manifest = json.loads((path / self.manifest).read_bytes())
+            if isinstance(manifest, dict) and "scenario" in manifest:
+                return manifest
+        return None
+
+    def open(self, path: Path, cut: Cut, variables: tuple[Variable, ...]) -> ParquetFolder:
+        """Return a folder that is there."""
+        return ParquetFolder(path, cut, tuple((each.name, tuple(each.words)) for each in variables))
+
+
+@dataclass(frozen=True)
+class ParquetFolder:
+    """One such folder."""
+
+    path: Path
+    cut: Cut
+    columns: tuple[tuple[str, tuple[str, ...]], ...]
+
+    def note(self, number: int) -> Note | None:
+        """Return the note of a chunk that is finished."""
+        import polars as pl
+
+        try:
+            return dict(json.loads(pl.read_parquet_metadata(self._file(number))[_NOTE]))
+        except FileNotFoundError:
+            return None
+        except (OSError, ValueError, KeyError, pl.exceptions.PolarsError):
+            return None  # not whole, as after a loss of power: it is made anew
+
+    def finished(self) -> list[int]:
+        """Return the numbers of the chunks that are finished."""
+        names = [file.stem for file in self.path.glob("*.parquet")]
+        return sorted(int(name) for name in names if name.isdigit() and int(name) < self.cut.count)
+
+    def write(self, number: int, values: Columns, beside: Columns, note: Note) -> None:
+        """Keep a chunk."""
+        import polars as pl
+
+        if not (self.path / ParquetKind.manifest).exists():
+            raise OutputError(f"{self.path} is not seen here, or is gone")
+        own: dict[str, Any] = {
+            name: np.array(words)[values[name]] if words else values[name] for name, words in self.columns
+        }
+        content = io.BytesIO()
+        table = pl.DataFrame({**beside, **own})
+        table.write_parquet(content, compression="lz4", metadata={_NOTE: json.dumps(note)})
+        write_file(self._file(number), content.getvalue())
+
+    def _file(self, number: int) -> Path:
+        return self.path / f"{number:07d}.parquet"

@@ -1,0 +1,347 @@
+"""What is kept of a grid that is worked out chunk by chunk: a folder that tells whose it is and what is done.
+
+A chunk is written by whoever worked it out: its values first, then that it is finished. Every file takes its
+place whole (`hersey.files.writing`), so a process that is killed leaves no half of one, and two that
+write one chunk write the same bytes.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import secrets
+import shutil
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, BinaryIO, Protocol
+
+from numpy.typing import NDArray
+
+from hersey.errors import OutputError
+from hersey.files.writing import SUFFIX
+from hersey.scale.cutting import Cut
+
+#: What is written of a chunk, or of all: columns of one length by their names.
+Columns = Mapping[str, NDArray[Any]]
+#: What is told of a chunk beside its values, as JSON takes it.
+Note = dict[str, Any]
+#: What decides the values, as JSON takes it; `refused` names what differs.
+Scenario = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Variable:
+    """A quantity over the grid: name, type and what is said of it; ``fill`` stands where there is none.
+
+    Of one that counts kinds ``words`` are their names, where a format can hold them.
+    """
+
+    name: str
+    dtype: str
+    attributes: Mapping[str, Any]
+    fill: float
+    words: Sequence[str] = ()
+
+
+@dataclass(frozen=True)
+class Coordinate:
+    """What stands along axes of the grid, or a single number."""
+
+    axes: tuple[str, ...]
+    values: NDArray[Any]
+    attributes: Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Layout:
+    """The grid: axes and how it is cut, quantities over it, coordinates, and what is said of the whole."""
+
+    axes: tuple[str, ...]
+    cut: Cut
+    variables: tuple[Variable, ...]
+    coordinates: Mapping[str, Coordinate]
+    attributes: Mapping[str, Any] = field(default_factory=dict)
+
+
+class Folder(Protocol):
+    """A folder of chunks of one kind; it travels to workers, so it holds little."""
+
+    @property
+    def path(self) -> Path:
+        """Where it is."""
+
+    @property
+    def cut(self) -> Cut:
+        """How its grid is cut."""
+
+    def note(self, number: int) -> Note | None:
+        """Return the note of a chunk that is finished; None of any other."""
+
+    def finished(self) -> list[int]:
+        """Return the numbers of the chunks that are finished, ascending."""
+
+    def write(self, number: int, values: Columns, beside: Columns, note: Note) -> None:
+        """Keep a chunk: values over it, flat; ``beside`` is what formats without axes need of the axes."""
+
+
+class Kind(Protocol):
+    """What makes and opens folders of one kind."""
+
+    #: File of the folder that holds the manifest, and the one that is locked.
+    manifest: str
+    lock: str
+
+    def create(self, path: Path, layout: Layout, manifest: Scenario) -> None:
+        """Make an empty folder at a path where there is none."""
+
+    def read_manifest(self, path: Path) -> Scenario | None:
+        """Return the manifest; None where no folder of ours is."""
+
+    def open(self, path: Path, cut: Cut, variables: tuple[Variable, ...]) -> Folder:
+        """Return a folder that is there."""
+
+
+def kind_of(path: Path) -> Kind:
+    """Return what writes a folder by the end of its name.
+
+    Raises
+    ------
+    OutputError
+        If it is neither .zarr nor .parquet.
+    MissingFileError
+        If what it needs is not installed.
+    """
+    if path.suffix == ".zarr":
+        from hersey.scale.zarr_folder import ZarrKind
+
+        return ZarrKind()
+    if path.suffix == ".parquet":
+        from hersey.scale.parquet_folder import ParquetKind
+
+        return ParquetKind()
+    raise OutputError(f"{path}: name a folder that ends in .zarr or .parquet")
+
+
+def sha256_of(scenario: Scenario) -> str:
+    """Return the hash of what decides the values."""
+    return hashlib.sha256(json.dumps(scenario, sort_keys=True).encode()).hexdigest()
+
+
+@contextmanager
+def opened(
+    path: Path,
+    scenario: Scenario,
+    layout: Callable[[], Layout],
+    *,
+    cut: Callable[[], Cut] | None = None,
+    resume: bool = True,
+    overwrite: bool = False,
+) -> Iterator[Folder]:
+    """Yield the folder at a path: the one begun for the same scenario, or a new one; nobody else has it.
+
+    ``layout`` is asked only where a new one is made; ``cut`` says how the grid was asked to be cut, and
+    a folder that is cut otherwise is refused.
+
+    Raises
+    ------
+    OutputError
+        If the folder is of another scenario, holds something else, is at work elsewhere, or cannot be
+        written; it says what differs.
+    """
+    path = path.absolute()
+    kind = kind_of(path)
+    try:
+        with _taken(kind, path, scenario, resume=resume, overwrite=overwrite) as begun:
+            if begun is None:
+                planned = layout()
+                manifest = {
+                    "format": 1,
+                    "scenario": scenario,
+                    "scenario_sha256": sha256_of(scenario),
+                    "shape": list(planned.cut.shape),
+                    "chunk": list(planned.cut.chunk),
+                    "variables": [
+                        [each.name, each.dtype, each.fill, list(each.words)] for each in planned.variables
+                    ],
+                }
+                _create(kind, path, planned, manifest)
+                begun = manifest
+            with _locked(path / kind.lock, path):
+                folder = kind.open(path, *_as_begun(begun))
+                if cut is not None and (asked := cut()) != folder.cut:
+                    raise OutputError(
+                        f"{path} is cut into chunks of {_product(folder.cut.chunk)} sets, and "
+                        f"{_product(asked.chunk)} are asked for: leave the chunk out to go on, or start anew "
+                        f"with --no-resume --force"
+                    )
+                yield folder
+    except OSError as error:
+        if isinstance(error, OutputError):
+            raise
+        raise OutputError(f"{path} cannot be written: {error.strerror or error}") from None
+
+
+def _as_begun(manifest: Scenario) -> tuple[Cut, tuple[Variable, ...]]:
+    cut = Cut(tuple(manifest["shape"]), tuple(manifest["chunk"]))
+    return cut, tuple(Variable(name, dtype, {}, *more) for name, dtype, *more in manifest["variables"])
+
+
+@contextmanager
+def _taken(
+    kind: Kind, path: Path, scenario: Scenario, *, resume: bool, overwrite: bool
+) -> Iterator[Scenario | None]:
+    """Yield the manifest of what was begun and shall go on, or None; what shall go is gone then."""
+    if not path.parent.is_dir():
+        raise OutputError(f"{path}: there is no directory {path.parent}")
+    if not path.exists() or (path.is_dir() and not any(path.iterdir())):
+        yield None
+        return
+    manifest = kind.read_manifest(path) if path.is_dir() else None
+    if manifest is None:
+        raise OutputError(f"{path} is there, and no sweep of hersey made it: name another")
+    if resume:
+        refuse_another(path, manifest, scenario)
+        yield manifest
+        return
+    if not overwrite:
+        raise OutputError(
+            f"{path} exists: say --force to replace it, or leave --no-resume out to go on with it"
+        )
+    with _locked(path / kind.lock, path):
+        gone = path.with_name(f".{path.name[:200]}.{secrets.token_hex(8)}{SUFFIX}")
+        path.rename(gone)
+    shutil.rmtree(gone, ignore_errors=True)
+    yield None
+
+
+def _create(kind: Kind, path: Path, layout: Layout, manifest: Scenario) -> None:
+    """Make the folder beside, and give it its name when it is whole."""
+    part = path.with_name(f".{path.name[:200]}.{secrets.token_hex(8)}{SUFFIX}")
+    try:
+        kind.create(part, layout, manifest)
+        (part / kind.lock).touch()
+        with suppress(OSError):  # there is none, or it holds something, which renaming refuses
+            path.rmdir()
+        part.rename(path)
+    finally:
+        shutil.rmtree(part, ignore_errors=True)
+
+
+@contextmanager
+def _locked(lock: Path, path: Path) -> Iterator[None]:
+    """Hold a file that only one process holds; the system gives it back when that ends, however it ends."""
+    try:
+        import fcntl
+    except ImportError:  # not on this system: two at work write the same bytes
+        yield
+        return
+    with lock.open("ab") as file:
+        _lock(file, path, fcntl)
+        yield
+
+
+def _lock(file: BinaryIO, path: Path, fcntl: Any) -> None:
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        raise OutputError(f"{path}: another process is at work on it: wait for it, or name another") from None
+    except OSError:  # a file system without locks: two at work write the same bytes
+        pass
+
+
+def refuse_another(path: Path, manifest: Scenario, scenario: Scenario) -> None:
+    """Refuse the folder of another scenario, in words that say what differs.
+
+    Raises
+    ------
+    OutputError
+        If any part of the scenario differs.
+    """
+    there = manifest.get("scenario", {})
+    if there == scenario:
+        return
+    raise OutputError(
+        f"{path} is of another scenario: {difference(there, scenario)}; name another folder, or start anew "
+        f"with --no-resume --force"
+    )
+
+
+def difference(there: Scenario, here: Scenario) -> str:
+    """Return in words the first thing that differs."""
+    mine, theirs = here.get("parameters", {}), there.get("parameters", {})
+    for name in [key for key in (*here, *there) if key != "parameters"]:
+        if there.get(name) != here.get(name):
+            return f"{name.replace('_', ' ')} is {there.get(name)} there and {here.get(name)} here"
+    for name in (*mine, *theirs):
+        one, other = theirs.get(name), mine.get(name)
+        if one == other:
+            continue
+        if one is None or other is None:
+            return f"{name} is varied {'here' if one is None else 'there'} alone"
+        if one["values"] != other["values"]:
+            return f"{name} has {_values(one)} there and {_values(other)} here"
+        if (one["first"], one["last"]) != (other["first"], other["last"]):
+            return f"{name} is {_range(one)} there and {_range(other)} here"
+        return f"{name} has other values there"
+    return "the order of the parameters"
+
+
+def _values(parameter: Mapping[str, Any]) -> str:
+    return f"{parameter['values']} value{'' if parameter['values'] == 1 else 's'}"
+
+
+def _range(parameter: Mapping[str, Any]) -> str:
+    first, last = parameter["first"], parameter["last"]
+    return f"{first:.9g}" if first == last else f"{first:.9g} to {last:.9g}"
+
+
+def _product(chunk: tuple[int, ...]) -> int:
+    from math import prod
+
+    return prod(chunk)
+
+
+def write_file(path: Path, content: bytes) -> None:
+    """Write a file of a folder whole, with the folders above it; another's of the same name is replaced.
+
+    Raises
+    ------
+    OutputError
+        If it cannot be written.
+    """
+    from hersey.files.writing import write_atomically
+
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OutputError(f"{path} cannot be written: {error.strerror}") from None
+    write_atomically(path, content, overwrite=True)
+
+
+def refuse_unseen(path: Path, kind: Kind, sha256: str) -> None:
+    """Refuse a machine that does not see the folder.
+
+    Raises
+    ------
+    OutputError
+        If there is no folder of this scenario.
+    """
+    manifest = kind.read_manifest(path)
+    if manifest is None or manifest.get("scenario_sha256") != sha256:
+        import socket
+
+        raise OutputError(
+            f"{path} is not seen on {socket.gethostname()}: workers write there, so name a folder that all "
+            f"see"
+        )
+
+
+def is_our_folder(path: Path) -> bool:
+    """Whether a sweep of hersey made this folder; nothing is imported to know."""
+    with suppress(OSError, ValueError, KeyError):
+        if path.suffix == ".parquet":
+            return "scenario_sha256" in json.loads((path / "manifest.json").read_bytes())
+        return "scenario_sha256" in json.loads((path / "zarr.json").read_bytes())["attributes"]["hersey"]
+    return False
