@@ -77,6 +77,7 @@ if TYPE_CHECKING:
     from hersey.life.other_uses import OtherUses, other_uses
     from hersey.life.population import BLife, Population, weibull
     from hersey.log import TorqueLog, memory_limit, read
+    from hersey.log.many import ManyLogs, read_many
     from hersey.log.mapping import read_with_mapping
     from hersey.lubrication.contact import Contact, nip_width
     from hersey.lubrication.film import Film, drag_torque, film_thickness
@@ -123,6 +124,7 @@ _HOMES = {
     "errors": "HerseyError",
     "log": "TorqueLog memory_limit read",
     "log.mapping": "read_with_mapping",
+    "log.many": "ManyLogs read_many",
     "motion.schedule": "Schedule",
     "motion.drag": "Drag DragTable",
     "motion.heat": "HeatBalance",
@@ -208,6 +210,7 @@ __all__ = [
     "LogComparison",
     "Lubricant",
     "Machine",
+    "ManyLogs",
     "MeasuredFilm",
     "MixedContact",
     "MixedDrag",
@@ -269,6 +272,7 @@ __all__ = [
     "rainflow_cycles",
     "read",
     "read_machine",
+    "read_many",
     "read_temperature_profile",
     "read_with_mapping",
     "regime",

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import os
+import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,17 +19,51 @@ IntArray = NDArray[np.intp]
 BoolArray = NDArray[np.bool_]
 
 
+class _OneThread:
+    """The limit of one thread as all that are inside share it: the library knows only one for the process."""
+
+    def __init__(self) -> None:
+        self.lock, self.inside = threading.Lock(), 0
+        self.limit: Any = None
+
+    def enter(self) -> None:
+        """Set the limit for the first that comes."""
+        from threadpoolctl import threadpool_limits
+
+        with self.lock:
+            if not self.inside:
+                self.limit = threadpool_limits(1, user_api="blas")
+            self.inside += 1
+
+    def leave(self) -> None:
+        """Give the library its own number back after the last."""
+        with self.lock:
+            self.inside -= 1
+            if not self.inside:
+                self.limit.restore_original_limits()
+
+
+_one_thread = _OneThread()
+if hasattr(os, "register_at_fork"):  # a thread that holds the lock is not in the child
+
+    def _unlocked() -> None:
+        _one_thread.lock = threading.Lock()
+
+    os.register_at_fork(after_in_child=_unlocked)
+
+
 @contextmanager
 def one_thread() -> Iterator[None]:
     """Let the linear algebra inside use one thread, as a context or a decorator.
 
     Many small matrices are quicker so (ten times where the machine is busy), and the bits of a result do not
-    hang on the number of processors.
+    hang on the number of processors. Threads of ours that overlap keep it until the last is out.
     """
-    from threadpoolctl import threadpool_limits
-
-    with threadpool_limits(1, user_api="blas"):
+    _one_thread.enter()
+    try:
         yield
+    finally:
+        _one_thread.leave()
 
 
 def numbers_of(name: str, value: ArrayLike) -> FloatArray:

@@ -125,6 +125,8 @@ def test_a_table_with_a_mistake_is_refused_whole(folder: Path, table: str, said:
         (["add", "0.csv", "1.csv", *F12], "0.csv is no campaign"),
         (["add", "life.hersey", "none.csv", *F12], "there is no such file"),
         (["add", "life.hersey", "0.csv", "none.csv", *F12], "there is no such file"),
+        (["add", "life.hersey", "0.csv", "?.csv", *F12], "0.csv is named twice"),
+        (["add", "life.hersey", "x*.csv", *F12], "x*.csv: no file matches"),
         (["list", "life.hersey"], "there is no such campaign"),
         (["export", "life.hersey", "--out", "x.xlsx"], "ends in .parquet or .csv"),
     ],
@@ -134,3 +136,45 @@ def test_a_mistake_is_one_line_and_leaves_nothing(folder: Path, arguments: list[
     assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
     assert said in done.stderr
     assert not list(folder.glob("life*"))
+
+
+def test_logs_by_a_pattern_go_with_the_rows_of_a_table(folder: Path) -> None:
+    (folder / "tables").mkdir()
+    rows = ["0.csv,F12,0", "1.csv,F12,1000", "../2.csv,F13,5", "9.csv,F13,7"]
+    (folder / "tables" / "runs.csv").write_text("log,unit,age [pages]\n" + "\n".join(rows) + "\n")
+    done = typed(folder, "add", "life.hersey", "?.csv", "--table", "tables/runs.csv")
+    assert (done.returncode, done.stdout) == (1, "life.hersey: 3 added, 1 failed\n")
+    assert done.stderr == (
+        "runs.csv: of 4 runs the logs given are 3\n"
+        "- 3.csv: runs.csv has no row for it: add one, or leave the log out\n"
+    )
+    with hersey.Campaign.open(folder / "life.hersey") as campaign:
+        listed = campaign.runs().sort("run")
+        assert listed.select("unit", "age").rows() == [("F12", 0.0), ("F12", 1000.0), ("F13", 5.0)]
+        assert listed["log"].to_list() == [str(folder / f"{number}.csv") for number in range(3)]
+
+
+def test_of_logs_and_rows_of_one_name_paths_decide(folder: Path) -> None:
+    (folder / "a").mkdir()
+    means(folder / "a" / "0.csv", 9.0)
+    (folder / "runs.csv").write_text("log,unit,age [h]\n0.csv,F12,0\n")
+    done = typed(folder, "add", "life.hersey", "**/0.csv", "--table", "runs.csv")
+    assert (done.returncode, done.stdout) == (1, "life.hersey: 1 added, 1 failed\n")
+    assert (
+        done.stderr
+        == "- a/0.csv: runs.csv has several runs of this name: write the paths of the logs there\n"
+    )
+    (folder / "runs.csv").write_text("log,unit,age [h]\n0.csv,F12,0\na/0.csv,F13,0\n")
+    done = typed(folder, "add", "life.hersey", "**/0.csv", "--table", "runs.csv")
+    assert (done.returncode, done.stdout) == (0, "life.hersey: 1 added, 1 already there\n")
+
+
+def test_of_logs_that_are_named_failing_ones_are_left_out_only_when_asked(folder: Path) -> None:
+    (folder / "1b.csv").write_text("no log at all\n")
+    done = typed(folder, "add", "life.hersey", "*.csv", *F12)
+    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
+    assert "1b.csv" in done.stderr
+    assert not (folder / "life.hersey").exists()
+    done = typed(folder, "add", "life.hersey", "*.csv", *F12, "--keep-going")
+    assert (done.returncode, done.stdout) == (1, "life.hersey: 4 added, 1 failed\n")
+    assert done.stderr.startswith("- 1b.csv: ")

@@ -8,13 +8,16 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hersey.cli.options import AsJson, Force, Reading, reads_logs
+from hersey.cli.options import AsJson, Force, KeepGoing, Reading, reads_logs
 from hersey.cli.outputs import NOT_FOUND, may_write, print_json
 from hersey.cli.progress import bar, working
 from hersey.cli.terminal import say
+from hersey.cli.workers import Scheduler, Workers, workers
 from hersey.errors import HerseyError, OutputError, ParameterError
 
 if TYPE_CHECKING:
+    from distributed import Client
+
     from hersey.life.campaign import Added, Campaign, RunToAdd
 
 campaign = typer.Typer(
@@ -38,7 +41,10 @@ def add(
     reading: Reading,
     runs: Annotated[
         list[Path] | None,
-        typer.Argument(metavar="[RUN]...", help="Log of one run, or of several of one unit at one age."),
+        typer.Argument(
+            metavar="[RUN]...",
+            help="Log of one run, or of several of one unit at one age, or a pattern as 'logs/*.csv'.",
+        ),
     ] = None,
     unit: Annotated[str, typer.Option("--unit", help="Name of the unit, as F12.")] = "",
     age: Annotated[
@@ -47,13 +53,18 @@ def add(
     table: Annotated[
         Path | None,
         typer.Option(
-            "--table", metavar="CSV", help="Instead: a table of runs with columns log, unit and age."
+            "--table",
+            metavar="CSV",
+            help="Instead of unit and age: a table of runs with columns log, unit and age.",
         ),
     ] = None,
     machine: Annotated[
         Path | None,
         typer.Option("--machine", metavar="TOML", help="Machine's file: rest of the drive, sensors."),
     ] = None,
+    keep_going: KeepGoing = False,
+    scheduler: Scheduler = None,
+    count: Workers = None,
     force: Force = False,
 ) -> None:
     """Add runs, and make the campaign if there is none: all the logs given or none, of a table each.
@@ -62,9 +73,10 @@ def add(
     --tare standing[/bold]
 
     A log that is there already is left alone; one that has changed, or is under another unit or age, is told,
-    and replaced with --force. Exit code 1 says that a run of the table could not be added.
+    and replaced with --force. With a table all its runs are added, or of the logs given those that it names;
+    what fails is left out, as with --keep-going. Exit code 1 says that a run could not be added.
     """
-    if (table is None) == (not runs):
+    if table is None and not runs:
         raise ParameterError("give either RUN... with --unit and --age, or --table with runs in rows")
     if table is not None and (unit or age):
         raise ParameterError("--unit and --age stand in the table: leave them out, or name the logs")
@@ -73,41 +85,74 @@ def add(
         raise ParameterError(f"say which unit was recorded, and at which age: add {missing}")
 
     from hersey.life.age import Age
-    from hersey.life.campaign import Campaign, RunToAdd, read_runs
+    from hersey.life.campaign import Campaign, RunToAdd
 
+    failed: list[str] = []
     if table is not None:
-        wanted = read_runs(table)
+        wanted = _of_table(table, runs, failed)
     else:
         parsed = Age.parse(age)
         wanted = [RunToAdd(path, unit, parsed) for path in runs or []]
     Campaign.refuse_unless_writable(file)
-    if table is None:
-        _add_all(file, wanted, reading, machine, force)
-        return
-    with Campaign.create(file) as opened:
-        _add_each(opened, wanted, reading, machine, force)
+    with workers(scheduler, count) as client:
+        if table is None and not keep_going:
+            _add_all(file, wanted, reading, machine, force, client)
+            return
+        with Campaign.create(file) as opened:
+            _add_each(opened, wanted, reading, machine, force, client, failed)
 
 
-def _add_all(file: Path, wanted: list[RunToAdd], reading: Reading, machine: Path | None, force: bool) -> None:
-    from hersey.cli.campaign_reading import entry, settings_of
+def _of_table(table: Path, logs: list[Path] | None, failed: list[str]) -> list[RunToAdd]:
+    """The runs of a table, or of the logs given those that it names; the others are among the ``failed``."""
+    from hersey.life.campaign import RunToAdd, read_runs, rows_of
+
+    rows = read_runs(table)
+    if not logs:
+        return rows
+    found = rows_of(logs, rows, table.name)
+    failed += [f"{log}: {each}" for log, each in zip(logs, found, strict=True) if isinstance(each, Exception)]
+    named = [each for each in found if isinstance(each, RunToAdd)]
+    if len(named) < len(rows):
+        say(f"{table.name}: of {len(rows)} runs the logs given are {len(named)}", file=sys.stderr)
+    return named
+
+
+def _add_all(
+    file: Path,
+    wanted: list[RunToAdd],
+    reading: Reading,
+    machine: Path | None,
+    force: bool,
+    client: Client | None,
+) -> None:
+    from hersey.cli.campaign_reading import entries, settings_of
     from hersey.life.campaign import Campaign
 
-    read = [
-        (entry(reading, run.log, machine, settings_of(reading, run.log, machine)), run.unit, run.age)
-        for run in wanted
-    ]
+    logs = [(run.log, settings_of(reading, run.log, machine)) for run in wanted]
+    read = []
+    with bar("reading", unit="runs") as progress:
+        for run, result in zip(wanted, entries(reading, logs, machine, client), strict=True):
+            if isinstance(result, HerseyError):
+                raise result
+            read.append((result, run.unit, run.age))
+            progress(len(read), len(wanted))
     with Campaign.create(file) as opened:
         for added in opened.add_entries(read, force=force):
             say(added.summary())
 
 
 def _add_each(
-    opened: Campaign, wanted: list[RunToAdd], reading: Reading, machine: Path | None, force: bool
+    opened: Campaign,
+    wanted: list[RunToAdd],
+    reading: Reading,
+    machine: Path | None,
+    force: bool,
+    client: Client | None,
+    failed: list[str],
 ) -> None:
     from hersey.cli.campaign_reading import entries
 
     counts: dict[str, int] = {}
-    failed: list[str] = []
     new: list[tuple[RunToAdd, str]] = []
 
     def done(added: Added) -> None:
@@ -126,7 +171,7 @@ def _add_each(
         else:
             done(settled)
     with bar("adding", unit="runs") as progress:
-        read = entries(reading, [(run.log, settings) for run, settings in new], machine)
+        read = entries(reading, [(run.log, settings) for run, settings in new], machine, client)
         for number, ((run, _), result) in enumerate(zip(new, read, strict=True), 1):
             try:
                 if isinstance(result, HerseyError):

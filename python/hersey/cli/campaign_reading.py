@@ -1,4 +1,4 @@
-"""Reading the runs of a campaign: one here, hundreds in two processes of our own, in the order given.
+"""Reading the runs of a campaign in their order: few here, hundreds in two processes, or by workers.
 
 Run as the script of such a process too, see `hersey.processes.server`.
 """
@@ -10,16 +10,21 @@ from collections import deque
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import asdict, fields
+from functools import partial
 from pathlib import Path
 from queue import SimpleQueue
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+from hersey.arrays import one_thread
 from hersey.cli.options import Reading
 from hersey.errors import HerseyError, UnreadableLogError
 from hersey.files.reading import hash_of
 from hersey.life.campaign import Entry
 from hersey.life.campaign.kept import entry_of
 from hersey.processes.child import Child, FailedError, LostError
+
+if TYPE_CHECKING:
+    from distributed import Client
 
 #: Processes that read, runs that are read ahead of the one that is added, and those that are read here.
 _PROCESSES, _AHEAD, _FEW = 2, 6, 8
@@ -45,8 +50,18 @@ def entry(reading: Reading, log: Path, machine_file: Path | None, settings: str)
     from hersey.machine.machine import read_machine
 
     machine = None if machine_file is None else read_machine(machine_file)
-    points = reading.points(reading.log([log], machine), machine)
-    return entry_of(points, log, temperature_scale=reading.temperature_scale, settings=json.loads(settings))
+    with one_thread():
+        points = reading.points(reading.log([log], machine), machine)
+        scale = reading.temperature_scale
+        return entry_of(points, log, temperature_scale=scale, settings=json.loads(settings))
+
+
+def _tried(reading: Reading, machine: Path | None, run: tuple[Path, str]) -> Entry | HerseyError:
+    """Read a run where this runs; what is wrong with it is a result like another."""
+    try:
+        return entry(reading, run[0], machine, run[1])
+    except HerseyError as error:
+        return error
 
 
 def answer(request: dict[str, Any], _payload: bytes) -> tuple[dict[str, Any], bytes]:
@@ -59,15 +74,18 @@ def answer(request: dict[str, Any], _payload: bytes) -> tuple[dict[str, Any], by
 
 
 def entries(
-    reading: Reading, logs: Sequence[tuple[Path, str]], machine: Path | None
+    reading: Reading, logs: Sequence[tuple[Path, str]], machine: Path | None, client: Client | None = None
 ) -> Iterator[Entry | HerseyError]:
     """Read logs, each with its settings, many several at a time; yield what is kept of each, or why not."""
+    if client is not None:
+        from hersey.scale.tasks import done, in_order
+
+        task = partial(_tried, reading.anywhere(), machine and machine.absolute())
+        whole = [(log.absolute(), settings) for log, settings in logs]
+        yield from in_order(done(task, whole, client=client))
+        return
     if len(logs) < _FEW:
-        for log, settings in logs:
-            try:
-                yield entry(reading, log, machine, settings)
-            except HerseyError as error:
-                yield error
+        yield from (_tried(reading, machine, run) for run in logs)
         return
     children: SimpleQueue[Child] = SimpleQueue()
     for _ in range(_PROCESSES):

@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
 from hersey.cli.options import (
     AsJson,
+    Force,
+    KeepGoing,
     Logs,
     Reading,
     reads_logs,
@@ -11,18 +18,42 @@ from hersey.cli.options import (
 from hersey.cli.outputs import print_json
 from hersey.cli.progress import working
 from hersey.cli.terminal import say
+from hersey.cli.workers import Scheduler, Workers
+from hersey.errors import ParameterError
 
 
 @reads_logs
 def fit(
     logs: Logs,
     reading: Reading,
+    each: Annotated[
+        Path | None,
+        typer.Option(
+            "--each", metavar="TABLE", help="Fit each log by itself: a row per log, in a .csv or .parquet."
+        ),
+    ] = None,
+    keep_going: KeepGoing = False,
+    scheduler: Scheduler = None,
+    count: Workers = None,
     as_json: AsJson = False,
+    force: Force = False,
 ) -> None:
     """Fit the damping surface B = a T^b w^c and print it, with the verdict on the regime.
 
     Example: [bold]hersey fit examples/bench.csv --tare standing[/bold]
+
+    Several logs are runs of one machine, unless --each says that each is fitted by itself: then nothing is
+    written if one fails, or with --keep-going the others are, with exit code 1.
     """
+    if each is not None:
+        from hersey.cli.fitting_each import fit_each
+
+        if as_json:
+            raise ParameterError("--each writes a table, and --json prints one fit: leave one of them out")
+        fit_each(logs, reading, each, keep_going, scheduler, count, force)
+        return
+    if keep_going or force or scheduler or count:
+        raise ParameterError("--keep-going, --scheduler, --workers and --force go with --each TABLE")
     log = reading.log(logs)
 
     from hersey.damping.fit import fit as fitted

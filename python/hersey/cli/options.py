@@ -15,6 +15,7 @@ import typer
 
 from hersey.cli.progress import bar, working
 from hersey.cli.terminal import say
+from hersey.files.patterns import files_of
 
 if TYPE_CHECKING:
     from hersey.cli.amounts import Amounts
@@ -29,9 +30,15 @@ if TYPE_CHECKING:
     from hersey.motion.heat import HeatBalance
     from hersey.motion.simulation import Drivetrain, Trajectory
 
-Logs = Annotated[list[Path], typer.Argument(metavar="LOG...", help="Log file, or several of one machine.")]
+Logs = Annotated[
+    list[Path],
+    typer.Argument(metavar="LOG...", help="Log file, several of one machine, or a pattern as 'logs/*.csv'."),
+]
 SomeLogs = Annotated[
-    list[Path] | None, typer.Argument(metavar="[LOG]...", help="Log file, or several of one machine.")
+    list[Path] | None,
+    typer.Argument(
+        metavar="[LOG]...", help="Log file, several of one machine, or a pattern as 'logs/*.csv'."
+    ),
 ]
 FitFile = Annotated[
     Path | None,
@@ -46,6 +53,10 @@ MaxMemory = Annotated[
     str, typer.Option(help="Memory that a file of any format but text may take while it is read.")
 ]
 Force = Annotated[bool, typer.Option("--force", help="Replace files that exist.")]
+KeepGoing = Annotated[
+    bool,
+    typer.Option("--keep-going", help="Leave out logs that fail, say why at the end, with exit code 1."),
+]
 
 
 @dataclass(frozen=True)
@@ -114,6 +125,12 @@ class Reading:
             help="Log of the drive without the film, read alike: what it takes is taken off the torque.",
         ),
     ] = ""
+
+    def anywhere(self) -> Reading:
+        """Return the same, its files whole: workers may have been started in another folder."""
+        given = {name: getattr(self, name) for name in ("mapping", "no_load")}
+        whole: dict[str, Any] = {name: str(Path(path).absolute()) for name, path in given.items() if path}
+        return replace(self, **whole)
 
     def inputs(self, *given: Path | list[Path] | None) -> list[Path]:
         """Return the files that a command reads: those given, and the mapping; none may be an output."""
@@ -505,6 +522,8 @@ def takes(group: type, name: str) -> Callable[[Callable[..., None]], Callable[..
 
         @functools.wraps(command)
         def run(**given: Any) -> None:
+            for logs in _LOGS & given.keys():
+                given[logs] = given[logs] and files_of(given[logs])
             taken = group(**{option.name: given.pop(option.name) for option in options})
             command(**given, **{name: taken})
 
@@ -514,6 +533,8 @@ def takes(group: type, name: str) -> Callable[[Callable[..., None]], Callable[..
     return decorate
 
 
+#: Arguments that name logs: patterns among them stand for files.
+_LOGS = {"logs", "runs"}
 #: Options at the end of every help.
 _LAST = ("as_json", "force")
 reads_logs = takes(Reading, "reading")

@@ -1,9 +1,10 @@
 """Files as a command is given them, and as it leaves them.
 
-=======  ==================================================================
-reading  a file that may change while it is read
-text     opening a text file, and values of it in messages
-toml     a TOML file into tables: what each value is, and what is believed
-writing  writing whole or not at all
-=======  ==================================================================
+========  =================================================================
+patterns  the files that names and patterns stand for
+reading   a file that may change while it is read
+text      opening a text file, and values of it in messages
+toml      a TOML file into tables: what each value is, and what is believed
+writing   writing whole or not at all
+========  =================================================================
 """

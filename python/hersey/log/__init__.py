@@ -12,6 +12,7 @@ rows           which rows can be used, and where one run ends and the next begin
 columns        columns as they stand, for readers with roles of their own
 assembly       from a recording to a run on the clock of the torque
 reading        `read`: from files to a log
+many           many files, each a log of its own: in turn, in threads, or by workers
 corrections    what lies between sensor and film, taken off with a record
 means          a table of means: a row per dwell, no clock
 doubtful       numbers that would be ordinary in another unit

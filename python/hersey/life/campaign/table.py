@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import csv
+import os
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from hersey.errors import ChannelError, HerseyError, UnreadableLogError
+from hersey.errors import ChannelError, HerseyError, ParameterError, UnreadableLogError
 from hersey.files.text import read_text
 from hersey.life.age import Age
 
@@ -68,3 +70,28 @@ def read_runs(path: str | Path) -> list[RunToAdd]:
     if not found:
         raise UnreadableLogError(f"{path.name} names no run: write a line for each below the headings")
     return found
+
+
+def rows_of(logs: Sequence[Path], rows: Sequence[RunToAdd], table: str) -> list[RunToAdd | ParameterError]:
+    """Return for each log its run, or why it has none: the row with its path, else the one with its name.
+
+    ``rows`` are those of the table with the name ``table``; several logs of one name need rows with paths.
+    """
+    by_path = {os.path.realpath(row.log): row for row in rows}
+    by_name: dict[str, list[RunToAdd]] = {}
+    for row in rows:
+        by_name.setdefault(row.log.name, []).append(row)
+    names = [log.name for log in logs]
+
+    def of(log: Path) -> RunToAdd | ParameterError:
+        row = by_path.get(os.path.realpath(log))
+        alike = by_name.get(log.name, [])
+        if row is None and len(alike) == 1 and names.count(log.name) == 1:
+            row = alike[0]
+        if row is not None:
+            return RunToAdd(log, row.unit, row.age)
+        if not alike:
+            return ParameterError(f"{table} has no row for it: add one, or leave the log out")
+        return ParameterError(f"{table} has several runs of this name: write the paths of the logs there")
+
+    return [of(log) for log in logs]

@@ -1,0 +1,103 @@
+"""A fit of each of many logs, as a table: ``hersey fit --each``."""
+
+from __future__ import annotations
+
+import io
+import sys
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from hersey.arrays import one_thread
+from hersey.cli.options import Reading
+from hersey.cli.outputs import NOT_FOUND, may_write
+from hersey.cli.progress import bar
+from hersey.cli.terminal import say
+from hersey.cli.workers import workers
+from hersey.errors import HerseyError, OutputError
+
+if TYPE_CHECKING:
+    from hersey.damping.estimate import Estimate
+
+
+def fit_each(
+    logs: list[Path],
+    reading: Reading,
+    table: Path,
+    keep_going: bool,
+    scheduler: str | None,
+    count: int | None,
+    force: bool,
+) -> None:
+    """Fit each log by itself and write a table with a row for each, in their order."""
+    if table.suffix not in (".csv", ".parquet"):
+        raise OutputError(f"--each {table}: name a file that ends in .csv or .parquet")
+    may_write(table, force, inputs=reading.inputs(logs))
+
+    from hersey.files.writing import write_atomically
+    from hersey.log.many import collected, told
+    from hersey.scale.tasks import done, in_order
+
+    task = partial(row, reading if scheduler is None else reading.anywhere())
+    files = logs if scheduler is None else [log.absolute() for log in logs]
+    with workers(scheduler, count) as client, bar("fitting", unit="logs") as progress:
+        results = in_order(done(task, files, client=client, progress=progress))
+        fits = collected(logs, results, keep_going)
+    rows = [{"log": str(log), **fits[log]} for log in fits]
+    if rows:
+        write_atomically(table, _table(rows, table.suffix), overwrite=True)
+        say(f"fits of {len(rows)} logs: {table}")
+    if fits.failures:
+        say(*(f"- {told(*failed)}" for failed in fits.failures.items()), file=sys.stderr)
+        raise typer.Exit(NOT_FOUND)
+
+
+def row(reading: Reading, log: Path) -> dict[str, Any] | HerseyError:
+    """Return dwells, fit and verdict of a log, in SI, with its 95 % intervals; or what is wrong with it."""
+    from hersey.damping.fit import fit
+    from hersey.verdict.regime import regime
+
+    try:
+        with one_thread():
+            points = reading.points_of([log])
+            surface = fit(points, temperature_scale=reading.temperature_scale)
+            words = regime(points, surface).headline()
+    except HerseyError as error:
+        return error
+    bend, kelvin = surface.transition, surface.temperature_range or (None, None)
+    return {
+        "dwells": points.table.height,
+        "speed from (rad/s)": surface.speed_range[0],
+        "speed to (rad/s)": surface.speed_range[1],
+        "temperature from (K)": kelvin[0],
+        "temperature to (K)": kelvin[1],
+        **_columns("a", f"N m s/rad at T = 1 {surface.temperature_scale}, w = 1 rad/s", surface.a),
+        **_columns("b", "", surface.b),
+        **_columns("c", "", surface.c),
+        **_columns("c below the transition", "", None if bend is None else bend.mixed_exponent),
+        **_columns("transition speed", "rad/s", None if bend is None else bend.speed),
+        "regime": words,
+    }
+
+
+def _columns(name: str, unit: str, known: Estimate | None) -> dict[str, float | None]:
+    ends = (None, None, None) if known is None else (known.value, known.low, known.high)
+    return {
+        f"{name}{end}{f' ({unit})' * bool(unit)}": value
+        for end, value in zip(("", " low", " high"), ends, strict=True)
+    }
+
+
+def _table(rows: list[dict[str, Any]], suffix: str) -> bytes:
+    import polars as pl
+
+    kinds = {"log": pl.String, "regime": pl.String, "dwells": pl.Int64}
+    schema = {name: kinds.get(name, pl.Float64) for name in rows[0]}
+    frame, content = pl.DataFrame(rows, schema=schema), io.BytesIO()
+    if suffix == ".parquet":
+        frame.write_parquet(content)
+    else:
+        frame.write_csv(content)
+    return content.getvalue()

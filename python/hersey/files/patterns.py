@@ -1,0 +1,48 @@
+"""Files that names and patterns stand for, where no shell has put them in their place."""
+
+from __future__ import annotations
+
+import glob
+import os
+from collections.abc import Iterable
+from pathlib import Path
+
+from hersey.errors import MissingFileError, ParameterError
+
+
+def files_of(patterns: str | Path | Iterable[str | Path]) -> list[Path]:
+    """Return the files that names and patterns (``logs/*.csv``, ``**/*.csv``) stand for, each once.
+
+    They come in the order in which they are named, those of a pattern sorted. The name of a file that is
+    there is no pattern, whatever its signs; a plain name stands for itself, be the file there or not.
+
+    Raises
+    ------
+    MissingFileError
+        If a pattern matches no file.
+    ParameterError
+        If a file is named twice.
+    """
+    named = patterns if isinstance(patterns, Iterable) and not isinstance(patterns, str) else [patterns]
+    found = [path for each in named for path in _matched(each)]
+    seen: set[str] = set()
+    for path in found:
+        real = os.path.realpath(path)
+        if real in seen:
+            raise ParameterError(f"{path} is named twice: name each file once")
+        seen.add(real)
+    return found
+
+
+def _matched(name: str | Path) -> list[Path]:
+    if not isinstance(name, str | os.PathLike):
+        raise ParameterError(f"a {type(name).__name__} is no log file: give its path")
+    text = os.fspath(name)
+    if "\0" in text:
+        raise MissingFileError(f"{text}: no file is called so")
+    if not glob.has_magic(text) or os.path.lexists(text):
+        return [Path(name)]
+    files = sorted(path for path in glob.glob(text, recursive=True) if os.path.isfile(path))  # noqa: PTH113,PTH207 - a Path would lose nothing, but sort by parts
+    if not files:
+        raise MissingFileError(f"{text}: no file matches: see the folder and the ending")
+    return [Path(path) for path in files]

@@ -1,0 +1,76 @@
+"""``hersey fit --each``: a row per log, what fails left out only when asked, nothing half-written."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import polars as pl
+import pytest
+
+import hersey
+from tests.cli.command import Done, run
+from tests.life.test_campaign import means
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "logs").mkdir()
+    for number in range(2):
+        means(tmp_path / "logs" / f"{number}.csv", 5.0 + number)
+    return tmp_path
+
+
+def typed(folder: Path, *arguments: str) -> Done:
+    done = run("fit", *arguments, cwd=folder)
+    assert "Traceback" not in done.stderr
+    return done
+
+
+def test_each_log_is_a_row(folder: Path) -> None:
+    done = typed(folder, "logs/*.csv", "--each", "fits.csv")
+    assert (done.returncode, done.stdout, done.stderr) == (0, "fits of 2 logs: fits.csv\n", "")
+    table = pl.read_csv(folder / "fits.csv")
+    assert table["log"].to_list() == [f"logs/{number}.csv" for number in range(2)]
+    assert table["dwells"].to_list() == [10] * 2
+    surface = hersey.fit(hersey.SteadyPoints.from_table(folder / "logs" / "1.csv"))
+    assert table["c"][1] == surface.c.value
+    assert table["c low"][1] == surface.c.low
+    assert table["transition speed (rad/s)"].null_count() == 2
+    assert table["regime"][1] == "has the exponent of Dowson-Higginson EHL"
+    assert typed(folder, "logs/1.csv", "--each", "fits.parquet").returncode == 0
+    assert pl.read_parquet(folder / "fits.parquet").rows() == table[1:2].rows()
+
+
+def test_what_fails_is_left_out_only_when_asked(folder: Path) -> None:
+    (folder / "logs" / "0b.csv").write_text("no log at all\n")
+    done = typed(folder, "logs/*.csv", "none.csv", "--each", "fits.csv")
+    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
+    assert "0b.csv" in done.stderr
+    assert not (folder / "fits.csv").exists()
+    done = typed(folder, "logs/*.csv", "none.csv", "--each", "fits.csv", "--keep-going")
+    assert (done.returncode, done.stdout) == (1, "fits of 2 logs: fits.csv\n")
+    assert [line.split(": ")[0] for line in done.stderr.splitlines()] == ["- logs/0b.csv", "- none.csv"]
+    (folder / "fits.csv").unlink()
+    done = typed(folder, "none.csv", "--each", "fits.csv", "--keep-going")
+    assert (done.returncode, done.stdout) == (1, "")
+    assert not (folder / "fits.csv").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--each", "fits.xlsx"], "ends in .csv or .parquet"),
+        (["--each", "logs/0.csv"], "is an input"),
+        (["--each", "fits.csv", "--json"], "leave one of them out"),
+        (["--keep-going"], "go with --each TABLE"),
+        (["--workers", "2"], "go with --each TABLE"),
+        (["--each", "fits.csv", "--workers", "2", "--scheduler", "tcp://x:1"], "give one"),
+        (["x*.csv", "--each", "fits.csv"], "no file matches"),
+        (["logs/0.csv", "--each", "fits.csv"], "is named twice"),
+    ],
+)
+def test_a_mistake_is_one_line(folder: Path, arguments: list[str], said: str) -> None:
+    done = typed(folder, "logs/*.csv", *arguments)
+    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
+    assert said in done.stderr
+    assert not (folder / "fits.csv").exists()

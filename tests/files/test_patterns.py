@@ -1,0 +1,44 @@
+"""Files that names and patterns stand for."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from hersey.errors import MissingFileError, ParameterError
+from hersey.files.patterns import files_of
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    for name in ("b.csv", "a.csv", "c [1].csv", "inside/d.csv", ".hidden.csv", "folder.csv/e.txt"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text(name)
+    return tmp_path
+
+
+@pytest.mark.usefixtures("folder")
+def test_patterns_are_sorted_and_names_stay_in_their_places() -> None:
+    assert files_of("*.csv") == [Path("a.csv"), Path("b.csv"), Path("c [1].csv")]
+    assert files_of(["none.csv", "[ab].csv"]) == [Path("none.csv"), Path("a.csv"), Path("b.csv")]
+    assert files_of(Path("**/?.csv")) == [Path("a.csv"), Path("b.csv"), Path("inside/d.csv")]
+
+
+@pytest.mark.usefixtures("folder")
+def test_a_file_whose_name_looks_like_a_pattern_is_that_file() -> None:
+    assert files_of("c [1].csv") == [Path("c [1].csv")]
+
+
+def test_no_match_and_a_file_named_twice_are_told(folder: Path) -> None:
+    with pytest.raises(MissingFileError, match=r"^x\*\.csv: no file matches"):
+        files_of(["a.csv", "x*.csv"])
+    for twice in (["a.csv", "a.csv"], ["*.csv", folder / "b.csv"], ["inside/../a.csv", "a.csv"]):
+        with pytest.raises(ParameterError, match="is named twice: name each file once"):
+            files_of(twice)
+    (folder / "linked.csv").symlink_to("a.csv")
+    with pytest.raises(ParameterError, match=r"linked\.csv is named twice"):
+        files_of("*.csv")
+    with pytest.raises(MissingFileError, match="no file is called so"):
+        files_of("a\0")
