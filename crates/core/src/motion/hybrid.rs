@@ -185,6 +185,8 @@ impl<'a> Motion<'a> {
     }
 
     /// The next piece, no longer than `longest`, and when it meets a guard, if it does.
+    #[inline(always)]
+    #[allow(clippy::inline_always)] // a piece is large, and to be made where it is wanted
     pub(super) fn look_ahead(&mut self, longest: f64) -> Result<(Piece<'a>, Option<Met>), Error> {
         self.steps += 1;
         self.work.take(1).map_err(|error| error.at_time(self.now.time))?;
@@ -205,6 +207,8 @@ impl<'a> Motion<'a> {
     }
 
     /// To the end of the piece, which is where it meets a guard, and into what follows.
+    #[inline(always)]
+    #[allow(clippy::inline_always)]
     pub(super) fn follow(
         &mut self,
         piece: &mut Piece,
@@ -356,6 +360,7 @@ impl<'a> Motion<'a> {
     }
 
     /// Go on after a jump of the driving force or of the law: pull and speed stay, but for that, and the mode may not.
+    #[cold]
     pub(super) fn take_jump(&mut self, jump: Jump) -> Result<Option<Event>, Error> {
         self.phase.pull += self.phase.direction * jump.pull;
         if !jump.is_felt {
@@ -391,6 +396,7 @@ impl<'a> Motion<'a> {
     }
 
     /// What has just happened to a belt that was in the mode `from`.
+    #[inline]
     fn event(&self, from: Mode, guard: Guard) -> Event {
         let Phase { mode: to, direction, pull, speed, .. } = self.phase;
         Event {
