@@ -14,6 +14,9 @@ WEB := wasm32-unknown-unknown
 HAS_WEB := test -d "$$(rustc --print target-libdir --target $(WEB) 2>/dev/null)"
 SUM_OF_SOURCES := cat $(PHYSICS_SOURCES) | sha256sum | cut -c1-64
 
+# The core for C and for units of other tools, beside the room that packs them. Its name ends as the system's libraries do.
+LIBRARY := python/hersey/exchange/library
+
 .PHONY: help build physics demo demo-life test quick lint format typecheck test-rust test-python browser lowest fuzz \
   fuzz-read benchmark mutants mutants-python mutants-rust clean
 .DEFAULT_GOAL := help
@@ -41,6 +44,9 @@ physics: ## compile the core for the page anew (rustup target add wasm32-unknown
 	@test "$$(head -n 1 $(PHYSICS).sha256)" = "$$($(SUM_OF_SOURCES))" || { $(HAS_WEB) && $(MAKE) --no-print-directory physics; } || \
 	  echo "the page keeps its committed core, though the sources are others: make physics renews it" >&2
 	PIP_CONSTRAINT=$(CURDIR)/constraints.txt $(BIN)/maturin develop --release --quiet
+	cargo rustc --release --quiet --package hersey-c -- -C strip=symbols
+	@mkdir -p $(LIBRARY) && cd $${CARGO_TARGET_DIR:-target}/release && for made in libhersey.so libhersey.dylib; do \
+	  test ! -f $$made || install -m 755 $$made $(CURDIR)/$(LIBRARY)/$${made#lib}; done
 	@$(BIN)/python -m compileall -q -j 0 python/hersey # as pip does: else a start compiles 200 modules where none are kept
 	@touch $@
 
@@ -73,8 +79,8 @@ typecheck: build ## check types, and the stub against the bindings
 	$(BIN)/mypy
 	$(BIN)/python -m mypy.stubtest hersey._core
 
-test-rust: ## tests of the core
-	cargo test --release --quiet --package hersey-core
+test-rust: ## tests of the core, and of it for C
+	cargo test --release --quiet --package hersey-core --package hersey-c
 
 test-python: build browser ## tests of the package and the page
 	PYTHONDONTWRITEBYTECODE= OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --dist worksteal
@@ -136,4 +142,4 @@ benchmark: build ## ratios against peers, printed and written to benchmarks/RESU
 	$(BIN)/python benchmarks/start.py
 
 clean: ## remove everything that was built
-	rm -rf .venv build target Cargo.lock
+	rm -rf .venv build target Cargo.lock $(LIBRARY)

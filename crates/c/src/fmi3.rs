@@ -26,7 +26,7 @@ extern "C" fn fmi3GetVersion() -> *const c_char {
 }
 
 /// Categories of what is logged.
-const CATEGORIES: [&str; 2] = ["logStatusError", "logAll"];
+const CATEGORIES: [&str; 3] = ["logStatusError", "logStatusWarning", "logAll"];
 
 #[unsafe(no_mangle)]
 extern "C" fn fmi3SetDebugLogging(

@@ -433,3 +433,6 @@ impl Instance {
 
 /// Tightest tolerance that the core takes.
 const TIGHTEST: f64 = 1e-14;
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,199 @@
+//! Tests of an instance.
+
+use super::*;
+use crate::samples::{BASELINE, TORQUE, WARMED};
+use crate::variables::place_of;
+
+fn begun(text: &str) -> Instance {
+    let mut instance = Instance::new(text).unwrap();
+    instance.begin(Phase::Step).unwrap();
+    instance
+}
+
+fn value(instance: &mut Instance, name: &str) -> f64 {
+    instance.get(place_of(name).unwrap()).unwrap()
+}
+
+/// Everything that moves, to the bit.
+fn moving(instance: &mut Instance) -> [u64; 5] {
+    ["time", "belt_speed", "stretch", "drag", "mode"].map(|name| value(instance, name).to_bits())
+}
+
+#[test]
+fn where_one_stops_changes_no_bit() {
+    for text in [BASELINE, TORQUE, WARMED] {
+        let (mut one, mut other) = (begun(text), begun(text));
+        one.advance(1.0, 0.0, false).unwrap();
+        for i in 1..=1000 {
+            other.advance(f64::from(i) / 1000.0, 0.0, false).unwrap();
+            value(&mut other, "drag");
+        }
+        assert_eq!(moving(&mut one), moving(&mut other));
+    }
+}
+
+#[test]
+fn a_state_goes_on_to_the_last_bit_also_elsewhere() {
+    for text in [BASELINE, TORQUE, WARMED] {
+        let mut one = begun(text);
+        one.advance(0.37, 0.0, false).unwrap();
+        let saved = one.saved();
+        one.set(one.description.drive_place(), 0.7).unwrap();
+        one.advance(0.5, 0.0, false).unwrap();
+        let (reached, later) = (moving(&mut one), one.saved());
+        one.advance(0.9, 0.0, false).unwrap();
+        let end = moving(&mut one);
+        let mut other = Instance::new(text).unwrap();
+        for instance in [&mut one, &mut other] {
+            instance.restore(&saved).unwrap();
+            instance.set(instance.description.drive_place(), 0.7).unwrap();
+            instance.advance(0.5, 0.0, false).unwrap();
+            assert_eq!(moving(instance), reached);
+            instance.restore(&later).unwrap();
+            instance.advance(0.9, 0.0, false).unwrap();
+            assert_eq!(moving(instance), end);
+        }
+    }
+}
+
+#[test]
+fn a_parameter_of_the_saved_state_comes_back_with_it() {
+    let mut one = Instance::new(BASELINE).unwrap();
+    one.set(place_of("mass").unwrap(), 2.0).unwrap();
+    one.begin(Phase::Step).unwrap();
+    one.advance(0.5, 0.0, false).unwrap();
+    let (saved, there) = (one.saved(), moving(&mut one));
+    let mut other = begun(BASELINE);
+    other.advance(0.5, 0.0, false).unwrap();
+    assert_ne!(moving(&mut other), there);
+    other.restore(&saved).unwrap();
+    assert_eq!(moving(&mut other), there);
+    one.advance(0.8, 0.0, false).unwrap();
+    other.advance(0.8, 0.0, false).unwrap();
+    assert_eq!(moving(&mut one), moving(&mut other));
+}
+
+#[test]
+fn a_step_ends_early_at_a_change_and_shows_it_once_it_is_updated() {
+    let mut instance = Instance::new(BASELINE).unwrap();
+    (instance.event_mode, instance.early_return) = (true, true);
+    instance.begin(Phase::Step).unwrap();
+    let reached = instance.step(0.0, 0.5).unwrap();
+    assert!(reached.early && reached.changed && (reached.time - 0.341_400_762).abs() < 1e-9);
+    assert!((value(&mut instance, "stuck") - 1.0).abs() < 1e-300);
+    instance.enter(Phase::Event, &[Phase::Step]).unwrap();
+    assert!((value(&mut instance, "mode") - 3.0).abs() < 1e-300);
+    instance.show().unwrap();
+    assert!((value(&mut instance, "mode") - 2.0).abs() < 1e-300);
+    assert!(instance.step(reached.time, 0.1).unwrap_err().contains("at an event"));
+    instance.enter(Phase::Step, &[Phase::Event]).unwrap();
+    let next = instance.step(reached.time, 0.5 - reached.time).unwrap();
+    assert!(next.early && next.time > reached.time && next.time < 0.342);
+    // without early return the step is whole, and what has changed in it waits for the event mode
+    instance.reset();
+    instance.early_return = false;
+    instance.begin(Phase::Step).unwrap();
+    let whole = instance.step(0.0, 0.4).unwrap();
+    assert!(whole.changed && !whole.early && value(&mut instance, "stuck") > 0.5);
+    assert!((whole.time - 0.4).abs() < 1e-300);
+    // and without event mode all is shown at once
+    instance.reset();
+    instance.event_mode = false;
+    instance.begin(Phase::Step).unwrap();
+    instance.step(0.0, 0.4).unwrap();
+    assert!(value(&mut instance, "stuck") < 0.5 && value(&mut instance, "mode") < 0.5);
+}
+
+#[test]
+fn an_input_goes_on_with_its_slope_for_one_step() {
+    let mut instance = begun(BASELINE);
+    let drive = instance.description.drive_place();
+    instance.set_slope(drive, 0.5).unwrap();
+    instance.advance(0.2, 0.0, false).unwrap();
+    assert!((value(&mut instance, "drive_speed") - 1.1).abs() < 1e-12);
+    // stuck: the spring has followed the drive, of which the belt keeps next to nothing
+    assert!((value(&mut instance, "stretch") - (0.2 + 0.25 * 0.04)).abs() < 1e-9);
+    instance.advance(0.3, 0.0, false).unwrap();
+    assert!((value(&mut instance, "stretch") - (0.21 + 0.11)).abs() < 1e-9);
+    assert!(instance.set_slope(place_of("mass").unwrap(), 1.0).unwrap_err().contains("no input"));
+}
+
+#[test]
+fn what_fails_leaves_all_as_it_was() {
+    let mut instance = begun(WARMED);
+    instance.advance(0.3, 0.0, false).unwrap();
+    let before = moving(&mut instance);
+    instance.set(TEMPERATURE, -5.0).unwrap();
+    assert!(instance.advance(0.4, 0.0, false).is_err());
+    assert_eq!(moving(&mut instance), before);
+    instance.set(TEMPERATURE, 330.0).unwrap();
+    instance.advance(0.4, 0.0, false).unwrap();
+    let mut undisturbed = begun(WARMED);
+    undisturbed.advance(0.4, 0.0, false).unwrap();
+    assert_eq!(moving(&mut instance), moving(&mut undisturbed));
+    let mut short = begun(&format!("{BASELINE}most_steps = 3\n"));
+    let words = short.advance(100.0, 0.0, false).unwrap_err();
+    assert!(words.contains("after 3 steps") && value(&mut short, "time").abs() < 1e-300);
+}
+
+#[test]
+fn steps_that_are_none_are_refused() {
+    let mut instance = Instance::new(BASELINE).unwrap();
+    assert!(instance.step(0.0, 0.1).unwrap_err().contains("before its initialization"));
+    instance.set_up(2.0, Some(3.0), None).unwrap();
+    instance.begin(Phase::Step).unwrap();
+    for (from, length) in [
+        (2.0, 0.0),
+        (2.0, -0.1),
+        (2.0, f64::NAN),
+        (f64::NAN, 0.1),
+        (2.0, f64::INFINITY),
+        (2.01, 0.1),
+        (1.99, 0.1),
+        (2.0, 1.5),
+    ] {
+        assert!(instance.step(from, length).is_err(), "{from} {length}");
+    }
+    for i in 0..100 {
+        // the rounding of a tool that counts in steps
+        instance.step(2.0 + f64::from(i) * 0.01, 0.01).unwrap();
+    }
+    assert!(instance.step(3.0, 0.01).unwrap_err().contains("stop time"));
+    let refused = Instance::new(BASELINE).unwrap().set_up(1.0, Some(0.5), None);
+    assert!(refused.unwrap_err().contains("is not after start time"));
+}
+
+#[test]
+fn what_cannot_be_set_is_refused() {
+    let mut instance = begun(BASELINE);
+    for (name, words) in [
+        ("mass", "fixed"),
+        ("belt_speed", "computed"),
+        ("time", "computed"),
+        ("drive_speed", "finite"),
+    ] {
+        let refused = instance.set(place_of(name).unwrap(), f64::NAN).unwrap_err();
+        assert!(refused.contains(words), "{refused}");
+    }
+    for (reference, kind, words) in [
+        (9999, Kind::Float64, "no variable"),
+        (102, Kind::Float64, "no variable"),
+        (10, Kind::Int32, "belt_speed (value reference 10) is Float64, not Int32"),
+        (20, Kind::Float64, "not Float64"),
+    ] {
+        assert!(instance.place(reference, kind).unwrap_err().contains(words));
+    }
+    let mut heavy = Instance::new(BASELINE).unwrap();
+    heavy.set(place_of("mass").unwrap(), -1.0).unwrap();
+    assert!(heavy.begin(Phase::Step).unwrap_err().contains("mass is -1"));
+}
+
+#[test]
+fn a_tolerance_is_taken_if_it_is_tighter() {
+    for (given, taken) in [(1e-4, 1e-9), (1e-12, 1e-12), (1e-20, 1e-14)] {
+        let mut instance = Instance::new(BASELINE).unwrap();
+        instance.set_up(0.0, None, Some(given)).unwrap();
+        assert!((value(&mut instance, "tolerance") / taken - 1.0).abs() < 1e-12);
+    }
+    assert!(Instance::new(BASELINE).unwrap().set_up(0.0, None, Some(0.0)).is_err());
+}
