@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -15,7 +18,14 @@ from hersey.cli.options import (
 from hersey.cli.outputs import may_write, print_json
 from hersey.cli.progress import bar, working
 from hersey.cli.terminal import say
-from hersey.errors import OutputError
+from hersey.cli.workers import Scheduler, Workers, workers
+from hersey.errors import OutputError, ParameterError
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+#: More sets than this no disk holds.
+_MOST = 1e12
 
 
 def sweep(
@@ -29,11 +39,26 @@ def sweep(
         ),
     ] = None,
     out: Annotated[
-        Path | None, typer.Option("--out", metavar="FILE", help="Write every set as a row: .parquet or .csv.")
+        Path | None,
+        typer.Option(
+            "--out",
+            metavar="FILE",
+            help="Write every set as a row: .parquet or .csv; or a folder of chunks: .zarr, .parquet.",
+        ),
     ] = None,
     threads: Annotated[
         int, typer.Option("--threads", help="Threads to use; the result is the same for any number.", min=1)
     ] = 1,
+    scheduler: Scheduler = None,
+    processes: Workers = None,
+    chunk: Annotated[
+        int | None,
+        typer.Option("--chunk", metavar="N", help="Keep the sweep in a folder, N sets at a time."),
+    ] = None,
+    resume: Annotated[
+        bool,
+        typer.Option("--resume/--no-resume", help="Go on with what the folder holds of the same sweep."),
+    ] = True,
     as_json: AsJson = False,
     force: Force = False,
 ) -> None:
@@ -41,25 +66,40 @@ def sweep(
 
     Example: [bold]hersey sweep examples/scenario.toml --out sweep.parquet --threads 2[/bold]
     """
-    if out is not None:
+    in_chunks = _in_chunks(out, chunk, scheduler, processes)
+    if threads != 1 and not (scheduler is None and processes is None):
+        raise ParameterError("--threads is of this process alone: with workers leave it out")
+    if out is not None and not in_chunks:
         if out.suffix not in (".parquet", ".csv"):
-            raise OutputError(f"--out {out}: name a file that ends in .parquet or .csv")
+            raise OutputError(f"--out {out}: name a file that ends in .parquet or .csv, or a folder in .zarr")
         may_write(out, force, inputs=[scenario, *([machine] if machine else [])])
 
-    from hersey.files.writing import write_atomically
-    from hersey.motion.scenario import read_scenario, rows, summary
+    from hersey.motion.parameters import MOST_SETS
+    from hersey.motion.scenario import read_scenario, summary
 
-    if machine is None:
-        described = read_scenario(scenario)
-    else:
-        stated = of_a_machine(machine)
-        described = read_scenario(scenario, stated=stated, stated_in=machine.name)
-    with bar("simulating", unit="sets") as progress:
-        result = described.run(threads=threads, progress=progress)
-    if out is not None:
-        with working("writing the rows"):
-            write_atomically(out, rows(result, out.suffix), overwrite=True)
-    counted = summary(result)
+    stated = of_a_machine(machine) if machine is not None else None
+    described = read_scenario(
+        scenario,
+        stated=stated,
+        stated_in=machine.name if machine is not None else "",
+        most=_MOST if in_chunks else MOST_SETS,
+    )
+    told: list[str] = []
+    with workers(scheduler, processes) as client, bar("simulating", unit="sets") as progress:
+        if out is not None and in_chunks:
+            how: dict[str, Any] = {"chunk": chunk, "resume": resume, "overwrite": force, "threads": threads}
+            with _said_if_interrupted():
+                found = described.keep(out, client=client, progress=progress, **how)
+            counted = found.summary()
+            told += found.notes
+            if found.before:
+                told.append(f"{found.before} of {found.chunks} chunks were there")
+        else:
+            result = described.run(threads=threads, progress=progress, client=client)
+            counted = summary(result)
+            told += result.attrs.get("notes", [])
+    if out is not None and not in_chunks:
+        _write(out, result)
     if as_json:
         print_json("sweep", counted)
         return
@@ -69,6 +109,8 @@ def sweep(
         say(f"  {name.replace('_', ' '):16s}{low:.6g} to {high:.6g}")
     for failure in counted["failures"]:
         say(f"- {failure}")
+    for line in told:
+        say(f"- {line}")
     if described.grip is not None:
         say(f"- the roll grips the belt with up to {described.grip:.4g} N")
     if described.rest_force or described.rest_damping:
@@ -78,3 +120,36 @@ def sweep(
         )
     if out is not None:
         say(f"sweep: {out}")
+
+
+def _in_chunks(out: Path | None, chunk: int | None, scheduler: str | None, processes: int | None) -> bool:
+    """Whether the sweep is kept in a folder of chunks."""
+    if out is None or out.suffix == ".csv":
+        if chunk is not None:
+            raise ParameterError("--chunk is of a sweep that is kept: name a folder by --out sweep.zarr")
+        return False
+    if out.suffix == ".zarr":
+        return True
+    from hersey.scale.store import is_our_folder
+
+    asked = any(each is not None for each in (chunk, scheduler, processes))
+    return out.suffix == ".parquet" and (asked or is_our_folder(out))
+
+
+@contextmanager
+def _said_if_interrupted() -> Iterator[None]:
+    """Say on Ctrl-C what is kept."""
+    try:
+        yield
+    except KeyboardInterrupt as interrupt:
+        say(*(f"hersey: {note}" for note in getattr(interrupt, "__notes__", [])), file=sys.stderr)
+        raise
+
+
+def _write(out: Path, result: xr.Dataset) -> None:
+    """Write every set as a row."""
+    from hersey.files.writing import write_atomically
+    from hersey.motion.scenario import rows
+
+    with working("writing the rows"):
+        write_atomically(out, rows(result, out.suffix), overwrite=True)

@@ -285,4 +285,5 @@ def opened_dataset(path: Path) -> xr.Dataset:
     """Return a kept sweep as xarray opens it: numbers are read when they are asked for."""
     import xarray as xr
 
-    return xr.open_zarr(os.fspath(path), chunks=None, decode_times=False)
+    found: xr.Dataset = xr.open_zarr(os.fspath(path), chunks=None, decode_times=False)
+    return found

@@ -18,10 +18,13 @@ from hersey.files.toml import Quantity, Table, naming, read_tables, read_toml
 from hersey.motion.drag import Drag
 from hersey.motion.parameters import MOST_SETS, PARAMETERS
 from hersey.motion.simulation import TOLERANCE, Drivetrain
-from hersey.motion.sweep import sweep
+from hersey.motion.sweep import planned, sweep
 
 if TYPE_CHECKING:
     import xarray as xr
+    from distributed import Client
+
+    from hersey.motion.kept import Kept
 
 
 @plain_dataclass(frozen=True)
@@ -42,6 +45,8 @@ class Scenario:
     grip: float | None = None
     rest_force: float = 0.0
     rest_damping: float = 0.0
+    #: SI, or consistent for bare numbers of any consistent set of units.
+    units: str = "SI"
 
     @property
     def sets(self) -> int:
@@ -49,8 +54,46 @@ class Scenario:
         sizes = [values.size for values in self.parameters.values()]
         return max(sizes) if self.zip else int(np.prod(sizes, dtype=float))
 
-    def run(self, *, threads: int = 1, progress: Callable[[int, int], object] | None = None) -> xr.Dataset:
+    def run(
+        self,
+        *,
+        threads: int = 1,
+        progress: Callable[[int, int], object] | None = None,
+        client: Client | None = None,
+    ) -> xr.Dataset:
         """Return what each parameter set settles to; see `hersey.sweep`."""
+        train, drag, varied = self._arguments()
+        return sweep(
+            train,
+            drag,
+            **varied,
+            zip=self.zip,
+            start=self.start,
+            duration=self.duration,
+            threads=threads,
+            tolerance=self.tolerance,
+            progress=progress,
+            client=client,
+        )
+
+    def keep(self, out: Path, **how: Any) -> Kept:
+        """Keep each chunk of sets in a folder as it ends; ``how`` is as of `hersey.motion.kept.kept`."""
+        from hersey.motion.kept import kept
+
+        train, drag, varied = self._arguments()
+        sets, rules = planned(
+            train,
+            drag,
+            varied,
+            zip=self.zip,
+            start=self.start,
+            duration=self.duration,
+            tolerance=self.tolerance,
+        )
+        return kept(sets, rules, out, units=self.units, **how)
+
+    def _arguments(self) -> tuple[Drivetrain, Drag, dict[str, Any]]:
+        """What `hersey.sweep` takes: train, drag, and each parameter."""
         first = {name: float(values.flat[0]) for name, values in self.parameters.items()}
         drag = Drag(
             first["transition_force"],
@@ -68,17 +111,7 @@ class Scenario:
             name: values if values.size > 1 else float(values.flat[0])
             for name, values in self.parameters.items()
         }
-        return sweep(
-            Drivetrain(first["stiffness"], first["mass"], grip=self.grip),
-            drag,
-            **varied,
-            zip=self.zip,
-            start=self.start,
-            duration=self.duration,
-            threads=threads,
-            tolerance=self.tolerance,
-            progress=progress,
-        )
+        return Drivetrain(first["stiffness"], first["mass"], grip=self.grip), drag, varied
 
 
 class _Values(Quantity):
@@ -165,12 +198,17 @@ _LINES = {
 
 
 def read_scenario(
-    path: str | Path, *, stated: Mapping[str, float] | None = None, stated_in: str = ""
+    path: str | Path,
+    *,
+    stated: Mapping[str, float] | None = None,
+    stated_in: str = "",
+    most: float = MOST_SETS,
 ) -> Scenario:
     """Read a scenario: a table ``[parameters]`` with all eight, and ``[options]``.
 
     ``stated`` are parameters in SI that the scenario need not state, from the file ``stated_in``; what it
-    states holds. They may have the ``grip`` of the roll, and ``rest_force`` and ``rest_damping`` too.
+    states holds. They may have the ``grip`` of the roll, and ``rest_force`` and ``rest_damping`` too. More
+    sets than ``most`` are refused: those that fit in memory, unless each chunk is kept as it ends.
 
     A parameter is a string with its unit (``"11 N/mm"``), a list of such strings, or a table ``{from, to,
     count}`` with ``spacing = "linear"`` or ``"log"``. With ``units = "consistent"`` among the options it is a
@@ -189,11 +227,11 @@ def read_scenario(
             f'units = "consistent"'
         )
     tables = read_tables(path, _ScenarioFile, plain=plain)
-    options = {key: value for key, value in vars(tables.options).items() if key != "units"}
+    options = dict(vars(tables.options))
     options |= {name: value for name, value in (stated or {}).items() if name in _BESIDE}
     scenario = Scenario(parameters=_filled(path, tables.parameters, stated, stated_in), **options)
-    if scenario.sets > MOST_SETS:
-        raise ParameterError(f"{path.name}: {scenario.sets:.3g} parameter sets are more than {MOST_SETS:.0e}")
+    if scenario.sets > most:
+        raise ParameterError(f"{path.name}: {scenario.sets:.3g} parameter sets are more than {most:.0e}")
     return scenario
 
 

@@ -77,7 +77,7 @@ class Sets:
         return Sets({name: of(name, values) for name, values in self.given.items()}, zip=True)
 
     def told(self) -> dict[str, dict[str, Any]]:
-        """Return of each parameter what tells it from others: how many values, the first, the last, a hash."""
+        """Return of each parameter what tells it from others: how many values, first, last, a hash."""
         return {
             name: {
                 "values": int(values.size),

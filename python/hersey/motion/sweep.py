@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -110,13 +110,6 @@ def sweep(
     >>> dict(grid.sizes), round(float(grid.frequency.sel(stiffness=1000, drive_speed=1.0)), 5)
     ({'stiffness': 2, 'drive_speed': 3}, 3.94031)
     """
-    if not isinstance(drag, Drag) or drag.varies_with_temperature:
-        raise ParameterError("a sweep needs a Drag at one temperature")
-    if start not in ("rest", "steady"):
-        raise ParameterError(f"start '{start}' is not known: rest or steady")
-    drag.beside(1)  # refuses what a sweep has no parameter for
-    workers, steps = whole("threads", threads), whole("most_steps", most_steps)
-    parameters: dict[str, Any] = {**vars(train), **vars(drag)}
     varied = {
         "stiffness": stiffness,
         "mass": mass,
@@ -127,19 +120,24 @@ def sweep(
         "stick_speed": stick_speed,
         "drive_speed": drive_speed,
     }
-    given = {
-        name: numbers_of(name, parameters[name] if value is None else value) for name, value in varied.items()
-    }
-    lasting = None if duration is None else float(duration)
-    rules = Rules(drag, train.grip, start, lasting, float(tolerance), steps)
-    sets = Sets(given, zip)
+    workers = whole("threads", threads)
+    sets, rules = planned(
+        train,
+        drag,
+        varied,
+        zip=zip,
+        start=start,
+        duration=duration,
+        tolerance=tolerance,
+        most_steps=most_steps,
+    )
     if out is not None:
         from hersey.motion.kept import kept
 
         more: dict[str, Any] = {"chunk": chunk, "resume": resume, "overwrite": overwrite}
         found = kept(sets, rules, out, client=client, threads=workers, progress=progress, **more)
         return _opened(sets, rules, found)
-    refuse_too_many(given.values(), zip=zip)
+    refuse_too_many(sets.given.values(), zip=zip)
     if client is not None:
         from hersey.motion.kept import gathered
 
@@ -150,6 +148,38 @@ def sweep(
     motions = rules.follow(sets, workers, progress)
     failures = [f"set {failure.index}: {failure.error}" for failure in motions.failures]
     return _labelled(sets, rules, values_of(motions), failures, [])
+
+
+def planned(
+    train: Drivetrain,
+    drag: Drag,
+    varied: Mapping[str, ArrayLike | None],
+    *,
+    zip: bool,  # noqa: A002 - NumPy users know what it means
+    start: str,
+    duration: float | None,
+    tolerance: float = TOLERANCE,
+    most_steps: float = MOST_STEPS,
+) -> tuple[Sets, Rules]:
+    """Return the sets of a sweep, and what holds for all; arguments as `sweep`.
+
+    Raises
+    ------
+    ParameterError
+        If one is none that a sweep takes.
+    """
+    if not isinstance(drag, Drag) or drag.varies_with_temperature:
+        raise ParameterError("a sweep needs a Drag at one temperature")
+    if start not in ("rest", "steady"):
+        raise ParameterError(f"start '{start}' is not known: rest or steady")
+    drag.beside(1)  # refuses what a sweep has no parameter for
+    parameters: dict[str, Any] = {**vars(train), **vars(drag)}
+    given = {
+        name: numbers_of(name, parameters[name] if value is None else value) for name, value in varied.items()
+    }
+    lasting = None if duration is None else float(duration)
+    rules = Rules(drag, train.grip, start, lasting, float(tolerance), whole("most_steps", most_steps))
+    return Sets(given, zip), rules
 
 
 def _labelled(

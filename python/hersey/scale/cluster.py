@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
@@ -46,7 +47,7 @@ def connected(client: Client | str) -> Iterator[tuple[Client, str]]:
     Raises
     ------
     ParameterError
-        If nothing answers at the address within some seconds.
+        If it is no address, or nothing answers there within some seconds.
     """
     needs_dask()
     if not isinstance(client, str):
@@ -58,6 +59,8 @@ def connected(client: Client | str) -> Iterator[tuple[Client, str]]:
         return
     from distributed import Client
 
+    if not re.fullmatch(r"[a-z]+://.+:\d+", client):
+        raise ParameterError(f"'{client}' is no address of a scheduler: give one as tcp://host:8786")
     quiet()
     try:
         made: Client = Client(client, timeout=_ANSWER, set_as_default=False)

@@ -198,7 +198,9 @@ def _taken(
     if not path.exists() or (path.is_dir() and not any(path.iterdir())):
         yield None
         return
-    manifest = kind.read_manifest(path) if path.is_dir() else None
+    if not path.is_dir():
+        raise OutputError(f"{path} is a file, and chunks are kept in a folder: name another")
+    manifest = kind.read_manifest(path)
     if manifest is None:
         raise OutputError(f"{path} is there, and no sweep of hersey made it: name another")
     if resume:

@@ -60,10 +60,13 @@ def done(
     Raises
     ------
     ParameterError
-        If the scheduler cannot be reached, or a worker has another version of hersey, or none.
+        If the scheduler cannot be reached, a worker has another version of hersey, or none, or ``threads`` is
+        below 1.
     UnfinishedError
         If the scheduler or all workers are lost, or an item ends one worker after the other.
     """
+    if isinstance(threads, bool) or not isinstance(threads, int) or threads < 1:
+        raise ParameterError(f"threads is {threads}: a whole number, at least 1, is needed")
     total, finished = sum(map(size, items)), 0
     if client is not None:
         found = _by_workers(task, items, client)
@@ -187,8 +190,8 @@ class _Window:
         except KilledWorker:
             if asked >= _ASKED:
                 raise UnfinishedError(
-                    f"item {index} has ended {4 * asked} workers of {self.name}, one after the other: does it "
-                    f"ask for more memory than they have?",
+                    f"item {index} has ended {4 * asked} workers of {self.name}, one after the other: does "
+                    f"it ask for more memory than they have?",
                     index=index,
                 ) from None
             self._begin(index, asked + 1)
