@@ -26,7 +26,8 @@ from hersey.lubrication import paper
 from hersey.lubrication.reynolds import solve_line_contact
 from hersey.motion.sweep import sweep
 from hersey.stability.disturbance import disturbance, safe_step
-from hersey.stability.hysteresis import cycles_without_sticking, hysteresis, hysteresis_sweep
+from hersey.stability.hysteresis import cycles_without_sticking, hysteresis
+from hersey.stability.hysteresis_sweep import hysteresis_sweep
 PAPER = {"ehl_exponent": -0.7, "mixed_exponent": -1.2, "stick_speed": 0.01}
 TRAIN, DRAG = Drivetrain(1000, 1), Drag(50, 1, **PAPER)
 BRISTLES = Drag(50, 1, **PAPER, closure="lugre", bristle_stiffness=1e5, bristle_damping=100.0)

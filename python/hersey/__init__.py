@@ -111,8 +111,8 @@ if TYPE_CHECKING:
         HysteresisBand,
         cycles_without_sticking,
         hysteresis,
-        hysteresis_sweep,
     )
+    from hersey.stability.hysteresis_sweep import hysteresis_sweep
     from hersey.stability.operating_map import OperatingMap, operating_map
     from hersey.stability.plan import Plan, plan_profile
     from hersey.stability.warm_up import WarmUp, warm_up
@@ -151,9 +151,8 @@ _HOMES = {
     "verdict.regime": "Regime regime",
     "verdict.evidence": "MeasuredFilm measured_film",
     "identification": "CycleRecord IdentifiedDrive cycles identify",
-    "stability.hysteresis": (
-        "CyclesWithoutSticking HysteresisBand cycles_without_sticking hysteresis hysteresis_sweep"
-    ),
+    "stability.hysteresis": "CyclesWithoutSticking HysteresisBand cycles_without_sticking hysteresis",
+    "stability.hysteresis_sweep": "hysteresis_sweep",
     "stability.disturbance": "Disturbance SafeStep disturbance safe_step",
     "stability.operating_map": "OperatingMap operating_map",
     "stability.plan": "Plan plan_profile",

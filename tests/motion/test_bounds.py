@@ -15,7 +15,8 @@ from hersey import Drag, Drivetrain, simulate, stick_slip
 from hersey.errors import ParameterError, UnfinishedError
 from hersey.lubrication.reynolds import solve_line_contact
 from hersey.motion.sweep import sweep
-from hersey.stability.hysteresis import hysteresis, hysteresis_sweep
+from hersey.stability.hysteresis import hysteresis
+from hersey.stability.hysteresis_sweep import hysteresis_sweep
 
 TRAIN = Drivetrain(1000, 1)
 DRAG = Drag(50, 1, ehl_exponent=-0.7, mixed_exponent=-1.2, stick_speed=0.01)

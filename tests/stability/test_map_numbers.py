@@ -18,7 +18,8 @@ from hersey.damping.surface import DampingSurface
 from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.machine import Machine
 from hersey.machine.uncertainty import Uncertainty
-from hersey.stability.hysteresis import hysteresis, hysteresis_sweep
+from hersey.stability.hysteresis import hysteresis
+from hersey.stability.hysteresis_sweep import hysteresis_sweep
 from hersey.stability.operating_map import OperatingMap, operating_map
 
 AT: dict[str, Any] = {"roll_radius": 0.015, "stick_speed": 3e-4}

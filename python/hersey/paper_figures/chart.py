@@ -20,7 +20,8 @@ from hersey.motion.simulation import Drivetrain
 from hersey.motion.sweep import sweep
 from hersey.paper_figures.figure import Claim, OwnFigure, Verdict
 from hersey.paper_figures.sweep import Case
-from hersey.stability.hysteresis import cycles_without_sticking, hysteresis, hysteresis_sweep
+from hersey.stability.hysteresis import cycles_without_sticking, hysteresis
+from hersey.stability.hysteresis_sweep import hysteresis_sweep
 
 #: Damping numbers: few where the curves are nearly straight and dear to compute.
 DAMPING = np.r_[np.geomspace(1e-3, 0.1, 24, endpoint=False), np.geomspace(0.1, 30.0, 60)]

@@ -14,7 +14,8 @@ from hersey.motion.simulation import StickSlipCycle, Trajectory, simulate, stick
 from hersey.paper_figures.figure import Claim, PaperFigure, Verdict, shown
 from hersey.paper_figures.panels import driven
 from hersey.paper_figures.sweep import Case
-from hersey.stability.hysteresis import HysteresisBand, hysteresis, hysteresis_sweep
+from hersey.stability.hysteresis import HysteresisBand, hysteresis
+from hersey.stability.hysteresis_sweep import hysteresis_sweep
 
 #: Drive speeds that the paper names (in/s): approached from below, overshoot, approached from above.
 BELOW, OVERSHOOT, ABOVE = 1.9, 2.5, 1.0

@@ -8,7 +8,7 @@ sticking; above, stick-slip dies out.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -16,41 +16,20 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hersey import _core
-from hersey.arrays import FloatArray, crossed, numbers_of, together
+from hersey.arrays import FloatArray, numbers_of, together
 from hersey.errors import ParameterError
-from hersey.motion.drag import BESIDE, AnyDrag, Drag
-from hersey.motion.parameters import KINDS, MOST_STEPS, OF_THE_BELT, refuse_too_many, whole
+from hersey.motion.drag import AnyDrag, Drag
+from hersey.motion.parameters import MOST_STEPS, OF_THE_BELT, whole
 from hersey.motion.simulation import Drivetrain
 from hersey.result import Result, json_record, table_of
+from hersey.stability.hysteresis_sweep import PARAMETER_KINDS, TOLERANCE, BandRules
 from hersey.units import argument, takes_si
 
 if TYPE_CHECKING:
     import polars as pl
-    import xarray as xr
 
-#: Relative tolerance of the steps: the fold asks for more digits than a trajectory.
-TOLERANCE = 1e-11
 #: Relative step of the derivatives.
 _STEP = 1e-3
-#: Columns of the core.
-_COLUMNS = (
-    "lower",
-    "transition",
-    "upper",
-    "stalls",
-    "speed_max",
-    "lower_accuracy",
-    "upper_accuracy",
-    "half_laps",
-    "deeper",
-    "laps",
-)
-#: Kinds of the units of what a sweep of bands varies.
-_PARAMETER_KINDS = {name: kind for name in OF_THE_BELT if (kind := KINDS[name]) is not None}
-#: Parameters that follow from a temperature.
-_MOVED = ("transition_force", "transition_speed", "stick_speed")
-#: Columns that are no decimal numbers.
-_WHOLE = {"stalls": bool, "half_laps": bool, "deeper": bool, "laps": int}
 
 
 @dataclass(frozen=True, repr=False)
@@ -281,138 +260,7 @@ def hysteresis(
 def _drawn(name: str, values: Any) -> Any:
     """Draws of a parameter in SI; a name that is not known is refused later."""
     return (
-        argument(f"samples of {name}", _PARAMETER_KINDS[name], values) if name in _PARAMETER_KINDS else values
-    )
-
-
-@takes_si(temperature="temperature", **_PARAMETER_KINDS)
-def hysteresis_sweep(
-    train: Drivetrain,
-    drag: Drag,
-    *,
-    stiffness: ArrayLike | None = None,
-    mass: ArrayLike | None = None,
-    transition_force: ArrayLike | None = None,
-    transition_speed: ArrayLike | None = None,
-    ehl_exponent: ArrayLike | None = None,
-    mixed_exponent: ArrayLike | None = None,
-    stick_speed: ArrayLike | None = None,
-    temperature: ArrayLike | None = None,
-    zip: bool = False,  # noqa: A002 - NumPy users know what it means
-    lower: bool = True,
-    threads: int = 1,
-    tolerance: float = TOLERANCE,
-    progress: Callable[[int, int], object] | None = None,
-    most_steps: float = MOST_STEPS,
-) -> xr.Dataset:
-    """Return the band of each combination of parameters, as `hysteresis` does for one.
-
-    Axes, ``zip``, ``threads`` and ``progress`` are those of `sweep`, ``most_steps`` that of `hysteresis`.
-    ``temperature`` (K) is needed if the drag varies with it, and takes the place of the transition force and
-    of all speeds. Without ``lower`` the lower edge is left out (not a number): a tenth of the time.
-
-    Returns
-    -------
-    xarray.Dataset
-        ``lower``, ``transition``, ``upper``, ``speed_max``, accuracies, ``half_laps``, ``deeper``, ``laps``.
-
-    Examples
-    --------
-    >>> drag = Drag(50, 1, ehl_exponent=-0.7, mixed_exponent=-1.2, stick_speed=0.01)
-    >>> hysteresis_sweep(Drivetrain(1000, 1), drag, stiffness=[500, 2000]).upper.round(6).values.tolist()
-    [2.228999, 2.109731]
-    """
-    import xarray as xr
-
-    varied = {
-        "stiffness": stiffness,
-        "mass": mass,
-        "transition_force": transition_force,
-        "transition_speed": transition_speed,
-        "ehl_exponent": ehl_exponent,
-        "mixed_exponent": mixed_exponent,
-        "stick_speed": stick_speed,
-    }
-    swept = sweep_bands(
-        train,
-        drag,
-        varied,
-        temperature=temperature,
-        zip=zip,
-        lower=lower,
-        threads=threads,
-        tolerance=tolerance,
-        progress=progress,
-        most_steps=most_steps,
-    )
-    return xr.Dataset(
-        {name: (swept.axes, values) for name, values in swept.columns.items()},
-        coords=swept.coordinates,
-        attrs={
-            "closure": drag.closure,
-            "tolerance": tolerance,
-            "hersey_version": _core.VERSION,
-            "failures": list(swept.failures),
-        },
-    )
-
-
-@dataclass(frozen=True)
-class SweptBands:
-    """The bands of a sweep as arrays: ``columns`` by the names of `hysteresis_sweep`, over ``axes``."""
-
-    axes: tuple[str, ...]
-    columns: Mapping[str, NDArray[Any]]
-    coordinates: Mapping[str, Any]
-    failures: tuple[str, ...]
-
-
-def sweep_bands(
-    train: Drivetrain,
-    drag: Drag,
-    varied: Mapping[str, ArrayLike | None],
-    *,
-    temperature: ArrayLike | None = None,
-    zip: bool = False,  # noqa: A002 - NumPy users know what it means
-    lower: bool = True,
-    threads: int = 1,
-    tolerance: float = TOLERANCE,
-    progress: Callable[[int, int], object] | None = None,
-    most_steps: float = MOST_STEPS,
-) -> SweptBands:
-    """Return what `hysteresis_sweep` does, as arrays: xarray takes long to import.
-
-    ``varied`` holds parameters by the names of that; one that is None or not there is that of train or drag.
-    """
-    if not isinstance(drag, Drag):
-        raise ParameterError("a sweep needs a Drag")
-    if drag.varies_with_temperature != (temperature is not None):
-        drag.law_at(None if temperature is None else 300.0)
-    if temperature is not None:
-        clash = [n for n in _MOVED if varied.get(n) is not None]
-        if clash:
-            raise ParameterError(f"{clash[0]} follows from the temperature: give one of them")
-    parameters = {**vars(train), **vars(drag)}
-    asked = {name: values for name, values in varied.items() if values is not None}
-    given = {name: numbers_of(name, asked.get(name, parameters[name])) for name in OF_THE_BELT}
-    if temperature is not None:
-        given["temperature"] = numbers_of("temperature", temperature)
-    refuse_too_many(given.values(), zip=zip)
-    axes, columns = together(given) if zip else crossed(given)
-    shape = next(iter(columns.values())).shape
-    if temperature is not None:
-        columns = {**columns, **_at_temperatures(drag, columns["temperature"])}
-    bands = _bands(train, columns, drag, tolerance, most_steps, threads, progress, lower=lower)
-    coordinates = {
-        name: (axes, columns[name]) if zip and values.ndim else values
-        for name, values in given.items()
-        if temperature is None or name not in _MOVED
-    }
-    return SweptBands(
-        tuple(axes),
-        {name: getattr(bands, name).reshape(shape).astype(_WHOLE.get(name, float)) for name in _COLUMNS},
-        coordinates,
-        tuple(f"set {failure.index}: {failure.error}" for failure in bands.failures),
+        argument(f"samples of {name}", PARAMETER_KINDS[name], values) if name in PARAMETER_KINDS else values
     )
 
 
@@ -472,43 +320,8 @@ def cycles_without_sticking(
     )
 
 
-def _at_temperatures(drag: Drag, temperatures: FloatArray) -> dict[str, FloatArray]:
-    """The parameters that vary with temperature, at each."""
-    values, place = np.unique(temperatures, return_inverse=True)
-    laws = [drag.at(float(t)) for t in values]
-    beside = tuple(name for name in BESIDE if getattr(drag, name))
-    names = ("transition_force", "transition_speed", "stick_speed", *beside)
-    place = place.reshape(temperatures.shape)
-    return {name: np.array([getattr(law, name) for law in laws])[place] for name in names}
-
-
-def _bands(
-    train: Drivetrain,
-    columns: Mapping[str, FloatArray],
-    drag: Drag,
-    tolerance: float,
-    most_steps: float,
-    threads: int = 1,
-    progress: Callable[[int, int], object] | None = None,
-    *,
-    lower: bool = True,
-) -> _core.Bands:
-    workers, steps = whole("threads", threads), whole("most_steps", most_steps)
-    arrays = [np.ascontiguousarray(columns[name].ravel()) for name in OF_THE_BELT]
-    closure = (drag.closure, drag.bristle_stiffness, drag.bristle_damping)
-    beside = drag.beside(arrays[0].size)
-    if beside is not None:
-        # those that vary with temperature have a column of their own
-        beside = [
-            np.ascontiguousarray(columns[name].ravel()) if name in columns else column
-            for name, column in zip(BESIDE, beside, strict=True)
-        ]
-    grip = None if train.grip is None else float(train.grip)
-    return _core.bands(arrays, closure, beside, grip, lower, float(tolerance), workers, progress, steps)
-
-
 def _sensitivities(
-    train: Drivetrain, drag: Drag | None, tolerance: float, most_steps: float
+    train: Drivetrain, drag: Drag | None, tolerance: float, most_steps: int
 ) -> tuple[dict[str, float], dict[str, float]]:
     """Relative change of the edges per relative change of each parameter, by central differences."""
     if drag is None:
@@ -517,7 +330,7 @@ def _sensitivities(
     base = np.array([float(parameters[name]) for name in OF_THE_BELT])
     factors = np.vstack([1 + _STEP * np.eye(len(OF_THE_BELT)), 1 - _STEP * np.eye(len(OF_THE_BELT))])
     columns = dict(zip(OF_THE_BELT, (base * factors).T, strict=True))
-    edges = _bands(train, columns, drag, tolerance, most_steps)
+    edges = BandRules(train, drag, float(tolerance), most_steps).follow(columns)
     if edges.failures:
         raise edges.failures[0].error
 
@@ -533,7 +346,7 @@ def _sampled(
     drag: Drag | None,
     samples: Mapping[str, ArrayLike],
     tolerance: float,
-    most_steps: float,
+    most_steps: int,
 ) -> _core.Bands:
     if drag is None:
         raise ParameterError("samples need a Drag: a table has no parameters to draw")
@@ -543,7 +356,8 @@ def _sampled(
     parameters = {**vars(train), **vars(drag)}
     given = {name: numbers_of(name, samples.get(name, parameters[name])) for name in OF_THE_BELT}
     _, columns = together(given)
-    bands = _bands(train, columns, drag, tolerance, most_steps)
+    rules = BandRules(train, drag, float(tolerance), most_steps)
+    bands = rules.follow({name: column.ravel() for name, column in columns.items()})
     for failure in bands.failures:
         raise failure.error.within(f"samples: draw {failure.index}")
     return bands

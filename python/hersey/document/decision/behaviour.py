@@ -18,7 +18,8 @@ from hersey.machine.machine import Machine
 from hersey.motion.schedule import Schedule
 from hersey.motion.simulation import Trajectory, simulate
 from hersey.stability.disturbance import Disturbance, SafeStep, disturbance, safe_step
-from hersey.stability.hysteresis import HysteresisBand, hysteresis, sweep_bands
+from hersey.stability.hysteresis import HysteresisBand, hysteresis
+from hersey.stability.hysteresis_sweep import sweep_bands
 from hersey.stability.operating_map import OperatingMap, operating_map
 from hersey.stability.plan import Plan, plan_of_log
 

@@ -12,7 +12,8 @@ from hersey.damping.surface import FIXED, WITH_TRANSITION
 from hersey.errors import ParameterError
 from hersey.motion.drag import Drag
 from hersey.motion.simulation import Drivetrain
-from hersey.stability.hysteresis import SweptBands, hysteresis, sweep_bands
+from hersey.stability.hysteresis import hysteresis
+from hersey.stability.hysteresis_sweep import SweptBands, sweep_bands
 
 
 def check_temperatures(kelvin: FloatArray, drag: Drag) -> None:

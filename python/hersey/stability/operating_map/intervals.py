@@ -13,7 +13,7 @@ from hersey.damping.surface import DampingSurface
 from hersey.machine.uncertainty import Uncertainty
 from hersey.motion.drag import Drag
 from hersey.motion.simulation import Drivetrain
-from hersey.stability.hysteresis import sweep_bands
+from hersey.stability.hysteresis_sweep import sweep_bands
 from hersey.stability.operating_map.edges import law_at, laws_at, require_all
 
 if TYPE_CHECKING:
