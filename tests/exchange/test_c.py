@@ -114,12 +114,7 @@ def rust_types() -> dict[str, list[str]]:
         for name, arguments in re.findall(r"(fmi\w+)\(([^)]*)\): (?:[A-Z_]+|\")", text):
             found[name] = first + [a.strip() for a in arguments.split(",") if a.strip()]
         for name, arguments in re.findall(r'(fmi3\w+), "\w+" \(([^)]*)\)', text):
-            found[name] = [
-                *first,
-                "References",
-                "usize",
-                *(a.split(":")[1].strip() for a in arguments.split(",")),
-            ]
+            found[name] = [*first, "References", "usize", *(a.strip() for a in arguments.split(","))]
         for get, put, kind in re.findall(r"(fmi\w+), (fmi\w+): (\w+) = ", text):
             counted = ["usize"] if version == 3 else []
             found[get] = [*first, "References", "usize", f"*mut {kind}", *counted]

@@ -14,7 +14,7 @@
  *       power   transition_force, transition_speed, ehl_exponent, mixed_exponent
  *       table   lists speeds and forces, ascending in speed
  *       mixed   viscosity, and the list numbers: reference, film exponent, load exponent, stiffness of the
- *               asperities, boundary, shear, rolling, rolling exponent (docs/physics of a contact that shares its load)
+ *               asperities, boundary, shear, rolling, rolling exponent (as crates/core/src/lubrication/mixed.rs has them)
  *   closure = retained | stiction | stribeck | lugre      below stick_speed
  *       lugre    bristle_stiffness, bristle_damping
  *       stiction static_growth and static_growth_time, if the static force grows at rest
@@ -65,7 +65,7 @@ const char *hersey_version(void);
  * outputs, the inputs of its kind, and the parameters that its description gives or that have a start. */
 const char *hersey_variables(void);
 
-/* The drive that a text describes; null if it is none, with the reason in why (room bytes with the nul, or null and 0). */
+/* The drive that a text describes; null if it is none, with the reason in why (room bytes, the nul among them). */
 hersey_drive *hersey_drive_read(const char *text, char *why, size_t room);
 
 /* Give it back; null is let pass. */

@@ -71,7 +71,7 @@ enum Belongs {
 }
 
 impl Choices {
-    fn belongs(&self, name: &str) -> Belongs {
+    fn belongs(self, name: &str) -> Belongs {
         let needed = match name {
             "drive_speed" => self.drive == Drive::Speed,
             "drive_torque" | "roll_radius" => self.drive == Drive::Torque,
@@ -91,7 +91,7 @@ impl Choices {
         if needed { Belongs::Needed } else { Belongs::No }
     }
 
-    fn may_have(&self, name: &str) -> bool {
+    fn may_have(self, name: &str) -> bool {
         match name {
             "grip" => self.drive == Drive::Speed,
             "temperature_zero" => self.warmth == Warmth::Power,

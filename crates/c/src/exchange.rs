@@ -133,7 +133,9 @@ pub fn serialized(
         return Err(format!("{} bytes are needed, there are {size}", bytes.len()));
     }
     let to = Asked::new("serializedState", to, size)?;
-    bytes.iter().enumerate().for_each(|(index, byte)| to.write(index, *byte));
+    for (index, byte) in bytes.iter().enumerate() {
+        to.write(index, *byte);
+    }
     Ok(())
 }
 

@@ -200,7 +200,9 @@ extern "C" fn fmi3UpdateDiscreteStates(
         ];
         let next = place("nextEventTime", next)?;
         instance.show()?;
-        flags.iter().for_each(|flag| flag.write(0, 0));
+        for flag in &flags {
+            flag.write(0, 0);
+        }
         next.write(0, 0.0);
         Ok(())
     })
@@ -224,7 +226,9 @@ extern "C" fn fmi3DoStep(
             place("earlyReturn", early_return)?,
         ];
         let last_time = place("lastSuccessfulTime", last_time)?;
-        flags.iter().for_each(|flag| flag.write(0, 0));
+        for flag in &flags {
+            flag.write(0, 0);
+        }
         last_time.write(0, instance.time());
         let reached = instance.step(from, length)?;
         flags[0].write(0, u8::from(instance.event_mode && reached.changed));
@@ -270,48 +274,47 @@ values! {
 
 /// Getter and setter of a kind of which there are none.
 macro_rules! no_values {
-    ($($function:ident, $kind:literal ($($argument:ident: $type:ty),*);)*) => {$(
+    ($($function:ident, $kind:literal ($($type:ty),*);)*) => {$(
         #[unsafe(no_mangle)]
         extern "C" fn $function(
-            instance: Instance, references: References, count: usize, $($argument: $type),*
+            instance: Instance, references: References, count: usize $(, _: $type)*
         ) -> i32 {
-            $(let _ = $argument;)*
             done(instance, stringify!($function), |_| none_of_kind($kind, references, count))
         }
     )*};
 }
 
 no_values! {
-    fmi3GetFloat32, "Float32" (_values: *mut c_void, _count: usize);
-    fmi3GetInt8, "Int8" (_values: *mut c_void, _count: usize);
-    fmi3GetUInt8, "UInt8" (_values: *mut c_void, _count: usize);
-    fmi3GetInt16, "Int16" (_values: *mut c_void, _count: usize);
-    fmi3GetUInt16, "UInt16" (_values: *mut c_void, _count: usize);
-    fmi3GetUInt32, "UInt32" (_values: *mut c_void, _count: usize);
-    fmi3GetInt64, "Int64" (_values: *mut c_void, _count: usize);
-    fmi3GetUInt64, "UInt64" (_values: *mut c_void, _count: usize);
-    fmi3GetString, "String" (_values: *mut c_void, _count: usize);
-    fmi3GetBinary, "Binary" (_sizes: *mut usize, _values: *mut c_void, _count: usize);
-    fmi3GetClock, "Clock" (_values: *mut c_void);
-    fmi3SetFloat32, "Float32" (_values: *const c_void, _count: usize);
-    fmi3SetInt8, "Int8" (_values: *const c_void, _count: usize);
-    fmi3SetUInt8, "UInt8" (_values: *const c_void, _count: usize);
-    fmi3SetInt16, "Int16" (_values: *const c_void, _count: usize);
-    fmi3SetUInt16, "UInt16" (_values: *const c_void, _count: usize);
-    fmi3SetUInt32, "UInt32" (_values: *const c_void, _count: usize);
-    fmi3SetInt64, "Int64" (_values: *const c_void, _count: usize);
-    fmi3SetUInt64, "UInt64" (_values: *const c_void, _count: usize);
-    fmi3SetString, "String" (_values: *const c_void, _count: usize);
-    fmi3SetBinary, "Binary" (_sizes: *const usize, _values: *const c_void, _count: usize);
-    fmi3SetClock, "Clock" (_values: *const c_void);
-    fmi3GetIntervalDecimal, "Clock" (_intervals: *mut f64, _qualifiers: *mut i32);
-    fmi3GetIntervalFraction, "Clock" (_counters: *mut u64, _resolutions: *mut u64, _qualifiers: *mut i32);
-    fmi3GetShiftDecimal, "Clock" (_shifts: *mut f64);
-    fmi3GetShiftFraction, "Clock" (_counters: *mut u64, _resolutions: *mut u64);
-    fmi3SetIntervalDecimal, "Clock" (_intervals: *const f64);
-    fmi3SetIntervalFraction, "Clock" (_counters: *const u64, _resolutions: *const u64);
-    fmi3SetShiftDecimal, "Clock" (_shifts: *const f64);
-    fmi3SetShiftFraction, "Clock" (_counters: *const u64, _resolutions: *const u64);
+    fmi3GetFloat32, "Float32" (*mut c_void, usize);
+    fmi3GetInt8, "Int8" (*mut c_void, usize);
+    fmi3GetUInt8, "UInt8" (*mut c_void, usize);
+    fmi3GetInt16, "Int16" (*mut c_void, usize);
+    fmi3GetUInt16, "UInt16" (*mut c_void, usize);
+    fmi3GetUInt32, "UInt32" (*mut c_void, usize);
+    fmi3GetInt64, "Int64" (*mut c_void, usize);
+    fmi3GetUInt64, "UInt64" (*mut c_void, usize);
+    fmi3GetString, "String" (*mut c_void, usize);
+    fmi3GetBinary, "Binary" (*mut usize, *mut c_void, usize);
+    fmi3GetClock, "Clock" (*mut c_void);
+    fmi3SetFloat32, "Float32" (*const c_void, usize);
+    fmi3SetInt8, "Int8" (*const c_void, usize);
+    fmi3SetUInt8, "UInt8" (*const c_void, usize);
+    fmi3SetInt16, "Int16" (*const c_void, usize);
+    fmi3SetUInt16, "UInt16" (*const c_void, usize);
+    fmi3SetUInt32, "UInt32" (*const c_void, usize);
+    fmi3SetInt64, "Int64" (*const c_void, usize);
+    fmi3SetUInt64, "UInt64" (*const c_void, usize);
+    fmi3SetString, "String" (*const c_void, usize);
+    fmi3SetBinary, "Binary" (*const usize, *const c_void, usize);
+    fmi3SetClock, "Clock" (*const c_void);
+    fmi3GetIntervalDecimal, "Clock" (*mut f64, *mut i32);
+    fmi3GetIntervalFraction, "Clock" (*mut u64, *mut u64, *mut i32);
+    fmi3GetShiftDecimal, "Clock" (*mut f64);
+    fmi3GetShiftFraction, "Clock" (*mut u64, *mut u64);
+    fmi3SetIntervalDecimal, "Clock" (*const f64);
+    fmi3SetIntervalFraction, "Clock" (*const u64, *const u64);
+    fmi3SetShiftDecimal, "Clock" (*const f64);
+    fmi3SetShiftFraction, "Clock" (*const u64, *const u64);
 }
 
 #[unsafe(no_mangle)]

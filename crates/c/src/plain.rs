@@ -46,7 +46,9 @@ extern "C" fn hersey_drive_read(
     });
     if let (true, Ok(why)) = (drive.is_null() && room > 0, Asked::new("why", why, room)) {
         let kept = refusal.bytes().take(room - 1).chain([0]);
-        kept.enumerate().for_each(|(index, byte)| why.write(index, byte.cast_signed()));
+        for (index, byte) in kept.enumerate() {
+            why.write(index, byte.cast_signed());
+        }
     }
     drive
 }
@@ -128,7 +130,9 @@ extern "C" fn hersey_save(drive: Drive, to: *mut u8, size: usize) -> c_int {
             return Err(format!("{} bytes are needed, there are {size}", bytes.len()));
         }
         let to = Asked::new("bytes", to, size)?;
-        bytes.iter().enumerate().for_each(|(index, byte)| to.write(index, *byte));
+        for (index, byte) in bytes.iter().enumerate() {
+            to.write(index, *byte);
+        }
         Ok(())
     })
 }

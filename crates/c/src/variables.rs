@@ -22,7 +22,7 @@ pub enum Causality {
 }
 
 /// One variable; its start is of the drive's description where none stands here.
-#[derive(Debug)]
+#[derive(Debug, Clone, Copy)]
 pub struct Variable {
     pub reference: u32,
     pub name: &'static str,
