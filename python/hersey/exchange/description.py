@@ -1,0 +1,144 @@
+"""`modelDescription.xml` of a unit, for FMI 3.0 and for 2.0."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from xml.etree import ElementTree as Xml
+
+from hersey import _core
+from hersey.exchange.platforms import LIBRARY
+from hersey.exchange.unit_definitions import shown, unit_definitions
+from hersey.exchange.variables import Variable
+
+#: What tools are told to simulate unless they know better: seconds.
+STOP, STEP = 2.0, 0.001
+COPYRIGHT, LICENSE = "Copyright (c) 2026 The hersey authors", "MIT"
+#: Type of a variable in FMI 2.0.
+_TYPES_2 = {"Float64": "Real", "Int32": "Integer", "Boolean": "Boolean"}
+#: How a variable begins, where FMI lets one say so.
+_INITIAL = {"parameter": "exact", "output": "calculated"}
+_CATEGORIES = {
+    "logStatusWarning": "What is odd, but goes on",
+    "logStatusError": "What is refused, and why",
+}
+
+
+@dataclass(frozen=True)
+class Model:
+    """What a description says beside its variables: a name, of what it is, the tolerance of its steps, starts."""
+
+    name: str
+    description: str
+    tolerance: float
+    starts: Mapping[str, float]
+
+
+def description(model: Model, variables: Sequence[Variable], fmi: str, token: str) -> bytes:
+    """Return the description: the same input gives the same bytes.
+
+    Parameters
+    ----------
+    model, variables
+        What is described; inputs and parameters have a start, in the model or in themselves.
+    fmi
+        ``3.0`` or ``2.0``.
+    token
+        By which the library knows that the description is its own.
+    """
+    head = {
+        "fmiVersion": fmi,
+        "modelName": model.name,
+        "guid" if fmi == "2.0" else "instantiationToken": token,
+        "description": model.description,
+        "version": _core.VERSION,
+        "copyright": COPYRIGHT,
+        "license": LICENSE,
+        "generationTool": f"hersey {_core.VERSION}",
+        "variableNamingConvention": "flat",
+    }
+    root = Xml.Element("fmiModelDescription", head)
+    root.append(_co_simulation(fmi))
+    root.append(unit_definitions({v.unit for v in variables if v.unit}))
+    categories = Xml.SubElement(root, "LogCategories")
+    for name, meaning in _CATEGORIES.items():
+        Xml.SubElement(categories, "Category", name=name, description=meaning)
+    experiment = {"startTime": 0.0, "stopTime": STOP, "tolerance": model.tolerance, "stepSize": STEP}
+    Xml.SubElement(root, "DefaultExperiment", {name: repr(value) for name, value in experiment.items()})
+    listed = Xml.SubElement(root, "ModelVariables")
+    listed.extend((_variable_2 if fmi == "2.0" else _variable_3)(v, model.starts) for v in variables)
+    root.append((_structure_2 if fmi == "2.0" else _structure_3)(variables))
+    Xml.indent(root)
+    return b'<?xml version="1.0" encoding="UTF-8"?>\n' + Xml.tostring(root, encoding="utf-8") + b"\n"
+
+
+def _co_simulation(fmi: str) -> Xml.Element:
+    """What the library can do; its own tests hold it to that."""
+    able = {"modelIdentifier": LIBRARY, "canHandleVariableCommunicationStepSize": "true"}
+    if fmi == "2.0":
+        able |= {"canInterpolateInputs": "true", "canGetAndSetFMUstate": "true", "canSerializeFMUstate": "true"}
+    else:
+        able |= {"canGetAndSetFMUState": "true", "canSerializeFMUState": "true"}
+        able |= {"hasEventMode": "true", "mightReturnEarlyFromDoStep": "true"}
+    return Xml.Element("CoSimulation", able)
+
+
+def _start(variable: Variable, starts: Mapping[str, float]) -> dict[str, str]:
+    if variable.causality not in ("input", "parameter"):
+        return {}
+    value = starts.get(variable.name)
+    return {"start": variable.start if value is None else repr(float(value))}
+
+
+def _common(variable: Variable) -> dict[str, str]:
+    return {
+        "name": variable.name,
+        "valueReference": str(variable.reference),
+        "description": variable.description,
+        "causality": variable.causality,
+        "variability": variable.variability,
+    }
+
+
+def _initial(variable: Variable) -> dict[str, str]:
+    how = _INITIAL.get(variable.causality)
+    return {"initial": how} if how else {}
+
+
+def _units(variable: Variable) -> dict[str, str]:
+    if not variable.unit:
+        return {}
+    display = shown(variable.unit)
+    return {"unit": variable.unit} | ({"displayUnit": display} if display else {})
+
+
+def _variable_3(variable: Variable, starts: Mapping[str, float]) -> Xml.Element:
+    kind = {**_common(variable), **_initial(variable), **_units(variable), **_start(variable, starts)}
+    return Xml.Element(variable.type, kind)
+
+
+def _variable_2(variable: Variable, starts: Mapping[str, float]) -> Xml.Element:
+    element = Xml.Element("ScalarVariable", {**_common(variable), **_initial(variable)})
+    Xml.SubElement(element, _TYPES_2[variable.type], {**_units(variable), **_start(variable, starts)})
+    return element
+
+
+def _structure_3(variables: Sequence[Variable]) -> Xml.Element:
+    """Every output hangs on what it will, and all are calculated at the start."""
+    structure = Xml.Element("ModelStructure")
+    for name in ("Output", "InitialUnknown"):
+        for variable in variables:
+            if variable.causality == "output":
+                Xml.SubElement(structure, name, valueReference=str(variable.reference))
+    return structure
+
+
+def _structure_2(variables: Sequence[Variable]) -> Xml.Element:
+    """The same; variables are counted from 1 in the order of the list."""
+    structure = Xml.Element("ModelStructure")
+    for name in ("Outputs", "InitialUnknowns"):
+        unknowns = Xml.SubElement(structure, name)
+        for index, variable in enumerate(variables, 1):
+            if variable.causality == "output":
+                Xml.SubElement(unknowns, "Unknown", index=str(index))
+    return structure

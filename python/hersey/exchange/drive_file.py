@@ -1,0 +1,90 @@
+"""`resources/drive.txt`: what a unit's library reads of its drive, in SI, a ``name = value`` a line."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from hersey.errors import ParameterError
+from hersey.lubrication.mixed_drag import MixedDrag
+from hersey.motion.drag import AnyDrag, BesideShape, Drag, DragTable
+from hersey.motion.simulation import Drivetrain
+
+#: What one line holds.
+Value = str | float | Sequence[float]
+#: Law of viscosity by the name of its first coefficients.
+_VISCOSITIES = {("prefactor", "activation_energy"): "arrhenius", ("prefactor", "slope"): "vogel"}
+_WALTHER = "walther"
+_NEAR_REST = ("bristle_stiffness", "bristle_damping", "static_force")
+
+
+def drive_values(train: Drivetrain, drag: AnyDrag) -> dict[str, Value]:
+    """Return what the file holds of a drivetrain and a drag; what is not stated is left out.
+
+    Raises
+    ------
+    ParameterError
+        If the library knows no such law.
+    """
+    values: dict[str, Value] = {"stiffness": train.stiffness, "mass": train.mass}
+    if train.grip is not None:
+        values["grip"] = train.grip
+    if isinstance(drag, Drag):
+        values |= _power(drag)
+    elif isinstance(drag, DragTable):
+        values |= {"law": "table", "speeds": drag.speeds, "forces": drag.forces}
+        values |= {"temperature_law": "none"}
+    elif isinstance(drag, MixedDrag):
+        values |= _mixed(drag)
+    else:
+        raise ParameterError(f"a unit knows no drag of the kind {type(drag).__name__}")
+    assert isinstance(drag, BesideShape)
+    near = {name: getattr(drag, name) for name in _NEAR_REST}
+    values |= {name: value for name, value in near.items() if value is not None}
+    return values | {
+        "stick_speed": drag.stick_speed,  # type: ignore[attr-defined]  # every law has it
+        "closure": drag.closure,
+        "rest_force": drag.rest_force,
+        "rest_damping": drag.rest_damping,
+    }
+
+
+def _power(drag: Drag) -> dict[str, Value]:
+    names = ["transition_force", "transition_speed", "ehl_exponent", "mixed_exponent"]
+    values: dict[str, Value] = {"law": "power", "temperature_law": "none"}
+    if drag.reference_temperature is not None:
+        values["temperature_law"] = "power"
+        names += ["reference_temperature", "temperature_zero"]
+        names += ["force_temperature_exponent", "speed_temperature_exponent", "rest_temperature_slope"]
+    if drag.static_growth:
+        names += ["static_growth", "static_growth_time"]
+    return values | {name: getattr(drag, name) for name in names}
+
+
+def _mixed(drag: MixedDrag) -> dict[str, Value]:
+    lubricant, friction = drag.contact.lubricant, drag.contact.friction
+    coefficients = dict(lubricant.law.coefficients)
+    first = tuple(coefficients)[:2]
+    return {
+        "law": "mixed",
+        "numbers": [float(number) for number in drag.contact.numbers(drag.temperature)],  # type: ignore[arg-type]
+        "viscosity": float(lubricant.viscosity(drag.temperature)),
+        "temperature_law": _VISCOSITIES.get(first, _WALTHER),
+        "viscosity_numbers": list(coefficients.values()),
+        "reference_temperature": drag.temperature,
+        "boundary_temperature_slope": float(friction.slope / friction.at(drag.temperature)),  # type: ignore[arg-type]
+        "rest_temperature_slope": drag.rest_temperature_slope,
+    }
+
+
+def drive_text(values: Mapping[str, Value], remarks: Sequence[str] = ()) -> str:
+    """Return the file: remarks first, numbers to their last digit."""
+    lines = [f"# {remark}" for remark in remarks]
+    return "\n".join([*lines, *(f"{name} = {_written(value)}" for name, value in values.items())]) + "\n"
+
+
+def _written(value: Value) -> str:
+    if isinstance(value, str):
+        return value
+    if isinstance(value, int | float):
+        return repr(float(value))
+    return " ".join(repr(float(number)) for number in value)

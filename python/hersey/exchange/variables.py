@@ -1,0 +1,58 @@
+"""The variables of a unit, as the library itself tells them."""
+
+from __future__ import annotations
+
+import ctypes
+from dataclasses import dataclass
+from pathlib import Path
+
+from hersey.errors import MissingFileError, ParameterError
+
+#: What a library must have to be one of hersey's: the function that names its variables.
+_TABLE = "hersey_variables"
+
+
+@dataclass(frozen=True)
+class Variable:
+    """One variable: its number for FMI, name, FMI 3.0 type, causality, variability, unit, start, and what it is.
+
+    ``unit`` is that of the value and empty for a pure number; ``start`` is empty where the drive says it.
+    """
+
+    reference: int
+    name: str
+    type: str
+    causality: str
+    variability: str
+    unit: str
+    start: str
+    description: str
+
+
+def variables_of(library: Path) -> tuple[Variable, ...]:
+    """Return the variables that a library of this machine's kind tells.
+
+    Raises
+    ------
+    MissingFileError
+        If it is not there.
+    ParameterError
+        If it cannot be loaded, or is no library of hersey.
+    """
+    if not library.is_file():
+        raise MissingFileError(
+            f"this install has no library for units ({library.name} is missing): build it with make build, or "
+            "install a wheel of hersey"
+        )
+    try:
+        tell = getattr(ctypes.CDLL(str(library)), _TABLE)
+    except (OSError, AttributeError) as error:
+        raise ParameterError(f"{library} cannot be used as hersey's library: {error}") from None
+    tell.restype = ctypes.c_char_p
+    return table(tell().decode("utf-8"))
+
+
+def table(text: str) -> tuple[Variable, ...]:
+    """Return the variables of a table: a line each, its parts between tabs."""
+    rows = [line.split("\t") for line in text.splitlines() if line.strip() and not line.startswith("#")]
+    return tuple(Variable(int(reference), *rest) for reference, *rest in rows)
