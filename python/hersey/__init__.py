@@ -53,6 +53,7 @@ if TYPE_CHECKING:
     from hersey.damping.rest import RestOfDrive
     from hersey.damping.surface import DampingSurface
     from hersey.errors import HerseyError
+    from hersey.exchange.unit import ExportedUnit, export_fmu
     from hersey.identification import CycleRecord, IdentifiedDrive, cycles, identify
     from hersey.inspection import Inspection, inspect
     from hersey.life.ageing_maps import AgeingMaps
@@ -172,6 +173,7 @@ _HOMES = {
     "life.population": "BLife Population weibull",
     "life.campaign": "Campaign",
     "life.film.through_life": "FilmLife film_life",
+    "exchange.unit": "ExportedUnit export_fmu",
 }
 _HOME_OF = {name: module for module, names in _HOMES.items() for name in names.split()}
 
@@ -193,6 +195,7 @@ __all__ = [
     "Drivetrain",
     "Endings",
     "Estimate",
+    "ExportedUnit",
     "Film",
     "FilmLife",
     "Growth",
@@ -246,6 +249,7 @@ __all__ = [
     "disturbance",
     "drag_torque",
     "endings",
+    "export_fmu",
     "film_life",
     "film_thickness",
     "fit",

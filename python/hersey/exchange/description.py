@@ -26,7 +26,7 @@ _CATEGORIES = {
 
 @dataclass(frozen=True)
 class Model:
-    """What a description says beside its variables: a name, of what it is, the tolerance of its steps, starts."""
+    """What a description says beside its variables: name, what it is of, tolerance of the steps, starts."""
 
     name: str
     description: str
@@ -69,14 +69,19 @@ def description(model: Model, variables: Sequence[Variable], fmi: str, token: st
     listed.extend((_variable_2 if fmi == "2.0" else _variable_3)(v, model.starts) for v in variables)
     root.append((_structure_2 if fmi == "2.0" else _structure_3)(variables))
     Xml.indent(root)
-    return b'<?xml version="1.0" encoding="UTF-8"?>\n' + Xml.tostring(root, encoding="utf-8") + b"\n"
+    text = Xml.tostring(root, encoding="unicode")
+    return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'.encode()
 
 
 def _co_simulation(fmi: str) -> Xml.Element:
     """What the library can do; its own tests hold it to that."""
     able = {"modelIdentifier": LIBRARY, "canHandleVariableCommunicationStepSize": "true"}
     if fmi == "2.0":
-        able |= {"canInterpolateInputs": "true", "canGetAndSetFMUstate": "true", "canSerializeFMUstate": "true"}
+        able |= {
+            "canInterpolateInputs": "true",
+            "canGetAndSetFMUstate": "true",
+            "canSerializeFMUstate": "true",
+        }
     else:
         able |= {"canGetAndSetFMUState": "true", "canSerializeFMUState": "true"}
         able |= {"hasEventMode": "true", "mightReturnEarlyFromDoStep": "true"}

@@ -38,7 +38,8 @@ body { max-width: 60rem; margin: 0 auto; padding: 1rem 1.25rem 3rem; color: #1a1
   font: 15px/1.5 "Segoe UI", "Helvetica Neue", Arial, "Liberation Sans", sans-serif; }
 h1 { font-size: 1.4rem; margin: .5rem 0 .25rem; } h2 { font-size: 1.05rem; margin: 1.75rem 0 .4rem; }
 table { border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nums; }
-th, td { text-align: left; vertical-align: top; padding: .25rem .75rem .25rem 0; border-bottom: 1px solid #ddd; }
+th, td { text-align: left; vertical-align: top; padding: .25rem .75rem .25rem 0;
+  border-bottom: 1px solid #ddd; }
 td.n { text-align: right; white-space: nowrap; } th.n { text-align: right; }
 code { font-family: ui-monospace, Consolas, "DejaVu Sans Mono", monospace; font-size: .9em; }
 .facts { color: #555; } li { margin: .2rem 0; }
@@ -51,14 +52,14 @@ _GROUPS = {
 }
 _EVENTS = {
     "3.0": (
-        "With event mode a step returns early at every change of mode (stick, release, entry of mixed lubrication or "
-        "of the full film, the roll beginning and ceasing to slip), so that outputs can be read just there. Without "
-        "it steps go through changes of mode; the motion is the same, since each change is located to rounding "
-        "inside the step."
+        "With event mode a step returns early at every change of mode (stick, release, entry of mixed "
+        "lubrication or of the full film, the roll beginning and ceasing to slip), so that outputs can be "
+        "read just there. Without it steps go through changes of mode; the motion is the same, since each "
+        "change is located to rounding inside the step."
     ),
     "2.0": (
-        "Steps go through changes of mode (stick, release, entry of mixed lubrication or of the full film), each of "
-        "which is located to rounding inside the step."
+        "Steps go through changes of mode (stick, release, entry of mixed lubrication or of the full film), "
+        "each of which is located to rounding inside the step."
     ),
 }
 _USE = {
@@ -83,9 +84,9 @@ def page(model: Model, variables: Sequence[Variable], facts: Mapping[str, str], 
         f"<title>{escape(model.name)}</title>\n<style>\n{_STYLE}</style>\n</head>\n<body>\n"
         f"<h1>{escape(model.name)}</h1>\n<p>{escape(model.description)}</p>\n"
         f'<ul class="facts">{told}</ul>\n{tables}'
-        f"<h2>Steps and events</h2>\n<p>{_EVENTS[fmi]} The size of a communication step changes nothing else: the "
-        "library takes its own steps. State can be saved, restored and serialized, to the bit; any number of "
-        "instances may run in one process.</p>\n"
+        f"<h2>Steps and events</h2>\n<p>{_EVENTS[fmi]} The size of a communication step changes nothing "
+        "else: the library takes its own steps. State can be saved, restored and serialized, to the bit; any "
+        "number of instances may run in one process.</p>\n"
         f"<h2>Use</h2>\n<ul>{uses}</ul>\n"
         "<h2>Licence</h2>\n<p>MIT: see licenses/license.txt.</p>\n</body>\n</html>\n"
     )

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+import numpy as np
+
 from hersey.errors import ParameterError
 from hersey.lubrication.mixed_drag import MixedDrag
 from hersey.motion.drag import AnyDrag, BesideShape, Drag, DragTable
@@ -41,7 +43,7 @@ def drive_values(train: Drivetrain, drag: AnyDrag) -> dict[str, Value]:
     near = {name: getattr(drag, name) for name in _NEAR_REST}
     values |= {name: value for name, value in near.items() if value is not None}
     return values | {
-        "stick_speed": drag.stick_speed,  # type: ignore[attr-defined]  # every law has it
+        "stick_speed": drag.stick_speed,
         "closure": drag.closure,
         "rest_force": drag.rest_force,
         "rest_damping": drag.rest_damping,
@@ -62,16 +64,17 @@ def _power(drag: Drag) -> dict[str, Value]:
 
 def _mixed(drag: MixedDrag) -> dict[str, Value]:
     lubricant, friction = drag.contact.lubricant, drag.contact.friction
+    kelvin = np.asarray(drag.temperature, dtype=float)
     coefficients = dict(lubricant.law.coefficients)
-    first = tuple(coefficients)[:2]
+    first, second, *_ = coefficients
     return {
         "law": "mixed",
-        "numbers": [float(number) for number in drag.contact.numbers(drag.temperature)],  # type: ignore[arg-type]
-        "viscosity": float(lubricant.viscosity(drag.temperature)),
-        "temperature_law": _VISCOSITIES.get(first, _WALTHER),
+        "numbers": [float(number) for number in drag.contact.numbers(kelvin)],
+        "viscosity": float(lubricant.viscosity(kelvin)),
+        "temperature_law": _VISCOSITIES.get((first, second), _WALTHER),
         "viscosity_numbers": list(coefficients.values()),
         "reference_temperature": drag.temperature,
-        "boundary_temperature_slope": float(friction.slope / friction.at(drag.temperature)),  # type: ignore[arg-type]
+        "boundary_temperature_slope": float(friction.slope / friction.at(kelvin)),
         "rest_temperature_slope": drag.rest_temperature_slope,
     }
 

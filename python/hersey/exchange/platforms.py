@@ -16,7 +16,7 @@ LIBRARY = "hersey"
 
 @dataclass(frozen=True)
 class Platform:
-    """A platform by its name in FMI 3.0, its folder in FMI 2.0 (none where that has no name for it), its ending."""
+    """A platform: its name in FMI 3.0, its folder in FMI 2.0 (empty where that has none), its ending."""
 
     name: str
     folder_2: str
@@ -75,7 +75,9 @@ def platform_named(name: str) -> Platform:
 def this_platform() -> Platform:
     """Return the platform of this Python."""
     processor = platform.machine().lower()
-    return platform_named(f"{_PROCESSORS.get(processor, processor)}-{_SYSTEMS.get(sys.platform, sys.platform)}")
+    return platform_named(
+        f"{_PROCESSORS.get(processor, processor)}-{_SYSTEMS.get(sys.platform, sys.platform)}"
+    )
 
 
 def own_library() -> Path:
@@ -116,21 +118,23 @@ def _platforms_of(content: bytes) -> tuple[str, ...]:
 
 
 def _told(content: bytes) -> tuple[str, ...]:
-    kind, found, system = content[:4], [], ""
+    kind, system = content[:4], ""
+    numbers: tuple[int, ...] = ()
+    known: dict[int, str] = {}
     if kind == b"\x7fELF":
         system, order = "linux", ">" if content[5:6] == b"\x02" else "<"
-        found = [_ELF.get(*struct.unpack_from(f"{order}H", content, 18), "another processor")]
+        numbers, known = struct.unpack_from(f"{order}H", content, 18), _ELF
     elif kind[:2] == b"MZ":
         (head,) = struct.unpack_from("<I", content, 0x3C)
         if content[head : head + 4] == b"PE\0\0":
             system = "windows"
-            found = [_PE.get(*struct.unpack_from("<H", content, head + 4), "another processor")]
+            numbers, known = struct.unpack_from("<H", content, head + 4), _PE
     elif kind in (b"\xcf\xfa\xed\xfe", b"\xce\xfa\xed\xfe"):
-        system, found = "darwin", [_MACH.get(*struct.unpack_from("<I", content, 4), "another processor")]
+        system, numbers, known = "darwin", struct.unpack_from("<I", content, 4), _MACH
     elif kind == b"\xca\xfe\xba\xbe":
         (count,) = struct.unpack_from(">I", content, 4)
         if count <= _MOST_IN_FAT:
             system = "darwin"
-            numbers = [struct.unpack_from(">I", content, 8 + 20 * i)[0] for i in range(count)]
-            found = [_MACH.get(number, "another processor") for number in numbers]
-    return tuple(f"{processor}-{system}" for processor in found)
+            numbers = tuple(struct.unpack_from(">I", content, 8 + 20 * i)[0] for i in range(count))
+            known = _MACH
+    return tuple(f"{known.get(number, 'another processor')}-{system}" for number in numbers)

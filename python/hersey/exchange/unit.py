@@ -1,4 +1,4 @@
-"""A drive as a Functional Mock-up Unit: the core in a library, what it is told, and what tools are told of it."""
+"""A drive as a Functional Mock-up Unit: the core in a library, what it is told, what tools are told."""
 
 from __future__ import annotations
 
@@ -39,8 +39,8 @@ _NONE: Mapping[str, str | Path] = MappingProxyType({})
 
 
 @dataclass(frozen=True)
-class Unit:
-    """A unit that was written: its file, version, drive, token, platforms, variables and their starts.
+class ExportedUnit:
+    """A unit that was written: file, version, drive, start, token, platforms, variables and their starts.
 
     ``facts`` say what it was made of, by what they are about.
     """
@@ -48,6 +48,7 @@ class Unit:
     path: Path
     fmi: str
     drive: str
+    start: str
     token: str
     platforms: tuple[str, ...]
     variables: tuple[Variable, ...]
@@ -76,10 +77,8 @@ class Unit:
             | {"start": self.starts.get(v.name)}
             for v in self.variables
         ]
-        own = ("fmi", "drive", "token", "platforms", "facts")
-        return json_record(
-            {"file": str(self.path), **{n: getattr(self, n) for n in own}, "variables": rows}
-        )
+        own = ("fmi", "drive", "start", "token", "platforms", "facts")
+        return json_record({"file": str(self.path), **{n: getattr(self, n) for n in own}, "variables": rows})
 
 
 @takes_si(drive_speed="belt speed", drive_torque="torque", temperature="temperature", roll_radius="length")
@@ -100,7 +99,7 @@ def export_fmu(
     libraries: Mapping[str, str | Path] = _NONE,
     tolerance: float = TOLERANCE,
     overwrite: bool = False,
-) -> Unit:
+) -> ExportedUnit:
     """Write a drive as a Functional Mock-up Unit for co-simulation, and return what is in it.
 
     The same input gives the same bits. See ``docs/exchange.md`` for its variables, events and platforms.
@@ -147,7 +146,8 @@ def export_fmu(
     simulate(
         train,
         drag,
-        **{DRIVES[drive]: drive_speed if drive == "speed" else _force(drive_torque, roll_radius)},
+        drive_speed=drive_speed if drive == "speed" else None,
+        drive_torque=drive_torque / roll_radius if drive == "torque" and roll_radius else None,
         temperature=temperature,
         start=start,
         duration=_TRIAL,
@@ -174,10 +174,12 @@ def export_fmu(
     )
     contents = {
         "modelDescription.xml": description(model, variables, fmi, token),
-        "resources/drive.txt": drive_text({"format": 1, "token": token, **values}, remarks).encode(),
+        "resources/drive.txt": drive_text({"format": "1", "token": token, **values}, remarks).encode(),
     } | contents
     write_atomically(Path(out), _packed(contents), overwrite=overwrite)
-    return Unit(Path(out), fmi, drive, token, platforms, variables, starts, facts)
+    return ExportedUnit(
+        Path(out), fmi, drive, str(values["start"]), token, platforms, variables, starts, facts
+    )
 
 
 def _refuse(out: str | Path, drive: str, fmi: str, roll_radius: float | None) -> None:
@@ -191,11 +193,6 @@ def _refuse(out: str | Path, drive: str, fmi: str, roll_radius: float | None) ->
         raise ParameterError("a drive by a torque needs the roll_radius at which it acts")
     if roll_radius is not None and not 0 < roll_radius < float("inf"):
         raise ParameterError(f"roll_radius is {roll_radius}: it must be greater than 0")
-
-
-def _force(torque: float, roll_radius: float | None) -> float:
-    assert roll_radius is not None
-    return torque / roll_radius
 
 
 def _values(

@@ -11,7 +11,7 @@ from hersey.units import ZERO_CELSIUS
 
 @dataclass(frozen=True)
 class Unit:
-    """A unit of SI: exponents by base unit, and the one in which people read it, ``factor * value + offset``."""
+    """A unit of SI: exponents by base unit, and that in which people read it, ``factor * value + offset``."""
 
     name: str
     exponents: dict[str, int]

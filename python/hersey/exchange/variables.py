@@ -14,9 +14,9 @@ _TABLE = "hersey_variables"
 
 @dataclass(frozen=True)
 class Variable:
-    """One variable: its number for FMI, name, FMI 3.0 type, causality, variability, unit, start, and what it is.
+    """One variable: its number for FMI, name, type in FMI 3.0, causality and so on.
 
-    ``unit`` is that of the value and empty for a pure number; ``start`` is empty where the drive says it.
+    ``unit`` is empty where the value is no quantity; ``start`` is where the drive says it.
     """
 
     reference: int
@@ -41,8 +41,8 @@ def variables_of(library: Path) -> tuple[Variable, ...]:
     """
     if not library.is_file():
         raise MissingFileError(
-            f"this install has no library for units ({library.name} is missing): build it with make build, or "
-            "install a wheel of hersey"
+            f"this install has no library for units ({library.name} is missing): build it with make build, "
+            "or install a wheel of hersey"
         )
     try:
         tell = getattr(ctypes.CDLL(str(library)), _TABLE)

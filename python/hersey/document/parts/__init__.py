@@ -21,6 +21,7 @@ models      candidates, comparisons of logs, designs
 inspection  what a log holds
 campaign    runs of many units at many ages
 cycles      cycles of a trace and the drive behind them
+exchange    a unit for other tools
 figures     the paper's figures, drawn anew
 decision    what to do, first of all
 analysis    the whole document
@@ -35,6 +36,7 @@ from hersey.document.parts.cycles import CyclesPart, DrivePart
 from hersey.document.parts.decision import DecisionPart, FlagPart, MissingPart, PointDecisionPart
 from hersey.document.parts.drift import DriftPart
 from hersey.document.parts.ending import AgesPart, EndingsPart, GrowthPart
+from hersey.document.parts.exchange import TrialPart, UnitPart, UnitVariablePart
 from hersey.document.parts.figures import FiguresPart
 from hersey.document.parts.film import (
     FilmPart,
@@ -106,6 +108,7 @@ PRINTED: dict[str, type[Part]] = {
     "map": MapPart,
     "plan": PlanPart,
     "warmup": WarmUpPart,
+    "export": UnitPart,
     "figures": FiguresPart,
 }
 
@@ -175,6 +178,9 @@ __all__ = [
     "TrajectoryPart",
     "TransitionAt",
     "TransitionPart",
+    "TrialPart",
+    "UnitPart",
+    "UnitVariablePart",
     "VerdictPart",
     "WarmUpPart",
 ]

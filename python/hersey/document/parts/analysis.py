@@ -13,6 +13,7 @@ from hersey.document.parts.campaign import CampaignPart
 from hersey.document.parts.carried import CarriedPart
 from hersey.document.parts.cycles import CyclesPart
 from hersey.document.parts.decision import DecisionPart
+from hersey.document.parts.exchange import UnitPart
 from hersey.document.parts.figures import FiguresPart
 from hersey.document.parts.film import FilmPart
 from hersey.document.parts.fit import FitPart, RegimePart
@@ -70,4 +71,5 @@ class Analysis(Part):
     stick_speed_sweep: StickSpeedPart | None = None
     plan: PlanPart | None = None
     warm_up: WarmUpPart | None = None
+    unit: UnitPart | None = None
     figures: FiguresPart | None = None

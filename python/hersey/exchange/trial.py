@@ -1,0 +1,122 @@
+"""A unit tried before it is handed on: validated by FMPy, and run by it beside the core."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+
+from hersey.errors import ParameterError
+from hersey.exchange.unit import DRIVES, ExportedUnit
+from hersey.motion.drag import AnyDrag
+from hersey.motion.simulation import Drivetrain, Trajectory, simulate
+
+#: How far unit and core may differ, as a share of the greatest value.
+AGREEMENT = 1e-9
+#: Quantities compared.
+COMPARED = ("belt_speed", "spring_force")
+#: The run: so many communication steps over so many times that in which the belt swings by a radian; s where
+#: no spring holds it.
+_STEPS, _SWINGS, _FREE = 200, 40.0, 0.2
+#: Torque of the run over that which just starts a belt at rest.
+_OVER = 1.2
+
+
+@dataclass(frozen=True)
+class Trial:
+    """What a trial found: problems in FMPy's words, and the greatest differences from the core, by quantity.
+
+    Differences are shares of the greatest value; ``events`` are the changes of mode in the run.
+    """
+
+    problems: tuple[str, ...]
+    differences: dict[str, float]
+    events: int
+
+    @property
+    def ok(self) -> bool:
+        """Whether nothing was found."""
+        return not self.problems and all(gap <= AGREEMENT for gap in self.differences.values())
+
+    def summary(self) -> str:
+        """Return it in words."""
+        if self.problems:
+            return "\n".join(["FMPy finds the unit not valid:", *(f"- {each}" for each in self.problems)])
+        said = ", ".join(f"{gap:.1e} in {name.replace('_', ' ')}" for name, gap in self.differences.items())
+        verdict = "it runs as the core does" if self.ok else "it does NOT run as the core does"
+        return f"FMPy finds the unit valid; {verdict}: {said}, over {self.events} changes of mode"
+
+
+def try_unit(unit: ExportedUnit, train: Drivetrain, drag: AnyDrag) -> Trial:
+    """Validate a unit and run it in FMPy beside the core, at a drive that makes it move.
+
+    Parameters
+    ----------
+    unit
+        As `export_fmu` returned it.
+    train, drag
+        What it was made of.
+
+    Raises
+    ------
+    ParameterError
+        If FMPy is not installed.
+    """
+    fmpy = _fmpy()
+    found = import_module("fmpy.validation").validate_fmu(str(unit.path))
+    problems = tuple(" ".join(str(each).split()) for each in found)
+    if problems:
+        return Trial(problems, {}, 0)
+    temperature = unit.starts.get("temperature")
+    radius = unit.starts.get("roll_radius", 1.0)
+    law = drag.law_at(temperature)
+    value = law.transition_speed if unit.drive == "speed" else _OVER * law.holding_force * radius
+    duration = _SWINGS * float(np.sqrt(train.mass / train.stiffness)) if train.stiffness > 0 else _FREE
+    run = simulate(
+        train,
+        drag,
+        drive_speed=value if unit.drive == "speed" else None,
+        drive_torque=value / radius if unit.drive == "torque" else None,
+        temperature=temperature,
+        duration=duration,
+        samples=_STEPS + 1,
+        tolerance=unit.starts["tolerance"],
+        start=_start(unit),
+    )
+    try:
+        ran = fmpy.simulate_fmu(
+            str(unit.path),
+            stop_time=duration,
+            output_interval=duration / _STEPS,
+            start_values={DRIVES[unit.drive]: value},
+            output=COMPARED,
+            validate=False,
+        )
+    except Exception as error:  # FMPy raises that of Python's for all that a library refuses
+        return Trial((f"it does not run: {error}",), {}, 0)
+    return Trial((), _differences(run, ran), len(run.events))
+
+
+def _start(unit: ExportedUnit) -> str | tuple[float, float]:
+    if unit.start != "given":
+        return unit.start
+    return unit.starts["start_belt_speed"], unit.starts["start_stretch"]
+
+
+def _differences(run: Trajectory, ran: Any) -> dict[str, float]:
+    """Greatest differences at the same times, as shares of the greatest value."""
+    gaps = {}
+    for name in COMPARED:
+        core = getattr(run, name)
+        gap = np.abs(core - ran[name]) if ran.size == core.size else np.array([np.inf])
+        gaps[name] = float(np.max(gap) / (np.max(np.abs(core)) or 1.0))
+    return gaps
+
+
+def _fmpy() -> Any:
+    try:
+        return import_module("fmpy")
+    except ImportError:
+        raise ParameterError("to check a unit FMPy is needed: pip install 'hersey[exchange]'") from None
