@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -43,6 +44,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("units")
 
 
+@cache
 def mixed_drag() -> hersey.MixedDrag:
     machine = hersey.read_machine(Path(__file__).parents[2] / "examples" / "machine.toml")
     drag = machine.mixed_drag(423.15)

@@ -91,6 +91,8 @@ def fmu(
     """
     if out.suffix != ".fmu":
         raise OutputError(f"--out {out}: name a file that ends in .fmu")
+    if drive != "speed" and drive_speed:
+        raise ParameterError("--drive-speed goes with --drive speed: leave one of them out")
     others = _libraries(library or [])
     may_write(out, force, [fit_file, machine_file, *others.values()])
 

@@ -157,8 +157,8 @@ def export_fmu(
     values = _values(
         train, drag, drive, (drive_speed, drive_torque), temperature, start, roll_radius, tolerance
     )
-    binaries, platforms = _binaries(libraries, fmi)
     variables = _own(variables_of(own_library()), values)
+    binaries, platforms = _binaries(libraries, fmi)
     facts = _facts(fitted, roll_radius, drive)
     told = printable(" ".join([f"{name}, driven by a {drive}.", *(f"{k}: {v}." for k, v in facts.items())]))
     starts = {key: value for key, value in values.items() if isinstance(value, int | float)}

@@ -1,0 +1,203 @@
+"""``hersey export fmu``: a fit and a machine's file become a unit; what is wrong is said in a line."""
+
+from __future__ import annotations
+
+import json
+import re
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import fmpy
+import numpy as np
+import pytest
+from fmpy.validation import validate_fmu
+
+import hersey
+from hersey.document.saved_fit import read_fit
+from hersey.exchange import trial as trying
+from hersey.exchange.trial import Trial, try_unit
+from tests.cli.command import Done, run, run_apart
+from tests.conftest import ROOT
+from tests.exchange.test_against_core import DRAG, TRAIN, far
+
+MACHINE = ROOT / "tests" / "stand" / "machine.toml"
+HOT = ["--temperature", "150 degC"]
+Typed = Callable[..., Done]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory, bench_csv: Path) -> Path:
+    """A fit, one without temperature, one without a transition, and other documents."""
+    folder = tmp_path_factory.mktemp("export")
+    fit = run("fit", bench_csv, "--tare", "standing", "--json", cwd=folder).stdout
+    (folder / "fit.json").write_text(fit)
+    (folder / "short.json").write_text(fit[: len(fit) // 2])
+    document = json.loads(fit)
+    document["fit"]["transition"], document["fit"]["no_transition"] = None, "too few slow dwells"
+    for field in ("values", "variables"):
+        document["fit"][field] = document["fit"][field][:3]
+    document["fit"]["covariance"] = [row[:3] for row in document["fit"]["covariance"][:3]]
+    document["fit"]["variance_parts"], document["fit"]["variance_uncertainty"] = [], []
+    (folder / "rising.json").write_text(json.dumps(document))
+    isothermal = run("fit", bench_csv, "--tare", "standing", "--isothermal", "--json", cwd=folder)
+    (folder / "isothermal.json").write_text(isothermal.stdout)
+    (folder / "cycle.json").write_text(run("simulate", "--json", cwd=folder).stdout)
+    text = MACHINE.read_text()
+    (folder / "machine.toml").write_text(text)
+    (folder / "slack.toml").write_text(re.sub(r"(?m)^stiffness.*\n", "", text, count=1))
+    fixed = text.replace("[drivetrain]", '[drivetrain]\nstick_speed_rule = "fixed"', 1)
+    (folder / "fixed.toml").write_text(fixed)
+    return folder
+
+
+@pytest.fixture
+def typed(folder: Path, tmp_path: Path) -> Typed:
+    """Type the command for that fit and machine, and other options."""
+
+    def do(*options: str | Path, fit: str = "fit.json", machine: str = "machine.toml") -> Done:
+        named = [] if "--out" in options else ["--out", tmp_path / "drive.fmu"]
+        return run("export", "fmu", folder / fit, folder / machine, *named, *options, cwd=tmp_path)
+
+    return do
+
+
+def test_a_fit_and_a_machine_become_a_unit(typed: Typed, folder: Path, tmp_path: Path) -> None:
+    done = typed(*HOT, "--drive-speed", "20 mm/s", "--check")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "drive.fmu: FMI 3.0 for co-simulation, x86_64-linux" in done.stdout or "linux" not in sys.platform
+    assert "FMPy finds the unit valid; it runs as the core does" in done.stdout
+    unit = tmp_path / "drive.fmu"
+    assert validate_fmu(str(unit)) == []
+    machine = hersey.read_machine(folder / "machine.toml")
+    drag = read_fit(folder / "fit.json").drag(**machine.belt)
+    core = hersey.simulate(
+        machine.train, drag, drive_speed=0.02, temperature=423.15, duration=2.0, samples=51
+    )
+    got = fmpy.simulate_fmu(str(unit), stop_time=2.0, output_interval=0.04)
+    assert core.events
+    assert far(np.asarray(got["belt_speed"]), core.belt_speed) < 1e-9
+    assert far(np.asarray(got["spring_force"]), core.spring_force) < 1e-9
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        ["--fmi", "2.0"],
+        ["--drive", "torque"],
+        ["--start", "steady", "--drive-speed", "60 mm/s"],
+        ["--closure", "lugre", "--bristle-stiffness", "1000 N/mm", "--bristle-damping", "1000 N*s/m"],
+    ],
+)
+def test_options_are_heard(options: list[str], typed: Typed) -> None:
+    done = typed(*HOT, *options, "--check", "--json")
+    assert done.returncode == 0, done.stderr
+    told = json.loads(done.stdout)
+    assert told["fmi"] == ("2.0" if "2.0" in options else "3.0")
+    assert told["drive"] == ("torque" if "torque" in options else "speed")
+    assert told["start"] == ("steady" if "steady" in options else "rest")
+    assert told["check"]["problems"] == []
+    assert max(told["check"]["differences"].values()) < 1e-9
+    starts = {row["name"]: row["start"] for row in told["variables"]}
+    assert ("bristle_stiffness" in starts) == ("lugre" in options)
+    assert starts["temperature"] == pytest.approx(423.15)
+
+
+def test_a_stick_speed_that_is_fixed_holds_at_one_temperature(typed: Typed) -> None:
+    done = typed(*HOT, "--json", machine="fixed.toml")
+    assert done.returncode == 0
+    assert "fixed.toml has a stick speed that is fixed: the unit holds at this one temperature" in done.stderr
+    assert "temperature" not in {row["name"] for row in json.loads(done.stdout)["variables"]}
+
+
+@pytest.mark.parametrize(
+    ("options", "files", "said"),
+    [
+        ([], {}, "the law varies with temperature: give one to start with, --temperature '180 degC'"),
+        (["--temperature", "-300 degC"], {}, "it must be above absolute zero"),
+        ([*HOT, "--fmi", "1.0"], {}, "fmi is '1.0': it must be 3.0 or 2.0"),
+        ([*HOT, "--drive", "wind"], {}, "drive is 'wind': it must be speed or torque"),
+        ([*HOT, "--drive-speed", "20"], {}, "20"),
+        (
+            [*HOT, "--drive", "torque", "--drive-speed", "20 mm/s"],
+            {},
+            "--drive-speed goes with --drive speed",
+        ),
+        ([*HOT, "--closure", "glue"], {}, "glue"),
+        ([*HOT, "--closure", "lugre"], {}, "bristle"),
+        ([*HOT, "--library", "hersey.dll"], {}, "write PLATFORM=FILE, as x86_64-windows=hersey.dll"),
+        ([*HOT, "--library", "amiga=a.so"], {}, "platform 'amiga' is not known"),
+        ([*HOT, "--library", "x86_64-windows=none.dll"], {}, "none.dll cannot be read: No such file"),
+        (
+            [*HOT, *("--library", "x86_64-windows=a.dll") * 2],
+            {},
+            "--library names x86_64-windows twice: give one file for each platform",
+        ),
+        ([*HOT, "--out", "drive.zip"], {}, "--out drive.zip: name a file that ends in .fmu"),
+        ([*HOT, "--out", "none/drive.fmu"], {}, "there is no directory none"),
+        (HOT, {"fit": "short.json"}, "short.json: document: not valid JSON"),
+        (HOT, {"fit": "cycle.json"}, "cycle.json: fit: Field required; write it anew: hersey fit LOG --json"),
+        (HOT, {"fit": "none.json"}, "none.json"),
+        (
+            HOT,
+            {"fit": "isothermal.json"},
+            "the fit is isothermal, so that nothing varies: leave out --temperature",
+        ),
+        (HOT, {"fit": "rising.json"}, "the data show no falling branch (too few slow dwells)"),
+        (HOT, {"machine": "slack.toml"}, "slack.toml: [drivetrain] lacks 'stiffness'"),
+        (HOT, {"machine": "none.toml"}, "none.toml"),
+    ],
+)
+def test_what_is_wrong_is_said_in_a_line(
+    options: list[str], files: dict[str, str], said: str, typed: Typed, tmp_path: Path
+) -> None:
+    done = typed(*options, **files)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert said in done.stderr
+    assert done.stderr.startswith("hersey: ")
+    assert done.stderr.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_nothing_is_replaced_unasked(typed: Typed, tmp_path: Path) -> None:
+    (tmp_path / "drive.fmu").write_text("kept")
+    assert "exists: say --force to replace it" in typed(*HOT).stderr
+    assert (tmp_path / "drive.fmu").read_text() == "kept"
+    assert typed(*HOT, "--force").returncode == 0
+    assert [file.name for file in tmp_path.iterdir()] == ["drive.fmu"]
+
+
+def test_a_unit_in_which_something_is_found_is_not_kept(
+    typed: Typed, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for found in (Trial(("a unit is odd",), {}, 0), Trial((), {"belt_speed": 1e-3}, 4)):
+        monkeypatch.setattr(trying, "try_unit", lambda *_, found=found: found)
+        done = typed(*HOT, "--check")
+        assert done.returncode == 1
+        assert "a unit is odd" in done.stdout or "it does NOT run as the core does: 1.0e-03" in done.stdout
+        assert list(tmp_path.iterdir()) == []
+
+
+def test_a_trial_sees_a_unit_that_is_another(tmp_path: Path) -> None:
+    """Its drag is not that of the core it is compared with."""
+    unit = hersey.export_fmu(tmp_path / "drive.fmu", TRAIN, DRAG)
+    assert try_unit(unit, TRAIN, DRAG).ok
+    other = hersey.Drag(14.0, 0.025, ehl_exponent=-0.7, mixed_exponent=-1.21, stick_speed=3e-4)
+    assert not try_unit(unit, TRAIN, other).ok
+
+
+def test_without_fmpy_the_way_out_is_named(typed: Typed, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "fmpy", None)
+    done = typed(*HOT, "--check")
+    assert done.returncode == 2
+    assert done.stderr == "hersey: to check a unit FMPy is needed: pip install 'hersey[exchange]'\n"
+
+
+def test_a_unit_is_written_without_fmpy(folder: Path, tmp_path: Path) -> None:
+    """The extra is for the check alone; nothing of it is loaded otherwise."""
+    typed = ["hersey", "export", "fmu", *map(str, (folder / "fit.json", folder / "machine.toml")), *HOT]
+    command = "import sys; sys.modules['fmpy'] = None; from hersey.cli import main; "
+    command += f"sys.argv = {[*typed, '--out', 'drive.fmu']!r}; main()"
+    done = run_apart("-c", command, cwd=tmp_path, command=[sys.executable])
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "drive.fmu").exists()
