@@ -35,7 +35,9 @@ RANGES = ("frequency", "stuck_fraction", "speed_max", "stretch_max")
 #: Failures of which the reason is kept.
 TOLD = 20
 #: Time that a task shall take, and that a trial may, s.
-_TASK, _TRIAL = 1.5, 0.2
+_TASK, _TRIAL = 1.5, 0.05
+#: Time below which a task is mostly trouble, s.
+_SHORT = 0.25
 #: Sets of the trial, one number after the other until it takes long enough.
 _TRIED = (1, 4, 16, 64, 256, 1024)
 #: Most sets of a chunk that nobody asked for, which fit in some hundred megabytes.
@@ -182,10 +184,10 @@ def bring(rules: Rules, later: Later) -> tuple[int, dict[str, NDArray[Any]], lis
     return piece.first, values_of(motions), failures
 
 
-def hash_of(rules: Rules, sets: Sets) -> str:
+def hash_of(motions: _core.Sweep) -> str:
     """Return the hash of what sets settle to, to the bit."""
     digest = hashlib.sha256()
-    for values in values_of(rules.follow(sets)).values():
+    for values in values_of(motions).values():
         digest.update(values.tobytes())
     return digest.hexdigest()
 
@@ -195,7 +197,7 @@ def probe(rules: Rules, sample: Sets, seen: tuple[Any, Kind, str] | None) -> str
     if seen is not None:
         path, kind, sha256 = seen
         refuse_unseen(path, kind, sha256)
-    return hash_of(rules, sample)
+    return hash_of(rules.follow(sample))
 
 
 def refuse_early(rules: Rules, sets: Sets) -> None:
@@ -224,24 +226,32 @@ def refuse_early(rules: Rules, sets: Sets) -> None:
             raise ParameterError(str(error).removeprefix(f"set {error.index}: ")) from None
 
 
-def trial(rules: Rules, sets: Sets) -> tuple[Sets, float]:
-    """Return a sample of the sets, and the time that one takes, s: of a sample that takes long enough."""
-    sample, each = sets.sample(1), 0.0
+@dataclass(frozen=True)
+class Trial:
+    """A sample of the sets, the hash of what they settle to here, and the time that one takes, s."""
+
+    sample: Sets
+    sha256: str
+    each: float
+
+
+def trial(rules: Rules, sets: Sets) -> Trial:
+    """Follow a sample that takes long enough to tell how long all take."""
     for count in _TRIED:
         sample = sets.sample(count)
         begun = time.perf_counter()
-        rules.follow(sample)
+        motions = rules.follow(sample)
         took = time.perf_counter() - begun
-        each = took / sample.count
         if took > _TRIAL:
             break
-    return sample, each
+    return Trial(sample, hash_of(motions), took / sample.count)
 
 
 def usual_chunk(sets: int, each: float, workers: int) -> int:
     """Return how many sets a chunk takes where nobody says: a second or two, and all have enough to do."""
-    long = min(_TASK / max(each, 1e-9), _MOST)
-    return int(min(max(min(long, sets / (_TASKS * workers)), sets / _CHUNKS, 1), sets))
+    long, short = (min(time / max(each, 1e-9), _MOST) for time in (_TASK, _SHORT))
+    enough = max(sets / (_TASKS * workers), min(short, sets / (2 * workers)))
+    return int(min(max(min(long, enough), sets / _CHUNKS, 1), sets))
 
 
 def hashes_differ(hashes: Iterable[tuple[str, str]], own: str) -> list[str]:

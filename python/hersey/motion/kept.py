@@ -19,8 +19,8 @@ from hersey.motion.following import (
     NUMBERS,
     Rules,
     Tally,
+    Trial,
     bring,
-    hash_of,
     hashes_differ,
     keep,
     probe,
@@ -121,16 +121,16 @@ def kept(
     scenario = {**rules.told(), "zip": sets.zip, "units": units, "parameters": sets.told()}
     with _connected(client) as known:
         workers = threads if known is None else max(threads_of(known), 1)
-        sample, each = trial(rules, sets)
+        tried = trial(rules, sets)
         cut = None if chunk is None else partial(_cut, sets, chunk)
-        planned = cut or (lambda: Cut.into(sets.shape, usual_chunk(sets.count, each, workers)))
+        planned = cut or (lambda: Cut.into(sets.shape, usual_chunk(sets.count, tried.each, workers)))
         if cut is not None:
             cut()
         layout = partial(_layout, sets, rules, planned, units)
         with opened(path, scenario, layout, cut=cut, resume=resume, overwrite=overwrite) as folder:
             notes: list[str] = []
             if known is not None:
-                notes = _probed(known, rules, sample, (path, kind, sha256_of(scenario)))
+                notes = _probed(known, rules, tried, (path, kind, sha256_of(scenario)))
             return _followed(sets, rules, folder, known, threads, progress, notes)
 
 
@@ -192,10 +192,10 @@ def gathered(
     """Return the numbers of every set as workers find them, flat, the failures, and what to tell."""
     with _connected(client) as known:
         assert known is not None
-        sample, each = trial(rules, sets)
-        wished = usual_chunk(sets.count, each, max(threads_of(known), 1)) if chunk is None else chunk
+        tried = trial(rules, sets)
+        wished = usual_chunk(sets.count, tried.each, max(threads_of(known), 1)) if chunk is None else chunk
         cut = Cut.into(sets.shape, wished)
-        notes = _probed(known, rules, sample, None)
+        notes = _probed(known, rules, tried, None)
         columns: dict[str, NDArray[Any]] = {}
         failures: list[tuple[int, str]] = []
         pieces = _Pieces(sets, cut, range(cut.count))
@@ -231,13 +231,13 @@ def _cut(sets: Sets, chunk: int) -> Cut:
     return cut
 
 
-def _probed(client: Client, rules: Rules, sample: Sets, seen: Any) -> list[str]:
+def _probed(client: Client, rules: Rules, tried: Trial, seen: Any) -> list[str]:
     """Refuse a worker that does not see the folder; return what is told of those with other bits."""
-    found = client.run(probe, rules, sample, seen, on_error="return")
+    found = client.run(probe, rules, tried.sample, seen, on_error="return")
     for error in found.values():
         if isinstance(error, BaseException):
             raise error
-    return hashes_differ(found.items(), hash_of(rules, sample))
+    return hashes_differ(found.items(), tried.sha256)
 
 
 def _layout(sets: Sets, rules: Rules, cut: Callable[[], Cut], units: str) -> Layout:

@@ -5,11 +5,11 @@ from __future__ import annotations
 import logging
 import re
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING, Any
 
 from hersey import _core
-from hersey.errors import MissingFileError, ParameterError
+from hersey.errors import MissingFileError, ParameterError, UnfinishedError
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 _ANSWER = 8.0
 #: Time that workers have to come, s.
 _WORKERS = 60.0
+#: A worker that could not start again is made anew after this time.
+_MENDED_SOON = {"distributed.deploy.lost-worker-timeout": "2s"}
 _WAY_OUT = "pip install 'hersey[scale]'"
 
 
@@ -78,24 +80,45 @@ def connected(client: Client | str) -> Iterator[tuple[Client, str]]:
 
 @contextmanager
 def local_cluster(processes: int) -> Iterator[Client]:
-    """Yield the client of a cluster of so many processes on this machine, which end with this one."""
+    """Yield the client of a cluster of so many processes on this machine, which end with this one.
+
+    Raises
+    ------
+    UnfinishedError
+        If they cannot be started.
+    """
     needs_dask()
     import dask
     from distributed import Client, LocalCluster
 
     quiet()
-    with (
-        dask.config.set({"distributed.worker.daemon": True}),
-        LocalCluster(
-            n_workers=processes,
-            processes=True,
-            threads_per_worker=1,
-            dashboard_address=None,
-            silence_logs=logging.CRITICAL,
-        ) as cluster,
-        Client(cluster, set_as_default=False) as client,
-    ):
+    with ExitStack() as stack:
+        try:
+            stack.enter_context(dask.config.set({"distributed.worker.daemon": True, **_MENDED_SOON}))
+            cluster = stack.enter_context(
+                LocalCluster(
+                    n_workers=processes,
+                    processes=True,
+                    threads_per_worker=1,
+                    dashboard_address=None,
+                    silence_logs=logging.CRITICAL,
+                )
+            )
+            client = stack.enter_context(Client(cluster, set_as_default=False))
+        except Exception as error:
+            reason = str(error).partition("\n")[0]
+            raise UnfinishedError(
+                f"{processes} workers could not be started on this machine ({reason}): ask for fewer, or try "
+                f"again"
+            ) from None
         yield client
+
+
+def mend(client: Client) -> None:
+    """Have the workers of a cluster of ours that could not start again be made anew."""
+    cluster: Any = getattr(client, "cluster", None)
+    if hasattr(cluster, "worker_spec") and len(cluster.workers) < len(cluster.worker_spec):
+        cluster.scale(len(cluster.worker_spec))
 
 
 def quiet() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import queue
+import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
@@ -11,7 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from hersey import _core
 from hersey.errors import ParameterError, UnfinishedError
-from hersey.scale.cluster import connected, refuse_others, threads_of, without_workers
+from hersey.scale.cluster import connected, mend, refuse_others, threads_of, without_workers
 
 if TYPE_CHECKING:
     from distributed import Client, Future
@@ -135,6 +136,7 @@ class _Window:
         self.ended: queue.SimpleQueue[Future[Any]] = queue.SimpleQueue()
         self.begun: dict[Future[Any], tuple[int, int]] = {}
         self.next = 0
+        self.threads, self.asked = 0, -_PATIENCE
 
     def results(self) -> Iterator[tuple[int, Any]]:
         try:
@@ -150,7 +152,12 @@ class _Window:
                     self.client.cancel(list(self.begun))
 
     def _fill(self) -> None:
-        most = max(_AHEAD * threads_of(self.client), 1)
+        if (
+            time.monotonic() - self.asked > _PATIENCE
+        ):  # an answer takes as long as a task of some milliseconds
+            self.threads, self.asked = threads_of(self.client), time.monotonic()
+            mend(self.client)
+        most = max(_AHEAD * self.threads, 1)
         while self.next < len(self.items) and len(self.begun) < most:
             self._begin(self.next, 1)
             self.next += 1
@@ -172,6 +179,7 @@ class _Window:
             except queue.Empty:
                 if self.client.status != "running":
                     raise self._lost() from None
+                mend(self.client)
                 unseen = 0 if threads_of(self.client) else unseen + 1
                 if unseen * _PATIENCE > without_workers():
                     raise UnfinishedError(
