@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -17,7 +18,6 @@ from hersey.errors import ParameterError
 from hersey.motion.drag import BESIDE, Drag
 from hersey.motion.following import usual_chunk
 from hersey.motion.parameters import KINDS, MOST_STEPS, OF_THE_BELT, refuse_too_many, whole
-from hersey.motion.sets import within
 from hersey.motion.simulation import Drivetrain
 from hersey.scale.cluster import connected, threads_of
 from hersey.scale.tasks import done
@@ -76,7 +76,7 @@ def hysteresis_sweep(
     """Return the band of each combination of parameters, as `hysteresis` does for one.
 
     Axes, ``zip``, ``threads``, ``progress`` and ``client`` are those of `sweep`, ``most_steps`` that of
-    `hysteresis`. Workers pay where a band takes milliseconds and more: with ``stribeck`` or ``lugre``.
+    `hysteresis`. On one machine threads do as much as workers.
     ``temperature`` (K) is needed if the drag varies with it, and takes the place of the transition force and
     of all speeds. Without ``lower`` the lower edge is left out (not a number): a tenth of the time.
 
@@ -266,10 +266,7 @@ def _told(first: int, bands: _core.Bands) -> _Told:
 
 def _of_part(rules: BandRules, part: _Part) -> _Told:
     """Return the bands of a part where this runs."""
-    try:
-        return _told(part.first, rules.follow(part.columns))
-    except ParameterError as error:
-        raise within(part.first, error) from None
+    return _told(part.first, rules.follow(part.columns))
 
 
 def _by_workers(
@@ -280,6 +277,7 @@ def _by_workers(
 ) -> _Told:
     """Return the bands as workers find them, each task some seconds of them."""
     sets = columns["mass"].size
+    _refuse_early(rules, columns)
     with connected(client) as (known, _):
         each = usual_chunk(sets, _time_of_one(rules, columns), max(threads_of(known), 1))
         parts = [
@@ -295,10 +293,23 @@ def _by_workers(
     return values, [failure for told in whole_ones for failure in told[1]]
 
 
+def _refuse_early(rules: BandRules, columns: Mapping[str, FloatArray]) -> None:
+    """Have the core look at every set, which it does before it begins with the first."""
+
+    class Begun(Exception):  # noqa: N818 - no error
+        pass
+
+    def begun(_done: int, _all: int) -> None:
+        raise Begun
+
+    with suppress(Begun):
+        rules.follow(columns, progress=begun)
+
+
 def _time_of_one(rules: BandRules, columns: Mapping[str, FloatArray]) -> float:
     """Time that a band takes here, s: the mean of some, spread over all."""
     some = np.unique(np.linspace(0, columns["mass"].size - 1, _TRIED).astype(int))
     sample = {name: column[some] for name, column in columns.items()}
     begun = time.perf_counter()
-    _of_part(rules, _Part(0, sample))
+    rules.follow(sample)
     return (time.perf_counter() - begun) / some.size

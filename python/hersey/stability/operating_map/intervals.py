@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -13,11 +14,12 @@ from hersey.damping.surface import DampingSurface
 from hersey.machine.uncertainty import Uncertainty
 from hersey.motion.drag import Drag
 from hersey.motion.simulation import Drivetrain
+from hersey.scale.tasks import done, in_order
 from hersey.stability.hysteresis_sweep import sweep_bands
 from hersey.stability.operating_map.edges import law_at, laws_at, require_all
 
 if TYPE_CHECKING:
-    pass
+    from distributed import Client
 
 #: Draws for the interval of the transition speed, and for that of V*, which costs a fold each.
 DRAWS, FOLD_DRAWS = 1000, 200
@@ -44,6 +46,32 @@ class Intervals(NamedTuple):
     warnings: tuple[str, ...]
 
 
+@dataclass(frozen=True)
+class _Draws:
+    """What is drawn at every temperature alike; a task of its own draws the rest and looks for the folds."""
+
+    surface: DampingSurface
+    train: Drivetrain
+    drag: Drag
+    uncertain: Mapping[str, FloatArray]
+    roll_radius: float
+    rule: str
+    seed: int
+    draws: int
+
+    def drag_at(self, kelvin: float | None, count: int) -> tuple[dict[str, FloatArray], list[str]]:
+        """Return so many draws of the drag at a temperature (K), and what there is to say of them."""
+        drawn, warned = self.surface.drawn_drag(
+            count,
+            self.seed,
+            roll_radius=self.roll_radius,
+            stick_speed=self.drag.stick_speed,
+            temperature=kelvin,
+            stick_speed_rule=self.rule,
+        )
+        return drawn, [str(each) for each in warned]
+
+
 def intervals(
     surface: DampingSurface,
     train: Drivetrain,
@@ -55,58 +83,32 @@ def intervals(
     seed: int,
     draws: int,
     threads: int,
+    client: Client | str | None = None,
 ) -> Intervals:
     """Return the intervals at each temperature, from draws of the fit and of what is uncertain beside it."""
-    said: dict[str, None] = {}
-
-    def samples(t: float | None, count: int) -> dict[str, FloatArray]:
-        drawn, warned = surface.drawn_drag(
-            count,
-            seed,
-            roll_radius=roll_radius,
-            stick_speed=drag.stick_speed,
-            temperature=t,
-            stick_speed_rule=rule,
-        )
-        said.update(dict.fromkeys(map(str, warned)))
-        return drawn
-
-    levels: list[float | None] = [None] if kelvin is None else kelvin.tolist()
-    transition = np.array([_middle(samples(t, DRAWS)["transition_speed"]) for t in levels]).T
     known = {**asdict(train), "stick_speed": drag.stick_speed}
     rng = np.random.default_rng(seed)
-    uncertainties = {
+    uncertain = {
         name: spread.draw(rng, known[name], draws) for name, spread in uncertainty.items() if name in known
     }
+    drawing = _Draws(surface, train, drag, uncertain, roll_radius, rule, seed, draws)
+    levels: list[float | None] = [None] if kelvin is None else kelvin.tolist()
+    said: dict[str, None] = {}
+    edges = []
+    for t in levels:
+        drawn, words = drawing.drag_at(t, DRAWS)
+        edges.append(_middle(drawn["transition_speed"]))
+        said.update(dict.fromkeys(words))
     few = levels
     if kelvin is not None and kelvin.size > FOLD_TEMPERATURES:
         few = np.linspace(kelvin[0], kelvin[-1], FOLD_TEMPERATURES).tolist()
+    # the threads are those of the core, which share the draws of one temperature
+    task = partial(_folds, drawing, threads if client is None else 1)
     ratios, holdings = [], []
-    for t in few:
-        law, map_ = law_at(drag, t, rule), samples(t, draws)
-        stick = (
-            uncertainties.get("stick_speed", np.array(drag.stick_speed)) * law.stick_speed / drag.stick_speed
-        )
-        band = sweep_bands(
-            train,
-            law,
-            {
-                **uncertainties,
-                **map_,
-                "stick_speed": np.minimum(stick, _BELOW * map_["transition_speed"]),
-            },
-            zip=True,
-            lower=False,
-            threads=threads,
-        )
-        require_all(band)
-        # without stick-slip the belt slides from the transition speed up, if anything moves it
-        upper = np.where(band.columns["upper"] > 0, band.columns["upper"], band.columns["transition"])
-        starts = ~band.columns["stalls"]  # a belt that is not started has no V*
-        counted = upper[starts] if np.count_nonzero(starts) >= _COUNTED * draws else upper
-        low, high = _middle(counted / law.transition_speed)
-        ratios.append((min(low, _FARTHEST), min(high, _FARTHEST)))
-        holdings.append(_middle(_holding(law, stick, map_)))
+    for ratio, held, words in in_order(done(task, few, client=client)):
+        ratios.append(ratio)
+        holdings.append(held)
+        said.update(dict.fromkeys(words))
     upper, holding = np.array(ratios).T, np.array(holdings).T
     if kelvin is not None:
         at = np.array(few, dtype=float)
@@ -115,7 +117,33 @@ def intervals(
             for ends in (upper, holding)
         )
     bend = np.array([law.transition_speed for law in laws_at(drag, kelvin, rule)])
-    return Intervals(transition, upper * bend, holding * roll_radius, tuple(uncertainties), tuple(said))
+    return Intervals(np.array(edges).T, upper * bend, holding * roll_radius, tuple(uncertain), tuple(said))
+
+
+def _folds(
+    drawing: _Draws, threads: int, kelvin: float | None
+) -> tuple[tuple[float, float], tuple[float, float], list[str]]:
+    """V* over the transition speed and what a belt at rest bears (N) at a temperature: 95 % of the draws."""
+    law = law_at(drawing.drag, kelvin, drawing.rule)
+    drawn, words = drawing.drag_at(kelvin, drawing.draws)
+    stick_speed = drawing.drag.stick_speed
+    stick = drawing.uncertain.get("stick_speed", np.array(stick_speed)) * law.stick_speed / stick_speed
+    below = np.minimum(stick, _BELOW * drawn["transition_speed"])
+    band = sweep_bands(
+        drawing.train,
+        law,
+        {**drawing.uncertain, **drawn, "stick_speed": below},
+        zip=True,
+        lower=False,
+        threads=threads,
+    )
+    require_all(band)
+    # without stick-slip the belt slides from the transition speed up, if anything moves it
+    upper = np.where(band.columns["upper"] > 0, band.columns["upper"], band.columns["transition"])
+    starts = ~band.columns["stalls"]  # a belt that is not started has no V*
+    counted = upper[starts] if np.count_nonzero(starts) >= _COUNTED * drawing.draws else upper
+    low, high = _middle(counted / law.transition_speed)
+    return (min(low, _FARTHEST), min(high, _FARTHEST)), _middle(_holding(law, stick, drawn)), words
 
 
 def _holding(law: Drag, stick: FloatArray, drawn: Mapping[str, FloatArray]) -> FloatArray:

@@ -22,7 +22,7 @@ from hersey.stability.operating_map.window import shown_speeds, shown_temperatur
 from hersey.units import convert, takes_si
 
 if TYPE_CHECKING:
-    pass
+    from distributed import Client
 
 
 @takes_si(
@@ -48,6 +48,7 @@ def operating_map(
     seed: int = 0,
     draws: int = FOLD_DRAWS,
     threads: int = 1,
+    client: Client | str | None = None,
 ) -> OperatingMap:
     """Return what the belt does at each temperature and drive speed.
 
@@ -76,6 +77,9 @@ def operating_map(
         Of the draws for the intervals.
     draws, threads
         For the interval of V*, which takes most of the time.
+    client
+        A ``distributed.Client``, or the address of a scheduler: its workers find the interval of V*, a
+        temperature each. On one machine threads are quicker; more machines pay from some 10,000 draws on.
 
     Raises
     ------
@@ -130,6 +134,7 @@ def operating_map(
         seed,
         draws,
         threads,
+        client,
     )
     map_ = OperatingMap(
         temperature=kelvin,
