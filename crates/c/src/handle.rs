@@ -73,11 +73,23 @@ impl Words {
     }
 }
 
-/// An instance and what belongs to it.
+/// An instance and what belongs to it; the mark comes first.
+#[repr(C)]
 pub struct Handle {
     mark: AtomicU64,
     words: Words,
     instance: Mutex<Instance>,
+}
+
+/// Whether a pointer of the caller leads to a mark.
+#[allow(unsafe_code)]
+fn is_marked(pointer: *const c_void, mark: u64) -> bool {
+    let first = pointer.cast::<AtomicU64>();
+    if first.is_null() || !first.is_aligned() {
+        return false;
+    }
+    // SAFETY: a caller passes what it was given and did not give back; of what else it may pass, much lacks the mark
+    unsafe { &*first }.load(Ordering::Relaxed) == mark
 }
 
 /// A call was refused; why has been told.
@@ -106,14 +118,8 @@ impl Handle {
     /// What `pointer` points to, if that is a handle.
     #[allow(unsafe_code)]
     pub fn at<'a>(pointer: *const c_void) -> Option<&'a Self> {
-        let handle = pointer.cast::<Self>();
-        if handle.is_null() || !handle.is_aligned() {
-            return None;
-        }
-        // SAFETY: a caller passes what was created above and is not yet freed; of what else it may pass, much lacks
-        // the mark
-        let handle = unsafe { &*handle };
-        (handle.mark.load(Ordering::Relaxed) == OF_HANDLE).then_some(handle)
+        // SAFETY: the mark says that it was created above and is not yet freed
+        is_marked(pointer, OF_HANDLE).then(|| unsafe { &*pointer.cast::<Self>() })
     }
 
     /// Do something with the instance; `function` is the name by which it was asked for.
@@ -156,6 +162,7 @@ impl Handle {
 }
 
 /// A state that a caller keeps.
+#[repr(C)]
 pub struct State {
     mark: AtomicU64,
     pub saved: Saved,
@@ -169,13 +176,9 @@ impl State {
     /// The state at `pointer`, if there is one.
     #[allow(unsafe_code)]
     pub fn at<'a>(pointer: *const c_void) -> Result<&'a Self, String> {
-        let state = pointer.cast::<Self>();
-        if !state.is_null() && state.is_aligned() {
+        if is_marked(pointer, OF_STATE) {
             // SAFETY: as for handles
-            let state = unsafe { &*state };
-            if state.mark.load(Ordering::Relaxed) == OF_STATE {
-                return Ok(state);
-            }
+            return Ok(unsafe { &*pointer.cast::<Self>() });
         }
         Err("there is no saved state at the pointer".to_owned())
     }
@@ -186,5 +189,47 @@ impl State {
         // SAFETY: as for handles
         drop(unsafe { Box::from_raw(pointer.cast::<Self>()) });
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::samples::BASELINE;
+
+    #[test]
+    fn a_fault_inside_ends_the_instance_and_nothing_else() {
+        let words = || Words::Kept(Mutex::new(CString::default()));
+        let [one, other] = [(); 2].map(|()| Handle::created(words(), || Instance::new(BASELINE)));
+        let handle = Handle::at(one).unwrap();
+        assert!(handle.call("whole", |_| Ok(())).is_ok());
+        assert!(handle.call::<()>("faulty", |_| panic!("on purpose, for the test")).is_err());
+        assert!(handle.call("after", |_| Ok(())).is_err());
+        #[allow(unsafe_code)] // SAFETY: words kept until the next call
+        let kept = unsafe { CStr::from_ptr(handle.kept()) };
+        assert_eq!(kept.to_str(), Ok(&*format!("after: {FAULT}")));
+        assert!(Handle::at(other).unwrap().call("whole", |_| Ok(())).is_ok());
+        Handle::freed(one);
+        Handle::freed(other);
+        assert!(Handle::created(words(), || panic!("on purpose, for the test")).is_null());
+    }
+
+    #[test]
+    fn an_instance_at_work_is_not_entered_again() {
+        let words = Words::Kept(Mutex::new(CString::default()));
+        let pointer = Handle::created(words, || Instance::new(BASELINE));
+        let handle = Handle::at(pointer).unwrap();
+        let inner = handle.call("outer", |_| Ok(handle.call("inner", |_| Ok(())).is_err()));
+        assert!(matches!(inner, Ok(true)));
+        assert!(handle.call("later", |_| Ok(())).is_ok());
+        Handle::freed(pointer);
+    }
+
+    #[test]
+    fn what_is_no_handle_is_not_taken_for_one() {
+        let state = State::created(Instance::new(BASELINE).unwrap().saved());
+        assert!(Handle::at(state).is_none() && Handle::at(std::ptr::null()).is_none());
+        assert!(Handle::at(std::ptr::without_provenance(3)).is_none());
+        assert!(State::at(std::ptr::null()).is_err() && State::freed(state).is_ok());
     }
 }
