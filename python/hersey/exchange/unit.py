@@ -157,7 +157,7 @@ def export_fmu(
     values = _values(
         train, drag, drive, (drive_speed, drive_torque), temperature, start, roll_radius, tolerance
     )
-    variables = _own(variables_of(own_library()), values)
+    variables = _own(variables_of(own_library()), values, fmi)
     binaries, platforms = _binaries(libraries, fmi)
     facts = _facts(fitted, roll_radius, drive)
     told = printable(" ".join([f"{name}, driven by a {drive}.", *(f"{k}: {v}." for k, v in facts.items())]))
@@ -217,9 +217,13 @@ def _values(
     return values | {"start": "given", "start_belt_speed": start[0], "start_stretch": start[1]}
 
 
-def _own(variables: tuple[Variable, ...], values: Mapping[str, Value]) -> tuple[Variable, ...]:
-    """The variables that this drive has: of inputs and parameters those that it gives a value."""
-    return tuple(v for v in variables if v.causality in ("independent", "output") or v.name in values)
+def _own(variables: tuple[Variable, ...], values: Mapping[str, Value], fmi: str) -> tuple[Variable, ...]:
+    """The variables that this drive has: of inputs and parameters those that it gives a value.
+
+    FMI 2.0 needs no time among them, and an importer of it finds fault with one.
+    """
+    always = ("output",) if fmi == "2.0" else ("independent", "output")
+    return tuple(v for v in variables if v.causality in always or v.name in values)
 
 
 def _binaries(libraries: Mapping[str, str | Path], fmi: str) -> tuple[dict[str, bytes], tuple[str, ...]]:
