@@ -34,7 +34,7 @@ import numpy as np
 import psutil
 
 import hersey
-from hersey.motion.following import keep
+from hersey.motion.following import note_of, trial, usual_chunk, values_of
 from hersey.motion.sets import Later
 from hersey.motion.sweep import planned
 from hersey.scale.cluster import local_cluster
@@ -112,7 +112,8 @@ def chunk(folder: Path, sets: int) -> dict[str, Any]:
     varied = {name: some.get(name, given.get(name)) for name in (*order, "stick_speed", "drive_speed")}
     all_sets, rules = planned(TRAIN, DRAG, varied, zip=False, start="rest", duration=None)
     path = folder / "chunk.zarr"
-    cut = Cut.into(all_sets.shape, min(30_000, all_sets.count))
+    wished = usual_chunk(10**9, trial(rules, all_sets).each, WORKERS)
+    cut = Cut.into(all_sets.shape, min(wished, all_sets.count))
     few = {name: values[:2] for name, values in some.items()}
     hersey.sweep(TRAIN, DRAG, **few, out=path)  # of which the empty folder is used
     manifest = kind_of(path).read_manifest(path)
@@ -121,17 +122,20 @@ def chunk(folder: Path, sets: int) -> dict[str, Any]:
 
     variables = tuple(Variable(name, dtype, {}, *more) for name, dtype, *more in manifest["variables"])
     target = kind_of(path).open(path, cut, variables)
-    for each in path.glob("*/c"):
-        shutil.rmtree(each)
+    for each in (*path.glob("*/c/0"), path / "status" / "c"):
+        if each.is_dir():  # of an array with chunks
+            shutil.rmtree(each)
     writing, following = [], []
     for number in range(min(5, cut.count)):
         piece = Later(all_sets, cut, number)
         begun = time.perf_counter()
-        rules.follow(piece.piece().sets)
+        motions = rules.follow(piece.piece().sets)
         following.append(time.perf_counter() - begun)
+        values = values_of(motions)
         begun = time.perf_counter()
-        keep(rules, target, piece)
-        writing.append(time.perf_counter() - begun - following[-1])
+        columns = piece.piece().sets.columns()
+        target.write(number, values, columns, note_of(motions, values, 0))
+        writing.append(time.perf_counter() - begun)
     with local_cluster(WORKERS) as client:
         tasks = 2000
         for _ in done(_nothing, range(100), client=client):
@@ -300,8 +304,9 @@ def peaks(processes: list[int]) -> Iterator[int]:
 PARTS = {"chunk": chunk, "split": split, "kills": kills, "memory": memory}
 HEAD = f"""# Sweeps that outgrow a machine
 
-Written by `python -m benchmarks.scale`, Python {platform.python_version()}, on
-{os.cpu_count()} cores; the paper's law, started from rest. Bounds stand beside the figures. What they mean for 10^9 sets stands in `docs/scale.md`.
+Written by `python -m benchmarks.scale`, Python {platform.python_version()}, on {os.cpu_count()} cores:
+the paper's law, started from rest.
+Bounds stand beside the figures. What they mean for 10^9 sets stands in `docs/scale.md`.
 """
 
 

@@ -164,7 +164,7 @@ def keep(rules: Rules, folder: Folder, later: Later) -> Note:
     try:
         motions = rules.follow(piece.sets)
     except ParameterError as error:
-        raise within(piece.first, error) from None
+        raise within(piece.numbers, error) from None
     values = values_of(motions)
     note = note_of(motions, values, piece.first)
     columns = piece.sets.columns()
@@ -179,7 +179,7 @@ def bring(rules: Rules, later: Later) -> tuple[int, dict[str, NDArray[Any]], lis
     try:
         motions = rules.follow(piece.sets)
     except ParameterError as error:
-        raise within(piece.first, error) from None
+        raise within(piece.numbers, error) from None
     failures = [(piece.first + each.index, str(each.error)) for each in motions.failures]
     return piece.first, values_of(motions), failures
 
@@ -240,7 +240,10 @@ def trial(rules: Rules, sets: Sets) -> Trial:
     for count in _TRIED:
         sample = sets.sample(count)
         begun = time.perf_counter()
-        motions = rules.follow(sample)
+        try:
+            motions = rules.follow(sample)
+        except ParameterError as error:
+            raise within(sets.numbers(count), error) from None
         took = time.perf_counter() - begun
         if took > _TRIAL:
             break

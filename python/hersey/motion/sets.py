@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from hersey.arrays import FloatArray, crossed, together
+from hersey.arrays import FloatArray, IntArray, crossed, together
 from hersey.errors import ParameterError
 from hersey.scale.cutting import Cut
 
@@ -63,9 +63,13 @@ class Sets:
 
         return Sets({name: of(name, values) for name, values in self.given.items()}, self.zip)
 
+    def numbers(self, count: int) -> IntArray:
+        """Return the indices of so many sets, spread evenly over all."""
+        return np.linspace(0, self.count - 1, min(count, self.count)).astype(np.intp)
+
     def sample(self, count: int) -> Sets:
         """Return so many sets, spread evenly over all, taken together."""
-        numbers = np.linspace(0, self.count - 1, min(count, self.count)).astype(np.int64)
+        numbers = self.numbers(count)
         indices = np.unravel_index(numbers, self.shape) if self.shape else ()
         places = dict(zip(self.axes, indices, strict=True))
 
@@ -99,9 +103,9 @@ class Piece:
     sets: Sets
 
     @property
-    def size(self) -> int:
-        """How many sets it has."""
-        return self.sets.count
+    def numbers(self) -> range:
+        """Indices of its sets among all."""
+        return range(self.first, self.first + self.sets.count)
 
 
 class Later:
@@ -135,12 +139,12 @@ class _Arrived(Later):
         return self._piece
 
 
-def within(first: int, error: ParameterError) -> ParameterError:
-    """Return what the core says of a set of a chunk, with its index among all."""
+def within(numbers: Sequence[int] | IntArray, error: ParameterError) -> ParameterError:
+    """Return what the core says of one of these sets, with its index among all."""
     if error.index is None:
         return error
-    text = str(error).replace(f"set {error.index}:", f"set {first + error.index}:", 1)
-    again = ParameterError(text)
+    index = int(numbers[error.index])
+    again = ParameterError(str(error).replace(f"set {error.index}:", f"set {index}:", 1))
     again.__dict__.update(error.__dict__)
-    again.index = first + error.index
+    again.index = index
     return again

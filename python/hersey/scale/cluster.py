@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import logging
+import os
 import re
+import warnings
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING, Any
@@ -18,8 +20,15 @@ if TYPE_CHECKING:
 _ANSWER = 8.0
 #: Time that workers have to come, s.
 _WORKERS = 60.0
-#: A worker that could not start again is made anew after this time.
-_MENDED_SOON = {"distributed.deploy.lost-worker-timeout": "2s"}
+#: Workers of ours: Ctrl-C is for their parent alone, with which they end, and one that could not start again
+#: is made anew soon.
+_SETTINGS = {
+    "distributed.worker.daemon": True,
+    "distributed.worker.preload": ["import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"],
+    "distributed.deploy.lost-worker-timeout": "2s",
+}
+#: What the standard library says of a process that was ended at once, when it clears up behind it.
+_LEAKED = "ignore::UserWarning:multiprocessing.resource_tracker"
 _WAY_OUT = "pip install 'hersey[scale]'"
 
 
@@ -94,16 +103,17 @@ def local_cluster(processes: int) -> Iterator[Client]:
     quiet()
     with ExitStack() as stack:
         try:
-            stack.enter_context(dask.config.set({"distributed.worker.daemon": True, **_MENDED_SOON}))
-            cluster = stack.enter_context(
-                LocalCluster(
-                    n_workers=processes,
-                    processes=True,
-                    threads_per_worker=1,
-                    dashboard_address=None,
-                    silence_logs=logging.CRITICAL,
+            stack.enter_context(dask.config.set(_SETTINGS))
+            with _without_words():
+                cluster = stack.enter_context(
+                    LocalCluster(
+                        n_workers=processes,
+                        processes=True,
+                        threads_per_worker=1,
+                        dashboard_address=None,
+                        silence_logs=logging.CRITICAL,
+                    )
                 )
-            )
             client = stack.enter_context(Client(cluster, set_as_default=False))
         except Exception as error:
             reason = str(error).partition("\n")[0]
@@ -112,6 +122,22 @@ def local_cluster(processes: int) -> Iterator[Client]:
                 f"again"
             ) from None
         yield client
+
+
+@contextmanager
+def _without_words() -> Iterator[None]:
+    """Let nothing be printed of a port that another has, nor of what is cleared up after a sudden end."""
+    before = os.environ.get("PYTHONWARNINGS")
+    os.environ["PYTHONWARNINGS"] = ",".join(filter(None, (before, _LEAKED)))
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            yield
+    finally:
+        if before is None:
+            del os.environ["PYTHONWARNINGS"]
+        else:
+            os.environ["PYTHONWARNINGS"] = before
 
 
 def mend(client: Client) -> None:
@@ -125,8 +151,9 @@ def quiet() -> None:
     """Let Dask print nothing: what matters is said in words of ours."""
     import distributed  # noqa: F401 - sets up its loggers when it is imported
 
-    for name in ("distributed", "tornado", "asyncio"):
-        logging.getLogger(name).setLevel(logging.CRITICAL)
+    for name in ["tornado", "asyncio", *logging.root.manager.loggerDict]:
+        if name.partition(".")[0] in ("distributed", "tornado", "asyncio"):  # some have a level of their own
+            logging.getLogger(name).setLevel(logging.CRITICAL + 1)
 
 
 def threads_of(client: Client) -> int:

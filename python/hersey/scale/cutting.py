@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from math import ceil, prod
 
 from hersey.errors import ParameterError
@@ -74,8 +75,17 @@ class Cut:
         return tuple(part.stop - part.start for part in self.slices(number))
 
     def size(self, number: int) -> int:
-        """Return how many points a chunk has."""
-        return prod(self.shape_of(number))
+        """Return how many points a chunk has: all have as many but the last along the axis that is cut."""
+        return self._last if (number + 1) % self._along == 0 else prod(self.chunk)
+
+    @cached_property
+    def _along(self) -> int:
+        """How many chunks lie along the axis that is cut."""
+        return next((length for length in reversed(self.grid) if length > 1), 1)
+
+    @cached_property
+    def _last(self) -> int:
+        return prod(self.shape_of(self._along - 1))
 
     def first(self, number: int) -> int:
         """Return the index of the first point of a chunk among all, in C order."""
