@@ -5,7 +5,7 @@ the share of logs whose 95 % interval of a parameter holds the truth, by method,
 (four temperatures, ten speeds up and down). Choice: the share of logs of each candidate on which it is
 chosen, or tied with the one chosen (AICc within 2).
 
-Usage: python -m benchmarks.choice [--logs 500] [--first 0] [--choice 100] [--processes 2]
+Usage: python -m benchmarks.choice [--logs 500] [--first 0] [--choice 100] [--workers 2] [--scheduler ADDRESS]
 """
 
 from __future__ import annotations
@@ -14,13 +14,12 @@ import argparse
 import tempfile
 import time
 from collections import defaultdict
-from concurrent.futures import ProcessPoolExecutor
-from functools import partial
 from pathlib import Path
 
 import numpy as np
 
 import hersey
+from benchmarks.working import takes_workers, worked
 from hersey import testbench
 from hersey.damping.candidates import Observations, compare_models
 from hersey.damping.candidates.branched import FREE, HELD, ONE
@@ -115,8 +114,9 @@ def covered(seed: int) -> dict[tuple[str, str], bool]:
     return held
 
 
-def chosen(number: int, seed: int) -> tuple[str, str, bool]:
-    """Return the true candidate, the candidate chosen, and whether they are one or tied."""
+def chosen(drawn: tuple[int, int]) -> tuple[str, str, bool]:
+    """Return the true candidate (number, then seed), the one chosen, and whether they are one or tied."""
+    number, seed = drawn
     candidate, truth = list(TRUTHS.items())[number]
     found = compare_models(observed(10_000 + seed, truth), bootstrap=0, cross_validate=False)
     right = found.candidate(candidate.key)
@@ -155,19 +155,15 @@ def main() -> None:
     parser.add_argument("--logs", type=int, default=500)
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--choice", type=int, default=100, help="logs of each candidate")
-    parser.add_argument("--processes", type=int, default=2)
+    takes_workers(parser)
     given = parser.parse_args()
     began = time.perf_counter()
-    with ProcessPoolExecutor(given.processes) as pool:
-        if given.logs:
-            seeds = range(given.first, given.first + given.logs)
-            _report_coverage(list(pool.map(covered, seeds, chunksize=4)))
-        if given.choice:
-            results = []
-            for number in range(len(TRUTHS)):
-                seeds = range(given.first, given.first + given.choice)
-                results += list(pool.map(partial(chosen, number), seeds, chunksize=4))
-            _report_choice(results)
+    seeds = range(given.first, given.first + max(given.logs, given.choice))
+    if given.logs:
+        _report_coverage(list(worked(covered, seeds[: given.logs], given)))
+    if given.choice:
+        drawn = [(number, seed) for number in range(len(TRUTHS)) for seed in seeds[: given.choice]]
+        _report_choice(list(worked(chosen, drawn, given)))
     print(f"\nseeds from {given.first}; {time.perf_counter() - began:.0f} s")
 
 

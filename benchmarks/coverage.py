@@ -2,29 +2,25 @@
 
 Every log is written by the generator in ``benchmarks/strangers``, which shares no code with the virtual test
 stand, and read as a user's would be. The parts and what counts as true stand in its modules. The same seed
-gives the same logs, whatever the number of processes and whichever settings are chosen.
+gives the same logs, whoever works and whichever settings are chosen.
 
 Usage: python -m benchmarks.coverage [--part generator|coverage|verdicts|transitions]
-[--settings 'plain,visit5*'] [--logs 200] [--processes 2] [--seed 1]
+[--settings 'plain,visit5*'] [--logs 200] [--workers 2] [--scheduler ADDRESS] [--seed 1]
 """
 
 from __future__ import annotations
 
 import argparse
-import multiprocessing
-import os
-import signal
 import sys
 import time
 from collections.abc import Callable, Iterator
-from concurrent.futures import Future, ProcessPoolExecutor
 from fnmatch import fnmatch
+from functools import partial
 from typing import Any, NamedTuple
 
 from benchmarks.strangers import intervals, own, transitions, verdicts
+from benchmarks.working import takes_workers, worked
 
-#: Threads that libraries may start in each process: the processes are the parallel part.
-_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "POLARS_MAX_THREADS", "RAYON_NUM_THREADS")
 #: Results between two lines of progress.
 _TOLD_EVERY = 20
 
@@ -78,13 +74,9 @@ PARTS = {
 }
 
 
-def _run(part: str, seed: int, name: str, index: int) -> Any:
+def _run(seed: int, log: tuple[str, str, int]) -> Any:
+    part, name, index = log
     return PARTS[part].one_log(seed, name, index)
-
-
-def _ignore_interruption() -> None:
-    """The first process alone answers Ctrl-C."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def _chosen(part: Part, patterns: str) -> tuple[str, ...]:
@@ -109,15 +101,6 @@ class _Progress:
             )
 
 
-def _results(
-    pool: ProcessPoolExecutor, tasks: list[tuple[str, str, int]], seed: int
-) -> Iterator[tuple[str, str, Any]]:
-    """Yield part, setting and result in the order of the tasks."""
-    futures: list[Future[Any]] = [pool.submit(_run, part, seed, name, i) for part, name, i in tasks]
-    for (part, name, _), future in zip(tasks, futures, strict=True):
-        yield part, name, future.result()
-
-
 def main() -> int:
     """Judge all logs asked for and print the tables; after Ctrl-C those of the logs that are done."""
     parser = argparse.ArgumentParser(
@@ -126,7 +109,7 @@ def main() -> int:
     parser.add_argument("--part", choices=PARTS, action="append", help="one part; may be repeated")
     parser.add_argument("--settings", default="*", help="names or patterns, with commas")
     parser.add_argument("--logs", type=int, help="of each setting")
-    parser.add_argument("--processes", type=int, default=2)
+    takes_workers(parser)
     parser.add_argument("--seed", type=int, default=1)
     given = parser.parse_args()
     tasks = [
@@ -137,30 +120,25 @@ def main() -> int:
     ]
     if not tasks:
         parser.error(f"no setting is called {given.settings}")
-    for variable in _THREADS:
-        os.environ.setdefault(variable, "1")
-    results, whole = _judge(tasks, given.seed, given.processes)
+    results, whole = _judge(tasks, worked(partial(_run, given.seed), tasks, given))
     for label, rows in results.items():
         print(f"\n## {PARTS[label].title}\n\nseed {given.seed}\n", *PARTS[label].table(rows), sep="\n")
     return 0 if whole else 130
 
 
 def _judge(
-    tasks: list[tuple[str, str, int]], seed: int, processes: int
+    tasks: list[tuple[str, str, int]], found: Iterator[Any]
 ) -> tuple[dict[str, dict[str, list[Any]]], bool]:
     """Return results by part and setting, and whether they are all."""
     results: dict[str, dict[str, list[Any]]] = {}
-    progress, fresh = _Progress(len(tasks)), multiprocessing.get_context("spawn")
-    pool = ProcessPoolExecutor(processes, mp_context=fresh, initializer=_ignore_interruption)
+    progress = _Progress(len(tasks))
     try:
-        for part, name, result in _results(pool, tasks, seed):
+        for (part, name, _), result in zip(tasks, found, strict=True):
             results.setdefault(part, {}).setdefault(name, []).append(result)
             progress.one_more(name)
     except KeyboardInterrupt:
         print("interrupted: what follows holds the logs judged so far", file=sys.stderr)
-        pool.shutdown(wait=True, cancel_futures=True)
         return results, False
-    pool.shutdown()
     return results, True
 
 

@@ -6,19 +6,19 @@ and 5 to 15 % (level), runs that scatter by 1 to 3 %, and one of five truths: li
 saturating above the limit, or a film that side flow and evaporation thin while the rest of the drive stays.
 
 Usage: python -m benchmarks.growth [--campaigns 200] [--first 1001]
-[--units 8] [--logs 10] [--laws linear,...]
+[--units 8] [--logs 10] [--laws linear,...] [--workers 2] [--scheduler ADDRESS]
 """
 
 from __future__ import annotations
 
 import argparse
-import os
 import time
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
+
+from benchmarks.working import takes_workers, worked
 
 #: Truths, drawn equally often.
 TRUTHS = ("linear", "side flow", "exponential", "saturating", "film")
@@ -197,14 +197,12 @@ def main() -> None:
     parser.add_argument("--logs", type=int, default=10)
     parser.add_argument("--laws", help="names, separated by commas")
     parser.add_argument("--only", choices=TRUTHS, help="this truth alone")
-    parser.add_argument("--processes", type=int, default=2)
+    takes_workers(parser)
     given = parser.parse_args()
-    os.environ.setdefault("OMP_NUM_THREADS", "1")
     laws = tuple(given.laws.split(",")) if given.laws else None
     one = partial(campaign, units=given.units, logs=given.logs, laws=laws, only=given.only)
     seeds = range(given.first, given.first + given.campaigns)
-    with ProcessPoolExecutor(given.processes) as pool:
-        outcomes = list(pool.map(one, seeds, chunksize=5))
+    outcomes = list(worked(one, seeds, given))
     print("\n".join(table(outcomes)))
     seconds = np.array([each.seconds for each in outcomes])
     least = np.array([each.effective for each in outcomes])

@@ -3,17 +3,15 @@
 The units are those of `benchmarks.lives`, a generator that shares no code with hersey. hersey sees tables of
 means of 8 units with some 10 logs each, followed to 60 % of the median life, and the file of the machine.
 
-Usage: python -m benchmarks.life [--campaigns 200] [--seed 1001] [--processes 1]
+Usage: python -m benchmarks.life [--campaigns 200] [--seed 1001] [--workers 2] [--scheduler ADDRESS]
 """
 
 from __future__ import annotations
 
 import argparse
-import os
 import sys
 import tempfile
 import time
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -21,6 +19,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from benchmarks.lives import AGES, AIMS, MEDIAN, STATES, UNITS, ZERO, State, World, draw, torque
+from benchmarks.working import takes_workers, worked
 
 if TYPE_CHECKING:
     from hersey.life.campaign import Campaign
@@ -357,19 +356,17 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--campaigns", type=int, default=200)
     parser.add_argument("--seed", type=int, default=1001, help="first seed")
-    parser.add_argument("--processes", type=int, default=1)
+    takes_workers(parser)
     given = parser.parse_args()
-    os.environ.setdefault("OMP_NUM_THREADS", "1")
     seeds = range(given.seed, given.seed + given.campaigns)
     outcomes: list[Outcome] = []
-    with ProcessPoolExecutor(given.processes) as pool:
-        for each in pool.map(_tried_campaign, seeds):
-            outcomes.append(each)
-            print(
-                f"{len(outcomes)} of {given.campaigns}: seed {each.seed}, {each.seconds:.0f} s {each.wrong}",
-                file=sys.stderr,
-                flush=True,
-            )
+    for each in worked(_tried_campaign, seeds, given):
+        outcomes.append(each)
+        print(
+            f"{len(outcomes)} of {given.campaigns}: seed {each.seed}, {each.seconds:.0f} s {each.wrong}",
+            file=sys.stderr,
+            flush=True,
+        )
     print("\n".join(table(outcomes)))
     seconds = np.array([each.seconds for each in outcomes])
     print(f"\nprocessor: {np.median(seconds):.1f} s in the median, {seconds.max():.1f} s at the most")

@@ -4,6 +4,7 @@ Machines of a truth of their own are drawn, their logs written, `hersey report -
 it says is tried on the true machine. The same seed gives the same machines.
 
 Usage: python -m benchmarks.decisions [--machines 40] [--seed 1] [--first 0] [--keep FOLDER]
+[--workers 2] [--scheduler ADDRESS]
 """
 
 from __future__ import annotations
@@ -14,10 +15,12 @@ import sys
 import tempfile
 import time
 from collections import Counter
+from functools import partial
 from pathlib import Path
 
 from benchmarks.decisions.judged import Judged, judged
 from benchmarks.decisions.machines import drawn
+from benchmarks.working import takes_workers, worked
 
 #: Letters of an instruction that tell it from others.
 _FIRST = 28
@@ -32,14 +35,18 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--first", type=int, default=0, help="number of the first")
     parser.add_argument("--keep", type=Path, help="where logs, machine files and documents are left")
+    takes_workers(parser)
     given = parser.parse_args()
     results, began = [], time.perf_counter()
+    numbers = range(given.first, given.first + given.machines)
+    task = partial(_one, given.seed, given.keep and given.keep.absolute())
     try:
-        for number in range(given.first, given.first + given.machines):
-            results.append(_one(given.seed, number, given.keep))
-            last = results[-1]
+        for last in worked(task, numbers, given):
+            results.append(last)
             spent = time.perf_counter() - began
-            print(f"{number} after {spent:.0f} s: {last.fault or last.said}", file=sys.stderr, flush=True)
+            print(
+                f"{last.number} after {spent:.0f} s: {last.fault or last.said}", file=sys.stderr, flush=True
+            )
             print(*last.wrong, sep="\n", end="\n" if last.wrong else "", file=sys.stderr, flush=True)
     except KeyboardInterrupt:
         print("interrupted: what follows holds the machines judged so far", file=sys.stderr)
@@ -47,7 +54,7 @@ def main() -> int:
     return 0
 
 
-def _one(seed: int, number: int, keep: Path | None) -> Judged:
+def _one(seed: int, keep: Path | None, number: int) -> Judged:
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary) if keep is None else keep / str(number)
         folder.mkdir(parents=True, exist_ok=True)
