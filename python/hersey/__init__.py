@@ -105,6 +105,7 @@ if TYPE_CHECKING:
     from hersey.motion.heat import HeatBalance
     from hersey.motion.schedule import Schedule
     from hersey.motion.simulation import Drivetrain, StickSlipCycle, Trajectory, simulate, stick_slip
+    from hersey.motion.stepper import Stepper
     from hersey.motion.sweep import sweep
     from hersey.stability.disturbance import Disturbance, SafeStep, disturbance, safe_step
     from hersey.stability.hysteresis import (
@@ -130,6 +131,7 @@ _HOMES = {
     "motion.drag": "Drag DragTable",
     "motion.heat": "HeatBalance",
     "motion.simulation": "Drivetrain StickSlipCycle Trajectory simulate stick_slip",
+    "motion.stepper": "Stepper",
     "motion.sweep": "sweep",
     "damping.dwells": "SteadyPoints",
     "damping.estimate": "Estimate",
@@ -232,6 +234,7 @@ __all__ = [
     "Schedule",
     "ShearThinning",
     "SteadyPoints",
+    "Stepper",
     "StickSlipCycle",
     "TestDesign",
     "TorqueLog",

@@ -42,6 +42,7 @@ __all__ = [
     "ShearHeating",
     "StartingBelt",
     "State",
+    "Stepper",
     "Sweep",
     "Swings",
     "Traction",
@@ -95,6 +96,7 @@ VERSION: str
 
 _Floats: TypeAlias = NDArray[np.float64]
 _Closure: TypeAlias = tuple[str, float | None, float | None]
+_Change: TypeAlias = tuple[float, str, str, str, float, float]
 _Train: TypeAlias = tuple[float, float, float | None]
 _Schedule: TypeAlias = tuple[list[float], list[float], list[list[float]] | None]
 _Heat: TypeAlias = tuple[
@@ -205,6 +207,25 @@ class Energy:
     def stored(self) -> float: ...
     @property
     def residual(self) -> float: ...
+
+@final
+class Stepper:
+    def __new__(
+        cls,
+        train: _Train,
+        drag: Law,
+        drive: tuple[str, float],
+        temperature: float | None,
+        start: tuple[float, float],
+        tolerance: float,
+    ) -> Stepper: ...
+    def advance(self, until: float, most_steps: int) -> _Change | None: ...
+    def set_inputs(
+        self, drive: Sequence[float] | None, temperature: Sequence[float] | None
+    ) -> _Change | None: ...
+    def state(self) -> tuple[float, str, bool, float, float, float]: ...
+    def numbers(self) -> list[float]: ...
+    def restore(self, numbers: Sequence[float]) -> None: ...
 
 @final
 class Trajectory:

@@ -12,6 +12,7 @@ mod motion;
 mod reynolds;
 mod stability;
 mod start_up;
+mod stepper;
 
 use pyo3::prelude::*;
 
@@ -44,6 +45,8 @@ mod _core {
     use super::stability::{Band, Bands, Swings, band, bands, swings};
     #[pymodule_export]
     use super::start_up::{StartingBelt, start_ups};
+    #[pymodule_export]
+    use super::stepper::Stepper;
 
     use numpy::PyArrayMethods;
     use pyo3::prelude::*;

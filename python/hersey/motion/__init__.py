@@ -5,6 +5,7 @@ schedule    drive speed, torque or temperature against time
 drag        drag laws: force against belt speed and temperature
 heat        temperature as a state: two bodies, a heater and friction
 simulation  stick-slip motion of the belt, and what it settles to
+stepper     the same motion from call to call, with inputs given on the way
 parameters  names of the parameters, and the kinds of their units
 sets        the parameter sets of a sweep, laid out only as far as they are followed
 following   following them, here or at a worker

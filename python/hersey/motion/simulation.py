@@ -378,15 +378,7 @@ def simulate(
     (True, True)
     """
     count, steps = whole("samples", samples, 2), whole("most_steps", most_steps)
-    if (drive_speed is None) == (drive_torque is None):
-        raise ParameterError("give either drive_speed or drive_torque")
-    if heat is not None and temperature is not None:
-        raise ParameterError("give either temperature or heat, which makes it")
-    if drag.varies_with_temperature and temperature is None and heat is None:
-        raise ParameterError("the drag varies with temperature: give temperature")
-    if (temperature is not None or heat is not None) and not drag.varies_with_temperature:
-        what = "temperature" if heat is None else "heat"
-        raise ParameterError(f"{what} is given, but the drag does not vary with temperature")
+    check_inputs(drag, drive_speed, drive_torque, temperature, heat)
     given = drive_speed if drive_speed is not None else drive_torque
     drive = Schedule.of(given if given is not None else 0.0)
     course = None if temperature is None else Schedule.of(temperature).shifted(-drag.temperature_zero)
@@ -394,7 +386,7 @@ def simulate(
     at_start = course
     if heat is not None:
         at_start = Schedule.of(heat.film_temperature).shifted(-drag.temperature_zero)
-    state = _start(train, law, drive, at_start, start, is_torque=drive_speed is None)
+    state = start_state(train, law, drive, at_start, start, is_torque=drive_speed is None)
 
     def run(integrator: str) -> _core.Trajectory:
         return _core.simulate(
@@ -427,6 +419,21 @@ def simulate(
         steps=trajectory.steps,
         check=_self_check(lambda: run("dormand-prince"), trajectory) if check else None,
     )
+
+
+def check_inputs(
+    drag: AnyDrag, drive_speed: Any, drive_torque: Any, temperature: Any, heat: HeatBalance | None = None
+) -> None:
+    """Refuse inputs of a motion that do not go together, or that its drag does not know."""
+    if (drive_speed is None) == (drive_torque is None):
+        raise ParameterError("give either drive_speed or drive_torque")
+    if heat is not None and temperature is not None:
+        raise ParameterError("give either temperature or heat, which makes it")
+    if drag.varies_with_temperature and temperature is None and heat is None:
+        raise ParameterError("the drag varies with temperature: give temperature")
+    if (temperature is not None or heat is not None) and not drag.varies_with_temperature:
+        what = "temperature" if heat is None else "heat"
+        raise ParameterError(f"{what} is given, but the drag does not vary with temperature")
 
 
 def _self_check(run: Callable[[], _core.Trajectory], first: _core.Trajectory) -> SelfCheck:
@@ -501,7 +508,7 @@ def stick_slip(
     ('stick_slip', 3.94031)
     """
     law = drag.law_at(temperature)
-    state = _start(train, law, Schedule.of(drive_speed), None, start, is_torque=False, nudged=True)
+    state = start_state(train, law, Schedule.of(drive_speed), None, start, is_torque=False, nudged=True)
     steps = whole("most_steps", most_steps)
     cycle = _core.stick_slip(train._arguments, law, float(drive_speed), state, None, float(tolerance), steps)
     return StickSlipCycle(**{name: getattr(cycle, name) for name in StickSlipCycle.__dataclass_fields__})
@@ -516,7 +523,7 @@ def steady_start(
     return state.belt_speed, state.stretch
 
 
-def _start(
+def start_state(
     train: Drivetrain,
     law: _core.Law,
     drive: Schedule,
@@ -526,6 +533,7 @@ def _start(
     is_torque: bool,
     nudged: bool = False,
 ) -> tuple[float, float]:
+    """Return belt speed and stretch of a start of `simulate`, the temperature in the scale of the law."""
     if not isinstance(start, str):
         speed, stretch = start
         return float(speed), float(stretch)

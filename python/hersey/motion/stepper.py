@@ -1,0 +1,231 @@
+"""The motion from call to call: drive and temperature are given on the way, and it can be saved."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from hersey import _core
+from hersey.errors import ParameterError
+from hersey.motion.drag import AnyDrag
+from hersey.motion.parameters import MOST_STEPS, whole
+from hersey.motion.schedule import Schedule
+from hersey.motion.simulation import TOLERANCE, Drivetrain, Event, check_inputs, start_state
+from hersey.units import takes_si
+
+
+@dataclass(frozen=True)
+class StepperState:
+    """Where a motion stands; in SI, or in the units of its arguments.
+
+    ``drag`` is all of it, of a held belt what holds it. ``stretch`` and ``spring_force`` are as of
+    `Trajectory`, ``event`` is the change of mode that has just happened, if it ended the call.
+    """
+
+    time: float
+    mode: str
+    slipping: bool
+    belt_speed: float
+    stretch: float
+    spring_force: float
+    drag: float
+    event: Event | None = None
+
+    @property
+    def stuck(self) -> bool:
+        """Whether the belt is held."""
+        return self.mode == "stuck"
+
+
+class _Given(NamedTuple):
+    train: Drivetrain
+    drag: AnyDrag
+    is_torque: bool
+    drive: float
+    temperature: float | None
+    start: tuple[float, float]
+    tolerance: float
+    most_steps: float
+
+
+class Stepper:
+    """A motion that goes on from call to call, and whose drive and temperature may change between them.
+
+    Where and how often one stops changes no bit of it; only another drive or temperature does, from then on.
+    At a jump of either the belt keeps its speed and the spring its stretch, and the mode is what the law then
+    says. A stepper can be pickled; one thread at a time may use it.
+
+    Parameters
+    ----------
+    drive_speed, drive_torque, temperature, start, tolerance
+        As of `simulate`, at time 0; drive and temperature as numbers, which stay until others are given.
+    most_steps
+        Work that each call may take, as of `simulate`.
+
+    Raises
+    ------
+    ParameterError
+        If a value is out of range, with its name.
+
+    Examples
+    --------
+    >>> from hersey import Drag
+    >>> drag = Drag(50, 1, ehl_exponent=-0.7, mixed_exponent=-1.2, stick_speed=0.01)
+    >>> stepper = Stepper(Drivetrain(1000, 1), drag, drive_speed=1.0)
+    >>> state = stepper.advance(2.0)
+    >>> round(state.time, 6), state.event.guard, state.mode
+    (0.341401, 'holding_force', 'microslip')
+    >>> saved = stepper.save()
+    >>> stepper.set_inputs(drive=2.0)  # no change of mode at once
+    >>> while (state := stepper.advance(2.0)).event:
+    ...     pass
+    >>> state.time, state.mode
+    (2.0, 'ehl')
+    >>> stepper.restore(saved)
+    >>> round(stepper.state.time, 6)
+    0.341401
+    """
+
+    @takes_si(drive_speed="belt speed", drive_torque=("force", "torque"), temperature="temperature")
+    def __init__(
+        self,
+        train: Drivetrain,
+        drag: AnyDrag,
+        *,
+        drive_speed: float | None = None,
+        drive_torque: float | None = None,
+        temperature: float | None = None,
+        start: str | tuple[float, float] = "rest",
+        tolerance: float = TOLERANCE,
+        most_steps: float = MOST_STEPS,
+    ) -> None:
+        check_inputs(drag, drive_speed, drive_torque, temperature)
+        is_torque = drive_speed is None
+        drive = _number("drive_torque", drive_torque) if is_torque else _number("drive_speed", drive_speed)
+        warm = None if temperature is None else _number("temperature", temperature)
+        course = None if warm is None else Schedule.of(warm - drag.temperature_zero)
+        state = start_state(train, drag.law(), Schedule.of(drive), course, start, is_torque=is_torque)
+        given = _Given(train, drag, is_torque, drive, warm, state, float(tolerance), most_steps)
+        self._take(given)
+
+    def _take(self, given: _Given) -> None:
+        self._given = given
+        self._steps = whole("most_steps", given.most_steps)
+        self._core = _core.Stepper(
+            given.train._arguments,
+            given.drag.law(),
+            ("torque" if given.is_torque else "speed", given.drive),
+            None if given.temperature is None else given.temperature - given.drag.temperature_zero,
+            given.start,
+            given.tolerance,
+        )
+
+    @property
+    def state(self) -> StepperState:
+        """Where the motion stands."""
+        return self._state(None)
+
+    def _state(self, event: Event | None) -> StepperState:
+        time, mode, slipping, belt_speed, stretch, drag = self._core.state()
+        spring_force = self._given.train.stiffness * stretch
+        return StepperState(time, mode, slipping, belt_speed, stretch, spring_force, drag, event)
+
+    @takes_si(until="time")
+    def advance(self, until: float) -> StepperState:
+        """Go on to ``until``, s, or to the first change of mode before or at it, and return the state there.
+
+        The state is just after the change, ``state.event``; the next call goes on from there.
+
+        Raises
+        ------
+        ParameterError
+            If ``until`` lies behind, or there is no law of drag at the temperature reached.
+        UnfinishedError
+            If the work does not suffice, or the motion cannot be continued; it then stands where it has come.
+        """
+        return self._state(_event(self._core.advance(_number("until", until), self._steps)))
+
+    @takes_si(drive=("belt speed", "force", "torque"), temperature="temperature")
+    def set_inputs(
+        self,
+        *,
+        drive: float | None = None,
+        temperature: float | None = None,
+        drive_rate: float = 0.0,
+        temperature_rate: float = 0.0,
+    ) -> Event | None:
+        """Set drive and temperature from now on, and return the change of mode that this makes at once, if it does.
+
+        What is not given goes on as it is; what is given as it already is changes nothing.
+
+        Parameters
+        ----------
+        drive
+            Speed, m/s, or force or torque, N or N m: what the stepper began with.
+        temperature
+            K.
+        drive_rate, temperature_rate
+            How they grow from now on, per s.
+
+        Raises
+        ------
+        ParameterError
+            If a number is not finite or out of range; nothing has changed then.
+        """
+        given = self._given
+        if temperature is not None and given.temperature is None:
+            raise ParameterError("temperature is given, but the drag does not vary with temperature")
+        for name, rate, value in (
+            ("drive_rate", drive_rate, drive),
+            ("temperature_rate", temperature_rate, temperature),
+        ):
+            if value is None and rate != 0.0:
+                raise ParameterError(f"{name} is given, but not what it starts from")
+        warm = None if temperature is None else _number("temperature", temperature)
+        event = self._core.set_inputs(
+            None if drive is None else _course("drive", drive, drive_rate),
+            None
+            if warm is None
+            else _course("temperature", warm - given.drag.temperature_zero, temperature_rate),
+        )
+        return _event(event)
+
+    def save(self) -> tuple[float, ...]:
+        """Return all that changes as finite numbers, from which `restore` goes on to the last bit."""
+        return tuple(self._core.numbers())
+
+    def restore(self, saved: Sequence[float]) -> None:
+        """Go on from what `save` returned, of this stepper or of another of the same arguments.
+
+        Raises
+        ------
+        ParameterError
+            If the numbers are none that the motion can have; nothing has changed then.
+        """
+        self._core.restore([_number("numbers of a moment", number) for number in saved])
+
+    def __getstate__(self) -> tuple[_Given, tuple[float, ...]]:
+        """Return the arguments and where the motion stands."""
+        return self._given, self.save()
+
+    def __setstate__(self, state: tuple[_Given, tuple[float, ...]]) -> None:
+        """Take them back."""
+        given, saved = state
+        self._take(given)
+        self.restore(saved)
+
+
+def _number(name: str, given: Any) -> float:
+    try:
+        return float(given)
+    except (TypeError, ValueError):
+        raise ParameterError(f"{name} is {given!r}: a number is needed", quantity=name) from None
+
+
+def _course(name: str, value: float, rate: float) -> list[float]:
+    return [_number(name, value), _number(f"{name}_rate", rate), 0.0, 0.0]
+
+
+def _event(change: _core._Change | None) -> Event | None:
+    return None if change is None else Event(*change)
