@@ -37,6 +37,10 @@ def test_the_example_in_the_help_works_as_typed(
     monkeypatch.setattr("hersey.paper_figures.all_figures", lambda: [figure()])
     if command == ("life",):
         shipped.write(examples_here / "life.hersey", 1)
+    if command == ("export",):
+        told = ["--tare", "standing", "--no-load", "examples/no-load.csv"]
+        fit = run("fit", "examples/bench.csv", *told, "--json", cwd=examples_here).stdout
+        (examples_here / "fit.json").write_text(fit)
     typed = shlex.split(example(*command))
     result = run(*typed[1:], cwd=examples_here)
     assert result.returncode == 0, result.stderr

@@ -64,6 +64,7 @@ def test_a_map_and_a_plan_never_replace_what_they_read(bench_csv: Path, tmp_path
         "cycles none.csv --figure kept.svg",
         "sweep none.toml --out kept.csv",
         "campaign export none.hersey --out kept.csv",
+        "export fmu none.json none.toml --out kept.fmu",
         "life none.hersey --machine none.toml --out kept.html",
         "life none.hersey --machine none.toml --figures kept",
         "simulate --mass -1 --csv kept.csv",
@@ -77,7 +78,7 @@ def test_a_map_and_a_plan_never_replace_what_they_read(bench_csv: Path, tmp_path
 )
 def test_outputs_are_refused_before_inputs_are_read(typed: str, tmp_path: Path) -> None:
     """What would be replaced is named, not the input that is missing or wrong."""
-    for name in ("kept.html", "kept.svg", "kept.csv", "kept/figure.svg"):
+    for name in ("kept.html", "kept.svg", "kept.csv", "kept.fmu", "kept/figure.svg"):
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_text("mine")
     done = run(*typed.split(), cwd=tmp_path)

@@ -9,11 +9,13 @@ import signal
 import subprocess
 import sys
 import time
+import zipfile
 from pathlib import Path
 
 import pytest
 
 from hersey.cli.application import VERBS
+from tests.cli.command import run
 from tests.conftest import ROOT
 from tests.life import shipped
 
@@ -43,6 +45,7 @@ TYPED: dict[str, tuple[list[str], float]] = {
     "simulate": (["--csv", "s.csv", "--duration", "3000"], 1.0),
     "sweep": ([str(EXAMPLES / "scenario.toml"), "--out", "s.parquet"], 0.8),
     "hysteresis": (["--closure", "lugre", "--bristle-stiffness", "1e5", "--bristle-damping", "100"], 2.0),
+    "export": (["fmu", "fit.json", MACHINE, "--temperature", "150 degC", "--out", "d.fmu", "--check"], 2.0),
     "figures": (["--out", "figures"], 9.0),
     "testbench": (["--size", "60 MB", "--out", "log.csv"], 3.0),
 }
@@ -62,6 +65,9 @@ def test_ctrl_c_ends_a_command(verb: str, moment: int, tmp_path: Path) -> None:
     typed, lasts = TYPED[verb]
     if verb == "life":
         shipped.write(tmp_path / "units.hersey", 1)
+    if verb == "export":
+        fit = run("fit", *BENCH, "--no-load", EXAMPLES / "no-load.csv", "--json", cwd=tmp_path).stdout
+        (tmp_path / "fit.json").write_text(fit)
     process = subprocess.Popen(
         [sys.executable, "-c", READY, verb, *typed],
         cwd=tmp_path,
@@ -110,6 +116,7 @@ def is_whole(path: Path) -> bool:
         ".hersey": lambda: content.startswith(b"SQLite format 3\0") or not content,
         ".hersey-wal": lambda: True,  # SQLite's own, whole or mended at the next opening
         ".hersey-shm": lambda: True,
+        ".fmu": lambda: zipfile.is_zipfile(path),
         ".md": lambda: content.endswith(b"\n"),
     }
     return ends[path.suffix]()

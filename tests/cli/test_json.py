@@ -43,6 +43,7 @@ ARGUMENTS: dict[str, list[str]] = {
     "sweep": ["SCENARIO"],
     "hysteresis": ["--drive-speed", "1.2", "--from-speed", "2.5", "--to-speed", "1.2"],
     "map": [MACHINE, "--fit", "FIT"],
+    "export": ["fmu", "FIT", MACHINE, "--temperature", "150 degC", "--out", "UNIT", "--check"],
     "figures": ["--out", "FIGURES"],
     "plan": ["STRONG", "--fit", "FIT", "--target", "60 mm/s", "--at", "150 degC", "--confidence", "0.5"],
     "warmup": [MACHINE, "--fit", "FIT", "--target", "60 mm/s", "--from", "20 degC"],
@@ -92,6 +93,7 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
         "CAMPAIGN": str(folder / "life.hersey"),
         "LIFE": str(shipped.write(folder / "units.hersey")),
         "FIGURES": str(folder / "figures"),
+        "UNIT": str(folder / "drive.fmu"),
         "STRONG": str(folder / "strong.toml"),
     }
     return own | {"FIT": str(folder / "fit.json"), "SCENARIO": str(folder / "scenario.toml")}

@@ -88,13 +88,30 @@ TYPED: dict[str, list[list[str]]] = {
     "simulate": [["--start", HOSTILE], ["--duration", "1", "--out", f"{IN_FILE}.bmp"]],
     "sweep": [[SCENARIO, "--out", f"{IN_FILE}.bmp"], [BROKEN]],
     "hysteresis": [["--stiffness", HOSTILE]],
+    "export": [
+        ["fmu", LOG, MACHINE, "--out", f"{IN_FILE}.fmu"],
+        ["fmu", LOG, BROKEN, "--out", f"{IN_FILE}.fmu"],
+        ["fmu", LOG, MACHINE, "--out", "x.fmu", "--library", HOSTILE],
+    ],
     "figures": [["--out", f"{IN_FILE}.csv"]],
     "testbench": [["--out", f"{IN_FILE}-made.csv", "--force"], ["--out", f"{IN_FILE}/x.csv"]],
 }
 
 
 #: Verbs of which only refusals are typed here: what they print otherwise holds no name.
-REFUSED = {"app", "new", "life", "map", "plan", "warmup", "simulate", "sweep", "hysteresis", "figures"}
+REFUSED = {
+    "app",
+    "new",
+    "life",
+    "map",
+    "plan",
+    "warmup",
+    "simulate",
+    "sweep",
+    "hysteresis",
+    "figures",
+    "export",
+}
 
 
 def test_every_verb_is_typed() -> None:

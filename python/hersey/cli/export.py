@@ -5,7 +5,6 @@ from __future__ import annotations
 import sys
 from dataclasses import replace
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -30,7 +29,8 @@ export = typer.Typer(
         "Write the fitted drive for other tools: a unit that Simulink, Amesim or Modelica run.\n\n"
         "Example: [bold]hersey export fmu fit.json examples/machine.toml --temperature '180 degC' "
         "--out drive.fmu[/bold]\n\n"
-        "The core itself is in it: the motion is that of hersey simulate."
+        "The core itself is in it: the motion is that of hersey simulate. The fit is written by hersey fit LOG "
+        "--machine TOML --json > fit.json."
     ),
 )
 
@@ -42,7 +42,9 @@ def _root() -> None:
 
 @export.command("fmu")
 def fmu(
-    fit_file: Annotated[Path, typer.Argument(metavar="JSON", help="What hersey fit --json printed.")],
+    fit_file: Annotated[
+        Path, typer.Argument(metavar="JSON", help="What hersey fit --machine --json printed.")
+    ],
     machine_file: Annotated[Path, typer.Argument(metavar="TOML", help="Machine's file.")],
     out: Annotated[Path, typer.Option("--out", metavar="FILE", help="Unit to write, .fmu.")],
     fmi: Annotated[str, typer.Option("--fmi", help="3.0, or 2.0 for older tools.")] = "3.0",
@@ -95,6 +97,8 @@ def fmu(
         raise ParameterError("--drive-speed goes with --drive speed: leave one of them out")
     others = _libraries(library or [])
     may_write(out, force, [fit_file, machine_file, *others.values()])
+
+    from tempfile import TemporaryDirectory
 
     from hersey.exchange.unit import export_fmu
     from hersey.files.writing import write_atomically

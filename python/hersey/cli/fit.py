@@ -32,6 +32,10 @@ def fit(
             "--each", metavar="TABLE", help="Fit each log by itself: a row per log, in a .csv or .parquet."
         ),
     ] = None,
+    machine_file: Annotated[
+        Path | None,
+        typer.Option("--machine", metavar="TOML", help="Machine's file: rest of the drive, sensors."),
+    ] = None,
     keep_going: KeepGoing = False,
     scheduler: Scheduler = None,
     count: Workers = None,
@@ -48,13 +52,19 @@ def fit(
     if each is not None:
         from hersey.cli.fitting_each import fit_each
 
-        if as_json:
-            raise ParameterError("--each writes a table, and --json prints one fit: leave one of them out")
+        if as_json or machine_file is not None:
+            other = "--json prints" if as_json else "--machine goes with"
+            raise ParameterError(f"--each writes a table, and {other} one fit: leave one of them out")
         fit_each(logs, reading, each, keep_going, scheduler, count, force)
         return
     if keep_going or force or scheduler or count:
         raise ParameterError("--keep-going, --scheduler, --workers and --force go with --each TABLE")
-    log = reading.log(logs)
+    machine = None
+    if machine_file is not None:
+        from hersey.machine.machine import read_machine
+
+        machine = read_machine(machine_file)
+    log = reading.log(logs, machine)
 
     from hersey.damping.fit import fit as fitted
     from hersey.document.assembly import fit_document
@@ -62,7 +72,7 @@ def fit(
     from hersey.verdict.regime import regime
 
     with working("fitting the surface"):
-        points = reading.points(log)
+        points = reading.points(log, machine)
         surface = fitted(points, temperature_scale=reading.temperature_scale)
     if as_json:
         print_json("fit", fit_document(log, points, surface))
