@@ -125,7 +125,7 @@ def test_a_stick_speed_that_is_fixed_holds_at_one_temperature(typed: Typed) -> N
         ),
         ([*HOT, "--closure", "glue"], {}, "glue"),
         ([*HOT, "--closure", "lugre"], {}, "bristle"),
-        ([*HOT, "--library", "hersey.dll"], {}, "write PLATFORM=FILE, as x86_64-windows=hersey.dll"),
+        ([*HOT, "--library", "hersey.dll"], {}, "write PLATFORM=FILE, as x86_64-windows=win/hersey.dll"),
         ([*HOT, "--library", "amiga=a.so"], {}, "platform 'amiga' is not known"),
         ([*HOT, "--library", "x86_64-windows=none.dll"], {}, "none.dll cannot be read: No such file"),
         (
@@ -201,3 +201,21 @@ def test_a_unit_is_written_without_fmpy(folder: Path, tmp_path: Path) -> None:
     done = run_apart("-c", command, cwd=tmp_path, command=[sys.executable])
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "drive.fmu").exists()
+
+
+def test_a_fit_takes_off_the_rest_that_the_machine_states(typed: Typed, folder: Path) -> None:
+    """One of the whole torque is refused, and the way out that is named works."""
+    text = MACHINE.read_text() + '[rest]\ntorque = "3 mN*m"\nuncertainty = "10 %"\n'
+    (folder / "resting.toml").write_text(text)
+    refused = typed(*HOT, machine="resting.toml")
+    assert "is fitted to the whole torque" in refused.stderr
+    assert "write the fit anew with hersey fit LOG --machine, or leave [rest] out" in refused.stderr
+    told = json.loads((folder / "fit.json").read_text())["command"].split()
+    fit = run("fit", told[2], "--tare", "standing", "--machine", "resting.toml", "--json", cwd=folder)
+    (folder / "film.json").write_text(fit.stdout)
+    done = typed(*HOT, "--json", fit="film.json", machine="resting.toml")
+    assert done.returncode == 0, done.stderr
+    starts = {row["name"]: row["start"] for row in json.loads(done.stdout)["variables"]}
+    assert starts["rest_force"] == pytest.approx(0.2)
+    both = run("fit", told[2], "--machine", "resting.toml", "--each", "t.csv", cwd=folder)
+    assert "--each writes a table, and --machine goes with one fit" in both.stderr

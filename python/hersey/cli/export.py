@@ -29,8 +29,8 @@ export = typer.Typer(
         "Write the fitted drive for other tools: a unit that Simulink, Amesim or Modelica run.\n\n"
         "Example: [bold]hersey export fmu fit.json examples/machine.toml --temperature '180 degC' "
         "--out drive.fmu[/bold]\n\n"
-        "The core itself is in it: the motion is that of hersey simulate. The fit is written by hersey fit LOG "
-        "--machine TOML --json > fit.json."
+        "The core itself is in it: the motion is that of hersey simulate. The fit is written by "
+        "hersey fit LOG --machine TOML --json > fit.json."
     ),
 )
 
@@ -72,7 +72,7 @@ def fmu(
         typer.Option(
             "--library",
             metavar="PLATFORM=FILE",
-            help="The library built for another platform, as x86_64-windows=hersey.dll; again for each.",
+            help="The library built for another platform, as x86_64-windows=win/hersey.dll; again for each.",
         ),
     ] = None,
     check: Annotated[
@@ -150,7 +150,9 @@ def _libraries(given: list[str]) -> dict[str, Path]:
     for text in given:
         platform, mark, file = text.partition("=")
         if not mark or not file:
-            raise ParameterError(f"--library is '{text}': write PLATFORM=FILE, as x86_64-windows=hersey.dll")
+            raise ParameterError(
+                f"--library is '{text}': write PLATFORM=FILE, as x86_64-windows=win/hersey.dll"
+            )
         if platform in files:
             raise ParameterError(f"--library names {platform} twice: give one file for each platform")
         files[platform] = Path(file)

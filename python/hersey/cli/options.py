@@ -305,8 +305,8 @@ class Reading:
             if machine is not None and machine.rest is not None and surface.rest is None:
                 raise ParameterError(
                     f"{fit_file.name} is fitted to the whole torque, and {machine.rest.source} says what the "
-                    "drive takes besides the film: write the fit anew with hersey fit LOG --machine, or leave "
-                    "[rest] out"
+                    "drive takes besides the film: write the fit anew with hersey fit LOG --machine, or "
+                    "leave [rest] out"
                 )
             if machine is not None and machine.rest is not None:
                 say(
