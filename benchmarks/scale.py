@@ -39,7 +39,7 @@ from hersey.motion.sets import Later
 from hersey.motion.sweep import planned
 from hersey.scale.cluster import local_cluster
 from hersey.scale.cutting import Cut
-from hersey.scale.store import kind_of
+from hersey.scale.kinds import kind_of
 from hersey.scale.tasks import done
 
 WORKERS = 2
@@ -120,7 +120,9 @@ def chunk(folder: Path, sets: int) -> dict[str, Any]:
     assert manifest is not None
     from hersey.scale.store import Variable
 
-    variables = tuple(Variable(name, dtype, {}, *more) for name, dtype, *more in manifest["variables"])
+    variables = tuple(
+        Variable(name, dtype, {}, float(fill), words) for name, dtype, fill, words in manifest["variables"]
+    )
     target = kind_of(path).open(path, cut, variables)
     for each in (*path.glob("*/c/0"), path / "status" / "c"):
         if each.is_dir():  # of an array with chunks

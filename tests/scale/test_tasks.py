@@ -136,7 +136,7 @@ def _lacking() -> str:
 
 def test_no_scheduler_is_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(cluster, "_ANSWER", 0.3)
-    with pytest.raises(ParameterError, match=r"no scheduler of Dask answers at tcp://127\.0\.0\.1:9 "):
+    with pytest.raises(ParameterError, match=r"no scheduler of Dask answers at tcp://127\.0\.0\.1:9: "):
         list(done(math.sqrt, [4.0], client="tcp://127.0.0.1:9"))
     with pytest.raises(ParameterError, match="'nonsense' is no address of a scheduler"):
         list(done(math.sqrt, [4.0], client="nonsense"))

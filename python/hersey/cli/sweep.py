@@ -130,10 +130,8 @@ def _in_chunks(out: Path | None, chunk: int | None, scheduler: str | None, proce
         return False
     if out.suffix == ".zarr":
         return True
-    from hersey.scale.store import is_our_folder
-
     asked = any(each is not None for each in (chunk, scheduler, processes))
-    return out.suffix == ".parquet" and (asked or is_our_folder(out))
+    return out.suffix == ".parquet" and (asked or (out / "manifest.parquet").is_file())
 
 
 @contextmanager

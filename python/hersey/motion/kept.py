@@ -32,13 +32,14 @@ from hersey.motion.parameters import KINDS, MOST_SETS
 from hersey.motion.sets import Later, Sets
 from hersey.scale.cluster import connected, refuse_others, threads_of
 from hersey.scale.cutting import Cut
+from hersey.scale.kinds import kind_of
 from hersey.scale.store import (
     Coordinate,
     Folder,
     Layout,
     Variable,
-    kind_of,
     opened,
+    remove_unfinished_of,
     sha256_of,
 )
 from hersey.scale.tasks import done
@@ -127,7 +128,7 @@ def kept(
         if cut is not None:
             cut()
         layout = partial(_layout, sets, rules, planned, units)
-        with opened(path, scenario, layout, cut=cut, resume=resume, overwrite=overwrite) as folder:
+        with opened(path, kind, scenario, layout, cut=cut, resume=resume, overwrite=overwrite) as folder:
             notes: list[str] = []
             if known is not None:
                 notes = _probed(known, rules, tried, (path, kind, sha256_of(scenario)))
@@ -167,6 +168,7 @@ def _followed(
         ):
             tally.add(note)
             ended += 1
+        remove_unfinished_of(folder.path)
     except HerseyError as error:
         again = type(error)(f"{error}; {_left(ended, count)}")
         again.__dict__.update(error.__dict__)
@@ -244,7 +246,9 @@ def _layout(sets: Sets, rules: Rules, cut: Callable[[], Cut], units: str) -> Lay
     """What the folder holds, with units and words."""
 
     def unit(text: str) -> dict[str, str]:
-        return {"units": text if units == "SI" or text == "1" else "consistent"}
+        return (
+            {"units": text} if units == "SI" or text == "1" else {}
+        )  # "consistent" is none that a reader knows
 
     whole: dict[str, Any] = {
         "kind": Variable(

@@ -76,7 +76,7 @@ def sweep(
         result is the same, bit for bit, on processors and systems of one kind.
     out
         A folder that ends in .zarr or .parquet, in which each chunk of sets is kept as it ends; then a sweep
-        has no limit of sets. What is there of the same sweep is not done again. See docs/scale.md.
+        has no limit of sets. What is there of the same sweep is not done again. Units stand there as SI.
     chunk
         Sets of a chunk; by default as many as take a second or two.
     resume, overwrite

@@ -7,6 +7,7 @@ cluster     a cluster of Dask: on this machine or by its address
 tasks       tasks done in threads or by the workers of a cluster: results as they end
 cutting     a grid cut into chunks
 store       what is kept of a grid that is worked out chunk by chunk
+kinds       the kinds of folder, by the end of the name
 ==========  ==================================================================================
 
 A `zarr_folder` holds arrays with one file per chunk of each, a `parquet_folder` one file per chunk.

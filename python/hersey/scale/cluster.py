@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import asyncio
 import logging
 import os
 import re
 import warnings
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING, Any
 
@@ -18,8 +20,8 @@ if TYPE_CHECKING:
 
 #: Time within which a scheduler answers, s.
 _ANSWER = 8.0
-#: Time that workers have to come, s.
-_WORKERS = 60.0
+#: Time that the first worker has to come, and one after all are lost, s.
+_FIRST, _WORKERS = 20.0, 60.0
 #: Workers of ours: Ctrl-C is for their parent alone, with which they end, and one that could not start again
 #: is made anew soon.
 _SETTINGS = {
@@ -70,21 +72,37 @@ def connected(client: Client | str) -> Iterator[tuple[Client, str]]:
         return
     from distributed import Client
 
-    if not re.fullmatch(r"[a-z]+://.+:\d+", client):
+    if not re.fullmatch(r"(tcp|tls|ws|wss|ucx)://.+:\d+", client):
         raise ParameterError(f"'{client}' is no address of a scheduler: give one as tcp://host:8786")
     quiet()
     try:
-        made: Client = Client(client, timeout=_ANSWER, set_as_default=False)
-    except Exception as error:  # what answers there may be anything
-        reason = str(error).partition("\n")[0]
+        with warnings.catch_warnings():  # of other versions: that of hersey counts, and is asked
+            warnings.simplefilter("ignore")
+            with ThreadPoolExecutor(1) as apart:  # where no loop runs
+                apart.submit(asyncio.run, _answered(client)).result()
+            made: Client = Client(client, timeout=_ANSWER, set_as_default=False)
+    except Exception:  # what answers there may be anything
         raise ParameterError(
-            f"no scheduler of Dask answers at {client} ({reason}): start one with 'dask scheduler', and give "
-            f"the address that it prints, as tcp://host:8786"
+            f"no scheduler of Dask answers at {client}: start one with 'dask scheduler', and give the address "
+            f"that it prints, as tcp://host:8786"
         ) from None
     try:
         yield made, client
     finally:
         made.close(timeout=2)
+
+
+async def _answered(address: str) -> None:
+    """Wait for the answer of a scheduler; a client that gets none takes long to give up, and complains."""
+    from distributed import Security
+    from distributed.core import rpc
+
+    async def ask() -> None:
+        credentials = Security().get_connection_args("client")
+        async with rpc(address, timeout=_ANSWER, connection_args=credentials) as scheduler:
+            await scheduler.identity()
+
+    await asyncio.wait_for(ask(), _ANSWER)
 
 
 @contextmanager
@@ -173,7 +191,7 @@ def refuse_others(client: Client) -> None:
     from distributed import TimeoutError as NoneCameError
 
     try:
-        client.wait_for_workers(1, timeout=_WORKERS)
+        client.wait_for_workers(1, timeout=_FIRST)
     except NoneCameError:
         raise ParameterError(
             f"{_address(client)} has no worker: start some with 'dask worker {_address(client)}'"

@@ -1,4 +1,7 @@
-"""A folder of Parquet files, one per chunk, one row per point; what is told of a chunk stands in its file."""
+"""A folder of Parquet files, one per chunk, one row per point; what is told of a chunk stands in its file.
+
+The manifest is such a file too, without rows, so that a reader can be given the folder as it is.
+"""
 
 from __future__ import annotations
 
@@ -22,20 +25,32 @@ _NOTE = "hersey"
 class ParquetKind:
     """Makes and opens such folders."""
 
-    manifest = "manifest.json"
+    manifest = "manifest.parquet"
     lock = ".lock"
 
     def create(self, path: Path, layout: Layout, manifest: Scenario) -> None:
         """Make an empty folder."""
+        import polars as pl
+
         units = {name: each.attributes.get("units") for name, each in layout.coordinates.items()}
         units |= {each.name: each.attributes.get("units") for each in layout.variables}
         about = {**layout.attributes, "units_of_columns": units}
-        write_file(path / self.manifest, json.dumps({**manifest, "about": about}, indent=1).encode())
+        columns: dict[str, Any] = {name: np.empty(0) for name in layout.coordinates}
+        columns |= {
+            each.name: np.empty(0, np.array(each.words).dtype if each.words else each.dtype)
+            for each in layout.variables
+        }
+        told = json.dumps({**manifest, "about": about}, allow_nan=False)
+        content = io.BytesIO()
+        pl.DataFrame(columns).write_parquet(content, metadata={_NOTE: told})
+        write_file(path / self.manifest, content.getvalue())
 
     def read_manifest(self, path: Path) -> Scenario | None:
         """Return the manifest, if there is one."""
-        with suppress(OSError, ValueError):
-            manifest = json.loads((path / self.manifest).read_bytes())
+        import polars as pl
+
+        with suppress(OSError, ValueError, KeyError, pl.exceptions.PolarsError):
+            manifest = json.loads(pl.read_parquet_metadata(path / self.manifest)[_NOTE])
             if isinstance(manifest, dict) and "scenario" in manifest:
                 return manifest
         return None

@@ -103,27 +103,6 @@ class Kind(Protocol):
         """Return a folder that is there."""
 
 
-def kind_of(path: Path) -> Kind:
-    """Return what writes a folder by the end of its name.
-
-    Raises
-    ------
-    OutputError
-        If it is neither .zarr nor .parquet.
-    MissingFileError
-        If what it needs is not installed.
-    """
-    if path.suffix == ".zarr":
-        from hersey.scale.zarr_folder import ZarrKind
-
-        return ZarrKind()
-    if path.suffix == ".parquet":
-        from hersey.scale.parquet_folder import ParquetKind
-
-        return ParquetKind()
-    raise OutputError(f"{path}: name a folder that ends in .zarr or .parquet")
-
-
 def sha256_of(scenario: Scenario) -> str:
     """Return the hash of what decides the values."""
     return hashlib.sha256(json.dumps(scenario, sort_keys=True).encode()).hexdigest()
@@ -132,6 +111,7 @@ def sha256_of(scenario: Scenario) -> str:
 @contextmanager
 def opened(
     path: Path,
+    kind: Kind,
     scenario: Scenario,
     layout: Callable[[], Layout],
     *,
@@ -151,7 +131,6 @@ def opened(
         written; it says what differs.
     """
     path = path.absolute()
-    kind = kind_of(path)
     try:
         with _taken(kind, path, scenario, resume=resume, overwrite=overwrite) as begun:
             if begun is None:
@@ -163,7 +142,8 @@ def opened(
                     "shape": list(planned.cut.shape),
                     "chunk": list(planned.cut.chunk),
                     "variables": [
-                        [each.name, each.dtype, each.fill, list(each.words)] for each in planned.variables
+                        [each.name, each.dtype, _written(each.fill), list(each.words)]
+                        for each in planned.variables
                     ],
                 }
                 _create(kind, path, planned, manifest)
@@ -185,7 +165,13 @@ def opened(
 
 def _as_begun(manifest: Scenario) -> tuple[Cut, tuple[Variable, ...]]:
     cut = Cut(tuple(manifest["shape"]), tuple(manifest["chunk"]))
-    return cut, tuple(Variable(name, dtype, {}, *more) for name, dtype, *more in manifest["variables"])
+    told = manifest["variables"]
+    return cut, tuple(Variable(name, dtype, {}, float(fill), words) for name, dtype, fill, words in told)
+
+
+def _written(fill: float) -> float | str:
+    """A number as JSON holds it, which has none that is not a number."""
+    return "NaN" if fill != fill else fill
 
 
 @contextmanager
@@ -322,6 +308,13 @@ def write_file(path: Path, content: bytes) -> None:
     write_atomically(path, content, overwrite=True)
 
 
+def remove_unfinished_of(path: Path) -> None:
+    """Remove what processes that were killed left half-written, once all is finished."""
+    for part in path.rglob(f".*{SUFFIX}"):
+        with suppress(OSError):
+            part.unlink()
+
+
 def refuse_unseen(path: Path, kind: Kind, sha256: str) -> None:
     """Refuse a machine that does not see the folder.
 
@@ -338,12 +331,3 @@ def refuse_unseen(path: Path, kind: Kind, sha256: str) -> None:
             f"{path} is not seen on {socket.gethostname()}: workers write there, so name a folder that all "
             f"see"
         )
-
-
-def is_our_folder(path: Path) -> bool:
-    """Whether a sweep of hersey made this folder; nothing is imported to know."""
-    with suppress(OSError, ValueError, KeyError):
-        if path.suffix == ".parquet":
-            return "scenario_sha256" in json.loads((path / "manifest.json").read_bytes())
-        return "scenario_sha256" in json.loads((path / "zarr.json").read_bytes())["attributes"]["hersey"]
-    return False

@@ -163,8 +163,11 @@ class _Window:
             self.next += 1
 
     def _begin(self, index: int, asked: int) -> None:
+        from cloudpickle import dumps  # type: ignore[import-untyped]
+
         try:
-            future = self.client.submit(self.task, self.items[index], pure=False)
+            parcel = dumps((self.task, self.items[index]))
+            future = self.client.submit(_opener(), parcel, pure=False)
         except Exception as error:
             raise self._lost() from error
         self.begun[future] = index, asked
@@ -195,6 +198,12 @@ class _Window:
             return [future.result()]
         except FutureCancelledError:
             raise self._lost() from None
+        except ModuleNotFoundError as error:
+            if (error.name or "").partition(".")[0] != "hersey":
+                raise
+            raise ParameterError(
+                f"a worker of {self.name} that joined has no hersey: install hersey {_core.VERSION} there"
+            ) from None
         except KilledWorker:
             if asked >= _ASKED:
                 raise UnfinishedError(
@@ -209,6 +218,22 @@ class _Window:
         return UnfinishedError(
             f"the scheduler {self.name} is lost: see whether it runs, and give the same command again"
         )
+
+
+def _opener() -> Callable[[bytes], Any]:
+    """Return what opens a parcel at a worker and does the task in it.
+
+    Made inside a function it travels as its code, and the parcel as bytes: a scheduler opens what it passes
+    on, and need not have hersey.
+    """
+
+    def opened(parcel: bytes) -> Any:
+        from pickle import loads
+
+        task, item = loads(parcel)
+        return task(item)
+
+    return opened
 
 
 def _checked(version: str, task: Callable[[Item], R], item: Item) -> R:
