@@ -11,7 +11,15 @@ from typing import Any
 import pytest
 
 import hersey
-from hersey.errors import ChannelError, HerseyError, InsufficientDataError, MissingFileError, ParameterError
+from hersey.errors import (
+    ChannelError,
+    HerseyError,
+    InsufficientDataError,
+    MissingFileError,
+    ParameterError,
+    UnfinishedError,
+)
+from hersey.log.many import each_of
 
 HEAD = "t [s],torque [mN*m],speed [rpm],temperature [degC]\n"
 
@@ -111,6 +119,18 @@ def test_no_more_logs_are_held_than_are_read_at_once() -> None:
         return sum(each() is not None for each in alive)
 
     assert list(hersey.read_many("*.csv", then=held).values()) == [1] * 5
+
+
+def test_a_file_that_ends_its_workers_is_named() -> None:
+    def ends_workers(path: Path) -> int:
+        if path.name == "1.csv":
+            raise UnfinishedError("item 1 has ended 48 workers", index=1)
+        return 0
+
+    found = each_of(ends_workers, [Path("logs/0.csv"), Path("logs/1.csv")])
+    assert next(found) == 0
+    with pytest.raises(UnfinishedError, match=r"^logs/1\.csv: item 1 has ended 48 workers$"):
+        next(found)
 
 
 def test_overlapping_limits_of_linear_algebra_hold_until_the_last() -> None:

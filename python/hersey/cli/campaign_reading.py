@@ -78,11 +78,11 @@ def entries(
 ) -> Iterator[Entry | HerseyError]:
     """Read logs, each with its settings, many several at a time; yield what is kept of each, or why not."""
     if client is not None:
-        from hersey.scale.tasks import done, in_order
+        from hersey.log.many import each_of
 
         task = partial(_tried, reading.anywhere(), machine and machine.absolute())
         whole = [(log.absolute(), settings) for log, settings in logs]
-        yield from in_order(done(task, whole, client=client))
+        yield from each_of(task, whole, called=lambda run: run[0], client=client)
         return
     if len(logs) < _FEW:
         yield from (_tried(reading, machine, run) for run in logs)

@@ -37,13 +37,12 @@ def fit_each(
     may_write(table, force, inputs=reading.inputs(logs))
 
     from hersey.files.writing import write_atomically
-    from hersey.log.many import collected, told
-    from hersey.scale.tasks import done, in_order
+    from hersey.log.many import collected, each_of, told
 
     task = partial(row, reading if scheduler is None else reading.anywhere())
     files = logs if scheduler is None else [log.absolute() for log in logs]
     with workers(scheduler, count) as client, bar("fitting", unit="logs") as progress:
-        results = in_order(done(task, files, client=client, progress=progress))
+        results = each_of(task, files, client=client, progress=progress)
         fits = collected(logs, results, keep_going)
     rows = [{"log": str(log), **fits[log]} for log in fits]
     if rows:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from hersey.arrays import one_thread
-from hersey.errors import HerseyError, ParameterError
+from hersey.errors import HerseyError, ParameterError, UnfinishedError
 from hersey.files.patterns import files_of
 from hersey.log.reading import read
 from hersey.scale.tasks import done, in_order
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
     from hersey.log.torque_log import TorqueLog
 
+Item = TypeVar("Item")
 R = TypeVar("R")
 
 
@@ -104,9 +105,29 @@ def read_many(
     if not files:
         raise ParameterError("no log file was named")
     task = partial(_one, then, reading)
-    return collected(
-        files, in_order(done(task, files, client=client, threads=threads, progress=progress)), keep_going
-    )
+    results = each_of(task, files, client=client, threads=threads, progress=progress)
+    return collected(files, results, keep_going)
+
+
+def each_of(
+    task: Callable[[Item], R],
+    items: Sequence[Item],
+    *,
+    called: Callable[[Item], object] = str,
+    client: Client | str | None = None,
+    threads: int = 1,
+    progress: Callable[[int, int], object] | None = None,
+) -> Iterator[R]:
+    """Yield what a task makes of each item, in their order; errors as `done`, of which one names the item.
+
+    That is an item that ends one worker after the other; ``called`` is how the user knows it.
+    """
+    try:
+        yield from in_order(done(task, items, client=client, threads=threads, progress=progress))
+    except UnfinishedError as error:
+        if error.index is None:
+            raise
+        raise error.within(str(called(items[error.index]))) from None
 
 
 def collected(files: Iterable[Path], results: Iterable[R | HerseyError], keep_going: bool) -> ManyLogs[R]:
