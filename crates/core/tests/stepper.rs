@@ -76,7 +76,7 @@ fn settings() -> Vec<Setting> {
             drag = drag.with_strengthening(Strengthening { growth: 0.05, time: 0.1 }).unwrap();
         }
         let mass = if i % 6 == 5 { 0.01 } else { random.between(0.5, 3.0) };
-        let mut train = Drivetrain::new(random.between(100.0, 900.0), mass).unwrap();
+        let mut train = Drivetrain::new(random.decades(2.0, 2.9), mass).unwrap();
         if i % 5 < 2 {
             train = train.with_grip(random.between(9.0, 16.0)).unwrap();
         }
@@ -182,7 +182,7 @@ fn a_motion_that_was_saved_goes_on_to_the_last_bit_in_every_mode() {
             assert_eq!(bits(&other), bits(&stepper), "{}", setting.name);
             let numbers = stepper.moment().numbers();
             let State { mode, slipping, .. } = stepper.state();
-            *modes.entry((mode as u8, slipping, numbers[6] == 1.0)).or_default() += 1;
+            *modes.entry((mode as u8, slipping, numbers[6] > 0.5)).or_default() += 1;
         }
     }
     println!("{modes:?}");
@@ -282,7 +282,10 @@ fn what_is_given_on_the_way_is_what_a_schedule_gives() {
                 events.extend(jump);
                 // no force is infinite; a belt that is slower than its closure lets it be stops dead
                 let dead = drag.closure() == Closure::Stiction && after.mode == Mode::Stuck;
-                assert!(before.belt_speed == after.belt_speed || dead, "{before:?} {after:?}");
+                assert!(
+                    (before.belt_speed - after.belt_speed).abs() < f64::MIN_POSITIVE || dead,
+                    "{before:?} {after:?}"
+                );
                 assert!((before.stretch - after.stretch).abs() < 1e-14, "{before:?} {after:?}");
             }
             events.extend(go_on(&mut stepper, *time));
@@ -349,7 +352,10 @@ fn a_jump_of_temperature_or_force_moves_neither_belt_nor_spring() {
             let after = stepper.state();
             let drag = drag.at(temperature).unwrap();
             let dead = closure == Closure::Stiction && after.mode == Mode::Stuck;
-            assert!(after.belt_speed == before.belt_speed || dead, "{before:?} {after:?}");
+            assert!(
+                (before.belt_speed - after.belt_speed).abs() < f64::MIN_POSITIVE || dead,
+                "{before:?} {after:?}"
+            );
             assert!((after.stretch - before.stretch).abs() < 1e-13, "{before:?} {after:?}");
             assert_eq!(told.is_some(), before.mode != after.mode);
             let speed = after.belt_speed.abs();

@@ -155,7 +155,7 @@ class Stepper:
         drive_rate: float = 0.0,
         temperature_rate: float = 0.0,
     ) -> Event | None:
-        """Set drive and temperature from now on, and return the change of mode that this makes at once, if it does.
+        """Set drive and temperature from now on; return the change of mode that this makes at once, if any.
 
         What is not given goes on as it is; what is given as it already is changes nothing.
 

@@ -144,9 +144,7 @@ impl Moment {
         at_least(NAMES[2], n[2], n[1])?;
         at_least(NAMES[14], n[14], 0.0)?;
         above(NAMES[9], n[9], 0.0)?;
-        if n[10].abs() != 1.0 {
-            return Err(Error::TooLarge { quantity: NAMES[10], value: n[10], limit: 1.0 });
-        }
+        let backwards = count(10, 0.5 * (n[10] + 1.0), 1)? == 0;
         let flag = |i: usize| count(i, n[i], 1).map(|flag| flag == 1);
         let course = |i: usize| {
             let course = (n[i + 1], [n[i + 2], n[i + 3], n[i + 4], n[i + 5]]);
@@ -161,7 +159,7 @@ impl Moment {
                 slipping: flag(7)?,
                 at_rest_since: n[8],
                 strength: n[9],
-                direction: n[10],
+                direction: if backwards { -1.0 } else { 1.0 },
                 pull: n[11],
                 speed: n[12],
                 bristle: n[13],

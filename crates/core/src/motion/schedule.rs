@@ -29,6 +29,7 @@ impl Schedule {
     }
 
     /// Whether it goes on for good as `cubic` does, in the time from `time` on, where `segment` holds.
+    #[allow(clippy::float_cmp)] // the same to the last bit
     pub(super) fn goes_on_as(&self, segment: usize, time: f64, cubic: &Cubic) -> bool {
         self.end(segment).is_infinite() && self.about(segment, time) == *cubic
     }

@@ -240,17 +240,10 @@ impl Stepper {
     /// Drag now, where pull and speed are these, signed.
     fn drag(&self, pull: f64, belt_speed: f64) -> Result<f64, Error> {
         let (elapsed, work) = (self.moment.time - self.moment.start, Work::default());
-        if self.moment.phase.mode == Mode::Stuck {
-            return Ok(pull);
-        }
-        let made;
         let piece = match &self.ahead {
-            Some(ahead) => self.piece(ahead, &work)?,
-            None => {
-                made = self.motion(&work)?.look_ahead(f64::INFINITY)?;
-                made.0
-            }
-        };
+            Some(ahead) => self.piece(ahead, &work),
+            None => self.motion(&work)?.look_ahead(f64::INFINITY).map(|(piece, _)| piece),
+        }?;
         if piece.start.mode == Mode::Stuck {
             return Ok(pull);
         }

@@ -222,6 +222,7 @@ impl System {
     }
 
     /// Whether the temperature, of which `segment` holds, goes on for good as `course` does, in the time from `time` on.
+    #[allow(clippy::float_cmp)] // the same to the last bit
     pub(super) fn temperature_goes_on_as(&self, segment: usize, time: f64, course: &Cubic) -> bool {
         match &self.temperature {
             Some(temperature) => temperature.goes_on_as(segment, time, course),
@@ -271,19 +272,10 @@ impl System {
         at_most("segment of the drive", moment.segments[0], last[0])?;
         at_most("segment of the temperature", moment.segments[1], last[1])?;
         at_most("branch", moment.phase.branch, self.drag.branch(f64::INFINITY))?;
-        let smooth = self.drag.closure().is_smooth();
-        at_most(
-            "sticking of a closure that has none",
-            usize::from(moment.phase.mode == Mode::Stuck),
-            usize::from(!smooth),
-        )?;
-        let grips = self.grip().is_some();
-        at_most(
-            "slip of a roll that grips for ever",
-            usize::from(moment.phase.slipping),
-            usize::from(grips),
-        )?;
-        Ok(())
+        let (stuck, sticks) = (moment.phase.mode == Mode::Stuck, !self.drag.closure().is_smooth());
+        at_most("sticking, of a closure that has none,", stuck.into(), sticks.into())?;
+        let (slips, can_slip) = (moment.phase.slipping, self.grip().is_some());
+        at_most("slip, of a roll that grips for ever,", slips.into(), can_slip.into()).map(|_| ())
     }
 
     /// Refuse a `temperature`, in the scale of the law, at which there is no law of drag.
