@@ -165,6 +165,67 @@ def phases(hostile: Hostile) -> None:
     hostile.call("fmi2FreeInstance", two, kind=None)
 
 
+def steps_in_order(hostile: Hostile) -> None:
+    """What a step says of itself: whole, or ended early at a change of mode, which waits for its event."""
+    event, terminate, early = (c.c_bool(True) for _ in range(3))
+    last, mode, count = c.c_double(), (c.c_int32 * 1)(), c.c_size_t(1)
+    for event_mode in (False, True):
+        one = hostile.version3(event_mode=event_mode)
+        said = [c.byref(each) for each in (event, terminate, early, last)]
+        hostile.call("fmi3EnterInitializationMode", one, 0, 0.0, 0.0, 0, 0.0)
+        hostile.call("fmi3ExitInitializationMode", one)
+        if event_mode:
+            hostile.call("fmi3EnterStepMode", one)
+        for begin, changes in ((0.0, False), (0.3, True)):
+            assert hostile.call("fmi3DoStep", one, begin, 0.3, 0, *said) == OK
+            stops = event_mode and changes
+            assert (event.value, terminate.value, early.value) == (stops, False, stops)
+            assert last.value == (begin + 0.3 if not stops else last.value)
+            assert begin < last.value <= begin + 0.3
+        hostile.call("fmi3GetInt32", one, (c.c_uint32 * 1)(20), count, mode, count)
+        assert (last.value < 0.35, mode[0] == 3) == (event_mode, True)
+        hostile.call("fmi3FreeInstance", one, kind=None)
+
+
+def plain(hostile: Hostile) -> None:
+    """The plain functions: what they return, and what they refuse."""
+    text, why, value = (
+        (hostile.resources / "drive.txt").read_bytes(),
+        c.create_string_buffer(20),
+        c.c_double(),
+    )
+    for wrong, room in ((b"", 20), (text[:60], 5), (None, 1), (b"\xff", 0)):
+        assert not hostile.call("hersey_drive_read", wrong, why, c.c_size_t(room), kind=c.c_void_p)
+        assert len(why.value) == max(room - 1, 0) or room == 0
+    drive = c.c_void_p(hostile.call("hersey_drive_read", text, None, c.c_size_t(0), kind=c.c_void_p))
+    assert hostile.call("hersey_set", drive, b"mass", 1.0) == OK
+    assert hostile.call("hersey_begin", drive, 0.0) == OK
+    refused = (
+        ("hersey_set", (b"mass", 1.0), "fixed"),
+        ("hersey_set", (b"grip", 1.0), "no variable 'grip'"),
+        ("hersey_set", (None, 1.0), "name is null"),
+        ("hersey_slope", (b"belt_speed", 1.0), "no input"),
+        ("hersey_get", (b"mode", None), "value is null"),
+        ("hersey_begin", (0.0,), "between two steps"),
+        ("hersey_advance", (float("nan"), 0), "not after"),
+        ("hersey_save", (None, c.c_size_t(10)), "needed"),
+        ("hersey_restore", (text, c.c_size_t(80)), "no saved state"),
+    )
+    for name, arguments, words in refused:
+        assert hostile.call(name, drive, *arguments) == -1, name
+        said = hostile.call("hersey_why", drive, kind=c.c_char_p).decode()
+        assert said.startswith(f"{name}: "), said
+        assert words in said, said
+        assert hostile.call(name, None, *arguments) == -1, name
+    assert b"no drive" in hostile.call("hersey_why", None, kind=c.c_char_p)
+    assert hostile.call("hersey_advance", drive, 0.4, 1) == 1
+    assert hostile.call("hersey_advance", drive, 0.4, 0) == OK
+    assert hostile.call("hersey_get", drive, b"time", c.byref(value)) == OK
+    assert value.value == 0.4
+    hostile.call("hersey_free", drive, kind=None)
+    hostile.call("hersey_free", None, kind=None)
+
+
 def states(hostile: Hostile) -> None:
     """Saved states that are none, damaged, or of something else."""
     one, state, size = hostile.version3(), c.c_void_p(), c.c_size_t()
@@ -248,6 +309,8 @@ def main() -> None:
         lambda: every_function(hostile, names),
         lambda: instances(hostile),
         lambda: phases(hostile),
+        lambda: steps_in_order(hostile),
+        lambda: plain(hostile),
         lambda: states(hostile),
         lambda: calls_out_of_the_logger(hostile),
         lambda: a_thousand(hostile),
