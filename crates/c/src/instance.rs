@@ -188,7 +188,7 @@ impl Instance {
     /// The motion, begun if it is not.
     fn moving(&mut self) -> Result<&mut Stepper, String> {
         if self.motion.is_none() {
-            let motion = self.making().stepper().map_err(|error| error.to_string())?;
+            let motion = self.making().stepper().map_err(|error| self.making().words(error))?;
             self.motion = Some(motion);
             self.now = None;
         }
@@ -312,7 +312,7 @@ impl Instance {
         let temperature = [making.temperature(self.values[TEMPERATURE]), slope, 0.0, 0.0];
         let temperature = self.description.is_warmed().then_some(temperature);
         let event = self.moving()?.set_inputs(Some(drive), temperature);
-        event.map(|_| ()).map_err(|error| error.to_string())
+        event.map(|_| ()).map_err(|error| self.making().words(error))
     }
 
     /// A step of the standard, `length` from `from` on.
@@ -362,7 +362,7 @@ impl Instance {
         while !early {
             let event = self.moving()?.advance(until - origin, &work);
             self.now = None;
-            let Some(event) = event.map_err(|error| error.to_string())? else { break };
+            let Some(event) = event.map_err(|error| self.making().words(error))? else { break };
             early = stopping && event.time + origin < until && self.has_changed()?;
             time = if early { event.time + origin } else { until };
         }

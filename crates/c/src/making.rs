@@ -42,6 +42,16 @@ impl Making<'_> {
         value - self.given("temperature_zero").unwrap_or(0.0)
     }
 
+    /// Why there is no such motion; the core counts temperatures in the scale of the law.
+    pub fn words(&self, error: Error) -> String {
+        match (error.quantity(), self.given("temperature_zero")) {
+            (Some("temperature"), Some(zero)) if zero != 0.0 => {
+                format!("{error} (counted from temperature_zero, {zero} K)")
+            }
+            _ => error.to_string(),
+        }
+    }
+
     fn train(&self) -> Result<Drivetrain, Error> {
         let train = Drivetrain::new(self.stiffness(), self.value("mass"))?;
         self.given("grip").map_or(Ok(train), |grip| train.with_grip(grip))

@@ -201,3 +201,12 @@ fn a_tolerance_is_taken_if_it_is_tighter() {
     }
     assert!(Instance::new(BASELINE).unwrap().set_up(0.0, None, Some(0.0)).is_err());
 }
+
+#[test]
+fn a_temperature_below_the_scale_of_the_law_is_told_with_its_zero() {
+    let celsius = WARMED.replace("temperature = 330.0", "temperature = 300.0");
+    let mut instance = begun(&format!("{celsius}temperature_zero = 273.15\n"));
+    instance.set(TEMPERATURE, 253.15).unwrap();
+    let words = instance.advance(0.1, 0.0, false).unwrap_err();
+    assert!(words.contains("temperature is -19.99") && words.contains("273.15 K"), "{words}");
+}
