@@ -36,8 +36,9 @@ SOFTWARE.
 _STYLE = """\
 body { max-width: 60rem; margin: 0 auto; padding: 1rem 1.25rem 3rem; color: #1a1a1a; background: #fff;
   font: 15px/1.5 "Segoe UI", "Helvetica Neue", Arial, "Liberation Sans", sans-serif; }
+p, li { overflow-wrap: anywhere; }
 h1 { font-size: 1.4rem; margin: .5rem 0 .25rem; } h2 { font-size: 1.05rem; margin: 1.75rem 0 .4rem; }
-table { border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nums; }
+table { display: block; overflow-x: auto; border-collapse: collapse; font-variant-numeric: tabular-nums; }
 th, td { text-align: left; vertical-align: top; padding: .25rem .75rem .25rem 0;
   border-bottom: 1px solid #ddd; }
 td.n { text-align: right; white-space: nowrap; } th.n { text-align: right; }
@@ -46,7 +47,7 @@ code { font-family: ui-monospace, Consolas, "DejaVu Sans Mono", monospace; font-
 """
 #: What each group of variables is, in the order of the page.
 _GROUPS = {
-    "input": ("Inputs", "They may change at any communication point; FMI 2.0 may give a slope too."),
+    "input": ("Inputs", "They may jump at any communication point."),
     "output": ("Outputs", ""),
     "parameter": ("Parameters", "They may be changed before the initialization ends; then they hold."),
 }
@@ -58,7 +59,7 @@ _EVENTS = {
         "change is located to rounding inside the step."
     ),
     "2.0": (
-        "Steps go through changes of mode (stick, release, entry of mixed lubrication or of the full film), "
+        "Between two points an input may have a slope. Steps go through changes of mode (stick, release, entry of mixed lubrication or of the full film), "
         "each of which is located to rounding inside the step."
     ),
 }
@@ -82,7 +83,8 @@ def page(model: Model, variables: Sequence[Variable], facts: Mapping[str, str], 
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         '<meta name="viewport" content="width=device-width">\n'
         f"<title>{escape(model.name)}</title>\n<style>\n{_STYLE}</style>\n</head>\n<body>\n"
-        f"<h1>{escape(model.name)}</h1>\n<p>{escape(model.description)}</p>\n"
+        f"<h1>{escape(model.name)}</h1>\n<p>A belt on its drive, which may stick and slip: a unit for "
+        f"co-simulation by FMI {fmi}, with the core of hersey in it.</p>\n"
         f'<ul class="facts">{told}</ul>\n{tables}'
         f"<h2>Steps and events</h2>\n<p>{_EVENTS[fmi]} The size of a communication step changes nothing "
         "else: the library takes its own steps. State can be saved, restored and serialized, to the bit; any "

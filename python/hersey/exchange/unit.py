@@ -258,7 +258,7 @@ def _facts(fitted: FittedLaw | None, roll_radius: float | None, drive: str) -> d
         ranges += f" and {cold:.4g} to {hot:.4g} degC"
     facts["Measured at"] = f"{ranges}; beyond, the law is extrapolated"
     if fitted.rest is not None:
-        facts["Rest of the drive"] = " ".join(str(fitted.rest.headline()).split())
+        facts["Beside it"] = " ".join(fitted.rest.headline().split())
     return facts
 
 
