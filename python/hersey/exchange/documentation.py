@@ -59,8 +59,9 @@ _EVENTS = {
         "change is located to rounding inside the step."
     ),
     "2.0": (
-        "Between two points an input may have a slope. Steps go through changes of mode (stick, release, entry of mixed lubrication or of the full film), "
-        "each of which is located to rounding inside the step."
+        "Between two points an input may have a slope. Steps go through changes of mode (stick, release, "
+        "entry of mixed lubrication or of the full film), each of which is located to rounding inside the "
+        "step."
     ),
 }
 _USE = {

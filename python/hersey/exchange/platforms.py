@@ -122,8 +122,7 @@ def _told(content: bytes) -> tuple[str, ...]:
     numbers: tuple[int, ...] = ()
     known: dict[int, str] = {}
     if kind == b"\x7fELF":
-        system, order = "linux", ">" if content[5:6] == b"\x02" else "<"
-        numbers, known = struct.unpack_from(f"{order}H", content, 18), _ELF
+        system, numbers, known = "linux", struct.unpack_from("<H", content, 18), _ELF
     elif kind[:2] == b"MZ":
         (head,) = struct.unpack_from("<I", content, 0x3C)
         if content[head : head + 4] == b"PE\0\0":
