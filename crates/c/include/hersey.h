@@ -33,7 +33,7 @@
  *
  * Drives are independent: each may be used by a thread of its own. A call on one that is at work in another is refused.
  * After what is refused the drive is as it was before. Same calls, same bits; where and how often a motion is stopped
- * changes none.
+ * changes none, unless an input has a slope, which begins anew at each stop (rounding, some 1e-15).
  */
 #ifndef HERSEY_H
 #define HERSEY_H
@@ -71,13 +71,14 @@ hersey_drive *hersey_drive_read(const char *text, char *why, size_t room);
 /* Give it back; null is let pass. */
 void hersey_free(hersey_drive *drive);
 
-/* Why the last call that was refused was so; holds until the next. */
+/* Why the last call that was refused was so; holds until the next, so print it in a statement of its own. */
 const char *hersey_why(hersey_drive *drive);
 
 /* Set an input, at any time and from then on, or a parameter, before hersey_begin. */
 int hersey_set(hersey_drive *drive, const char *name, double value);
 
-/* Let an input change by so much per second during the next hersey_advance, up to its end. */
+/* Let an input change by so much per second during the next hersey_advance, up to its end; after HERSEY_CHANGED it goes
+ * on to change. */
 int hersey_slope(hersey_drive *drive, const char *name, double slope);
 
 /* The value of a variable now; outputs after hersey_begin; of a Boolean 0 or 1. */

@@ -199,7 +199,15 @@ impl Instance {
         if let Some(now) = self.now {
             return Ok(now);
         }
-        let state = self.moving()?.state();
+        let mut state = self.moving()?.state();
+        if self.phase == Phase::Event {
+            // what the inputs make of it, which the motion follows once all is settled
+            let [drive, temperature] = self.inputs();
+            let mut settled = self.moving()?.clone();
+            let event = settled.set_inputs(drive, temperature);
+            event.map_err(|error| self.making().words(error))?;
+            state = settled.state();
+        }
         self.now = Some(state);
         Ok(state)
     }
@@ -215,8 +223,11 @@ impl Instance {
         Ok(self.seen != Some(now))
     }
 
-    /// Show mode and slip as they are now.
+    /// Show mode and slip as they are now, which at an event is as the inputs make them.
     pub fn show(&mut self) -> Result<(), String> {
+        if self.phase == Phase::Event {
+            self.follow()?;
+        }
         self.seen = Some(self.discrete()?);
         Ok(())
     }
@@ -280,15 +291,23 @@ impl Instance {
             Causality::Input => self.must_be(&Phase::ALL[..4])?,
             _ => return Err(format!("{name} is computed and cannot be set")),
         }
-        if value.is_finite() { Ok(()) } else { Err(format!("{name} {value} is not finite")) }
+        if !value.is_finite() {
+            return Err(format!("{name} {value} is not finite"));
+        }
+        if place == TEMPERATURE && self.making().temperature(value) <= 0.0 {
+            let zero = -self.making().temperature(0.0);
+            return Err(format!("{name} is {value} K: the law begins above {zero} K"));
+        }
+        Ok(())
     }
 
     /// Set a variable that was checked; an input holds from now on.
     pub fn set(&mut self, place: usize, value: f64) -> Result<(), String> {
         self.check(place, value)?;
         self.values[place] = value;
+        self.now = None;
         if matches!(self.phase, Phase::Instantiated | Phase::Initialization) {
-            (self.motion, self.now) = (None, None);
+            self.motion = None;
         }
         Ok(())
     }
@@ -304,14 +323,20 @@ impl Instance {
         Ok(())
     }
 
-    /// Let the motion follow the inputs from now on: what goes on as it was cuts nothing.
-    fn follow(&mut self) -> Result<(), String> {
+    /// Drive and temperature from now on, as the core takes them.
+    fn inputs(&self) -> [Option<[f64; 4]>; 2] {
         let (making, [drive_slope, slope]) = (self.making(), self.slopes);
         let drive = self.values[self.description.drive_place()];
         let drive = [making.drive(drive), making.drive(drive_slope), 0.0, 0.0];
         let temperature = [making.temperature(self.values[TEMPERATURE]), slope, 0.0, 0.0];
-        let temperature = self.description.is_warmed().then_some(temperature);
-        let event = self.moving()?.set_inputs(Some(drive), temperature);
+        [Some(drive), self.description.is_warmed().then_some(temperature)]
+    }
+
+    /// Let the motion follow the inputs from now on: what goes on as it was cuts nothing.
+    fn follow(&mut self) -> Result<(), String> {
+        let [drive, temperature] = self.inputs();
+        let event = self.moving()?.set_inputs(drive, temperature);
+        self.now = None;
         event.map(|_| ()).map_err(|error| self.making().words(error))
     }
 
@@ -329,7 +354,11 @@ impl Instance {
             let time = self.time;
             return Err(format!("the step begins at {from:?}, but the instance is at {time:?}"));
         }
-        self.advance(until, same, self.event_mode && self.early_return)
+        let stopping = self.event_mode && self.early_return;
+        if stopping && self.has_changed()? {
+            return Err(format!("an event waits at {:?}: enter event mode first", self.time));
+        }
+        self.advance(until, same, stopping)
     }
 
     /// On to `until`, or to the first change of mode or slip before it if `stopping`.
@@ -373,6 +402,10 @@ impl Instance {
                 self.values[place] += *slope * (time - before);
                 *slope = if early { *slope } else { 0.0 };
             }
+        }
+        let State { belt_speed, stretch, pull, drag, .. } = self.state()?;
+        if ![belt_speed, stretch, pull, drag].iter().all(|number| number.is_finite()) {
+            return Err(format!("the motion is no longer finite at {time:?}: are the inputs?"));
         }
         let changed = self.has_changed()?;
         if !self.event_mode {

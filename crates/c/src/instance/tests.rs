@@ -124,10 +124,10 @@ fn what_fails_leaves_all_as_it_was() {
     let mut instance = begun(WARMED);
     instance.advance(0.3, 0.0, false).unwrap();
     let before = moving(&mut instance);
-    instance.set(TEMPERATURE, -5.0).unwrap();
-    assert!(instance.advance(0.4, 0.0, false).is_err());
+    for temperature in [-5.0, 0.0] {
+        assert!(instance.set(TEMPERATURE, temperature).is_err());
+    }
     assert_eq!(moving(&mut instance), before);
-    instance.set(TEMPERATURE, 330.0).unwrap();
     instance.advance(0.4, 0.0, false).unwrap();
     let mut undisturbed = begun(WARMED);
     undisturbed.advance(0.4, 0.0, false).unwrap();
@@ -203,10 +203,56 @@ fn a_tolerance_is_taken_if_it_is_tighter() {
 }
 
 #[test]
-fn a_temperature_below_the_scale_of_the_law_is_told_with_its_zero() {
+fn a_temperature_below_the_scale_of_the_law_is_refused_with_its_zero() {
     let celsius = WARMED.replace("temperature = 330.0", "temperature = 300.0");
     let mut instance = begun(&format!("{celsius}temperature_zero = 273.15\n"));
-    instance.set(TEMPERATURE, 253.15).unwrap();
-    let words = instance.advance(0.1, 0.0, false).unwrap_err();
-    assert!(words.contains("temperature is -19.99") && words.contains("273.15 K"), "{words}");
+    let words = instance.set(TEMPERATURE, 253.15).unwrap_err();
+    assert_eq!(words, "temperature is 253.15 K: the law begins above 273.15 K");
+}
+
+#[test]
+fn at_an_event_outputs_answer_to_the_inputs_and_the_motion_follows_once_they_are_settled() {
+    let mut instance = Instance::new(&WARMED.replace("grip = 120.0\n", "")).unwrap();
+    (instance.event_mode, instance.early_return) = (true, true);
+    instance.begin(Phase::Event).unwrap();
+    instance.enter(Phase::Step, &[Phase::Event]).unwrap();
+    let reached = instance.step(0.0, 0.5).unwrap();
+    // who goes on without looking is told
+    let words = instance.step(reached.time, 0.1).unwrap_err();
+    assert!(words.contains("an event waits"), "{words}");
+    instance.enter(Phase::Event, &[Phase::Step]).unwrap();
+    instance.show().unwrap();
+    let (saved, drag) = (instance.saved(), value(&mut instance, "drag"));
+    // tried values leave no trace
+    for temperature in [500.0, 380.0] {
+        instance.set(TEMPERATURE, temperature).unwrap();
+        assert!((value(&mut instance, "drag") - drag).abs() > 1.0, "{temperature}");
+    }
+    assert_eq!(instance.saved().moment, saved.moment);
+    instance.set(TEMPERATURE, 330.0).unwrap();
+    assert_eq!(value(&mut instance, "drag").to_bits(), drag.to_bits());
+    // settled, the motion follows, and the next step begins without a jump of its own
+    instance.set(TEMPERATURE, 380.0).unwrap();
+    let drag = value(&mut instance, "drag");
+    instance.show().unwrap();
+    instance.enter(Phase::Step, &[Phase::Event]).unwrap();
+    assert_eq!(value(&mut instance, "drag").to_bits(), drag.to_bits());
+    assert!(instance.step(reached.time, 1e-6).unwrap().time > reached.time);
+}
+
+#[test]
+fn a_motion_that_is_no_longer_finite_is_refused() {
+    for text in [BASELINE, WARMED] {
+        let mut instance = Instance::new(text).unwrap();
+        (instance.event_mode, instance.early_return) = (true, true);
+        instance.begin(Phase::Step).unwrap();
+        instance.step(0.0, 0.2).unwrap();
+        let before = moving(&mut instance);
+        instance.set(instance.description.drive_place(), 1e308).unwrap();
+        let outcome = instance.step(0.2, 0.1);
+        match outcome {
+            Ok(_) => assert!(value(&mut instance, "belt_speed").is_finite()),
+            Err(_) => assert_eq!(moving(&mut instance), before),
+        }
+    }
 }
