@@ -223,10 +223,15 @@ def test_it_says_what_it_is_made_of(surface: hersey.DampingSurface, tmp_path: Pa
         ({"drive": "torque", "roll_radius": 0.0}, "roll_radius is 0.0: it must be greater than 0"),
         ({"temperature": 400.0}, "temperature is given, but"),
         ({"start": "running"}, "start 'running' is not known"),
-        ({"drive": "torque", "roll_radius": 0.02, "start": "steady"}, "needs a drive_speed"),
+        (
+            {"drive": "torque", "roll_radius": 0.02, "start": "steady"},
+            "start 'steady' goes with drive 'speed'",
+        ),
         ({"drive_speed": float("nan")}, "finite"),
         ({"drive_speed": "30 rpm"}, "rpm"),
         ({"tolerance": 2.0}, "tolerance"),
+        ({"name": " "}, "name is ' ': it must be a line of visible characters"),
+        ({"name": "a\nb"}, "it must be a line of visible characters"),
         (
             {"libraries": {"sparc-solaris": "hersey.so"}},
             "platform 'sparc-solaris' is not known: x86_64-linux",
@@ -251,6 +256,33 @@ def test_a_drive_that_is_none_is_refused(tmp_path: Path) -> None:
             hersey.export_fmu(tmp_path / "drive.fmu", train, DRAG)
     with pytest.raises(ParameterError, match="varies with temperature: give temperature"):
         hersey.export_fmu(tmp_path / "drive.fmu", TRAIN, WARM)
+    with pytest.raises(ParameterError, match="temperature is -20 degC: the law holds above 0 degC"):
+        hersey.export_fmu(tmp_path / "drive.fmu", TRAIN, WARM, temperature="-20 degC")
+
+
+@pytest.mark.parametrize("fmi", VERSIONS)
+def test_a_loop_may_be_closed_over_the_motion(fmi: str, tmp_path: Path) -> None:
+    """Speed and forces of the spring answer to no input at once, drag to temperature and torque alone."""
+    for kind, drag in (
+        ("retained", {"temperature"}),
+        ("torque", {"temperature", "drive_torque"}),
+        ("grip", set()),
+    ):
+        train, law, settings = kinds()[kind]
+        unit = hersey.export_fmu(tmp_path / f"{kind}.fmu", train, law, fmi=fmi, **settings)
+        about = fmpy.read_model_description(str(unit.path))
+        at_once = {
+            u.variable.name: None if u.dependencies is None else {v.name for v in u.dependencies}
+            for u in about.outputs
+        }
+        assert at_once["drag"] == drag
+        assert [at_once[name] for name in ("belt_speed", "stretch", "spring_force")] == [set()] * 3
+        assert at_once["mode"] is None
+        first = {u.variable.name: u.dependencies for u in about.initialUnknowns}
+        if kind == "grip":  # it starts steady
+            assert first["belt_speed"] is None
+        else:
+            assert {v.causality for v in first["belt_speed"]} == {"parameter"}
 
 
 def test_nothing_is_replaced_unasked_and_a_failure_leaves_nothing(

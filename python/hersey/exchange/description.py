@@ -26,10 +26,11 @@ _CATEGORIES = {
 
 @dataclass(frozen=True)
 class Model:
-    """What a description says beside its variables: name, what it is of, tolerance of the steps, starts."""
+    """What a description says beside its variables: name, what it is of, how it starts, tolerance, starts."""
 
     name: str
     description: str
+    start: str
     tolerance: float
     starts: Mapping[str, float]
 
@@ -67,7 +68,7 @@ def description(model: Model, variables: Sequence[Variable], fmi: str, token: st
     Xml.SubElement(root, "DefaultExperiment", {name: repr(value) for name, value in experiment.items()})
     listed = Xml.SubElement(root, "ModelVariables")
     listed.extend((_variable_2 if fmi == "2.0" else _variable_3)(v, model.starts) for v in variables)
-    root.append((_structure_2 if fmi == "2.0" else _structure_3)(variables))
+    root.append((_structure_2 if fmi == "2.0" else _structure_3)(variables, model.start))
     Xml.indent(root)
     text = Xml.tostring(root, encoding="unicode")
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'.encode()
@@ -128,22 +129,48 @@ def _variable_2(variable: Variable, starts: Mapping[str, float]) -> Xml.Element:
     return element
 
 
-def _structure_3(variables: Sequence[Variable]) -> Xml.Element:
-    """Every output hangs on what it will, and all are calculated at the start."""
+def _hangs_on(variable: Variable, variables: Sequence[Variable]) -> list[Variable] | None:
+    """The inputs that an output answers to at once; None for any.
+
+    Motion is a state, so that a tool may close a loop over it. Drag follows temperature and, while it holds
+    the belt, a torque on the roll.
+    """
+    if variable.type != "Float64":
+        return None
+    at_once = {"temperature", "drive_torque"} if variable.name == "drag" else set()
+    return [v for v in variables if v.causality == "input" and v.name in at_once]
+
+
+def _unknowns(variables: Sequence[Variable], start: str) -> list[tuple[str, Variable, list[Variable] | None]]:
+    """Outputs with what they hang on, in motion and, as initial unknowns, at the start.
+
+    A belt that starts steady has its speed of the drive.
+    """
+    outputs = [v for v in variables if v.causality == "output"]
+    known = [v for v in variables if v.causality == "parameter"]
+    found = [("Output", v, _hangs_on(v, variables)) for v in outputs]
+    for v in outputs:
+        inputs = None if start == "steady" else _hangs_on(v, variables)
+        found.append(("InitialUnknown", v, None if inputs is None else [*inputs, *known]))
+    return found
+
+
+def _structure_3(variables: Sequence[Variable], start: str) -> Xml.Element:
     structure = Xml.Element("ModelStructure")
-    for name in ("Output", "InitialUnknown"):
-        for variable in variables:
-            if variable.causality == "output":
-                Xml.SubElement(structure, name, valueReference=str(variable.reference))
+    for name, variable, inputs in _unknowns(variables, start):
+        element = Xml.SubElement(structure, name, valueReference=str(variable.reference))
+        if inputs is not None:
+            element.set("dependencies", " ".join(str(v.reference) for v in inputs))
     return structure
 
 
-def _structure_2(variables: Sequence[Variable]) -> Xml.Element:
+def _structure_2(variables: Sequence[Variable], start: str) -> Xml.Element:
     """The same; variables are counted from 1 in the order of the list."""
     structure = Xml.Element("ModelStructure")
-    for name in ("Outputs", "InitialUnknowns"):
-        unknowns = Xml.SubElement(structure, name)
-        for index, variable in enumerate(variables, 1):
-            if variable.causality == "output":
-                Xml.SubElement(unknowns, "Unknown", index=str(index))
+    index = {v.name: str(i) for i, v in enumerate(variables, 1)}
+    lists = {name: Xml.SubElement(structure, f"{name}s") for name in ("Output", "InitialUnknown")}
+    for name, variable, inputs in _unknowns(variables, start):
+        element = Xml.SubElement(lists[name], "Unknown", index=index[variable.name])
+        if inputs is not None:
+            element.set("dependencies", " ".join(index[v.name] for v in inputs))
     return structure

@@ -142,7 +142,14 @@ def export_fmu(
     OutputError
         If the file exists, or cannot be written.
     """
-    _refuse(out, drive, fmi, roll_radius)
+    _refuse(out, name, drive, fmi, roll_radius)
+    if drive == "torque" and start == "steady":
+        raise ParameterError("start 'steady' goes with drive 'speed'")
+    if temperature is not None and temperature <= drag.temperature_zero:
+        raise ParameterError(
+            f"temperature is {celsius(temperature):.6g} degC: the law holds above "
+            f"{celsius(drag.temperature_zero):.6g} degC"
+        )
     simulate(
         train,
         drag,
@@ -162,7 +169,7 @@ def export_fmu(
     facts = _facts(fitted, roll_radius, drive)
     told = printable(" ".join([f"{name}, driven by a {drive}.", *(f"{k}: {v}." for k, v in facts.items())]))
     starts = {key: value for key, value in values.items() if isinstance(value, int | float)}
-    model = Model(name, told, tolerance, starts)
+    model = Model(name, told, str(values["start"]), tolerance, starts)
     contents = {
         "documentation/index.html": page(model, variables, facts, fmi).encode(),
         "documentation/licenses/license.txt": LICENSE_TEXT.encode(),
@@ -182,11 +189,13 @@ def export_fmu(
     )
 
 
-def _refuse(out: str | Path, drive: str, fmi: str, roll_radius: float | None) -> None:
+def _refuse(out: str | Path, name: str, drive: str, fmi: str, roll_radius: float | None) -> None:
     """Refuse what no core is asked about."""
     for said, value, known in (("drive", drive, tuple(DRIVES)), ("fmi", fmi, VERSIONS)):
         if value not in known:
             raise ParameterError(f"{said} is '{value}': it must be {' or '.join(known)}")
+    if not (name.strip() and name.isprintable()):
+        raise ParameterError(f"name is '{name}': it must be a line of visible characters")
     if Path(out).suffix != ".fmu":
         raise ParameterError(f"{out}: name a file that ends in .fmu")
     if drive == "torque" and roll_radius is None:
