@@ -120,9 +120,7 @@ def chunk(folder: Path, sets: int) -> dict[str, Any]:
     assert manifest is not None
     from hersey.scale.store import Variable
 
-    variables = tuple(
-        Variable(name, dtype, {}, float(fill), words) for name, dtype, fill, words in manifest["variables"]
-    )
+    variables = tuple(Variable(name, dtype, {}, float(fill)) for name, dtype, fill in manifest["variables"])
     target = kind_of(path).open(path, cut, variables)
     for each in (*path.glob("*/c/0"), path / "status" / "c"):
         if each.is_dir():  # of an array with chunks

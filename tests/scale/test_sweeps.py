@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -211,6 +212,42 @@ def shared(tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("kept") / "a.zarr"
     hersey.sweep(TRAIN, DRAG, **GRID, out=out, chunk=7)
     return out
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"chunk": [5, 2, 10**18]},
+        {"chunk": [2, 1, 7]},
+        {"chunk": [1, 1, 0]},
+        {"chunk": [1, 7]},
+        {"chunk": "../.."},
+        {"shape": [-1, 2, 7]},
+        {"format": 2},
+        {"scenario": None},
+        {"scenario": []},
+        {"scenario": {"parameters": 3}},
+        {"scenario_sha256": "00"},
+        {"variables": []},
+    ],
+)
+def test_a_damaged_manifest_is_not_believed(change: dict[str, Any], shared: Path, tmp_path: Path) -> None:
+    out = tmp_path / "a.zarr"
+    shutil.copytree(shared, out)
+    told = json.loads((out / "zarr.json").read_text())
+    told["attributes"]["hersey"] |= change
+    (out / "zarr.json").write_text(json.dumps(told))
+    with pytest.raises(OutputError, match=r"damaged|of another scenario") as caught:
+        hersey.sweep(TRAIN, DRAG, **GRID, out=out)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_damaged_note_is_told(shared: Path, tmp_path: Path) -> None:
+    out = tmp_path / "a.zarr"
+    shutil.copytree(shared, out)
+    (out / "status" / "notes" / "4.json").write_text('{"kinds": 3}')
+    with pytest.raises(OutputError, match="what is told of chunk 4 is damaged"):
+        hersey.sweep(TRAIN, DRAG, **GRID, out=out)
 
 
 def test_another_version_is_refused(shared: Path) -> None:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hersey import _core
-from hersey.errors import HerseyError, ParameterError
+from hersey.errors import HerseyError, OutputError, ParameterError
 from hersey.motion.following import (
     NUMBERS,
     Rules,
@@ -123,12 +123,22 @@ def kept(
     with _connected(client) as known:
         workers = threads if known is None else max(threads_of(known), 1)
         tried = trial(rules, sets)
-        cut = None if chunk is None else partial(_cut, sets, chunk)
-        planned = cut or (lambda: Cut.into(sets.shape, usual_chunk(sets.count, tried.each, workers)))
-        if cut is not None:
-            cut()
-        layout = partial(_layout, sets, rules, planned, units)
-        with opened(path, kind, scenario, layout, cut=cut, resume=resume, overwrite=overwrite) as folder:
+        asked = None if chunk is None else _cut(sets, chunk)
+
+        def planned() -> Cut:
+            return asked or Cut.into(sets.shape, usual_chunk(sets.count, tried.each, workers))
+
+        with opened(
+            path,
+            kind,
+            scenario,
+            partial(_layout, sets, rules, units),
+            shape=sets.shape,
+            planned=planned,
+            asked=asked,
+            resume=resume,
+            overwrite=overwrite,
+        ) as folder:
             notes: list[str] = []
             if known is not None:
                 notes = _probed(known, rules, tried, (path, kind, sha256_of(scenario)))
@@ -149,7 +159,13 @@ def _followed(
     lacking = np.ones(count, dtype=bool)
     for number in folder.finished():
         if (note := folder.note(number)) is not None:
-            tally.add(note)
+            try:
+                tally.add(note)
+            except (AttributeError, KeyError, TypeError, ValueError):
+                raise OutputError(
+                    f"{folder.path}: what is told of chunk {number} is damaged: remove its "
+                    f"files, and it is done anew"
+                ) from None
             lacking[number] = False
     before = count - int(lacking.sum())
     ended, there = before, tally.sets
@@ -242,7 +258,7 @@ def _probed(client: Client, rules: Rules, tried: Trial, seen: Any) -> list[str]:
     return hashes_differ(found.items(), tried.sha256)
 
 
-def _layout(sets: Sets, rules: Rules, cut: Callable[[], Cut], units: str) -> Layout:
+def _layout(sets: Sets, rules: Rules, units: str, cut: Cut) -> Layout:
     """What the folder holds, with units and words."""
 
     def unit(text: str) -> dict[str, str]:
@@ -278,7 +294,7 @@ def _layout(sets: Sets, rules: Rules, cut: Callable[[], Cut], units: str) -> Lay
     told = {key: value for key, value in rules.told().items() if value is not None}
     return Layout(
         sets.axes,
-        cut(),
+        cut,
         tuple(whole.values()),
         coordinates,
         {**told, "created_by": f"hersey {_core.VERSION}, sweep", "units": units, "sets": sets.count},

@@ -83,8 +83,8 @@ def connected(client: Client | str) -> Iterator[tuple[Client, str]]:
             made: Client = Client(client, timeout=_ANSWER, set_as_default=False)
     except Exception:  # what answers there may be anything
         raise ParameterError(
-            f"no scheduler of Dask answers at {client}: start one with 'dask scheduler', and give the address "
-            f"that it prints, as tcp://host:8786"
+            f"no scheduler of Dask answers at {client}: start one with 'dask scheduler', and give the "
+            f"address that it prints, as tcp://host:8786"
         ) from None
     try:
         yield made, client

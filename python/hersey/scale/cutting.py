@@ -48,6 +48,18 @@ class Cut:
         return cut
 
     @property
+    def is_sound(self) -> bool:
+        """Whether `into` could have made it; of one that was read from a file one cannot know."""
+        if len(self.chunk) != len(self.shape):
+            return False
+        cut_before = False
+        for each, length in zip(reversed(self.chunk), reversed(self.shape), strict=True):
+            if type(each) is not int or not 1 <= each <= length or (cut_before and each != 1):
+                return False
+            cut_before = cut_before or each < length
+        return self.count <= MOST_CHUNKS
+
+    @property
     def grid(self) -> tuple[int, ...]:
         """How many chunks lie along each axis."""
         return tuple(-(-length // each) for length, each in zip(self.shape, self.chunk, strict=True))

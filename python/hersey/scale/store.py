@@ -14,6 +14,7 @@ import shutil
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
+from math import prod
 from pathlib import Path
 from typing import Any, BinaryIO, Protocol
 
@@ -113,16 +114,19 @@ def opened(
     path: Path,
     kind: Kind,
     scenario: Scenario,
-    layout: Callable[[], Layout],
+    layout: Callable[[Cut], Layout],
     *,
-    cut: Callable[[], Cut] | None = None,
+    shape: tuple[int, ...],
+    planned: Callable[[], Cut],
+    asked: Cut | None = None,
     resume: bool = True,
     overwrite: bool = False,
 ) -> Iterator[Folder]:
     """Yield the folder at a path: the one begun for the same scenario, or a new one; nobody else has it.
 
-    ``layout`` is asked only where a new one is made; ``cut`` says how the grid was asked to be cut, and
-    a folder that is cut otherwise is refused.
+    ``layout`` is that of the grid of ``shape`` in a cut; a new one is cut as ``planned``. A folder that is cut
+    otherwise than ``asked`` is refused, and so is one whose manifest is not, to the letter, what this sweep
+    would write.
 
     Raises
     ------
@@ -134,39 +138,52 @@ def opened(
     try:
         with _taken(kind, path, scenario, resume=resume, overwrite=overwrite) as begun:
             if begun is None:
-                planned = layout()
-                manifest = {
-                    "format": 1,
-                    "scenario": scenario,
-                    "scenario_sha256": sha256_of(scenario),
-                    "shape": list(planned.cut.shape),
-                    "chunk": list(planned.cut.chunk),
-                    "variables": [
-                        [each.name, each.dtype, _written(each.fill), list(each.words)]
-                        for each in planned.variables
-                    ],
-                }
-                _create(kind, path, planned, manifest)
-                begun = manifest
+                new = layout(planned())
+                _create(kind, path, new, _manifest(scenario, new))
+                cut = new.cut
+            else:
+                cut = _cut_of(path, begun, shape)
+                if _manifest(scenario, layout(cut)) != {**begun, "about": None}:
+                    raise _damaged(path)
             with _locked(path / kind.lock, path):
-                folder = kind.open(path, *_as_begun(begun))
-                if cut is not None and (asked := cut()) != folder.cut:
+                if asked is not None and asked != cut:
                     raise OutputError(
-                        f"{path} is cut into chunks of {_product(folder.cut.chunk)} sets, and "
-                        f"{_product(asked.chunk)} are asked for: leave the chunk out to go on, or start anew "
-                        f"with --no-resume --force"
+                        f"{path} is cut into chunks of {prod(cut.chunk)} sets, and {prod(asked.chunk)} are "
+                        f"asked for: leave the chunk out to go on, or start anew with --no-resume --force"
                     )
-                yield folder
+                yield kind.open(path, cut, layout(cut).variables)
     except OSError as error:
         if isinstance(error, OutputError):
             raise
         raise OutputError(f"{path} cannot be written: {error.strerror or error}") from None
 
 
-def _as_begun(manifest: Scenario) -> tuple[Cut, tuple[Variable, ...]]:
-    cut = Cut(tuple(manifest["shape"]), tuple(manifest["chunk"]))
-    told = manifest["variables"]
-    return cut, tuple(Variable(name, dtype, {}, float(fill), words) for name, dtype, fill, words in told)
+def _manifest(scenario: Scenario, layout: Layout) -> Scenario:
+    """What stands in a folder of ours; ``about`` is for readers, and free."""
+    return {
+        "format": 1,
+        "scenario": scenario,
+        "scenario_sha256": sha256_of(scenario),
+        "shape": list(layout.cut.shape),
+        "chunk": list(layout.cut.chunk),
+        "variables": [[each.name, each.dtype, _written(each.fill)] for each in layout.variables],
+        "about": None,
+    }
+
+
+def _cut_of(path: Path, manifest: Scenario, shape: tuple[int, ...]) -> Cut:
+    chunk = manifest.get("chunk")
+    cut = Cut(shape, tuple(chunk) if isinstance(chunk, list) else ())
+    if not cut.is_sound:
+        raise _damaged(path)
+    return cut
+
+
+def _damaged(path: Path) -> OutputError:
+    return OutputError(
+        f"{path}: what it says of itself is damaged, or of another hersey: name another folder, or start "
+        f"anew with --no-resume --force"
+    )
 
 
 def _written(fill: float) -> float | str:
@@ -247,11 +264,15 @@ def refuse_another(path: Path, manifest: Scenario, scenario: Scenario) -> None:
     OutputError
         If any part of the scenario differs.
     """
-    there = manifest.get("scenario", {})
+    there = manifest.get("scenario")
     if there == scenario:
         return
+    try:
+        differs = difference(there or {}, scenario)
+    except (AttributeError, KeyError, TypeError, ValueError):
+        raise _damaged(path) from None
     raise OutputError(
-        f"{path} is of another scenario: {difference(there, scenario)}; name another folder, or start anew "
+        f"{path} is of another scenario: {differs}; name another folder, or start anew "
         f"with --no-resume --force"
     )
 
@@ -283,12 +304,6 @@ def _values(parameter: Mapping[str, Any]) -> str:
 def _range(parameter: Mapping[str, Any]) -> str:
     first, last = parameter["first"], parameter["last"]
     return f"{first:.9g}" if first == last else f"{first:.9g} to {last:.9g}"
-
-
-def _product(chunk: tuple[int, ...]) -> int:
-    from math import prod
-
-    return prod(chunk)
 
 
 def write_file(path: Path, content: bytes) -> None:
