@@ -9,6 +9,7 @@ import pytest
 
 import hersey
 from tests.cli.command import Done, run
+from tests.conftest import ROOT
 from tests.life.test_campaign import means
 
 
@@ -39,6 +40,18 @@ def test_each_log_is_a_row(folder: Path) -> None:
     assert table["regime"][1] == "has the exponent of Dowson-Higginson EHL"
     assert typed(folder, "logs/1.csv", "--each", "fits.parquet").returncode == 0
     assert pl.read_parquet(folder / "fits.parquet").rows() == table[1:2].rows()
+
+
+def test_the_rest_of_the_drive_is_taken_off_each(folder: Path) -> None:
+    machine = folder / "machine.toml"
+    machine.write_text(
+        (ROOT / "tests" / "stand" / "machine.toml").read_text() + '\n[rest]\ntorque = "1 mN*m"\n'
+    )
+    done = typed(folder, "logs/1.csv", "--each", "fits.csv", "--machine", "machine.toml", "--isothermal")
+    assert done.returncode == 0, done.stderr
+    points = hersey.SteadyPoints.from_table(folder / "logs" / "1.csv", isothermal=True)
+    surface = hersey.fit(points.without(hersey.read_machine(machine).rest))
+    assert pl.read_csv(folder / "fits.csv")["c"][0] == surface.c.value
 
 
 def test_what_fails_is_left_out_only_when_asked(folder: Path) -> None:

@@ -220,5 +220,3 @@ def test_a_fit_takes_off_the_rest_that_the_machine_states(typed: Typed, folder: 
     assert done.returncode == 0, done.stderr
     starts = {row["name"]: row["start"] for row in json.loads(done.stdout)["variables"]}
     assert starts["rest_force"] == pytest.approx(0.2)
-    both = run("fit", told[2], "--machine", "resting.toml", "--each", "t.csv", cwd=folder)
-    assert "--each writes a table, and --machine goes with one fit" in both.stderr

@@ -96,7 +96,7 @@ def repr_of(each: Entry | HerseyError) -> Any:
 
 
 def test_rows_of_fits_are_those_of_one_process(client: Any, logs: list[Path]) -> None:
-    task = partial(fitting_each.row, ISOTHERMAL)
+    task = partial(fitting_each.row, ISOTHERMAL, None)
     alone, worked = (list(in_order(done(task, logs[:2], client=who))) for who in (None, client))
     assert worked[0] == alone[0]
     assert (type(worked[1]), str(worked[1])) == (type(alone[1]), str(alone[1]))

@@ -15,7 +15,7 @@ from hersey.cli.options import (
     Reading,
     reads_logs,
 )
-from hersey.cli.outputs import print_json
+from hersey.cli.outputs import may_write, print_json
 from hersey.cli.progress import working
 from hersey.cli.terminal import say
 from hersey.cli.workers import Scheduler, Workers
@@ -49,21 +49,21 @@ def fit(
     Several logs are runs of one machine, unless --each says that each is fitted by itself: then nothing is
     written if one fails, or with --keep-going the others are, with exit code 1.
     """
-    if each is not None:
-        from hersey.cli.fitting_each import fit_each
-
-        if as_json or machine_file is not None:
-            other = "--json prints" if as_json else "--machine goes with"
-            raise ParameterError(f"--each writes a table, and {other} one fit: leave one of them out")
-        fit_each(logs, reading, each, keep_going, scheduler, count, force)
-        return
-    if keep_going or force or scheduler or count:
+    if each is not None and as_json:
+        raise ParameterError("--each writes a table, and --json prints one fit: leave one of them out")
+    if each is None and (keep_going or force or scheduler or count):
         raise ParameterError("--keep-going, --scheduler, --workers and --force go with --each TABLE")
     machine = None
     if machine_file is not None:
         from hersey.machine.machine import read_machine
 
         machine = read_machine(machine_file)
+    if each is not None:
+        from hersey.cli.fitting_each import fit_each
+
+        may_write(each, force, inputs=reading.inputs(logs, machine_file))
+        fit_each(logs, reading, machine, each, keep_going, scheduler, count)
+        return
     log = reading.log(logs, machine)
 
     from hersey.damping.fit import fit as fitted

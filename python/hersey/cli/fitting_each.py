@@ -12,7 +12,7 @@ import typer
 
 from hersey.arrays import one_thread
 from hersey.cli.options import Reading
-from hersey.cli.outputs import NOT_FOUND, may_write
+from hersey.cli.outputs import NOT_FOUND
 from hersey.cli.progress import bar
 from hersey.cli.terminal import say
 from hersey.cli.workers import workers
@@ -20,26 +20,26 @@ from hersey.errors import HerseyError, OutputError
 
 if TYPE_CHECKING:
     from hersey.damping.estimate import Estimate
+    from hersey.machine.machine import Machine
 
 
 def fit_each(
     logs: list[Path],
     reading: Reading,
+    machine: Machine | None,
     table: Path,
     keep_going: bool,
     scheduler: str | None,
     count: int | None,
-    force: bool,
 ) -> None:
     """Fit each log by itself and write a table with a row for each, in their order."""
     if table.suffix not in (".csv", ".parquet"):
         raise OutputError(f"--each {table}: name a file that ends in .csv or .parquet")
-    may_write(table, force, inputs=reading.inputs(logs))
 
     from hersey.files.writing import write_atomically
     from hersey.log.many import collected, each_of, told
 
-    task = partial(row, reading if scheduler is None else reading.anywhere())
+    task = partial(row, reading if scheduler is None else reading.anywhere(), machine)
     files = logs if scheduler is None else [log.absolute() for log in logs]
     with workers(scheduler, count) as client, bar("fitting", unit="logs") as progress:
         results = each_of(task, files, client=client, progress=progress)
@@ -53,14 +53,14 @@ def fit_each(
         raise typer.Exit(NOT_FOUND)
 
 
-def row(reading: Reading, log: Path) -> dict[str, Any] | HerseyError:
+def row(reading: Reading, machine: Machine | None, log: Path) -> dict[str, Any] | HerseyError:
     """Return dwells, fit and verdict of a log, in SI, with its 95 % intervals; or what is wrong with it."""
     from hersey.damping.fit import fit
     from hersey.verdict.regime import regime
 
     try:
         with one_thread():
-            points = reading.points_of([log])
+            points = reading.points_of([log], machine)
             surface = fit(points, temperature_scale=reading.temperature_scale)
             words = regime(points, surface).headline()
     except HerseyError as error:
