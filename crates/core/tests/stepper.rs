@@ -381,6 +381,7 @@ fn a_jump_of_temperature_or_force_moves_neither_belt_nor_spring() {
 
 fn at_speed(speed: f64) -> Stepper {
     let drag = law(Closure::Retained, &mut Random(1));
+    let drag = drag.with_temperature_law(TemperatureLaw::powers(373.0, -1.0, 2.0)).unwrap();
     let train = Drivetrain::new(500.0, 1.0).unwrap();
     let drive = Drive::Speed(Schedule::constant(speed));
     let system = System::new(train, &drag, drive, Some(Schedule::constant(373.0))).unwrap();
