@@ -173,7 +173,7 @@ def test_a_drive_by_torque(fmi: str, folder: Path) -> None:
     unit = folder / f"torque{fmi[0]}.fmu"
     hersey.export_fmu(unit, TRAIN, DRAG, drive="torque", drive_torque=2.0, roll_radius=radius, fmi=fmi)
     forces = [torque / radius for torque in torques]
-    run = hersey.simulate(TRAIN, DRAG, drive_torque=steps(forces, 0.02), duration=0.08, samples=41)
+    run = hersey.simulate(TRAIN, DRAG, drive_torque=steps(forces, 0.1), duration=0.4, samples=41)
     rows = []
     with instance(unit) as opened:
         rows.append(opened.get("belt_speed", "spring_force"))
