@@ -124,9 +124,9 @@ def opened(
 ) -> Iterator[Folder]:
     """Yield the folder at a path: the one begun for the same scenario, or a new one; nobody else has it.
 
-    ``layout`` is that of the grid of ``shape`` in a cut; a new one is cut as ``planned``. A folder that is cut
-    otherwise than ``asked`` is refused, and so is one whose manifest is not, to the letter, what this sweep
-    would write.
+    ``layout`` is that of the grid of ``shape`` in a cut; a new one is cut as ``planned``. A folder that is
+    cut otherwise than ``asked`` is refused, and so is one whose manifest is not, to the letter, what this
+    sweep would write.
 
     Raises
     ------
