@@ -23,8 +23,9 @@ from hersey import _core
 from hersey.errors import MissingFileError, OutputError, ParameterError
 from hersey.motion import following, kept
 from hersey.motion.scenario import read_scenario, rows, summary
-from hersey.motion.sets import Sets
+from hersey.motion.sets import Later, Piece, Sets
 from hersey.scale import store
+from hersey.scale.cutting import Cut
 from hersey.scale.kinds import kind_of
 from tests.cli.command import HERSEY, run
 
@@ -165,6 +166,16 @@ def test_only_what_is_lacking_is_done_again(
     assert len(pl.read_parquet(out) if suffix == ".parquet" else after.kind.values.ravel()) == 70
 
 
+def test_a_task_looks_first_whether_its_chunk_is_there(shared: Path) -> None:
+    manifest = kind_of(shared).read_manifest(shared)
+    assert manifest is not None
+    folder = kind_of(shared).open(shared, Cut(tuple(manifest["shape"]), tuple(manifest["chunk"])), ())
+    rules = following.Rules(DRAG, None, "flying", None, 1e-9, 0)
+    piece = Later(Sets({}, zip=False), folder.cut, 3)
+    piece.piece = lambda: Piece(3, 21, Sets({}, zip=False))  # type: ignore[method-assign]
+    assert following.keep(rules, folder, piece) == folder.note(3) != {}
+
+
 def test_what_is_counted_is_what_is_counted_in_memory(tmp_path: Path) -> None:
     """With sets that fail: their indices and reasons too."""
     given = {**GRID, "most_steps": 150}
@@ -297,6 +308,10 @@ def test_values_out_of_range_are_refused_before_anything_is_kept(tmp_path: Path)
         hersey.sweep(TRAIN, DRAG, stiffness=[100, -1], drive_speed=[1.0, 2.0], out=out)
     with pytest.raises(ParameterError, match="stick_speed is 2"):
         hersey.sweep(TRAIN, DRAG, stick_speed=[0.1, 2.0], drive_speed=[1.0, 2.0], out=out)
+    with pytest.raises(ParameterError, match=r"^stick_speed is 0\.5"):  # each goes with some of the others
+        hersey.sweep(
+            TRAIN, DRAG, stick_speed=[0.1, 0.5], transition_speed=[0.3, 1.0], drive_speed=1.5, out=out
+        )
     assert not out.exists()
     sets = {**PAIRS, "stiffness": np.where(np.arange(23) == 17, -1.0, PAIRS["stiffness"])}
     with pytest.raises(ParameterError, match=r"set 17: stiffness is -1") as caught:
