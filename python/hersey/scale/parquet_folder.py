@@ -49,7 +49,7 @@ class ParquetKind:
         """Return the manifest, if there is one."""
         import polars as pl
 
-        with suppress(OSError, ValueError, KeyError, pl.exceptions.PolarsError):
+        with suppress(OSError, ValueError, KeyError, TypeError, RecursionError, pl.exceptions.PolarsError):
             manifest = json.loads(pl.read_parquet_metadata(path / self.manifest)[_NOTE])
             if isinstance(manifest, dict) and "scenario" in manifest:
                 return manifest
@@ -76,7 +76,7 @@ class ParquetFolder:
             return dict(json.loads(pl.read_parquet_metadata(self._file(number))[_NOTE]))
         except FileNotFoundError:
             return None
-        except (OSError, ValueError, KeyError, pl.exceptions.PolarsError):
+        except (OSError, ValueError, KeyError, TypeError, RecursionError, pl.exceptions.PolarsError):
             return None  # not whole, as after a loss of power: it is made anew
 
     def finished(self) -> list[int]:

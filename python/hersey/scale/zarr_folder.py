@@ -96,7 +96,7 @@ class ZarrKind:
 
     def read_manifest(self, path: Path) -> Scenario | None:
         """Return the manifest, if there is one."""
-        with suppress(OSError, ValueError, KeyError, TypeError):
+        with suppress(OSError, ValueError, KeyError, TypeError, RecursionError):
             manifest = json.loads((path / self.manifest).read_bytes())["attributes"]["hersey"]
             if "scenario" in manifest:
                 return dict(manifest)
@@ -121,7 +121,7 @@ class ZarrFolder:
             if self._status(number).read_bytes() != b"\x01":
                 return None
             return dict(json.loads(self._note(number).read_bytes()))
-        except (OSError, ValueError):
+        except (OSError, ValueError, TypeError, RecursionError):
             return None
 
     def finished(self) -> list[int]:
