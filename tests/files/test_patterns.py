@@ -39,6 +39,12 @@ def test_no_match_and_a_file_named_twice_are_told(folder: Path) -> None:
             files_of(twice)
     (folder / "linked.csv").symlink_to("a.csv")
     with pytest.raises(ParameterError, match=r"linked\.csv is named twice"):
-        files_of("*.csv")
+        files_of(["*.csv", "linked.csv"])
     with pytest.raises(MissingFileError, match="no file is called so"):
         files_of("a\0")
+
+
+def test_of_links_to_one_file_the_first_is_taken_and_one_to_nowhere_is_kept_to_be_told(folder: Path) -> None:
+    (folder / "linked.csv").symlink_to("a.csv")
+    (folder / "lost.csv").symlink_to("gone.csv")
+    assert [path.name for path in files_of("*.csv")] == ["a.csv", "b.csv", "c [1].csv", "lost.csv"]

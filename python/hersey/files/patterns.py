@@ -13,8 +13,10 @@ from hersey.errors import MissingFileError, ParameterError
 def files_of(patterns: str | Path | Iterable[str | Path]) -> list[Path]:
     """Return the files that names and patterns (``logs/*.csv``, ``**/*.csv``) stand for, each once.
 
-    They come in the order in which they are named, those of a pattern sorted. The name of a file that is
-    there is no pattern, whatever its signs; a plain name stands for itself, be the file there or not.
+    They come in the order in which they are named, those of a pattern sorted; of links in a pattern that lead
+    to one file the first is taken, and one that leads nowhere stands for itself, to be told where it is read.
+    The name of a file that is there is no pattern, whatever its signs; a plain name stands for itself, be the
+    file there or not.
 
     Raises
     ------
@@ -42,7 +44,11 @@ def _matched(name: str | Path) -> list[Path]:
         raise MissingFileError(f"{text}: no file is called so")
     if not glob.has_magic(text) or os.path.lexists(text):
         return [Path(name)]
-    files = sorted(path for path in glob.glob(text, recursive=True) if os.path.isfile(path))  # noqa: PTH113,PTH207 - a Path would lose nothing, but sort by parts
+    once: dict[str, str] = {}
+    for path in sorted(glob.glob(text, recursive=True)):  # noqa: PTH207 - a Path sorts by its parts
+        if os.path.isfile(path) or not os.path.exists(path):  # noqa: PTH110,PTH113 - as above
+            once.setdefault(os.path.realpath(path), path)
+    files = list(once.values())
     if not files:
         raise MissingFileError(f"{text}: no file matches: see the folder and the ending")
     return [Path(path) for path in files]
