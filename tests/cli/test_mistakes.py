@@ -194,9 +194,11 @@ def ending_taken(it: Refused) -> list[str]:
 
 
 def named_once(it: Refused) -> list[str]:
-    """Name each file once."""
+    """Name each file once; the one that is named is too many."""
     assert it.message.endswith("name each file once")
-    return list(dict.fromkeys(it.arguments))
+    many = it.message.split()[1]
+    last = len(it.arguments) - 1 - it.arguments[::-1].index(many)
+    return [*it.arguments[:last], *it.arguments[last + 1 :]]
 
 
 def given_as(it: Refused) -> list[str]:
@@ -456,7 +458,10 @@ MISTAKES: dict[str, Mistake] = {
         ("rig.toml is a mapping of a log",),
         given_as,
     ),
-    "one file twice": Mistake(GOOD, "fit log.csv log.csv", ("same bytes",), named_once),
+    "one file twice": Mistake(GOOD, "fit log.csv log.csv", ("is named twice",), named_once),
+    "a copy beside its file": Mistake(
+        {**GOOD, "copy.csv": GOOD["log.csv"]}, "fit log.csv copy.csv", ("same bytes",), named_once
+    ),
     "a word for a sign": Mistake(
         {"log.csv": table(column(1, lambda x: -x))}, "fit log.csv --torque-sign 2", ("sign of torque is 2",)
     ),
