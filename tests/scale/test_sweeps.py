@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import polars as pl
+import psutil
 import pytest
 import xarray as xr
 
@@ -405,6 +406,22 @@ def test_a_command_that_is_killed_goes_on(tmp_path: Path) -> None:
 def finished(out: Path) -> set[str]:
     folder = out / "status" / "c"
     return {each.name for each in folder.iterdir() if each.name.isdigit()} if folder.is_dir() else set()
+
+
+def test_ctrl_c_while_workers_start_is_for_the_command_alone(tmp_path: Path) -> None:
+    """A terminal sends it to all that it began; workers that load say nothing of it."""
+    (tmp_path / "s.toml").write_text(SCENARIO)
+    typed = [*HERSEY, "sweep", "s.toml", "--out", "a.zarr", "--workers", "2"]
+    process = subprocess.Popen(typed, cwd=tmp_path, stderr=subprocess.PIPE, text=True, start_new_session=True)
+    begun, command = time.monotonic(), psutil.Process(process.pid)
+    while time.monotonic() - begun < 20 and len(command.children()) < 3:  # two, and one that clears up
+        time.sleep(0.01)
+    time.sleep(0.1)  # they have begun to load
+    os.killpg(process.pid, signal.SIGINT)
+    _, said = process.communicate()
+    assert process.returncode == 130
+    assert said.splitlines()[-1:] == ["hersey: interrupted"]
+    assert "Traceback" not in said
 
 
 def test_the_command_lets_processes_work_and_says_nothing_else(tmp_path: Path) -> None:

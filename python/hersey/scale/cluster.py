@@ -6,6 +6,7 @@ import asyncio
 import logging
 import os
 import re
+import signal
 import warnings
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
@@ -122,7 +123,7 @@ def local_cluster(processes: int) -> Iterator[Client]:
     with ExitStack() as stack:
         try:
             stack.enter_context(dask.config.set(_SETTINGS))
-            with _without_words():
+            with _without_words(), _deaf_to_ctrl_c():
                 cluster = stack.enter_context(
                     LocalCluster(
                         n_workers=processes,
@@ -156,6 +157,22 @@ def _without_words() -> Iterator[None]:
             del os.environ["PYTHONWARNINGS"]
         else:
             os.environ["PYTHONWARNINGS"] = before
+
+
+@contextmanager
+def _deaf_to_ctrl_c() -> Iterator[None]:
+    """Start threads and processes that Ctrl-C does not reach: it is for this one, which ends them."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    from multiprocessing import resource_tracker
+
+    resource_tracker.ensure_running()  # which, where it is started, lets Ctrl-C through again
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def mend(client: Client) -> None:
