@@ -49,7 +49,8 @@ def mixed_drag() -> hersey.MixedDrag:
     machine = hersey.read_machine(Path(__file__).parents[2] / "examples" / "machine.toml")
     drag = machine.mixed_drag(423.15)
     assert isinstance(drag, hersey.MixedDrag)
-    return drag
+    friction = replace(drag.contact.friction, slope=-2e-4, temperature=400.0)
+    return replace(drag, contact=replace(drag.contact, friction=friction))
 
 
 def far(ours: FloatArray, core: FloatArray) -> float:
