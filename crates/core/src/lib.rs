@@ -14,6 +14,7 @@
 //! | `lubrication::reynolds`   | the Reynolds equation and elasticity of a line contact, solved numerically         |
 //! | `drag`                    | drag against belt speed and temperature: EHL and mixed branches                    |
 //! | `drag::closure`           | what the drag does below the stick speed                                           |
+//! | `drag::curve`             | drag as a smooth curve through points                                              |
 //! | `motion::schedule`        | drive speed, torque and temperature against time                                   |
 //! | `motion::system`          | drivetrain, drag, drive and temperature: the equation to solve                     |
 //! | `motion::surroundings`    | drive, temperature and law of drag at one time of the motion                       |
@@ -34,6 +35,7 @@
 //! | `stability::fold`         | drive speed at which a slip lap comes back to its start, many at once              |
 //! | `stability::cycles`       | swings that never stick, by their slowest speed                                    |
 //! | `stability::band`         | lower edge, transition and upper fold of a belt, for every closure                 |
+//! | `stability::curve_laps`   | slip laps and fold of a belt whose drag is a smooth curve                          |
 //! | `stability::unstable`     | the lap between the starts that come to slide and those that come to stick         |
 //!
 //! Conventions: any consistent set of units (SI inside the product); speeds and forces are signed,

@@ -2,6 +2,7 @@
 
 #![allow(clippy::needless_pass_by_value)] // arguments arrive from Python as values
 
+mod curves;
 mod drag;
 mod ensemble;
 mod errors;
@@ -18,6 +19,8 @@ use pyo3::prelude::*;
 
 #[pymodule]
 mod _core {
+    #[pymodule_export]
+    use super::curves::{CurveFolds, CurveStarts, curve_folds, curve_starts};
     #[pymodule_export]
     use super::drag::{Law, Pair};
     #[pymodule_export]

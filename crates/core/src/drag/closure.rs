@@ -47,6 +47,11 @@ impl Closure {
         matches!(self, Self::LuGre { .. })
     }
 
+    /// Share of the drag that acts at `x` stick speeds, below one.
+    pub(crate) fn share(self, x: f64) -> f64 {
+        self.smoothed(x).0
+    }
+
     /// Share of the drag that acts at `x` stick speeds, below one, and its slope in `x`.
     pub(super) fn smoothed(self, x: f64) -> (f64, f64) {
         match self {

@@ -21,6 +21,7 @@
 //! | `law`           | the law: its knots and branches, its closure, its values and slopes |
 //! | `mode`          | states of lubrication                                               |
 //! | `closure`       | what the drag does below the stick speed                            |
+//! | `curve`         | drag as a smooth curve through points, for laws without a formula   |
 //! | `strengthening` | a static force that grows at rest                                   |
 //! | `rest`          | what moves with the belt besides the contact                        |
 //! | `mixed_contact` | a contact whose load film and asperities share                      |
@@ -28,6 +29,7 @@
 //! | `temperature`   | how the law varies with temperature                                 |
 
 mod closure;
+mod curve;
 mod law;
 mod mixed_contact;
 mod mode;
@@ -37,6 +39,7 @@ mod strengthening;
 mod temperature;
 
 pub use closure::Closure;
+pub use curve::Curve;
 pub use law::Drag;
 pub(crate) use mixed_contact::MixedContact;
 pub use mode::Mode;

@@ -7,9 +7,11 @@
 //! | `fold` | drive speed at which a slip lap comes back to its start, many at once              |
 //! | `cycles` | swings that never stick, by their slowest speed                                 |
 //! | `band` | lower edge, transition and upper fold of a belt, for every closure                 |
+//! | `curve_laps` | slip laps and fold of a belt whose drag is a smooth curve                    |
 //! | `unstable` | the lap between the starts that come to slide and those that come to stick    |
 
 mod band;
+mod curve_laps;
 mod cycles;
 mod fold;
 mod secant;
@@ -17,6 +19,7 @@ mod slip_lap;
 mod unstable;
 
 pub use band::{Band, Method, bands, slip_lap};
+pub use curve_laps::{CurveBelt, CurveCycle, CurveFold, CurveStart, curve_folds, curve_starts};
 pub use cycles::{Swing, cycles, swings};
 pub use fold::Fold;
 pub use slip_lap::SlipLap;
