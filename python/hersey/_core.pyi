@@ -367,6 +367,17 @@ class CurveStarts:
     def failures(self) -> list[Failure]: ...
 
 @final
+class CurveStartUps:
+    @property
+    def slides(self) -> NDArray[np.bool_]: ...
+    @property
+    def peak(self) -> _Floats: ...
+    @property
+    def released(self) -> _Floats: ...
+    @property
+    def failures(self) -> list[Failure]: ...
+
+@final
 class Bands:
     @property
     def stalls(self) -> NDArray[np.bool_]: ...
@@ -649,6 +660,15 @@ def curve_starts(
     threads: int,
     most_steps: int,
 ) -> CurveStarts: ...
+def curve_start_ups(
+    curves: tuple[float, float, _Floats],
+    columns: Sequence[_Floats],
+    profile: Sequence[tuple[float, float]],
+    grip: float | None,
+    accuracy: float,
+    threads: int,
+    most_steps: int,
+) -> CurveStartUps: ...
 def swings(train: _Train, drag: Law, slowest: _Floats, tolerance: float) -> Swings | None: ...
 def line_contact(
     roll: tuple[float, float, float],

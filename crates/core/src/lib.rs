@@ -36,6 +36,7 @@
 //! | `stability::cycles`       | swings that never stick, by their slowest speed                                    |
 //! | `stability::band`         | lower edge, transition and upper fold of a belt, for every closure                 |
 //! | `stability::curve_laps`   | slip laps and fold of a belt whose drag is a smooth curve                          |
+//! | `stability::curve_start_up` | what a profile of drive speed does to such a belt                             |
 //! | `stability::unstable`     | the lap between the starts that come to slide and those that come to stick         |
 //!
 //! Conventions: any consistent set of units (SI inside the product); speeds and forces are signed,

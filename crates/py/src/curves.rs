@@ -150,3 +150,39 @@ pub fn curve_starts<'py>(
         failures: failures(py, &found)?,
     })
 }
+
+/// What a profile of drive speed does to many belts, as arrays.
+#[pyclass(frozen, get_all, module = "hersey._core")]
+pub struct CurveStartUps {
+    slides: Py<PyArray1<bool>>,
+    peak: Py<PyArray1<f64>>,
+    released: Py<PyArray1<f64>>,
+    failures: Vec<Py<Failure>>,
+}
+
+/// What a profile of drive speed, corners of time and speed, does to each belt.
+#[pyfunction]
+#[allow(clippy::too_many_arguments)] // the Python layer names them all
+pub fn curve_start_ups<'py>(
+    py: Python<'py>,
+    curves: Curves<'py>,
+    columns: Columns<'py>,
+    profile: Vec<(f64, f64)>,
+    grip: Option<f64>,
+    accuracy: f64,
+    threads: usize,
+    most_steps: u64,
+) -> PyResult<CurveStartUps> {
+    let belts = belts_of(py, &curves, &columns, grip)?;
+    let starts = |belts: &[CurveBelt], work: &Work| {
+        stability::curve_start_ups(belts, &profile, accuracy, work)
+    };
+    let found = in_chunks(py, &belts, CHUNK, threads, None, most_steps, starts)?;
+    let slides = found.iter().map(|f| f.as_ref().is_ok_and(|f| f.slides));
+    Ok(CurveStartUps {
+        slides: PyArray1::from_iter(py, slides).unbind(),
+        peak: column(py, &found, |f| f.peak),
+        released: column(py, &found, |f| f.released),
+        failures: failures(py, &found)?,
+    })
+}

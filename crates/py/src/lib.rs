@@ -20,7 +20,9 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _core {
     #[pymodule_export]
-    use super::curves::{CurveFolds, CurveStarts, curve_folds, curve_starts};
+    use super::curves::{
+        CurveFolds, CurveStartUps, CurveStarts, curve_folds, curve_start_ups, curve_starts,
+    };
     #[pymodule_export]
     use super::drag::{Law, Pair};
     #[pymodule_export]

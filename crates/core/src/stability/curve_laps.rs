@@ -130,15 +130,15 @@ struct Lap {
 
 /// Where a lap begins.
 #[derive(Debug, Clone, Copy)]
-struct Release {
-    pull: f64,
-    speed: f64,
+pub(super) struct Release {
+    pub pull: f64,
+    pub speed: f64,
 }
 
-struct Laps<'a> {
-    belt: &'a CurveBelt,
+pub(super) struct Laps<'a> {
+    pub belt: &'a CurveBelt,
     accuracy: f64,
-    tolerance: f64,
+    pub tolerance: f64,
     /// Drag of the contact at the stick speed and at rest, and how it decays between them.
     sliding: f64,
     breakaway: f64,
@@ -147,7 +147,7 @@ struct Laps<'a> {
 }
 
 impl<'a> Laps<'a> {
-    fn new(belt: &'a CurveBelt, accuracy: f64) -> Result<Self, Error> {
+    pub(super) fn new(belt: &'a CurveBelt, accuracy: f64) -> Result<Self, Error> {
         above("stick_speed", belt.stick_speed, 0.0)?;
         above("static_ratio", belt.static_ratio, 1.0)?;
         at_least("rest_force", belt.rest.force, 0.0)?;
@@ -167,7 +167,7 @@ impl<'a> Laps<'a> {
 
     /// Pull that the drag of a sliding belt balances.
     #[inline]
-    fn drag(&self, speed: f64, starting: bool) -> f64 {
+    pub(super) fn drag(&self, speed: f64, starting: bool) -> f64 {
         let belt = self.belt;
         if speed >= belt.stick_speed || !starting {
             return belt.curve.force(speed.max(SLOWEST * belt.stick_speed)) + belt.rest.at(speed);
@@ -192,8 +192,13 @@ impl<'a> Laps<'a> {
         Release { pull: pull * (1.0 + OVER_THE_CREST), speed }
     }
 
+    /// Speed of least drag.
+    pub(super) fn transition(&self) -> f64 {
+        self.transition
+    }
+
     /// Where the laps of the closure begin, and where the first from rest does.
-    fn releases(&self) -> (Release, Release) {
+    pub(super) fn releases(&self) -> (Release, Release) {
         let belt = self.belt;
         let at_rest = Release { pull: self.breakaway + belt.rest.force, speed: 0.0 };
         let kept = Release {
@@ -208,7 +213,7 @@ impl<'a> Laps<'a> {
     }
 
     /// The speed that a belt of the paper's rule keeps where it comes to rest with this pull, and its next release.
-    fn held(&self, pull: f64) -> Release {
+    pub(super) fn held(&self, pull: f64) -> Release {
         let rest = self.belt.rest;
         let (kept, _) = self.releases();
         if self.belt.closure != Closure::Retained || pull.abs() <= kept.pull {
@@ -386,15 +391,15 @@ impl<'a> Laps<'a> {
     }
 }
 
-struct Step {
-    speed: f64,
-    pull: f64,
-    error: (f64, f64),
+pub(super) struct Step {
+    pub speed: f64,
+    pub pull: f64,
+    pub error: (f64, f64),
 }
 
 /// One step of Dormand and Prince, of order five, and its error.
 #[inline]
-fn stepped(rate: &impl Fn(f64, f64) -> (f64, f64), u: f64, p: f64, h: f64) -> Step {
+pub(super) fn stepped(rate: &impl Fn(f64, f64) -> (f64, f64), u: f64, p: f64, h: f64) -> Step {
     let a = rate(u, p);
     let b = rate(u + h * 0.2 * a.0, p + h * 0.2 * a.1);
     let at = |c: [(f64, (f64, f64)); 5]| {
@@ -480,7 +485,7 @@ mod tests {
     }
 
     fn fold(belt: &CurveBelt) -> CurveFold {
-        curve_folds(std::slice::from_ref(belt), 1e-7, &Work::default()).unwrap()[0].clone().unwrap()
+        curve_folds(std::slice::from_ref(belt), 1e-7, &Work::default()).unwrap()[0].unwrap()
     }
 
     #[test]
@@ -517,14 +522,14 @@ mod tests {
         ] {
             let belt = belt(rounded(f64::INFINITY), closure);
             let found = curve_starts(&[belt], &[drive_speed], 1e-7, &work).unwrap();
-            let start = found[0].clone().unwrap();
+            let start = found[0].unwrap();
             let cycle = start.cycle.unwrap();
             // the first slip from rest is released at A = 341.4, and the spring stretches until the belt is as fast
             assert!(start.first_peak > 341.40 && start.first_peak < 355.0, "{start:?}");
             assert!((1.0 / cycle.period / frequency - 1.0).abs() < 2e-4, "{cycle:?}");
         }
         let above = belt(rounded(f64::INFINITY), Closure::Retained);
-        let slides = curve_starts(&[above], &[2.5], 1e-6, &work).unwrap()[0].clone().unwrap();
+        let slides = curve_starts(&[above], &[2.5], 1e-6, &work).unwrap()[0].unwrap();
         assert_eq!(slides.cycle, None);
     }
 

@@ -8,10 +8,12 @@
 //! | `cycles` | swings that never stick, by their slowest speed                                 |
 //! | `band` | lower edge, transition and upper fold of a belt, for every closure                 |
 //! | `curve_laps` | slip laps and fold of a belt whose drag is a smooth curve                    |
+//! | `curve_start_up` | what a profile of drive speed does to such a belt                             |
 //! | `unstable` | the lap between the starts that come to slide and those that come to stick    |
 
 mod band;
 mod curve_laps;
+mod curve_start_up;
 mod cycles;
 mod fold;
 mod secant;
@@ -20,6 +22,7 @@ mod unstable;
 
 pub use band::{Band, Method, bands, slip_lap};
 pub use curve_laps::{CurveBelt, CurveCycle, CurveFold, CurveStart, curve_folds, curve_starts};
+pub use curve_start_up::{CurveStarted, curve_start_ups};
 pub use cycles::{Swing, cycles, swings};
 pub use fold::Fold;
 pub use slip_lap::SlipLap;
