@@ -1,13 +1,20 @@
-"""Whether what the first screen of a report says of a machine holds on the machine.
+"""Whether the decisions of a report hold on the machine that it is about.
 
-Machines and their motion are written from physics alone and import nothing of hersey; hersey sees a log and a
-machine file, and is asked as a user asks it: ``hersey report --json``.
+True machines are drawn at random and moved by an integrator of this package. hersey sees only a log and a
+machine file, and is asked as a user would ask it: ``hersey report --json``. Nothing of hersey is imported.
 
-=========  ==================================================================
-belt       a belt on a spring and two branches of drag, moved; its fold V*
-machines   machines drawn at random, their logs and their files
-judged     one report against its machine: what is said, and whether it holds
-=========  ==================================================================
+========  =============================================================================
+curves    shapes of drag curves
+belt      a belt on a spring: drag at every speed, and how it comes to rest
+motion    its motion, and what that comes to
+fold      V*, the drive speed above which stick-slip cannot last
+machines  machines drawn at random
+logs      their logs, traces and machine files
+said      what a report says, read from its JSON document
+judged    one report against its machine
+table     the results as Markdown
+check     the integrator against exact reference values
+========  =============================================================================
 
-SI throughout; temperatures in degC.
+SI units throughout; temperatures in degC.
 """

@@ -1,96 +1,77 @@
-"""Whether what the first screen of a report says of a machine holds on the machine.
+"""Whether the decisions of a report hold on the machine that it is about.
 
-Machines of a truth of their own are drawn, their logs written, `hersey report --json` asked of each, and what
-it says is tried on the true machine. The same seed gives the same machines.
+True machines are drawn, their logs written, `hersey report --json` is asked about each, and what it says is
+tried on the true machine. The same seed gives the same machines.
 
-Usage: python -m benchmarks.decisions [--machines 40] [--seed 1] [--first 0] [--keep FOLDER]
-[--workers 2] [--scheduler ADDRESS]
+Usage: python -m benchmarks.decisions [--machines 40] [--seed 1] [--first 0] [--keep FOLDER] [--workers 2]
+[--evidence dwells|stick-slip|starts|mixed] [--closure retained|stiction|mixed] [--shape NAME]
 """
 
 from __future__ import annotations
 
 import argparse
-import statistics
+import multiprocessing
 import sys
-import tempfile
 import time
-from collections import Counter
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from pathlib import Path
 
-from benchmarks.decisions.judged import Judged, judged
-from benchmarks.decisions.machines import drawn
-from benchmarks.working import takes_workers, worked
-
-#: Letters of an instruction that tell it from others.
-_FIRST = 28
+from benchmarks.decisions.belt import CLOSURES
+from benchmarks.decisions.curves import FAMILIES
+from benchmarks.decisions.judged import Judged, draw_and_judge
+from benchmarks.decisions.machines import EVIDENCE, Kind
+from benchmarks.decisions.table import lines
 
 
 def main() -> int:
     """Judge as many machines as asked for, and print the table."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--machines", type=int, default=40)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--first", type=int, default=0, help="number of the first")
-    parser.add_argument("--keep", type=Path, help="where logs, machine files and documents are left")
-    takes_workers(parser)
-    given = parser.parse_args()
-    results, began = [], time.perf_counter()
-    numbers = range(given.first, given.first + given.machines)
-    task = partial(_one, given.seed, given.keep and given.keep.absolute())
+    given = _parser().parse_args()
+    results, began = list[Judged](), time.perf_counter()
     try:
-        for last in worked(task, numbers, given):
-            results.append(last)
+        for result in _results(given):
+            results.append(result)
             spent = time.perf_counter() - began
-            print(
-                f"{last.number} after {spent:.0f} s: {last.fault or last.said}", file=sys.stderr, flush=True
-            )
-            print(*last.wrong, sep="\n", end="\n" if last.wrong else "", file=sys.stderr, flush=True)
+            print(f"{result.number} after {spent:.0f} s: {result.fault or result.said}", file=sys.stderr)
+            print(*result.wrong, sep="\n", end="\n" * bool(result.wrong), file=sys.stderr, flush=True)
     except KeyboardInterrupt:
-        print("interrupted: what follows holds the machines judged so far", file=sys.stderr)
-    print(f"\nseed {given.seed}, {len(results)} machines\n", *table(results), sep="\n")
+        print("interrupted: the table holds the machines judged so far", file=sys.stderr)
+    chosen = f"evidence {given.evidence}, closure {given.closure}, shape {given.shape}"
+    print(f"\nseed {given.seed}, {len(results)} machines, {chosen}\n", *lines(results), sep="\n")
     return 0
 
 
-def _one(seed: int, keep: Path | None, number: int) -> Judged:
-    with tempfile.TemporaryDirectory() as temporary:
-        folder = Path(temporary) if keep is None else keep / str(number)
-        folder.mkdir(parents=True, exist_ok=True)
-        return judged(drawn(seed, number), number, seed, folder)
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--machines", type=int, default=40, help="how many")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--first", type=int, default=0, help="number of the first machine")
+    parser.add_argument("--keep", type=Path, help="folder for logs, machine files and documents")
+    parser.add_argument("--workers", type=int, default=2, help="processes on this machine")
+    parser.add_argument("--evidence", choices=[*EVIDENCE, "mixed"], default="mixed")
+    parser.add_argument("--closure", choices=[*CLOSURES, "mixed"], default="mixed")
+    parser.add_argument("--shape", choices=[*FAMILIES, "mixed"], default="mixed")
+    return parser
 
 
-def table(results: list[Judged]) -> list[str]:
-    """Return the lines: what is said and holds, how far above V* the instruction lies, what else is said."""
-    folds = [r.holds_fold for r in results if r.holds_fold is not None]
-    claims: dict[str, list[bool]] = {}
-    for result in results:
-        for kind, held in result.claims.items():
-            claims.setdefault(kind, []).extend(held)
-    lines = [
-        "| said | times | holds |",
-        "|---|---|---|",
-        f"| V* lies in its interval | {len(folds)} | {sum(folds)} |",
-    ]
-    lines += [f"| {kind} | {len(held)} | {sum(held)} |" for kind, held in sorted(claims.items())]
-    over = sorted(r.over for r in results if r.over is not None)
-    if over:
-        middle = statistics.median(over)
-        lines += [
-            "",
-            f"X of `run above X` over V*: median {middle:.2f}, least {over[0]:.2f}, greatest {over[-1]:.2f}",
-        ]
-    other = Counter(_first_words(r.said) for r in results if r.over is None and not r.fault)
-    lines += ["", *(f"- {count} times: {words} ..." for words, count in other.most_common())]
-    lines += [f"- no report: machine {r.number}: {r.fault}" for r in results if r.fault]
-    return [*lines, *(f"- false: {words}" for r in results for words in r.wrong)]
-
-
-def _first_words(text: str) -> str:
-    """The beginning of an instruction, without its temperature."""
-    cut = text.split(" °C ", 1)[-1]
-    return cut[:_FIRST].rsplit(" ", 1)[0]
+def _results(given: argparse.Namespace) -> Iterator[Judged]:
+    """Yield the results of the machines, in the order of their numbers."""
+    keep = given.keep and given.keep.absolute()
+    task = partial(draw_and_judge, given.seed, Kind(given.evidence, given.closure, given.shape), keep)
+    numbers = range(given.first, given.first + given.machines)
+    if given.workers == 1:
+        yield from map(task, numbers)
+        return
+    fresh = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(given.workers, mp_context=fresh) as pool:
+        try:
+            yield from pool.map(task, numbers)
+        except KeyboardInterrupt:
+            pool.shutdown(cancel_futures=True)
+            raise
 
 
 if __name__ == "__main__":

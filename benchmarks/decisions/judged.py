@@ -1,162 +1,196 @@
-"""One report against its machine: what the first screen says, and whether it holds.
-
-Speeds are read from the sentences as a user reads them. What cannot be read counts as another instruction,
-which the table tells by its first words, so that a change of words does not pass for success.
-"""
+"""One report against its machine: what the report claims, and whether the machine agrees."""
 
 from __future__ import annotations
 
 import json
 import os
-import re
 import subprocess
 import sys
+import tempfile
+import traceback
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from benchmarks.decisions.belt import Belt, Drive, fold, from_above, from_rest, moved
-from benchmarks.decisions.machines import Machine, Point, write
+from benchmarks.decisions.belt import Belt, Drive
+from benchmarks.decisions.fold import fold
+from benchmarks.decisions.logs import Files, write
+from benchmarks.decisions.machines import Kind, Machine, Point, drawn
+from benchmarks.decisions.motion import Outcome, from_above, from_rest, moved
+from benchmarks.decisions.said import Plan, PointSaid, Said, read
 
-#: Over the speed of an instruction, or of a bound, at which it is tried.
-_BEYOND, _BELOW = 1.02, 0.9
+#: Factors on the safe speed X at which it is tried.
+_BEYOND = (1.0, 1.01, 1.02)
+#: Factors from which the drive steps down to a speed, where it is tried from above.
+_ABOVE = (1.001, 2.0)
+#: Free periods for which a belt near its transition speed is followed.
 _SLOW_LAPS = 400
+#: Seconds that a report may take.
 _PATIENCE = 600
+#: Characters that are kept of an error message.
+_MESSAGE = 600
+#: Libraries that would start threads of their own beside the workers.
+_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "POLARS_MAX_THREADS", "RAYON_NUM_THREADS")
 
 
 @dataclass
 class Judged:
-    """What came of one machine; claims are counted as (held, false)."""
+    """What came of one machine; each claim is kept with whether it holds."""
 
     number: int
+    shape: str
+    closure: str
+    evidence: str
     said: str = ""
     fault: str = ""
-    poor: bool = False
-    limits: str = ""
-    holds_fold: bool | None = None  #: whether V* is in its interval, if one is told
-    over: float | None = None  #: X over V*, of "run above X"
+    fold_held: bool | None = None  #: whether V* lies in its 95 % interval
+    width: float | None = None  #: upper over lower end of that interval
+    over: float | None = None  #: safe speed over V*
+    measurement: str | None = None
+    verdicts: list[str] = field(default_factory=list)
     claims: dict[str, list[bool]] = field(default_factory=dict)
     wrong: list[str] = field(default_factory=list)
 
     def claim(self, kind: str, holds: bool, words: str) -> None:
-        """Count a statement; a false one is kept in words."""
+        """Count a claim; a false one is kept in words."""
         self.claims.setdefault(kind, []).append(holds)
         if not holds:
-            self.wrong.append(f"machine {self.number}: {kind}: {words}")
+            self.wrong.append(f"machine {self.number} ({self.shape}, {self.closure}): {kind}: {words}")
+
+
+def draw_and_judge(seed: int, wanted: Kind, keep: Path | None, number: int) -> Judged:
+    """Draw and judge one machine; an error of the judge itself counts as a fault of that machine."""
+    machine = drawn(seed, number, wanted)
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = Path(temporary) if keep is None else keep / str(number)
+        folder.mkdir(parents=True, exist_ok=True)
+        try:
+            return judged(machine, number, seed, folder)
+        except Exception:
+            words = f"the judge failed: {traceback.format_exc(limit=-3)}"
+            return Judged(number, machine.curve.family, machine.closure, machine.evidence, fault=words)
 
 
 def judged(machine: Machine, number: int, seed: int, folder: Path) -> Judged:
-    """Write a machine's files, have the report made, and try on the machine what it says."""
-    out = Judged(number, poor=machine.poor, limits=machine.limits)
-    log, file = write(machine, folder, np.random.default_rng([seed, number, 1]))
-    command = [sys.executable, "-m", "hersey.cli", "report", str(log), "--machine", str(file)]
-    command += ["--tare", "standing", "--json", *(["--isothermal"] if machine.hottest is None else [])]
-    made = subprocess.run(
-        command, capture_output=True, text=True, timeout=_PATIENCE, check=False, env={**os.environ}
-    )
+    """Write the files of a machine, ask for a report, and try on the machine what it says."""
+    out = Judged(number, machine.curve.family, machine.closure, machine.evidence)
+    files = write(machine, folder, np.random.default_rng([seed, number, 1]))
+    try:
+        made = subprocess.run(
+            _command(files),
+            capture_output=True,
+            text=True,
+            timeout=_PATIENCE,
+            check=False,
+            env={**dict.fromkeys(_THREADS, "1"), **os.environ},
+        )
+    except subprocess.TimeoutExpired:
+        out.fault = f"no report after {_PATIENCE} s"
+        return out
     if made.returncode:
-        out.fault = made.stderr.strip()[-300:]
+        out.fault = f"exit {made.returncode}: {made.stderr.strip()[-_MESSAGE:]}"
         return out
     (folder / "document.json").write_text(made.stdout)
-    return tried(out, machine, json.loads(made.stdout)["decision"])
+    return tried(out, machine, read(json.loads(made.stdout)))
 
 
-def tried(out: Judged, machine: Machine, decision: dict[str, Any]) -> Judged:
-    """Try what a decision says on its machine."""
-    _instruction(out, machine, decision)
-    for point, part in zip(machine.points, decision["points"], strict=True):
+def _command(files: Files) -> list[str]:
+    command = [sys.executable, "-m", "hersey.cli", "report", str(files.log), "--machine", str(files.machine)]
+    command += ["--trace", str(files.trace)] if files.trace else []
+    return [*command, "--tare", "standing", "--json"]
+
+
+def tried(out: Judged, machine: Machine, said: Said) -> Judged:
+    """Try what a report says on its machine."""
+    out.said, out.measurement = said.instruction, said.measurement
+    temperature = machine.hottest if said.temperature is None else said.temperature
+    belt = machine.at(_nearest(machine, temperature))
+    _fold(out, belt, said)
+    if said.safe_speed is not None:
+        _safe_speed(out, machine, belt, said.safe_speed)
+    if len(said.points) != len(machine.points):
+        out.fault = f"{len(said.points)} points in the document, {len(machine.points)} in the machine file"
+    for point, part in zip(machine.points, said.points, strict=False):
         _point(out, machine, point, part)
     return out
 
 
-def _instruction(out: Judged, machine: Machine, decision: dict[str, Any]) -> None:
-    text = out.said = decision["instruction"]
-    belt = machine.at(_named(machine, text))
-    if interval := re.search(r"V\* is [\d.]+ \[([\d.]+), ([\d.]+)\]", decision["interval"]):
-        low, high = (1e-3 * float(end) for end in interval.groups())
-        out.holds_fold = low <= fold(belt) <= high
-    if above := re.search(r"run above ([\d.]+) mm/s", text, re.IGNORECASE):
-        speed = 1e-3 * float(above[1])
-        out.over = speed / fold(belt)
-        _smooth(out, machine, belt, _BEYOND * speed, text, sure="make sure that it starts" not in text)
-    if "nothing sticks" in text or "nothing sticks" in decision["otherwise"]:
-        slow = min(machine.speeds)
-        out.claim("nothing sticks", from_rest(belt, slow).outcome == "slides", text)
-    if below := re.search(r"Below ([\d.]+) mm/s it sticks", decision["otherwise"]):
-        speed = _BELOW * 1e-3 * float(below[1])
-        fate = from_above(belt, speed, laps=_SLOW_LAPS)
-        out.claim("sticks below", fate.outcome in ("sticks", "stalls"), decision["otherwise"])
-    if down := re.search(r"goes on sliding down to ([\d.]+) rpm", decision["otherwise"]):
-        speed = _BEYOND * float(down[1]) * 2.0 * np.pi / 60.0 * machine.radius
-        fates = [from_above(machine.at(t), speed, laps=_SLOW_LAPS) for t in machine.temperatures]
-        out.claim("slides on down to", all(f.outcome == "slides" for f in fates), decision["otherwise"])
-    if on := re.search(r"goes on sliding above ([\d.]+) mm/s", decision["otherwise"]):
-        fate = from_above(belt, _BEYOND * 1e-3 * float(on[1]), laps=_SLOW_LAPS)
-        out.claim("slides on above", fate.outcome == "slides", decision["otherwise"])
-    if "do not start a belt at rest" in text or "it slips on a belt at rest" in text:
-        out.claim("does not start", not _starts(machine, belt), text)
+def _nearest(machine: Machine, temperature: float) -> float:
+    """Return the temperature that a rounded one means: that of a dwell or point within 1 degC, or itself."""
+    known = {*machine.temperatures, *(point.temperature for point in machine.points)}
+    nearest = min(known, key=lambda t: abs(t - temperature))
+    return nearest if abs(nearest - temperature) < 1.0 else temperature
 
 
-def _named(machine: Machine, text: str) -> float | None:
-    """The temperature that a sentence names, of points and dwells; the hottest where it names none."""
-    named = re.search(r"[Aa]t (\d+) °C", text)
-    if machine.hottest is None or named is None:
-        return machine.hottest
-    known = {p.temperature for p in machine.points} | set(machine.temperatures)
-    return min((t for t in known if t is not None), key=lambda t: abs(t - float(named[1])))
+def _fold(out: Judged, belt: Belt, said: Said) -> None:
+    """Compare interval of V* and safe speed with the true V*."""
+    true = fold(belt)
+    if said.fold is not None:
+        low, high = said.fold
+        out.fold_held, out.width = low <= true <= high, high / low
+        if not out.fold_held:
+            words = f"V* is {1e3 * true:.4g} mm/s, said {1e3 * low:.4g} to {1e3 * high:.4g}"
+            out.wrong.append(f"machine {out.number} ({out.shape}, {out.closure}): {words}")
+    if said.safe_speed is not None:
+        out.over = said.safe_speed / true
 
 
-def _starts(machine: Machine, belt: Belt) -> bool:
-    motor = np.inf if machine.motor is None else machine.motor / machine.radius
-    return belt.start <= min(motor, belt.grip)
+def _safe_speed(out: Judged, machine: Machine, belt: Belt, safe: float) -> None:
+    """Try the safe speed and a little more, from every start."""
+    for factor in _BEYOND:
+        fates = {**_from_above(belt, factor * safe)}
+        if machine.starts(belt):
+            fates |= _from_rest(machine, belt, factor * safe)
+        failed = [f"{name} {outcome}" for name, outcome in fates.items() if outcome != "slides"]
+        if failed:
+            out.claim("X smooth", False, f"{1e3 * factor * safe:.4g} mm/s: {', '.join(failed)}; {out.said}")
+            return
+    out.claim("X smooth", True, out.said)
 
 
-def _smooth(out: Judged, machine: Machine, belt: Belt, speed: float, words: str, *, sure: bool) -> None:
-    """Try a speed that is to be smooth from any start; from rest where it starts, or is said to."""
-    fates = {"from above": from_above(belt, speed)}
-    starts = _starts(machine, belt)
-    if sure:
-        out.claim("starts", starts, words)
-    if sure or starts:
-        fates |= {"ramp": from_rest(belt, speed, machine.acceleration), "step": from_rest(belt, speed)}
-    for name, fate in fates.items():
-        out.claim(f"run above, {name}", fate.outcome == "slides", f"{words} ({fate.outcome})")
+def _from_rest(machine: Machine, belt: Belt, speed: float) -> dict[str, Outcome]:
+    return {
+        "step": from_rest(belt, speed).outcome,
+        "ramp": from_rest(belt, speed, machine.acceleration).outcome,
+    }
 
 
-def _point(out: Judged, machine: Machine, point: Point, part: dict[str, Any]) -> None:
-    belt, words = machine.at(point.temperature), part["words"]
-    what = f"{words} at {1e3 * point.speed:.3g} mm/s"
-    rest = from_rest(belt, point.speed, machine.acceleration), from_rest(belt, point.speed)
-    from_anywhere = all(fate.outcome == "slides" for fate in rest) and _starts(machine, belt)
-    above = from_above(belt, point.speed, laps=_SLOW_LAPS).outcome
-    if "smooth from any start" in words:
-        out.claim("point: smooth from any start", from_anywhere and above == "slides", what)
-    elif words.startswith(("smooth", "slides on", "depends")):
-        out.claim(f"point: {words.split()[0]}", above == "slides", f"{what} ({above})")
-    elif words.startswith("sticks"):
-        sticks = above != "slides" or any(fate.outcome != "slides" for fate in rest)
-        out.claim("point: sticks", sticks, what)
-    elif words.startswith("not started"):
-        out.claim("point: not started", not _starts(machine, belt), what)
-    if rows := (part["plan"] or {}).get("rows"):
-        _plan(out, machine, belt, part["plan"], [(row["time"], row["drive_speed"]) for row in rows], what)
+def _from_above(belt: Belt, speed: float) -> dict[str, Outcome]:
+    return {f"from {over:g} times": from_above(belt, speed, over).outcome for over in _ABOVE}
 
 
-def _plan(
-    out: Judged,
-    machine: Machine,
-    belt: Belt,
-    plan: dict[str, Any],
-    corners: list[tuple[float, float]],
-    words: str,
-) -> None:
-    """Drive a plan on the true machine: it slides once ready, within what motor and drive give."""
-    fate = moved(belt, Drive(*corners))
-    late = any(time > plan["duration"] + 1e-9 for time in fate.stuck)
-    out.claim("plan slides", fate.outcome == "slides" and not late, f"{words} ({fate.outcome})")
+def _point(out: Judged, machine: Machine, point: Point, part: PointSaid) -> None:
+    """Try the verdict on an operating point, and its plan."""
+    belt = machine.at(point.temperature)
+    out.verdicts.append(part.verdict)
+    what = f"{part.words} (at {1e3 * point.speed:.4g} mm/s, V* is {1e3 * fold(belt, 1e-3):.4g})"
+    rest, starts = _from_rest(machine, belt, point.speed), machine.starts(belt)
+    near = from_above(belt, point.speed, laps=_SLOW_LAPS).outcome
+    if part.verdict == "smooth":
+        every = [*rest.values(), *_from_above(belt, point.speed).values()]
+        words = what if starts else f"{what}; the belt cannot be started"
+        out.claim("smooth", starts and set(every) == {"slides"}, words)
+    elif part.verdict == "depends":
+        out.claim("depends", near == "slides", f"{what} ({near})")
+    elif part.verdict == "sticks":
+        sticks = not starts or any(outcome != "slides" for outcome in rest.values())
+        out.claim("sticks", sticks, what)
+    elif part.verdict in ("not started", "stalls"):
+        out.claim(part.verdict, not starts or near == "stalls", what)
+    elif part.verdict == "too fast":
+        out.claim("too fast", machine.fastest is not None and point.speed > machine.fastest, what)
+    if part.plan is not None:
+        _plan(out, machine, belt, part.plan, what)
+
+
+def _plan(out: Judged, machine: Machine, belt: Belt, plan: Plan, words: str) -> None:
+    """Drive a plan on the machine: the belt slides once it is ready, within what motor and drive give."""
+    fate = moved(belt, Drive(*plan.corners))
+    late = any(time > plan.ready + 1e-9 for time in fate.stuck)
+    works = fate.outcome == "slides" and not late
+    out.claim("plan works", works, f"{words} ({fate.outcome}{', sticks late' if late else ''})")
     if machine.motor is not None and machine.fastest is not None:
         within = fate.pull * machine.radius <= 1.0001 * machine.motor
-        within &= max(speed for _, speed in corners) <= 1.0001 * machine.fastest
+        within &= max(speed for _, speed in plan.corners) <= 1.0001 * machine.fastest
         out.claim("plan within limits", within, words)

@@ -1,24 +1,28 @@
-"""Machines drawn at random: the law of their drag, what their owner states of them, and a log of theirs.
+"""Machines drawn at random: a true drag curve, closure, spring and mass, and what the owner states of them.
 
-What is stated is off by what is stated as its uncertainty at the most. A log is plain (ten speeds and more,
-little noise) or poor (six to eight, much), so that some hold the falling branch by few dwells or none.
+What is drawn depends only on seed, number and the two choices that the command line offers.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from pathlib import Path
+from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from benchmarks.decisions.belt import Belt, fold
+from benchmarks.decisions.belt import CLOSURES, Belt, Closure
+from benchmarks.decisions.curves import Curve, Random, draw, log_uniform, minimum
+from benchmarks.decisions.fold import fold, lasts
 
-#: How the drive is limited: amply, not at all, barely, too little by the truth or by what is stated.
+#: Kinds of evidence: slow dwells alone, with a stretch of stick-slip, with a set of starts.
+EVIDENCE = ("dwells", "stick-slip", "starts")
+#: How the drive is limited: amply, not at all, barely, or too little by the truth or by what is stated.
 LIMITS = (
     "ample",
     "ample",
+    "ample",
+    "none",
     "none",
     "tight grip",
     "weak motor",
@@ -26,137 +30,216 @@ LIMITS = (
     "grip in doubt",
     "slow drive",
 )
-#: Seconds between samples, samples of a dwell, of a standstill.
-_STEP, _DWELL, _STANDING = 0.2, 60, 120
-_ROOM = 25.0
+#: The limits with which every belt can be started.
+STARTING = ("ample", "none")
+#: Temperatures and speeds of a log.
+TEMPERATURES, SPEEDS = 5, 11
+#: Factor by which drag may rise where it should fall, and that by which it must fall in all.
+_RISE, _FALL = 1.02, 1.03
+#: Least and greatest V* over the transition speed.
+_FOLDS = (1.005, 25.0)
+#: Machines that are drawn before it is a fault.
+_ATTEMPTS = 400
 
 
 @dataclass(frozen=True)
 class Point:
-    """An operating point: m/s, degC (None where temperature plays no part)."""
+    """An operating point: m/s and degC."""
 
     speed: float
-    temperature: float | None
+    temperature: float
+
+
+@dataclass(frozen=True)
+class Start:
+    """A start from rest in the set of starts: drive speed and acceleration (infinite for a step)."""
+
+    speed: float
+    acceleration: float
+
+
+@dataclass(frozen=True)
+class Stated:
+    """What the machine file says of uncertain values."""
+
+    stiffness: float
+    mass: float
+    share: tuple[float, float]  #: uncertainty of both, 95 %
+    stick: tuple[float, float]  #: range of the stick speed at the hottest temperature
 
 
 @dataclass(frozen=True)
 class Machine:
-    """A machine as it is, and what its owner states."""
+    """A machine as it is, and what its owner states; temperatures in degC."""
 
     radius: float
-    belt: Belt  #: at ``reference``
-    reference: float  #: degC
-    by_temperature: float  #: exponent of the transition speed in degC there; 0 if it does not vary
-    arrhenius: bool  #: how it goes elsewhere: by an activation energy, or as a power of degC
-    fixed_stick: bool
-    stated_stick: tuple[float, float, float]  #: middle, low, high
-    stated_spring: tuple[float, float]  #: stiffness, mass
-    doubt: tuple[float, float]  #: of both
-    temperatures: tuple[float | None, ...]
-    limits: str
-    motor: float | None  #: N m
-    grip: float | None  #: N
-    fastest: float | None  #: m/s
-    acceleration: float
-    points: tuple[Point, ...]
+    curve: Curve  #: at the hottest temperature
+    closure: Closure
+    stick: float  #: at the hottest temperature
+    fixed_stick: bool  #: whether the stick speed is the same at all temperatures
+    stiffness: float
+    mass: float
+    rest: float
+    temperatures: tuple[float, ...]
+    exponent: float  #: of the transition speed in degC, at the hottest temperature
+    arrhenius: bool  #: whether viscosity follows an activation energy, or a power of degC
+    stated: Stated
     speeds: tuple[float, ...]
     noise: float  #: of a sample
     repeats: float  #: of a dwell
-    poor: bool
-
-    def at(self, temperature: float | None) -> Belt:
-        """Return the belt at a temperature, its grip left as it is."""
-        belt = self.belt
-        turn = self._transition(temperature)
-        stick = belt.stick if self.fixed_stick else belt.stick * turn / belt.transition
-        grip = math.inf if self.grip is None else self.grip
-        return Belt(
-            belt.force,
-            turn,
-            belt.rising,
-            belt.falling,
-            min(stick, 0.9 * turn),
-            belt.stiffness,
-            belt.mass,
-            grip,
-            belt.rest,
-        )
-
-    def _transition(self, temperature: float | None) -> float:
-        return _moved(self.belt.transition, temperature, self.reference, self.by_temperature, self.arrhenius)
+    acceleration: float
+    limits: str = "none"
+    motor: float | None = None  #: N m
+    grip: float | None = None  #: N
+    fastest: float | None = None  #: m/s
+    points: tuple[Point, ...] = ()
+    evidence: str = "dwells"
+    bandwidth: float = math.inf  #: of the torque sensor, Hz
+    trace: tuple[Start, ...] = ()
 
     @property
-    def hottest(self) -> float | None:
+    def hottest(self) -> float:
         """The temperature at which the transition is fastest."""
         return self.temperatures[-1]
 
+    @cached_property
+    def rig(self) -> Belt:
+        """The belt at the hottest temperature, without limits of its drive."""
+        return self.unlimited(self.hottest)
 
-def drawn(seed: int, number: int) -> Machine:
-    """Return one machine; the same for the same seed and number."""
+    def unlimited(self, temperature: float) -> Belt:
+        """Return the belt at a temperature, without limits of its drive."""
+        shift = self._shift(temperature)
+        film = self.curve.at(shift)
+        transition = minimum(film, 0.3 * shift * self.curve.speed, 3.0 * self.curve.speed)
+        stick = self.stick
+        if not self.fixed_stick and temperature != self.hottest:
+            stick *= transition / self.curve.speed
+        return Belt(film, transition, stick, self.stiffness, self.mass, self.closure, rest=self.rest)
+
+    def at(self, temperature: float) -> Belt:
+        """Return the belt at a temperature, with the grip of its roll."""
+        belt = self.rig if temperature == self.hottest else self.unlimited(temperature)
+        return belt if self.grip is None else replace(belt, grip=self.grip)
+
+    def starts(self, belt: Belt) -> bool:
+        """Return whether motor and roll can start a belt from rest."""
+        motor = math.inf if self.motor is None else self.motor / self.radius
+        return belt.start <= min(motor, belt.grip)
+
+    def _shift(self, temperature: float) -> float:
+        """Return the inverse of viscosity, relative to that at the hottest temperature."""
+        if not self.arrhenius:
+            return math.pow(temperature / self.hottest, self.exponent)
+        kelvin = self.hottest + 273.15
+        slope = self.exponent * kelvin**2 / self.hottest
+        return math.exp(slope * (1.0 / kelvin - 1.0 / (temperature + 273.15)))
+
+
+@dataclass(frozen=True)
+class Kind:
+    """Which machines are drawn; ``mixed`` stands for any."""
+
+    evidence: str = "mixed"
+    closure: str = "mixed"
+    shape: str = "mixed"
+
+
+def drawn(seed: int, number: int, wanted: Kind) -> Machine:
+    """Return one machine; the same for the same arguments."""
     random = np.random.default_rng([seed, number])
-    thermal, poor = random.random() > 1 / 6, random.random() < 0.4
-    radius, torque = random.uniform(0.010, 0.030), _between(random, 0.15, 1.5)
-    turn, rest = _between(random, 0.008, 0.06), 0.0
-    if random.random() < 1 / 3:
-        rest = torque * random.uniform(0.05, 0.4) / radius
-    stiff = torque / radius / (_between(random, 0.3, 4.0) * turn)
-    quick, stick = _between(random, 8.0, 60.0), turn * _between(random, 0.015, 0.2)
-    belt = Belt(
-        torque / radius,
-        turn,
-        random.uniform(0.25, 0.5),
-        -random.uniform(0.15, 0.9),
-        stick,
-        stiff * quick,
-        stiff / quick,
-        rest=rest,
-    )
-    spread = _between(random, 1.2, 3.0)
-    middle = stick / spread ** random.uniform(-0.95, 0.95)
-    doubt = float(random.choice([0.05, 0.1, 0.2])), float(random.choice([0.0, 0.1]))
-    spring = tuple(
-        value * (1.0 + share) ** random.uniform(-0.95, 0.95)
-        for value, share in zip((belt.stiffness, belt.mass), doubt, strict=True)
-    )
-    temperatures: tuple[float | None, ...] = (None,)
-    if thermal:
-        ends = random.uniform(60.0, 100.0), random.uniform(150.0, 200.0)
-        temperatures = tuple(np.linspace(*ends, int(random.integers(3, 5))).tolist())
-    reference, by, arrhenius = random.uniform(140.0, 180.0), random.uniform(1.0, 3.0), random.random() < 0.25
-    by = by if thermal else 0.0
-    turns = [_moved(turn, t, reference, by, arrhenius) for t in temperatures]
-    machine = Machine(
+    kind, way = str(random.choice(EVIDENCE)), str(random.choice(CLOSURES))
+    kind = kind if wanted.evidence == "mixed" else wanted.evidence
+    way = way if wanted.closure == "mixed" else wanted.closure
+    for _ in range(_ATTEMPTS):
+        machine = _drive(random, "stiction" if way == "stiction" else "retained", wanted.shape)
+        if not _is_stribeck(machine):
+            continue
+        upper = fold(machine.rig, 1e-3)
+        if not _FOLDS[0] < upper / machine.rig.transition < _FOLDS[1]:
+            continue
+        machine = _limited(replace(machine, evidence=kind), random, upper)
+        if kind == "dwells":
+            return machine
+        trace = _stretch(machine, random, upper) if kind == "stick-slip" else _starts(machine, random, upper)
+        if trace:
+            bandwidth = log_uniform(random, 10.0, 20.0) / machine.rig.period
+            return replace(machine, trace=trace, bandwidth=bandwidth)
+    raise RuntimeError(f"no machine {number} of seed {seed} in {_ATTEMPTS} attempts")
+
+
+def _drive(random: Random, closure: Closure, shape: str) -> Machine:
+    """Draw drag, spring, mass and log; limits and points come later."""
+    radius, torque = random.uniform(0.010, 0.030), log_uniform(random, 0.15, 1.5)
+    curve = draw(random, torque / radius, log_uniform(random, 0.008, 0.06), shape)
+    impedance = curve.force / (log_uniform(random, 0.3, 4.0) * curve.speed)
+    frequency = log_uniform(random, 8.0, 60.0)
+    rest = random.uniform(0.05, 0.4) * curve.force if random.random() < 0.25 else 0.0
+    slowest = curve.speed * log_uniform(random, 0.08, 0.4)
+    stick_range = _stick_range(random, slowest, curve.speed)
+    stick = log_uniform(random, *stick_range)
+    stiffness, mass = impedance * frequency, impedance / frequency
+    ends = random.uniform(60.0, 100.0), random.uniform(150.0, 200.0)
+    return Machine(
         radius=radius,
-        belt=belt,
-        reference=reference,
-        by_temperature=by,
-        arrhenius=arrhenius,
-        fixed_stick=thermal and random.random() < 0.2,
-        stated_stick=(middle, middle / spread, middle * spread),
-        stated_spring=(spring[0], spring[1]),
-        doubt=doubt,
-        temperatures=temperatures,
-        limits="none",
-        motor=None,
-        grip=None,
-        fastest=None,
-        acceleration=_between(random, 5.0, 50.0) * turn * quick / 10.0,
-        points=(),
-        speeds=_speeds(random, turns, poor=poor),
-        noise=float(random.choice([0.04, 0.08] if poor else [0.01, 0.02, 0.04])),
-        repeats=float(random.choice([0.015, 0.03] if poor else [0.003, 0.008, 0.015])),
-        poor=poor,
+        curve=curve,
+        closure=closure,
+        stick=stick,
+        fixed_stick=random.random() < 0.5,
+        stiffness=stiffness,
+        mass=mass,
+        rest=rest,
+        temperatures=tuple(np.linspace(*ends, TEMPERATURES).tolist()),
+        exponent=random.uniform(1.0, 3.0),
+        arrhenius=random.random() < 0.5,
+        stated=_stated(random, stiffness, mass, stick_range),
+        speeds=tuple(np.geomspace(slowest, random.uniform(5.0, 10.0) * curve.speed, SPEEDS).tolist()),
+        noise=random.uniform(0.01, 0.04),
+        repeats=log_uniform(random, 0.003, 0.03),
+        acceleration=log_uniform(random, 0.5, 5.0) * curve.speed * frequency,
     )
-    return _limited(machine, random)
 
 
-def _limited(machine: Machine, random: np.random.Generator) -> Machine:
-    """The machine with limits about what its start takes, and operating points about its band."""
-    hot = machine.at(machine.hottest)
-    upper, start = fold(hot, 1e-3), hot.start
-    stated = hot.hold * (machine.stated_stick[0] / machine.belt.stick) ** hot.falling + hot.rest
-    limits = str(random.choice(LIMITS))
-    motor, grip, fastest = 3.0 * start, 3.0 * start, max(4.0 * upper, 10.0 * hot.transition)
+def _stick_range(random: Random, slowest: float, transition: float) -> tuple[float, float]:
+    """Draw a range of the stick speed: below the slowest dwell or around it, below the transition."""
+    high = min(slowest * log_uniform(random, 0.3, 1.5), 0.7 * transition)
+    return high / log_uniform(random, 2.0, 6.0), high
+
+
+def _stated(random: Random, stiffness: float, mass: float, stick: tuple[float, float]) -> Stated:
+    """State spring and mass with an error that is within the uncertainty in 95 % of the machines."""
+    shares = tuple(float(share) for share in random.uniform(0.05, 0.10, size=2))
+    sigmas = [math.log1p(share) / 1.96 for share in shares]
+    errors = [math.exp(sigma * random.standard_normal()) for sigma in sigmas]
+    return Stated(stiffness * errors[0], mass * errors[1], (shares[0], shares[1]), stick)
+
+
+def _is_stribeck(machine: Machine) -> bool:
+    """Whether drag falls from the stick speed to the transition and then rises, at every temperature."""
+    if machine.stick >= machine.speeds[0]:
+        return False
+    for temperature in machine.temperatures:
+        belt = machine.unlimited(temperature)
+        slowest = belt.stick * machine.stated.stick[0] / machine.stick
+        if belt.stick > 0.8 * belt.transition:
+            return False
+        falling = [belt.film(v) for v in np.geomspace(slowest, belt.transition, 60).tolist()]
+        rising = [belt.film(v) for v in np.geomspace(belt.transition, 60.0 * belt.transition, 60).tolist()]
+        lowest_yet = np.minimum.accumulate(falling)
+        if (np.array(falling) > _RISE * lowest_yet).any() or np.diff(rising).min() < 0.0:
+            return False
+        if belt.film(belt.stick) < _FALL * falling[-1]:
+            return False
+    return True
+
+
+def _limited(machine: Machine, random: Random, upper: float) -> Machine:
+    """Return the machine with limits about what its start takes, and operating points about V*."""
+    belt = machine.rig
+    start = belt.start
+    stated = math.e * belt.film(math.sqrt(math.prod(machine.stated.stick))) + belt.rest
+    limits = str(random.choice(STARTING if machine.evidence != "dwells" else LIMITS))
+    motor, grip, fastest = 3.0 * start, 3.0 * start, max(4.0 * upper, 10.0 * belt.transition)
     if limits == "tight grip":
         grip = 1.15 * start
     elif limits == "weak motor":
@@ -166,134 +249,42 @@ def _limited(machine: Machine, random: np.random.Generator) -> Machine:
     elif limits == "grip in doubt":
         grip = math.sqrt(start * stated)
     elif limits == "slow drive":
-        fastest = max(hot.transition + 0.6 * (upper - hot.transition), 3.0 * hot.transition)
-    between = hot.transition + random.uniform(0.2, 0.8) * (upper - hot.transition)
-    speeds = [0.7 * hot.transition, between, 1.1 * upper, random.uniform(1.5, 3.0) * upper]
-    count = int(random.integers(0, 4))
-    chosen = random.choice(speeds, count, replace=False)
-    points = []
-    for speed in chosen:
-        anywhere = machine.temperatures[int(random.integers(len(machine.temperatures)))]
-        points.append(Point(float(speed), machine.hottest if random.random() < 2 / 3 else anywhere))
-    told = replace(machine, limits=limits, points=tuple(points))
+        fastest = max(belt.transition + 0.6 * (upper - belt.transition), 3.0 * belt.transition)
+    machine = replace(machine, limits=limits, points=_points(machine, random, upper))
     if limits == "none":
-        return told
-    return replace(told, motor=motor * machine.radius, grip=grip, fastest=fastest)
+        return machine
+    return replace(machine, motor=motor * machine.radius, grip=grip, fastest=fastest)
 
 
-def _speeds(random: np.random.Generator, turns: list[float], *, poor: bool) -> tuple[float, ...]:
-    """Belt speeds of the dwells, the same at each temperature."""
-    cold, hot = turns[0], turns[-1]
-    if poor:
-        ends = random.uniform(0.25, 0.6) * hot, 6.0 * hot
-        return tuple(np.geomspace(*ends, int(random.integers(6, 9))).tolist())
-    middle = math.sqrt(cold * hot)
-    ends = min(0.4 * middle, 1.2 * cold), max(8.0 * middle, 5.0 * hot)
-    return tuple(np.geomspace(*ends, int(random.integers(10, 13))).tolist())
+def _points(machine: Machine, random: Random, upper: float) -> tuple[Point, ...]:
+    """Draw operating points below the transition, between it and V*, about V* and above."""
+    turn = machine.rig.transition
+    between = turn + random.uniform(0.2, 0.8) * (upper - turn)
+    speeds = [0.7 * turn, between, 1.1 * upper, random.uniform(1.5, 3.0) * upper]
+    chosen = random.choice(speeds, int(random.integers(0, 4)), replace=False).tolist()
+    anywhere = [machine.temperatures[int(random.integers(TEMPERATURES))] for _ in chosen]
+    return tuple(
+        Point(speed, machine.hottest if random.random() < 2 / 3 else temperature)
+        for speed, temperature in zip(chosen, anywhere, strict=True)
+    )
 
 
-def _moved(turn: float, temperature: float | None, reference: float, by: float, arrhenius: bool) -> float:
-    """The transition speed at a temperature; both laws have the same slope at the reference."""
-    if temperature is None:
-        return turn
-    if not arrhenius:
-        return turn * math.pow(temperature / reference, by)
-    kelvin = reference + 273.15
-    return turn * math.exp(by * kelvin**2 / reference * (1.0 / kelvin - 1.0 / (temperature + 273.15)))
+def _stretch(machine: Machine, random: Random, upper: float) -> tuple[Start, ...]:
+    """Draw a drive speed at which the belt sticks and slips."""
+    belt = machine.rig
+    for _ in range(10):
+        speed = random.uniform(0.4 * belt.transition, 0.95 * upper)
+        if speed > 2.0 * belt.stick and lasts(belt, speed):
+            return (Start(speed, math.inf),)
+    return ()
 
 
-def _between(random: np.random.Generator, low: float, high: float) -> float:
-    return math.exp(random.uniform(math.log(low), math.log(high)))
-
-
-def write(machine: Machine, folder: Path, random: np.random.Generator) -> tuple[Path, Path]:
-    """Write the log and the file of a machine."""
-    log, file = folder / "log.csv", folder / "machine.toml"
-    heads = ["Time [s]", "Drive torque [N*m]", "Drive speed [rpm]", "Heater temperature [degC]"]
-    rows = _recorded(machine, random)
-    if machine.hottest is None:
-        heads, rows = heads[:3], rows[:, :3]
-    lines = [",".join(f"{value:.5f}" for value in row) for row in rows.tolist()]
-    log.write_text("\n".join([",".join(heads), *lines, ""]))
-    file.write_text(_stated(machine))
-    return log, file
-
-
-def _recorded(machine: Machine, random: np.random.Generator) -> NDArray[np.float64]:
-    """Samples of time, torque, speed (rpm) and temperature: standstills, and dwells at each temperature."""
-    pieces: list[tuple[int, float, float, float | None]] = []  # samples, belt speed, torque, temperature
-    order = list(machine.temperatures)
-    if len(order) > 1 and random.random() < 0.5:
-        order.append(order[0])
-    pieces.append((_STANDING, 0.0, 0.0, order[0]))
-    for visit, temperature in enumerate(order):
-        before = order[visit - 1] if visit else temperature
-        if temperature is not None and before is not None and visit:
-            pieces += [
-                (6, 0.0, 0.0, before + share * (temperature - before)) for share in np.linspace(0, 1, 20)
-            ]
-            pieces.append((30, 0.0, 0.0, temperature))
-        belt, speeds = machine.at(temperature), machine.speeds[:: -1 if visit % 2 else 1]
-        for speed in speeds:
-            torque = belt.drag(speed) * machine.radius * math.exp(machine.repeats * random.standard_normal())
-            pieces.append((_DWELL, speed, torque, temperature))
-    pieces.append((_STANDING // 2, 0.0, 0.0, order[-1]))
-    full = machine.belt.force * machine.radius
-    error, of_torque = 0.0, list[float]()
-    of_speed, of_heat = list[NDArray[np.float64]](), list[NDArray[np.float64]]()
-    for samples, at, level, warm in pieces:
-        for kick in random.standard_normal(samples).tolist():
-            error = 0.5 * error + 0.8 * kick * machine.noise * max(level, 0.02 * full)
-            of_torque.append(level + error + 0.003 * full)
-        rpm = at / machine.radius * 60.0 / math.tau
-        of_speed.append(rpm * (1.0 + 0.002 * random.standard_normal(samples)))
-        of_heat.append((_ROOM if warm is None else warm) + 0.1 * random.standard_normal(samples))
-    time = _STEP * np.arange(len(of_torque))
-    others = [np.concatenate(each) for each in (of_speed, of_heat)]
-    return np.column_stack([time, np.array(of_torque), *others])
-
-
-def _stated(machine: Machine) -> str:
-    """The machine file."""
-    middle, low, high = (f'"{1e3 * value:.6g} mm/s' for value in machine.stated_stick)
-    stiffness, mass = machine.stated_spring
-    lines = [
-        "[drivetrain]",
-        f'stiffness = "{stiffness:.8g} N/m"',
-        f'mass = "{mass:.8g} kg"',
-        f'roll_radius = "{1e3 * machine.radius:.8g} mm"',
-        f'stick_speed = {middle}"',
-    ]
-    if machine.hottest is not None:
-        rule = "fixed" if machine.fixed_stick else "with transition"
-        lines += [
-            f'stick_speed_temperature = "{machine.reference:.6g} degC"',
-            f'stick_speed_rule = "{rule}"',
-        ]
-    if machine.motor is not None and machine.grip is not None and machine.fastest is not None:
-        lines += [
-            "[limits]",
-            f'motor_torque = "{machine.motor:.6g} N*m"',
-            "roll_friction = 0.5",
-            f'nip_load = "{2.0 * machine.grip:.6g} N"',
-            f'acceleration = "{machine.acceleration:.6g} m/s^2"',
-            f'speed = "{1e3 * machine.fastest:.8g} mm/s"',
-        ]
-    lines += [
-        "[uncertainty]",
-        f'stiffness = "{100 * machine.doubt[0]:g} %"',
-        f'stick_speed = {low} to {high[1:]}"',
-    ]
-    if machine.doubt[1]:
-        lines.append(f'mass = "{100 * machine.doubt[1]:g} %"')
-    if machine.belt.rest:
-        lines += ["[rest]", f'torque = "{machine.belt.rest * machine.radius:.6g} N*m"', 'uncertainty = "3 %"']
-    for number, point in enumerate(machine.points):
-        warm = _ROOM if point.temperature is None else point.temperature
-        lines += [
-            "[[points]]",
-            f'name = "point {number}"',
-            f'speed = "{1e3 * point.speed:.6g} mm/s"',
-            f'temperature = "{warm:.5g} degC"',
-        ]
-    return "\n".join([*lines, ""])
+def _starts(machine: Machine, random: Random, upper: float) -> tuple[Start, ...]:
+    """Draw three to five starts to speeds on both sides of V*, all by a step or all by a ramp."""
+    acceleration = math.inf if random.random() < 0.5 else machine.acceleration
+    below, above = upper * log_uniform(random, 0.55, 0.97), upper * log_uniform(random, 1.03, 1.8)
+    others = [upper * log_uniform(random, 0.55, 1.8) for _ in range(int(random.integers(1, 4)))]
+    speeds = sorted([below, above, *others])
+    if speeds[0] < 2.0 * machine.rig.stick:
+        return ()
+    return tuple(Start(speed, acceleration) for speed in speeds)

@@ -365,15 +365,16 @@ def test_a_doubtful_unit_is_told_of_logs_and_of_tables_of_means(tmp_path: Path) 
     rows = [f"{0.05 * i:.2f},{1 + i / 1e4},{60 + 10 * (i // 400)},{150 + i / 1e3}" for i in range(2000)]
     log, heading = tmp_path / "log.csv", "time [s],torque [N*m],speed [rpm],temp"
     log.write_text("\n".join([f"{heading} [degC]", *rows[:900], "45,1,80,900", *rows[901:]]))
-    (ordered,) = inspect(log).cautions
+    ordered, one_way = inspect(log).cautions
+    assert one_way.startswith("Speeds were approached from below only")
     assert ordered.startswith("Speed and time go together")
     kelvin = [f"{row.rsplit(',', 1)[0]},{float(row.rsplit(',', 1)[1]) + 273.15:.3f}" for row in rows]
     log.write_text("\n".join([f"{heading} [degC]", *kelvin]))
     told, *others = inspect(log).cautions
-    assert others == [ordered]
+    assert others == [ordered, one_way]
     assert told.startswith("Temperature reaches 425 degC")
     assert f"\n! {told}\n" in inspect(log).summary()
-    assert inspect(log, units={"temperature": "K"}).cautions == (ordered,)
+    assert inspect(log, units={"temperature": "K"}).cautions == (ordered, one_way)
     log.write_text("\n".join(["time [s],torque [N*m],speed [rpm]", *(f"{50 * i},1,{i}" for i in range(200))]))
     seen = inspect(log, isothermal=True)
     assert seen.support is not None

@@ -12,12 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hersey.arrays import FloatArray
+from hersey.damping.dwells.resolution import quantisation_step
 
 IndexArray = NDArray[np.intp]
 
-#: Share of the differences between values that must be multiples of a step, and how nearly, for it to be one:
-#: numbers without a step would be that near by chance in a tenth of the cases. So few levels are all steps.
-STEP_SHARE, STEP_TOLERANCE, FEW_LEVELS = 0.98, 0.05, 4
 #: A sensor that is alive shows noise of at least this many of its steps; below, equal values prove nothing.
 DITHER = 0.5
 #: A channel whose neighbours are equal more often than this elsewhere is quiet by nature: held or coarse.
@@ -112,37 +110,6 @@ def equal_runs(values: FloatArray) -> tuple[IndexArray, IndexArray]:
     """Return where each run of equal neighbours starts, and its length."""
     starts = np.concatenate([[0], np.flatnonzero(np.diff(values)) + 1])
     return starts, np.diff(starts, append=values.size)
-
-
-def quantisation_step(values: FloatArray) -> float | None:
-    """Return the step of which all differences between values are multiples, or None if there is none.
-
-    Values that were rounded to decimals after the converter may stray from its steps by those.
-    """
-    levels = np.unique(values)
-    gaps = np.diff(levels)
-    gaps = gaps[gaps > 1e-9 * float(np.max(np.abs(levels)))]
-    if not gaps.size or levels.size > 0.9 * values.size:
-        return None
-    if levels.size <= FEW_LEVELS:
-        return float(f"{gaps.min():.6g}") if values.size > 20 * levels.size else None
-    decimals = _decimals(levels)
-    for candidate in np.quantile(gaps, [0.0, 0.02, 0.1], method="lower"):
-        step = float(np.mean(gaps[gaps < 1.5 * candidate]))
-        tolerance = max(STEP_TOLERANCE, min(0.35, decimals / step)) if gaps.size > 20 else STEP_TOLERANCE
-        ratio = gaps / step
-        near = np.abs(ratio - np.round(ratio)) <= tolerance
-        if np.mean(near) >= STEP_SHARE and float(np.median(ratio)) < 1e4:
-            return float(f"{step:.4g}")
-    return None
-
-
-def _decimals(levels: FloatArray) -> float:
-    """The least decimal place to which all values are rounded, as a number; 0 if there is none above 1e-9."""
-    for places in range(7):
-        if np.allclose(levels, np.round(levels, places), rtol=0.0, atol=1e-9):
-            return float(10.0**-places)
-    return 0.0
 
 
 def noise_of(values: FloatArray) -> float | None:

@@ -14,6 +14,7 @@ import numpy as np
 from hersey.arrays import FloatArray
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.dwells.doubtful import doubtful_order, doubtful_tare
+from hersey.damping.dwells.misleading import in_words, misleading
 from hersey.errors import HerseyError, InsufficientDataError
 from hersey.inspection.clock import Clock, clock_of
 from hersey.inspection.faults import DITHER, Fault, Traits, traits
@@ -278,7 +279,8 @@ def _supported(reduce: Callable[[], SteadyPoints], temperature_scale: str) -> tu
     except InsufficientDataError as error:
         return Support(0, 0, None, (), {}, (), (str(error),)), ()
     notes = () if isinstance(points.log, MeansTable) else points.notes  # what a table lacks, support says
-    doubts = (*doubtful_tare(points), *notes, *doubtful_order(points))
+    structures = [in_words(found, points) for found in misleading(points)]
+    doubts = (*doubtful_tare(points), *notes, *doubtful_order(points), *structures)
     return support_of_points(points, temperature_scale=temperature_scale), doubts
 
 

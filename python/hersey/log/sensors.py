@@ -6,6 +6,13 @@ from dataclasses import dataclass, replace
 
 from hersey.units import convert
 
+#: Zero error of torque as a share of the largest torque measured, where none is stated.
+SHARE_OF_LARGEST = 0.001
+#: Hysteresis of the torque sensor as a share of the largest torque measured: half of what it reads more when
+#: torque falls than when it rises. Counted where the speeds of a log were all approached from one direction.
+HYSTERESIS_OF_LARGEST = 0.005
+#: Time constant by which a temperature sensor may lag, s, unless the mapping corrects it.
+TEMPERATURE_LAG = 20.0
 #: What is an error of each sensor.
 OF_ROLE = {
     "temperature": ("temperature_zero", "film_heating"),
@@ -48,10 +55,6 @@ class Sensors:
             "speed": f"speed {100 * self.speed_gain:.3g} %",
         }
         return ", ".join(text if role in self.stated else f"{text} (default)" for role, text in said.items())
-
-
-#: Zero error of torque as a share of the largest torque measured, where none is stated.
-SHARE_OF_LARGEST = 0.001
 
 
 def _newton_metre(torque: float) -> str:

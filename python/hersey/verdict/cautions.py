@@ -9,6 +9,7 @@ import numpy as np
 from hersey.arrays import FloatArray
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.dwells.doubtful import doubtful_order, doubtful_tare
+from hersey.damping.dwells.misleading import in_words, misleading
 from hersey.damping.surface import DampingSurface
 from hersey.log.doubtful import doubtful_units
 from hersey.units import celsius
@@ -58,6 +59,7 @@ def cautions(points: SteadyPoints, surface: DampingSurface | None) -> list[str]:
     if surface is not None:
         out += _direction_warnings(points, surface)
     out += doubtful_order(points)
+    out += [in_words(found, points) for found in misleading(points)]
     if surface is not None:
         out += _fit_warnings(surface)
     return out

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from typing import TypeVar
 
 import numpy as np
 
 from hersey.arrays import FloatArray, IntArray
 from hersey.damping.dwells import SAME_SPEED, SteadyPoints, distinct_speeds, groups_of_temperature
+from hersey.damping.dwells.misleading import lagging, one_direction, unlinked_runs
 from hersey.errors import InsufficientDataError
 from hersey.log.means import MeansTable
 from hersey.units import rpm
+
+AnyArray = TypeVar("AnyArray", FloatArray, IntArray)
 
 #: Change of temperature from dwell to dwell, K, that ends a stay.
 STEP = 6.0
@@ -53,6 +57,13 @@ class Observations:
     temperatures: FloatArray  #: K, mean of each group, shape (groups,)
     #: standard error of the heating of the film by friction, K, shape (points,); (0,) where none is declared
     heating: FloatArray = field(default_factory=lambda: np.empty(0))
+    #: by how much hysteresis of the torque sensor may move each torque: 1 where all speeds of the log were
+    #: approached from below, -1 where from above, shape (points,); (0,) where both directions check it
+    direction: FloatArray = field(default_factory=lambda: np.empty(0))
+    #: how fast the reading of temperature changed over each dwell, K/s, shape (points,); (0,) if steady
+    temperature_rate: FloatArray = field(default_factory=lambda: np.empty(0))
+    #: which runs share temperatures with one another, shape (points,); (0,) where all do
+    unlinked: IntArray = field(default_factory=lambda: np.empty(0, dtype=np.intp))
 
     @classmethod
     def of(cls, points: SteadyPoints, *, fewest_speeds: int = 3) -> Observations:
@@ -91,6 +102,9 @@ class Observations:
             reference_kelvin=None if kelvin is None else float(1.0 / np.mean(1.0 / kelvin)),
             temperatures=means,
             heating=heating,
+            direction=one_direction(points),
+            temperature_rate=lagging(points),
+            unlinked=unlinked_runs(points),
         )
 
     def __len__(self) -> int:
@@ -112,7 +126,10 @@ class Observations:
             speed_error=self.speed_error[index],
             temperature_error=self.temperature_error[index],
             tare=self.tare[index],
-            heating=self.heating[index] if self.heating.size else self.heating,
+            heating=_taken(self.heating, index),
+            direction=_taken(self.direction, index),
+            temperature_rate=_taken(self.temperature_rate, index),
+            unlinked=_taken(self.unlinked, index),
             visit=self.visit[index],
             run=self.run[index],
             cluster=self.cluster[index],
@@ -127,6 +144,11 @@ class Observations:
         hot = np.broadcast_to(np.asarray(kelvin, dtype=np.float64), z.shape).copy()
         nearest = np.argmin(np.abs(hot[:, None] - self.temperatures[None, :]), axis=1)
         return Inputs(z, hot, nearest.astype(np.intp))
+
+
+def _taken(values: AnyArray, index: IntArray) -> AnyArray:
+    """Values at an index, or none where there are none."""
+    return values[index] if values.size else values
 
 
 def _groups(kelvin: FloatArray | None, count: int) -> tuple[IntArray, FloatArray]:

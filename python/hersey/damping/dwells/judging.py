@@ -51,7 +51,13 @@ class Dwell(Stretch):
 
 
 def judged(
-    run: Run, stretch: Stretch, asked: Asked, tare: float, noise: SharedNoise | None, common: float = 0.0
+    run: Run,
+    stretch: Stretch,
+    asked: Asked,
+    tare: float,
+    noise: SharedNoise | None,
+    common: float = 0.0,
+    step: float = 0.0,
 ) -> Dwell | Rejection:
     """Return the dwell in a stretch, or why there is none.
 
@@ -63,6 +69,8 @@ def judged(
         What the dwells of the log show; without it each is judged by its own noise.
     common
         How long dwells that are come to like this one take to settle, s.
+    step
+        In which the torque sensor counts, N m; 0 if not known.
     """
     segment = stretch.segment
 
@@ -80,14 +88,14 @@ def judged(
         later = segment.start + round(common / run.sampling_interval)
         if later > start and end - later >= max((end - start) / 2.0, asked.min_dwell / run.sampling_interval):
             start = later
-    reason = unsteady(run, start, end, asked.min_dwell, tare, noise, segment.ripple)
+    reason = unsteady(run, start, end, asked.min_dwell, tare, noise, segment.ripple, step)
     for share in LATER_STARTS:  # a warm-up at the same speed may come before what is steady
         later = start + round(share * (end - start))
         if (
             reason
             and not segment.ripple
             and reason.startswith(("temperature drifts", "torque drifts"))
-            and unsteady(run, later, end, asked.min_dwell, tare, noise) is None
+            and unsteady(run, later, end, asked.min_dwell, tare, noise, step=step) is None
         ):
             start, reason = later, None
     if reason:

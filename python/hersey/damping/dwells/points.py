@@ -11,6 +11,8 @@ import numpy as np
 import polars as pl
 
 from hersey.arrays import FloatArray
+from hersey.damping.dwells.relaxation import Relaxation
+from hersey.damping.dwells.resolution import Resolution
 from hersey.damping.rest import RestOfDrive
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.log.means import MeanRow, MeansTable, read_means
@@ -74,6 +76,15 @@ class SteadyPoints(Result):
     rest_errors
         What one standard error of each independent error of it does to the torque of each dwell, N m, shape
         (points, errors).
+    resolutions
+        Steps in which the sensors count, with the error that rounding leaves in each dwell; the errors of the
+        table contain it.
+    relaxation
+        How torque still relaxes within the dwells after each change of speed, or None if it does not show.
+    relaxation_errors
+        What is left of it in the torque of each dwell at the most, N m, shape (points, 0 or 1).
+    temperature_rates
+        How fast the reading of temperature changes over each dwell, K/s, 0 within its noise, shape (points,).
     """
 
     table: pl.DataFrame
@@ -85,17 +96,21 @@ class SteadyPoints(Result):
     notes: tuple[str, ...] = ()
     rest: RestOfDrive | None = None
     rest_errors: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
+    resolutions: tuple[Resolution, ...] = ()
+    relaxation: Relaxation | None = None
+    relaxation_errors: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
+    temperature_rates: FloatArray = field(default_factory=lambda: np.empty(0))
 
     def __post_init__(self) -> None:
-        """Give what has no tare, or no rest taken off, no disturbances of it."""
-        for name in ("tare_errors", "rest_errors"):
+        """Give what has no tare, no rest taken off or no relaxation, no disturbances of it."""
+        for name in ("tare_errors", "rest_errors", "relaxation_errors"):
             if not getattr(self, name).size:
                 object.__setattr__(self, name, np.empty((self.table.height, 0)))
 
     @property
     def zero_errors(self) -> FloatArray:
-        """What each independent error of tare and rest of the drive does to each dwell's torque, N m."""
-        return np.hstack([self.tare_errors, self.rest_errors])
+        """What each independent error of tare, rest of the drive and relaxation does to each torque, N m."""
+        return np.hstack([self.tare_errors, self.rest_errors, self.relaxation_errors])
 
     @property
     def tare_error(self) -> float:

@@ -11,17 +11,21 @@ from hersey.damping.dwells.judging import Asked, Dwell, Stretch, judged
 from hersey.damping.dwells.noise import mean_and_error
 from hersey.damping.dwells.nothing_steady import nothing_steady
 from hersey.damping.dwells.points import Rejection, SteadyPoints
+from hersey.damping.dwells.relaxation import Relaxation, Trend, relaxation
+from hersey.damping.dwells.resolution import Resolution, repeats, rounding_error, step_of
 from hersey.damping.dwells.ripple import joined_over_turns, turned, without_ripple
 from hersey.damping.dwells.segments import Segment, segments_of
 from hersey.damping.dwells.settling import common_settling
 from hersey.damping.dwells.shared_noise import Powers, SharedNoise, shared_noise
-from hersey.damping.dwells.steadiness import drift_over, straightened
+from hersey.damping.dwells.steadiness import MAX_TEMPERATURE_DRIFT, drift_over, straightened
 from hersey.damping.dwells.zero import Zero, standing_stretches, starts_of
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.log.torque_log import Run, TorqueLog
 
 #: Rounds in which dwells are judged again by the noise of those kept, at the most.
 ROUNDS = 3
+#: A drive that turned slower than this share of the speed that follows counts as standing.
+STANDS = 1e-3
 #: Speed that swings by more than this share (standard deviation) is not judged as noise of the encoder alone.
 NOTABLE_SWING = 0.2
 
@@ -71,6 +75,7 @@ class _Reduction:
         self.segments = [joined_over_turns(run, segments_of(run)) for run in log.runs]
         self.stretches = [s for i in range(len(log.runs)) for s in _in_order(i, self.segments[i])]
         self.settling: dict[str, float] = {}
+        self.steps = [self._steps(i) for i in range(len(log.runs))]
         self.zero = self._zero(None)
         if subtracted and self.zero is None:
             raise InsufficientDataError(
@@ -112,6 +117,7 @@ class _Reduction:
                 float(tare),
                 noise,
                 self.settling.get(stretch.approach, 0.0),
+                self.steps[stretch.run]["torque"],
             )
             for stretch, tare in zip(self.stretches, tares, strict=True)
         ]
@@ -125,6 +131,14 @@ class _Reduction:
             _row(self.log.runs[dwell.run], dwell, float(tare), noise)
             for dwell, tare in zip(dwells, tares, strict=True)
         ]
+        resolutions = self._resolutions(dwells)
+        for resolution in resolutions:
+            _widen(rows, resolution.quantity, resolution.errors)
+        relaxing = self._relaxation(dwells, tares)
+        if relaxing is not None:
+            late = np.abs(relaxing.left)
+            late = np.where(late > 0.0, late, late.max())  # from rest torque changes most
+            _widen(rows, "torque", late * np.array([row["torque"] for row in rows], dtype=float))
         kinds = dict.fromkeys(("temperature", "temperature_error", "load"), pl.Float64)
         table = pl.DataFrame(rows, schema_overrides=kinds)
         disturbances = np.empty((len(dwells), 0))
@@ -141,10 +155,66 @@ class _Reduction:
             log=self.log,
             tare_errors=disturbances,
             notes=notes,
+            resolutions=resolutions,
+            relaxation=relaxing,
+            relaxation_errors=_left(relaxing, table),
+            temperature_rates=np.array([_temperature_rate(self.log.runs[d.run], d) for d in dwells]),
         )
 
+    def _steps(self, index: int) -> dict[str, float]:
+        """Steps in which the sensors of a run count while its speed holds, SI; 0 where they show none."""
+        run = self.log.runs[index]
+        rows = [slice(s.start, s.end) for s in self.segments[index] if s.steady]
+        channels = {"torque": run.torque, "speed": run.speed, "temperature": run.temperature}
+        return {
+            name: 0.0 if values is None else step_of([values[each] for each in rows])
+            for name, values in channels.items()
+        }
+
+    def _resolutions(self, dwells: list[Dwell]) -> tuple[Resolution, ...]:
+        """The steps of the sensors, with the error that each leaves in each dwell."""
+        alike = np.sqrt(self._repeats(dwells))
+        out = []
+        for name in ("torque", "speed", "temperature"):
+            if step := max(steps[name] for steps in self.steps):
+                errors = [
+                    rounding_error(_values(self.log.runs[d.run], name, d), self.steps[d.run][name])
+                    for d in dwells
+                ]
+                out.append(Resolution(name, step, np.array(errors) * alike))
+        return tuple(out)
+
+    def _repeats(self, dwells: list[Dwell]) -> FloatArray:
+        """How many dwells have the speed and temperature of each."""
+        speed = np.array([d.segment.speed for d in dwells])
+        if not self.log.has_temperature:
+            return repeats(speed, None)
+        return repeats(
+            speed, np.array([np.mean(_values(self.log.runs[d.run], "temperature", d)) for d in dwells])
+        )
+
+    def _relaxation(self, dwells: list[Dwell], tares: FloatArray) -> Relaxation | None:
+        """The relaxation that the dwells show together after each change of speed."""
+        return relaxation(
+            [
+                _trend(self.log.runs[d.run], d, float(tare), isothermal=self._isothermal(d))
+                for d, tare in zip(dwells, tares, strict=True)
+            ]
+        )
+
+    def _isothermal(self, dwell: Dwell) -> bool:
+        """Whether a dwell has the temperature of the speed held before it."""
+        kelvin = self.log.runs[dwell.run].temperature
+        before = [s for s in self.segments[dwell.run] if s.steady and s.end <= dwell.segment.start]
+        if kelvin is None or not before:
+            return True
+        change = np.mean(kelvin[dwell.start : dwell.end]) - np.mean(kelvin[before[-1].start : before[-1].end])
+        return bool(abs(change) <= MAX_TEMPERATURE_DRIFT)
+
     def _zero(self, noise: SharedNoise | None) -> Zero | None:
-        stretches = standing_stretches(self.log.runs, self.segments, noise)
+        stretches = standing_stretches(
+            self.log.runs, self.segments, noise, [each["torque"] for each in self.steps]
+        )
         last = self.log.runs[-1]
         duration = float(self.starts[-1]) + float(last.time[-1] - last.time[0])
         return Zero(tuple(stretches), duration) if stretches else None
@@ -225,6 +295,45 @@ def _row(run: Run, dwell: Dwell, tare: float, noise: SharedNoise | None) -> dict
         "load": None if run.load is None else float(np.mean(run.load[rows])),
         "tare": tare,
     }
+
+
+def _values(run: Run, name: str, dwell: Dwell) -> FloatArray:
+    """Readings of a channel over a dwell; none if it was not recorded."""
+    values: FloatArray | None = getattr(run, name)
+    return np.empty(0) if values is None else values[dwell.start : dwell.end]
+
+
+def _widen(rows: list[dict[str, object]], quantity: str, errors: FloatArray) -> None:
+    """Add errors to the standard error of each dwell."""
+    name = f"{quantity}_error"
+    for row, error in zip(rows, errors, strict=True):
+        row[name] = float(np.hypot(row[name], error))  # type: ignore[call-overload]
+
+
+def _left(relaxing: Relaxation | None, table: pl.DataFrame) -> FloatArray:
+    """What is left of a relaxation in the torque of each dwell, N m, shape (points, 0 or 1).
+
+    It is common to all only as far as its course is the one assumed: each dwell has it as an error too.
+    """
+    if relaxing is None:
+        return np.empty((table.height, 0))
+    return np.asarray(relaxing.left * table["torque"].to_numpy())[:, None]
+
+
+def _trend(run: Run, dwell: Dwell, tare: float, *, isothermal: bool) -> Trend:
+    """How the torque of a dwell runs since the speed changed."""
+    before, after = dwell.previous or 0.0, abs(dwell.segment.speed)
+    step = float(np.log(after / before)) if before > STANDS * after else 0.0
+    since = run.time[dwell.start : dwell.end] - run.time[dwell.segment.start]
+    return Trend.of(since, _calm_torque(run, dwell) - tare, step, isothermal=isothermal)
+
+
+def _temperature_rate(run: Run, dwell: Dwell) -> float:
+    """How fast the reading of temperature changes over a dwell, K/s; 0 within its noise."""
+    if run.temperature is None:
+        return 0.0
+    time = run.time[dwell.start : dwell.end]
+    return drift_over(time, run.temperature[dwell.start : dwell.end])[0] / float(time[-1] - time[0])
 
 
 def _calm_torque(run: Run, dwell: Dwell) -> FloatArray:

@@ -185,13 +185,22 @@ class _Pooled:
         for steps in (STEPS, MORE_STEPS):
             shares = self._mixture(shares, weight, steps)
             ratio = self._ratio(shares, weight)
-            weight = np.where(_is_ripple(ratio, self.order, self.count), 0.0, self.count)
+            weight = self._without_ripple(_is_ripple(ratio, self.order, self.count))
         shares = self._mixture(shares, weight, MORE_STEPS)
         slow = self._slow(shares, weight)
         if _disagree(slow, SLOW):
             return None
         prior, level = _agreement(slow, SLOW)
         return SharedNoise(self.times, shares, prior, level)
+
+    def _without_ripple(self, ripple: BoolArray) -> FloatArray:
+        """Counts of the bands, 0 for ripple; a dwell that holds nothing else keeps it.
+
+        So it is with readings that flip once between two steps of their sensor.
+        """
+        weight = np.where(ripple, 0.0, self.count)
+        left = np.bincount(self.dwell, weight * self.power, self.dwells)
+        return np.where((left > 0.0)[self.dwell], weight, self.count)
 
     def _levels(self, expected: FloatArray, weight: FloatArray) -> FloatArray:
         """Level of each dwell, at its bands."""

@@ -18,6 +18,8 @@ MAX_TEMPERATURE_DRIFT, MAX_SPEED_DRIFT, MAX_TORQUE_DRIFT, MAX_DRIFT_TO_NOISE = 2
 #: Largest standard deviation within a dwell as a share of the mean, of torque and of speed. A speed that
 #: swings more has no torque of its own: the law is not straight over what it swings through.
 MAX_TORQUE_SWING, MAX_SPEED_SWING = 0.35, 0.5
+#: Drift of torque, in steps of its sensor, that one reading next to another makes.
+MAX_STEP_DRIFT = 1.5
 #: Stick-slip: torque swings by more than this, and its changes are this skewed (slow rises, sudden drops).
 STICK_SLIP_SWING, STICK_SLIP_SKEWNESS = 0.05, -3.0
 #: Drift counts as real beyond this many standard errors.
@@ -32,8 +34,9 @@ def unsteady(
     tare: float,
     noise: SharedNoise | None = None,
     ripple: bool = False,
+    step: float = 0.0,
 ) -> str | None:
-    """Why rows [start, end) are not a steady dwell, or None."""
+    """Why rows [start, end) are not a steady dwell, or None; ``step`` is that of the torque, N m."""
     time, speed, torque = run.time[start:end], run.speed[start:end], run.torque[start:end] - tare
     if end - start < MIN_SAMPLES or time[-1] - time[0] < min_dwell:
         lasted = float(time[-1] - time[0]) if end > start else 0.0
@@ -65,7 +68,8 @@ def unsteady(
         return f"speed drifts by {drift / float(np.mean(speed)):+.1%} over the dwell"
     if temperature is not None and (drift := drift_over(time, temperature, least=MAX_TEMPERATURE_DRIFT)[0]):
         return f"temperature drifts by {drift:+.1f} K over the dwell"
-    drift, deviation = drift_over(time, torque, noise, least=MAX_TORQUE_DRIFT * abs(float(np.mean(torque))))
+    least = max(MAX_TORQUE_DRIFT * abs(float(np.mean(torque))), MAX_STEP_DRIFT * step)
+    drift, deviation = drift_over(time, torque, noise, least=least)
     if abs(drift) > MAX_DRIFT_TO_NOISE * deviation:
         return f"torque drifts by {drift / float(np.mean(torque)):+.1%} over the dwell"
     return None

@@ -8,6 +8,7 @@ covariances and with what they differ by. Few stretches thus leave much open, by
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -17,6 +18,7 @@ from scipy import linalg
 from hersey.arrays import FloatArray
 from hersey.damping.distributions import square_above
 from hersey.damping.dwells.noise import mean_and_error
+from hersey.damping.dwells.resolution import rounding_error
 from hersey.damping.dwells.segments import Segment
 from hersey.damping.dwells.shared_noise import Powers, SharedNoise
 from hersey.log.torque_log import Run
@@ -49,9 +51,15 @@ def starts_of(runs: tuple[Run, ...]) -> FloatArray:
 
 
 def standing_stretches(
-    runs: tuple[Run, ...], segments: list[list[Segment]], noise: SharedNoise | None = None
+    runs: tuple[Run, ...],
+    segments: list[list[Segment]],
+    noise: SharedNoise | None = None,
+    steps: Sequence[float] | None = None,
 ) -> list[Standing]:
-    """Return the stretches in which the drive stands, without their first and last tenth."""
+    """Return the stretches in which the drive stands, without their first and last tenth.
+
+    ``steps`` are those in which the torque sensor counts in each run, N m.
+    """
     starts = starts_of(runs)
     stretches = []
     for index, (run, run_segments) in enumerate(zip(runs, segments, strict=True)):
@@ -62,6 +70,8 @@ def standing_stretches(
                 mean, error, _ = mean_and_error(run.torque[first:last])
                 if noise is not None:  # noise of a standing drive may be less, hardly slower
                     error = noise.mean_error(Powers.of(run.torque[first:last], run.sampling_interval))
+                if steps is not None:
+                    error = float(np.hypot(error, rounding_error(run.torque[first:last], steps[index])))
                 middle = float(run.time[first] + run.time[last - 1]) / 2.0 - float(run.time[0])
                 stretches.append(Standing(index, float(starts[index]) + middle, mean, error))
     return stretches
@@ -206,7 +216,8 @@ class Zero:
             rise = float(np.ptp(self.at(times)))
             out.append(
                 f"The tare drifts by {rise:.3g} N m over the dwells ({_chance(p)}, {count} standing "
-                "stretches): each dwell has the tare of its time, and the error of it."
+                "stretches). The zero of the sensor drifts, or its reading depends on whether torque rose or "
+                "fell before (hysteresis). Each dwell has the tare of its time, and its error."
             )
         if count == 2:
             out.append(

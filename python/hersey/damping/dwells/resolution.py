@@ -1,0 +1,109 @@
+"""The step in which a sensor counts, and the error that rounding to it leaves in the mean of a dwell.
+
+Noise of half a step or more makes readings flip between steps, and their mean is then nearly free of
+rounding. A quiet reading stays on one step however long it is averaged: its error is uniform over that step.
+In between, the error is a sum of sines of the true value, each damped by the noise (Widrow and Kollar,
+Quantization Noise, 2008).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from hersey.arrays import FloatArray
+from hersey.damping.dwells.groups import SAME_SPEED
+
+#: Share of the differences between values that must be multiples of a step.
+STEP_SHARE = 0.98
+#: How near to a multiple, in steps: random numbers would be that near in a tenth of the cases.
+STEP_TOLERANCE = 0.05
+#: So few levels are all steps.
+FEW_LEVELS = 4
+#: Temperatures closer than this are the same, K.
+SAME_TEMPERATURE = 1.0
+#: Rows of each dwell in which steps are looked for.
+MOST_ROWS = 2_000
+#: Dwells of one constant reading each show a step if their levels are fewer than this share of them.
+SHARED_LEVELS, FEWEST_DWELLS = 0.5, 8
+#: Sines of the rounding error that are summed; the rest is below 1 % of it.
+_SINES = np.arange(1.0, 65.0)
+
+
+@dataclass(frozen=True)
+class Resolution:
+    """Step of a quantity, SI, and the standard error that it leaves in each dwell, shape (points,).
+
+    Dwells at one speed and temperature repeat their rounding error: theirs is widened so that their mean
+    keeps it.
+    """
+
+    quantity: str  #: ``torque``, ``speed`` or ``temperature``
+    step: float  #: the coarsest of all runs
+    errors: FloatArray
+
+
+def quantisation_step(values: FloatArray) -> float | None:
+    """Return the step of which all differences between values are multiples, or None if there is none.
+
+    Values that were rounded to decimals after the converter may stray from its steps by those.
+    """
+    levels = np.unique(values)
+    gaps = np.diff(levels)
+    gaps = gaps[gaps > 1e-9 * float(np.max(np.abs(levels)))]
+    if not gaps.size or levels.size > 0.9 * values.size:
+        return None
+    if levels.size <= FEW_LEVELS:
+        return float(f"{gaps.min():.6g}") if values.size > 20 * levels.size else None
+    decimals = _decimals(levels)
+    for candidate in np.quantile(gaps, [0.0, 0.02, 0.1], method="lower"):
+        step = float(np.mean(gaps[gaps < 1.5 * candidate]))
+        tolerance = max(STEP_TOLERANCE, min(0.35, decimals / step)) if gaps.size > 20 else STEP_TOLERANCE
+        ratio = gaps / step
+        near = np.abs(ratio - np.round(ratio)) <= tolerance
+        if np.mean(near) >= STEP_SHARE and float(np.median(ratio)) < 1e4:
+            return float(f"{step:.4g}")
+    return None
+
+
+def _decimals(levels: FloatArray) -> float:
+    """The least decimal place to which all values are rounded, as a number; 0 if there is none above 1e-9."""
+    for places in range(7):
+        if np.allclose(levels, np.round(levels, places), rtol=0.0, atol=1e-9):
+            return float(10.0**-places)
+    return 0.0
+
+
+def step_of(dwells: Sequence[FloatArray]) -> float:
+    """Return the step in which the readings of several dwells count, 0 if they show none.
+
+    Constant readings alone may be set points: they show a step only if many dwells read the same.
+    """
+    parts = [each[:MOST_ROWS] for each in dwells if each.size]
+    if not parts:
+        return 0.0
+    pooled = np.concatenate(parts)
+    flips = any(np.any(part != part[0]) for part in parts)
+    shared = len(parts) >= FEWEST_DWELLS and np.unique(pooled).size <= SHARED_LEVELS * len(parts)
+    return (quantisation_step(pooled) or 0.0) if flips or shared else 0.0
+
+
+def repeats(speed: FloatArray, temperature: FloatArray | None) -> FloatArray:
+    """Return how many dwells, itself included, have the speed and temperature of each dwell."""
+    log_speed = np.log(np.abs(speed))
+    same = np.abs(log_speed[:, None] - log_speed[None, :]) <= SAME_SPEED
+    same &= speed[:, None] * speed[None, :] > 0.0
+    if temperature is not None:
+        same &= np.abs(temperature[:, None] - temperature[None, :]) <= SAME_TEMPERATURE
+    return np.asarray(np.count_nonzero(same, axis=1), dtype=np.float64)
+
+
+def rounding_error(values: FloatArray, step: float) -> float:
+    """Return the standard error that rounding to a step leaves in the mean of values."""
+    if not step or not values.size:
+        return 0.0
+    blur = max(float(np.var(values)) / step**2 - 1.0 / 12.0, 0.0)  # variance before rounding, in steps
+    damped = np.exp(-4.0 * np.pi**2 * _SINES**2 * blur) / (2.0 * np.pi**2 * _SINES**2)
+    return step * float(np.sqrt(np.sum(damped)))
