@@ -41,6 +41,8 @@ ROOMS = (
     "verdict",
     "identification",
     "stability",
+    "posterior",
+    "decision",
     "life",
     "exchange",
     "document",

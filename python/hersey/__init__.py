@@ -20,6 +20,8 @@ machine         the machine's file: drivetrain, nip, limits, uncertainty, operat
 verdict         what exponents and film say together
 identification  the cycles of a trace, and the drive behind them
 stability       hysteresis, disturbances, the operating map, drive profiles, warm-ups
+posterior       dwells, starts and stick-slip in one likelihood: draws of curve, closure and drive
+decision        what to do: the verdict on a speed, the next measurement, the start-up
 life            runs of many units at many ages, fatigue, populations: what ends a drive, and when
 exchange        the drive as a unit that other tools of simulation run
 document        the analysis document: the contract with the page
@@ -107,6 +109,9 @@ if TYPE_CHECKING:
     from hersey.motion.simulation import Drivetrain, StickSlipCycle, Trajectory, simulate, stick_slip
     from hersey.motion.stepper import Stepper
     from hersey.motion.sweep import sweep
+    from hersey.posterior.evidence import BreakAway, Start, StickSlip
+    from hersey.posterior.result import Posterior
+    from hersey.posterior.sampling import posterior
     from hersey.stability.disturbance import Disturbance, SafeStep, disturbance, safe_step
     from hersey.stability.hysteresis import (
         CyclesWithoutSticking,
@@ -144,6 +149,9 @@ _HOMES = {
     "damping.compare": "LogComparison compare",
     "damping.design": "TestDesign design",
     "inspection": "Inspection inspect",
+    "posterior.evidence": "BreakAway Start StickSlip",
+    "posterior.result": "Posterior",
+    "posterior.sampling": "posterior",
     "lubrication.lubricant": "Lubricant ShearThinning",
     "lubrication.contact": "Contact nip_width",
     "lubrication.film": "Film drag_torque film_thickness",
@@ -185,6 +193,7 @@ __all__ = [
     "Asperities",
     "BLife",
     "BoundaryFriction",
+    "BreakAway",
     "Campaign",
     "Contact",
     "CycleRecord",
@@ -225,6 +234,7 @@ __all__ = [
     "OtherUses",
     "Plan",
     "Population",
+    "Posterior",
     "RainflowCycles",
     "Regime",
     "RestOfDrive",
@@ -233,8 +243,10 @@ __all__ = [
     "SafeStep",
     "Schedule",
     "ShearThinning",
+    "Start",
     "SteadyPoints",
     "Stepper",
+    "StickSlip",
     "StickSlipCycle",
     "TestDesign",
     "TorqueLog",
@@ -275,6 +287,7 @@ __all__ = [
     "operating_map",
     "other_uses",
     "plan_profile",
+    "posterior",
     "rainflow_cycles",
     "read",
     "read_machine",

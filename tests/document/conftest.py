@@ -5,25 +5,25 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 import hersey
 from hersey.damping.rest import RestOfDrive
 from hersey.damping.surface import DampingSurface
-from hersey.document.decision import decision
-from hersey.document.decision.behaviour import Behaviour, PointBehaviour
+from hersey.decision.judge import judge
+from hersey.document.decision import behaviour, decision
+from hersey.document.decision.behaviour import Behaviour, Working
 from hersey.document.parts import CarriedPart, DecisionPart, FilmPart, RegimePart
 from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.machine import Machine, read_machine
-from hersey.stability.hysteresis import hysteresis
-from hersey.stability.operating_map import OperatingMap, operating_map
-from hersey.stability.plan import plan_profile
+from hersey.stability.operating_map import OperatingMap
 from hersey.verdict.regime import regime
 from tests.conftest import ROOT
 
 HOT = 453.15
 ROOMY = Limits(motor_torque=8.0, acceleration=0.5, speed=0.4)
-SLOW, BETWEEN, FAST = 0.02, 0.045, 0.12
+SLOW, BETWEEN, FAST = 0.02, 0.045, 0.36
 
 
 @pytest.fixture(scope="module")
@@ -31,41 +31,44 @@ def seen(points: hersey.SteadyPoints, surface: DampingSurface) -> RegimePart:
     return RegimePart.model_validate(regime(points, surface).to_dict())
 
 
-@pytest.fixture(scope="module")
-def machine() -> Machine:
+def _machine() -> Machine:
     states = [OperatingPoint(name, speed, HOT) for name, speed in POINTS.items()]
     stated = read_machine(ROOT / "tests" / "stand" / "machine.toml")
     return replace(stated, limits=ROOMY, points=tuple(states))
 
 
-POINTS = {"crawl": SLOW, "thick paper": BETWEEN, "near": 0.07, "full speed": FAST}
-
-
 @pytest.fixture(scope="module")
-def map_(surface: DampingSurface, machine: Machine) -> OperatingMap:
-    return operating_map(
-        surface,
-        machine.train,
-        **machine.belt,
-        limits=machine.limits,
-        points=machine.points,
-        uncertainty=machine.uncertainty,
-        temperatures=[HOT - 10.0, HOT],
-        draws=40,
-    )
+def machine() -> Machine:
+    return _machine()
 
 
-@pytest.fixture(scope="module")
-def found(surface: DampingSurface, machine: Machine, map_: OperatingMap) -> Behaviour:
-    """What the machine does, its plan that of the nominal parameters."""
-    drag = surface.drag(**machine.belt, temperature=HOT)
-    plan = plan_profile(
-        machine.train, drag, target_speed=BETWEEN, limits=machine.limits, roll_radius=machine.roll_radius
-    )
-    planned = {"plan": plan, "straight": plan.response}
-    of_points = [PointBehaviour(p, **(planned if p.speed == BETWEEN else {})) for p in machine.points]
-    band = hysteresis(machine.train, drag)
-    return Behaviour(HOT, band, None, map_, tuple(of_points), ())
+POINTS = {"crawl": SLOW, "thick paper": BETWEEN, "near": 0.1, "full speed": FAST}
+
+
+@pytest.fixture(scope="session")
+def found(points: hersey.SteadyPoints, surface: DampingSurface) -> Behaviour:
+    """What the machine of the stand does, of few draws."""
+    known = replace(points, rest=RestOfDrive.stated(constant=1e-9))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(behaviour, "DRAWS", 240)
+        return Working(known, replace(surface, rest=None), _machine()).result()
+
+
+@pytest.fixture(scope="session")
+def map_(found: Behaviour) -> OperatingMap:
+    assert found.map is not None
+    return found.map
+
+
+def with_draws(found: Behaviour, **draws: object) -> Behaviour:
+    """The same with other draws of the edges at the temperature of the decision; a number is that of all."""
+    edges = found.posterior.edges(HOT)
+    size = edges.fold.size
+    changed = replace(edges, **{name: np.broadcast_to(value, size) * 1 for name, value in draws.items()})  # type: ignore[arg-type]
+    drawn = replace(found.posterior)
+    drawn._edges[HOT] = changed
+    points = tuple(replace(p, verdict=judge(drawn, HOT, p.point.speed)) for p in found.points)
+    return replace(found, posterior=drawn, points=points)
 
 
 Decide = Callable[..., DecisionPart]

@@ -1,4 +1,4 @@
-"""What the first screen says: the safe end, the plan's own overshoot, signals that agree with the map."""
+"""What the first screen says: the user's points first, and signals that agree with the posterior."""
 
 from __future__ import annotations
 
@@ -14,9 +14,11 @@ from hypothesis import strategies as st
 import hersey
 from hersey.damping.fit import fit
 from hersey.damping.surface import DampingSurface
+from hersey.decision.judge import judge
+from hersey.decision.start_up import plan_start_up
 from hersey.document.assembly import analyse, load
 from hersey.document.decision import behaviour
-from hersey.document.decision.behaviour import Behaviour, PointBehaviour, StickSpeeds, Working, ranges
+from hersey.document.decision.behaviour import Behaviour, PointBehaviour, Working, ranges
 from hersey.document.decision.reasons import in_words
 from hersey.document.decision.words import figures, within
 from hersey.document.display_units import display_units
@@ -25,39 +27,39 @@ from hersey.errors import HerseyError, ParameterError, UnfinishedError
 from hersey.log.means import read_means
 from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.machine import Machine, read_machine
-from hersey.machine.uncertainty import Uncertainty
-from hersey.stability.hysteresis import hysteresis
-from hersey.stability.operating_map import OperatingMap, operating_map
-from hersey.stability.plan import plan_profile
+from hersey.stability.operating_map import OperatingMap
 from tests.conftest import ROOT
-from tests.document.conftest import BETWEEN, FAST, HOT, POINTS, SLOW, Decide
+from tests.document.conftest import BETWEEN, HOT, POINTS, ROOMY, Decide, with_draws
 
 
-def test_the_instruction_takes_the_safe_end_and_the_plans_overshoot(
-    decide: Decide, found: Behaviour, map_: OperatingMap
-) -> None:
+def test_the_first_sentence_is_about_the_users_points(decide: Decide, found: Behaviour) -> None:
     said = decide(found)
-    safe = figures(1e3 * float(map_.upper_interval[1, -1]), up=True)
-    assert said.instruction == f"At 180 °C run above {safe} mm/s"
-    assert said.interval.startswith("V* is 53 [")
-    assert said.interval.endswith(f", {safe}] mm/s")
-    [plan] = [each.plan for each in found.points if each.plan is not None]
-    assert plan.kind == "overshoot"
-    rise = f"overshoot to {figures(1e3 * plan.peak_speed)} mm/s in {figures(plan.rise)} s first (plan)"
-    assert f"for 45 mm/s {rise}" in said.otherwise
-    slow = figures(1e3 * float(map_.transition_interval[0, -1]), up=False)
-    assert said.otherwise.startswith(f"Between {slow} and {safe} mm/s it may depend")
-    assert said.otherwise.endswith(f"Below {slow} mm/s it sticks.")
+    assert said.instruction == (
+        "20 mm/s sticks from any start. 45 mm/s needs the start-up profile. "
+        "100 mm/s and 360 mm/s run smoothly"
+    )
+    _, low, high = found.posterior.fold_interval(HOT)
+    ends = f"[{figures(1e3 * low, up=False)}, {figures(1e3 * high, up=True)}] mm/s"
+    assert said.interval.startswith("At 180 °C V* is ")
+    assert said.interval.endswith(ends)
+    safe = figures(1e3 * found.posterior.safe_speed(HOT), up=True)
+    assert said.otherwise.startswith(f"The belt slides from any start above {safe} mm/s.")
+    assert said.otherwise.endswith("mm/s it sticks.")
+    assert said.safe_speed == found.posterior.safe_speed(HOT)
+    assert said.fold is not None
+    assert (said.fold.low, said.fold.high) == (low, high)
+    assert said.temperature == HOT
+    assert sum(said.closures.values()) == pytest.approx(1.0)
 
 
-def test_each_point_has_the_signal_of_its_state(decide: Decide, found: Behaviour) -> None:
+def test_each_point_has_the_signal_of_its_verdict(decide: Decide, found: Behaviour) -> None:
     said = decide(found)
-    signals = {point.name: (point.signal, point.words.split(";")[0].split(":")[0]) for point in said.points}
+    signals = {p.name: (p.signal, p.verdict, p.words.split(":")[0]) for p in said.points}
     assert signals == {
-        "crawl": ("act", "sticks from any start"),
-        "thick paper": ("watch", "depends"),
-        "near": ("watch", "smooth by the estimate"),
-        "full speed": ("good", "smooth from any start"),
+        "crawl": ("act", "sticks", "sticks from any start"),
+        "thick paper": ("watch", "depends", "needs the start-up profile (plan)"),
+        "near": ("good", "smooth", "smooth from any start, over 99 %"),
+        "full speed": ("watch", "smooth", "smooth from any start, over 99 %; extrapolated"),
     }
     assert said.signal == "act"
     motion = next(point.motion for point in said.points if point.name == "thick paper")
@@ -65,125 +67,112 @@ def test_each_point_has_the_signal_of_its_state(decide: Decide, found: Behaviour
     assert motion.belt_speed[-1] == pytest.approx(BETWEEN, rel=0.05)
 
 
-@settings(deadline=None, max_examples=40)  # each asks the core for a band
+@settings(deadline=None, max_examples=40)
 @given(st.floats(0.01, 0.39))
-def test_signals_agree_with_the_map(
-    decide: Decide, found: Behaviour, map_: OperatingMap, speed: float
-) -> None:
-    """Good is said only where the map is smooth up to the end of the interval; act wherever it sticks."""
-    point = OperatingPoint("any", speed, HOT)
-    [said] = decide(replace(found, points=(PointBehaviour(point),))).points
-    state = map_.state_at(HOT, speed).state
+def test_signals_agree_with_the_intervals(decide: Decide, found: Behaviour, speed: float) -> None:
+    """Good is said only above the safe speed; act only where nearly all draws stick."""
+    point = PointBehaviour(OperatingPoint("any", speed, HOT), judge(found.posterior, HOT, speed))
+    [said] = decide(replace(found, points=(point,))).points
+    edges = found.posterior.edges(HOT)
     if said.signal == "good":
-        assert state == "smooth"
-        assert speed >= map_.upper_interval[1, -1]
-    assert (said.signal == "act") == (state in ("stick_slip", "swing"))
+        assert np.mean(edges.fold < speed) >= 0.975
+    assert (said.signal == "act") == (np.mean(speed < edges.transition) >= 0.975)
+    assert said.smooth + said.from_above + said.sticks == pytest.approx(1.0)  # type: ignore[operator]
 
 
-def test_a_plan_that_is_impossible_is_something_to_act_on(
-    decide: Decide, found: Behaviour, surface: DampingSurface, machine: Machine
-) -> None:
-    drag = surface.drag(**machine.belt, temperature=HOT)
-    none = plan_profile(machine.train, drag, target_speed=BETWEEN, limits=Limits(speed=0.045))
+def test_list_map_text_and_document_give_one_verdict(decide: Decide, found: Behaviour) -> None:
+    said = decide(found)
+    for point, of in zip(said.points, found.points, strict=True):
+        assert point.verdict == of.verdict.kind
+        sentence = next(s for s in said.instruction.split(". ") if f"{1e3 * point.speed:.0f} mm/s" in s)
+        word = {"smooth": "smooth", "depends": "profile", "sticks": "stick"}[point.verdict]
+        assert word in sentence
+        assert word in point.words
+
+
+def test_a_plan_that_is_impossible_is_something_to_act_on(decide: Decide, found: Behaviour) -> None:
+    slow = replace(found.posterior.model.machine, limits=Limits(speed=0.0455, acceleration=0.5))
+    bound = replace(found.posterior, model=replace(found.posterior.model, machine=slow))
+    none = plan_start_up(bound, HOT, BETWEEN)
     assert not none.found
-    point = OperatingPoint("thick paper", BETWEEN, HOT)
-    said = decide(replace(found, points=(PointBehaviour(point, plan=none),)))
+    point = replace(found.points[1], plan=none)
+    said = decide(replace(found, points=(point,)))
     assert said.signal == said.points[0].signal == "act"
-    assert "no start within the limits" in said.points[0].words
-    assert "no start within the limits works" in said.otherwise
+    assert said.points[0].words == "smooth only if slowed from above: no start-up within the limits works"
+    assert said.instruction == "45 mm/s is smooth only if slowed from above"
     assert said.flags[0].title == "No start for thick paper."
     assert said.flags[0].section == "plan"
 
 
 def test_a_point_that_may_lie_below_the_transition_is_not_blamed_on_a_limit(
-    decide: Decide, found: Behaviour, surface: DampingSurface, machine: Machine
+    decide: Decide, found: Behaviour
 ) -> None:
-    """And of many starts two are named in the sentence."""
-    drag = surface.drag(**machine.belt, temperature=HOT)
-    below = plan_profile(machine.train, drag, target_speed=SLOW, limits=machine.limits, roll_radius=0.015)
-    points = [OperatingPoint(f"point {i}", BETWEEN + 1e-3 * i, HOT) for i in range(4)]
-    said = decide(replace(found, points=tuple(PointBehaviour(point, plan=below) for point in points)))
-    assert "for 45 mm/s" not in said.otherwise
-    assert "45 mm/s may lie below the transition; 46 mm/s may lie below the transition; and 2 more" in (
-        said.otherwise
-    )
-    assert said.points[0].words.startswith("may stick: no plan, for it may lie below the transition")
-    assert said.flags[0].title.startswith("No plan for point")
+    edges = found.posterior.edges(HOT)
+    half = np.where(np.arange(edges.fold.size) % 2 == 0, 0.04, 0.05)
+    moved = with_draws(found, transition=half, fold=np.maximum(edges.fold, half))
+    below = plan_start_up(moved.posterior, HOT, BETWEEN)
+    assert [each.limit for each in below.obstacles] == ["target_speed"]
+    point = replace(moved.points[1], plan=below)
+    said = decide(replace(moved, points=(point,)))
+    assert said.points[0].verdict == "unknown"
+    assert said.points[0].words == "may stick: lies below the speed of least drag with 50 %"
+    assert said.instruction == "45 mm/s may stick"
+    assert said.flags[0].title == "No plan for thick paper."
 
 
-def test_v_star_that_is_not_told_gives_no_speed(decide: Decide, found: Behaviour, map_: OperatingMap) -> None:
-    wide = map_.upper_interval.copy()
-    wide[1] = 1e4 * map_.transition
-    said = decide(replace(found, map=replace(map_, upper_interval=wide)))
-    assert "measure the stick speed" in said.instruction
-    assert said.interval.endswith("its upper end is not told")
-    assert said.otherwise.startswith("Above 31 mm/s it may depend")
-    assert said.points[-1].signal == "watch"
+def test_v_star_without_an_upper_end_gives_no_speed(decide: Decide, found: Behaviour) -> None:
+    far = with_draws(found, fold=1e3)
+    said = decide(replace(far, points=()))
+    assert said.instruction.startswith("At 180 °C do not rely on a start from rest")
+    assert said.interval.endswith("no upper end can be determined")
+    assert said.safe_speed is said.fold is None
 
 
-def test_a_safe_speed_beyond_the_drive_is_not_asked_for(
-    decide: Decide, found: Behaviour, map_: OperatingMap
-) -> None:
-    slow = replace(found, map=replace(map_, speed_limit=0.06))
+def test_beyond_the_drive_nothing_is_good(decide: Decide, found: Behaviour) -> None:
+    machine = replace(found.posterior.model.machine, limits=replace(ROOMY, speed=0.06))
+    drawn = replace(found.posterior, model=replace(found.posterior.model, machine=machine))
+    points = tuple(replace(p, verdict=judge(drawn, HOT, p.point.speed)) for p in found.points)
+    assert found.map is not None
+    slow = replace(found, posterior=drawn, points=points, map=replace(found.map, speed_limit=0.06))
     said = decide(slow)
-    assert said.instruction.startswith("At 180 °C start as the plan says: no speed up to 60 mm/s")
-    assert said.points[-1].words.startswith("faster than the drive")
+    assert said.points[-1].words.startswith("faster than the drive, 60 mm/s")
+    assert "100 mm/s and 360 mm/s are faster than the drive" in said.instruction
     bare = decide(replace(slow, points=()))
     assert bare.signal == "act"
-    safe = figures(1e3 * float(map_.upper_interval[1, -1]), up=True)
-    assert f"give the drive {safe} mm/s: up to its 60 mm/s" in bare.instruction
-    assert "[[points]]" in bare.otherwise
+    assert "more than the 60 mm/s of the drive" in bare.instruction
 
 
-def _with_limit(map_: OperatingMap, share: float, by: str = "motor torque") -> OperatingMap:
-    """The map of a drive that bears a share of the way from the least to the most that a belt may ask."""
-    low, high = map_.holding_interval[:, -1]
-    return replace(map_, torque_limit=float(low + share * (high - low)), limited_by=by)
+def _with_motor(found: Behaviour, share: float) -> Behaviour:
+    """The same with a motor that gives a share of the way from the least to the most that a start takes."""
+    low, high = np.quantile(found.posterior.edges(HOT).holding, [0.02, 0.98])
+    model = found.posterior.model
+    torque = float(low + share * (high - low)) * model.machine.roll_radius
+    machine = replace(model.machine, limits=replace(ROOMY, motor_torque=torque))
+    drawn = replace(found.posterior, model=replace(model, machine=machine))
+    points = tuple(replace(p, verdict=judge(drawn, HOT, p.point.speed)) for p in found.points)
+    assert found.map is not None
+    limited = replace(found.map, torque_limit=torque, limited_by="motor torque")
+    return replace(found, posterior=drawn, points=points, map=limited)
 
 
-@pytest.mark.parametrize(("share", "signal"), [(-0.1, "act"), (0.2, "watch"), (0.9, "watch"), (1.1, "good")])
-def test_a_start_is_as_sure_as_the_drag_of_a_belt_at_rest(
-    decide: Decide, found: Behaviour, map_: OperatingMap, share: float, signal: str
+@pytest.mark.parametrize(
+    ("share", "kind", "signal"),
+    [(-0.1, "not started", "act"), (0.5, "unknown", "watch"), (1.1, "smooth", "good")],
+)
+def test_a_start_is_as_sure_as_the_force_that_it_takes(
+    decide: Decide, found: Behaviour, share: float, kind: str, signal: str
 ) -> None:
-    """By the interval, whatever the estimate says: good above it, act below it, watch within."""
-    fast = tuple(each for each in found.points if each.point.speed == FAST)
-    said = decide(replace(found, points=fast, map=_with_limit(map_, share)))
-    assert said.signal == said.points[0].signal == signal
-    if signal == "watch":
-        assert "make sure that it starts: a belt at rest needs" in said.instruction
-        assert "but may not start: a belt at rest needs" in said.points[0].words
+    near = replace(found, points=found.points[2:3])
+    said = decide(_with_motor(near, share))
+    assert (said.points[0].verdict, said.points[0].signal) == (kind, signal)
+    if kind == "unknown":
+        assert said.points[0].words.startswith("may not start: starting from rest takes ")
         assert said.flags[0].title == "The motor may not start the belt."
 
 
-def test_a_wider_stick_speed_widens_what_a_belt_at_rest_bears(
-    surface: DampingSurface, machine: Machine, map_: OperatingMap
-) -> None:
-    exact = operating_map(surface, machine.train, **machine.belt, temperatures=[HOT - 10, HOT], draws=40)
-    (low, high), (least, most) = exact.holding_interval[:, -1], map_.holding_interval[:, -1]
-    assert least < low <= float(exact.holding[-1]) <= high < most
-    # A = e F(v_s): by the ends of the range of the stick speed, a factor of ten
-    power = -1.0 - surface.transition.mixed_exponent.value  # type: ignore[union-attr]
-    assert most / least == pytest.approx(10.0**power, rel=0.25)
-
-
-def test_a_belt_that_is_not_started_comes_first(decide: Decide, found: Behaviour, map_: OperatingMap) -> None:
-    said = decide(replace(found, map=_with_limit(map_, -0.2, "roll friction")))
+def test_a_motor_that_is_too_weak_is_named(decide: Decide, found: Behaviour) -> None:
+    said = decide(_with_motor(found, -0.1))
     assert said.signal == "act"
-    assert said.instruction.startswith("At 180 °C let the roll grip more than ")
-    assert {point.signal for point in said.points} == {"act"}
-    assert said.points[-1].words.startswith("not started: a belt at rest needs ")
-    assert any(flag.title == "The roll slips at the start." for flag in said.flags)
-
-
-def test_a_drive_that_does_not_bear_sliding_is_not_said_to_slide_on(
-    decide: Decide, found: Behaviour, map_: OperatingMap
-) -> None:
-    said = decide(replace(found, map=replace(map_, torque_limit=1e-3, limited_by="motor torque")))
-    assert said.otherwise.startswith("It does not slide on either: sliding takes ")
-
-
-def test_a_motor_that_is_too_weak_is_named(decide: Decide, found: Behaviour, map_: OperatingMap) -> None:
-    said = decide(replace(found, map=_with_limit(map_, -0.1)))
     assert "give the roll more than" in said.instruction
     assert said.flags[0].title == "The motor does not start the belt."
 
@@ -217,15 +206,6 @@ def test_lines_for_a_file_that_is_there_do_not_repeat_its_tables(
     others = "".join(part.lines for part in said.missing if not part.lines.startswith(("# in", "[rest]")))
     file.write_text(f'{stated}\n[limits]\nmotor_torque = "8 N*m"\n{within_limits}\n{others}')
     assert read_machine(file).limits.grip is not None
-
-
-def test_a_stick_speed_whose_range_is_not_stated_makes_it_watch(
-    decide: Decide, found: Behaviour, map_: OperatingMap
-) -> None:
-    fast = tuple(each for each in found.points if each.point.speed == FAST)
-    assert decide(replace(found, points=fast)).signal == "good"
-    unknown = replace(found, points=fast, map=replace(map_, uncertain=("stiffness",)))
-    assert decide(unknown).signal == "watch"
 
 
 def test_no_falling_branch_says_how_far_down() -> None:
@@ -267,13 +247,18 @@ def test_one_temperature_is_not_named(points: hersey.SteadyPoints, machine: Mach
     alone = replace(machine, points=machine.points[-1:], uncertainty={}, rest=None)
     document = _table(speeds, torques, alone)
     assert document.decision is not None
-    assert document.decision.instruction.startswith("Run above ")
+    assert document.decision.instruction.startswith("360 mm/s ")
+    assert document.decision.interval.startswith("V* is ")
     assert document.map is not None
     assert document.map.temperature is None
 
 
 def test_what_cannot_be_computed_is_said(
-    surface: DampingSurface, machine: Machine, decide: Decide, monkeypatch: pytest.MonkeyPatch
+    points: hersey.SteadyPoints,
+    surface: DampingSurface,
+    machine: Machine,
+    decide: Decide,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """A report does not fail for a map: the reason stands in its place."""
 
@@ -281,33 +266,19 @@ def test_what_cannot_be_computed_is_said(
         raise ParameterError("the bands cannot be computed: set 3")
 
     monkeypatch.setattr(behaviour, "operating_map", refuse)
-    monkeypatch.setattr(behaviour, "plan_of_log", refuse)
+    monkeypatch.setattr(behaviour, "plan_start_up", refuse)
+    monkeypatch.setattr(behaviour, "DRAWS", 80)
     steps: list[str] = []
-    found = Working(surface, machine).result(steps.append)
-    assert steps[0] == "finding the bands"
+    found = Working(points, surface, machine).result(steps.append)
+    assert steps[:2] == ["drawing what dwells and starts leave open", "finding the bands"]
     assert "planning thick paper" in steps
     said = decide(found)
     assert "rpm" in said.instruction
-    assert {point.words for point in said.points} == {"not judged: there is no map"}
+    assert {point.words for point in said.points[:3]} == {"not judged: there is no map"}
     assert any("the bands cannot be computed: set 3" in flag.text.lower() for flag in said.flags)
     assert found.points[1].reason.startswith("the bands cannot")
     assert found.stick_speeds is not None
     assert found.stick_speeds.upper[0] > found.stick_speeds.upper[-1]
-
-
-def test_v_star_against_the_stick_speed_leaves_out_where_nothing_starts(
-    surface: DampingSurface, machine: Machine, map_: OperatingMap
-) -> None:
-    """The least stick speeds ask for more than the grip: no V* there, rather than one at the transition."""
-    grip = float(map_.holding[-1]) / machine.roll_radius
-    limits = Limits(roll_friction=1.0, nip_load=grip * 1.01)
-    found = Working(surface, replace(machine, limits=limits, points=machine.points[-1:])).result()
-    assert found.stick_speeds is not None
-    upper = np.array(found.stick_speeds.upper)
-    assert np.isnan(upper[0])
-    assert np.all(
-        upper[np.isfinite(upper)] > 1.1 * np.array(found.stick_speeds.transition)[np.isfinite(upper)]
-    )
 
 
 def test_the_ranges_are_those_of_the_file(machine: Machine) -> None:
@@ -339,83 +310,43 @@ def _table(speeds: np.ndarray, torques: np.ndarray, machine: Machine | None = No
     return document
 
 
-def test_a_machine_that_does_not_fit_the_log_is_said(log: hersey.TorqueLog, machine: Machine) -> None:
-    """A stick speed above the transition: the log is told in speed of the roll, and the reason beside it."""
-    document = analyse(log, log.steady(tare="standing"), machine=replace(machine, stick_speed=0.5))
-    assert document.map is document.band is document.simulation is None
+def test_a_stick_speed_above_the_transition_leaves_no_falling_branch(
+    log: hersey.TorqueLog, machine: Machine
+) -> None:
+    """The belt would stick wherever drag falls: the report is made all the same."""
+    points = log.steady(tare="standing")
+    document = analyse(log, points, machine=replace(machine, stick_speed=0.5, uncertainty={}))
     assert document.decision is not None
-    assert document.decision.signal == "act"
-    assert document.decision.flags[0].title == "No band."
-    assert (
-        "The stick speed, up to 1238 mm/s there, reaches the transition speed"
-        in document.decision.flags[0].text
-    )
-    assert " mm/s" in document.decision.flags[0].text
-    assert "rpm" in document.decision.instruction
+    assert document.band is not None
 
 
-def test_how_the_belt_stops_is_told_where_it_moves_v_star(decide: Decide, found: Behaviour) -> None:
-    """A belt that stops dead sticks up to greater speeds: smooth by the other closure alone is not good."""
-    curve = [0.001, 0.002, 0.004]
-    stick = StickSpeeds(0.002, (0.001, 0.004), curve, [0.03] * 3, [0.07, 0.06, 0.05], 0.2)
-    fast = tuple(replace(each, stiction=0.2) for each in found.points if each.point.speed == FAST)
-    said = decide(replace(found, points=fast, stick_speeds=stick))
-    [flag] = [flag for flag in said.flags if flag.title.startswith("V*")]
-    assert flag.title == "V* hangs on the stick speed and how the belt stops."
-    assert (
-        "over 1.0 to 4.0 mm/s at 180 °C V* is 50 to 70 mm/s, and 200 mm/s if the belt stops dead (stiction)"
-        in flag.text
-    )
-    partly = decide(replace(found, points=fast, stick_speeds=replace(stick, upper=[math.nan, 0.06, 0.05])))
-    assert "V* is 50 to 60 mm/s, where the belt starts (2 of 3)" in partly.flags[0].text
-    assert said.signal == said.points[0].signal == "watch"
-    assert said.points[0].words == "smooth unless the belt stops dead: V* is 200 mm/s then"
-    plain = tuple(replace(each, stiction=None) for each in fast)
-    assert decide(replace(found, points=plain, stick_speeds=stick)).signal == "watch"
-    # where it stops does not matter up to there, or is not known
-    for stiction in (0.06, None):
-        points = tuple(replace(each, stiction=stiction) for each in fast)
-        calm = decide(replace(found, points=points, stick_speeds=replace(stick, stiction=stiction)))
-        assert calm.signal == calm.points[0].signal == "good"
-        assert not any("stops dead" in flag.text for flag in calm.flags)
+def test_how_the_belt_stops_is_said_where_it_moves_v_star(decide: Decide, found: Behaviour) -> None:
+    size = len(found.posterior.drives)
+    closure = (np.arange(size) % 2).astype(np.intp)
+    drives = replace(found.posterior.drives, closure=closure)
+    apart = with_draws(found, fold=np.where(closure == 0, 0.06, 0.2))
+    open_ = replace(apart, posterior=replace(apart.posterior, drives=drives))
+    open_.posterior._edges.update(apart.posterior._edges)
+    said = decide(replace(open_, points=()))
+    [flag] = [flag for flag in said.flags if "comes to rest" in flag.title]
+    assert flag.title == "The safe speed depends on how the belt comes to rest."
+    assert flag.text.endswith("V* is 60 or 200 mm/s.")
+    # where the evidence decides, or both are nearly the same, nothing is said
+    same = with_draws(open_, fold=np.where(closure == 0, 0.06, 0.065))
+    assert not any("comes to rest" in flag.title for flag in decide(replace(same, points=())).flags)
 
 
 def test_torque_of_the_whole_drive_is_never_good(
     decide: Decide, found: Behaviour, points: hersey.SteadyPoints
 ) -> None:
-    """Who states less is told less: bearings in the torque draw V* down."""
-    fast = replace(found, points=tuple(each for each in found.points if each.point.speed == FAST))
-    assert decide(fast).signal == "good"
-    whole = decide(fast, dwells=points)
+    """Bearings in the torque draw V* down."""
+    near = replace(found, points=found.points[2:3])
+    assert decide(near).points[0].signal == "good"
+    whole = decide(near, dwells=points)
     assert whole.signal == whole.points[0].signal == "watch"
-    assert whole.points[0].words == "smooth from any start, if the torque is of the film alone"
+    assert whole.points[0].words == "smooth from any start, over 99 %, if all torque is the film's"
     assert whole.flags[0].title == "Torque may hold more than the film."
     assert decide(replace(found, points=())).signal == "watch"  # good for what?
-
-
-def test_v_star_of_a_belt_that_stops_dead_is_that_of_stiction(
-    surface: DampingSurface, machine: Machine
-) -> None:
-    found = Working(surface, replace(machine, points=machine.points[-1:], uncertainty={})).result()
-    drag = replace(surface.drag(**machine.belt, temperature=HOT), closure="stiction")
-    exact = hysteresis(machine.train, drag, sensitivity=False).upper
-    assert found.stick_speeds is not None
-    assert found.stick_speeds.stiction == found.points[0].stiction == pytest.approx(exact)
-    assert exact > 1.5 * found.band.upper
-
-
-def test_a_start_that_is_only_unsure_is_not_called_impossible(
-    decide: Decide, found: Behaviour, surface: DampingSurface, machine: Machine, map_: OperatingMap
-) -> None:
-    """A plan for 95 % of the machines fails where some do not break loose: one warning, and no act."""
-    drag = surface.drag(**machine.belt, temperature=HOT)
-    none = plan_profile(machine.train, drag, target_speed=BETWEEN, limits=Limits(speed=0.045))
-    point = PointBehaviour(OperatingPoint("thick paper", BETWEEN, HOT), plan=none)
-    said = decide(replace(found, points=(point,), map=_with_limit(map_, 0.5)))
-    assert "for 45 mm/s no start is sure: the belt may not break loose" in said.otherwise
-    assert said.points[0].signal == said.signal == "watch"
-    assert "The motor may not start the belt." in {flag.title for flag in said.flags}
-    assert not any(flag.title.startswith("No start") for flag in said.flags)
 
 
 @pytest.mark.parametrize(
@@ -474,13 +405,12 @@ def test_a_torque_that_does_not_change_asks_for_slower_and_faster_dwells() -> No
 def test_torque_has_one_unit(
     decide: Decide, found: Behaviour, map_: OperatingMap, points: hersey.SteadyPoints
 ) -> None:
-    weak = _with_limit(map_, -0.1)
+    weak = _with_motor(found, -0.2)
     for unit, factor in (("N·m", 1.0), ("mN·m", 1e3)):
-        said = decide(replace(found, map=weak), unit=unit)
-        needed = figures(factor * float(map_.holding_interval[1, -1]), up=True)
-        gives = figures(factor * float(weak.torque_limit or 0.0))
-        assert f"more than {needed} {unit}: the motor's {gives} {unit} do not start" in said.instruction
-        assert f" {unit} to break loose, the motor gives {gives}" in said.points[-1].words
+        said = decide(weak, unit=unit)
+        gives = figures(factor * float(weak.map.torque_limit or 0.0))  # type: ignore[union-attr]
+        assert f" {unit}: the motor's {gives} {unit} do not start" in said.instruction
+        assert f" {unit}, the motor gives {gives}" in said.points[-1].words
     large = float(np.abs(points.column("torque")).max())
     assert large > 1.0
     assert display_units(points, None)["torque"] == "N·m"
@@ -517,20 +447,3 @@ def test_the_laws_tried_stand_in_their_order(document: Analysis) -> None:
     listed = {each.name for each in document.regime.explanations}
     kept = {law.name for law in tried if law.verdict == "not excluded"}
     assert kept - {"one power of speed"} <= listed
-
-
-def test_a_range_of_the_stick_speed_above_the_transition_leaves_a_plan(
-    surface: DampingSurface, machine: Machine
-) -> None:
-    """It is that of the draws that are belts, and says how many are none; of next to none is none."""
-    reasons = []
-    for limits in ((2e-3, 0.05), (0.032, 0.9)):
-        spread = {"stick_speed": Uncertainty(limits=limits)}
-        given = replace(machine, points=(machine.points[1],), uncertainty=spread)
-        point = Working(surface, given).result().points[0]
-        reasons.append((point.plan is not None, point.reason))
-        if point.plan is not None and point.plan.found:
-            assert any("% of what is stated is no belt" in said for said in point.plan.warnings)
-    assert reasons[0] == (True, "")
-    assert not reasons[1][0]
-    assert "hardly a draw is possible: state less" in reasons[1][1]

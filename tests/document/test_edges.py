@@ -12,98 +12,62 @@ import pytest
 import hersey
 from hersey.damping.estimate import Estimate
 from hersey.damping.surface import DampingSurface
+from hersey.decision.judge import judge
+from hersey.document.decision import behaviour
 from hersey.document.decision.behaviour import Behaviour, PointBehaviour, Working
 from hersey.document.decision.edges import Edge, Edges, edges_of
 from hersey.document.decision.flags import flags
 from hersey.document.decision.instruction import of_log
 from hersey.document.decision.points import points_of_log
-from hersey.document.decision.words import figures
 from hersey.document.parts import CarriedPart, RegimePart
 from hersey.document.parts.fit import LackOfFitPart
 from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.machine import Machine
 from hersey.stability.operating_map import OperatingMap
-from hersey.stability.plan import of_log as plans
-from hersey.stability.plan import plan_of_log
-from tests.document.conftest import BETWEEN, FAST, HOT, Decide
+from tests.document.conftest import HOT, Decide
 
 
-def test_safe_is_the_greater_of_both_upper_ends() -> None:
-    """An interval of the transition may reach beyond that of V*."""
+def test_a_drive_starts_by_the_ends_of_what_a_start_takes() -> None:
     held = Edge(1.0, 0.5, 2.0)
-    edges = Edges(Edge(0.03, 0.02, 0.09), Edge(0.05, 0.04, 0.07), 1.0, held, 3.0)
-    assert edges.safe == 0.09
+    edges = Edges(Edge(0.03, 0.02, 0.09), Edge(0.05, 0.04, 0.07), 0.09, 1.0, held, 3.0)
     assert not edges.bistable
-    assert replace(edges, transition=Edge(0.03, 0.02, 0.04)).safe == 0.07
+    assert replace(edges, transition=Edge(0.03, 0.02, 0.04)).bistable
     assert [replace(edges, limit=limit).starts for limit in (2.0, 1.9, 0.5, 0.4)] == [True, None, None, False]
 
 
-def test_a_belt_that_is_not_started_has_no_estimate_of_v_star(map_: OperatingMap) -> None:
-    """Its interval is that of the draws that start, down to the transition."""
-    held = float(map_.holding_interval[0, -1]), float(map_.holding[-1])
-    weak = replace(map_, torque_limit=0.5 * sum(held), limited_by="motor torque")
-    assert math.isnan(edges_of(weak, HOT).fold.value)
-    assert edges_of(weak, HOT).fold.low >= edges_of(weak, HOT).transition.value
-    for limit in (1.01 * held[1], 0.9 * held[0]):
-        told = edges_of(replace(weak, torque_limit=limit), HOT).fold
-        assert math.isfinite(told.value)
-        assert told.low <= told.value <= told.high
-
-
-def test_the_drive_reaches_what_limits_it_first(map_: OperatingMap) -> None:
-    for speed, stall in ((0.4, 0.2), (0.2, 0.4), (None, 0.3)):
-        limited = replace(map_, speed_limit=speed, stall_above=np.full(2, stall))
-        assert edges_of(limited, HOT).greatest == min(speed or math.inf, stall)
-
-
-def test_an_end_that_is_not_finite_at_one_temperature_does_not_hide_the_other(map_: OperatingMap) -> None:
-    """Between two temperatures of the map an infinite end holds as far as the nearer one."""
-    assert map_.temperature is not None
-    cold, hot = map_.temperature
-    ends = replace(map_, speed_limit=None, stall_above=np.array([0.3, np.inf]))
-    assert edges_of(ends, float(cold)).greatest == 0.3
-    assert edges_of(ends, float(hot)).greatest == math.inf
-    middle = replace(map_, stall_above=np.array([0.2, 0.4]), speed_limit=None)
-    assert edges_of(middle, float(cold + hot) / 2).greatest == pytest.approx(0.3)
+def test_edges_are_quantiles_of_the_draws(found: Behaviour) -> None:
+    edges = found.posterior.edges(HOT)
+    said = edges_of(found.posterior, HOT)
+    for edge, draws in ((said.fold, edges.fold), (said.transition, edges.transition)):
+        assert edge.value == np.quantile(draws, 0.5, method="higher")
+        assert edge.low == np.quantile(draws, 0.025, method="higher")
+        assert edge.high == np.quantile(draws, 0.975, method="higher")
+    assert said.safe == said.fold.high
+    radius = found.posterior.model.machine.roll_radius
+    assert said.holding.value == pytest.approx(radius * np.quantile(edges.holding, 0.5, method="higher"))
+    assert said.greatest == 0.4
 
 
 def test_what_the_drive_cannot_slide_at_stalls(decide: Decide, found: Behaviour, map_: OperatingMap) -> None:
     """So fast that sliding takes more than the start."""
-    fast = 100.0
-    takes = map_.state_at(HOT, fast).torque
-    limit = 0.5 * (takes + float(map_.holding_interval[1, -1]))
-    assert takes > limit > float(map_.holding_interval[1, -1])
-    weak = replace(map_, torque_limit=limit, limited_by="roll friction", speed_limit=None)
-    point = PointBehaviour(OperatingPoint("fast", fast, HOT))
-    [said] = decide(replace(found, points=(point,), map=weak)).points
-    assert said.signal == "act"
-    assert said.words.startswith(f"stalls: sliding takes {figures(takes)} N·m, the roll grips")
+    fast, model = 100.0, found.posterior.model
+    limit = 1.05 * float(np.max(found.posterior.edges(HOT).holding)) * model.machine.roll_radius
+    machine = replace(model.machine, limits=Limits(motor_torque=limit))
+    drawn = replace(found.posterior, model=replace(model, machine=machine))
+    point = PointBehaviour(OperatingPoint("fast", fast, HOT), judge(drawn, HOT, fast))
+    weak = replace(map_, torque_limit=limit, limited_by="motor torque", speed_limit=None)
+    [said] = decide(replace(found, posterior=drawn, points=(point,), map=weak)).points
+    assert (said.signal, said.verdict) == ("act", "stalls")
+    assert said.words.startswith("stalls: sliding takes ")
+    assert "the motor gives" in said.words
 
 
 def test_a_point_far_out_is_not_good(decide: Decide, found: Behaviour) -> None:
-    """No dwell lies that fast: said at the point, and by a warning."""
-    point = OperatingPoint("very fast", 0.38, HOT)
-    said = decide(replace(found, points=(PointBehaviour(point),)))
+    """No dwell lies that fast: said at the point."""
+    point = PointBehaviour(OperatingPoint("very fast", 0.38, HOT), judge(found.posterior, HOT, 0.38))
+    said = decide(replace(found, points=(point,)))
     assert said.points[0].signal == "watch"
     assert said.points[0].words.endswith("; extrapolated")
-
-
-def test_a_point_within_the_interval_of_the_transition_is_told_so(
-    decide: Decide, found: Behaviour, map_: OperatingMap
-) -> None:
-    wide = map_.transition_interval.copy()
-    wide[1] = 1.5 * BETWEEN
-    point = tuple(each for each in found.points if each.point.speed == BETWEEN)
-    said = decide(replace(found, points=point, map=replace(map_, transition_interval=wide)))
-    assert said.points[0].words.startswith("depends: only from above (plan); the transition is 33 [")
-    assert "the transition" not in decide(replace(found, points=point)).points[0].words
-
-
-def test_a_plan_at_another_temperature_names_it(decide: Decide, found: Behaviour) -> None:
-    [planned] = [each for each in found.points if each.plan is not None]
-    cooler = replace(planned, point=replace(planned.point, temperature=HOT - 5.0))
-    assert "for 45 mm/s at 175 °C overshoot" in decide(replace(found, points=(cooler,))).otherwise
-    assert "for 45 mm/s overshoot" in decide(replace(found, points=(planned,))).otherwise
 
 
 def test_warnings_of_the_machine(decide: Decide, found: Behaviour, map_: OperatingMap) -> None:
@@ -182,10 +146,10 @@ def test_warnings_of_the_log(points: hersey.SteadyPoints, surface: DampingSurfac
 
     calm = told(named="soft EHL")
     titles = ("Few dwells hold the falling branch.", "The load differs.", "No regime is told.")
-    assert not {*titles, "Dwells stand off the law."} & calm.keys()
+    assert not {*titles, "Points scatter 6 % about the fit."} & calm.keys()
     noisy = replace(surface, statistics=replace(surface.statistics, scatter=0.06))
     shown = told(fit=noisy, named="soft EHL")
-    assert shown["Dwells stand off the law."].startswith("By 6 %, more than their noise")
+    assert shown["Points scatter 6 % about the fit."].startswith("More than sensor noise explains.")
     unnamed = seen.model_copy(update={"named": None, "why_unnamed": "two explain it"})
     [flag] = [f for f in flags(points, surface, unnamed, None, None, None) if f.section == "regime"]
     assert (flag.title, flag.text) == ("No regime is told.", "Two explain it.")
@@ -217,48 +181,22 @@ def test_torque_far_from_the_file_is_a_warning(
     assert ("Torque and file disagree." in titles) == told
 
 
-def test_a_plan_says_of_which_belt_it_is(
-    surface: DampingSurface, machine: Machine, found: Behaviour, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """No share of draws counts how a belt comes to rest."""
-    [plan] = [each.plan for each in found.points if each.plan is not None]
-    for made, said in ((plan, True), (replace(plan, schedule=None), False)):
-        monkeypatch.setattr(plans, "plan_profile", lambda *_, made=made, **__: made)
-        told = plan_of_log(surface, machine, target_speed=BETWEEN, temperature=HOT)
-        assert any("creeps to rest (retained)" in text for text in told.warnings) == said
-
-
 def test_without_a_map_only_what_was_measured_is_judged(surface: DampingSurface, machine: Machine) -> None:
     """Speed and temperature of a point both within the log."""
     speed = 1.0 * machine.roll_radius
-    states = {(speed, HOT): "slides on", (speed, 600.0): "not judged", (99.0, HOT): "not judged"}
+    states = {(speed, HOT): "keeps sliding", (speed, 600.0): "not judged", (99.0, HOT): "not judged"}
     points = tuple(OperatingPoint("any", *state) for state in states)
     said = points_of_log(surface, replace(machine, points=points), rises=True)
     assert [each.words.split(" once")[0].split(":")[0] for each in said] == list(states.values())
     assert {each.signal for each in said} == {"watch"}
 
 
-def test_a_step_is_taken_between_points_of_one_temperature(surface: DampingSurface, machine: Machine) -> None:
-    states = (("slow", 0.06, HOT), ("fast", FAST, HOT), ("cool", FAST, HOT - 20.0))
-    points = tuple(OperatingPoint(*state) for state in states)
-    working = Working(surface, replace(machine, points=points, uncertainty={}))
-    stepped = [working._borne(point)[1] for point in points]
-    assert [[step.from_speed for step in steps] for steps in stepped] == [[FAST], [0.06], []]
-
-
-def test_no_plan_is_sought_where_the_belt_is_not_started(surface: DampingSurface, machine: Machine) -> None:
-    point = OperatingPoint("thick paper", BETWEEN, HOT)
-    weak = replace(machine, points=(), limits=Limits(motor_torque=0.1), uncertainty={})
-    assert Working(surface, weak)._planned(point) == (None, None)
-
-
-def test_a_belt_that_is_not_started_has_no_v_star_of_stiction(
-    surface: DampingSurface, machine: Machine
+def test_a_step_is_taken_between_points_of_one_temperature(
+    points: hersey.SteadyPoints, surface: DampingSurface, machine: Machine, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    slipping = Limits(roll_friction=0.1, nip_load=10.0)
-    told = [
-        Working(surface, replace(machine, points=(), limits=limits))._stopping(HOT)
-        for limits in (machine.limits, slipping)
-    ]
-    assert told[0] is not None
-    assert told[1] is None
+    monkeypatch.setattr(behaviour, "DRAWS", 80)
+    states = (("slow", 0.06, HOT), ("fast", 0.12, HOT), ("cool", 0.12, HOT - 20.0))
+    asked = tuple(OperatingPoint(*state) for state in states)
+    found = Working(points, surface, replace(machine, points=asked)).result()
+    stepped = [[step.from_speed for step in point.steps] for point in found.points]
+    assert stepped == [[0.12], [0.06], []]

@@ -35,6 +35,9 @@ VERBS = {
     "map": (
         "Map where the belt runs smoothly, sticks and slips, or stalls: temperature across, drive speed up."
     ),
+    "posterior": (
+        "Draw V*, stick speed, stiffness, mass and closure from everything that log and machine file show."
+    ),
     "plan": (
         "Find the quickest profile of drive speed from rest that ends smooth, and say how surely it does."
     ),

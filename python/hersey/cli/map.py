@@ -14,6 +14,7 @@ from hersey.cli.options import (
     Force,
     Reading,
     SomeLogs,
+    Traces,
     reads_logs,
 )
 from hersey.cli.outputs import may_draw, print_json
@@ -29,6 +30,7 @@ def map_(
     reading: Reading,
     logs: SomeLogs = None,
     fit_file: FitFile = None,
+    trace: Traces = None,
     out: Annotated[
         Path | None,
         typer.Option("--out", help="The picture: .html, .png, .svg or .pdf.  [default: map.html]"),
@@ -44,7 +46,7 @@ def map_(
     """
     path = out or (None if as_json else Path("map.html"))
     if path is not None:
-        inputs = reading.inputs(machine_file, logs, fit_file)
+        inputs = reading.inputs(machine_file, logs, fit_file, trace)
         may_draw(path, force, inputs, flag="--out")
 
     from hersey.files.writing import write_atomically
@@ -52,7 +54,8 @@ def map_(
     from hersey.stability.operating_map import operating_map
 
     machine = read_machine(machine_file)
-    surface = reading.surface(logs, fit_file, machine)
+    threads = os.cpu_count() or 1
+    surface, drawn = reading.surface_and_posterior(logs, fit_file, machine, trace)
     with working("finding the bands"):
         map_of_belt = operating_map(
             surface,
@@ -61,7 +64,8 @@ def map_(
             limits=machine.limits,
             points=machine.points,
             uncertainty=machine.uncertainty,
-            threads=os.cpu_count() or 1,
+            threads=threads,
+            edges_of=None if drawn is None else lambda kelvin: drawn.map_edges(kelvin, threads=threads),
         )
     if path is not None:
         from hersey.charts import chart_of

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from hersey.motion.drag import Drag
     from hersey.motion.heat import HeatBalance
     from hersey.motion.simulation import Drivetrain, Trajectory
+    from hersey.posterior.result import Posterior
 
 Logs = Annotated[
     list[Path],
@@ -43,6 +44,14 @@ SomeLogs = Annotated[
 FitFile = Annotated[
     Path | None,
     typer.Option("--fit", metavar="JSON", help="Instead of a log: what hersey fit --json printed."),
+]
+Traces = Annotated[
+    list[Path] | None,
+    typer.Option(
+        "--trace",
+        metavar="FILE",
+        help="Recording of starts from rest or stick-slip of this machine; repeat for more files.",
+    ),
 ]
 MachineFile = Annotated[
     Path | None,
@@ -229,6 +238,18 @@ class Reading:
             **{name: amount for name, amount in stated.items() if amount},
         }
 
+    def trace(self, path: Path, machine: Machine | None = None) -> TorqueLog:
+        """Read a recording of the machine itself: starts from rest, or stick-slip."""
+        from hersey.errors import ParameterError
+        from hersey.log.torque_log import TorqueLog
+
+        if machine is None:
+            raise ParameterError("--trace needs --machine: what a start shows depends on stiffness and mass")
+        read = self.log([path], machine)
+        if not isinstance(read, TorqueLog):
+            raise ParameterError(f"{path} is a table of means: a trace needs time, torque and speed")
+        return read
+
     def points(self, log: TorqueLog | MeansTable, machine: Machine | None = None) -> SteadyPoints:
         """Reduce the log to dwells, or take those that a table of means states; torque is that of the film.
 
@@ -280,6 +301,28 @@ class Reading:
             return SteadyPoints.from_table(log, rotation=self.rotation)
 
         return log.steady(min_dwell=parse("time", self.min_dwell), tare=self.tare, rotation=self.rotation)
+
+    def surface_and_posterior(
+        self,
+        paths: list[Path] | None,
+        fit_file: Path | None,
+        machine: Machine,
+        traces: list[Path] | None = None,
+        *,
+        seed: int = 1,
+        draw: bool = True,
+    ) -> tuple[DampingSurface, Posterior | None]:
+        """Read a finished fit, or fit a log and draw the drives that it allows; no draws without a log."""
+        if fit_file is not None or not paths or not draw:
+            return self.surface(paths, fit_file, machine), None
+        from hersey.damping.fit import fit
+        from hersey.posterior.sampling import posterior
+
+        recorded = [self.trace(path, machine) for path in traces or []]
+        points = self.points(self.log(paths, machine), machine)
+        surface = fit(points, temperature_scale=self.temperature_scale)
+        with working("drawing the drives that the log allows"):
+            return surface, posterior(points, machine, surface=surface, traces=recorded, seed=seed)
 
     def surface(
         self, paths: list[Path] | None, fit_file: Path | None, machine: Machine | None = None

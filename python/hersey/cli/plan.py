@@ -14,6 +14,7 @@ from hersey.cli.options import (
     Force,
     Reading,
     SomeLogs,
+    Traces,
     beyond_the_log,
     heat_of,
     reads_logs,
@@ -21,7 +22,7 @@ from hersey.cli.options import (
     temperature_of,
 )
 from hersey.cli.outputs import give, may_write_table_and_figure
-from hersey.cli.progress import bar
+from hersey.cli.progress import bar, working
 from hersey.errors import ParameterError
 
 
@@ -34,6 +35,7 @@ def plan(
     reading: Reading,
     logs: SomeLogs = None,
     fit_file: FitFile = None,
+    trace: Traces = None,
     target: Annotated[
         str, typer.Option(help="Target speed of the belt, as '60 mm/s', or of the roll, as '40 rpm'.")
     ] = "",
@@ -73,7 +75,7 @@ def plan(
 
     Exit code 1 says that no profile exists; then nothing is written.
     """
-    inputs = reading.inputs(machine_file, logs, fit_file, profile_file)
+    inputs = reading.inputs(machine_file, logs, fit_file, profile_file, trace)
     may_write_table_and_figure(out, figure, force, inputs)
     if sum((bool(at), profile_file is not None, heat)) > 1:
         raise ParameterError("give one of --at, --temperature-profile and --heat")
@@ -85,7 +87,7 @@ def plan(
     from hersey.log import memory_limit
     from hersey.machine.machine import read_machine
     from hersey.machine.temperature_profile import read_temperature_profile
-    from hersey.stability.plan import plan_of_log
+    from hersey.stability.plan import check_temperature, plan_of_log
 
     machine = read_machine(machine_file)
     wanted = target_of(target, machine)
@@ -93,7 +95,17 @@ def plan(
     warmth = heat_of(machine, machine_file, start) if heat else None
     with memory_limit(reading.max_memory):
         profile = None if profile_file is None else read_temperature_profile(profile_file)
-    surface = reading.surface(logs, fit_file, machine)
+    # through changing temperatures the fitted law with two branches is followed
+    steady = not heat and profile is None
+    surface, drawn = reading.surface_and_posterior(logs, fit_file, machine, trace, seed=seed, draw=steady)
+    if drawn is not None:
+        from hersey.decision.start_up import plan_start_up
+
+        check_temperature(surface, kelvin)
+        with working("planning"):
+            planned = plan_start_up(drawn, kelvin, wanted, confidence=confidence)
+        give("plan", planned, called="profile", table=out, figure=figure, as_json=as_json)
+        return
     with bar("planning", unit="profiles") as progress:
         planned = plan_of_log(
             surface,

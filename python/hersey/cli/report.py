@@ -15,6 +15,7 @@ from hersey.cli.options import (
     Logs,
     MachineFile,
     Reading,
+    Traces,
     reads_logs,
 )
 from hersey.cli.outputs import command, may_write, may_write_folder, print_document
@@ -42,6 +43,7 @@ def report(
             help="An earlier log, read alike, to compare this one with; again for each further file of it.",
         ),
     ] = None,
+    trace: Traces = None,
     as_json: AsJson = False,
     force: Force = False,
 ) -> None:
@@ -53,7 +55,7 @@ def report(
     """
     page = out or (None if as_json else Path("report.html"))
     if page is not None:
-        may_write(page, force, inputs=reading.inputs(logs, machine_file, against))
+        may_write(page, force, inputs=reading.inputs(logs, machine_file, [*(against or []), *(trace or [])]))
     if figures is not None:
         may_write_folder(figures, force)
 
@@ -66,6 +68,7 @@ def report(
     machine = None if machine_file is None else read_machine(machine_file)
     log = reading.log(logs, machine)
     other = reading.points_of(against, machine) if against else None
+    traces = [reading.trace(path, machine) for path in trace or []]
     with steps() as step:
         step("finding the dwells")
         points = reading.points(log, machine)
@@ -77,6 +80,7 @@ def report(
             machine=machine,
             machine_file=machine_file,
             against=other,
+            traces=traces,
             made=datetime.now(UTC).isoformat(timespec="seconds"),
             step=step,
         )
@@ -94,6 +98,8 @@ def report(
     if document.decision is not None:
         told = document.decision
         say(f"{told.instruction}{f' ({told.interval})' if told.interval else ''}. {told.otherwise}")
+        if told.measurement is not None:
+            say(f"{told.measurement.text}.")
         for point in told.points:
             say(f"{point.name}: {point.words}")
     if document.compare is not None:

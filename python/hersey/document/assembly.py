@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import warnings
+from collections.abc import Sequence
 from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
@@ -18,7 +19,7 @@ from hersey.damping.fit import fit
 from hersey.damping.surface import DampingSurface
 from hersey.document.carried_part import carried_part
 from hersey.document.decision import decision
-from hersey.document.decision.behaviour import Step, Working, ranges
+from hersey.document.decision.behaviour import Behaviour, Step, Working, ranges, typical
 from hersey.document.decision.parts import behaviour_parts
 from hersey.document.decision.reasons import in_words
 from hersey.document.display_units import display_units
@@ -48,7 +49,7 @@ from hersey.files.reading import hash_of
 from hersey.log import TorqueLog
 from hersey.log.means import MeansTable
 from hersey.machine.machine import Machine
-from hersey.motion.drag import Drag
+from hersey.motion.drag import DragTable
 from hersey.motion.simulation import Drivetrain, simulate, stick_slip
 from hersey.units import celsius, rpm
 from hersey.verdict.cautions import cautions
@@ -69,6 +70,7 @@ def analyse(
     machine: Machine | None = None,
     machine_file: Path | None = None,
     against: SteadyPoints | None = None,
+    traces: Sequence[TorqueLog] = (),
     made: str | None = None,
     step: Step = lambda _what: None,
 ) -> Analysis:
@@ -80,6 +82,8 @@ def analyse(
         Where the machine was read, for its name and hash.
     against
         Steady points of another log, which this one is compared with as `hersey.compare` does (this is B).
+    traces
+        Recordings of the machine that show starts from rest or stick-slip: evidence of V*.
     made
         When, as the document shall say.
     step
@@ -98,7 +102,9 @@ def analyse(
         beside = _compared(log, points, against)
     step("fitting the surface")
     surface = fit(points, temperature_scale=temperature_scale)
-    working = None if machine is None or surface.transition is None else Working(surface, machine)
+    working = None
+    if machine is not None and surface.transition is not None:
+        working = Working(points, surface, machine, traces)
     with nullcontext() if working is None else working:
         return _analysed(log, points, surface, command, machine, machine_file, made, step, working, beside)
 
@@ -144,7 +150,7 @@ def _analysed(
     found, why = None, ""
     try:
         found = None if working is None else working.result(step)
-        document["simulation"] = _simulation(surface, machine)
+        document["simulation"] = None if found is None else _simulation(found)
     except HerseyError as error:  # a stick speed above the transition, say: the log can be told all the same
         why = in_words(error)
     shown = display_units(points, None if found is None else found.map)
@@ -320,23 +326,23 @@ def _fit_part(points: SteadyPoints, s: DampingSurface) -> FitPart:
     return FitPart.model_validate(s.to_dict() | chart_parts)
 
 
-def _simulation(surface: DampingSurface, machine: Machine | None) -> SimulationPart | None:
-    """The belt of this machine below its transition speed; None without a machine or a transition."""
-    if surface.transition is None or machine is None:
-        return None
-    kelvin = surface.temperature_range[1] if surface.temperature_range else None
-    drag = surface.drag(**machine.belt, temperature=kelvin)
+def _simulation(found: Behaviour) -> SimulationPart:
+    """The typical belt of this machine below its transition speed."""
+    kelvin = found.temperature
+    train, drag = typical(found)
     at = "" if kelvin is None else f" at {celsius(kelvin):.0f} °C"
-    slow = SIMULATED_SPEED * surface.transition_speed(kelvin)
-    share = f"{100 * SIMULATED_SPEED:.0f} % of its transition speed"
-    sticks = f"; stick speed {1e3 * drag.stick_speed:.3g} mm/s there"
-    title = f"This machine{at}, driven at {rpm(slow):.3g} rpm, {share}{sticks}"
-    return _simulated(machine.train, drag, slow * machine.roll_radius, title)
+    turn = drag.law_at(None).transition_speed
+    slow = max(SIMULATED_SPEED * turn, 1.05 * drag.stick_speed)
+    roll = slow / found.posterior.model.machine.roll_radius
+    title = (
+        f"This machine{at}, driven at {rpm(roll):.3g} rpm, {100 * slow / turn:.0f} % of its transition speed"
+    )
+    return _simulated(train, drag, slow, title)
 
 
 def _simulated(
     train: Drivetrain,
-    drag: Drag,
+    drag: DragTable,
     speed: float,
     title: str,
 ) -> SimulationPart:
@@ -347,7 +353,7 @@ def _simulated(
     samples = kept(run.belt_speed, 1500)
     if cycle.kind in ("stalled", "grip_slip"):
         title += "; the roll slips on the belt" + (" and does not move it" if cycle.kind == "stalled" else "")
-    beside = {"rest_force": drag.rest_force, "rest_damping": drag.rest_damping}
+    beside, law = {"rest_force": drag.rest_force, "rest_damping": drag.rest_damping}, drag.law_at(None)
     return SimulationPart(
         title=title,
         units="SI: N/m, kg, N, m/s",
@@ -356,10 +362,8 @@ def _simulated(
         parameters={
             "stiffness": train.stiffness,
             "mass": train.mass,
-            "transition_force": drag.transition_force,
-            "transition_speed": drag.transition_speed,
-            "ehl_exponent": drag.ehl_exponent,
-            "mixed_exponent": drag.mixed_exponent,
+            "transition_force": law.transition_force,
+            "transition_speed": law.transition_speed,
             "stick_speed": drag.stick_speed,
             "closure": drag.closure,
             **(beside if any(beside.values()) else {}),
@@ -371,7 +375,7 @@ def _simulated(
         time=run.time[samples].tolist(),
         belt_speed=run.belt_speed[samples].tolist(),
         spring_force=run.spring_force[samples].tolist(),
-        transition_speed=drag.transition_speed,
+        transition_speed=law.transition_speed,
         drive_speed=speed,
     )
 

@@ -376,18 +376,24 @@ impl<'a> Laps<'a> {
             if !(speed.is_finite() && pull.is_finite()) {
                 return Err(Error::WorkSpent { steps: work.allowed() });
             }
-            if slowing && self.is_held_by_the_drive(speed, drive_speed, pull) {
+            if self.dies_out(speed, drive_speed, pull) {
                 return Ok(Lap { sticks: None, duration: time, pull: ends });
             }
         }
         Err(Error::WorkSpent { steps: work.allowed() })
     }
 
-    /// Whether the belt creeps up to steady sliding, too damped to speed up again.
-    fn is_held_by_the_drive(&self, speed: f64, drive_speed: f64, pull: f64) -> bool {
+    /// Whether the belt has too little energy about steady sliding to come down to the speed of least drag ever again:
+    /// above it drag rises, and takes energy from the swing.
+    pub(super) fn dies_out(&self, speed: f64, drive_speed: f64, pull: f64) -> bool {
+        let (k, m) = (self.belt.train.stiffness(), self.belt.train.mass());
+        let (ahead, margin) = (speed - drive_speed, drive_speed - self.transition);
+        if margin <= 0.0 || ahead.abs() >= margin {
+            return false;
+        }
         let steady = self.drag(drive_speed, false);
-        (speed - drive_speed).abs() < 1e-3 * self.accuracy.max(1e-3) * drive_speed
-            && (pull - steady).abs() < 1e-3 * self.accuracy.max(1e-3) * steady
+        let off = pull - steady;
+        steady < self.belt.train.grip() && ahead * ahead + off * off / (k * m) < margin * margin
     }
 }
 

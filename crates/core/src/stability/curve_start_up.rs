@@ -22,8 +22,6 @@ pub struct CurveStarted {
 /// Steps after which a start-up is given up, and laps after the last ramp.
 const MOST_STEPS: usize = 200_000;
 const LAPS: f64 = 60.0;
-/// Relative difference from steady sliding that is none.
-const STEADY: f64 = 1e-3;
 
 /// What the profile `(time, speed)`, straight in between and constant after the last, does to each of `belts`.
 ///
@@ -215,14 +213,8 @@ impl StartUp<'_> {
             starting = starting && after < stick;
             (state.speed, state.pull) = (after, pull.min(grip));
             state.peak = state.peak.max(state.pull);
-            if begin >= ramps
-                && (after - target).abs() < STEADY * target
-                && target > self.laps.transition()
-            {
-                let steady = self.laps.drag(target, false);
-                if (state.pull - steady).abs() < STEADY * steady {
-                    return Ok(Slid::ForGood);
-                }
+            if begin >= ramps && self.laps.dies_out(state.speed, target, state.pull) {
+                return Ok(Slid::ForGood);
             }
         }
         Ok(Slid::Undecided)

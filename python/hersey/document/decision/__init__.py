@@ -9,6 +9,7 @@ behaviour   what the machine does: map, band, plans, worked out in threads
 edges       transition and V* at one temperature, with their intervals
 instruction the sentence, its interval, and what happens otherwise
 points      what is said of each operating point
+advice      the next measurement, in words
 flags       what stands against it, and the section that holds the evidence
 missing     lines to add to a file, ready to copy
 decision    all of it together

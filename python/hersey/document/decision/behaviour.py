@@ -1,36 +1,47 @@
-"""What the machine of a log does: its map, what its operating points bear, and how to get to them."""
+"""What the machine of a log does: its posterior, its map, and its operating points."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
 import numpy as np
 
+from hersey.arrays import FloatArray
+from hersey.damping.dwells import SteadyPoints
 from hersey.damping.surface import DampingSurface
+from hersey.decision.judge import Verdict, judge
+from hersey.decision.measurement import Measurement, next_measurement
+from hersey.decision.start_up import plan_start_up, response, typical_drag
 from hersey.document.decision.reasons import in_words
 from hersey.errors import HerseyError
+from hersey.log import TorqueLog
 from hersey.machine.limits import OperatingPoint
 from hersey.machine.machine import Machine
+from hersey.motion.drag import DragTable
 from hersey.motion.schedule import Schedule
-from hersey.motion.simulation import Trajectory, simulate
+from hersey.motion.simulation import Drivetrain, Trajectory
+from hersey.posterior import Posterior, posterior
+from hersey.posterior.drives import Drives
+from hersey.posterior.priors import CLOSURES, NUMBERS
 from hersey.stability.disturbance import Disturbance, SafeStep, disturbance, safe_step
 from hersey.stability.hysteresis import HysteresisBand, hysteresis
-from hersey.stability.hysteresis_sweep import sweep_bands
 from hersey.stability.operating_map import OperatingMap, operating_map
-from hersey.stability.plan import Plan, plan_of_log
+from hersey.stability.plan import Plan
 
+#: Draws of the posterior of a report.
+DRAWS = 600
 #: Stick speeds of the curve of V*, and how far it reaches where no range is stated.
-_STICK_SPEEDS, _REACH = 17, 3.0
+_STICK_SPEEDS = 17
 #: The curve goes to this share of the transition speed at the most.
 _BELOW = 0.9
-#: Temperatures that are alike, K: points at them can be stepped between.
+#: Temperatures that are the same, K: points at them can be stepped between.
 _ALIKE = 1.0
-#: Samples of a start that is drawn.
-_SAMPLES = 601
+#: Relative step of the sensitivities of V*, and the accuracy that they need.
+_STEP, _FINE = 0.02, 1e-6
 
 _T = TypeVar("_T")
 #: Called with the name of the step that is being worked on.
@@ -39,22 +50,22 @@ Step = Callable[[str], None]
 
 @dataclass(frozen=True)
 class PointBehaviour:
-    """An operating point: what sliding there bears, how to come from other points, how to start."""
+    """An operating point: verdict, what sliding there withstands, steps from others, start-up."""
 
     point: OperatingPoint
+    verdict: Verdict
     disturbance: Disturbance | None = None
     steps: tuple[SafeStep, ...] = ()
     plan: Plan | None = None
     straight: Trajectory | None = None  #: straight up to the point, beside the plan
-    stiction: float | None = None  #: V* (m/s) there of a belt that stops dead, None where it does not start
     reason: str = ""  #: why something of it is missing
 
 
 @dataclass(frozen=True)
 class StickSpeeds:
-    """V* against the stick speed at the temperature of a band: speeds in m/s.
+    """V* against the stick speed at the temperature of a band: speeds in m/s, other numbers typical.
 
-    ``stiction`` is V* of a belt that stops dead, at the stick speed stated; None where it does not start.
+    ``stiction`` is V* of a belt that stops abruptly, at the stick speed stated; None where it does not start.
     """
 
     stated: float
@@ -69,30 +80,39 @@ class StickSpeeds:
 class Behaviour:
     """What a machine does; parts that cannot be computed are None, with the reason.
 
-    ``temperature`` (K; None for an isothermal fit) is that of the decision: the one of the operating points,
-    or of the ends of the log, at which stick-slip reaches to the greatest speed; ``band`` holds there.
+    ``temperature`` (K; None for an isothermal fit) is that of the decision; ``band`` holds there, of the
+    typical draw of the posterior.
     """
 
     temperature: float | None
+    posterior: Posterior
     band: HysteresisBand
     stick_speeds: StickSpeeds | None
     map: OperatingMap | None
     points: tuple[PointBehaviour, ...]
+    measurement: Measurement | None
     reasons: tuple[str, ...]
 
 
 class Working:
     """The behaviour of a machine while it is worked out, beside whatever else the caller does."""
 
-    def __init__(self, surface: DampingSurface, machine: Machine) -> None:
+    def __init__(
+        self,
+        points: SteadyPoints,
+        surface: DampingSurface,
+        machine: Machine,
+        traces: Sequence[TorqueLog] = (),
+    ) -> None:
         """Begin, in threads: the core computes without Python's lock."""
-        self._surface, self._machine = surface, machine
-        self._kelvins = _kelvins(surface, machine)
-        self._pool = ThreadPoolExecutor(max(2, os.cpu_count() or 1))
-        self._plans = [self._begin(self._planned, point) for point in machine.points]
+        self._points, self._surface, self._machine, self._traces = points, surface, machine, traces
+        # each piece waits for the posterior in its own thread
+        self._pool = ThreadPoolExecutor(len(machine.points) + 4)
+        self._posterior = self._begin(self._drawn)
+        self._judged = [self._begin(self._of_point, point) for point in machine.points]
         self._map = self._begin(self._mapped)
-        self._rest = self._begin(self._at_the_band)
-        self._points = [self._begin(self._borne, point) for point in machine.points]
+        self._band = self._begin(self._at_the_band)
+        self._next = self._begin(lambda: next_measurement(self._posterior.result()))
 
     def __enter__(self) -> Working:
         """Return itself."""
@@ -108,116 +128,156 @@ class Working:
         Raises
         ------
         HerseyError
-            If not even a band can be computed.
+            If not even a posterior can be computed.
         """
-        temperature, band, stick = self._rest.result()
+        step("drawing what dwells and starts leave open")
+        found = self._posterior.result()
         step("finding the bands")
+        band, stick = self._band.result()
         map_: OperatingMap | None
         map_, why = _done(self._map)
         points = []
-        for point, borne, planned in zip(self._machine.points, self._points, self._plans, strict=True):
+        for point, future in zip(self._machine.points, self._judged, strict=True):
             step(f"planning {point.name}")
-            of_plan, no_plan = _done(planned)
-            plan, straight = of_plan if of_plan is not None else (None, None)
-            of_point, no_figure = _done(borne)
-            bears, steps, stiction = of_point if of_point is not None else (None, (), None)
-            reason = "; ".join(filter(None, (no_plan, no_figure)))
-            points.append(PointBehaviour(point, bears, steps, plan, straight, stiction, reason))
-        return Behaviour(temperature, band, stick, map_, tuple(points), (f"no map: {why}",) if why else ())
+            points.append(future.result())
+        measurement, _ = _done(self._next)
+        reasons = (f"no map: {why}",) if why else ()
+        return Behaviour(found.temperature, found, band, stick, map_, tuple(points), measurement, reasons)
 
     def _begin(self, work: Callable[..., _T], *given: object) -> Future[_T]:
         return self._pool.submit(work, *given)
 
+    def _drawn(self) -> Posterior:
+        found = posterior(
+            self._points, self._machine, surface=self._surface, traces=self._traces, draws=DRAWS
+        )
+        found.edges(found.temperature, threads=os.cpu_count() or 1)
+        return found
+
     def _mapped(self) -> OperatingMap:
-        machine = self._machine
+        machine, found = self._machine, self._posterior.result()
         return operating_map(
             self._surface,
             machine.train,
             **machine.belt,
             limits=machine.limits,
             points=machine.points,
-            uncertainty=machine.uncertainty,
-            threads=os.cpu_count() or 1,
+            edges_of=lambda kelvin: found.map_edges(kelvin, threads=os.cpu_count() or 1),
         )
 
-    def _band(self, kelvin: float | None, *, sensitivity: bool | None = False) -> HysteresisBand:
-        drag = self._surface.drag(**self._machine.belt, temperature=kelvin)
-        return hysteresis(self._machine.train, drag, sensitivity=sensitivity)
-
-    def _at_the_band(self) -> tuple[float | None, HysteresisBand, StickSpeeds]:
-        bands = [(self._band(kelvin), kelvin) for kelvin in self._kelvins]
-        _, kelvin = max(bands, key=lambda each: (each[0].upper, each[0].transition))
-        return kelvin, self._band(kelvin, sensitivity=None), self._against_stick_speed(kelvin)
-
-    def _against_stick_speed(self, kelvin: float | None) -> StickSpeeds:
-        machine = self._machine
-        drag = self._surface.drag(**machine.belt, temperature=kelvin)
-        moved = drag.stick_speed / machine.stick_speed
-        stated = ranges(machine).get("stick_speed")
-        known = None if stated is None else (stated[0] * moved, stated[1] * moved)
-        ends = known or (drag.stick_speed / _REACH, drag.stick_speed * _REACH)
-        low = min(ends[0], 0.5 * drag.stick_speed)
-        high = min(max(ends[1], 2.0 * drag.stick_speed), _BELOW * drag.transition_speed)
-        grid = np.unique(np.append(np.geomspace(low, max(high, drag.stick_speed), _STICK_SPEEDS), ends))
-        grid = grid[grid < drag.transition_speed]
-        bands = sweep_bands(
-            machine.train, drag, {"stick_speed": grid}, lower=False, threads=os.cpu_count() or 1
-        )
-        edges = [bands.columns[name] for name in ("transition", "upper")]
-        # a belt that is not started has no V*
-        upper = np.where(bands.columns["stalls"], np.nan, np.maximum(*edges))
-        curve = grid.tolist(), edges[0].tolist(), upper.tolist()
-        return StickSpeeds(drag.stick_speed, known, *curve, self._stopping(kelvin))
-
-    def _stopping(self, kelvin: float | None) -> float | None:
-        """V* of a belt that stops dead below the stick speed, where nobody knows how it comes to rest."""
-        drag = self._surface.drag(**self._machine.belt, temperature=kelvin)
-        band = hysteresis(self._machine.train, replace(drag, closure="stiction"), sensitivity=False)
-        return None if band.stalls else max(band.upper, band.transition)
+    def _at_the_band(self) -> tuple[HysteresisBand, StickSpeeds]:
+        found = self._posterior.result()
+        train, drag = typical_drag(found, found.temperature)
+        band = hysteresis(train, drag, sensitivity=False)
+        value, low, high = found.fold_interval(found.temperature)
+        band = replace(band, upper=value, interval=(low, high), sensitivity=_sensitivity(found))
+        return band, _against_stick_speed(found, self._machine)
 
     def _at(self, point: OperatingPoint) -> float | None:
         return None if self._surface.b is None else point.temperature
 
-    def _planned(self, point: OperatingPoint) -> tuple[Plan | None, Trajectory | None]:
-        """The plan of a point at which the past decides, and the motion straight up beside it."""
-        kelvin, machine = self._at(point), self._machine
-        drag = self._surface.drag(**machine.belt, temperature=kelvin)
-        band = hysteresis(machine.train, drag, sensitivity=False)
-        if not (band.transition <= point.speed < band.upper and _starts(machine, drag.holding_force)):
-            return None, None
-        plan = plan_of_log(self._surface, machine, target_speed=point.speed, temperature=kelvin)
+    def _of_point(self, point: OperatingPoint) -> PointBehaviour:
+        found, kelvin = self._posterior.result(), self._at(point)
+        verdict = judge(found, kelvin, point.speed)
+        plan, straight, no_plan = None, None, ""
+        try:
+            if verdict.kind in ("depends", "unknown"):
+                plan, straight = self._planned(found, kelvin, point.speed)
+        except HerseyError as error:
+            no_plan = in_words(error)
+        try:
+            withstands, steps = self._withstood(found, kelvin, point)
+        except HerseyError as error:
+            withstands, steps = None, ()
+            no_plan = "; ".join(filter(None, (no_plan, in_words(error))))
+        return PointBehaviour(point, verdict, withstands, steps, plan, straight, no_plan)
+
+    def _planned(
+        self, found: Posterior, kelvin: float | None, speed: float
+    ) -> tuple[Plan, Trajectory | None]:
+        """The start-up profile to a point, and the motion straight up beside it."""
+        plan = plan_start_up(found, kelvin, speed)
         if plan.response is None:
             return plan, None
-        rise = point.speed / machine.limits.acceleration if machine.limits.acceleration else 0.0
-        straight = simulate(
-            machine.train,
-            drag,
-            drive_speed=Schedule([0.0, rise], [0.0, point.speed]) if rise else point.speed,
-            duration=float(plan.response.time[-1]),
-            samples=_SAMPLES,
-        )
-        return plan, straight
+        acceleration = self._machine.limits.acceleration
+        rise = speed / acceleration if acceleration else 0.0
+        drive: Schedule | float = Schedule([0.0, rise], [0.0, speed]) if rise else speed
+        return plan, response(found, kelvin, drive, float(plan.response.time[-1]))
 
-    def _borne(self, point: OperatingPoint) -> tuple[Disturbance | None, tuple[SafeStep, ...], float | None]:
-        """What sliding at a point bears, how to come there from others, and V* of a belt that stops dead."""
-        kelvin, machine = self._at(point), self._machine
-        drag = self._surface.drag(**machine.belt, temperature=kelvin)
-        turn = drag.transition_speed
+    def _withstood(
+        self, found: Posterior, kelvin: float | None, point: OperatingPoint
+    ) -> tuple[Disturbance | None, tuple[SafeStep, ...]]:
+        """What sliding at a point withstands, and how to come there from others, of the typical draw."""
+        train, drag = typical_drag(found, kelvin)
+        turn = float(np.median(found.edges(kelvin).transition))
         if point.speed < turn:
-            return None, (), None
+            return None, ()
         others = [
             other.speed
-            for other in machine.points
+            for other in self._machine.points
             if other.speed >= turn
             and other.speed != point.speed
             and (kelvin is None or abs(other.temperature - point.temperature) < _ALIKE)
         ]
         steps = [
-            safe_step(machine.train, drag, from_speed=speed, to_speed=point.speed)
+            safe_step(train, drag, from_speed=speed, to_speed=point.speed)
             for speed in dict.fromkeys(others)
+            if speed >= drag.law_at(None).transition_speed
         ]
-        bears = disturbance(machine.train, drag, drive_speed=point.speed)
-        return bears, tuple(steps), self._stopping(kelvin)
+        return disturbance(train, drag, drive_speed=point.speed), tuple(steps)
+
+
+def _typical(found: Posterior, kelvin: float | None, count: int) -> Drives:
+    """The draw whose V* is the median, so many times."""
+    fold = found.edges(kelvin).fold
+    index = int(np.argsort(fold)[fold.size // 2])
+    return found.drives.take(np.full(count, index, dtype=np.intp))
+
+
+def _moved(drives: Drives, latent: FloatArray, closure: int | None = None) -> Drives:
+    kept = drives.closure if closure is None else np.full(len(drives), closure, dtype=np.intp)
+    return Drives(drives.law, kept, latent)
+
+
+def _sensitivity(found: Posterior) -> dict[str, float]:
+    """Relative change of V* per relative change of stiffness, mass and stick speed, of the typical draw."""
+    kelvin, size = found.temperature, 2 * len(NUMBERS)
+    drives = _typical(found, kelvin, size)
+    latent = drives.latent.copy()
+    for i in range(len(NUMBERS)):
+        latent[2 * i, i] += _STEP
+        latent[2 * i + 1, i] -= _STEP
+    moved = _moved(drives, latent)
+    fold = np.log(found.model.folds(moved, kelvin, accuracy=_FINE).upper)
+    numbers = np.log(found.model.numbers(moved))
+    rows = range(len(NUMBERS) - 1)
+    slopes = {i: (fold[2 * i] - fold[2 * i + 1]) / (numbers[2 * i, i] - numbers[2 * i + 1, i]) for i in rows}
+    return {NUMBERS[i]: float(slope) for i, slope in slopes.items() if np.isfinite(slope)}
+
+
+def _against_stick_speed(found: Posterior, machine: Machine) -> StickSpeeds:
+    """V* of the typical draw over the range of the stick speed."""
+    kelvin = found.temperature
+    low, high = found.model.priors.range_of("stick_speed")
+    drives = _typical(found, kelvin, _STICK_SPEEDS + 1)
+    grid = np.geomspace(0.7 * low, 1.4 * high, _STICK_SPEEDS)
+    # those of the grid at the temperature of the band; the last is as stated, for a belt that stops abruptly
+    shift = found.model.stick_speed(drives, kelvin) / found.model.numbers(drives)[:, 0]
+    speeds = np.append(grid, machine.stick_speed) * shift
+    closure = np.append(drives.closure[:-1], list(CLOSURES).index("stiction")).astype(np.intp)
+    folds = found.model.folds(Drives(drives.law, closure, drives.latent), kelvin, stick_speed=speeds)
+    within = speeds[:-1] < _BELOW * folds.transition[:-1]
+    starts = ~folds.stalls.astype(bool)
+    upper = np.where(starts, folds.upper, np.nan)
+    stated = machine.uncertainty.get("stick_speed")
+    return StickSpeeds(
+        float(speeds[-1]),
+        None if stated is None else (low * float(shift[0]), high * float(shift[0])),
+        speeds[:-1][within].tolist(),
+        folds.transition[:-1][within].tolist(),
+        upper[:-1][within].tolist(),
+        float(folds.upper[-1]) if starts[-1] else None,
+    )
 
 
 def ranges(machine: Machine) -> dict[str, tuple[float, float]]:
@@ -231,24 +291,15 @@ def ranges(machine: Machine) -> dict[str, tuple[float, float]]:
     return found
 
 
-def _kelvins(surface: DampingSurface, machine: Machine) -> list[float | None]:
-    """Temperatures (K) that the decision may be of."""
-    if surface.b is None or surface.temperature_range is None:
-        return [None]
-    return list(
-        dict.fromkeys(point.temperature for point in machine.points)
-        or dict.fromkeys(surface.temperature_range)
-    )
-
-
-def _starts(machine: Machine, holding: float) -> bool:
-    force = machine.limits.force(machine.roll_radius)
-    return force is None or holding <= force[1]
-
-
 def _done(work: Future[Any]) -> tuple[Any, str]:
     """What came of a piece of work, or why nothing did."""
     try:
         return work.result(), ""
     except HerseyError as error:
         return None, in_words(error)
+
+
+#: For the document's simulation: the typical drive at a temperature.
+def typical(found: Behaviour) -> tuple[Drivetrain, DragTable]:
+    """Return the typical drive at the temperature of the decision."""
+    return typical_drag(found.posterior, found.temperature)

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import math
+from typing import Any
+
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.surface import DampingSurface
+from hersey.document.decision.advice import advised
 from hersey.document.decision.behaviour import Behaviour
 from hersey.document.decision.edges import edges_of
 from hersey.document.decision.flags import flags
@@ -11,7 +15,7 @@ from hersey.document.decision.instruction import doubt_of, of_log, of_machine
 from hersey.document.decision.missing import missing
 from hersey.document.decision.points import point_decision, points_of_log, worst
 from hersey.document.parts import CarriedPart, ComparisonPart, DecisionPart, FilmPart, RegimePart
-from hersey.document.parts.decision import Signal
+from hersey.document.parts.decision import Signal, SpeedPart
 from hersey.machine.machine import Machine
 
 
@@ -38,7 +42,8 @@ def decision(
     said = of_log(surface, seen) if found is None or map_ is None else of_machine(found, map_, unit)
     if found is not None and map_ is not None:
         of_points = [
-            point_decision(point, map_, unit, film_alone=points.rest is not None) for point in found.points
+            point_decision(point, found.posterior, map_, unit, film_alone=points.rest is not None)
+            for point in found.points
         ]
     elif machine is not None:
         of_points = points_of_log(surface, machine, rises=_rises(surface, seen))
@@ -47,22 +52,33 @@ def decision(
     against = flags(points, surface, seen, film, carried, found, why, compared, unit)
     signals: list[Signal] = [said.signal, *(point.signal for point in of_points)]
     signals += [flag.signal for flag in against if flag.signal == "act" or flag.section == "compare"]
-    if found is not None and map_ is not None:
-        stopping = None if found.stick_speeds is None else found.stick_speeds.stiction
-        beyond = stopping is not None and stopping > edges_of(map_, found.temperature).safe
-        if beyond or "stick_speed" not in map_.uncertain:
-            signals.append("watch")  # the safe end does not count what V* hangs on most
-        if points.rest is None or not found.points:
-            signals.append("watch")  # torque of more than the film draws V* down; or nothing is asked for
+    if found is not None and map_ is not None and (points.rest is None or not found.points):
+        signals.append("watch")  # torque of more than the film draws V* down; or nothing is asked for
     return DecisionPart(
         signal=worst(signals),
         instruction=said.instruction,
         interval=said.interval,
         otherwise=said.otherwise,
+        **_speeds(found),
         points=of_points,
         flags=against,
         missing=missing(points, surface, machine, machine_file),
     )
+
+
+def _speeds(found: Behaviour | None) -> dict[str, Any]:
+    """Safe speed, V*, closures and the next measurement, as fields of the document."""
+    if found is None or found.map is None:
+        return {}
+    edges = edges_of(found.posterior, found.temperature)
+    fold = edges.fold
+    return {
+        "temperature": found.temperature,
+        "safe_speed": edges.safe if math.isfinite(edges.safe) else None,
+        "fold": SpeedPart(value=fold.value, low=fold.low, high=fold.high) if fold.told else None,
+        "closures": found.posterior.closures(),
+        "measurement": advised(found),
+    }
 
 
 def _rises(surface: DampingSurface, seen: RegimePart) -> bool:

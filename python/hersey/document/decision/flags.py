@@ -7,13 +7,13 @@ import numpy as np
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.dwells.doubtful import doubtful_order, doubtful_tare
 from hersey.damping.surface import DampingSurface
-from hersey.document.decision.behaviour import Behaviour, StickSpeeds
-from hersey.document.decision.edges import Edges, edges_of
-from hersey.document.decision.instruction import start_unsure
+from hersey.document.decision.behaviour import Behaviour
+from hersey.document.decision.edges import edges_of
 from hersey.document.decision.words import at, figures, listed, mm, signed, starting
 from hersey.document.parts import CarriedPart, ComparisonPart, FilmPart, RegimePart
 from hersey.document.parts.decision import FlagPart, Signal
 from hersey.log.doubtful import doubtful_units
+from hersey.posterior.result import SAFE
 from hersey.stability.operating_map import OperatingMap
 
 #: How many the first screen has room for.
@@ -22,6 +22,8 @@ MOST = 3
 _FAR = 2.0
 #: Dwells of a falling branch that are few: a transition is told from three on.
 _FEW = 4
+#: Probability of a closure from which it counts as known, and ratio of V* of two from which they differ.
+_DECIDED, _APART = 0.95, 1.25
 #: Scatter between dwells that is spoken of.
 _SCATTER = 0.05
 
@@ -52,8 +54,9 @@ def flags(
             FlagPart(signal="watch", title="No map.", text=_sentence(reason), section="band")
             for reason in found.reasons
         ]
-        out += _plans(found, map_)
-    out += _left_open(points, surface, seen)
+        out += [*_plans(found), *_unused(found)]
+    scatter = surface.statistics.scatter if found is None else found.posterior.model.curves.scatter
+    out += _left_open(points, seen, scatter)
     grave = {"act": 0, "watch": 1, "good": 2}
     asked = [] if compared is None else [_compared(compared)]
     kept = sorted(out, key=lambda flag: grave[flag.signal])[: MOST - len(asked)]
@@ -98,7 +101,7 @@ def _whole(points: SteadyPoints) -> list[FlagPart]:
 
 
 def _of_machine(found: Behaviour, map_: OperatingMap, unit: str) -> list[FlagPart]:
-    edges, kelvin = edges_of(map_, found.temperature), found.temperature
+    edges, kelvin = edges_of(found.posterior, found.temperature), found.temperature
     out = []
     if edges.starts is not True:
         held, motor = edges.holding, map_.limited_by == "motor torque"
@@ -110,8 +113,7 @@ def _of_machine(found: Behaviour, map_: OperatingMap, unit: str) -> list[FlagPar
         signal: Signal = "act" if surely else "watch"
         text = _sentence(f"{at(kelvin)}{needs}.")
         out.append(FlagPart(signal=signal, title=title, text=text, section="band"))
-    if found.stick_speeds is not None:
-        out += _unmeasured(found.stick_speeds, edges, kelvin)
+    out += _closures(found)
     if map_.train.grip is None:
         pulls = [p.plan.peak_force for p in found.points if p.plan is not None and p.plan.found]
         force = f"The first slip pulls {figures(max(pulls))} N; " if pulls else ""
@@ -126,40 +128,46 @@ def _of_machine(found: Behaviour, map_: OperatingMap, unit: str) -> list[FlagPar
     return out
 
 
-def _unmeasured(stick: StickSpeeds, edges: Edges, kelvin: float | None) -> list[FlagPart]:
-    """What V* hangs on and no steady log shows: the stick speed, and how the belt comes to rest."""
-    titles, texts = [], []
-    if edges.bistable:
-        # what of the range lies below the transition
-        ends = stick.known or (stick.stick_speed[0], stick.stick_speed[-1])
-        within = [
-            (speed, upper)
-            for speed, upper in zip(stick.stick_speed, stick.upper, strict=True)
-            if ends[0] * (1 - 1e-9) <= speed <= ends[1] * (1 + 1e-9)
-        ] or list(zip(stick.stick_speed, stick.upper, strict=True))
-        started = [upper for _, upper in within if np.isfinite(upper)]
-        there = f" {at(kelvin, first=False)}".rstrip() if kelvin is not None and stick.known else ""
-        moves = f"V* is {mm(min(started))} to {mm(max(started))} mm/s" if started else "nothing starts"
-        stalled = f", where the belt starts ({len(started)} of {len(within)})"
-        counted = "" if stick.known else "; the interval does not count it"
-        text = f"over {mm(within[0][0])} to {mm(within[-1][0])} mm/s{there} {moves}"
-        texts.append(f"{text}{stalled if 0 < len(started) < len(within) else ''}{counted}")
-        titles.append("the stick speed")
-    if stick.stiction is not None and stick.stiction > edges.safe:
-        what = "and" if titles else "V* is"
-        texts.append(f"{what} {mm(stick.stiction)} mm/s if the belt stops dead (stiction)")
-        titles.append("how the belt stops")
-    if not titles:
+def _closures(found: Behaviour) -> list[FlagPart]:
+    """That V* depends on how the belt comes to rest, where the evidence does not decide that."""
+    drawn, kelvin = found.posterior, found.temperature
+    chances = drawn.closures()
+    if max(chances.values()) >= _DECIDED:
         return []
-    text = f"Nobody measures {'them' if len(titles) > 1 else 'it'}: {', '.join(texts)}."
-    return [FlagPart(signal="watch", title=f"V* hangs on {listed(titles)}.", text=text, section="band")]
+    fold, closure = drawn.edges(kelvin).fold, drawn.drives.closure
+    medians = {
+        name: float(np.median(fold[closure == i])) for i, name in enumerate(chances) if np.any(closure == i)
+    }
+    soft, dead = medians.get("retained"), medians.get("stiction")
+    if soft is None or dead is None or dead < _APART * soft:
+        return []
+    text = (
+        "It may come to rest gradually or stop abruptly; this log does not show which. "
+        f"V* is {mm(soft)} or {mm(dead)} mm/s."
+    )
+    title = "The safe speed depends on how the belt comes to rest."
+    return [FlagPart(signal="watch", title=title, text=text, section="band")]
 
 
-def _plans(found: Behaviour, map_: OperatingMap | None) -> list[FlagPart]:
-    """Points that no start reaches; where the belt may not break loose the flag of the start says it."""
+def _unused(found: Behaviour) -> list[FlagPart]:
+    """Evidence that does not count, and draws that do not agree."""
+    out = [
+        FlagPart(
+            signal="watch", title="A recording was not used.", text=f"{_sentence(text)}.", section="band"
+        )
+        for text in found.posterior.unused[:1]
+    ]
+    if not found.posterior.convergence.converged:
+        text = "Two runs of the sampler differ: take the intervals as rough, or run hersey posterior."
+        out.append(FlagPart(signal="watch", title="V* has not converged.", text=text, section="band"))
+    return out
+
+
+def _plans(found: Behaviour) -> list[FlagPart]:
+    """Operating points that cannot be reached from rest."""
     out = []
     for each in found.points:
-        if each.plan is not None and not each.plan.found and not (map_ and start_unsure(each, map_)):
+        if each.plan is not None and not each.plan.found and each.verdict.starts >= SAFE:
             text = _sentence("; ".join(obstacle.text for obstacle in each.plan.obstacles)) + "."
             below = any(obstacle.limit == "target_speed" for obstacle in each.plan.obstacles)
             title = f"{'No plan' if below else 'No start'} for {each.point.name}."
@@ -201,7 +209,7 @@ def _below(points: SteadyPoints, surface: DampingSurface) -> int:
     return int(np.count_nonzero(speed < np.array(at)))
 
 
-def _left_open(points: SteadyPoints, surface: DampingSurface, seen: RegimePart) -> list[FlagPart]:
+def _left_open(points: SteadyPoints, seen: RegimePart, scatter: float) -> list[FlagPart]:
     out = []
     for text in doubtful_order(points)[:1]:
         title, rest = text.split(": ", 1)
@@ -210,10 +218,10 @@ def _left_open(points: SteadyPoints, surface: DampingSurface, seen: RegimePart) 
         why = seen.why_unnamed or "several explain the dwells"
         text = f"{_sentence(why)}."
         out.append(FlagPart(signal="watch", title="No regime is told.", text=text, section="regime"))
-    scatter = surface.statistics.scatter
     if scatter > _SCATTER:
-        text = f"By {100 * scatter:.0f} %, more than their noise: a cause not recorded, or not this law."
-        out.append(FlagPart(signal="watch", title="Dwells stand off the law.", text=text, section="torque"))
+        text = "More than sensor noise explains. Something unrecorded varied, or the model is wrong."
+        title = f"Points scatter {100 * scatter:.0f} % about the fit."
+        out.append(FlagPart(signal="watch", title=title, text=text, section="torque"))
     return out
 
 

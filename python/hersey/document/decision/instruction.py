@@ -13,6 +13,7 @@ from hersey.document.decision.words import (
     between,
     degrees,
     figures,
+    listed,
     mm,
     roll,
     signed,
@@ -24,12 +25,10 @@ from hersey.document.parts import RegimePart
 from hersey.document.parts.decision import Signal
 from hersey.stability.operating_map import OperatingMap
 
-#: Temperatures that are alike, K.
-_ALIKE = 0.5
 #: Scatter of dwells about one law, from which it cannot be counted on.
 _FAR_OFF = 0.1
-#: Starts that are named in one sentence.
-_NAMED = 2
+#: Signals, the gravest last.
+_ORDER: tuple[Signal, ...] = ("good", "watch", "act")
 #: p-value of one exponent over all speeds, below which it does not hold.
 _SURE = 0.05
 
@@ -45,35 +44,84 @@ class Instruction:
 
 
 def of_machine(found: Behaviour, map_: OperatingMap, unit: str) -> Instruction:
-    """Return what to do with a machine whose band is known; torques in a unit."""
+    """Return what to do with a machine whose drives were drawn; torques in a unit."""
     kelvin = found.temperature
-    edges = edges_of(map_, kelvin)
+    edges = edges_of(found.posterior, kelvin)
     where, fold, turn = at(kelvin), edges.fold, edges.transition
     if edges.starts is False:
         return _not_started(where, kelvin, edges, map_, unit)
-    interval = _interval("V* is", fold) if edges.bistable else _interval("the transition is", turn)
-    starts = _starts(found, kelvin, map_)
+    interval = (
+        _interval(f"{where}V* is", fold) if edges.bistable else _interval(f"{where}drag is least at", turn)
+    )
+    said, signal = _of_points(found)
+    general, of_general = _general(edges, map_, unit)
+    if not said:
+        return Instruction(
+            of_general, f"{where}{general}" if where else _capital(general), interval, _below(edges)
+        )
+    otherwise = f"{_capital(_slides(edges))}{_below(edges)}"
+    return Instruction(signal, said, interval, otherwise)
+
+
+def _of_points(found: Behaviour) -> tuple[str, Signal]:
+    """One sentence for each verdict on the user's points, and the gravest signal of them."""
+    grouped: dict[str, list[str]] = {}
+    signals: list[Signal] = []
+    levels = {point.point.temperature for point in found.points}
+    for each in found.points:
+        words, signal = _verdict_words(each)
+        where = f" at {degrees(each.point.temperature)}" if len(levels) > 1 else ""
+        grouped.setdefault(words, []).append(f"{mm(each.point.speed)} mm/s{where}")
+        signals.append(signal)
+    sentences = []
+    for words, speeds in grouped.items():
+        one, many = words.split("|")
+        sentences.append(f"{listed(speeds)} {one if len(speeds) == 1 else many}")
+    return ". ".join(sentences), max(signals, key=_ORDER.index, default="good")
+
+
+def _verdict_words(found: PointBehaviour) -> tuple[str, Signal]:
+    """What happens at a point, of one speed and of several, and its signal."""
+    kind, plan = found.verdict.kind, found.plan
+    planned = plan is not None and plan.found
+    if kind == "smooth":
+        return "runs smoothly|run smoothly", "good"
+    if kind in ("depends", "unknown") and planned:
+        return "needs the start-up profile|need the start-up profile", "watch"
+    if kind == "depends":
+        return "is smooth only if slowed from above|are smooth only if slowed from above", "act"
+    return {
+        "sticks": ("sticks from any start|stick from any start", "act"),
+        "not started": ("does not start|do not start", "act"),
+        "stalls": ("stalls|stall", "act"),
+        "too fast": ("is faster than the drive|are faster than the drive", "act"),
+    }.get(kind, ("may stick|may stick", "watch"))  # type: ignore[return-value]
+
+
+def _general(edges: Edges, map_: OperatingMap, unit: str) -> tuple[str, Signal]:
+    """What to do without operating points."""
     if not math.isfinite(edges.safe):
-        lead = _lead(where, "measure the stick speed before you count on a start from rest")
-        return Instruction("watch", lead, interval, _otherwise(edges, starts))
-    if edges.safe > edges.greatest:
-        return _out_of_reach(found, where, edges, interval, _otherwise(edges, starts))
+        return "do not rely on a start from rest: no speed is known to be smooth", "watch"
     run = f"run above {_up(edges.safe)} mm/s"
+    if edges.safe > edges.greatest:
+        return f"{run}, more than the {mm(edges.greatest)} mm/s of the drive", "act"
     if edges.starts is None:
-        text = _lead(where, f"{run}, and make sure that it starts: {_starting(edges, map_, unit)}")
-        return Instruction("watch", text, interval, _otherwise(edges, starts))
-    return Instruction("good", _lead(where, run), interval, _otherwise(edges, starts))
+        return f"{run}, and make sure that it starts: {_starting(edges, map_, unit)}", "watch"
+    return run, "good"
 
 
-def _out_of_reach(found: Behaviour, where: str, edges: Edges, interval: str, otherwise: str) -> Instruction:
-    """What to do where no speed that the drive reaches is surely smooth."""
-    most = f"{mm(edges.greatest)} mm/s"
-    if any(each.plan is not None and each.plan.found for each in found.points):
-        what = f"start as the plan says: no speed up to {most}, all that the drive gives, is surely smooth"
-        return Instruction("watch", _lead(where, what), interval, otherwise)
-    what = f"give the drive {_up(edges.safe)} mm/s: up to its {most} no speed is surely smooth"
-    more = "" if found.points else " State your speeds as [[points]] for a plan that starts them."
-    return Instruction("act", _lead(where, what), interval, f"{otherwise}{more}")
+def _slides(edges: Edges) -> str:
+    if not math.isfinite(edges.safe):
+        return "no speed is known to be smooth from any start. "
+    return f"the belt slides from any start above {_up(edges.safe)} mm/s. "
+
+
+def _below(edges: Edges) -> str:
+    return f"Below {figures(1e3 * edges.transition.low, up=False)} mm/s it sticks."
+
+
+def _capital(text: str) -> str:
+    return f"{text[:1].upper()}{text[1:]}"
 
 
 def of_log(surface: DampingSurface, seen: RegimePart) -> Instruction:
@@ -183,53 +231,12 @@ def _starting(edges: Edges, map_: OperatingMap, unit: str) -> str:
     return starting(held.low, held.value, held.high, edges.limit, map_.limited_by, unit)
 
 
-def _otherwise(edges: Edges, starts: str) -> str:
-    turn = figures(1e3 * edges.transition.low, up=False)
-    sticks = f"Below {turn} mm/s it sticks."
-    if not edges.bistable:
-        return f"{sticks} The way there does not matter."
-    upper = f"{turn} and {_up(edges.safe)} mm/s" if math.isfinite(edges.safe) else ""
-    between = f"Between {upper}" if upper else f"Above {turn} mm/s"
-    return f"{between} it may depend on how you get there{starts}. {sticks}"
-
-
-def _starts(found: Behaviour, kelvin: float | None, map_: OperatingMap) -> str:
-    """How the plans start the points that need one."""
-    said = list(dict.fromkeys(text for each in found.points if (text := _start(each, kelvin, map_))))
-    more = f"; and {len(said) - _NAMED} more" if len(said) > _NAMED else ""
-    return f": {'; '.join(said[:_NAMED])}{more}" if said else ""
-
-
-def _start(found: PointBehaviour, kelvin: float | None, map_: OperatingMap) -> str:
-    plan, point = found.plan, found.point
-    if plan is None:
-        return ""
-    apart = kelvin is not None and abs(point.temperature - kelvin) > _ALIKE
-    goal = f"{mm(point.speed)} mm/s" + (f" at {degrees(point.temperature)}" if apart else "")
-    if plan.kind == "overshoot":
-        slowly = f" in {figures(plan.rise)} s" if plan.rise else ""
-        return f"for {goal} overshoot to {mm(plan.peak_speed)} mm/s{slowly} first (plan)"
-    if plan.kind == "direct":
-        return f"for {goal} come straight up in {figures(plan.rise)} s (plan)" if plan.rise else ""
-    if any(each.limit == "target_speed" for each in plan.obstacles):
-        return f"{goal} may lie below the transition"
-    if start_unsure(found, map_):
-        return f"for {goal} no start is sure: the belt may not break loose"
-    return f"for {goal} no start within the limits works"
-
-
-def start_unsure(found: PointBehaviour, map_: OperatingMap) -> bool:
-    """Return whether the drive may or may not start the belt at a point, so that no plan is sure of it."""
-    kelvin = found.point.temperature if map_.drag.varies_with_temperature else None
-    return edges_of(map_, kelvin).starts is None
-
-
 def _interval(what: str, edge: Edge) -> str:
     if edge.told:
         return between(what, edge.value, edge.low, edge.high)
     least = figures(1e3 * edge.low, up=False)
     value = f"{mm(edge.value)} mm/s" if math.isfinite(edge.value) else "not found"
-    return f"{what} {value}, at least {least}; its upper end is not told"
+    return f"{what} {value}, at least {least}; no upper end can be determined"
 
 
 def _lead(where: str, what: str) -> str:

@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from hersey.document.decision.behaviour import Behaviour
-from hersey.document.decision.edges import edges_of
-from hersey.document.parts import BandPart, MapPart, StickSpeedPart
+from hersey.document.parts import BandPart, MapPart, PosteriorPart, StickSpeedPart
 from hersey.result import json_record
 
 
@@ -16,12 +15,10 @@ def behaviour_parts(found: Behaviour | None) -> dict[str, Any]:
         return {}
     map_, stick = found.map, found.stick_speeds
     band = found.band.to_dict()
-    if map_ is not None:
-        fold = edges_of(map_, found.temperature).fold
-        band["interval"] = (fold.low, fold.high if fold.told else None)
     return {
         "map": None if map_ is None else MapPart.model_validate(map_.to_dict()),
         "band": BandPart.model_validate(band),
+        "posterior": PosteriorPart.model_validate(found.posterior.to_dict()),
         "stick_speed_sweep": None
         if stick is None
         else StickSpeedPart(**json_record({"temperature": found.temperature, **vars(stick)})),

@@ -7,16 +7,17 @@ import math
 import numpy as np
 
 from hersey.damping.surface import DampingSurface
+from hersey.decision.judge import Verdict
 from hersey.document.decision.behaviour import PointBehaviour
 from hersey.document.decision.edges import Edges, edges_of
-from hersey.document.decision.words import between, mm, starting, torque
+from hersey.document.decision.words import between, mm, per_cent, starting, torque
 from hersey.document.parts.decision import PointDecisionPart, Signal, StartPart
 from hersey.document.parts.stability import DisturbancePart, PlanPart, StepPart
 from hersey.document.thinning import kept
 from hersey.machine.machine import Machine
+from hersey.posterior import Posterior
 from hersey.result import json_record
 from hersey.stability.operating_map import OperatingMap
-from hersey.stability.operating_map.state import MapState
 
 #: Samples of a start that the page draws.
 _SAMPLES = 600
@@ -30,28 +31,31 @@ def worst(signals: list[Signal]) -> Signal:
 
 
 def point_decision(
-    found: PointBehaviour, map_: OperatingMap, unit: str, *, film_alone: bool
+    found: PointBehaviour, drawn: Posterior, map_: OperatingMap, unit: str, *, film_alone: bool
 ) -> PointDecisionPart:
     """Return what is said of an operating point; torques in a unit.
 
-    Where torque holds more than that of the film (not ``film_alone``) V* is too low: nothing is good.
+    Where no-load torque was not subtracted (not ``film_alone``) V* may be too low: nothing is good.
     """
-    point = found.point
+    point, verdict = found.point, found.verdict
     kelvin = point.temperature if map_.drag.varies_with_temperature else None
-    state, edges = map_.state_at(kelvin, point.speed), edges_of(map_, kelvin)
-    signal, words = _judged(found, state, edges, map_, unit)
+    signal, words = _judged(found, verdict, edges_of(drawn, kelvin), map_, unit)
     if signal == "good" and not film_alone:
-        signal, words = "watch", f"{words}, if the torque is of the film alone"
-    if state.extrapolated:
+        signal, words = "watch", f"{words}, if all torque is the film's"
+    if map_.state_at(kelvin, point.speed).extrapolated:
         signal, words = worst([signal, "watch"]), f"{words}; extrapolated"
-    bears, plan = found.disturbance, found.plan
+    withstands, plan, chances = found.disturbance, found.plan, verdict.probability
     return PointDecisionPart(
         name=point.name,
         speed=point.speed,
         temperature=point.temperature,
         signal=signal,
         words=words,
-        disturbance=None if bears is None else DisturbancePart(**json_record(vars(bears))),
+        verdict=verdict.kind,
+        smooth=chances.smooth,
+        from_above=chances.from_above,
+        sticks=chances.sticks,
+        disturbance=None if withstands is None else DisturbancePart(**json_record(vars(withstands))),
         steps=[StepPart(**json_record(vars(step))) for step in found.steps],
         plan=None if plan is None else PlanPart(**plan.to_dict()),
         motion=_motion(found),
@@ -70,7 +74,7 @@ def points_of_log(surface: DampingSurface, machine: Machine, *, rises: bool) -> 
         if not measured:
             words = "not judged: no dwell lies that far out"
         elif rises:
-            words = "slides on once it slides; from rest it may stick"
+            words = "keeps sliding once it slides; from rest it may stick"
         else:
             words = "not judged: there is no map"
         out.append(
@@ -86,46 +90,46 @@ def points_of_log(surface: DampingSurface, machine: Machine, *, rises: bool) -> 
 
 
 def _judged(
-    found: PointBehaviour, state: MapState, edges: Edges, map_: OperatingMap, unit: str
+    found: PointBehaviour, verdict: Verdict, edges: Edges, map_: OperatingMap, unit: str
 ) -> tuple[Signal, str]:
-    speed, fold, turn = found.point.speed, edges.fold, edges.transition
-    transition = between("the transition is", turn.value, turn.low, turn.high)
-    upper = between("V* is", fold.value, fold.low, fold.high)
+    chances, kind = verdict.probability, verdict.kind
     held = edges.holding
     needs = starting(held.low, held.value, held.high, edges.limit, map_.limited_by, unit)
-    if map_.speed_limit is not None and speed > map_.speed_limit:
-        return "act", f"faster than the drive, {mm(map_.speed_limit)} mm/s"
-    if edges.starts is False:
-        return "act", f"not started: {needs}"
-    if state.torque > edges.limit:
-        return "act", f"stalls: {_beyond(map_, state.torque, unit)}"
-    if speed < state.transition:
-        return "act", f"sticks from any start: {transition}"
-    if edges.starts is None:
-        if speed >= edges.safe:
-            return "watch", f"smooth once it slides, but may not start: {needs}"
-        return "watch", f"may not start: {needs}; {upper}"
-    if state.state == "smooth":
-        if speed >= edges.safe and found.stiction is not None and speed < found.stiction:
-            return (
-                "watch",
-                f"smooth unless the belt stops dead: V* is {mm(found.stiction)} mm/s then",
-            )
-        if speed >= edges.safe:
-            return "good", "smooth from any start"
-        return "watch", f"smooth by the estimate; {upper}"
-    doubt = f"; {transition}" if speed < turn.high else ""
-    if found.plan is None:
-        return "watch", f"depends: only from above{doubt}"
-    if not found.plan.found and any(each.limit == "target_speed" for each in found.plan.obstacles):
-        return "act", f"may stick: no plan, for it may lie below the transition; {transition}"
-    if not found.plan.found:
-        return "act", f"depends: only from above, and no start within the limits gets there{doubt}"
-    way = "only from above" if found.plan.kind == "overshoot" else "only if it starts gently"
-    return "watch", f"depends: {way} (plan){doubt}"
+    if kind == "too fast":
+        return "act", f"faster than the drive, {mm(map_.speed_limit or math.nan)} mm/s"
+    if kind == "not started":
+        return "act", f"does not start: {needs}"
+    if kind == "stalls":
+        return "act", f"stalls: {_beyond(map_, found, unit)}"
+    if kind == "sticks":
+        turn = edges.transition
+        return "act", f"sticks from any start: {between('drag is least at', turn.value, turn.low, turn.high)}"
+    if kind == "smooth":
+        return "good", f"smooth from any start, {per_cent(chances.smooth)}"
+    if verdict.starts < 1.0 and edges.starts is None:
+        return "watch", f"may not start: {needs}"
+    return _with_plan(found, verdict)
 
 
-def _beyond(map_: OperatingMap, takes: float, unit: str) -> str:
+def _with_plan(found: PointBehaviour, verdict: Verdict) -> tuple[Signal, str]:
+    """What is said where the way to the point decides, or where that is not sure."""
+    chances, plan = verdict.probability, found.plan
+    sure = verdict.kind == "depends"
+    chance = f"smooth from any start with {per_cent(chances.smooth)}" if chances.smooth >= 0.005 else ""
+    if plan is not None and plan.found:
+        words = "needs the start-up profile (plan)"
+        return "watch", f"{words}; {chance}" if chance else words
+    if plan is not None and any(each.limit == "target_speed" for each in plan.obstacles):
+        return "act", f"may stick: lies below the speed of least drag with {per_cent(chances.sticks)}"
+    if plan is not None:
+        why = "smooth only if slowed from above" if sure else "may stick"
+        return "act", f"{why}: no start-up within the limits works"
+    return "watch", f"smooth only if slowed from above{f'; {chance}' if chance else ''}"
+
+
+def _beyond(map_: OperatingMap, found: PointBehaviour, unit: str) -> str:
+    kelvin = found.point.temperature if map_.drag.varies_with_temperature else None
+    takes = map_.state_at(kelvin, found.point.speed).torque
     gives = "the motor gives" if map_.limited_by == "motor torque" else "the roll grips"
     return f"sliding takes {torque(takes, unit)}, {gives} {torque(map_.torque_limit or math.nan, unit)}"
 

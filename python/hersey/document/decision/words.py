@@ -75,8 +75,15 @@ def starting(low: float, value: float, high: float, limit: float, by: str, unit:
     """Return what starts a belt beside what the drive gives (N m, in a unit); ``by`` is what limits it."""
     ends = within(low, high, PER[unit]) if low < high else ""
     gives = "the motor gives" if by == "motor torque" else "the roll grips"
-    said = " ".join(filter(None, ("a belt at rest needs", figures(value * PER[unit]), ends, unit)))
-    return f"{said} to break loose, {gives} {figures(limit * PER[unit])}"
+    said = " ".join(filter(None, ("starting from rest takes", figures(value * PER[unit]), ends, unit)))
+    return f"{said}, {gives} {figures(limit * PER[unit])}"
+
+
+def per_cent(share: float) -> str:
+    """Return a probability as a reader wants it: never 0 or 100 %."""
+    if share > 0.994:
+        return "over 99 %"
+    return "under 1 %" if share < 0.006 else f"{100.0 * share:.0f} %"
 
 
 def listed(parts: list[str]) -> str:

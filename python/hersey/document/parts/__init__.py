@@ -79,6 +79,7 @@ from hersey.document.parts.models import ComparisonPart, DesignPart, ModelsPart
 from hersey.document.parts.motion import SimulationPart, StickSlipPart, SweepPart, TrajectoryPart
 from hersey.document.parts.other_uses import OtherUsesPart
 from hersey.document.parts.part import SCHEMA_VERSION, Interval, OpenInterval, Part
+from hersey.document.parts.posterior import PosteriorPart
 from hersey.document.parts.rest import RestPart
 from hersey.document.parts.stability import (
     BandPart,
@@ -106,6 +107,7 @@ PRINTED: dict[str, type[Part]] = {
     "sweep": SweepPart,
     "hysteresis": BandPart,
     "map": MapPart,
+    "posterior": PosteriorPart,
     "plan": PlanPart,
     "warmup": WarmUpPart,
     "export": UnitPart,
@@ -164,6 +166,7 @@ __all__ = [
     "PointDecisionPart",
     "PointsPart",
     "PopulationPart",
+    "PosteriorPart",
     "Quality",
     "RegimePart",
     "RejectedStretch",

@@ -23,6 +23,7 @@ from hersey.document.parts.log import InputFile, MachineFilePart, Point, Quality
 from hersey.document.parts.models import ComparisonPart, DesignPart, ModelsPart
 from hersey.document.parts.motion import SimulationPart, StickSlipPart, SweepPart
 from hersey.document.parts.part import SCHEMA_VERSION, Part
+from hersey.document.parts.posterior import PosteriorPart
 from hersey.document.parts.stability import BandPart, MapPart, PlanPart, StickSpeedPart, WarmUpPart
 
 
@@ -69,6 +70,9 @@ class Analysis(Part):
         default={}, description="95 % ranges of stiffness, mass and stick_speed by the machine's file, SI"
     )
     stick_speed_sweep: StickSpeedPart | None = None
+    posterior: PosteriorPart | None = Field(
+        default=None, description="what dwells, starts and stick-slip say together"
+    )
     plan: PlanPart | None = None
     warm_up: WarmUpPart | None = None
     unit: UnitPart | None = None

@@ -29,7 +29,15 @@ class PointDecisionPart(Part):
     speed: float
     temperature: float
     signal: Signal
-    words: str = Field(description="such as 'smooth from any start'")
+    words: str = Field(description="such as 'smooth from any start, 99 %'")
+    verdict: Literal["smooth", "depends", "sticks", "not started", "stalls", "too fast", "unknown"] = Field(
+        default="unknown", description="'smooth' is from any start; 'depends' on how the speed is reached"
+    )
+    smooth: float | None = Field(default=None, description="probability: smooth from any start")
+    from_above: float | None = Field(
+        default=None, description="probability: smooth only if it slides already, or starts by the profile"
+    )
+    sticks: float | None = Field(default=None, description="probability: sticks from any start")
     disturbance: DisturbancePart | None = Field(default=None, description="what sliding there bears")
     steps: list[StepPart] = Field(default=[], description="from the other points to this one")
     plan: PlanPart | None = Field(default=None, description="where the belt does not slide from every start")
@@ -54,6 +62,24 @@ class MissingPart(Part):
     lines: str = Field(description="TOML, to be copied; values of the user's are named in comments")
 
 
+class SpeedPart(Part):
+    """A speed (m/s) with its 95 % interval."""
+
+    value: float
+    low: float
+    high: float
+
+
+class MeasurementPart(Part):
+    """The measurement that would narrow V* most."""
+
+    kind: Literal["starts", "break-away", "stick-slip", "dwell"]
+    text: str = Field(description="what to do, in one sentence, and what it would bring")
+    temperature: float | None = Field(description="K")
+    speeds: Numbers = Field(description="m/s, of starts, of a dwell or of a stretch of stick-slip")
+    left: float = Field(description="expected width of the interval of V* over that of today, in logarithms")
+
+
 class DecisionPart(Part):
     """The first screen of the report."""
 
@@ -63,6 +89,13 @@ class DecisionPart(Part):
         description="the estimate and its 95 % interval behind the instruction; may be empty"
     )
     otherwise: str = Field(description="what happens otherwise")
+    temperature: float | None = Field(default=None, description="K, at which safe speed and V* hold")
+    safe_speed: float | None = Field(
+        default=None, description="m/s, above which the belt is smooth from any start with 97.5 % probability"
+    )
+    fold: SpeedPart | None = Field(default=None, description="V*")
+    closures: dict[str, float] = Field(default={}, description="probability of each closure")
+    measurement: MeasurementPart | None = None
     points: list[PointDecisionPart]
     flags: list[FlagPart] = Field(description="three at the most, the gravest first")
     missing: list[MissingPart]

@@ -105,6 +105,7 @@ class MapPart(Part):
     train: TrainPart
     drag: DragPart
     stick_speed_rule: Literal["with transition", "fixed"]
+    given: bool = Field(default=False, description="whether the edges are those of a posterior of drives")
 
 
 class StickSpeedPart(Part):

@@ -45,12 +45,13 @@ function decision() {
   sign.append(largeSign(kind));
   add(sign, "span", SIGNALS[kind]);
   const words = add(box, "div");
-  const lead = add(words, "p", pretty(told?.instruction ?? data.verdict[0] ?? ""), "lead");
+  const lead = add(words, "p", pretty((told?.instruction ?? data.verdict[0] ?? "").replace(/\.?$/, ".")), "lead");
   if (told?.interval) {
     lead.append(" ");
     add(lead, "span", pretty(told.interval), "interval");
   }
   if (told?.otherwise) add(words, "p", pretty(told.otherwise), "more");
+  if (told?.measurement) add(words, "p", pretty(`${told.measurement.text}.`), "more next");
   if (lead.textContent.length + 0.6 * (told?.otherwise.length ?? 0) > 210) row.classList.add("tight");
   if (told?.points.length) points(row, told.points);
   else row.style.gridTemplateColumns = "minmax(0, 1fr)";

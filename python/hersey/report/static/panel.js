@@ -22,7 +22,8 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
   const hint = add(heading, "span", "", "hint");
   const { map } = analysis, motor = map.limited_by === "motor torque", hot = map.temperature !== null;
   const limit = map.torque_limit === null ? Infinity : map.torque_limit / map.roll_radius;
-  const known = settings(analysis), questions = answers(core), { slides, told, speedText } = verdicts({ map, limit, motor, questions });
+  const known = settings(analysis), questions = answers(core);
+  const { slides, told, reported, speedText } = verdicts({ map, points: analysis.decision?.points ?? [], limit, motor, questions });
   const SLOW = ["stribeck", "lugre"], QUICK_BAND = 5, FRAME = 20_000;
   const CLOSURES = {
     retained: "retained: keeps its creep", stiction: "stiction: stops dead", stribeck: "Stribeck, smooth", lugre: "LuGre, bristles",
@@ -246,7 +247,10 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
     return setting.speed < slow || setting.speed > fast || (hot && (setting.temperature < cold || setting.temperature > warm));
   }
   function showAnswer() {
-    const { zone, signal: kind, words, sub } = told({ setting, answer, found, kicked });
+    const now = told({ setting, answer, found, kicked });
+    // the machine of the report has the verdict of the report; what is drawn is its fitted law with two branches
+    const ofReport = map.given && !setting.profile && machineKey(setting) === machineKey(base) && now.zone.starts;
+    const { zone, signal: kind, words, sub } = ofReport ? { ...now, ...reported(setting) } : now;
     const [least, most] = (spread ?? []).map((v) => digits(1e3 * v));
     controls.spread.textContent = spread ? `With this spread V* is ${digits(1e3 * found.upper)} [${least}, ${most}] mm/s.` : "\u00a0";
     const far = extrapolated() ? " (extrapolated)" : "";

@@ -1,6 +1,29 @@
 // What is said of a setting: its zone, a signal, a word and the line below it.
 
-function verdicts({ map, limit, motor, questions }) {
+function verdicts({ map, points, limit, motor, questions }) {
+  // What the report itself says of a setting of its own machine: the verdict on a point of the user's, or that of the
+  // intervals of the map, which count all draws of the drive.
+  const WORDS = {
+    smooth: ["good", "smooth from any start"], bistable: ["watch", "depends on how the speed is reached"],
+    stick_slip: ["act", "sticks from any start"], open: ["watch", "not sure: within the intervals of V* or of the speed of least drag"],
+  };
+  const between = (row, temperature) => {
+    if (!map.temperature) return row[0];
+    const right = Math.min(Math.max(map.temperature.findIndex((t) => t >= temperature), 1), map.temperature.length - 1);
+    const [a, b] = [map.temperature[right - 1], map.temperature[right]], share = Math.min(Math.max((temperature - a) / (b - a), 0), 1);
+    return row[right - 1] * (row[right] / row[right - 1]) ** share;
+  };
+  function reported({ speed, temperature }) {
+    if (map.speed_limit !== null && speed > map.speed_limit * (1 + 1e-9)) {
+      return { signal: "act", words: `faster than the drive, ${digits(1e3 * map.speed_limit)} mm/s` };
+    }
+    const own = points.find((p) => Math.abs(p.speed / speed - 1) < 1e-6 && (!map.temperature || Math.abs(p.temperature - temperature) < 1e-6));
+    if (own) return { signal: own.signal, words: own.words.replace(/ \(plan\)/, "") };
+    const [turn, fold] = [map.transition_interval, map.upper_interval].map((ends) => ends.map((row) => between(row, temperature)));
+    const kind = speed >= Math.max(fold[1], turn[1]) ? "smooth" : speed < turn[0] ? "stick_slip" : speed >= turn[1] && speed < fold[0] ? "bistable" : "open";
+    const [signal, words] = WORDS[kind];
+    return { signal, words };
+  }
   const speedText = (v) => `${digits(1e3 * v)} mm/s`;
   // Whether a motion slides in the end: what swings by less than a thousandth of its speed does, too.
   const slides = (motion, { speed }) => motion?.kind === "steady_sliding"
@@ -67,5 +90,5 @@ function verdicts({ map, limit, motor, questions }) {
     }
     return { signal: "act", words: "still sticks and slips at the end of this profile", sub };
   }
-  return { slides, told, speedText };
+  return { slides, told, reported, speedText };
 }

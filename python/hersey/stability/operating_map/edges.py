@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,6 +14,22 @@ from hersey.motion.drag import Drag
 from hersey.motion.simulation import Drivetrain
 from hersey.stability.hysteresis import hysteresis
 from hersey.stability.hysteresis_sweep import SweptBands, sweep_bands
+
+
+@dataclass(frozen=True)
+class GivenEdges:
+    """Edges of a map that were found elsewhere, at each of its temperatures: speeds in m/s, forces in N.
+
+    Arrays have the shape (n,), intervals (2, n). ``uncertain`` names what the intervals count beside the fit.
+    """
+
+    transition: FloatArray
+    upper: FloatArray
+    holding: FloatArray
+    transition_interval: FloatArray
+    upper_interval: FloatArray
+    holding_interval: FloatArray
+    uncertain: tuple[str, ...]
 
 
 def check_temperatures(kelvin: FloatArray, drag: Drag) -> None:

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from hersey.arrays import FloatArray
 from hersey.damping.surface import FIXED, WITH_TRANSITION, DampingSurface
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.uncertainty import Uncertainty
 from hersey.motion.simulation import Drivetrain
-from hersey.stability.operating_map.edges import contour, edges_at, laws_at
-from hersey.stability.operating_map.intervals import FOLD_DRAWS, intervals
+from hersey.stability.operating_map.edges import GivenEdges, contour, edges_at, laws_at
+from hersey.stability.operating_map.intervals import FOLD_DRAWS, Intervals, intervals
 from hersey.stability.operating_map.result import OperatingMap
 from hersey.stability.operating_map.state import PlacedPoint
 from hersey.stability.operating_map.window import shown_speeds, shown_temperatures
@@ -49,6 +50,7 @@ def operating_map(
     draws: int = FOLD_DRAWS,
     threads: int = 1,
     client: Client | str | None = None,
+    edges_of: Callable[[FloatArray | None], GivenEdges] | None = None,
 ) -> OperatingMap:
     """Return what the belt does at each temperature and drive speed.
 
@@ -80,6 +82,9 @@ def operating_map(
     client
         A ``distributed.Client``, or the address of a scheduler: its workers find the interval of V*, a
         temperature each. On one machine threads are quicker; more machines pay from some 10,000 draws on.
+    edges_of
+        Edges found elsewhere, from a posterior of drives, at the temperatures (K) of the map; then nothing is
+        drawn here.
 
     Raises
     ------
@@ -123,19 +128,27 @@ def operating_map(
     laws = laws_at(drag, kelvin, stick_speed_rule)
     limit, limited_by = torque_limit(train.grip, limits.motor_torque, roll_radius)
     below, above = contour(laws, np.inf if limit is None else limit / roll_radius)
-    found = intervals(
-        surface,
-        train,
-        drag,
-        kelvin,
-        known,
-        roll_radius,
-        stick_speed_rule,
-        seed,
-        draws,
-        threads,
-        client,
-    )
+    holding = np.array([law.holding_force for law in laws])
+    if edges_of is None:
+        found = intervals(
+            surface,
+            train,
+            drag,
+            kelvin,
+            known,
+            roll_radius,
+            stick_speed_rule,
+            seed,
+            draws,
+            threads,
+            client,
+        )
+    else:
+        given = edges_of(kelvin)
+        found = _intervals_of(given, roll_radius)
+        holding = given.holding
+        edges |= {"transition": given.transition, "upper": np.maximum(given.upper, given.transition)}
+        edges["lower"] = np.minimum(edges["lower"], edges["transition"])
     map_ = OperatingMap(
         temperature=kelvin,
         speed=speed_grid,
@@ -145,7 +158,7 @@ def operating_map(
         stall_below=below,
         stall_above=above,
         torque=np.array([law.force(speed_grid) for law in laws]) * roll_radius,
-        holding=np.array([law.holding_force for law in laws]) * roll_radius,
+        holding=holding * roll_radius,
         holding_interval=found.holding,
         torque_limit=limit,
         limited_by=limited_by,
@@ -159,9 +172,20 @@ def operating_map(
         train=train,
         drag=drag,
         stick_speed_rule=stick_speed_rule,
+        given=edges_of is not None,
     )
     placed = tuple(_placed(map_, point) for point in points)
     return replace(map_, points=placed, warnings=(*found.warnings, *_remarks(map_, placed)))
+
+
+def _intervals_of(given: GivenEdges, roll_radius: float) -> Intervals:
+    return Intervals(
+        given.transition_interval,
+        given.upper_interval,
+        given.holding_interval * roll_radius,
+        given.uncertain,
+        (),
+    )
 
 
 def torque_limit(

@@ -35,11 +35,12 @@ class OperatingMap(Result):
     ``stall_above`` up (infinite if never) and, on the falling branch, up to ``stall_below`` (0 if never).
     ``torque`` in N m, shape (n, m), is that of steady sliding at ``speed``, shape (m,). The measured ranges
     bound the dwells. ``holding`` (N m, shape (n,)) is what a belt at rest bears, the rest of the drive
-    counted: where it exceeds ``torque_limit`` the drive does not start the belt;
-    ``holding_interval`` counts what that of V* does. The bands are those of the
-    roll with its grip (``train``), on which the belt slips where a lap asks for more; ``lower`` is zero where
-    no belt sticks and slips in turn, as one that sticks is held for good. ``stick_speed_rule`` says how the
-    stick speed goes with temperature.
+    counted: where it exceeds ``torque_limit`` the drive does not start the belt; ``holding_interval`` counts
+    what that of V* does. The bands are those of the roll with its grip (``train``), on which the belt slips
+    where a lap asks for more; ``lower`` is zero where no belt sticks and slips in turn, as one that sticks is
+    held for good. ``stick_speed_rule`` says how the stick speed depends on temperature. Where ``given``,
+    transition and V* are those of a posterior of drives, and are interpolated between temperatures; ``drag``
+    is the fitted law with two branches all the same.
     """
 
     temperature: FloatArray | None
@@ -66,6 +67,7 @@ class OperatingMap(Result):
     train: Drivetrain
     drag: Drag
     stick_speed_rule: str
+    given: bool = False
 
     @property
     def starts(self) -> NDArray[np.bool_]:
@@ -183,10 +185,18 @@ class OperatingMap(Result):
         if temperature is not None:
             check_temperatures(levels, self.drag)
         at = None if temperature is None else levels
-        edges = edges_at(self.train, self.drag, at, self.stick_speed_rule)
+        edges = (
+            self._given_at(at) if self.given else edges_at(self.train, self.drag, at, self.stick_speed_rule)
+        )
         laws = self._laws(at)
         rows = zip(speeds.tolist(), kelvin.tolist(), place.ravel().tolist(), strict=True)
         return [self._state(laws[i], {k: float(v[i]) for k, v in edges.items()}, t, v) for v, t, i in rows]
+
+    def _given_at(self, kelvin: FloatArray | None) -> dict[str, FloatArray]:
+        """Edges at temperatures (K), between those of the map."""
+        levels = [None] if kelvin is None else kelvin.tolist()
+        names = ("lower", "transition", "upper")
+        return {name: np.array([self.at(getattr(self, name), t) for t in levels]) for name in names}
 
     @property
     def beyond(self) -> str:

@@ -19,8 +19,8 @@ of_log    the same for the machine whose drag a log tells
 ========= ==================================================================
 """
 
-from hersey.stability.plan.of_log import plan_of_log
+from hersey.stability.plan.of_log import check_temperature, plan_of_log
 from hersey.stability.plan.planner import plan_profile
 from hersey.stability.plan.result import LimitUse, Plan
 
-__all__ = ["LimitUse", "Plan", "plan_of_log", "plan_profile"]
+__all__ = ["LimitUse", "Plan", "check_temperature", "plan_of_log", "plan_profile"]

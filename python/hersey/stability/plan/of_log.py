@@ -95,12 +95,7 @@ def drag_and_draws(
     ParameterError
         If temperature and fit do not go together.
     """
-    if surface.b is not None and kelvin is None and not varies:
-        raise ParameterError(
-            "the drag varies with temperature: give --at '150 degC', --temperature-profile or --heat"
-        )
-    if surface.b is None and (kelvin is not None or varies):
-        raise ParameterError("the log is isothermal: leave out --at, --temperature-profile and --heat")
+    check_temperature(surface, kelvin, varies=varies)
     drag = surface.drag(**machine.belt, temperature=kelvin)
     at = drag.reference_temperature if varies else kelvin
     # the fit's own command says how many draws have no falling branch
@@ -108,3 +103,13 @@ def drag_and_draws(
     if surface.rest is not None:
         samples |= surface.rest.samples(_DRAWS, seed, roll_radius=machine.roll_radius, temperature=at)
     return drag, samples
+
+
+def check_temperature(surface: DampingSurface, kelvin: float | None, *, varies: bool = False) -> None:
+    """Refuse a temperature (K) that the fit needs and lacks, or does not have."""
+    if surface.b is not None and kelvin is None and not varies:
+        raise ParameterError(
+            "the drag varies with temperature: give --at '150 degC', --temperature-profile or --heat"
+        )
+    if surface.b is None and (kelvin is not None or varies):
+        raise ParameterError("the log is isothermal: leave out --at, --temperature-profile and --heat")

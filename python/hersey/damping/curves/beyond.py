@@ -1,0 +1,75 @@
+"""Drag curves beyond the dwells, where no law was tested.
+
+Where there are dwells a draw follows its law. Below the slowest dwell friction may go on rising as a power of
+speed, or saturate. Every draw starts there with the slope of its law at the slowest dwell, and the slope
+fades over a random length in ln speed (long: a power law; short: saturation). Where the law itself steepens,
+as beside a minimum, a random part of that is kept. Above the fastest dwell the slope drifts a little.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from hersey.arrays import FloatArray
+from hersey.damping.curves.fitting import FittedLaw
+from hersey.damping.distributions import normal_above
+
+#: Latents of a curve beyond the dwells: fading, drift below, part of the steepening, drift above.
+BEYOND = 4
+#: Median of the length in ln speed over which the slope fades, and the standard deviation of its logarithm.
+FADES = (8.0, 1.5)
+#: Standard deviations of the drift of the slope below and above the dwells.
+DRIFT = (0.08, 0.06)
+#: Step in ln speed by which the slope at the slowest dwell is taken.
+_STEP = 0.05
+
+
+def log_torque_beyond(
+    law: FittedLaw, numbers: FloatArray, latent: FloatArray, z: FloatArray, shape: float
+) -> FloatArray:
+    """Return ln torque of draws at ln(speed/reference) and a temperature's s(T), shape (draws, speeds).
+
+    Parameters
+    ----------
+    numbers, latent
+        Of the law, and of what is beyond the dwells: shapes (draws, numbers), (draws, `BEYOND`).
+    z
+        Ascending, shape (speeds,).
+    """
+    inside = law.log_torque(numbers, z, shape)
+    dwells = law.dwells
+    measured = law.scaled_speed(law.numbers[None], dwells.log_speed, dwells.temperature)
+    shift = law.scaled_speed(numbers, np.zeros(1), shape)[:, 0]
+    low, high = float(measured.min()) - shift, float(measured.max()) - shift
+    above = np.maximum(z - high[:, None], 0.0)
+    out = inside + DRIFT[1] * latent[:, 3:4] * _eased(above)
+    below = np.maximum(low[:, None] - z, 0.0)
+    if not np.any(below > 0.0):
+        return np.asarray(out)
+    at_edge = law.log_torque(numbers, low[:, None] + np.array([-_STEP, 0.0, _STEP]), shape)
+    edge = (at_edge[:, 2] - at_edge[:, 0]) / (2.0 * _STEP)
+    return np.asarray(np.where(below > 0.0, at_edge[:, 1:2] - _gone(inside, edge, below, latent, z), out))
+
+
+def _gone(
+    inside: FloatArray, edge: FloatArray, below: FloatArray, latent: FloatArray, z: FloatArray
+) -> FloatArray:
+    """Change of ln torque from the slowest dwell down to each speed, by a slope that stays negative.
+
+    Friction that falls towards rest is known of no boundary.
+    """
+    fades = FADES[0] * np.exp(FADES[1] * latent[:, :1])
+    fading = np.exp(-below / fades)
+    steeper = np.minimum(np.gradient(inside, z, axis=1) - edge[:, None], 0.0)
+    slope = (edge[:, None] + normal_above(-latent[:, 2:3]) * steeper) * fading
+    slope = slope + DRIFT[0] * latent[:, 1:2] * (1.0 - np.exp(-below))
+    slope = np.where(edge[:, None] < 0.0, np.minimum(slope, 0.0), slope)
+    middle = 0.5 * (slope[:, 1:] + slope[:, :-1])
+    steps = -np.diff(below, axis=1)  # what of each step lies below the edge
+    total = np.cumsum((middle * steps)[:, ::-1], axis=1)[:, ::-1]
+    return np.concatenate([total, np.zeros((total.shape[0], 1))], axis=1)
+
+
+def _eased(away: FloatArray) -> FloatArray:
+    """Integral of a change of slope that sets in over a unit of ln speed."""
+    return np.asarray(away - 1.0 + np.exp(-away))

@@ -1,0 +1,179 @@
+"""All laws that the dwells do not reject, by weight, and drag curves drawn from them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from hersey.arrays import FloatArray, IntArray
+from hersey.damping.curves.beyond import BEYOND, log_torque_beyond
+from hersey.damping.curves.dwells import Dwells, dwells_of
+from hersey.damping.curves.fitting import FittedLaw, fit_shape
+from hersey.damping.curves.shapes import SHAPES, Shape
+from hersey.damping.distributions import square_above
+from hersey.damping.dwells import SteadyPoints
+from hersey.damping.surface import DampingSurface
+from hersey.errors import InsufficientDataError
+
+#: A law whose misfit is as large by chance in fewer logs than this is rejected.
+REJECTED = 0.005
+#: A law that weighs less is left out.
+LEAST_WEIGHT = 0.002
+
+
+@dataclass(frozen=True)
+class LawWeight:
+    """A law: its weight, the AICc behind it, and the probability of so large a misfit by chance."""
+
+    name: str
+    words: str
+    weight: float
+    delta_aicc: float
+    p_value: float
+    rejected: bool
+
+
+@dataclass(frozen=True)
+class CurveMixture:
+    """Drag curves that the dwells allow; torque is that of the film.
+
+    ``laws`` are those with weight, ``table`` tells of all that were tried.
+    """
+
+    laws: tuple[FittedLaw, ...]
+    weights: FloatArray
+    table: tuple[LawWeight, ...]
+    dwells: Dwells
+
+    @cached_property
+    def size(self) -> int:
+        """How many latents describe a curve: `BEYOND`, and the numbers of the largest law."""
+        return max(law.size for law in self.laws) + BEYOND
+
+    @property
+    def without_formula(self) -> float:
+        """Weight of the smooth curve without a formula."""
+        return float(sum(w for law, w in zip(self.laws, self.weights, strict=True) if law.shape.residual))
+
+    @property
+    def scatter(self) -> float:
+        """Relative scatter of dwells about the law of most weight."""
+        law = self.laws[int(np.argmax(self.weights))]
+        return float(np.exp(law.log_scatter))
+
+    def shares(self, count: int) -> IntArray:
+        """Return the law of each of so many draws, in proportion to the weights."""
+        edges = np.cumsum(self.weights) * count
+        return np.minimum(np.searchsorted(edges, np.arange(count) + 0.5), len(self.laws) - 1).astype(np.intp)
+
+    def log_weight(self, law: IntArray, latent: FloatArray) -> FloatArray:
+        """Return by how much draws are likelier than their latents, shape (draws,)."""
+        out = np.zeros(law.size)
+        for index, one in enumerate(self.laws):
+            mine = law == index
+            if mine.any():
+                out[mine] = one.log_weight(latent[mine][:, BEYOND : BEYOND + one.size])
+        return out
+
+    def log_torque(
+        self, law: IntArray, latent: FloatArray, speed: FloatArray, kelvin: float | None
+    ) -> FloatArray:
+        """Return ln torque (N m) of draws at speeds (rad/s, ascending) and one temperature (K).
+
+        Shape (draws, speeds). Beyond the dwells speeds should be no more than a tenth apart in logarithms.
+        """
+        z, s = np.log(speed / self.dwells.reference_speed), self.dwells.shape_of(kelvin)
+        out = np.empty((law.size, z.size))
+        for index, one in enumerate(self.laws):
+            mine = law == index
+            if mine.any():
+                numbers = one.at(latent[mine][:, BEYOND : BEYOND + one.size])
+                out[mine] = log_torque_beyond(one, numbers, latent[mine][:, :BEYOND], z, s)
+        return out
+
+    def shift(self, law: IntArray, latent: FloatArray, kelvin: float | None) -> FloatArray:
+        """Return ln of viscosity over that at the reference temperature of each draw, shape (draws,)."""
+        s, out = self.dwells.shape_of(kelvin), np.zeros(law.size)
+        for index, one in enumerate(self.laws):
+            mine = law == index
+            if mine.any():
+                numbers = one.at(latent[mine][:, BEYOND : BEYOND + one.size])
+                out[mine] = one.scaled_speed(numbers, np.zeros(1), s)[:, 0]
+        return out
+
+
+def fit_curves(points: SteadyPoints, surface: DampingSurface) -> CurveMixture:
+    """Fit every law of drag curves to steady points and weigh them.
+
+    Parameters
+    ----------
+    points
+        From `TorqueLog.steady`; torque that is not the film's is subtracted before.
+    surface
+        Their fit, with a transition.
+
+    Raises
+    ------
+    InsufficientDataError
+        If the fit has no transition: then no law that falls is determined.
+    """
+    if surface.transition is None:
+        raise InsufficientDataError(
+            f"the data show no falling branch ({surface.rejected_transition}); "
+            "record slower dwells, until torque rises as the drive slows"
+        )
+    dwells = dwells_of(points, surface)
+    fits = [fit_shape(shape, dwells, _starts(shape, dwells, surface)) for shape in SHAPES]
+    return _weighed(fits, dwells)
+
+
+def _starts(shape: Shape, dwells: Dwells, surface: DampingSurface) -> list[FloatArray]:
+    """Where the search for the numbers of a law begins: the branches of the surface, and beside them."""
+    t = surface.transition
+    assert t is not None
+    at = float(np.log(t.speed.value / dwells.reference_speed))
+    level = float(np.log(surface.transition_torque()))
+    move = -t.temperature_exponent if dwells.thermal is not None else 0.0
+    up = float(np.log(max(1.0 + surface.c.value, 0.1)))
+    down = float(np.log(max(-1.0 - t.mixed_exponent.value, 0.05)))
+    common = [level, at, move, 0.0, 0.0]
+    if shape.name in ("blend", "free"):
+        return [np.array([*common, up, down, ln_p]) for ln_p in (0.3, 1.6)]
+    if shape.name == "sharp":
+        return [np.array([*common, up, down])]
+    if shape.name == "plus":
+        return [np.array([*common, up, -1.0])]
+    out = []
+    for away, lower in ((0.3, 0.6), (1.2, 1.0)):
+        own = [up, 0.3, -away, 0.0] if shape.name == "stribeck" else [up, max(down, -0.3), -1.0, -1.0]
+        out.append(np.array([level - lower * 0.5, at - away, move, 0.0, 0.0, *own]))
+    return out
+
+
+def _weighed(fits: list[FittedLaw], dwells: Dwells) -> CurveMixture:
+    """Weights by AICc of the laws that the curve without a formula does not reject."""
+    free = min((fit for fit in fits if fit.shape.residual), key=lambda fit: fit.aicc)
+    chances = [_chance(fit, free) for fit in fits]
+    alive = np.array([chance >= REJECTED for chance in chances])
+    aicc = np.array([fit.aicc for fit in fits])
+    # two widths of the smooth curve are one law
+    prior = np.array([0.5 if fit.shape.residual else 1.0 for fit in fits])
+    weights = np.where(alive, prior * np.exp(-0.5 * (aicc - aicc[alive].min())), 0.0)
+    weights /= weights.sum()
+    kept = weights >= LEAST_WEIGHT
+    table = tuple(
+        LawWeight(fit.shape.name, fit.shape.words, float(w), float(fit.aicc - aicc.min()), chance, not lives)
+        for fit, w, chance, lives in zip(fits, weights, chances, alive.tolist(), strict=True)
+    )
+    laws = tuple(fit for fit, keep in zip(fits, kept.tolist(), strict=True) if keep)
+    return CurveMixture(laws, weights[kept] / weights[kept].sum(), table, dwells)
+
+
+def _chance(fit: FittedLaw, free: FittedLaw) -> float:
+    """Probability of a misfit as large as that of a law, if it holds: likelihood ratio to the free curve."""
+    if fit.shape.residual:
+        return 1.0
+    more = max(free.parameters - fit.parameters, 1.0)
+    return float(square_above(max(fit.deviance - free.deviance, 0.0), more))

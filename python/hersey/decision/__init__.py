@@ -1,0 +1,13 @@
+"""What to do, from the posterior of the drive.
+
+===========  ======================================================================
+judge        the verdict on an operating point: one function for list, map, plan and text
+measurement  the one measurement that would narrow V* most, and by how much
+start_up     a start-up profile that works on nearly all draws, whatever the closure
+===========  ======================================================================
+"""
+
+from hersey.decision.judge import Verdict, judge
+from hersey.decision.measurement import Measurement, next_measurement
+
+__all__ = ["Measurement", "Verdict", "judge", "next_measurement"]

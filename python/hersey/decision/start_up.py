@@ -1,0 +1,266 @@
+"""A start-up profile that works on nearly all draws of the posterior, whatever the closure.
+
+Profiles are a ramp up, a hold and a ramp down to the target. They are tried in the order of their duration,
+on the draws that are hardest to start first; the quickest that works on 98 % of half of the draws is verified
+on the other half, which the search has not seen.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from hersey.arrays import FloatArray
+from hersey.decision.judge import drive_limit
+from hersey.machine.limits import Limits
+from hersey.motion.drag import DragTable
+from hersey.motion.schedule import Schedule
+from hersey.motion.simulation import Drivetrain, Trajectory, simulate
+from hersey.posterior import Posterior
+from hersey.posterior.drives import Drives
+from hersey.posterior.priors import CLOSURES
+from hersey.stability.plan.draws import lower_bound
+from hersey.stability.plan.obstacles import Obstacle
+from hersey.stability.plan.result import LimitUse, Plan
+from hersey.stability.plan.trial import Shape, rounded
+
+#: Share of the draws that must slide, in the search and in the verification.
+SEARCHED, VERIFIED = 0.98, 0.95
+#: Durations of ramps and holds, in periods of spring and mass.
+_RISES = (0.0, 1.0, 4.0, 16.0, 60.0)
+_HOLDS = (1.0, 4.0, 12.0)
+_FALLS = (0.0, 1.0, 3.0, 8.0, 20.0, 60.0)
+#: Peak speeds, over the safe speed.
+_PEAKS = (0.6, 0.8, 1.0, 1.25, 1.6)
+#: Draws that are hardest to start, tried first, and all that the search takes.
+_HARD, _MOST = 24, 200
+#: Laps after the last ramp within which a belt must have been let go for good.
+_LATE = 2.0
+#: Level of the bound of the share that is stated, and accuracy of the motion.
+_LEVEL, _ACCURACY = 0.95, 1e-3
+#: Samples of the response that is shown.
+_SAMPLES = 2001
+
+
+@dataclass(frozen=True)
+class _Asked:
+    """What is asked of a profile."""
+
+    found: Posterior
+    kelvin: float | None
+    target: float
+    limits: Limits
+    limit: float  #: greatest force at the belt, N
+    confidence: float = VERIFIED
+
+    @property
+    def lap(self) -> float:
+        machine = self.found.model.machine
+        return 2.0 * math.pi * math.sqrt(machine.mass / machine.stiffness)
+
+    def tried(self, drives: Drives, shape: Shape) -> tuple[np.ndarray, FloatArray]:
+        """Return which draws slide soon after the last ramp, within the force, and their peaks (N)."""
+        corners = list(zip(*shape.points(), strict=True))
+        started = self.found.model.start_ups(drives, self.kelvin, corners, accuracy=_ACCURACY)
+        soon = started.released <= shape.end + _LATE * self.lap
+        return started.slides & soon & (started.peak <= self.limit), np.asarray(started.peak)
+
+
+def plan_start_up(
+    found: Posterior, kelvin: float | None, target_speed: float, *, confidence: float = VERIFIED
+) -> Plan:
+    """Return the quickest start-up to a target speed (m/s) that works on nearly all draws.
+
+    ``obstacles`` of the plan say why there is none: the target lies below the transition in too many draws,
+    or no profile within the limits works.
+    ``confidence`` is the share of fresh draws that must slide.
+    """
+    machine = found.model.machine
+    limit = drive_limit(machine.limits, machine.roll_radius, machine.train.grip)
+    if machine.limits.spring_force is not None:
+        limit = min(limit, machine.limits.spring_force)
+    asked = _Asked(found, kelvin, target_speed, machine.limits, limit, confidence)
+    below = float(np.mean(found.edges(kelvin).transition >= target_speed))
+    if below > 1.0 - confidence:
+        return _plan(asked, None, 0, below_transition=below)
+    drives = found.drives
+    order = np.arange(len(drives))
+    seen, fresh = drives.take(order[::2][:_MOST]), drives.take(order[1::2])
+    shape, count = _searched(asked, _hardest_first(asked, seen))
+    return _plan(asked, shape, count, fresh=fresh)
+
+
+def _searched(asked: _Asked, seen: Drives) -> tuple[Shape | None, int]:
+    hard = seen.take(np.arange(min(_HARD, len(seen))))
+    searched = max(SEARCHED, 0.5 * (1.0 + asked.confidence))
+    allowed = math.floor((1.0 - searched) * len(seen))
+    shapes = _shapes(asked)
+    for count, shape in enumerate(shapes, 1):
+        slides, _ = asked.tried(hard, shape)
+        if np.count_nonzero(~slides) > allowed:
+            continue
+        slides, _ = asked.tried(seen, shape)
+        if np.count_nonzero(~slides) <= allowed:
+            return shape, count
+    return None, len(shapes)
+
+
+def _hardest_first(asked: _Asked, drives: Drives) -> Drives:
+    """Draws by V*, the greatest first: they are the hardest to bring to slide."""
+    fold = asked.found.model.folds(drives, asked.kelvin, accuracy=1e-2).upper
+    return drives.take(np.argsort(-fold, kind="stable").astype(np.intp))
+
+
+def _shapes(asked: _Asked) -> list[Shape]:
+    """Profiles within speed and acceleration of the drive, the quickest first."""
+    limits, lap, target = asked.limits, asked.lap, asked.target
+    acceleration = limits.acceleration or math.inf
+    greatest = limits.speed or math.inf
+    safe = asked.found.safe_speed(asked.kelvin)
+    holding = float(np.quantile(asked.found.edges(asked.kelvin).holding, 0.975))
+    loading = holding / asked.found.model.machine.stiffness  # way of the drive until the belt breaks away
+    direct = [Shape(target, target, target / acceleration + lap * rise) for rise in _RISES]
+    peaks = {min(peak * safe, greatest) for peak in _PEAKS if min(peak * safe, greatest) > target}
+    over = [
+        Shape(
+            target,
+            peak,
+            peak / acceleration + lap * rise,
+            lap * hold + loading / peak,
+            (peak - target) / acceleration + lap * fall,
+        )
+        for peak in peaks
+        for rise in _RISES[:3]
+        for hold in _HOLDS
+        for fall in _FALLS
+    ]
+    return sorted([*direct, *over], key=lambda shape: (shape.end, shape.peak))
+
+
+def _plan(
+    asked: _Asked,
+    shape: Shape | None,
+    tried: int,
+    *,
+    fresh: Drives | None = None,
+    below_transition: float = 0.0,
+) -> Plan:
+    found, kelvin, target = asked.found, asked.kelvin, asked.target
+    edges = found.edges(kelvin)
+    fold, _, _ = found.fold_interval(kelvin)
+    facts = {
+        "target_speed": target,
+        "confidence": asked.confidence,
+        "seed": found.seed,
+        "fold_speed": fold,
+        "transition_speed": float(np.median(edges.transition)),
+        "stick_speed": float(np.median(found.model.stick_speed(found.drives, kelvin))),
+        "temperature": kelvin,
+        "greatest_speed": asked.limits.speed or max(_PEAKS) * found.safe_speed(kelvin),
+        "tried": tried,
+        "warnings": (),
+    }
+    share, peaks = 0.0, np.zeros(1)
+    if shape is not None and fresh is not None:
+        slides, peaks = asked.tried(fresh, shape)
+        share = float(np.mean(slides))
+    if shape is None or fresh is None or share < asked.confidence:
+        return Plan(**facts, **_NOTHING, obstacles=(_obstacle(asked, below_transition),))  # type: ignore[arg-type]
+    good = round(share * len(fresh))
+    return Plan(
+        **facts,  # type: ignore[arg-type]
+        kind="direct" if shape.peak <= target else "overshoot",
+        schedule=shape.schedule(),
+        duration=rounded(shape.end + _LATE * asked.lap, up=True),
+        wait=0.0,
+        rise=shape.rise,
+        peak_speed=shape.peak,
+        hold=shape.hold,
+        fall=shape.fall,
+        share=share,
+        share_low=lower_bound(good, len(fresh), _LEVEL),
+        draws=len(fresh),
+        failures=_failures(len(fresh) - good),
+        uses=_uses(asked, shape, float(np.quantile(peaks, asked.confidence))),
+        obstacles=(),
+        peak_force=float(np.quantile(peaks, asked.confidence)),
+        response=response(found, kelvin, shape.schedule(), shape.end + 12.0 * asked.lap),
+    )
+
+
+#: What a plan without a profile has.
+_NOTHING: Mapping[str, object] = {
+    "kind": "impossible",
+    "schedule": None,
+    **dict.fromkeys(("duration", "wait", "rise", "peak_speed", "hold", "fall", "peak_force"), math.nan),
+    "share": 0.0,
+    "share_low": 0.0,
+    "draws": 0,
+    "failures": {},
+    "uses": (),
+    "response": None,
+}
+
+
+def _failures(count: int) -> dict[str, int]:
+    return {"sticks, or needs more force than the drive gives": count} if count else {}
+
+
+def _obstacle(asked: _Asked, below_transition: float) -> Obstacle:
+    speed = f"{1e3 * asked.target:.3g} mm/s"
+    if below_transition > 0.0:
+        text = (
+            f"{speed} lies below the speed of least drag, where steady sliding is unstable, with a "
+            f"probability of {100 * below_transition:.0f} %"
+        )
+        needed = float(np.quantile(asked.found.edges(asked.kelvin).transition, SEARCHED))
+        return Obstacle("target_speed", asked.target, needed, text)
+    text = (
+        f"no profile within the limits brings {100 * asked.confidence:.0f} % of the draws to slide at {speed}"
+    )
+    return Obstacle("speed", asked.limits.speed or math.inf, None, text)
+
+
+def _uses(asked: _Asked, shape: Shape, peak_force: float) -> tuple[LimitUse, ...]:
+    limits, radius = asked.limits, asked.found.model.machine.roll_radius
+    stated = {
+        "speed": (limits.speed, shape.peak),
+        "acceleration": (limits.acceleration, shape.acceleration),
+        "motor_torque": (limits.motor_torque, peak_force * radius),
+        "spring_force": (limits.spring_force, peak_force),
+        "grip": (limits.grip, peak_force),
+    }
+    return tuple(LimitUse(name, limit, used) for name, (limit, used) in stated.items() if limit is not None)
+
+
+def typical_drag(found: Posterior, kelvin: float | None) -> tuple[Drivetrain, DragTable]:
+    """Return the draw whose V* is the median, as a drivetrain and a table of drag."""
+    model, edges = found.model, found.edges(kelvin)
+    index = int(np.argsort(edges.fold)[edges.fold.size // 2])
+    draw = found.drives.take(np.array([index], dtype=np.intp))
+    numbers = model.numbers(draw)[0]
+    speeds, force = model.speeds(), np.exp(model.log_force(draw, kelvin)[0])
+    constant, damping = model.no_load(kelvin)
+    stick = min(float(model.stick_speed(draw, kelvin)[0]), 0.95 * float(speeds[np.argmin(force)]))
+    sliding = float(np.exp(np.interp(np.log(stick), np.log(speeds), np.log(force))))
+    drag = DragTable(
+        tuple(speeds.tolist()),
+        tuple(force.tolist()),
+        stick,
+        closure=list(CLOSURES)[int(draw.closure[0])],
+        static_force=float(numbers[3]) * sliding,
+        rest_force=constant,
+        rest_damping=damping,
+    )
+    return Drivetrain(float(numbers[1]), float(numbers[2])), drag
+
+
+def response(
+    found: Posterior, kelvin: float | None, schedule: Schedule | float, duration: float
+) -> Trajectory:
+    """Return the motion of the typical draw under a profile of drive speed."""
+    train, drag = typical_drag(found, kelvin)
+    return simulate(train, drag, drive_speed=schedule, duration=duration, samples=_SAMPLES, tolerance=1e-6)

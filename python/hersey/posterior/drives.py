@@ -1,0 +1,172 @@
+"""Draws of a drive: a drag curve of the dwells, a closure, and the numbers of the machine; their motion."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hersey import _core
+from hersey.arrays import FloatArray, IntArray
+from hersey.damping.curves import CurveMixture
+from hersey.damping.surface import FIXED, DampingSurface
+from hersey.machine.machine import Machine
+from hersey.motion.parameters import MOST_STEPS
+from hersey.posterior.priors import NUMBERS, DrivePriors
+
+#: Distance of the points of a drawn curve in ln speed, and how far they reach: below the slowest stick speed
+#: and above the fastest dwell, as factors.
+STEP, BELOW, ABOVE = 0.08, 0.6, 4.0
+#: Greatest stick speed over the transition speed of a draw: above there is no falling branch to stick on.
+_BELOW_TRANSITION = 0.95
+
+
+@dataclass(frozen=True)
+class Drives:
+    """Draws: the law and the latents of each, and its closure (an index of `CLOSURES`).
+
+    ``latent`` has shape (draws, numbers of the drive + those of the curve), standard normal before the
+    dwells.
+    """
+
+    law: IntArray
+    closure: IntArray
+    latent: FloatArray
+
+    def __len__(self) -> int:
+        """Return how many draws there are."""
+        return int(self.law.size)
+
+    def take(self, index: IntArray) -> Drives:
+        """Return the draws at an index."""
+        return Drives(self.law[index], self.closure[index], self.latent[index])
+
+
+@dataclass(frozen=True)
+class DriveModel:
+    """A machine whose drag the dwells leave open; turns draws into motion."""
+
+    curves: CurveMixture
+    surface: DampingSurface
+    machine: Machine
+    priors: DrivePriors
+
+    @property
+    def size(self) -> int:
+        """How many latents a draw has."""
+        return len(NUMBERS) + self.curves.size
+
+    def numbers(self, drives: Drives) -> FloatArray:
+        """Return `NUMBERS` of each draw, the stick speed at the temperature at which it is stated."""
+        return self.priors.at(drives.latent[:, : len(NUMBERS)])
+
+    def log_weight(self, drives: Drives) -> FloatArray:
+        """Return ln of the likelihood of the dwells over the density that the draws come from."""
+        return self.curves.log_weight(drives.law, drives.latent[:, len(NUMBERS) :])
+
+    def speeds(self) -> FloatArray:
+        """Return the speeds (m/s) of the points of the curves."""
+        radius = self.machine.roll_radius
+        low = BELOW * min(self.priors.range_of("stick_speed")[0], self.surface.speed_range[0] * radius)
+        high = ABOVE * self.surface.speed_range[1] * radius
+        count = max(int(np.ceil(np.log(high / low) / STEP)), 8)
+        return np.asarray(low * np.exp(STEP * np.arange(count + 1)))
+
+    def log_force(self, drives: Drives, kelvin: float | None) -> FloatArray:
+        """Return ln of the drag of the film (N) of each draw at `speeds`, shape (draws, speeds)."""
+        radius = self.machine.roll_radius
+        latent = drives.latent[:, len(NUMBERS) :]
+        torque = self.curves.log_torque(drives.law, latent, self.speeds() / radius, kelvin)
+        return np.asarray(torque - np.log(radius))
+
+    def force_at(self, drives: Drives, kelvin: float | None, speed: FloatArray | float) -> FloatArray:
+        """Return the drag of the film (N) of each draw at a speed (m/s), common or of its own, (draws,)."""
+        grid, curve = np.log(self.speeds()), self.log_force(drives, kelvin)
+        at = np.broadcast_to(np.log(speed), (len(drives),))
+        place = np.clip((at - grid[0]) / STEP, 0.0, None)
+        left = np.minimum(place.astype(np.intp), grid.size - 2)
+        row = np.arange(len(drives))
+        # beyond the last point the curve goes on straight
+        low, high = curve[row, left], curve[row, left + 1]
+        return np.asarray(np.exp(low + (place - left) * (high - low)))
+
+    def stick_speed(self, drives: Drives, kelvin: float | None) -> FloatArray:
+        """Return the stick speed (m/s) of each draw at a temperature (K), by the rule of the machine."""
+        stated, machine = self.numbers(drives)[:, 0], self.machine
+        if kelvin is None or machine.stick_speed_rule == FIXED or self.surface.b is None:
+            return stated
+        at = machine.stick_speed_temperature or self.surface.reference_temperature
+        latent = drives.latent[:, len(NUMBERS) :]
+        moved = self.curves.shift(drives.law, latent, at) - self.curves.shift(drives.law, latent, kelvin)
+        return np.asarray(stated * np.exp(moved))
+
+    def no_load(self, kelvin: float | None) -> tuple[float, float]:
+        """Return the no-load drag at a temperature: a constant (N) and a part per speed (N s/m)."""
+        rest = self.surface.rest
+        if rest is None:
+            return 0.0, 0.0
+        at_the_belt = rest.at_the_belt(self.machine.roll_radius, kelvin)
+        return float(at_the_belt["rest_force"]), float(at_the_belt["rest_damping"])
+
+    def folds(
+        self,
+        drives: Drives,
+        kelvin: float | None,
+        *,
+        accuracy: float = 1e-3,
+        threads: int = 1,
+        stick_speed: FloatArray | None = None,
+    ) -> _core.CurveFolds:
+        """Return transition, V* and the force that starts a belt (m/s, m/s, N) of each draw.
+
+        ``stick_speed`` (m/s, at this temperature) takes the place of those drawn.
+        """
+        curves, columns = self._belts(drives, kelvin)
+        if stick_speed is not None:
+            columns[2] = np.ascontiguousarray(stick_speed)
+        return _core.curve_folds(
+            curves, columns, self.machine.train.grip, accuracy, threads, None, int(MOST_STEPS)
+        )
+
+    def starts(
+        self,
+        drives: Drives,
+        kelvin: float | None,
+        drive_speed: float,
+        *,
+        accuracy: float = 1e-3,
+        threads: int = 1,
+    ) -> _core.CurveStarts:
+        """Return what becomes of each draw, started from rest at a drive speed (m/s)."""
+        curves, columns = self._belts(drives, kelvin)
+        speed = np.full(len(drives), drive_speed)
+        grip = self.machine.train.grip
+        return _core.curve_starts(curves, columns, speed, grip, accuracy, threads, int(MOST_STEPS))
+
+    def start_ups(
+        self,
+        drives: Drives,
+        kelvin: float | None,
+        profile: list[tuple[float, float]],
+        *,
+        accuracy: float = 1e-3,
+        threads: int = 1,
+    ) -> _core.CurveStartUps:
+        """Return what a profile of drive speed, corners of time (s) and speed (m/s), does to each draw."""
+        curves, columns = self._belts(drives, kelvin)
+        grip = self.machine.train.grip
+        return _core.curve_start_ups(curves, columns, profile, grip, accuracy, threads, int(MOST_STEPS))
+
+    def _belts(
+        self, drives: Drives, kelvin: float | None
+    ) -> tuple[tuple[float, float, FloatArray], list[FloatArray]]:
+        """Curves and numbers of the draws, as the core takes them."""
+        speeds, numbers = self.speeds(), self.numbers(drives)
+        log_force = np.ascontiguousarray(self.log_force(drives, kelvin))
+        least = speeds[np.argmin(log_force, axis=1)]
+        stick = np.minimum(self.stick_speed(drives, kelvin), _BELOW_TRANSITION * least)
+        force, damping = self.no_load(kelvin)
+        one = np.ones(len(drives))
+        columns = [numbers[:, 1], numbers[:, 2], stick, numbers[:, 3], force * one, damping * one]
+        columns.append(drives.closure.astype(np.float64))
+        return (float(np.log(speeds[0])), STEP, log_force), [np.ascontiguousarray(c) for c in columns]

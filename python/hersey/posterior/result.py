@@ -1,0 +1,306 @@
+"""The posterior of a drive: draws, and what they say of V*, of a speed, and of what to measure."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hersey.arrays import BoolArray, FloatArray
+from hersey.damping.curves import LawWeight
+from hersey.posterior.drives import DriveModel, Drives
+from hersey.posterior.evidence import Evidence
+from hersey.posterior.priors import CLOSURES, NUMBERS
+from hersey.result import Result, json_record
+from hersey.stability.operating_map.edges import GivenEdges
+from hersey.units import celsius
+
+if TYPE_CHECKING:
+    import polars as pl
+    import xarray as xr
+
+#: Probability with which the safe speed is smooth from any start.
+SAFE = 0.975
+#: Ratio of the medians and ends of V* of two populations from which a result counts as converged.
+CONVERGED = 1.15
+#: Temperatures of a map at which draws are followed; between them edges are interpolated.
+MAP_TEMPERATURES = 9
+#: V* beyond this many transition speeds is not looked for.
+_FARTHEST = 1e4
+
+
+@dataclass(frozen=True)
+class Edges:
+    """Speeds (m/s) and forces (N) of each draw at one temperature, shape (draws,).
+
+    ``fold`` is V*, at least the transition; ``holding`` the force that starts a belt at rest.
+    """
+
+    transition: FloatArray
+    fold: FloatArray
+    holding: FloatArray
+    stalls: BoolArray
+
+
+@dataclass(frozen=True)
+class PointProbability:
+    """How likely each outcome is at one operating point; the four add up to one.
+
+    ``smooth``: from any start. ``from_above``: only if it slides already, or starts gently. ``sticks``: from
+    any start. ``stalls``: the roll's grip does not start the belt.
+    """
+
+    smooth: float
+    from_above: float
+    sticks: float
+    stalls: float
+
+
+@dataclass(frozen=True)
+class Convergence:
+    """How two populations that know nothing of each other compare.
+
+    ``ratio`` is the greatest ratio of their quantiles of V* (5, 50 and 95 %); ``accepted`` the share of moves
+    in the last stage, ``distinct`` the share of draws that no other equals.
+    """
+
+    ratio: float
+    accepted: float
+    distinct: float
+    stages: int
+    log_evidence: tuple[float, ...]
+
+    @property
+    def converged(self) -> bool:
+        """Whether the populations agree."""
+        return self.ratio <= CONVERGED and self.distinct >= 0.5
+
+
+@dataclass(frozen=True, repr=False)
+class Posterior(Result):
+    """Draws of curve, closure and drive that dwells and evidence allow.
+
+    ``temperature`` (K; None if isothermal) is that of the headline. ``laws`` tells of the curves,
+    ``evidence`` what counted beyond the dwells, ``unused`` what did not, and why.
+    """
+
+    model: DriveModel = field(repr=False)
+    drives: Drives = field(repr=False)
+    temperature: float | None
+    laws: tuple[LawWeight, ...]
+    evidence: tuple[Evidence, ...]
+    unused: tuple[str, ...]
+    convergence: Convergence
+    seed: int
+    chains: int
+
+    @cached_property
+    def _edges(self) -> dict[float | None, Edges]:
+        return {}
+
+    def edges(self, kelvin: float | None, *, most: int | None = None, threads: int = 1) -> Edges:
+        """Return transition, V* and starting force of each draw at a temperature (K; None if isothermal).
+
+        ``most`` takes so many draws, evenly spread.
+        """
+        key = kelvin if most is None or most >= len(self.drives) else None
+        if key is not None and key in self._edges:
+            return self._edges[key]
+        drives = self.drives
+        if most is not None and most < len(drives):
+            drives = drives.take(np.linspace(0, len(drives) - 1, most).astype(np.intp))
+        found = self.model.folds(drives, kelvin, threads=threads)
+        upper = np.minimum(found.upper, _FARTHEST * found.transition)
+        edges = Edges(found.transition, np.fmax(upper, found.transition), found.holding, found.stalls)
+        if key is not None or kelvin is None:
+            self._edges[kelvin] = edges
+        return edges
+
+    def fold_interval(self, kelvin: float | None) -> tuple[float, float, float]:
+        """Return the median of V* (m/s) and the ends of its 95 % interval at a temperature (K)."""
+        low, middle, high = quantiles(self._started(kelvin), (0.025, 0.5, 0.975))
+        return middle, low, high
+
+    def safe_speed(self, kelvin: float | None) -> float:
+        """Return the least drive speed (m/s) that is smooth from any start with 97.5 % probability."""
+        return quantiles(self._started(kelvin), (SAFE,))[0]
+
+    def map_edges(self, kelvin: FloatArray | None, *, most: int = 200, threads: int = 1) -> GivenEdges:
+        """Return medians and intervals of the edges at temperatures (K; None if isothermal) for a map.
+
+        They are drawn at some temperatures, from so many draws at most, and interpolated between.
+        """
+        levels: list[float | None] = [None] if kelvin is None else kelvin.tolist()
+        if kelvin is not None and kelvin.size > MAP_TEMPERATURES:
+            levels = np.linspace(kelvin[0], kelvin[-1], MAP_TEMPERATURES).tolist()
+        rows = []
+        for level in levels:
+            edges = self.edges(level, most=most, threads=threads)
+            started = ~edges.stalls.astype(bool)
+            fold = edges.fold[started] if np.mean(started) >= 0.1 else edges.fold
+            rows.append(
+                [quantiles(each, (0.5, 0.025, 0.975)) for each in (edges.transition, fold, edges.holding)]
+            )
+        table = np.array(rows)
+        if kelvin is not None:
+            at = np.array(levels, dtype=float)
+            table = np.exp(
+                [
+                    [np.interp(kelvin, at, column) for column in quantity]
+                    for quantity in np.log(table).T.swapaxes(0, 1)
+                ]
+            )
+        else:
+            table = table.transpose(1, 2, 0)
+        (turn, fold_, held) = table
+        return GivenEdges(turn[0], fold_[0], held[0], turn[1:], fold_[1:], held[1:], NUMBERS)
+
+    def _started(self, kelvin: float | None) -> FloatArray:
+        """V* of the draws that the drive starts; of all where hardly any does."""
+        edges = self.edges(kelvin)
+        starts = ~edges.stalls.astype(bool)
+        return edges.fold[starts] if np.mean(starts) >= 0.1 else edges.fold
+
+    def probability(self, kelvin: float | None, speed: float) -> PointProbability:
+        """Return the probability of each outcome at a temperature (K) and drive speed (m/s)."""
+        edges = self.edges(kelvin)
+        stalls = edges.stalls.astype(bool)
+        smooth = ~stalls & (edges.fold < speed)
+        sticks = ~stalls & (speed < edges.transition)
+        shares = [float(np.mean(each)) for each in (smooth, sticks, stalls)]
+        return PointProbability(shares[0], max(1.0 - sum(shares), 0.0), shares[1], shares[2])
+
+    def closures(self) -> dict[str, float]:
+        """Return the probability of each closure."""
+        return {name: float(np.mean(self.drives.closure == i)) for i, name in enumerate(CLOSURES)}
+
+    def numbers(self) -> dict[str, FloatArray]:
+        """Return the draws of stick speed (m/s), stiffness (N/m), mass (kg) and static ratio."""
+        return dict(zip(NUMBERS, self.model.numbers(self.drives).T, strict=True))
+
+    def intervals(self) -> Mapping[str, tuple[float, float, float]]:
+        """Return median and 95 % interval of each number of the drive, in SI."""
+        return {
+            name: (values[1], values[0], values[2])
+            for name, draws in self.numbers().items()
+            for values in [quantiles(draws, (0.025, 0.5, 0.975))]
+        }
+
+    def dataset(self) -> xr.Dataset:
+        """Return the draws as ArviZ takes them: dimensions ``chain`` and ``draw``, units as attributes."""
+        import xarray as xr
+
+        edges = self.edges(self.temperature)
+        units = {"stick_speed": "m/s", "stiffness": "N/m", "mass": "kg", "static_ratio": "1"}
+        columns: dict[str, NDArray[Any]] = {
+            **self.numbers(),
+            "fold_speed": edges.fold,
+            "transition_speed": edges.transition,
+            "closure": self.drives.closure,
+        }
+        units |= {"fold_speed": "m/s", "transition_speed": "m/s", "closure": "1"}
+        shape = self.chains, len(self.drives) // self.chains
+        kept = shape[0] * shape[1]
+        variables = {
+            name: (("chain", "draw"), values[:kept].reshape(shape), {"units": units[name]})
+            for name, values in columns.items()
+        }
+        return xr.Dataset(
+            variables,
+            attrs={
+                "seed": self.seed,
+                "closures": ", ".join(CLOSURES),
+                "temperature_K": self.temperature or 0.0,
+            },
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return what the posterior says, in SI; the draws are in `dataset`."""
+        value, low, high = self.fold_interval(self.temperature)
+        return json_record(
+            {
+                "temperature": self.temperature,
+                "fold": {"value": value, "low": low, "high": high},
+                "safe_speed": self.safe_speed(self.temperature),
+                "closures": self.closures(),
+                "numbers": {
+                    name: {"value": v, "low": a, "high": b} for name, (v, a, b) in self.intervals().items()
+                },
+                "laws": [vars(law) for law in self.laws],
+                "evidence": [{"kind": type(each).__name__, **vars(each)} for each in self.evidence],
+                "unused": self.unused,
+                "convergence": {**vars(self.convergence), "converged": self.convergence.converged},
+                "draws": len(self.drives),
+                "seed": self.seed,
+            }
+        )
+
+    def to_frame(self) -> pl.DataFrame:
+        """Return one row per draw, in SI."""
+        import polars as pl
+
+        edges = self.edges(self.temperature)
+        names = list(CLOSURES)
+        return pl.DataFrame(
+            {
+                **self.numbers(),
+                "closure": [names[i] for i in self.drives.closure.tolist()],
+                "transition_speed": edges.transition,
+                "fold_speed": edges.fold,
+            }
+        )
+
+    def headline(self) -> str:
+        """Return V* with its interval."""
+        value, low, high = (1e3 * v for v in self.fold_interval(self.temperature))
+        where = "" if self.temperature is None else f" at {celsius(self.temperature):.0f} degC"
+        return f"V*{where}: {value:.3g} mm/s, 95 %: {low:.3g} to {high:.3g}"
+
+    def summary(self) -> str:
+        """Return the posterior as text."""
+        return "\n".join(_lines(self))
+
+
+#: Units of the numbers as people read them, and how many make one in SI.
+_SHOWN = {
+    "stick_speed": ("mm/s", 1e3),
+    "stiffness": ("N/mm", 1e-3),
+    "mass": ("kg", 1.0),
+    "static_ratio": ("", 1.0),
+}
+
+
+def _lines(found: Posterior) -> list[str]:
+    lines = [
+        found.headline(),
+        f"smooth from any start above {1e3 * found.safe_speed(found.temperature):.3g} mm/s (97.5 %)",
+        "",
+        "closure        "
+        + ", ".join(f"{name} {100 * share:.0f} %" for name, share in found.closures().items()),
+    ]
+    for name, (value, low, high) in found.intervals().items():
+        unit, factor = _SHOWN[name]
+        shown = [f"{factor * v:.3g}" for v in (value, low, high)]
+        lines.append(f"{name.replace('_', ' '):14s} {shown[0]} [{shown[1]}, {shown[2]}] {unit}".rstrip())
+    lines += ["", "drag curves by weight"]
+    lines += [
+        f"  {100 * law.weight:5.1f} %  {law.words}{' (rejected)' if law.rejected else ''}"
+        for law in found.laws
+    ]
+    counted = [type(each).__name__ for each in found.evidence]
+    lines += ["", f"evidence beyond the dwells: {', '.join(counted) or 'none'}"]
+    lines += [f"  not used: {text}" for text in found.unused]
+    c = found.convergence
+    state = "converged" if c.converged else "NOT converged: use more draws"
+    apart = f"quantiles of V* of {found.chains} populations within {100 * (c.ratio - 1):.0f} %"
+    lines.append(f"{len(found.drives)} draws, seed {found.seed}; {state} ({apart})")
+    return lines
+
+
+def quantiles(values: FloatArray, shares: tuple[float, ...]) -> tuple[float, ...]:
+    """Return quantiles that are draws themselves, the next one up."""
+    return tuple(float(v) for v in np.quantile(values, shares, method="higher"))

@@ -1,0 +1,223 @@
+"""From log and machine to the posterior: priors, evidence, draws, convergence."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from hersey.arrays import FloatArray
+from hersey.damping.curves import fit_curves
+from hersey.damping.dwells import SteadyPoints
+from hersey.damping.fit import fit
+from hersey.damping.surface import DampingSurface
+from hersey.errors import ParameterError
+from hersey.log import TorqueLog
+from hersey.machine.machine import Machine
+from hersey.posterior.drives import DriveModel, Drives
+from hersey.posterior.evidence import BreakAway, Evidence, Start
+from hersey.posterior.likelihood import log_likelihood, misfit
+from hersey.posterior.priors import CLOSURES, DrivePriors
+from hersey.posterior.result import Convergence, Posterior, quantiles
+from hersey.posterior.sampler import Moves, Population, sample
+from hersey.posterior.traces import Found, evidence_of_log, evidence_of_trace
+
+#: Draws of a posterior, all populations together.
+DRAWS = 1000
+#: Populations that know nothing of each other.
+CHAINS = 2
+#: Draws of each population at which convergence is judged.
+_JUDGED = 150
+#: Misfit (a chi-square) from which evidence contradicts dwells and machine file together, and does not count.
+CONTRADICTS = 20.0
+#: Relative standard error of a static friction that is stated without one.
+_STATED_STATIC = 0.05
+
+#: Called with the share of the work that is done.
+Progress = Callable[[float], object]
+
+
+def posterior(
+    points: SteadyPoints,
+    machine: Machine,
+    *,
+    surface: DampingSurface | None = None,
+    traces: Sequence[TorqueLog] = (),
+    evidence: Sequence[Evidence] | None = None,
+    temperature: float | None = None,
+    draws: int = DRAWS,
+    seed: int = 1,
+    moves: Moves | None = None,
+    progress: Progress | None = None,
+) -> Posterior:
+    """Return draws of drag curve, closure, stick speed, stiffness and mass that all evidence allows.
+
+    Parameters
+    ----------
+    points
+        From `TorqueLog.steady`; no-load torque subtracted.
+    machine
+        What its file states, with ranges; `hersey.posterior.priors` has the defaults.
+    surface
+        The fit of the points, if there is one already.
+    traces
+        Recordings of the machine, from `hersey.read`, that show starts from rest or stick-slip.
+    evidence
+        Starts, stick-slip and break-away; by default those found in the log of the points and in ``traces``.
+    temperature
+        K, of the headline; by default that of the operating points, or the hottest measured.
+    draws
+        All populations together, at least 40.
+    seed
+        Of the random draws.
+    progress
+        Called with the share of the work that is done.
+
+    Raises
+    ------
+    InsufficientDataError
+        If the data show no falling branch.
+    ParameterError
+        If draws or seed are out of range.
+
+    Examples
+    --------
+    >>> import hersey
+    >>> machine = hersey.read_machine("examples/machine.toml")
+    >>> points = hersey.read("examples/bench.csv").steady(tare="standing").without(machine.rest)
+    >>> found = hersey.posterior(points, machine, draws=400)
+    >>> max(found.closures(), key=found.closures().get)
+    'retained'
+    """
+    if draws < 20 * CHAINS or seed < 0:
+        name, value, least = ("draws", draws, 20 * CHAINS) if draws < 20 * CHAINS else ("seed", seed, 0)
+        raise ParameterError(f"{name} is {value}: it must be at least {least}")
+    found = surface or fit(points)
+    seen = Found(tuple(evidence)) if evidence is not None else _seen(points, found, machine, traces)
+    counted = (*seen.evidence, *_stated(machine))
+    known = any(isinstance(e, BreakAway) or (isinstance(e, Start) and e.peak is not None) for e in counted)
+    priors = DrivePriors.of(machine, break_away_known=known)
+    model = DriveModel(fit_curves(points, found), found, machine, priors)
+    kelvin = temperature if temperature is not None else decision_temperature(found, machine)
+
+    def populations_of(evidence: Sequence[Evidence]) -> list[Population]:
+        return [
+            _population(
+                model, evidence, draws // CHAINS, seed, chain, moves or Moves(), _part(progress, chain)
+            )
+            for chain in range(CHAINS)
+        ]
+
+    populations = populations_of(counted)
+    drives = _joined([p.drives for p in populations])
+    fits = [misfit(model, drives, each) <= CONTRADICTS for each in counted]
+    unused = seen.unused
+    if not all(fits):
+        unused += tuple(_contradicting(each) for each, holds in zip(counted, fits, strict=True) if not holds)
+        counted = tuple(each for each, holds in zip(counted, fits, strict=True) if holds)
+        populations = populations_of(counted)
+        drives = _joined([p.drives for p in populations])
+    return Posterior(
+        model=model,
+        drives=drives,
+        temperature=kelvin if found.b is not None else None,
+        laws=model.curves.table,
+        evidence=counted,
+        unused=unused,
+        convergence=_convergence(model, populations, kelvin if found.b is not None else None),
+        seed=seed,
+        chains=CHAINS,
+    )
+
+
+def decision_temperature(surface: DampingSurface, machine: Machine) -> float | None:
+    """Return the temperature (K) of the decision: the hottest of the operating points, or of the log."""
+    if surface.b is None or surface.temperature_range is None:
+        return None
+    points = [point.temperature for point in machine.points]
+    return max(points) if points else surface.temperature_range[1]
+
+
+def _contradicting(evidence: Evidence) -> str:
+    """Why a piece of evidence does not count."""
+    kind = {"StickSlip": "stick-slip", "Start": "the start"}.get(
+        type(evidence).__name__, "the break-away force"
+    )
+    where = f" at {evidence.source}" if evidence.source else ""
+    return f"{kind}{where} contradicts dwells and machine file: check stiffness, mass and stick speed"
+
+
+def _seen(
+    points: SteadyPoints, surface: DampingSurface, machine: Machine, traces: Sequence[TorqueLog]
+) -> Found:
+    """Evidence of the log of the points and of the traces."""
+    seen = evidence_of_log(points, surface, machine)
+    for trace in traces:
+        seen = seen + evidence_of_trace(trace, machine, zero=points.tare)
+    return seen
+
+
+def _stated(machine: Machine) -> tuple[BreakAway, ...]:
+    """The static friction that a machine file states, as evidence."""
+    if machine.static_friction is None or machine.contact is None:
+        return ()
+    force = machine.static_friction * machine.contact.load
+    return (BreakAway(None, force, _STATED_STATIC, "[boundary] static_friction"),)
+
+
+def _part(progress: Progress | None, chain: int) -> Progress | None:
+    if progress is None:
+        return None
+    return lambda share: progress((chain + share) / CHAINS)
+
+
+def _population(
+    model: DriveModel,
+    evidence: Sequence[Evidence],
+    count: int,
+    seed: int,
+    chain: int,
+    moves: Moves,
+    progress: Progress | None,
+) -> Population:
+    random = np.random.default_rng([seed, chain])
+    chances = np.array(list(CLOSURES.values()))
+    closure = np.minimum(
+        np.searchsorted(np.cumsum(chances), (np.arange(count) + 0.5) / count), chances.size - 1
+    )
+    start = Drives(
+        random.permutation(model.curves.shares(count)),
+        closure.astype(np.intp),
+        random.standard_normal((count, model.size)),
+    )
+
+    def target(drives: Drives) -> FloatArray:
+        weight = model.log_weight(drives)
+        return weight + log_likelihood(model, drives, evidence) if evidence else weight
+
+    return sample(start, target, chances, random, moves, progress)
+
+
+def _joined(parts: Sequence[Drives]) -> Drives:
+    return Drives(
+        np.concatenate([p.law for p in parts]),
+        np.concatenate([p.closure for p in parts]),
+        np.concatenate([p.latent for p in parts]),
+    )
+
+
+def _convergence(model: DriveModel, populations: Sequence[Population], kelvin: float | None) -> Convergence:
+    """Compare the quantiles of V* of the populations."""
+    ends = []
+    for population in populations:
+        few = np.linspace(0, len(population.drives) - 1, min(_JUDGED, len(population.drives))).astype(np.intp)
+        fold = model.folds(population.drives.take(few), kelvin).upper
+        ends.append(quantiles(fold, (0.05, 0.5, 0.95)))
+    low, high = np.min(ends, axis=0), np.max(ends, axis=0)
+    return Convergence(
+        ratio=float(np.max(high / np.maximum(low, 1e-300))),
+        accepted=min(p.accepted for p in populations),
+        distinct=min(p.distinct for p in populations),
+        stages=max(p.stages for p in populations),
+        log_evidence=tuple(p.log_evidence for p in populations),
+    )

@@ -1,0 +1,108 @@
+"""Laws weighed against dwells of a known truth, and how curves go on beyond the dwells."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import hersey
+from hersey.damping.curves import CurveMixture, fit_curves
+from hersey.damping.curves.beyond import BEYOND
+from hersey.errors import InsufficientDataError
+from hersey.log.means import read_means
+
+Curve = Callable[[np.ndarray], np.ndarray]
+
+
+def _points(folder: Path, curve: Curve, *, scatter: float = 0.005, seed: int = 1) -> hersey.SteadyPoints:
+    """Dwells at one temperature of a torque over speed, rad/s."""
+    rng = np.random.default_rng(seed)
+    speeds = np.repeat(np.geomspace(0.4, 40.0, 12), 2)
+    torques = curve(speeds) * np.exp(scatter * rng.standard_normal(speeds.size))
+    rows = [f"{w:.9g},{t:.9g}" for w, t in zip(speeds, torques, strict=True)]
+    path = folder / "means.csv"
+    path.write_text("\n".join(["Speed [rad/s],Torque [N*m]", *rows]) + "\n")
+    return hersey.SteadyPoints.from_table(read_means([path], isothermal=True))
+
+
+def corner(w: np.ndarray) -> np.ndarray:
+    return 0.5 * np.maximum((w / 3.0) ** 0.4, (w / 3.0) ** -0.5)
+
+
+def rounded(w: np.ndarray) -> np.ndarray:
+    return 0.25 * ((w / 3.0) ** 0.4 + (w / 3.0) ** -0.5)
+
+
+def stribeck(w: np.ndarray) -> np.ndarray:
+    return 0.3 + 0.5 * np.exp(-((w / 2.0) ** 1.5)) + 0.02 * w
+
+
+def _fitted(points: hersey.SteadyPoints) -> CurveMixture:
+    return fit_curves(points, hersey.fit(points))
+
+
+def _weights(mixture: CurveMixture) -> dict[str, float]:
+    out: dict[str, float] = {}
+    for law in mixture.table:
+        out[law.name] = out.get(law.name, 0.0) + law.weight
+    return out
+
+
+@pytest.mark.parametrize(
+    ("curve", "wrong"),
+    [(corner, {"plus", "stribeck"}), (rounded, {"plus", "sharp"}), (stribeck, {"plus", "sharp", "blend"})],
+)
+def test_a_wrong_law_is_rejected_and_the_true_curve_is_drawn(
+    tmp_path: Path, curve: Curve, wrong: set[str]
+) -> None:
+    mixture = _fitted(_points(tmp_path, curve))
+    rejected = {law.name for law in mixture.table if law.rejected}
+    assert wrong <= rejected
+    assert sum(_weights(mixture).values()) == pytest.approx(1.0, abs=0.01)
+    rng = np.random.default_rng(0)
+    law = mixture.shares(400)
+    latent = rng.standard_normal((400, mixture.size))
+    weight = np.exp(np.minimum(mixture.log_weight(law, latent), 0.0))
+    speeds = np.geomspace(0.5, 35.0, 9)
+    drawn = mixture.log_torque(law, latent, speeds, None)
+    mean = np.average(drawn, axis=0, weights=weight)
+    assert np.exp(mean) == pytest.approx(curve(speeds), rel=0.02)
+
+
+def test_weights_share_the_draws() -> None:
+    class Weighed(CurveMixture):
+        pass
+
+    mixture = object.__new__(Weighed)
+    object.__setattr__(mixture, "laws", (None, None, None))
+    object.__setattr__(mixture, "weights", np.array([0.5, 0.3, 0.2]))
+    assert np.bincount(mixture.shares(10)).tolist() == [5, 3, 2]
+
+
+def test_curves_spread_beyond_the_dwells_and_never_fall_towards_rest(tmp_path: Path) -> None:
+    mixture = _fitted(_points(tmp_path, rounded))
+    rng = np.random.default_rng(0)
+    law = mixture.shares(300)
+    latent = rng.standard_normal((300, mixture.size))
+    latent[:, BEYOND:] *= 0.1  # the laws nearly as fitted: what spreads is what lies beyond
+    speeds = 0.04 * np.exp(0.05 * np.arange(140))
+    drawn = mixture.log_torque(law, latent, speeds, None)
+    inside, below = speeds > 0.45, speeds < 0.4
+    assert np.std(drawn[:, inside], axis=0).max() < 0.02
+    spread = np.std(drawn[:, below], axis=0)
+    assert spread[0] > 0.1
+    assert np.all(np.diff(spread) < 1e-3)
+    assert np.all(np.diff(drawn[:, below], axis=1) < 1e-9)
+    # among the draws are a power law that goes on, and friction that saturates
+    gain = drawn[:, 0] - drawn[:, int(np.argmax(speeds > 0.4))]
+    assert gain.min() < 0.35
+    assert gain.max() > 0.9 * 0.5 * np.log(10.0)
+
+
+def test_a_log_without_a_falling_branch_has_no_curves(tmp_path: Path) -> None:
+    points = _points(tmp_path, lambda w: 0.2 * w**0.4)
+    with pytest.raises(InsufficientDataError, match="no falling branch"):
+        fit_curves(points, hersey.fit(points))

@@ -1,0 +1,111 @@
+"""The verdict follows from the draws by thresholds that are stated."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import hersey
+from hersey.decision import judge, next_measurement
+from hersey.decision.judge import drive_limit
+from hersey.decision.measurement import measurements
+from hersey.decision.start_up import plan_start_up
+from hersey.machine.limits import Limits
+from hersey.posterior import Posterior
+from hersey.posterior.sampling import posterior
+from tests.conftest import ROOT
+
+HOT = 453.15
+
+
+@pytest.fixture(scope="module")
+def found() -> Posterior:
+    machine = hersey.read_machine(ROOT / "examples" / "machine.toml")
+    points = hersey.read(ROOT / "examples" / "bench.csv").steady(tare="standing").without(machine.rest)
+    return posterior(points, machine, evidence=(), draws=400)
+
+
+def _with(found: Posterior, limits: Limits | None = None, **edges: np.ndarray) -> Posterior:
+    """The same with other draws of the edges, or other limits."""
+    machine = found.model.machine
+    model = replace(found.model, machine=replace(machine, limits=limits or machine.limits))
+    made = replace(found, model=model)
+    made._edges[HOT] = replace(found.edges(HOT), **edges)
+    return made
+
+
+@pytest.mark.parametrize(
+    ("above", "kind"), [(1.0, "smooth"), (0.98, "smooth"), (0.97, "depends"), (0.0, "depends")]
+)
+def test_smooth_takes_97_5_per_cent(found: Posterior, above: float, kind: str) -> None:
+    size = len(found.drives)
+    fold = np.where(np.arange(size) < round(above * size), 0.09, 0.11)
+    made = _with(found, fold=fold, transition=np.full(size, 0.03), stalls=np.zeros(size, dtype=bool))
+    verdict = judge(made, HOT, 0.1)
+    assert verdict.kind == kind
+    assert verdict.probability.smooth == pytest.approx(above, abs=1e-9)
+
+
+@pytest.mark.parametrize(("below", "kind"), [(1.0, "sticks"), (0.97, "unknown"), (0.0, "depends")])
+def test_below_the_transition_it_sticks(found: Posterior, below: float, kind: str) -> None:
+    size = len(found.drives)
+    turn = np.where(np.arange(size) < round(below * size), 0.06, 0.04)
+    made = _with(found, fold=np.full(size, 0.2), transition=turn, stalls=np.zeros(size, dtype=bool))
+    assert judge(made, HOT, 0.05).kind == kind
+
+
+def test_limits_come_first(found: Posterior) -> None:
+    assert judge(_with(found, Limits(speed=0.4)), HOT, 0.41).kind == "too fast"
+    assert judge(_with(found, Limits(motor_torque=0.05)), HOT, 0.2).kind == "not started"
+    assert judge(_with(found, Limits(motor_torque=50.0)), HOT, 0.39).kind == "smooth"
+    assert drive_limit(Limits(motor_torque=0.3), 0.015, 15.0) == 15.0
+    assert drive_limit(Limits(motor_torque=0.15), 0.015, 15.0) == pytest.approx(10.0)
+    assert drive_limit(Limits(), 0.015, None) == np.inf
+
+
+def test_the_next_measurement_narrows_v_star(found: Posterior) -> None:
+    every = measurements(found)
+    assert {each.kind for each in every} == {"starts", "break-away", "stick-slip", "dwell"}
+    assert [each.left for each in every] == sorted(each.left for each in every)
+    best = next_measurement(found)
+    assert best is not None
+    assert best.left < 0.6
+    # three starts leave what lies between them: of V* alone, by hand
+    [starts] = [each for each in every if each.kind == "starts"]
+    fold = np.log(found.edges(HOT).fold)
+    edges = np.log(np.array(starts.speeds))
+    inside = [fold[(fold >= a) & (fold < b)] for a, b in zip([-9, *edges], [*edges, 9], strict=True)]
+    width = sum(np.ptp(np.quantile(part, [0.025, 0.975])) * part.size for part in inside) / fold.size
+    whole = np.ptp(np.quantile(fold, [0.025, 0.975]))
+    assert starts.left == pytest.approx(width / whole, rel=0.15)
+
+
+def test_a_known_v_star_needs_no_measurement(found: Posterior) -> None:
+    size = len(found.drives)
+    narrow = _with(found, fold=np.geomspace(0.1, 0.11, size))
+    assert measurements(narrow) == ()
+    assert next_measurement(narrow) is None
+
+
+def test_a_start_up_works_on_draws_of_all_closures(found: Posterior) -> None:
+    plan = plan_start_up(found, HOT, 0.045)
+    assert plan.found
+    assert plan.kind == "overshoot"
+    assert plan.share >= 0.95
+    corners = [(t, v) for t, v in plan.rows()]
+    for closure in range(3):
+        mine = found.drives.take(np.flatnonzero(found.drives.closure == closure))
+        started = found.model.start_ups(mine, HOT, corners)
+        assert np.mean(started.slides) >= 0.93
+    speeds = [v for _, v in corners]
+    assert max(speeds) <= 0.4
+    assert plan.response is not None
+    assert plan.response.belt_speed[-1] == pytest.approx(0.045, rel=0.1)
+
+
+def test_no_start_up_below_the_transition(found: Posterior) -> None:
+    plan = plan_start_up(found, HOT, 0.02)
+    assert not plan.found
+    assert [each.limit for each in plan.obstacles] == ["target_speed"]

@@ -1,0 +1,230 @@
+"""The posterior against truths that are known: the stand's belt, and traces of the core's exact motion."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import hersey
+from hersey.log import TorqueLog
+from hersey.posterior import BreakAway, Posterior, Start, StickSlip
+from hersey.posterior.evidence import CycleFigures
+from hersey.posterior.likelihood import break_away_force, misfit
+from hersey.posterior.priors import CLOSURES, DrivePriors
+from hersey.posterior.sampling import posterior
+from hersey.posterior.traces import evidence_of_log, evidence_of_trace
+from tests.conftest import ROOT
+
+HOT = 453.15
+#: V* of the demo's contact by the core, `hysteresis(machine.train, machine.mixed_drag(HOT))`, both closures.
+TRUE = {"retained": 0.10313, "stiction": 0.21885}
+
+
+@pytest.fixture(scope="module")
+def machine() -> hersey.Machine:
+    return hersey.read_machine(ROOT / "examples" / "machine.toml")
+
+
+@pytest.fixture(scope="module")
+def demo(machine: hersey.Machine) -> hersey.SteadyPoints:
+    return hersey.read(ROOT / "examples" / "bench.csv").steady(tare="standing").without(machine.rest)
+
+
+@pytest.fixture(scope="module")
+def surface(demo: hersey.SteadyPoints) -> hersey.DampingSurface:
+    return hersey.fit(demo)
+
+
+@pytest.fixture(scope="module")
+def alone(demo: hersey.SteadyPoints, surface: hersey.DampingSurface, machine: hersey.Machine) -> Posterior:
+    """Dwells alone."""
+    return posterior(demo, machine, surface=surface, evidence=(), draws=400)
+
+
+@pytest.fixture(scope="module")
+def whole(demo: hersey.SteadyPoints, surface: hersey.DampingSurface, machine: hersey.Machine) -> Posterior:
+    """With the stick-slip that the log holds."""
+    return posterior(demo, machine, surface=surface, draws=400)
+
+
+def test_dwells_alone_leave_the_closure_open_and_hold_the_truth(alone: Posterior) -> None:
+    chances = alone.closures()
+    assert chances["retained"] == pytest.approx(0.45, abs=0.06)
+    fold = alone.edges(HOT).fold
+    for index, closure in enumerate(("retained", "stiction")):
+        low, high = np.quantile(fold[alone.drives.closure == index], [0.025, 0.975])
+        assert low < TRUE[closure] < high
+
+
+def test_stick_slip_of_the_log_decides_the_closure_and_narrows_v_star(
+    alone: Posterior, whole: Posterior
+) -> None:
+    assert [type(each) for each in whole.evidence] == [StickSlip]
+    assert whole.closures()["retained"] > 0.97  # the stand's belt keeps its creep
+    _, low, high = whole.fold_interval(HOT)
+    _, wide_low, wide_high = alone.fold_interval(HOT)
+    assert low < TRUE["retained"] < high
+    assert np.log(high / low) < np.log(wide_high / wide_low) / 3.0
+    assert whole.convergence.converged
+    _, low, high = whole.intervals()["stick_speed"]
+    assert low < 3e-3 < high
+
+
+def test_the_core_agrees_with_its_motion_followed_event_by_event(alone: Posterior) -> None:
+    """V* of the typical draw: laps of the curve against located events on its table."""
+    from hersey.decision.start_up import typical_drag
+
+    train, drag = typical_drag(alone, HOT)
+    exact = hersey.hysteresis(train, drag, sensitivity=False).upper
+    fold = np.sort(alone.edges(HOT).fold)
+    assert exact == pytest.approx(fold[fold.size // 2], rel=3e-3)
+
+
+def test_starts_on_both_sides_bound_v_star(alone: Posterior, demo: hersey.SteadyPoints) -> None:
+    model = alone.model
+    starts = (Start(HOT, 0.16, slid=False), Start(HOT, 0.24, slid=True))
+    found = posterior(demo, model.machine, surface=model.surface, evidence=starts, draws=400)
+    _, low, high = found.fold_interval(HOT)
+    assert low > 0.155
+    assert high < 0.245
+    assert found.closures()["retained"] < 0.1
+
+
+def test_a_break_away_force_is_that_of_the_draws(alone: Posterior, demo: hersey.SteadyPoints) -> None:
+    model = alone.model
+    before = np.median(break_away_force(model, alone.drives, HOT))
+    stated = (BreakAway(HOT, 0.8 * float(before), 0.02),)
+    found = posterior(demo, model.machine, surface=model.surface, evidence=stated, draws=400)
+    assert np.median(break_away_force(found.model, found.drives, HOT)) == pytest.approx(
+        0.8 * before, rel=0.03
+    )
+
+
+def test_evidence_of_another_machine_does_not_count(whole: Posterior, demo: hersey.SteadyPoints) -> None:
+    """A period ten times too long: it is named, and V* stays."""
+    [seen] = whole.evidence
+    assert isinstance(seen, StickSlip)
+    assert seen.figures is not None
+    assert misfit(whole.model, whole.drives, seen) < 10.0
+    long = replace(seen.figures, period=(10.0 * seen.figures.period[0], 0.01))
+    wrong = replace(seen, figures=long)
+    found = posterior(demo, whole.model.machine, surface=whole.model.surface, evidence=(wrong,), draws=200)
+    assert found.evidence == ()
+    assert "contradicts dwells and machine file" in found.unused[0]
+
+
+def test_the_same_seed_gives_the_same_bits_and_the_rest_is_told(
+    alone: Posterior, demo: hersey.SteadyPoints
+) -> None:
+    model = alone.model
+    again = posterior(demo, model.machine, surface=model.surface, evidence=(), draws=400)
+    assert np.array_equal(again.edges(HOT).fold, alone.edges(HOT).fold)
+    threads = model.folds(alone.drives, HOT, threads=2).upper
+    assert np.array_equal(threads, model.folds(alone.drives, HOT).upper)
+    other = posterior(demo, model.machine, surface=model.surface, evidence=(), draws=400, seed=2)
+    assert not np.array_equal(other.edges(HOT).fold, alone.edges(HOT).fold)
+    for draws, seed in ((10, 1), (400, -1)):
+        with pytest.raises(hersey.HerseyError, match="must be at least"):
+            posterior(demo, model.machine, surface=model.surface, draws=draws, seed=seed)
+
+
+def test_probabilities_add_up_and_follow_the_draws(alone: Posterior) -> None:
+    edges = alone.edges(HOT)
+    for speed in (0.01, 0.026, 0.06, 0.15, 0.5):
+        chance = alone.probability(HOT, speed)
+        assert chance.smooth + chance.from_above + chance.sticks + chance.stalls == pytest.approx(1.0)
+        assert chance.smooth == np.mean(edges.fold < speed)
+        assert chance.sticks == np.mean(speed < edges.transition)
+    assert alone.probability(HOT, alone.safe_speed(HOT) * 1.0001).smooth >= 0.975
+
+
+def test_draws_are_an_arviz_data_set(alone: Posterior) -> None:
+    data = alone.dataset()
+    assert data.sizes == {"chain": 2, "draw": 200}
+    assert data.fold_speed.attrs["units"] == "m/s"
+    assert float(data.fold_speed.median()) == pytest.approx(alone.fold_interval(HOT)[0], rel=1e-2)
+    assert alone.to_frame().shape == (400, 7)
+    record = alone.to_dict()
+    assert record["fold"]["low"] < record["fold"]["value"] < record["safe_speed"] == record["fold"]["high"]
+    assert "V* at 180 degC" in alone.summary()
+
+
+def test_ranges_of_the_machine_file_are_the_priors(machine: hersey.Machine) -> None:
+    priors = DrivePriors.of(machine)
+    stick = priors.range_of("stick_speed")
+    # 95 % of a log-uniform range from 2 to 4 mm/s
+    assert stick == pytest.approx((2e-3 * 2**0.025, 2e-3 * 2**0.975), rel=1e-3)
+    assert priors.range_of("stiffness") == pytest.approx((11e3 / 1.1, 11e3 * 1.1), rel=1e-6)
+    bare = DrivePriors.of(replace(machine, uncertainty={}))
+    assert bare.range_of("mass") == pytest.approx((11.0 / 1.2, 11.0 * 1.2), rel=1e-6)
+    assert bare.range_of("stick_speed")[1] < 9e-3
+    assert sum(CLOSURES.values()) == pytest.approx(1.0)
+
+
+def _trace(folder: Path, speeds: list[float], closure: str, machine: hersey.Machine) -> TorqueLog:
+    """Starts of the demo's true belt: 200 samples a second, 2 % noise, a slack spring before each."""
+    rng = np.random.default_rng(5)
+    drag = replace(machine.mixed_drag(HOT), closure=closure)
+    rows, clock = [], 0.0
+    for speed in speeds:
+        run = hersey.simulate(
+            machine.train,
+            drag,
+            drive_speed=speed,
+            duration=8.0,
+            samples=1600,
+            temperature=HOT,
+            tolerance=1e-8,
+        )
+        still = np.zeros(1000)
+        force = np.concatenate([still, run.spring_force])
+        drive = np.concatenate([still, np.full(1600, speed)]) / machine.roll_radius
+        torque = force * machine.roll_radius * (1.0 + 0.02 * rng.standard_normal(force.size))
+        for w, t in zip(drive.tolist(), torque.tolist(), strict=True):
+            rows.append(f"{clock:.3f},{t:.6g},{w:.6g},180.0")
+            clock += 0.005
+    path = folder / "trace.csv"
+    head = "Time [s],Torque [N*m],Speed [rad/s],Temperature [degC]"
+    path.write_text("\n".join([head, *rows]) + "\n")
+    return hersey.read(path)
+
+
+def test_a_trace_of_starts_is_read(tmp_path: Path, machine: hersey.Machine) -> None:
+    trace = _trace(tmp_path, [0.06, 0.15, 0.3], "stiction", machine)
+    found = evidence_of_trace(trace, machine)
+    starts = [each for each in found.evidence if isinstance(each, Start)]
+    assert [round(each.drive_speed, 2) for each in starts] == [0.06, 0.15, 0.3]
+    assert [each.slid for each in starts] == [False, False, True]  # V* of this belt is 0.219
+    drag = replace(machine.mixed_drag(HOT), closure="stiction")
+    held = drag.at(HOT).holding_force if hasattr(drag, "at") else None
+    for each in starts:
+        assert each.peak is not None
+        assert each.rise == 0.0
+        assert held is None or each.peak[0] > 0.97 * held
+    slips = [each for each in found.evidence if isinstance(each, StickSlip)]
+    assert len(slips) == 2
+    assert all(isinstance(each.figures, CycleFigures) for each in slips)
+
+
+def test_a_trace_decides_what_dwells_leave_open(
+    tmp_path: Path, demo: hersey.SteadyPoints, surface: hersey.DampingSurface, machine: hersey.Machine
+) -> None:
+    """The other closure than that of the log: only the trace speaks."""
+    trace = _trace(tmp_path, [0.15, 0.3], "stiction", machine)
+    evidence = evidence_of_trace(trace, machine).evidence
+    found = posterior(demo, machine, surface=surface, evidence=evidence, draws=400)
+    assert found.closures()["retained"] < 0.02
+    _, low, high = found.fold_interval(HOT)
+    assert 0.9 * low < TRUE["stiction"] < 1.1 * high
+    assert 0.15 < low < high < 0.3
+
+
+def test_a_log_whose_drive_is_stiffer_gives_no_starts(
+    demo: hersey.SteadyPoints, surface: hersey.DampingSurface, machine: hersey.Machine
+) -> None:
+    """Dwells held where this machine would stick: sliding there says nothing of its V*."""
+    found = evidence_of_log(demo, surface, machine)
+    assert [type(each) for each in found.evidence] == [StickSlip]
