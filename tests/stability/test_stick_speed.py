@@ -10,7 +10,6 @@ import pytest
 
 import hersey
 from hersey.damping.surface import FIXED, WITH_TRANSITION
-from hersey.document.assembly import _simulation
 from hersey.errors import ParameterError
 from hersey.stability.plan.of_log import _uncertainty, drag_and_draws
 from tests.conftest import ROOT
@@ -42,9 +41,7 @@ def machine(rule: str = WITH_TRANSITION, at: float | None = None) -> hersey.Mach
 
 @pytest.mark.parametrize("rule", RULES)
 @pytest.mark.parametrize("at", [None, 420.0])
-def test_map_band_plan_and_simulation_agree(
-    fitted: hersey.DampingSurface, rule: str, at: float | None
-) -> None:
+def test_map_band_and_plan_agree(fitted: hersey.DampingSurface, rule: str, at: float | None) -> None:
     """At one temperature and drive speed, to the ninth digit, whichever way the drag is asked for."""
     m = machine(rule, at)
     by_itself = fitted.drag(**m.belt, temperature=HOT)
@@ -60,9 +57,7 @@ def test_map_band_plan_and_simulation_agree(
     if rule == WITH_TRANSITION:
         varying = fitted.drag(**m.belt)
         cycles.append(hersey.stick_slip(m.train, varying, drive_speed=drive, temperature=HOT).frequency)
-    shown = _simulation(fitted, m)  # at the hottest temperature of the log
-    assert shown.parameters["stick_speed"] == pytest.approx(state.stick_speed, rel=1e-9)
-    assert [*cycles, shown.frequency] == pytest.approx([cycles[0]] * (len(cycles) + 1), rel=1e-9)
+    assert cycles == pytest.approx([cycles[0]] * len(cycles), rel=1e-9)
     bands = [hersey.hysteresis(m.train, law, sensitivity=False).upper for law in laws]
     assert bands == pytest.approx([state.upper] * len(bands), rel=1e-9)
     assert map_.upper[-1] == pytest.approx(state.upper, rel=1e-9)

@@ -16,6 +16,7 @@ surface        the same with its transition, and the drag on a belt
 surface_words  what a surface says of itself: summary, record, table
 fit            fitting it: the paper's candidate among all
 candidates     every law fitted to the same dwells, one chosen
+curves         drag curves that the dwells allow: laws by weight, and how they go on beyond
 no_load        the rest of the drive from a log without the film
 rising         the rising branch by itself: whether one exponent holds
 systematic     what errors of the sensors do to a fit

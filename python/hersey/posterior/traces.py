@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,11 +11,13 @@ from hersey.arrays import FloatArray
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.surface import DampingSurface
 from hersey.errors import HerseyError
-from hersey.identification import CycleRecord, Scatter, cycles
 from hersey.log import TorqueLog
 from hersey.log.torque_log import Run
 from hersey.machine.machine import Machine
 from hersey.posterior.evidence import CycleFigures, Evidence, Start, StickSlip
+
+if TYPE_CHECKING:
+    from hersey.identification import CycleRecord, Scatter
 
 #: A stretch of one drive speed: its blocks (s) differ by less than this share, and it lasts as long (s).
 BLOCK, SAME, LEAST = 0.25, 0.05, 3.0
@@ -178,6 +181,8 @@ def _of_stretch(run: Run, stretch: _Stretch, machine: Machine, zero: float, slow
 
 
 def _record(run: Run, force: FloatArray, rows: slice, drive_speed: float) -> CycleRecord | None:
+    from hersey.identification import cycles  # loads much of SciPy, and few logs swing
+
     try:
         return cycles(run.time[rows], force[rows], drive_speed=drive_speed)
     except HerseyError:  # too short, or nothing but gaps: it shows no cycle
@@ -200,6 +205,8 @@ def _dies_out(record: CycleRecord) -> bool:
 
 def _figures(record: CycleRecord, run: Run, machine: Machine, drive_speed: float) -> CycleFigures | None:
     """Figures of the cycles with their errors; None where too few samples fall on one."""
+    from hersey.identification import Scatter
+
     period = Scatter.of(record.period)
     if not period.median > CYCLE_RESOLVED * run.sampling_interval:
         return None

@@ -24,6 +24,7 @@ cycles      cycles of a trace and the drive behind them
 exchange    a unit for other tools
 figures     the paper's figures, drawn anew
 decision    what to do, first of all
+posterior   what dwells, starts and stick-slip say together
 analysis    the whole document
 ==========  ==================================================
 """
