@@ -216,7 +216,7 @@ def test_no_falling_branch_says_how_far_down() -> None:
     assert said is not None
     assert said.signal == "watch"  # from rest the belt passes speeds that nobody measured
     assert said.instruction.startswith("Measure dwells slower than 9.5 rpm: down to there torque rises")
-    assert "goes on sliding down to 9.5 rpm. From rest it may stick" in said.otherwise
+    assert "keeps sliding down to 9.5 rpm. From rest it may stick" in said.otherwise
     falling = _table(speeds, 0.2 * speeds**-0.3 * np.exp(0.005 * rng.standard_normal(speeds.size)))
     assert falling.decision is not None
     assert falling.decision.signal == "watch"

@@ -12,6 +12,7 @@ import pytest
 import hersey
 from hersey.damping.estimate import Estimate
 from hersey.damping.surface import DampingSurface
+from hersey.damping.trend import Trend
 from hersey.decision.judge import judge
 from hersey.document.decision import behaviour
 from hersey.document.decision.behaviour import Behaviour, PointBehaviour, Working
@@ -20,7 +21,6 @@ from hersey.document.decision.flags import flags
 from hersey.document.decision.instruction import of_log
 from hersey.document.decision.points import points_of_log
 from hersey.document.parts import CarriedPart, RegimePart
-from hersey.document.parts.fit import LackOfFitPart
 from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.machine import Machine
 from hersey.stability.operating_map import OperatingMap
@@ -83,54 +83,32 @@ def test_warnings_of_the_machine(decide: Decide, found: Behaviour, map_: Operati
     }
 
 
-def _lack(**changed: object) -> LackOfFitPart:
-    """What is told of one law over all dwells, which holds unless changed."""
-    plain: dict[str, object] = {
-        "curvature": 0.5,
-        "exponent_with_temperature": 0.5,
-        "temperature": 0.5,
-        "local_exponents": (-0.7, -0.7),
-        "by_temperature": (-0.7, -0.7),
-    }
-    return LackOfFitPart.model_validate(plain | changed)
-
-
-def test_a_slow_end_at_which_torque_falls_is_told_only_where_it_is_bent(
-    surface: DampingSurface, seen: RegimePart
+@pytest.mark.parametrize(
+    ("rises", "falls", "said"),
+    [
+        (True, False, "Measure dwells slower than 9.5 rpm: down to there torque rises with speed"),
+        (False, True, "Measure faster dwells: torque falls as speed rises, from 9.5 to "),
+        (True, True, "Keep the roll well above 19 rpm: below it torque rises as the drive slows"),
+        (False, False, "Record dwells slower than 9.5 and faster than "),
+    ],
+)
+def test_words_follow_what_the_dwells_show(
+    surface: DampingSurface, rises: bool, falls: bool, said: str
 ) -> None:
-    straight = replace(surface, transition=None)
-    falls = (-1.3, -0.6)
-    for p_value, told in ((0.01, True), (0.5, False), (None, False)):
-        bent = seen.model_copy(update={"lack_of_fit": _lack(curvature=p_value, local_exponents=falls)})
-        said = of_log(straight, bent)
-        assert (
-            said.instruction.startswith("Keep the roll well above")
-            and "1.30 at the slow end" in said.interval
-        ) == told
-        assert said.signal == "watch"
-
-
-def test_a_law_without_temperature_is_asked_for_one_only_where_it_may_help(
-    surface: DampingSurface, seen: RegimePart
-) -> None:
-    """Dwells far off one law: of a fit without temperature that is its first cause."""
-    told = seen.model_copy(update={"lack_of_fit": _lack()})
-    for scatter, b, wanted in (
-        (0.2, None, "Fit with temperature, or record it: dwells stand 20 % off one law"),
-        (0.2, surface.b, "Measure dwells slower than"),
-        (0.02, None, "Measure dwells slower than"),
-    ):
-        of = replace(surface.statistics, scatter=scatter)
-        log = replace(surface, transition=None, b=b, statistics=of)
-        assert of_log(log, told).instruction.startswith(wanted)
+    straight = replace(surface, transition=None, speed_range=(1.0, 14.0))
+    found = of_log(straight, Trend(rises, falls, 2.0, 0.013))
+    assert found.instruction.startswith(said)
+    assert found.signal == "watch"
+    if not rises and not falls:
+        assert found.instruction.endswith("torque is constant within 1.3 %")
 
 
 def test_an_interval_of_the_transition_that_is_not_told_gives_no_speed(
-    surface: DampingSurface, seen: RegimePart, monkeypatch: pytest.MonkeyPatch
+    surface: DampingSurface, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     open_ended = Estimate(1.0, 0.1, -math.inf, math.inf)
     monkeypatch.setattr(DampingSurface, "transition_estimate", lambda *_: open_ended)
-    said = of_log(surface, seen)
+    said = of_log(surface, Trend(True, True, 1.0, 0.1))
     assert "keep the roll well above 9.5 rpm" in said.instruction
     assert said.interval.endswith("interval not told")
 

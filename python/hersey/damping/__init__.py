@@ -10,6 +10,7 @@ smoothing      a smooth curve through dwells, and where it is least
 scaled         dwells of all temperatures on one curve
 gradual        a gradual bend: its minimum, and what motion is given of it
 branches       two branches of the law: whether, and where torque is least
+trend          whether torque rises or falls with speed, by the dwells themselves
 shown          whether the dwells show a transition, in each direction
 fitted_law     a fitted law: its numbers, the torque it gives, its limits
 surface        the same with its transition, and the drag on a belt

@@ -5,15 +5,19 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from hersey.damping.candidates.observations import Observations
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.surface import DampingSurface
+from hersey.damping.trend import trend_of
+from hersey.decision.plausibility import asked
 from hersey.document.decision.advice import advised
 from hersey.document.decision.behaviour import Behaviour
 from hersey.document.decision.edges import edges_of
 from hersey.document.decision.flags import flags
-from hersey.document.decision.instruction import doubt_of, of_log, of_machine
+from hersey.document.decision.instruction import of_log, of_machine
 from hersey.document.decision.missing import missing
 from hersey.document.decision.points import point_decision, points_of_log, worst
+from hersey.document.decision.questions import unanswered
 from hersey.document.parts import CarriedPart, ComparisonPart, DecisionPart, FilmPart, RegimePart
 from hersey.document.parts.decision import Signal, SpeedPart
 from hersey.machine.machine import Machine
@@ -39,14 +43,18 @@ def decision(
     ``compared`` is this log over an earlier one, ``unit`` that of torques in words.
     """
     map_ = None if found is None else found.map
-    said = of_log(surface, seen) if found is None or map_ is None else of_machine(found, map_, unit)
+    trend = trend_of(Observations.of(points))
+    question = asked(points, surface, machine)
+    if question is not None:
+        return unanswered(question, points, surface, machine, machine_file)
+    said = of_log(surface, trend) if found is None or map_ is None else of_machine(found, map_, unit)
     if found is not None and map_ is not None:
         of_points = [
             point_decision(point, found.posterior, map_, unit, film_alone=points.rest is not None)
             for point in found.points
         ]
     elif machine is not None:
-        of_points = points_of_log(surface, machine, rises=_rises(surface, seen))
+        of_points = points_of_log(surface, machine, rises=trend.rises and not trend.falls)
     else:
         of_points = []
     against = flags(points, surface, seen, film, carried, found, why, compared, unit)
@@ -79,8 +87,3 @@ def _speeds(found: Behaviour | None) -> dict[str, Any]:
         "closures": found.posterior.closures(),
         "measurement": advised(found),
     }
-
-
-def _rises(surface: DampingSurface, seen: RegimePart) -> bool:
-    """Whether torque surely rises with speed over all dwells."""
-    return surface.transition is None and surface.c.value > -1.0 and not doubt_of(surface, seen)

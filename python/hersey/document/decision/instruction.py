@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 from hersey.damping.surface import DampingSurface
+from hersey.damping.trend import Trend
 from hersey.document.decision.behaviour import Behaviour, PointBehaviour
 from hersey.document.decision.edges import Edge, Edges, edges_of
 from hersey.document.decision.words import (
@@ -15,22 +16,18 @@ from hersey.document.decision.words import (
     figures,
     listed,
     mm,
+    per_cent_of,
     roll,
     signed,
     starting,
     torque,
     within,
 )
-from hersey.document.parts import RegimePart
 from hersey.document.parts.decision import Signal
 from hersey.stability.operating_map import OperatingMap
 
-#: Scatter of dwells about one law, from which it cannot be counted on.
-_FAR_OFF = 0.1
 #: Signals, the gravest last.
 _ORDER: tuple[Signal, ...] = ("good", "watch", "act")
-#: p-value of one exponent over all speeds, below which it does not hold.
-_SURE = 0.05
 
 
 @dataclass(frozen=True)
@@ -124,10 +121,10 @@ def _capital(text: str) -> str:
     return f"{text[:1].upper()}{text[1:]}"
 
 
-def of_log(surface: DampingSurface, seen: RegimePart) -> Instruction:
+def of_log(surface: DampingSurface, trend: Trend) -> Instruction:
     """Return what the log alone tells, in speeds of the roll."""
     if surface.transition is None:
-        return _one_branch(surface, seen)
+        return _one_branch(surface, trend)
     ends = [None] if surface.b is None or surface.temperature_range is None else [*surface.temperature_range]
     kelvin = max(ends, key=surface.transition_speed)
     found = surface.transition_estimate(kelvin)
@@ -146,67 +143,42 @@ def of_log(surface: DampingSurface, seen: RegimePart) -> Instruction:
     )
 
 
-def _one_branch(surface: DampingSurface, seen: RegimePart) -> Instruction:
-    """What a log says that shows no transition: nothing sticks, or torque falls all the way."""
+def _one_branch(surface: DampingSurface, trend: Trend) -> Instruction:
+    """What a log says whose fit shows no transition; claims are tested on the dwells themselves."""
     low, high = (roll(speed) for speed in surface.speed_range)
     c = surface.c
     interval = f"exponent of damping {signed(c.value)}"
-    interval += f" [{signed(c.low)}, {signed(c.high)}]" if c.told else ", interval not told"
-    if c.told and c.high < -1.0:
-        measured = f"over all that was measured, {low} to {high} rpm"
+    interval += f" [{signed(c.low)}, {signed(c.high)}]" if c.told else ", interval not determined"
+    if trend.falls and not trend.rises:
         return Instruction(
             "watch",
-            f"Measure faster dwells: torque falls as speed rises, {measured}",
+            f"Measure faster dwells: torque falls as speed rises, from {low} to {high} rpm",
             interval,
-            "Where torque falls with speed the drive can stick and slip; where it ends to fall is not known.",
+            "Where torque falls with speed the drive can stick and slip. Where that ends is not known.",
         )
-    slow = _local(seen)
-    if slow is not None and slow < -1.0:
+    if trend.falls:
         return Instruction(
             "watch",
-            f"Keep the roll well above {low} rpm: there torque falls as speed rises",
-            f"exponent of damping {signed(slow)} at the slow end, {signed(c.value)} over all",
-            "Where torque falls with speed the drive can stick and slip; no transition is told.",
+            f"Keep the roll well above {roll(trend.least)} rpm: below it torque rises as the drive slows",
+            interval,
+            "Torque falls and rises with speed, but no transition is determined: record more dwells below "
+            f"{roll(trend.least)} rpm.",
         )
-    if doubt := doubt_of(surface, seen):
-        what = f"Measure dwells slower than {low} rpm"
-        if surface.b is None and surface.statistics.scatter > _FAR_OFF:
-            what = "Fit with temperature, or record it"
-        elif not (c.told and c.low > -1.0):
-            what = f"Record dwells slower than {low} and faster than {high} rpm"
+    if trend.constant:
         return Instruction(
-            "watch", f"{what}: {doubt}", interval, "Whether torque falls anywhere is not told: it may stick."
+            "watch",
+            f"Record dwells slower than {low} and faster than {high} rpm: torque is constant within "
+            f"{per_cent_of(trend.spread)}",
+            interval,
+            "Whether torque falls at lower speeds is not known, so sticking cannot be ruled out.",
         )
     return Instruction(
         "watch",
         f"Measure dwells slower than {low} rpm: down to there torque rises with speed",
         interval,
-        f"A belt that slides already goes on sliding down to {low} rpm. From rest it may stick: "
-        "where torque falls is not known.",
+        f"A belt that slides keeps sliding down to {low} rpm. From rest it may stick: "
+        "torque below that speed is not known.",
     )
-
-
-def doubt_of(surface: DampingSurface, seen: RegimePart) -> str:
-    """Return why one rising law may not hold down to the slowest dwell; nothing where it does."""
-    lack, scatter = seen.lack_of_fit, surface.statistics.scatter
-    if scatter > _FAR_OFF:
-        return f"dwells stand {100 * scatter:.0f} % off one law"
-    if lack is None:
-        return "too few speeds tell whether one law holds"
-    tested = (lack.curvature, lack.exponent_with_temperature, lack.temperature)
-    if any(p is not None and p < _SURE for p in tested):
-        return "one law does not hold over all dwells"
-    if not (surface.c.told and surface.c.low > -1.0):
-        return "whether torque rises with speed is not told"
-    return ""
-
-
-def _local(seen: RegimePart) -> float | None:
-    """The exponent at the slow end, where one exponent does not hold over all speeds."""
-    lack = seen.lack_of_fit
-    if lack is None or lack.curvature is None or lack.curvature > _SURE:
-        return None
-    return lack.local_exponents[0]
 
 
 def _not_started(

@@ -86,6 +86,11 @@ def per_cent(share: float) -> str:
     return "under 1 %" if share < 0.006 else f"{100.0 * share:.0f} %"
 
 
+def per_cent_of(share: float) -> str:
+    """Return a relative amount, rounded up to a figure that a reader keeps."""
+    return f"{figures(100.0 * share, up=True)} %"
+
+
 def listed(parts: list[str]) -> str:
     """Return parts as a sentence lists them."""
     return parts[0] if len(parts) == 1 else f"{', '.join(parts[:-1])} and {parts[-1]}"

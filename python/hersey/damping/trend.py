@@ -1,0 +1,106 @@
+"""Whether torque rises or falls with speed, by the dwells themselves: no law is assumed.
+
+At each temperature the mean torques of all pairs of speeds are compared. Torque rises somewhere if one pair
+differs upward by more than its errors, which count scatter between dwells and what a wrong zero would do to
+both; the significance is divided by the number of pairs (Bonferroni).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import optimize
+
+from hersey.arrays import FloatArray, IntArray
+from hersey.damping.candidates.observations import Observations
+from hersey.damping.distributions import student_quantile
+from hersey.damping.dwells import SAME_SPEED
+
+#: Probability with which a constant torque seems to rise or to fall somewhere.
+BY_CHANCE = 0.002
+#: Least relative scatter between dwells that is assumed: sensors repeat no better.
+_LEAST_SCATTER = 1e-3
+
+
+@dataclass(frozen=True)
+class Trend:
+    """What torque does as speed rises; ``least`` is the speed (rad/s) of least mean torque.
+
+    ``spread`` is half the range of mean torques at one temperature, relative: all that a constant torque
+    leaves open.
+    """
+
+    rises: bool
+    falls: bool
+    least: float
+    spread: float
+
+    @property
+    def constant(self) -> bool:
+        """Whether torque neither rises nor falls beyond its errors."""
+        return not (self.rises or self.falls)
+
+
+def trend_of(data: Observations) -> Trend:
+    """Return what torque does with speed in the dwells."""
+    scatter, freedom = _scatter(data)
+    rises = falls = False
+    lows, spreads = [], [0.0]
+    groups = [np.flatnonzero(data.inputs.group == g) for g in np.unique(data.inputs.group)]
+    levels = [_levels(data, members) for members in groups]
+    pairs = sum(len(each) * (len(each) - 1) // 2 for each in levels)
+    limit = float(student_quantile(1.0 - 0.5 * BY_CHANCE / max(pairs, 1), freedom))
+    for each in levels:
+        if len(each) < 2:
+            continue
+        mean, variance, tare = _means(data, each, scatter)
+        change = mean[None, :] - mean[:, None]
+        apart = np.sum((tare[None, :, :] - tare[:, None, :]) ** 2, axis=2)
+        z = np.triu(change / np.sqrt(variance[None, :] + variance[:, None] + apart), 1)
+        rises |= bool(np.any(z > limit))
+        falls |= bool(np.any(z < -limit))
+        spreads.append(0.5 * float(np.ptp(mean)))
+        lows.append(float(np.exp(np.mean(data.inputs.log_speed[each[int(np.argmin(mean))]]))))
+    least = data.reference_speed * float(np.median(lows)) if lows else data.reference_speed
+    return Trend(rises, falls, least, float(np.expm1(max(spreads))))
+
+
+def _levels(data: Observations, members: IntArray) -> list[IntArray]:
+    """The dwells of each speed among some, the slowest first."""
+    z = data.inputs.log_speed[members]
+    order = members[np.argsort(z, kind="stable")]
+    steps = np.diff(data.inputs.log_speed[order]) > SAME_SPEED
+    return np.split(order, np.flatnonzero(steps) + 1)
+
+
+def _means(
+    data: Observations, levels: list[IntArray], scatter: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Mean ln torque of each speed, its variance, and its change by each error of the zero."""
+    mean, variance, tare = [], [], []
+    for level in levels:
+        each = data.torque_error[level] ** 2 + scatter**2
+        weight = 1.0 / each
+        mean.append(float(np.average(data.log_torque[level], weights=weight)))
+        variance.append(1.0 / float(weight.sum()))
+        tare.append(np.average(data.tare[level], weights=weight, axis=0))
+    return np.array(mean), np.array(variance), np.array(tare)
+
+
+def _scatter(data: Observations) -> tuple[float, float]:
+    """Scatter of dwells about the best curve that falls and then rises, and its degrees of freedom."""
+    squares, freedom = 0.0, 0.0
+    for group in np.unique(data.inputs.group):
+        members = np.flatnonzero(data.inputs.group == group)
+        order = members[np.argsort(data.inputs.log_speed[members], kind="stable")]
+        y = data.log_torque[order]
+        best = float(np.sum((y - y.mean()) ** 2))
+        for i in range(1, y.size):
+            falling = optimize.isotonic_regression(y[:i], increasing=False).x
+            rising = optimize.isotonic_regression(y[i:]).x
+            best = min(best, float(np.sum((y - np.append(falling, rising)) ** 2)))
+        squares += best
+        # an isotonic curve takes up about a third of as many dwells
+        freedom += max(2.0 * y.size / 3.0 - 1.0, 0.5)
+    return max(float(np.sqrt(squares / max(freedom, 1.0))), _LEAST_SCATTER), max(freedom, 2.0)
