@@ -53,7 +53,7 @@ def part(document: Analysis) -> MapPart:
         f"{name}_interval": [(f * edges[name]).tolist() for f in (0.8, 1.3)]
         for name in ("transition", "upper")
     }
-    limits = {"torque_limit": None, "stall_below": [0.0] * many, "stall_above": [None] * many}
+    limits = {"given": False, "torque_limit": None, "stall_below": [0.0] * many, "stall_above": [None] * many}
     return given.model_copy(
         update={"train": TrainPart(stiffness=train.stiffness, mass=train.mass), **told, **intervals, **limits}
     )

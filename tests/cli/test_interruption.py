@@ -36,6 +36,7 @@ TYPED: dict[str, tuple[list[str], float]] = {
         [MACHINE, *BENCH, "--target", "60 mm/s", "--at", "150 degC", "--out", "p.csv", "--figure", "p.png"],
         8.0,
     ),
+    "posterior": ([BENCH[0], "--machine", MACHINE, "--tare", "standing"], 6.0),
     "warmup": ([MACHINE, *BENCH, "--target", "200 mm/s", "--from", "20 degC", "--out", "w.csv"], 3.0),
     "compare": ([*BENCH, BENCH[0], "--json"], 2.5),
     "campaign": (["add", "life.hersey", *BENCH, "--unit", "F12", "--age", "120000 pages"], 2.0),

@@ -45,6 +45,7 @@ ARGUMENTS: dict[str, list[str]] = {
     "map": [MACHINE, "--fit", "FIT"],
     "export": ["fmu", "FIT", MACHINE, "--temperature", "150 degC", "--out", "UNIT", "--check"],
     "figures": ["--out", "FIGURES"],
+    "posterior": [BENCH, *TARE, "--machine", MACHINE, "--draws", "200"],
     "plan": ["STRONG", "--fit", "FIT", "--target", "60 mm/s", "--at", "150 degC", "--confidence", "0.5"],
     "warmup": [MACHINE, "--fit", "FIT", "--target", "60 mm/s", "--from", "20 degC"],
 }

@@ -32,7 +32,7 @@ def _with(found: Posterior, limits: Limits | None = None, **edges: np.ndarray) -
     machine = found.model.machine
     model = replace(found.model, machine=replace(machine, limits=limits or machine.limits))
     made = replace(found, model=model)
-    made._edges[HOT] = replace(found.edges(HOT), **edges)
+    made._edges[HOT, len(made.drives)] = replace(found.edges(HOT), **edges)
     return made
 
 

@@ -66,7 +66,7 @@ def with_draws(found: Behaviour, **draws: object) -> Behaviour:
     size = edges.fold.size
     changed = replace(edges, **{name: np.broadcast_to(value, size) * 1 for name, value in draws.items()})  # type: ignore[arg-type]
     drawn = replace(found.posterior)
-    drawn._edges[HOT] = changed
+    drawn._edges[HOT, len(drawn.drives)] = changed
     points = tuple(replace(p, verdict=judge(drawn, HOT, p.point.speed)) for p in found.points)
     return replace(found, posterior=drawn, points=points)
 

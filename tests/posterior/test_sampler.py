@@ -18,7 +18,7 @@ def _drawn(target: object, *, size: int = 3, count: int = 2000, seed: int = 1) -
         (np.arange(count) % 2).astype(np.intp),
         random.standard_normal((count, size)),
     )
-    return sample(start, target, CLOSURES, random, Moves(rounds=4, last=10))  # type: ignore[arg-type]
+    return sample(start, target, CLOSURES, np.ones(1), random, Moves(often=9.0, rounds=4, last=10))  # type: ignore[arg-type]
 
 
 def test_a_normal_likelihood_gives_the_product_of_both() -> None:

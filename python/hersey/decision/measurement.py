@@ -77,7 +77,8 @@ def _shown(
     """What each measurement would show of each draw, shape (draws, figures), with its error."""
     model, drives, edges = found.model, found.drives.take(few), found.edges(kelvin)
     fold = edges.fold[few]
-    starts = tuple(float(v) for v in np.quantile(edges.fold, _STARTS))
+    fastest = model.machine.limits.speed or math.inf
+    starts = tuple(dict.fromkeys(min(float(v), fastest) for v in np.quantile(edges.fold, _STARTS)))
     slid = np.column_stack([fold < v for v in starts]).astype(np.float64)
     slow = _SLOWER * model.surface.speed_range[0] * model.machine.roll_radius
     dwell = np.log(model.force_at(drives, kelvin, slow))

@@ -15,6 +15,7 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.decision.judge import drive_limit
+from hersey.errors import ParameterError
 from hersey.machine.limits import Limits
 from hersey.motion.drag import DragTable
 from hersey.motion.schedule import Schedule
@@ -29,6 +30,8 @@ from hersey.stability.plan.trial import Shape, rounded
 
 #: Share of the draws that must slide, in the search and in the verification.
 SEARCHED, VERIFIED = 0.98, 0.95
+#: Shares of the draws that may be asked for.
+CONFIDENCES = (0.5, 0.999)
 #: Durations of ramps and holds, in periods of spring and mass.
 _RISES = (0.0, 1.0, 4.0, 16.0, 60.0)
 _HOLDS = (1.0, 4.0, 12.0)
@@ -77,18 +80,32 @@ def plan_start_up(
     ``obstacles`` of the plan say why there is none: the target lies below the transition in too many draws,
     or no profile within the limits works.
     ``confidence`` is the share of fresh draws that must slide.
+
+    Raises
+    ------
+    ParameterError
+        If target or confidence is out of range.
     """
+    if not (math.isfinite(target_speed) and target_speed > 0.0):
+        raise ParameterError(f"target_speed is {target_speed}: it must be greater than 0")
+    low, high = CONFIDENCES
+    if not low <= confidence <= high:
+        raise ParameterError(f"confidence is {confidence}: {low} to {high} is possible")
     machine = found.model.machine
     limit = drive_limit(machine.limits, machine.roll_radius, machine.train.grip)
     if machine.limits.spring_force is not None:
         limit = min(limit, machine.limits.spring_force)
     asked = _Asked(found, kelvin, target_speed, machine.limits, limit, confidence)
+    if machine.limits.speed is not None and target_speed > machine.limits.speed * (1.0 + 1e-9):
+        return _plan(asked, None, 0)
     below = float(np.mean(found.edges(kelvin).transition >= target_speed))
     if below > 1.0 - confidence:
         return _plan(asked, None, 0, below_transition=below)
     drives = found.drives
     order = np.arange(len(drives))
-    seen, fresh = drives.take(order[::2][:_MOST]), drives.take(order[1::2])
+    half = order[::2]
+    few = np.linspace(0, half.size - 1, min(_MOST, half.size)).astype(np.intp)
+    seen, fresh = drives.take(half[few]), drives.take(order[1::2])
     shape, count = _searched(asked, _hardest_first(asked, seen))
     return _plan(asked, shape, count, fresh=fresh)
 
@@ -218,6 +235,9 @@ def _obstacle(asked: _Asked, below_transition: float) -> Obstacle:
         )
         needed = float(np.quantile(asked.found.edges(asked.kelvin).transition, SEARCHED))
         return Obstacle("target_speed", asked.target, needed, text)
+    if asked.limits.speed is not None and asked.target > asked.limits.speed:
+        text = f"{speed} is faster than the drive, {1e3 * asked.limits.speed:.3g} mm/s"
+        return Obstacle("speed", asked.limits.speed, asked.target, text)
     text = (
         f"no profile within the limits brings {100 * asked.confidence:.0f} % of the draws to slide at {speed}"
     )
@@ -255,7 +275,7 @@ def typical_drag(found: Posterior, kelvin: float | None) -> tuple[Drivetrain, Dr
         rest_force=constant,
         rest_damping=damping,
     )
-    return Drivetrain(float(numbers[1]), float(numbers[2])), drag
+    return Drivetrain(float(numbers[1]), float(numbers[2]), grip=model.machine.train.grip), drag
 
 
 def response(

@@ -100,6 +100,11 @@ class DriveModel:
         moved = self.curves.shift(drives.law, latent, at) - self.curves.shift(drives.law, latent, kelvin)
         return np.asarray(stated * np.exp(moved))
 
+    def sticking_speed(self, drives: Drives, kelvin: float | None) -> FloatArray:
+        """Return the stick speed (m/s) of each draw, but 95 % of its transition at the most."""
+        least = self.speeds()[np.argmin(self.log_force(drives, kelvin), axis=1)]
+        return np.asarray(np.minimum(self.stick_speed(drives, kelvin), _BELOW_TRANSITION * least))
+
     def no_load(self, kelvin: float | None) -> tuple[float, float]:
         """Return the no-load drag at a temperature: a constant (N) and a part per speed (N s/m)."""
         rest = self.surface.rest

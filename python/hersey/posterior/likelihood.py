@@ -91,7 +91,7 @@ def _normal(off: FloatArray, error: float) -> FloatArray:
 
 def break_away_force(model: DriveModel, drives: Drives, kelvin: float | None) -> FloatArray:
     """Return the force (N) that starts each draw from rest at a temperature, no-load drag included."""
-    sliding = model.force_at(drives, kelvin, model.stick_speed(drives, kelvin))
+    sliding = model.force_at(drives, kelvin, model.sticking_speed(drives, kelvin))
     return np.asarray(model.numbers(drives)[:, 3] * sliding + model.no_load(kelvin)[0])
 
 

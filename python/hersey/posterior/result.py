@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -12,12 +13,14 @@ from numpy.typing import NDArray
 
 from hersey.arrays import BoolArray, FloatArray
 from hersey.damping.curves import LawWeight
+from hersey.damping.surface import DampingSurface
+from hersey.errors import ParameterError
 from hersey.posterior.drives import DriveModel, Drives
 from hersey.posterior.evidence import Evidence
 from hersey.posterior.priors import CLOSURES, NUMBERS
 from hersey.result import Result, json_record
 from hersey.stability.operating_map.edges import GivenEdges
-from hersey.units import celsius
+from hersey.units import ZERO_CELSIUS, celsius
 
 if TYPE_CHECKING:
     import polars as pl
@@ -29,6 +32,8 @@ SAFE = 0.975
 CONVERGED = 1.15
 #: Temperatures of a map at which draws are followed; between them edges are interpolated.
 MAP_TEMPERATURES = 9
+#: Share of draws whose motion may be lost.
+_LOST = 0.1
 #: V* beyond this many transition speeds is not looked for.
 _FARTHEST = 1e4
 
@@ -65,7 +70,8 @@ class Convergence:
     """How two populations that know nothing of each other compare.
 
     ``ratio`` is the greatest ratio of their quantiles of V* (5, 50 and 95 %); ``accepted`` the share of moves
-    in the last stage, ``distinct`` the share of draws that no other equals.
+    in the last stage, ``distinct`` the share of draws that no other equals; ``counted`` is the degree to
+    which the evidence is in, 1 where all of it is.
     """
 
     ratio: float
@@ -73,11 +79,12 @@ class Convergence:
     distinct: float
     stages: int
     log_evidence: tuple[float, ...]
+    counted: float
 
     @property
     def converged(self) -> bool:
-        """Whether the populations agree."""
-        return self.ratio <= CONVERGED and self.distinct >= 0.5
+        """Whether all evidence is in and the populations agree."""
+        return self.ratio <= CONVERGED and self.distinct >= 0.5 and self.counted >= 1.0
 
 
 @dataclass(frozen=True, repr=False)
@@ -99,26 +106,24 @@ class Posterior(Result):
     chains: int
 
     @cached_property
-    def _edges(self) -> dict[float | None, Edges]:
+    def _edges(self) -> dict[tuple[float | None, int], Edges]:
         return {}
 
     def edges(self, kelvin: float | None, *, most: int | None = None, threads: int = 1) -> Edges:
         """Return transition, V* and starting force of each draw at a temperature (K; None if isothermal).
 
         ``most`` takes so many draws, evenly spread.
+
+        Raises
+        ------
+        ParameterError
+            If the law has no meaning at this temperature, or V* of too many draws cannot be computed.
         """
-        key = kelvin if most is None or most >= len(self.drives) else None
-        if key is not None and key in self._edges:
-            return self._edges[key]
-        drives = self.drives
-        if most is not None and most < len(drives):
-            drives = drives.take(np.linspace(0, len(drives) - 1, most).astype(np.intp))
-        found = self.model.folds(drives, kelvin, threads=threads)
-        upper = np.minimum(found.upper, _FARTHEST * found.transition)
-        edges = Edges(found.transition, np.fmax(upper, found.transition), found.holding, found.stalls)
-        if key is not None or kelvin is None:
-            self._edges[kelvin] = edges
-        return edges
+        count = min(most or len(self.drives), len(self.drives))
+        if (kelvin, count) not in self._edges:
+            few = np.linspace(0, len(self.drives) - 1, count).astype(np.intp)
+            self._edges[kelvin, count] = edges_at(self.model, self.drives.take(few), kelvin, threads=threads)
+        return self._edges[kelvin, count]
 
     def fold_interval(self, kelvin: float | None) -> tuple[float, float, float]:
         """Return the median of V* (m/s) and the ends of its 95 % interval at a temperature (K)."""
@@ -245,12 +250,13 @@ class Posterior(Result):
 
         edges = self.edges(self.temperature)
         names = list(CLOSURES)
+        units = {"stick_speed": "m/s", "stiffness": "N/m", "mass": "kg", "static_ratio": "1"}
         return pl.DataFrame(
             {
-                **self.numbers(),
+                **{f"{name} ({units[name]})": values for name, values in self.numbers().items()},
                 "closure": [names[i] for i in self.drives.closure.tolist()],
-                "transition_speed": edges.transition,
-                "fold_speed": edges.fold,
+                "transition_speed (m/s)": edges.transition,
+                "fold_speed (m/s)": edges.fold,
             }
         )
 
@@ -263,6 +269,36 @@ class Posterior(Result):
     def summary(self) -> str:
         """Return the posterior as text."""
         return "\n".join(_lines(self))
+
+
+def edges_at(model: DriveModel, drives: Drives, kelvin: float | None, *, threads: int = 1) -> Edges:
+    """Return transition, V* and starting force of draws at a temperature (K; None if isothermal).
+
+    A draw whose motion cannot be followed counts as the worst of the others.
+    """
+    check_temperature(model.surface, kelvin)
+    found = model.folds(drives, kelvin, threads=threads)
+    upper = np.minimum(found.upper, _FARTHEST * found.transition)
+    columns = [found.transition, np.fmax(upper, found.transition), found.holding]
+    lost = np.any([np.isnan(each) for each in columns], axis=0)
+    if np.mean(lost) > _LOST:
+        why = f" ({found.failures[0].error})" if found.failures else ""
+        raise ParameterError(
+            f"V* of {100 * np.mean(lost):.0f} % of the draws cannot be computed{why}: "
+            "check stick speed, stiffness and mass"
+        )
+    transition, fold, holding = (np.where(lost, np.nanmax(each), each) for each in columns)
+    return Edges(transition, fold, holding, found.stalls.astype(bool))
+
+
+def check_temperature(surface: DampingSurface, kelvin: float | None) -> None:
+    """Refuse a temperature (K) at which the powers of the fitted law have no meaning."""
+    if surface.b is None:
+        return
+    scale, zero = ("K", 0.0) if surface.temperature_scale == "K" else ("degC", ZERO_CELSIUS)
+    if kelvin is None or not (math.isfinite(kelvin) and kelvin > zero):
+        given = "missing" if kelvin is None else f"{kelvin:g} K"
+        raise ParameterError(f"temperature is {given}: a law in {scale} holds above 0 {scale} only")
 
 
 #: Units of the numbers as people read them, and how many make one in SI.

@@ -2,8 +2,8 @@
 
 The evidence is brought in by degrees. After each, draws are resampled by weight and moved: along differences
 of two other draws (ter Braak, Stat. Comput. 16 (2006) 239), towards and away from the prior (Cotter et al.,
-Stat. Sci. 28 (2013) 424), and from closure to closure. Two populations that know nothing of each other show
-whether the result has converged. Del Moral, Doucet and Jasra, J. R. Stat. Soc. B 68 (2006) 411.
+Stat. Sci. 28 (2013) 424), from closure to closure and from law to law. Two populations that know nothing of
+each other show whether the result has converged. Del Moral, Doucet and Jasra, J. R. Stat. Soc. B 68 (2006) 411.
 """
 
 from __future__ import annotations
@@ -37,20 +37,26 @@ class Population:
     stages: int
     accepted: float  #: share of the moves of the last stage
     distinct: float  #: share of draws that no other equals
+    counted: float  #: degree to which the evidence is in, 1 where all of it is
 
 
 @dataclass(frozen=True)
 class Moves:
-    """How draws move after each stage: rounds of all kinds, and more of them in the last."""
+    """How draws move after each stage: until each has moved so often on average, in so many rounds at most.
 
-    rounds: int = 2
-    last: int = 4
+    ``last`` holds after the last stage.
+    """
+
+    often: float = 0.6
+    rounds: int = 4
+    last: int = 10
 
 
 def sample(
     draws: Drives,
     target: Target,
     closures: FloatArray,
+    laws: FloatArray,
     random: np.random.Generator,
     moves: Moves,
     progress: Callable[[float], object] | None = None,
@@ -65,6 +71,8 @@ def sample(
         ln of the likelihood of everything for each draw.
     closures
         Prior probability of each closure, shape (closures,).
+    laws
+        Weight of each law of drag curves, shape (laws,).
     progress
         Called with the share of the evidence that is in.
     """
@@ -78,15 +86,17 @@ def sample(
         beta, stage = min(beta + step, 1.0), stage + 1
         kept = _resampled(weight, random)
         draws, value = draws.take(kept), value[kept]
-        rounds = moves.last if beta >= 1.0 else moves.rounds
-        for _ in range(rounds):
-            draws, value, share = _moved(draws, value, beta, target, closures, part, random)
+        moved, last = 0.0, beta >= 1.0
+        for _ in range(moves.last if last else moves.rounds):
+            draws, value, share = _moved(draws, value, beta, target, (closures, laws), part, random)
             part = float(np.clip(part * np.exp(share - _ACCEPTED), _LEAST_PART, 0.9))
-            accepted = share
+            accepted, moved = share, moved + share
+            if moved >= (2.0 if last else 1.0) * moves.often:
+                break
         if progress is not None:
             progress(beta)
     distinct = np.unique(draws.latent[:, 0]).size / max(len(draws), 1)
-    return Population(draws, log_evidence, stage, accepted, distinct)
+    return Population(draws, log_evidence, stage, accepted, distinct, beta)
 
 
 def _step(value: FloatArray, beta: float) -> float:
@@ -122,24 +132,28 @@ def _moved(
     value: FloatArray,
     beta: float,
     target: Target,
-    closures: FloatArray,
+    prior: tuple[FloatArray, FloatArray],
     part: float,
     random: np.random.Generator,
 ) -> tuple[Drives, FloatArray, float]:
-    """One round: half of the draws move along differences, half about the prior; some change the closure."""
+    """One round: half of the draws move along differences, half about the prior; some change their law."""
+    closures, laws = prior
     size, count = draws.latent.shape[1], len(draws)
     along = random.random(count) < 0.5
     pcn = np.sqrt(1.0 - part**2) * draws.latent + part * random.standard_normal((count, size))
     latent = np.where(along[:, None], _along_differences(draws, random), pcn)
     closure = np.where(random.random(count) < 0.2, random.integers(0, closures.size, count), draws.closure)
-    proposed = Drives(draws.law, closure.astype(np.intp), latent)
+    # a law of other numbers: only from the prior's own moves, whose latents mean the same to all laws
+    changes = ~along & (random.random(count) < 0.2)
+    law = np.where(changes, random.integers(0, laws.size, count), draws.law).astype(np.intp)
+    proposed = Drives(law, closure.astype(np.intp), latent)
     new = target(proposed)
     # moves about the prior leave it as it is; those along differences do not
-    prior = np.where(along, 0.5 * np.sum(draws.latent**2 - latent**2, axis=1), 0.0)
-    prior = prior + np.log(closures[closure] / closures[draws.closure])
-    takes = np.log(random.random(count)) < beta * (new - value) + prior
+    likelier = np.where(along, 0.5 * np.sum(draws.latent**2 - latent**2, axis=1), 0.0)
+    likelier += np.log(closures[closure] / closures[draws.closure]) + np.log(laws[law] / laws[draws.law])
+    takes = np.log(random.random(count)) < beta * (new - value) + likelier
     kept = Drives(
-        draws.law,
+        np.where(takes, law, draws.law).astype(np.intp),
         np.where(takes, closure, draws.closure).astype(np.intp),
         np.where(takes[:, None], latent, draws.latent),
     )

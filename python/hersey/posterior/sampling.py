@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -15,12 +16,13 @@ from hersey.errors import ParameterError
 from hersey.log import TorqueLog
 from hersey.machine.machine import Machine
 from hersey.posterior.drives import DriveModel, Drives
-from hersey.posterior.evidence import BreakAway, Evidence, Start
+from hersey.posterior.evidence import BreakAway, Evidence, Start, StickSlip
 from hersey.posterior.likelihood import log_likelihood, misfit
 from hersey.posterior.priors import CLOSURES, DrivePriors
-from hersey.posterior.result import Convergence, Posterior, quantiles
+from hersey.posterior.result import Convergence, Posterior, check_temperature, edges_at, quantiles
 from hersey.posterior.sampler import Moves, Population, sample
 from hersey.posterior.traces import Found, evidence_of_log, evidence_of_trace
+from hersey.units import ZERO_CELSIUS
 
 #: Draws of a posterior, all populations together.
 DRAWS = 1000
@@ -28,8 +30,11 @@ DRAWS = 1000
 CHAINS = 2
 #: Draws of each population at which convergence is judged.
 _JUDGED = 150
-#: Misfit (a chi-square) from which evidence contradicts dwells and machine file together, and does not count.
-CONTRADICTS = 20.0
+#: Misfit (a chi-square) from which evidence contradicts dwells and machine file together, and does not count:
+#: of figures; of an outcome, which most draws then do not show.
+CONTRADICTS, UNLIKE = 20.0, 5.0
+#: Rounds in which evidence is left out, the worst first.
+_ROUNDS = 3
 #: Relative standard error of a static friction that is stated without one.
 _STATED_STATIC = 0.05
 
@@ -78,7 +83,7 @@ def posterior(
     InsufficientDataError
         If the data show no falling branch.
     ParameterError
-        If draws or seed are out of range.
+        If draws or seed are out of range, or evidence lacks the temperature that the fit needs.
 
     Examples
     --------
@@ -93,14 +98,12 @@ def posterior(
         name, value, least = ("draws", draws, 20 * CHAINS) if draws < 20 * CHAINS else ("seed", seed, 0)
         raise ParameterError(f"{name} is {value}: it must be at least {least}")
     found = surface or fit(points)
-    seen = Found(tuple(evidence)) if evidence is not None else _seen(points, found, machine, traces)
-    counted = (*seen.evidence, *_stated(machine))
-    known = any(isinstance(e, BreakAway) or (isinstance(e, Start) and e.peak is not None) for e in counted)
-    priors = DrivePriors.of(machine, break_away_known=known)
-    model = DriveModel(fit_curves(points, found), found, machine, priors)
+    seen = _given(evidence, found) if evidence is not None else _seen(points, found, machine, traces)
+    counted, unused = (*seen.evidence, *_stated(machine, found)), seen.unused
+    curves = fit_curves(points, found)
     kelvin = temperature if temperature is not None else decision_temperature(found, machine)
 
-    def populations_of(evidence: Sequence[Evidence]) -> list[Population]:
+    def populations_of(model: DriveModel, evidence: Sequence[Evidence]) -> list[Population]:
         return [
             _population(
                 model, evidence, draws // CHAINS, seed, chain, moves or Moves(), _part(progress, chain)
@@ -108,15 +111,18 @@ def posterior(
             for chain in range(CHAINS)
         ]
 
-    populations = populations_of(counted)
-    drives = _joined([p.drives for p in populations])
-    fits = [misfit(model, drives, each) <= CONTRADICTS for each in counted]
-    unused = seen.unused
-    if not all(fits):
-        unused += tuple(_contradicting(each) for each, holds in zip(counted, fits, strict=True) if not holds)
-        counted = tuple(each for each, holds in zip(counted, fits, strict=True) if holds)
-        populations = populations_of(counted)
+    for left in range(_ROUNDS, -1, -1):
+        priors = DrivePriors.of(machine, break_away_known=any(map(_tells_break_away, counted)))
+        model = DriveModel(curves, found, machine, priors)
+        populations = populations_of(model, counted)
         drives = _joined([p.drives for p in populations])
+        off = np.array([misfit(model, drives, e) / _most_misfit(e) for e in counted])
+        # what is half as wrong as the worst may be so because of the worst
+        wrong = (off > 1.0) & (off >= (0.5 * off.max() if left > 1 else 0.0)) if off.size else off > 1.0
+        if not wrong.any():
+            break
+        unused += tuple(_contradicting(e) for e, is_wrong in zip(counted, wrong, strict=True) if is_wrong)
+        counted = tuple(e for e, is_wrong in zip(counted, wrong, strict=True) if not is_wrong)
     return Posterior(
         model=model,
         drives=drives,
@@ -134,8 +140,29 @@ def decision_temperature(surface: DampingSurface, machine: Machine) -> float | N
     """Return the temperature (K) of the decision: the hottest of the operating points, or of the log."""
     if surface.b is None or surface.temperature_range is None:
         return None
-    points = [point.temperature for point in machine.points]
+    zero = 0.0 if surface.temperature_scale == "K" else ZERO_CELSIUS
+    points = [point.temperature for point in machine.points if point.temperature > zero]
     return max(points) if points else surface.temperature_range[1]
+
+
+def _tells_break_away(evidence: Evidence) -> bool:
+    """Whether it tells the force that starts a belt."""
+    return isinstance(evidence, BreakAway) or (isinstance(evidence, Start) and evidence.peak is not None)
+
+
+def _most_misfit(evidence: Evidence) -> float:
+    """The misfit from which evidence contradicts the rest."""
+    outcome_alone = (isinstance(evidence, Start) and evidence.peak is None) or (
+        isinstance(evidence, StickSlip) and evidence.figures is None
+    )
+    return UNLIKE if outcome_alone else CONTRADICTS
+
+
+def _given(evidence: Sequence[Evidence], surface: DampingSurface) -> Found:
+    """Evidence of the caller, which must have the temperature that the fit needs."""
+    for each in evidence:
+        check_temperature(surface, each.temperature)
+    return Found(tuple(evidence))
 
 
 def _contradicting(evidence: Evidence) -> str:
@@ -154,15 +181,24 @@ def _seen(
     seen = evidence_of_log(points, surface, machine)
     for trace in traces:
         seen = seen + evidence_of_trace(trace, machine, zero=points.tare)
-    return seen
+    kept: dict[Evidence, Evidence] = {}
+    unused = seen.unused
+    for each in seen.evidence:
+        if surface.b is not None and each.temperature is None:
+            unused += (f"{each.source}: it has no temperature, and the fit needs one",)
+        else:  # a recording that is given twice counts once
+            kept.setdefault(replace(each, source=""), each)
+    return Found(tuple(kept.values()), unused)
 
 
-def _stated(machine: Machine) -> tuple[BreakAway, ...]:
-    """The static friction that a machine file states, as evidence."""
+def _stated(machine: Machine, surface: DampingSurface) -> tuple[BreakAway, ...]:
+    """The static friction that a machine file states, as evidence at the temperature of the stick speed."""
     if machine.static_friction is None or machine.contact is None:
         return ()
     force = machine.static_friction * machine.contact.load
-    return (BreakAway(None, force, _STATED_STATIC, "[boundary] static_friction"),)
+    kelvin = machine.stick_speed_temperature or surface.reference_temperature
+    at = None if surface.b is None else kelvin
+    return (BreakAway(at, force, _STATED_STATIC, "[boundary] static_friction"),)
 
 
 def _part(progress: Progress | None, chain: int) -> Progress | None:
@@ -192,10 +228,13 @@ def _population(
     )
 
     def target(drives: Drives) -> FloatArray:
-        weight = model.log_weight(drives)
-        return weight + log_likelihood(model, drives, evidence) if evidence else weight
+        value = model.log_weight(drives)
+        if evidence:
+            value = value + log_likelihood(model, drives, evidence)
+        # a draw whose motion cannot be followed does not count
+        return np.where(np.isnan(value), -np.inf, value)
 
-    return sample(start, target, chances, random, moves, progress)
+    return sample(start, target, chances, model.curves.weights, random, moves, progress)
 
 
 def _joined(parts: Sequence[Drives]) -> Drives:
@@ -211,8 +250,7 @@ def _convergence(model: DriveModel, populations: Sequence[Population], kelvin: f
     ends = []
     for population in populations:
         few = np.linspace(0, len(population.drives) - 1, min(_JUDGED, len(population.drives))).astype(np.intp)
-        fold = model.folds(population.drives.take(few), kelvin).upper
-        ends.append(quantiles(fold, (0.05, 0.5, 0.95)))
+        ends.append(quantiles(edges_at(model, population.drives.take(few), kelvin).fold, (0.05, 0.5, 0.95)))
     low, high = np.min(ends, axis=0), np.max(ends, axis=0)
     return Convergence(
         ratio=float(np.max(high / np.maximum(low, 1e-300))),
@@ -220,4 +258,5 @@ def _convergence(model: DriveModel, populations: Sequence[Population], kelvin: f
         distinct=min(p.distinct for p in populations),
         stages=max(p.stages for p in populations),
         log_evidence=tuple(p.log_evidence for p in populations),
+        counted=min(p.counted for p in populations),
     )

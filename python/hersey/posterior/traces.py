@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 #: A stretch of one drive speed: its blocks (s) differ by less than this share, and it lasts as long (s).
 BLOCK, SAME, LEAST = 0.25, 0.05, 3.0
+#: Blocks back from which a speed is compared.
+_RECENT = 40
 #: Standing: less than this share of the speed that follows, for as long (s), ending no more than this before
 #: it.
 STANDING, STOOD, RAMP = 0.05, 1.0, 3.0
@@ -109,7 +111,10 @@ def _stretches(run: Run) -> list[_Stretch]:
     means, out, first = blocks / sizes, [], 0
     while first < means.size:
         last = first + 1
-        while last < means.size and abs(means[last] - np.median(means[first:last])) <= SAME * means[first]:
+        while (
+            last < means.size
+            and abs(means[last] - np.median(means[max(last - _RECENT, first) : last])) <= SAME * means[first]
+        ):
             last += 1
         rows = first * step, min(last * step, run.speed.size)
         speed = float(np.mean(np.abs(run.speed[slice(*rows)])))

@@ -29,6 +29,8 @@ _SCATTER = 1.0
 _STEP = 1e-4
 #: Draws are wider than the curvature of the posterior by this factor, so that none of its tail is missed.
 INFLATED = 1.2
+#: Draws and seed that the mean weight of the draws of a law is taken from.
+_MEANS, _MEANS_SEED = 2000, 7
 
 
 @dataclass(frozen=True)
@@ -73,9 +75,19 @@ class FittedLaw:
         return np.asarray(self.numbers + INFLATED * latent @ self.root.T)
 
     def log_weight(self, latent: FloatArray) -> FloatArray:
-        """Return by how much draws are likelier than the latents they are made of."""
+        """Return by how much draws are likelier than the latents they are made of, one on average."""
+        return self._log_weight(latent) - self._mean_log_weight
+
+    def _log_weight(self, latent: FloatArray) -> FloatArray:
         posterior = log_posterior(self.shape, self.dwells, self.at(latent))
         return np.asarray(posterior - self.log_posterior + 0.5 * np.sum(latent**2, axis=1))
+
+    @cached_property
+    def _mean_log_weight(self) -> float:
+        """Logarithm of the mean weight: without it a law of many numbers would count for too little."""
+        latent = np.random.default_rng(_MEANS_SEED).standard_normal((_MEANS, self.size))
+        every = self._log_weight(latent)
+        return float(np.log(np.mean(np.exp(every - every.max()))) + every.max())
 
 
 def fit_shape(shape: Shape, dwells: Dwells, starts: list[FloatArray]) -> FittedLaw:

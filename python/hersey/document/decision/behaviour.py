@@ -27,6 +27,7 @@ from hersey.motion.simulation import Drivetrain, Trajectory
 from hersey.posterior import Posterior, posterior
 from hersey.posterior.drives import Drives
 from hersey.posterior.priors import CLOSURES, NUMBERS
+from hersey.posterior.result import check_temperature
 from hersey.stability.disturbance import Disturbance, SafeStep, disturbance, safe_step
 from hersey.stability.hysteresis import HysteresisBand, hysteresis
 from hersey.stability.operating_map import OperatingMap, operating_map
@@ -92,6 +93,7 @@ class Behaviour:
     points: tuple[PointBehaviour, ...]
     measurement: Measurement | None
     reasons: tuple[str, ...]
+    unjudged: tuple[OperatingPoint, ...] = ()  #: points at whose temperature the fitted law has no meaning
 
 
 class Working:
@@ -105,6 +107,9 @@ class Working:
         traces: Sequence[TorqueLog] = (),
     ) -> None:
         """Begin, in threads: the core computes without Python's lock."""
+        judged = tuple(point for point in machine.points if _has_meaning(surface, point))
+        self._unjudged = tuple(point for point in machine.points if point not in judged)
+        machine = replace(machine, points=judged)
         self._points, self._surface, self._machine, self._traces = points, surface, machine, traces
         # each piece waits for the posterior in its own thread
         self._pool = ThreadPoolExecutor(len(machine.points) + 4)
@@ -142,7 +147,7 @@ class Working:
             points.append(future.result())
         measurement, _ = _done(self._next)
         reasons = (f"no map: {why}",) if why else ()
-        return Behaviour(found.temperature, found, band, stick, map_, tuple(points), measurement, reasons)
+        return Behaviour(found.temperature, found, band, stick, map_, tuple(points), measurement, reasons, self._unjudged)
 
     def _begin(self, work: Callable[..., _T], *given: object) -> Future[_T]:
         return self._pool.submit(work, *given)
@@ -225,6 +230,15 @@ class Working:
             if speed >= drag.law_at(None).transition_speed
         ]
         return disturbance(train, drag, drive_speed=point.speed), tuple(steps)
+
+
+def _has_meaning(surface: DampingSurface, point: OperatingPoint) -> bool:
+    """Whether the law of the fit holds at the temperature of a point."""
+    try:
+        check_temperature(surface, point.temperature)
+    except HerseyError:
+        return False
+    return True
 
 
 def _typical(found: Posterior, kelvin: float | None, count: int) -> Drives:

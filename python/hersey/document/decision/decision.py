@@ -16,7 +16,7 @@ from hersey.document.decision.edges import edges_of
 from hersey.document.decision.flags import flags
 from hersey.document.decision.instruction import of_log, of_machine
 from hersey.document.decision.missing import missing
-from hersey.document.decision.points import point_decision, points_of_log, worst
+from hersey.document.decision.points import point_decision, points_of_log, unjudged, worst
 from hersey.document.decision.questions import unanswered
 from hersey.document.parts import CarriedPart, ComparisonPart, DecisionPart, FilmPart, RegimePart
 from hersey.document.parts.decision import Signal, SpeedPart
@@ -49,10 +49,11 @@ def decision(
         return unanswered(question, points, surface, machine, machine_file)
     said = of_log(surface, trend) if found is None or map_ is None else of_machine(found, map_, unit)
     if found is not None and map_ is not None:
+        film_alone = points.rest is not None
         of_points = [
-            point_decision(point, found.posterior, map_, unit, film_alone=points.rest is not None)
-            for point in found.points
+            point_decision(each, found.posterior, map_, unit, film_alone=film_alone) for each in found.points
         ]
+        of_points += [unjudged(point) for point in found.unjudged]
     elif machine is not None:
         of_points = points_of_log(surface, machine, rises=trend.rises and not trend.falls)
     else:

@@ -14,6 +14,7 @@ from hersey.document.decision.words import between, mm, per_cent, starting, torq
 from hersey.document.parts.decision import PointDecisionPart, Signal, StartPart
 from hersey.document.parts.stability import DisturbancePart, PlanPart, StepPart
 from hersey.document.thinning import kept
+from hersey.machine.limits import OperatingPoint
 from hersey.machine.machine import Machine
 from hersey.posterior import Posterior
 from hersey.result import json_record
@@ -60,6 +61,17 @@ def point_decision(
         plan=None if plan is None else PlanPart(**plan.to_dict()),
         motion=_motion(found),
         reason=found.reason,
+    )
+
+
+def unjudged(point: OperatingPoint) -> PointDecisionPart:
+    """Return what is said of a point at whose temperature the fitted law has no meaning."""
+    return PointDecisionPart(
+        name=point.name,
+        speed=point.speed,
+        temperature=point.temperature,
+        signal="watch",
+        words="not judged: the fitted law holds above 0 °C only",
     )
 
 

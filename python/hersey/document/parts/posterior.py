@@ -29,6 +29,7 @@ class ConvergencePart(Part):
     distinct: float = Field(description="share of draws that no other equals")
     stages: int
     log_evidence: list[float]
+    counted: float = Field(description="degree to which the evidence is in, 1 where all of it is")
     converged: bool
 
 

@@ -249,7 +249,7 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
   function showAnswer() {
     const now = told({ setting, answer, found, kicked });
     // the machine of the report has the verdict of the report; what is drawn is its fitted law with two branches
-    const ofReport = map.given && !setting.profile && machineKey(setting) === machineKey(base) && now.zone.starts;
+    const ofReport = map.given && !setting.profile && machineKey(setting) === machineKey(base);
     const { zone, signal: kind, words, sub } = ofReport ? { ...now, ...reported(setting) } : now;
     const [least, most] = (spread ?? []).map((v) => digits(1e3 * v));
     controls.spread.textContent = spread ? `With this spread V* is ${digits(1e3 * found.upper)} [${least}, ${most}] mm/s.` : "\u00a0";

@@ -123,13 +123,15 @@ def operating_map(
         known["stick_speed"] = known["stick_speed"].times(first / stick_speed)
     reach = surface.speed_range[0] * roll_radius, surface.speed_range[1] * roll_radius
     kelvin = shown_temperatures(surface, drag, points, temperatures)
-    edges = edges_at(train, drag, kelvin, stick_speed_rule)
+    given = None if edges_of is None else edges_of(kelvin)
+    edges = edges_at(train, drag, kelvin, stick_speed_rule) if given is None else _edges_of(given)
     speed_grid = shown_speeds(edges, reach, points, limits.speed, speeds)
-    laws = laws_at(drag, kelvin, stick_speed_rule)
+    # beside given edges only the torque of the fitted law is shown, whatever its stick speed
+    laws = laws_at(drag, kelvin, stick_speed_rule if given is None else WITH_TRANSITION)
     limit, limited_by = torque_limit(train.grip, limits.motor_torque, roll_radius)
     below, above = contour(laws, np.inf if limit is None else limit / roll_radius)
     holding = np.array([law.holding_force for law in laws])
-    if edges_of is None:
+    if given is None:
         found = intervals(
             surface,
             train,
@@ -144,11 +146,8 @@ def operating_map(
             client,
         )
     else:
-        given = edges_of(kelvin)
         found = _intervals_of(given, roll_radius)
         holding = given.holding
-        edges |= {"transition": given.transition, "upper": np.maximum(given.upper, given.transition)}
-        edges["lower"] = np.minimum(edges["lower"], edges["transition"])
     map_ = OperatingMap(
         temperature=kelvin,
         speed=speed_grid,
@@ -172,10 +171,16 @@ def operating_map(
         train=train,
         drag=drag,
         stick_speed_rule=stick_speed_rule,
-        given=edges_of is not None,
+        given=given is not None,
     )
     placed = tuple(_placed(map_, point) for point in points)
     return replace(map_, points=placed, warnings=(*found.warnings, *_remarks(map_, placed)))
+
+
+def _edges_of(given: GivenEdges) -> dict[str, FloatArray]:
+    """Edges that were found elsewhere, by name; small swings have no strip of their own."""
+    upper = np.maximum(given.upper, given.transition)
+    return {"lower": given.transition, "transition": given.transition, "upper": upper}
 
 
 def _intervals_of(given: GivenEdges, roll_radius: float) -> Intervals:
@@ -207,7 +212,7 @@ def _placed(map_: OperatingMap, point: OperatingPoint) -> PlacedPoint:
 
 def _remarks(map_: OperatingMap, points: Sequence[PlacedPoint]) -> list[str]:
     """What a reader of the map must know, one sentence each."""
-    laws = laws_at(map_.drag, map_.temperature, map_.stick_speed_rule)
+    laws = laws_at(map_.drag, map_.temperature, WITH_TRANSITION if map_.given else map_.stick_speed_rule)
     hot, moved = map_.drag.reference_temperature, ""
     where = "" if hot is None else f" at {convert(hot, 'K', 'degC'):.0f} degC"
     if hot is not None and map_.stick_speed_rule == FIXED:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hersey.arrays import FloatArray, numbers_of
+from hersey.damping.surface import WITH_TRANSITION
 from hersey.errors import ParameterError
 from hersey.motion.drag import Drag
 from hersey.motion.simulation import Drivetrain
@@ -204,10 +205,12 @@ class OperatingMap(Result):
         return "motor" if self.limited_by == "motor torque" else "stall"
 
     def _laws(self, kelvin: FloatArray | None) -> list[Drag]:
-        return laws_at(self.drag, kelvin, self.stick_speed_rule)
+        return laws_at(self.drag, kelvin, WITH_TRANSITION if self.given else self.stick_speed_rule)
 
     def _state(self, law: Drag, edges: Mapping[str, float], kelvin: float, speed: float) -> MapState:
         torque, holding = (force * self.roll_radius for force in (float(law.force(speed)), law.holding_force))
+        if self.given:
+            holding = self.at(self.holding, kelvin)
         starts = bool(holding <= self._limit)
         bears = [self.at(edge, kelvin) for edge in self.holding_interval]
         doubtful = bool(self._may_start(bears[0], holding, bears[1]))

@@ -1,0 +1,119 @@
+"""Whether the posterior is as wide as it should be: simulation-based calibration with its own draws.
+
+The draws that the dwells of the shipped log leave open are the prior here. One of them is the truth; of it
+stretches of stick-slip, starts and a break-away force are made with noise, and the posterior is asked. If
+sampler and likelihood are right, the rank of the truth among its draws is uniform (Talts et al.,
+arXiv 1804.06788). Unlike `benchmarks.decisions` this shares all assumptions with the product: it finds
+mistakes of the sampler and the likelihood, not of the model.
+
+Usage: python -m benchmarks.calibration [--truths 100] [--seed 1] [--draws 600]
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+from pathlib import Path
+
+import numpy as np
+
+import hersey
+from hersey.damping.distributions import square_above
+from hersey.posterior import Posterior
+from hersey.posterior.drives import Drives
+from hersey.posterior.evidence import BreakAway, CycleFigures, Evidence, Start, StickSlip
+from hersey.posterior.likelihood import OF_CYCLES, break_away_force
+
+ROOT = Path(__file__).parent.parent
+#: Of the first posterior, whose draws are the truths.
+PRIOR_DRAWS = 2000
+#: Shares of the transition at which stick-slip is recorded, and of V* at which starts are made.
+SLIPS, STARTS = (0.3, 0.7), (0.7, 1.1)
+#: Relative errors of figures and of a break-away force, as stated to the posterior.
+FIGURES, FORCE = 0.01, 0.04
+BINS = 10
+NAMES = ("V*", "transition", "stick speed", "stiffness", "mass", "static ratio")
+
+
+def evidence_of(found: Posterior, truth: Drives, random: np.random.Generator) -> list[Evidence]:
+    """What one draw shows, with noise as large as the posterior takes it to be."""
+    model, kelvin = found.model, found.temperature
+    fold = float(model.folds(truth, kelvin).upper[0])
+    turn = float(model.folds(truth, kelvin).transition[0])
+    out: list[Evidence] = []
+    which = int(random.integers(4))  # nothing, starts, stick-slip or a break-away force
+    if which == 1:
+        for share in STARTS:
+            speed = share * fold
+            slides = bool(model.start_ups(truth, kelvin, [(0.0, speed)]).slides[0])
+            out.append(Start(kelvin, speed, slides))
+    if which == 2:
+        for share in SLIPS:
+            speed = share * turn
+            seen = model.starts(truth, kelvin, speed)
+            if not seen.sticks[0]:
+                continue
+            error = float(np.hypot(FIGURES, OF_CYCLES))
+            top, low = float(seen.pull_max[0]), float(seen.pull_min[0])
+            noise = np.exp(error * random.standard_normal(3)).tolist()
+            period, pull, drop = (
+                v * n for v, n in zip((float(seen.period[0]), top, top - low), noise, strict=True)
+            )
+            figures = CycleFigures((period, FIGURES), (pull, FIGURES), (drop, FIGURES), None)
+            out.append(StickSlip(kelvin, speed, 20.0, figures))
+    if which == 3:
+        force = float(break_away_force(model, truth, kelvin)[0])
+        out.append(BreakAway(kelvin, force * float(np.exp(FORCE * random.standard_normal())), FORCE))
+    return out
+
+
+def quantities(found: Posterior, drives: Drives) -> list[np.ndarray]:
+    """V*, transition and the numbers of draws."""
+    folds = found.model.folds(drives, found.temperature)
+    return [np.maximum(folds.upper, folds.transition), folds.transition, *found.model.numbers(drives).T]
+
+
+def main() -> None:
+    """Draw as many truths as asked for and print the table of ranks."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--truths", type=int, default=100)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--draws", type=int, default=600)
+    given = parser.parse_args()
+    machine = hersey.read_machine(ROOT / "examples" / "machine.toml")
+    points = hersey.read(ROOT / "examples" / "bench.csv").steady(tare="standing").without(machine.rest)
+    surface = hersey.fit(points)
+    prior = hersey.posterior(
+        points, machine, surface=surface, evidence=(), draws=PRIOR_DRAWS, seed=given.seed
+    )
+    began, ranks, left_out, apart = time.perf_counter(), [], 0, 0
+    for number in range(given.truths):
+        random = np.random.default_rng([given.seed, number])
+        truth = prior.drives.take(np.array([random.integers(len(prior.drives))], dtype=np.intp))
+        seen = evidence_of(prior, truth, random)
+        if not seen:
+            continue
+        found = hersey.posterior(
+            points, machine, surface=surface, evidence=seen, draws=given.draws, seed=number + 1
+        )
+        left_out, apart = left_out + len(found.unused), apart + (not found.convergence.converged)
+        pairs = zip(quantities(found, found.drives), quantities(found, truth), strict=True)
+        ranks.append([float(np.mean(d < t[0]) + random.random() * np.mean(d == t[0])) for d, t in pairs])
+    kept = np.array(ranks)
+    print(
+        f"seed {given.seed}: {len(kept)} truths with evidence, {given.draws} draws each, "
+        f"{left_out} recordings left out, {apart} not converged, {time.perf_counter() - began:.0f} s"
+    )
+    print("| quantity | ranks in tenths | p of uniform | in the 95 % interval |\n|---|---|---|---|")
+    for name, column in zip(NAMES, kept.T, strict=True):
+        counts = np.bincount(np.minimum((column * BINS).astype(int), BINS - 1), minlength=BINS)
+        expected = len(column) / BINS
+        p = float(square_above(float(np.sum((counts - expected) ** 2 / expected)), BINS - 1))
+        inside = float(np.mean((column > 0.025) & (column < 0.975)))
+        print(f"| {name} | {' '.join(map(str, counts))} | {p:.3f} | {100 * inside:.0f} % |")
+
+
+if __name__ == "__main__":
+    main()
