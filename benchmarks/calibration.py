@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import argparse
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -23,6 +24,7 @@ from hersey.posterior import Posterior
 from hersey.posterior.drives import Drives
 from hersey.posterior.evidence import BreakAway, CycleFigures, Evidence, Start, StickSlip
 from hersey.posterior.likelihood import OF_CYCLES, break_away_force
+from hersey.posterior.priors import DrivePriors
 
 ROOT = Path(__file__).parent.parent
 #: Of the first posterior, whose draws are the truths.
@@ -32,22 +34,22 @@ SLIPS, STARTS = (0.3, 0.7), (0.7, 1.1)
 #: Relative errors of figures and of a break-away force, as stated to the posterior.
 FIGURES, FORCE = 0.01, 0.04
 BINS = 10
+KINDS = ("starts", "stick-slip", "break-away")
 NAMES = ("V*", "transition", "stick speed", "stiffness", "mass", "static ratio")
 
 
-def evidence_of(found: Posterior, truth: Drives, random: np.random.Generator) -> list[Evidence]:
+def evidence_of(found: Posterior, truth: Drives, kind: str, random: np.random.Generator) -> list[Evidence]:
     """What one draw shows, with noise as large as the posterior takes it to be."""
     model, kelvin = found.model, found.temperature
     fold = float(model.folds(truth, kelvin).upper[0])
     turn = float(model.folds(truth, kelvin).transition[0])
     out: list[Evidence] = []
-    which = int(random.integers(4))  # nothing, starts, stick-slip or a break-away force
-    if which == 1:
+    if kind == "starts":
         for share in STARTS:
             speed = share * fold
             slides = bool(model.start_ups(truth, kelvin, [(0.0, speed)]).slides[0])
             out.append(Start(kelvin, speed, slides))
-    if which == 2:
+    if kind == "stick-slip":
         for share in SLIPS:
             speed = share * turn
             seen = model.starts(truth, kelvin, speed)
@@ -61,7 +63,7 @@ def evidence_of(found: Posterior, truth: Drives, random: np.random.Generator) ->
             )
             figures = CycleFigures((period, FIGURES), (pull, FIGURES), (drop, FIGURES), None)
             out.append(StickSlip(kelvin, speed, 20.0, figures))
-    if which == 3:
+    if kind == "break-away":
         force = float(break_away_force(model, truth, kelvin)[0])
         out.append(BreakAway(kelvin, force * float(np.exp(FORCE * random.standard_normal())), FORCE))
     return out
@@ -91,15 +93,19 @@ def main() -> None:
     began, ranks, left_out, apart = time.perf_counter(), [], 0, 0
     for number in range(given.truths):
         random = np.random.default_rng([given.seed, number])
+        which = int(random.integers(len(KINDS)))
+        # a measured break-away force widens the prior of static friction: so for the truth
+        wide = DrivePriors.of(machine, break_away_known=KINDS[which] == "break-away")
+        from_ = replace(prior, model=replace(prior.model, priors=wide))
         truth = prior.drives.take(np.array([random.integers(len(prior.drives))], dtype=np.intp))
-        seen = evidence_of(prior, truth, random)
+        seen = evidence_of(from_, truth, KINDS[which], random)
         if not seen:
             continue
         found = hersey.posterior(
             points, machine, surface=surface, evidence=seen, draws=given.draws, seed=number + 1
         )
         left_out, apart = left_out + len(found.unused), apart + (not found.convergence.converged)
-        pairs = zip(quantities(found, found.drives), quantities(found, truth), strict=True)
+        pairs = zip(quantities(found, found.drives), quantities(from_, truth), strict=True)
         ranks.append([float(np.mean(d < t[0]) + random.random() * np.mean(d == t[0])) for d, t in pairs])
     kept = np.array(ranks)
     print(

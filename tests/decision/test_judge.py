@@ -109,3 +109,19 @@ def test_no_start_up_below_the_transition(found: Posterior) -> None:
     plan = plan_start_up(found, HOT, 0.02)
     assert not plan.found
     assert [each.limit for each in plan.obstacles] == ["target_speed"]
+
+
+def test_no_profile_is_faster_than_the_drive(found: Posterior) -> None:
+    """A plan goes to a motor controller: the drive's own limit comes first."""
+    made = _with(found, Limits(speed=0.4, acceleration=0.5))
+    [obstacle] = plan_start_up(made, HOT, 0.6).obstacles
+    assert (obstacle.limit, obstacle.given, obstacle.needed) == ("speed", 0.4, 0.6)
+    for confidence in (0.0, 2.0):
+        with pytest.raises(hersey.HerseyError, match=r"0\.5 to 0\.999 is possible"):
+            plan_start_up(made, HOT, 0.1, confidence=confidence)
+
+
+def test_starts_are_proposed_at_speeds_of_the_drive(found: Posterior) -> None:
+    made = _with(found, Limits(speed=0.12))
+    proposed = [each for each in measurements(made) if each.kind == "starts"]
+    assert max(speed for each in proposed for speed in each.speeds) <= 0.12

@@ -10,12 +10,13 @@ import pytest
 
 import hersey
 from hersey.log import TorqueLog
+from hersey.log.torque_log import Run
 from hersey.posterior import BreakAway, Posterior, Start, StickSlip
 from hersey.posterior.evidence import CycleFigures
 from hersey.posterior.likelihood import break_away_force, misfit
 from hersey.posterior.priors import CLOSURES, DrivePriors
 from hersey.posterior.sampling import posterior
-from hersey.posterior.traces import evidence_of_log, evidence_of_trace
+from hersey.posterior.traces import _stretches, evidence_of_log, evidence_of_trace
 from tests.conftest import ROOT
 
 HOT = 453.15
@@ -79,8 +80,11 @@ def test_the_core_agrees_with_its_motion_followed_event_by_event(alone: Posterio
 
     train, drag = typical_drag(alone, HOT)
     exact = hersey.hysteresis(train, drag, sensitivity=False).upper
-    fold = np.sort(alone.edges(HOT).fold)
-    assert exact == pytest.approx(fold[fold.size // 2], rel=0.015)
+    fold = alone.edges(HOT).fold
+    draw = alone.drives.take(np.argsort(fold)[fold.size // 2 : fold.size // 2 + 1].astype(np.intp))
+    [fine] = alone.model.folds(draw, HOT, accuracy=1e-5).upper
+    assert exact == pytest.approx(fine, rel=0.01)
+    assert np.sort(fold)[fold.size // 2] == pytest.approx(fine, rel=0.015)  # as accurate as draws need
 
 
 def test_starts_on_both_sides_bound_v_star(alone: Posterior, demo: hersey.SteadyPoints) -> None:
@@ -228,3 +232,65 @@ def test_a_log_whose_drive_is_stiffer_gives_no_starts(
     """Dwells held where this machine would stick: sliding there says nothing of its V*."""
     found = evidence_of_log(demo, surface, machine)
     assert [type(each) for each in found.evidence] == [StickSlip]
+
+
+def test_laws_are_drawn_in_proportion_to_their_weights(alone: Posterior) -> None:
+    """The mean weight of a law's draws is one, so that its size does not count against it."""
+    curves = alone.model.curves
+    random = np.random.default_rng(11)
+    for law in curves.laws:
+        mean = float(np.mean(np.exp(law.log_weight(random.standard_normal((4000, law.size))))))
+        assert mean == pytest.approx(1.0, abs=0.15)
+    drawn = np.bincount(alone.drives.law, minlength=len(curves.laws)) / len(alone.drives)
+    assert drawn == pytest.approx(curves.weights, abs=0.06)
+
+
+def test_outcomes_that_hardly_any_draw_shows_do_not_count(
+    alone: Posterior, demo: hersey.SteadyPoints
+) -> None:
+    """Below the transition nothing slides from rest, at 2 m/s everything does: such recordings are named."""
+    model, before = alone.model, alone.fold_interval(HOT)
+    for wrong in (Start(HOT, 0.01, slid=True), StickSlip(HOT, 2.0, 20.0)):
+        found = posterior(demo, model.machine, surface=model.surface, evidence=(wrong,) * 3, draws=400)
+        assert found.evidence == ()
+        assert len(found.unused) == 3
+        assert found.fold_interval(HOT)[0] == pytest.approx(before[0], rel=0.15)
+
+
+def test_evidence_needs_the_temperature_that_the_fit_has(alone: Posterior, demo: hersey.SteadyPoints) -> None:
+    model = alone.model
+    for kelvin, said in ((None, "temperature is missing"), (270.0, "temperature is 270 K")):
+        with pytest.raises(hersey.HerseyError, match=said):
+            posterior(demo, model.machine, surface=model.surface, evidence=[Start(kelvin, 0.1, slid=True)])
+    with pytest.raises(hersey.HerseyError, match="holds above 0 degC only"):
+        alone.edges(float("nan"))
+
+
+def test_a_stated_static_friction_holds_where_the_stick_speed_does(
+    demo: hersey.SteadyPoints, surface: hersey.DampingSurface, machine: hersey.Machine
+) -> None:
+    """The ratio stated is that of 180 degC: what the draws need there agrees with it."""
+    assert machine.contact is not None
+    stated = replace(machine, static_friction=0.09)
+    found = posterior(demo, stated, surface=surface, evidence=(), draws=400)
+    [counted] = found.evidence
+    assert counted.temperature == pytest.approx(HOT)
+    force = float(np.median(break_away_force(found.model, found.drives, HOT)))
+    assert force == pytest.approx(0.09 * machine.contact.load, rel=0.05)
+
+
+def test_a_recording_given_twice_counts_once(whole: Posterior, demo: hersey.SteadyPoints) -> None:
+    machine, log = whole.model.machine, demo.log
+    assert isinstance(log, TorqueLog)
+    found = posterior(demo, machine, surface=whole.model.surface, traces=[log], draws=200)
+    assert [type(each) for each in found.evidence].count(StickSlip) == 1
+
+
+def test_a_long_stretch_is_searched_in_proportion_to_its_length() -> None:
+    """Looking at all blocks that came before made a day at one speed take minutes: now few are looked at."""
+    time = np.arange(0.0, 40_000.0, 0.25)
+    drift = 4.0 * np.exp(1e-6 * time)  # by 4 %, less than what makes another speed
+    [stretch] = _stretches(Run("", time, time, drift, None))
+    assert (stretch.first, stretch.last) == (0, time.size)
+    step = np.where(time < 20_000.0, 4.0, 4.4)
+    assert [each.first for each in _stretches(Run("", time, time, step, None))] == [0, 80_000]

@@ -2,8 +2,9 @@
 
 The evidence is brought in by degrees. After each, draws are resampled by weight and moved: along differences
 of two other draws (ter Braak, Stat. Comput. 16 (2006) 239), towards and away from the prior (Cotter et al.,
-Stat. Sci. 28 (2013) 424), from closure to closure and from law to law. Two populations that know nothing of
-each other show whether the result has converged. Del Moral, Doucet and Jasra, J. R. Stat. Soc. B 68 (2006) 411.
+Stat. Sci. 28 (2013) 424), from closure to closure and from law to law. Two populations that know nothing
+of each other show whether the result has converged. Del Moral, Doucet and Jasra, J. R. Stat. Soc. B 68
+(2006) 411.
 """
 
 from __future__ import annotations
@@ -47,9 +48,9 @@ class Moves:
     ``last`` holds after the last stage.
     """
 
-    often: float = 0.6
-    rounds: int = 4
-    last: int = 10
+    often: float = 1.0
+    rounds: int = 6
+    last: int = 12
 
 
 def sample(
@@ -142,9 +143,13 @@ def _moved(
     along = random.random(count) < 0.5
     pcn = np.sqrt(1.0 - part**2) * draws.latent + part * random.standard_normal((count, size))
     latent = np.where(along[:, None], _along_differences(draws, random), pcn)
-    closure = np.where(random.random(count) < 0.2, random.integers(0, closures.size, count), draws.closure)
+    # some change nothing but the closure: where little tells it, it should be free
+    alone = random.random(count) < 0.2
+    latent = np.where(alone[:, None], draws.latent, latent)
+    changed = alone | (random.random(count) < 0.1)
+    closure = np.where(changed, random.integers(0, closures.size, count), draws.closure)
     # a law of other numbers: only from the prior's own moves, whose latents mean the same to all laws
-    changes = ~along & (random.random(count) < 0.2)
+    changes = ~along & ~alone & (random.random(count) < 0.2)
     law = np.where(changes, random.integers(0, laws.size, count), draws.law).astype(np.intp)
     proposed = Drives(law, closure.astype(np.intp), latent)
     new = target(proposed)

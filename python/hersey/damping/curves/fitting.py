@@ -31,6 +31,9 @@ _STEP = 1e-4
 INFLATED = 1.2
 #: Draws and seed that the mean weight of the draws of a law is taken from.
 _MEANS, _MEANS_SEED = 2000, 7
+#: Greatest ln weight of a draw over the mean of a normal posterior: no single one far out may rule (Ionides,
+#: J. Comput. Graph. Stat. 17 (2008) 295).
+_GREATEST = 3.0
 
 
 @dataclass(frozen=True)
@@ -80,7 +83,8 @@ class FittedLaw:
 
     def _log_weight(self, latent: FloatArray) -> FloatArray:
         posterior = log_posterior(self.shape, self.dwells, self.at(latent))
-        return np.asarray(posterior - self.log_posterior + 0.5 * np.sum(latent**2, axis=1))
+        weight = posterior - self.log_posterior + 0.5 * np.sum(latent**2, axis=1)
+        return np.asarray(np.minimum(weight, _GREATEST - self.size * np.log(INFLATED)))
 
     @cached_property
     def _mean_log_weight(self) -> float:

@@ -147,7 +147,9 @@ class Working:
             points.append(future.result())
         measurement, _ = _done(self._next)
         reasons = (f"no map: {why}",) if why else ()
-        return Behaviour(found.temperature, found, band, stick, map_, tuple(points), measurement, reasons, self._unjudged)
+        return Behaviour(
+            found.temperature, found, band, stick, map_, tuple(points), measurement, reasons, self._unjudged
+        )
 
     def _begin(self, work: Callable[..., _T], *given: object) -> Future[_T]:
         return self._pool.submit(work, *given)
