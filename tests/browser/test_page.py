@@ -251,6 +251,8 @@ def test_it_is_accessible(
     page = opened.page
     assert page.get_attribute("html", "data-theme") == scheme
     page.evaluate("document.querySelectorAll('details').forEach((d) => { d.open = true; })")
+    # sections out of view are not laid out until they are scrolled to: places of what is in them mean nothing
+    page.add_style_tag(content="#report section { content-visibility: visible !important; }")
     page.wait_for_timeout(1200)
     picture(page, f"{name}-{scheme}-open", whole=True)
     inside = {"exclude": [["svg[role=img] > *"]]}  # drawings have names; what is in them is presentational
