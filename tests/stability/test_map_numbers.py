@@ -270,7 +270,7 @@ def test_every_sentence_of_a_map(few: OperatingMap, surface: DampingSurface) -> 
     assert few.warnings == (
         f"V* depends on the stick speed, 0.3 mm/s at {hot - 273.15:.0f} degC here (with the transition speed "
         f"it moves from {cold_stick:.3g} to {hot_stick:.3g} mm/s), which nobody measures; its "
-        "interval counts the fit and stiffness and stick speed",
+        "interval counts the fit, stiffness and stick speed",
         f"the drive bears 4.5 N m (motor torque); a belt at rest bears {rest:.3g} N m before it starts, "
         "so it may not start",
         f"thick paper: within the 95 % interval of V* ({1e3 * low:.3g} to {1e3 * high:.3g} mm/s), so the "

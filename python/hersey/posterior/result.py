@@ -34,6 +34,8 @@ CONVERGED = 1.15
 MAP_TEMPERATURES = 9
 #: Share of draws whose motion may be lost.
 _LOST = 0.1
+#: Units of the numbers of a drive.
+_UNITS = {"stick_speed": "m/s", "stiffness": "N/m", "mass": "kg", "static_ratio": "1"}
 #: V* beyond this many transition speeds is not looked for.
 _FARTHEST = 1e4
 
@@ -200,14 +202,13 @@ class Posterior(Result):
         import xarray as xr
 
         edges = self.edges(self.temperature)
-        units = {"stick_speed": "m/s", "stiffness": "N/m", "mass": "kg", "static_ratio": "1"}
         columns: dict[str, NDArray[Any]] = {
             **self.numbers(),
             "fold_speed": edges.fold,
             "transition_speed": edges.transition,
             "closure": self.drives.closure,
         }
-        units |= {"fold_speed": "m/s", "transition_speed": "m/s", "closure": "1"}
+        units = _UNITS | {"fold_speed": "m/s", "transition_speed": "m/s", "closure": "1"}
         shape = self.chains, len(self.drives) // self.chains
         kept = shape[0] * shape[1]
         variables = {
@@ -250,10 +251,9 @@ class Posterior(Result):
 
         edges = self.edges(self.temperature)
         names = list(CLOSURES)
-        units = {"stick_speed": "m/s", "stiffness": "N/m", "mass": "kg", "static_ratio": "1"}
         return pl.DataFrame(
             {
-                **{f"{name} ({units[name]})": values for name, values in self.numbers().items()},
+                **{f"{name} ({_UNITS[name]})": values for name, values in self.numbers().items()},
                 "closure": [names[i] for i in self.drives.closure.tolist()],
                 "transition_speed (m/s)": edges.transition,
                 "fold_speed (m/s)": edges.fold,

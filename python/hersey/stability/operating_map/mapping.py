@@ -220,7 +220,8 @@ def _remarks(map_: OperatingMap, points: Sequence[PlacedPoint]) -> list[str]:
     elif hot is not None:
         ends = [1e3 * law.stick_speed for law in (laws[0], laws[-1])]
         moved = f" (with the transition speed it moves from {ends[0]:.3g} to {ends[1]:.3g} mm/s)"
-    counted = " and ".join(["the fit", *(name.replace("_", " ") for name in map_.uncertain)])
+    names = ["the fit", *(name.replace("_", " ") for name in map_.uncertain)]
+    counted = " and ".join(filter(None, [", ".join(names[:-1]), names[-1]]))
     stick = f"{1e3 * map_.drag.stick_speed:.3g} mm/s"
     said = [
         f"V* depends on the stick speed, {stick}{where} here{moved}, which nobody measures; "
