@@ -357,7 +357,7 @@ def test_a_chart_is_saved(demo: Opened, kind: str, start: bytes) -> None:
     behind = demo.page.locator("#chart-regime details")
     if behind.get_attribute("open") is None:
         behind.locator("summary").click()
-    assert behind.locator("tbody tr").count() >= 5
+    behind.locator("tbody tr").nth(4).wait_for(state="attached")  # rows come when the fold opens
     content = saved(demo.page, behind.locator("button", has_text=f"Save {kind}"))
     assert content.startswith(start)
     assert b"light-dark" not in content
