@@ -447,3 +447,14 @@ def test_the_laws_tried_stand_in_their_order(document: Analysis) -> None:
     listed = {each.name for each in document.regime.explanations}
     kept = {law.name for law in tried if law.verdict == "not excluded"}
     assert kept - {"one power of speed"} <= listed
+
+
+def test_map_and_headline_give_one_v_star(found: Behaviour) -> None:
+    """The map is of fewer draws, but not at the temperature of the headline."""
+    map_, drawn = found.map, found.posterior
+    assert map_ is not None
+    assert map_.temperature is not None
+    near = int(np.argmin(np.abs(map_.temperature - HOT)))
+    value, low, high = drawn.fold_interval(float(map_.temperature[near]))
+    assert map_.upper[near] == pytest.approx(value, rel=0.005)
+    assert map_.upper_interval[:, near] == pytest.approx([low, high], rel=0.005)

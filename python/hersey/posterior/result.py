@@ -139,14 +139,19 @@ class Posterior(Result):
     def map_edges(self, kelvin: FloatArray | None, *, most: int = 200, threads: int = 1) -> GivenEdges:
         """Return medians and intervals of the edges at temperatures (K; None if isothermal) for a map.
 
-        They are drawn at some temperatures, from so many draws at most, and interpolated between.
+        They are drawn at some temperatures, from so many draws at most (from all at that of the headline),
+        and interpolated between.
         """
         levels: list[float | None] = [None] if kelvin is None else kelvin.tolist()
         if kelvin is not None and kelvin.size > MAP_TEMPERATURES:
-            levels = np.linspace(kelvin[0], kelvin[-1], MAP_TEMPERATURES).tolist()
+            drawn = np.linspace(kelvin[0], kelvin[-1], MAP_TEMPERATURES)
+            if self.temperature is not None and kelvin[0] < self.temperature < kelvin[-1]:
+                drawn = np.union1d(drawn, self.temperature)  # there the map says what the headline says
+            levels = drawn.tolist()
         rows = []
         for level in levels:
-            edges = self.edges(level, most=most, threads=threads)
+            headline = level == self.temperature
+            edges = self.edges(level, most=None if headline else most, threads=threads)
             started = ~edges.stalls.astype(bool)
             fold = edges.fold[started] if np.mean(started) >= 0.1 else edges.fold
             rows.append(
