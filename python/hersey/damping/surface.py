@@ -19,7 +19,6 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.damping.candidates.branched import LEAST_POWER, transition_exponent
-from hersey.damping.candidates.thermal import scaled_temperature
 from hersey.damping.distributions import square_quantile
 from hersey.damping.estimate import Estimate, quantile
 from hersey.damping.fitted_law import FittedLaw
@@ -198,7 +197,6 @@ class DampingSurface(FittedLaw):
                     f"a stick speed that is '{FIXED}' at all temperatures cannot be followed while it "
                     f"varies: give one temperature, or stick_speed_rule '{WITH_TRANSITION}'"
                 )
-            zero = 0.0 if self.temperature_scale == "K" else ZERO_CELSIUS
             reference = self.reference_temperature
             at_reference = self.drag(roll_radius=roll_radius, temperature=reference, **sticking)
             exponent = self.transition.temperature_exponent
@@ -207,7 +205,7 @@ class DampingSurface(FittedLaw):
                 reference_temperature=reference,
                 force_temperature_exponent=self.b.value + (1.0 + self.c.value) * exponent,
                 speed_temperature_exponent=exponent,
-                temperature_zero=zero,
+                temperature_zero=self.temperature_zero,
             )
         film = Drag(
             transition_force=self.transition_torque(temperature) / roll_radius,
@@ -349,14 +347,23 @@ class DampingSurface(FittedLaw):
             out.append(values)
         return out
 
+    @property
+    def temperature_zero(self) -> float:
+        """Zero of the scale in which the law is a power of temperature, K."""
+        return 0.0 if self.temperature_scale == "K" else ZERO_CELSIUS
+
+    def check_temperature(self, temperature: float | None) -> None:
+        """Refuse a temperature (K) at which the powers of the law have no meaning."""
+        if self.b is None:
+            return
+        if temperature is None or not (np.isfinite(temperature) and temperature > self.temperature_zero):
+            given = "missing" if temperature is None else f"{temperature:g} K"
+            scale = self.temperature_scale
+            raise ParameterError(f"temperature is {given}: a law in {scale} holds above 0 {scale} only")
+
     def _checked_temperature(self, temperature: float) -> float:
         """The same for one temperature where the powers of the law have a meaning."""
-        scaled = float(scaled_temperature(np.asarray(temperature, dtype=float), self.temperature_scale))
-        if not (np.isfinite(scaled) and scaled > 0):
-            raise ParameterError(
-                f"temperature is {temperature:g} K: a law in {self.temperature_scale} holds above 0 "
-                f"{self.temperature_scale} only"
-            )
+        self.check_temperature(temperature)
         return float(self.log_temperature(np.asarray(temperature, dtype=float)))
 
     def summary(self) -> str:

@@ -8,8 +8,8 @@ on the other half, which the search has not seen.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -25,13 +25,11 @@ from hersey.posterior.drives import Drives
 from hersey.posterior.priors import CLOSURES
 from hersey.stability.plan.draws import lower_bound
 from hersey.stability.plan.obstacles import Obstacle
-from hersey.stability.plan.result import LimitUse, Plan
+from hersey.stability.plan.result import CONFIDENCES, NOTHING, LimitUse, Plan
 from hersey.stability.plan.trial import Shape, rounded
 
 #: Share of the draws that must slide, in the search and in the verification.
 SEARCHED, VERIFIED = 0.98, 0.95
-#: Shares of the draws that may be asked for.
-CONFIDENCES = (0.5, 0.999)
 #: Durations of ramps and holds, in periods of spring and mass.
 _RISES = (0.0, 1.0, 4.0, 16.0, 60.0)
 _HOLDS = (1.0, 4.0, 12.0)
@@ -61,8 +59,7 @@ class _Asked:
 
     @property
     def lap(self) -> float:
-        machine = self.found.model.machine
-        return 2.0 * math.pi * math.sqrt(machine.mass / machine.stiffness)
+        return self.found.model.machine.train.free_period
 
     def tried(self, drives: Drives, shape: Shape) -> tuple[np.ndarray, FloatArray]:
         """Return which draws slide soon after the last ramp, within the force, and their peaks (N)."""
@@ -168,7 +165,7 @@ def _plan(
     found, kelvin, target = asked.found, asked.kelvin, asked.target
     edges = found.edges(kelvin)
     fold, _, _ = found.fold_interval(kelvin)
-    facts = {
+    facts: dict[str, Any] = {
         "target_speed": target,
         "confidence": asked.confidence,
         "seed": found.seed,
@@ -185,10 +182,10 @@ def _plan(
         slides, peaks = asked.tried(fresh, shape)
         share = float(np.mean(slides))
     if shape is None or fresh is None or share < asked.confidence:
-        return Plan(**facts, **_NOTHING, obstacles=(_obstacle(asked, below_transition),))  # type: ignore[arg-type]
+        return Plan(**facts, **NOTHING, obstacles=(_obstacle(asked, below_transition),))
     good = round(share * len(fresh))
     return Plan(
-        **facts,  # type: ignore[arg-type]
+        **facts,
         kind="direct" if shape.peak <= target else "overshoot",
         schedule=shape.schedule(),
         duration=rounded(shape.end + _LATE * asked.lap, up=True),
@@ -206,20 +203,6 @@ def _plan(
         peak_force=float(np.quantile(peaks, asked.confidence)),
         response=response(found, kelvin, shape.schedule(), shape.end + 12.0 * asked.lap),
     )
-
-
-#: What a plan without a profile has.
-_NOTHING: Mapping[str, object] = {
-    "kind": "impossible",
-    "schedule": None,
-    **dict.fromkeys(("duration", "wait", "rise", "peak_speed", "hold", "fall", "peak_force"), math.nan),
-    "share": 0.0,
-    "share_low": 0.0,
-    "draws": 0,
-    "failures": {},
-    "uses": (),
-    "response": None,
-}
 
 
 def _failures(count: int) -> dict[str, int]:

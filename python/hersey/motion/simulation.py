@@ -7,6 +7,7 @@ for stiffness, angular speed for belt speed.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
@@ -74,6 +75,11 @@ class Drivetrain:
             if not value > 0 or not np.isfinite(value):
                 raise ParameterError(f"{name} is {value}: it must be greater than 0")
         return cls(stiffness / roll_radius**2, inertia / roll_radius**2)
+
+    @property
+    def free_period(self) -> float:
+        """Period of spring and mass without drag, s: 2 pi sqrt(m/k)."""
+        return 2.0 * math.pi * math.sqrt(self.mass / self.stiffness)
 
     @property
     def _arguments(self) -> tuple[float, float, float | None]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -13,14 +12,13 @@ from numpy.typing import NDArray
 
 from hersey.arrays import BoolArray, FloatArray
 from hersey.damping.curves import LawWeight
-from hersey.damping.surface import DampingSurface
 from hersey.errors import ParameterError
 from hersey.posterior.drives import DriveModel, Drives
 from hersey.posterior.evidence import Evidence
 from hersey.posterior.priors import CLOSURES, NUMBERS
 from hersey.result import Result, json_record
 from hersey.stability.operating_map.edges import GivenEdges
-from hersey.units import ZERO_CELSIUS, celsius
+from hersey.units import celsius
 
 if TYPE_CHECKING:
     import polars as pl
@@ -152,7 +150,7 @@ class Posterior(Result):
         for level in levels:
             headline = level == self.temperature
             edges = self.edges(level, most=None if headline else most, threads=threads)
-            started = ~edges.stalls.astype(bool)
+            started = ~edges.stalls
             fold = edges.fold[started] if np.mean(started) >= 0.1 else edges.fold
             rows.append(
                 [quantiles(each, (0.5, 0.025, 0.975)) for each in (edges.transition, fold, edges.holding)]
@@ -174,13 +172,13 @@ class Posterior(Result):
     def _started(self, kelvin: float | None) -> FloatArray:
         """V* of the draws that the drive starts; of all where hardly any does."""
         edges = self.edges(kelvin)
-        starts = ~edges.stalls.astype(bool)
+        starts = ~edges.stalls
         return edges.fold[starts] if np.mean(starts) >= 0.1 else edges.fold
 
     def probability(self, kelvin: float | None, speed: float) -> PointProbability:
         """Return the probability of each outcome at a temperature (K) and drive speed (m/s)."""
         edges = self.edges(kelvin)
-        stalls = edges.stalls.astype(bool)
+        stalls = edges.stalls
         smooth = ~stalls & (edges.fold < speed)
         sticks = ~stalls & (speed < edges.transition)
         shares = [float(np.mean(each)) for each in (smooth, sticks, stalls)]
@@ -281,7 +279,7 @@ def edges_at(model: DriveModel, drives: Drives, kelvin: float | None, *, threads
 
     A draw whose motion cannot be followed counts as the worst of the others.
     """
-    check_temperature(model.surface, kelvin)
+    model.surface.check_temperature(kelvin)
     found = model.folds(drives, kelvin, threads=threads)
     upper = np.minimum(found.upper, _FARTHEST * found.transition)
     columns = [found.transition, np.fmax(upper, found.transition), found.holding]
@@ -294,16 +292,6 @@ def edges_at(model: DriveModel, drives: Drives, kelvin: float | None, *, threads
         )
     transition, fold, holding = (np.where(lost, np.nanmax(each), each) for each in columns)
     return Edges(transition, fold, holding, found.stalls.astype(bool))
-
-
-def check_temperature(surface: DampingSurface, kelvin: float | None) -> None:
-    """Refuse a temperature (K) at which the powers of the fitted law have no meaning."""
-    if surface.b is None:
-        return
-    scale, zero = ("K", 0.0) if surface.temperature_scale == "K" else ("degC", ZERO_CELSIUS)
-    if kelvin is None or not (math.isfinite(kelvin) and kelvin > zero):
-        given = "missing" if kelvin is None else f"{kelvin:g} K"
-        raise ParameterError(f"temperature is {given}: a law in {scale} holds above 0 {scale} only")
 
 
 #: Units of the numbers as people read them, and how many make one in SI.

@@ -19,10 +19,9 @@ from hersey.posterior.drives import DriveModel, Drives
 from hersey.posterior.evidence import BreakAway, Evidence, Start, StickSlip
 from hersey.posterior.likelihood import log_likelihood, misfit
 from hersey.posterior.priors import CLOSURES, DrivePriors
-from hersey.posterior.result import Convergence, Posterior, check_temperature, edges_at, quantiles
+from hersey.posterior.result import Convergence, Posterior, edges_at, quantiles
 from hersey.posterior.sampler import Moves, Population, sample
 from hersey.posterior.traces import Found, evidence_of_log, evidence_of_trace
-from hersey.units import ZERO_CELSIUS
 
 #: Draws of a posterior, all populations together.
 DRAWS = 1000
@@ -140,8 +139,7 @@ def decision_temperature(surface: DampingSurface, machine: Machine) -> float | N
     """Return the temperature (K) of the decision: the hottest of the operating points, or of the log."""
     if surface.b is None or surface.temperature_range is None:
         return None
-    zero = 0.0 if surface.temperature_scale == "K" else ZERO_CELSIUS
-    points = [point.temperature for point in machine.points if point.temperature > zero]
+    points = [point.temperature for point in machine.points if point.temperature > surface.temperature_zero]
     return max(points) if points else surface.temperature_range[1]
 
 
@@ -161,7 +159,7 @@ def _most_misfit(evidence: Evidence) -> float:
 def _given(evidence: Sequence[Evidence], surface: DampingSurface) -> Found:
     """Evidence of the caller, which must have the temperature that the fit needs."""
     for each in evidence:
-        check_temperature(surface, each.temperature)
+        surface.check_temperature(each.temperature)
     return Found(tuple(evidence))
 
 

@@ -67,29 +67,25 @@ def evidence_of_log(points: SteadyPoints, surface: DampingSurface, machine: Mach
     if not isinstance(points.log, TorqueLog):
         return Found()
     stiffer = _held_by_a_stiffer_drive(points, surface)
-    found = evidence_of_trace(points.log, machine, zero=points.tare, slow_torque=SWINGS)
+    found = evidence_of_trace(points.log, machine, zero=points.tare)
     if not stiffer:
         return found
     kept = tuple(e for e in found.evidence if isinstance(e, StickSlip))
     return Found(kept, found.unused)
 
 
-def evidence_of_trace(
-    log: TorqueLog, machine: Machine, *, zero: float = 0.0, slow_torque: float = 0.0
-) -> Found:
+def evidence_of_trace(log: TorqueLog, machine: Machine, *, zero: float = 0.0) -> Found:
     """Return what a recording of the machine shows of starts and stick-slip.
 
     Parameters
     ----------
     zero
         Torque (N m) that the sensor shows without load.
-    slow_torque
-        Stretches whose torque swings by less than this share are not looked at for stick-slip.
     """
     found = Found()
     for run in log.runs:
         for stretch in _stretches(run):
-            found = found + _of_stretch(run, stretch, machine, zero, slow_torque)
+            found = found + _of_stretch(run, stretch, machine, zero)
     return found
 
 
@@ -145,7 +141,7 @@ def _standstill_before(run: Run, row: int, speed: float) -> int | None:
     return end if stood else None
 
 
-def _of_stretch(run: Run, stretch: _Stretch, machine: Machine, zero: float, slow: float) -> Found:
+def _of_stretch(run: Run, stretch: _Stretch, machine: Machine, zero: float) -> Found:
     """What one stretch shows."""
     sign = 1.0 if float(np.mean(run.speed[stretch.first : stretch.last])) >= 0.0 else -1.0
     force = sign * (run.torque - zero) / machine.roll_radius
@@ -154,7 +150,7 @@ def _of_stretch(run: Run, stretch: _Stretch, machine: Machine, zero: float, slow
     drive_speed = stretch.speed * machine.roll_radius
     settled = slice(stretch.last - int(SETTLED * (stretch.last - stretch.first)), stretch.last)
     mean = float(np.mean(force[settled]))
-    swings = float(np.std(force[settled])) > max(slow, SWINGS) * abs(mean)
+    swings = float(np.std(force[settled])) > SWINGS * abs(mean)
     record = (
         _record(run, force, rows if stretch.started is None else settled, drive_speed) if swings else None
     )
@@ -218,7 +214,7 @@ def _figures(record: CycleRecord, run: Run, machine: Machine, drive_speed: float
     top, drop = Scatter.of(record.force_max), Scatter.of(record.drop)
     # between two samples the force rises by as much as this
     rise = machine.stiffness * drive_speed * run.sampling_interval
-    free = 2.0 * np.pi * float(np.sqrt(machine.mass / machine.stiffness))
+    free = machine.train.free_period
     coarse = 0.1 * min(1.0, (PEAK_RESOLVED * run.sampling_interval / free) ** 2)
     noise = record.samples.noise
     slope = (
@@ -250,7 +246,7 @@ def _rise(run: Run, stretch: _Stretch) -> float:
 
 def _peak(run: Run, force: FloatArray, stretch: _Stretch, machine: Machine) -> tuple[float, float] | None:
     """The greatest force of a start with its relative error, over a small part of the free period."""
-    free = 2.0 * np.pi * float(np.sqrt(machine.mass / machine.stiffness))
+    free = machine.train.free_period
     if free < PEAK_RESOLVED * run.sampling_interval:
         return None
     assert stretch.started is not None

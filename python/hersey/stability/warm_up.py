@@ -251,7 +251,7 @@ def warm_up(
     if not 0 <= margin < 1:
         raise ParameterError(f"margin is {margin:g}: it is a share of the limit, from 0 to below 1")
     rule = _Rule(train, drag, target_speed, force_limit * (1.0 - margin))
-    lap = 2.0 * math.pi * math.sqrt(train.mass / train.stiffness)
+    lap = train.free_period
 
     def moved(speed: float | Schedule, duration: float) -> Trajectory:
         count = _FINER * (_POINTS - 1) + 1

@@ -27,7 +27,6 @@ from hersey.motion.simulation import Drivetrain, Trajectory
 from hersey.posterior import Posterior, posterior
 from hersey.posterior.drives import Drives
 from hersey.posterior.priors import CLOSURES, NUMBERS
-from hersey.posterior.result import check_temperature
 from hersey.stability.disturbance import Disturbance, SafeStep, disturbance, safe_step
 from hersey.stability.hysteresis import HysteresisBand, hysteresis
 from hersey.stability.operating_map import OperatingMap, operating_map
@@ -237,7 +236,7 @@ class Working:
 def _has_meaning(surface: DampingSurface, point: OperatingPoint) -> bool:
     """Whether the law of the fit holds at the temperature of a point."""
     try:
-        check_temperature(surface, point.temperature)
+        surface.check_temperature(point.temperature)
     except HerseyError:
         return False
     return True

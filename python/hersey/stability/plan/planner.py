@@ -21,7 +21,7 @@ from hersey.motion.simulation import Drivetrain, simulate
 from hersey.stability.hysteresis import hysteresis
 from hersey.stability.plan.draws import Trials, drawn, lower_bound, most_failures, needed, neighbours
 from hersey.stability.plan.obstacles import Obstacle, Reach, obstacles
-from hersey.stability.plan.result import LimitUse, Plan
+from hersey.stability.plan.result import CONFIDENCES, NOTHING, LimitUse, Plan
 from hersey.stability.plan.search import Progress, Room, Search
 from hersey.stability.plan.trial import (
     FORCE,
@@ -54,7 +54,6 @@ _FOLDS, _TRANSITIONS = 3.0, 20.0
 _LONG, _LONG_LAPS = 10, 20_000
 #: Samples of the response.
 _SAMPLES = 2001
-_CONFIDENCES = (0.5, 0.999)
 _CLOSURES = ("retained", "stiction")
 
 
@@ -199,7 +198,7 @@ class _Asked:
                 known = len(search.trials.machines) + proof.draws
                 shape = search.again(proof.machines, math.floor(share * known))
             reasons = obstacles(search, limits, reach, wide, searched=True)
-        return Plan(**facts, **_NOTHING, obstacles=reasons, tried=search.count), None
+        return Plan(**facts, **NOTHING, warnings=(), obstacles=reasons, tried=search.count), None
 
     def proven(self, plan: Plan, shape: Shape, thermal: TemperatureProfile, heat: HeatBalance) -> Plan:
         """Return the plan with a proof of its own: temperature is a state of every motion."""
@@ -219,7 +218,7 @@ class _Asked:
 
     def without(self, plan: Plan, obstacle: Obstacle, course: Schedule) -> Plan:
         """Return a plan without its profile, and why."""
-        return replace(plan, **_NOTHING, obstacles=(obstacle,), course=course)
+        return replace(plan, **NOTHING, warnings=(), obstacles=(obstacle,), course=course)
 
 
 #: What of a plan does not depend on its proof.
@@ -227,19 +226,6 @@ _FACTS = (
     *("target_speed", "confidence", "seed", "fold_speed", "transition_speed", "stick_speed", "temperature"),
     *("greatest_speed", "tried", "warnings"),
 )
-#: What a plan without a profile has.
-_NOTHING: dict[str, Any] = {
-    "kind": "impossible",
-    "schedule": None,
-    **dict.fromkeys(("duration", "wait", "rise", "peak_speed", "hold", "fall", "peak_force"), math.nan),
-    "share": 0.0,
-    "share_low": 0.0,
-    "draws": 0,
-    "failures": {},
-    "uses": (),
-    "warnings": (),
-    "response": None,
-}
 
 
 @dataclass(frozen=True)
@@ -403,8 +389,8 @@ def _check(drag: AnyDrag, target_speed: float, limits: Limits, confidence: float
     for name, value in {"target_speed": target_speed, **vars(limits)}.items():
         if value is not None and not (math.isfinite(value) and value > 0):
             raise ParameterError(f"{name} is {value}: it must be greater than 0")
-    if not _CONFIDENCES[0] <= confidence <= _CONFIDENCES[1]:
-        low, high = _CONFIDENCES
+    if not CONFIDENCES[0] <= confidence <= CONFIDENCES[1]:
+        low, high = CONFIDENCES
         raise ParameterError(f"confidence is {confidence}: {low} to {high} is possible")
     if seed < 0:
         raise ParameterError(f"seed is {seed}: it must not be negative")

@@ -18,6 +18,21 @@ from hersey.units import celsius
 if TYPE_CHECKING:
     import polars as pl
 
+#: Shares of the draws that may be asked for.
+CONFIDENCES = (0.5, 0.999)
+#: What a plan without a profile has.
+NOTHING: Mapping[str, Any] = {
+    "kind": "impossible",
+    "schedule": None,
+    **dict.fromkeys(("duration", "wait", "rise", "peak_speed", "hold", "fall", "peak_force"), math.nan),
+    "share": 0.0,
+    "share_low": 0.0,
+    "draws": 0,
+    "failures": {},
+    "uses": (),
+    "response": None,
+}
+
 
 @dataclass(frozen=True)
 class LimitUse:

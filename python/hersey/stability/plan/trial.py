@@ -194,7 +194,7 @@ class MachineSample:
     def __init__(self, train: Drivetrain, drag: AnyDrag) -> None:
         """Take the parameters of one draw."""
         self.train, self.drag = train, drag
-        self.lap = 2.0 * math.pi * math.sqrt(train.mass / train.stiffness)
+        self.lap = train.free_period
         self._laws: dict[float | None, tuple[float, float]] = {}
         self._belts: dict[float, _core.StartingBelt] = {}
 
