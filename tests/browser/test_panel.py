@@ -17,9 +17,9 @@ import pytest
 from playwright.sync_api import Browser, Page
 
 from hersey.document.parts import Analysis
-from hersey.document.parts.motion import TrainPart
+from hersey.document.parts.motion import DragTablePart, TrainPart
 from hersey.document.parts.stability import MapPart
-from hersey.motion.drag import Drag
+from hersey.motion.drag import DragTable
 from hersey.motion.simulation import Drivetrain, StickSlipCycle, stick_slip
 from hersey.report.page import render
 from hersey.stability.disturbance import disturbance
@@ -43,9 +43,11 @@ def part(document: Analysis) -> MapPart:
     given = document.map
     assert given is not None
     assert given.temperature is not None
+    assert isinstance(given.drag, DragTablePart)
+    drag = given.drag.model_copy(update={"closure": "retained", "static_force": None})
     train = Drivetrain(given.train.stiffness, given.train.mass)
     edges = edges_at(
-        train, Drag(**given.drag.model_dump()), np.asarray(given.temperature), given.stick_speed_rule
+        train, DragTable(**drag.model_dump()), np.asarray(given.temperature), given.stick_speed_rule
     )
     many = len(given.temperature)
     told = {name: values.tolist() for name, values in edges.items()}
@@ -53,10 +55,9 @@ def part(document: Analysis) -> MapPart:
         f"{name}_interval": [(f * edges[name]).tolist() for f in (0.8, 1.3)]
         for name in ("transition", "upper")
     }
-    limits = {"given": False, "torque_limit": None, "stall_below": [0.0] * many, "stall_above": [None] * many}
-    return given.model_copy(
-        update={"train": TrainPart(stiffness=train.stiffness, mass=train.mass), **told, **intervals, **limits}
-    )
+    limits = {"torque_limit": None, "stall_below": [0.0] * many, "stall_above": [None] * many}
+    drive = {"given": False, "drag": drag, "train": TrainPart(stiffness=train.stiffness, mass=train.mass)}
+    return given.model_copy(update={**drive, **told, **intervals, **limits})
 
 
 @pytest.fixture(scope="module")
@@ -86,7 +87,7 @@ def page(opened: Opened) -> Iterator[Page]:
 @pytest.fixture(scope="module")
 def native(part: MapPart) -> OperatingMap:
     """The map of the document, as Python has it."""
-    fields = part.model_dump(exclude={"train", "drag", "temperature", "points"})
+    fields = part.model_dump(exclude={"train", "drag", "temperature", "points", "given"})
     arrays: dict[str, Any] = {
         k: np.asarray(v, float) if isinstance(v, list) and k not in ("uncertain", "warnings") else v
         for k, v in fields.items()
@@ -96,7 +97,7 @@ def native(part: MapPart) -> OperatingMap:
         temperature=np.asarray(part.temperature),
         points=(),
         train=Drivetrain(**part.train.model_dump()),
-        drag=Drag(**part.drag.model_dump()),
+        drag=DragTable(**part.drag.model_dump()),
     )
 
 
@@ -266,7 +267,8 @@ def test_the_link_restores_the_setting(page: Page, browser: Browser) -> None:
 def test_the_command_reproduces_the_setting(page: Page, tmp_path: Path) -> None:
     enter(page, "speed", "20")
     enter(page, "stiffness", "15")
-    (tmp_path / "setting.toml").write_text(written(page, "TOML"), encoding="utf-8")
+    for name, file in (("TOML", "setting.toml"), ("Drag", "drag.csv")):
+        (tmp_path / file).write_text(written(page, name), encoding="utf-8")
     words = shlex.split(written(page, "Command"))
     assert words.pop(0) == "hersey"
     ran = subprocess.run(
@@ -289,7 +291,8 @@ def test_a_profile_is_followed_and_edited(page: Page, tmp_path: Path) -> None:
     rested(page)
     assert "under this profile" in verdict(page) or "of this profile" in verdict(page)
     assert page.input_value("#try-speed") == "20"
-    (tmp_path / "setting.toml").write_text(written(page, "TOML"), encoding="utf-8")
+    for name, file in (("TOML", "setting.toml"), ("Drag", "drag.csv")):
+        (tmp_path / file).write_text(written(page, name), encoding="utf-8")
     words = shlex.split(written(page, "Command"))
     with page.expect_download() as download:
         page.click("#profile button:text-is('Save CSV')")
@@ -413,7 +416,7 @@ def test_torques_have_one_unit(page: Page, document: Analysis) -> None:
     assert said is not None
     on_map = " ".join(page.locator("#map .torque-name").all_text_contents())
     assert {said[2], *re.findall(r"m?N·m", on_map)} == {unit}
-    drag = Drag(**document.map.drag.model_dump())  # type: ignore[union-attr]
+    drag = DragTable(**document.map.drag.model_dump())  # type: ignore[union-attr]
     kelvin = float(page.input_value("#try-temperature")) + 273.15
     radius = document.map.roll_radius  # type: ignore[union-attr]
     assert float(said[1]) == pytest.approx(per * radius * drag.force(0.04, kelvin), rel=0.006)

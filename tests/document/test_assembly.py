@@ -12,6 +12,7 @@ import hersey
 from hersey.document.assembly import analyse, load
 from hersey.document.parts import Analysis
 from hersey.errors import ParameterError
+from hersey.testbench.truth import Truth
 
 
 def test_it_survives_json(document: Analysis) -> None:
@@ -45,9 +46,23 @@ def test_same_input_same_bits(log: hersey.TorqueLog, document: Analysis) -> None
 def test_the_fit_is_in_the_document(document: Analysis, points: hersey.SteadyPoints) -> None:
     surface = hersey.fit(points)
     assert document.fit.coefficients["c"].value == surface.c.value
+
+
+def test_the_drag_curves_are_those_of_the_stand(document: Analysis) -> None:
+    """Two power laws that meet at the transition, by hand from the truth of the stand."""
+    truth = Truth()
+    assert sum(law.weight for law in document.fit.laws) == pytest.approx(1.0)
+    assert max(document.fit.laws, key=lambda law: law.weight).name == "sharp"
     for curve in document.fit.curves:
-        own = surface.damping(np.clip(curve.speed, *surface.speed_range), curve.temperature)
-        np.testing.assert_allclose(curve.damping, own, rtol=1e-5)
+        assert curve.temperature is not None
+        drag = truth.drag(curve.temperature - 273.15, 0.015, 1e-4)
+        speed = np.array(curve.speed)
+        exponent = np.where(0.015 * speed < drag.transition_speed, drag.mixed_exponent, drag.ehl_exponent)
+        force = drag.transition_force * (0.015 * speed / drag.transition_speed) ** (1.0 + exponent)
+        np.testing.assert_allclose(speed * curve.damping, 0.015 * force, rtol=0.03)
+    trend = document.fit.trend
+    assert trend is not None
+    assert (trend.rises, trend.falls) == (True, True)
 
 
 def test_warnings_name_what_matters(document: Analysis, log: hersey.TorqueLog) -> None:

@@ -265,7 +265,7 @@ def test_what_cannot_be_computed_is_said(
     def refuse(*_: object, **__: object) -> None:
         raise ParameterError("the bands cannot be computed: set 3")
 
-    monkeypatch.setattr(behaviour, "operating_map", refuse)
+    monkeypatch.setattr(behaviour, "map_of", refuse)
     monkeypatch.setattr(behaviour, "plan_start_up", refuse)
     monkeypatch.setattr(behaviour, "DRAWS", 80)
     steps: list[str] = []

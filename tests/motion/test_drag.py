@@ -121,3 +121,32 @@ def test_bristles_reach_the_law() -> None:
     train = Drivetrain(1000, 1)
     runs = [simulate(train, d, drive_speed=0.4, duration=0.05, samples=5) for d in (soft, stiff)]
     assert runs[0].stretch[-1] != pytest.approx(runs[1].stretch[-1], rel=1e-4)
+
+
+def test_a_table_varies_with_temperature_as_two_branches_do() -> None:
+    """Two power laws as a law and as a table, at three temperatures; the no-load torque changes by itself."""
+    warm = {
+        "reference_temperature": 423.15,
+        "temperature_zero": 273.15,
+        "force_temperature_exponent": -0.4,
+        "speed_temperature_exponent": 2.9,
+        "rest_force": 3.0,
+        "rest_damping": 20.0,
+        "rest_temperature_slope": -0.002,
+    }
+    law = Drag(14.0, 0.025, -0.7, -1.2, stick_speed=1e-3, **warm)  # type: ignore[arg-type]
+    speeds = np.array([5e-4, 0.025, 0.4])
+    shape = tuple((14.0 * (speeds / 0.025) ** np.where(speeds < 0.025, -0.2, 0.3)).tolist())
+    table = DragTable(tuple(speeds.tolist()), shape, stick_speed=1e-3, **warm)  # type: ignore[arg-type]
+    asked = np.geomspace(2e-3, 0.3, 7)
+    for kelvin in (363.15, 423.15, 463.15):
+        # T^-0.4 and T^2.9 in degC, by hand
+        ratio = (kelvin - 273.15) / 150.0
+        scaled = asked / ratio**2.9
+        film = 14.0 * ratio**-0.4 * (scaled / 0.025) ** np.where(scaled < 0.025, -0.2, 0.3)
+        rest = (3.0 + 20.0 * asked) * (1.0 - 0.002 * (kelvin - 423.15))
+        assert table.force(asked, kelvin) == pytest.approx(film + rest, rel=1e-12)
+        assert table.at(kelvin).force(asked) == pytest.approx(film + rest, rel=1e-12)
+        assert law.force(asked, kelvin) == pytest.approx(film + rest, rel=1e-12)
+        assert table.at(kelvin).stick_speed == pytest.approx(1e-3 * ratio**2.9, rel=1e-12)
+        assert not table.at(kelvin).varies_with_temperature

@@ -17,6 +17,7 @@ from hersey.posterior.likelihood import break_away_force, misfit
 from hersey.posterior.priors import CLOSURES, DrivePriors
 from hersey.posterior.sampling import posterior
 from hersey.posterior.traces import _stretches, evidence_of_log, evidence_of_trace
+from hersey.posterior.typical import typical_drag, typical_draw, typical_of_all_temperatures
 from tests.conftest import ROOT
 
 HOT = 453.15
@@ -76,15 +77,28 @@ def test_stick_slip_of_the_log_decides_the_closure_and_narrows_v_star(
 
 def test_the_core_agrees_with_its_motion_followed_event_by_event(alone: Posterior) -> None:
     """V* of the typical draw: laps of the curve against located events on its table."""
-    from hersey.decision.start_up import typical_drag
-
     train, drag = typical_drag(alone, HOT)
     exact = hersey.hysteresis(train, drag, sensitivity=False).upper
-    fold = alone.edges(HOT).fold
-    draw = alone.drives.take(np.argsort(fold)[fold.size // 2 : fold.size // 2 + 1].astype(np.intp))
-    [fine] = alone.model.folds(draw, HOT, accuracy=1e-5).upper
+    [fine] = alone.model.folds(typical_draw(alone, HOT), HOT, accuracy=1e-5).upper
     assert exact == pytest.approx(fine, rel=0.01)
-    assert np.sort(fold)[fold.size // 2] == pytest.approx(fine, rel=0.015)  # as accurate as draws need
+    [coarse] = alone.model.folds(typical_draw(alone, HOT), HOT).upper
+    assert coarse == pytest.approx(fine, rel=0.015)  # as accurate as draws need
+
+
+def test_the_typical_drive_varies_with_temperature_as_its_draw(whole: Posterior) -> None:
+    drag, draw = typical_of_all_temperatures(whole), typical_draw(whole, HOT)
+    log_speeds = np.log(whole.model.speeds())
+    for celsius in (100.0, 140.0, 180.0):
+        kelvin = celsius + 273.15
+        speeds = np.array([0.004, 0.02, 0.1])
+        force = np.exp(np.interp(np.log(speeds), log_speeds, whole.model.log_force(draw, kelvin)[0]))
+        constant, damping = whole.model.no_load(kelvin)
+        # powers of temperature stand for the viscosity of the draw, and are exact at the headline's
+        rel = 1e-3 if celsius == 180.0 else 0.03
+        assert drag.force(speeds, kelvin) == pytest.approx(force + constant + damping * speeds, rel=rel)
+    [fold] = whole.model.folds(draw, HOT, accuracy=1e-5).upper
+    low, high = np.quantile(whole.edges(HOT).fold, [0.4, 0.6])
+    assert low < fold < high
 
 
 def test_starts_on_both_sides_bound_v_star(alone: Posterior, demo: hersey.SteadyPoints) -> None:
@@ -227,10 +241,10 @@ def test_a_trace_decides_what_dwells_leave_open(
 
 
 def test_a_log_whose_drive_is_stiffer_gives_no_starts(
-    demo: hersey.SteadyPoints, surface: hersey.DampingSurface, machine: hersey.Machine
+    alone: Posterior, demo: hersey.SteadyPoints, machine: hersey.Machine
 ) -> None:
     """Dwells held where this machine would stick: sliding there says nothing of its V*."""
-    found = evidence_of_log(demo, surface, machine)
+    found = evidence_of_log(demo, alone.model.curves, machine)
     assert [type(each) for each in found.evidence] == [StickSlip]
 
 

@@ -57,6 +57,10 @@ _TALL = 290
 _AXIS = 42
 
 
+#: Ratio of both ends of a curve to its least torque from which that is marked.
+_RISES = 1.01
+
+
 def charts(document: Analysis, *, but: tuple[str, ...] = ()) -> dict[str, Chart]:
     """Return every chart of a document by name, in the order of the report, ``but`` names that begin so."""
     makers: dict[str, Callable[[Analysis], Chart | None]] = {
@@ -83,11 +87,9 @@ def charts(document: Analysis, *, but: tuple[str, ...] = ()) -> dict[str, Chart]
 
 
 def torque(document: Analysis) -> Chart:
-    """Torque against speed per temperature, with the fitted law (the paper's Fig. 2)."""
+    """Torque against speed per temperature, with the drag curves (the paper's Fig. 2)."""
     scale, unit = _torque_unit(document)
-    subtitle = (
-        "filled: reached from below, open: from above, bars: two standard errors; lines: the fitted law"
-    )
+    subtitle = "filled: reached from below, open: from above, bars: two standard errors; lines: drag curves"
     subtitle += "" if document.fit.rest is None else "; the rest of the drive is taken off"
     title = alt.Title("Drag torque against speed", subtitle=subtitle)
     return _against_speed(document, "torque", f"Torque ({unit})", scale, []).properties(title=title)
@@ -305,7 +307,7 @@ def _torque_unit(document: Analysis) -> tuple[float, str]:
 def _against_speed(
     document: Analysis, quantity: str, title: str, scale: float, under: list[alt.Chart]
 ) -> Chart:
-    """Dwells and the fitted law, each temperature named at its line's end, over what lies ``under``."""
+    """Dwells and drag curves, each temperature named at its line's end, over what lies ``under``."""
     rows = _point_rows(document)
     for row, point in zip(rows, document.points, strict=True):
         value, error = abs(getattr(point, quantity)) * scale, 2 * abs(point.torque_error / point.torque)
@@ -370,14 +372,14 @@ def _ends(curves: list[Row], domain: tuple[float, float], shades: alt.Scale) -> 
 
 
 def _bends(document: Analysis, quantity: str, scale: float, x: alt.X, y: alt.Y) -> list[alt.Chart]:
-    """A tick on each line at its transition."""
-    if document.fit.transition is None or quantity != "torque":
+    """A tick on each line where it is least, if it rises from there on both sides."""
+    if quantity != "torque":
         return []
     rows: list[Row] = []
     for curve in document.fit.curves:
         torque = [v * b * scale for v, b in zip(curve.speed, curve.damping, strict=True)]
         least = int(np.argmin(torque))
-        if 0 < least < len(torque) - 1:
+        if min(torque[0], torque[-1]) > _RISES * torque[least]:
             rows.append({"speed": rpm(curve.speed[least]), "y": torque[least]})
     mark = plot(rows).mark_tick(orient="vertical", size=13, thickness=1.6, color=INK)
     return [mark.encode(x=x, y=y)] if rows else []

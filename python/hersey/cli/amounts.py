@@ -24,6 +24,7 @@ _KINDS = {
     "transition_force": ("force", "14 N"),
     "transition_speed": ("belt speed", "25 mm/s"),
     "stick_speed": ("belt speed", "0.3 mm/s"),
+    "static_force": ("force", "40 N"),
     "bristle_stiffness": ("stiffness", "1000 N/mm"),
     "bristle_damping": ("translational damping", "10 N*s/m"),
     "drive_speed": ("belt speed", "30 mm/s"),

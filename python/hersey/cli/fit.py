@@ -66,6 +66,8 @@ def fit(
         return
     log = reading.log(logs, machine)
 
+    from hersey.damping.curves import fit_curves
+    from hersey.damping.curves.words import weight_lines
     from hersey.damping.fit import fit as fitted
     from hersey.document.assembly import fit_document
     from hersey.verdict.cautions import cautions
@@ -74,10 +76,13 @@ def fit(
     with working("fitting the surface"):
         points = reading.points(log, machine)
         surface = fitted(points, temperature_scale=reading.temperature_scale)
+        curves = fit_curves(points, surface)
     if as_json:
-        print_json("fit", fit_document(log, points, surface))
+        print_json("fit", fit_document(log, points, surface, curves))
         return
     say(surface.summary())
+    say("[[Drag curves]]    (V* and verdicts are made of these, by weight)")
+    say("\n".join(weight_lines(curves.table)))
     say(regime(points, surface).verdict)
     for caution in cautions(points, surface):
         say(f"- {caution}")

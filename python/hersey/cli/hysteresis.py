@@ -6,9 +6,9 @@ from typing import Annotated
 
 import typer
 
+from hersey.cli.belt import Belt
 from hersey.cli.options import (
     AsJson,
-    Belt,
     takes,
 )
 from hersey.cli.outputs import print_json

@@ -49,6 +49,7 @@ def map_(
         inputs = reading.inputs(machine_file, logs, fit_file, trace)
         may_draw(path, force, inputs, flag="--out")
 
+    from hersey.decision.mapping import map_of
     from hersey.files.writing import write_atomically
     from hersey.machine.machine import read_machine
     from hersey.stability.operating_map import operating_map
@@ -57,16 +58,18 @@ def map_(
     threads = os.cpu_count() or 1
     surface, drawn = reading.surface_and_posterior(logs, fit_file, machine, trace)
     with working("finding the bands"):
-        map_of_belt = operating_map(
-            surface,
-            machine.train,
-            **machine.belt,
-            limits=machine.limits,
-            points=machine.points,
-            uncertainty=machine.uncertainty,
-            threads=threads,
-            edges_of=None if drawn is None else lambda kelvin: drawn.map_edges(kelvin, threads=threads),
-        )
+        if drawn is not None:
+            map_of_belt = map_of(drawn, threads=threads)
+        else:
+            map_of_belt = operating_map(
+                surface,
+                machine.train,
+                **machine.belt,
+                limits=machine.limits,
+                points=machine.points,
+                uncertainty=machine.uncertainty,
+                threads=threads,
+            )
     if path is not None:
         from hersey.charts import chart_of
         from hersey.charts.render import picture

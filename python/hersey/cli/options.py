@@ -18,17 +18,14 @@ from hersey.cli.terminal import say
 from hersey.files.patterns import files_of
 
 if TYPE_CHECKING:
-    from hersey.cli.amounts import Amounts
     from hersey.damping.dwells import SteadyPoints
     from hersey.damping.rest import RestOfDrive
     from hersey.damping.surface import DampingSurface
     from hersey.log import TorqueLog
     from hersey.log.means import MeansTable
     from hersey.machine.machine import Machine
-    from hersey.machine.motor import MotorUse
     from hersey.motion.drag import Drag
     from hersey.motion.heat import HeatBalance
-    from hersey.motion.simulation import Drivetrain, Trajectory
     from hersey.posterior.result import Posterior
 
 Logs = Annotated[
@@ -368,106 +365,6 @@ def _amounts(text: str) -> str | list[str] | None:
     if not all(re.match(r"\s*[-+]?\.?[0-9]", part) for part in parts):
         return None
     return parts if len(parts) > 1 else text
-
-
-@dataclass(frozen=True)
-class Belt:
-    """The options that describe a belt, its spring and its drag; the defaults are the paper's baseline.
-
-    Numbers are texts: with a unit, or bare in any consistent set of units (see `hersey.cli.amounts`).
-    """
-
-    stiffness: Annotated[
-        str | None, typer.Option(help="Spring stiffness k, as '11 N/mm'.  [default: 1000]")
-    ] = None
-    mass: Annotated[str | None, typer.Option(help="Belt mass m, as '11 kg'.  [default: 1]")] = None
-    transition_force: Annotated[
-        str | None,
-        typer.Option(help="Drag at the transition speed (B0 of the paper), as '14 N'.  [default: 50]"),
-    ] = None
-    transition_speed: Annotated[
-        str | None, typer.Option(help="Speed where the branches meet, as '25 mm/s'.  [default: 1]")
-    ] = None
-    ehl_exponent: Annotated[float, typer.Option(help="Damping exponent above it.")] = -0.7
-    mixed_exponent: Annotated[float, typer.Option(help="Damping exponent below it.")] = -1.2
-    stick_speed: Annotated[
-        str | None,
-        typer.Option(help="Speed below which the belt sticks, as '0.3 mm/s'.  [default: 0.01]"),
-    ] = None
-    closure: Annotated[
-        str, typer.Option(help="What happens below it: retained, stiction, stribeck or lugre.")
-    ] = "retained"
-    bristle_stiffness: Annotated[
-        str | None, typer.Option(help="Of lugre: force per deflection of the bristles, as '1000 N/mm'.")
-    ] = None
-    bristle_damping: Annotated[
-        str | None, typer.Option(help="Of lugre: force per rate of deflection, as '10 N*s/m'.")
-    ] = None
-    machine: Annotated[
-        Path | None,
-        typer.Option(
-            "--machine",
-            metavar="TOML",
-            help="Machine's file: stiffness, mass and stick speed where they are not given.",
-        ),
-    ] = None
-
-    def parts(
-        self, *, needed: tuple[str, ...] = (), **further: str | None
-    ) -> tuple[Drivetrain, Drag, Amounts]:
-        """Return drivetrain and drag, and all numbers; ``further`` are those of the command.
-
-        Of ``further`` those in ``needed`` are of the paper's baseline where they are not given.
-        """
-        from hersey.cli.amounts import amounts
-        from hersey.motion.drag import Drag
-        from hersey.motion.simulation import Drivetrain
-
-        plain = {name: getattr(self, name) for name in ("ehl_exponent", "mixed_exponent", "closure")}
-        texts = {f.name: getattr(self, f.name) for f in fields(self) if f.name not in (*plain, "machine")}
-        numbers = amounts(
-            {**texts, **further},
-            needed=(*(name for name in texts if not name.startswith("bristle")), *needed),
-            machine_file=self.machine,
-        )
-        of_belt: dict[str, Any] = {name: numbers.values[name] for name in texts}
-        train = Drivetrain(of_belt.pop("stiffness"), of_belt.pop("mass"))
-        drag = Drag(**of_belt, **plain)
-        if self.machine is None:
-            return train, drag, numbers
-        from hersey.machine.machine import read_machine
-
-        return _of_the_machine(train, drag, numbers, read_machine(self.machine))
-
-    def motor_use(self, run: Trajectory) -> MotorUse | None:
-        """Return what a motion asks of the machine's motor, None where its file states no torque of it."""
-        if self.machine is None:
-            return None
-        from hersey.machine.machine import read_machine
-        from hersey.machine.motor import motor_use
-
-        machine = read_machine(self.machine)
-        if machine.limits.motor_torque is None:
-            return None
-        return motor_use(run, motor_torque=machine.limits.motor_torque, roll_radius=machine.roll_radius)
-
-
-def _of_the_machine(
-    train: Drivetrain, film: Drag, numbers: Amounts, machine: Machine
-) -> tuple[Drivetrain, Drag, Amounts]:
-    """The belt given and, beside it, what the machine says of its roll's grip and the rest of its drive."""
-    from hersey.damping.rest import with_rest
-
-    train, drag, told = machine.limits.gripping(train), film, [numbers.filled]
-    if machine.rest is not None:
-        drag = with_rest(film, machine.rest, machine.roll_radius, None)
-    if drag != film:
-        told.append(f"the rest of the drive acts beside the drag given: {machine.rest}")
-    if train.grip is not None:
-        told.append(f"the roll grips the belt with up to {train.grip:.4g} N")
-    if train.grip is not None and drag.holding_force > train.grip:
-        told.append(f"it does not start one at rest, which bears {drag.holding_force:.4g} N")
-    return train, drag, replace(numbers, filled="; ".join(filter(None, told)))
 
 
 def temperature_of(text: str, flag: str = "--at") -> float | None:

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from hersey.cli.belt import Belt
 from hersey.cli.options import (
     AsJson,
-    Belt,
     FitFile,
     Force,
     Reading,

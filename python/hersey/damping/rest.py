@@ -256,7 +256,8 @@ def with_rest(film: AnyLaw, rest: RestOfDrive, roll_radius: float, temperature: 
         If the rest changes with temperature, none is given, and the film's drag is a table, which does not.
     """
     at_the_belt: dict[str, Any] = rest.at_the_belt(roll_radius, temperature)
-    if isinstance(film, DragTable) and at_the_belt.pop("rest_temperature_slope") and temperature is None:
+    of_one = isinstance(film, DragTable) and not film.varies_with_temperature
+    if of_one and at_the_belt["rest_temperature_slope"] and temperature is None:
         raise ParameterError(
             "the rest of the drive changes with temperature, and a drag table holds at one: give temperature"
         )

@@ -17,12 +17,11 @@ from hersey.arrays import FloatArray
 from hersey.decision.judge import drive_limit
 from hersey.errors import ParameterError
 from hersey.machine.limits import Limits
-from hersey.motion.drag import DragTable
 from hersey.motion.schedule import Schedule
-from hersey.motion.simulation import Drivetrain, Trajectory, simulate
+from hersey.motion.simulation import Trajectory, simulate
 from hersey.posterior import Posterior
 from hersey.posterior.drives import Drives
-from hersey.posterior.priors import CLOSURES
+from hersey.posterior.typical import typical_drag
 from hersey.stability.plan.draws import lower_bound
 from hersey.stability.plan.obstacles import Obstacle
 from hersey.stability.plan.result import CONFIDENCES, NOTHING, LimitUse, Plan
@@ -237,28 +236,6 @@ def _uses(asked: _Asked, shape: Shape, peak_force: float) -> tuple[LimitUse, ...
         "grip": (limits.grip, peak_force),
     }
     return tuple(LimitUse(name, limit, used) for name, (limit, used) in stated.items() if limit is not None)
-
-
-def typical_drag(found: Posterior, kelvin: float | None) -> tuple[Drivetrain, DragTable]:
-    """Return the draw whose V* is the median, as a drivetrain and a table of drag."""
-    model, edges = found.model, found.edges(kelvin)
-    index = int(np.argsort(edges.fold)[edges.fold.size // 2])
-    draw = found.drives.take(np.array([index], dtype=np.intp))
-    numbers = model.numbers(draw)[0]
-    speeds, force = model.speeds(), np.exp(model.log_force(draw, kelvin)[0])
-    constant, damping = model.no_load(kelvin)
-    stick = min(float(model.stick_speed(draw, kelvin)[0]), 0.95 * float(speeds[np.argmin(force)]))
-    sliding = float(np.exp(np.interp(np.log(stick), np.log(speeds), np.log(force))))
-    drag = DragTable(
-        tuple(speeds.tolist()),
-        tuple(force.tolist()),
-        stick,
-        closure=list(CLOSURES)[int(draw.closure[0])],
-        static_force=float(numbers[3]) * sliding,
-        rest_force=constant,
-        rest_damping=damping,
-    )
-    return Drivetrain(float(numbers[1]), float(numbers[2]), grip=model.machine.train.grip), drag
 
 
 def response(

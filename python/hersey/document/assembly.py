@@ -13,10 +13,13 @@ import numpy as np
 
 from hersey import _core
 from hersey.arrays import FloatArray
+from hersey.damping.candidates.observations import Observations
 from hersey.damping.compare import compare
+from hersey.damping.curves import CurveMixture, fit_curves
 from hersey.damping.dwells import SteadyPoints, groups_of_temperature
 from hersey.damping.fit import fit
 from hersey.damping.surface import DampingSurface
+from hersey.damping.trend import trend_of
 from hersey.document.carried_part import carried_part
 from hersey.document.decision import decision
 from hersey.document.decision.behaviour import Behaviour, Step, Working, ranges, typical
@@ -102,9 +105,9 @@ def analyse(
         beside = _compared(log, points, against)
     step("fitting the surface")
     surface = fit(points, temperature_scale=temperature_scale)
-    working = None
-    if machine is not None and surface.transition is not None:
-        working = Working(points, surface, machine, traces)
+    curves = fit_curves(points, surface)
+    working = None if machine is None else Working(points, surface, machine, traces, curves)
+    beside["fit"] = _fit_part(points, surface, curves)
     with nullcontext() if working is None else working:
         return _analysed(log, points, surface, command, machine, machine_file, made, step, working, beside)
 
@@ -139,7 +142,6 @@ def _analysed(
         "files": [_file(log, i) for i in range(len(log.files))],
         "quality": _quality(log, points),
         "points": _points(points, surface),
-        "fit": _fit_part(points, surface),
         "regime": regime_part,
         "film": film,
         "carried": carried,
@@ -191,13 +193,18 @@ def _machine_file(path: Path) -> MachineFilePart:
     return MachineFilePart(name=path.name, sha256=hash_of(path))
 
 
-def fit_document(log: TorqueLog | MeansTable, points: SteadyPoints, surface: DampingSurface) -> FitDocument:
-    """Return what a fit needs to be read back: the fit, its dwells and files, and the regime."""
+def fit_document(
+    log: TorqueLog | MeansTable,
+    points: SteadyPoints,
+    surface: DampingSurface,
+    curves: CurveMixture | None = None,
+) -> FitDocument:
+    """Return what a fit needs to be read back: fit and drag curves, dwells and files, and the regime."""
     return FitDocument(
         warnings=cautions(points, surface),
         files=[_file(log, i) for i in range(len(log.files))],
         points=_points(points, surface),
-        fit=_fit_part(points, surface),
+        fit=_fit_part(points, surface, curves or fit_curves(points, surface)),
         regime=RegimePart.model_validate(regime(points, surface).to_dict()),
     )
 
@@ -268,16 +275,18 @@ def _group_temperatures(points: SteadyPoints) -> list[float | None]:
     return [float(level) for level in levels]
 
 
-def _curves(points: SteadyPoints, s: DampingSurface) -> list[Curve]:
+def _curves(points: SteadyPoints, surface: DampingSurface, curves: CurveMixture) -> list[Curve]:
+    """The drag curves of all laws by weight at each temperature of the dwells, over its speeds."""
     out = []
     speed, levels = np.abs(points.column("speed")), _group_temperatures(points)
     for level in dict.fromkeys(levels):
         speeds = speed[[other == level for other in levels]]
-        kelvin = None if s.b is None else level
-        at = s.transition_speed(kelvin)
-        grid = np.geomspace(speeds.min(), speeds.max(), 25)
-        grid = np.sort(np.append(grid, at)) if speeds.min() < at < speeds.max() else grid
-        out.append(Curve(temperature=kelvin, speed=grid.tolist(), damping=_damping(s, grid, kelvin)))
+        kelvin = None if surface.b is None else level
+        grid = np.geomspace(speeds.min(), speeds.max(), 41)
+        damping = curves.torque(grid, kelvin) / grid
+        out.append(
+            Curve(temperature=kelvin, speed=grid.tolist(), damping=[float(f"{b:.6g}") for b in damping])
+        )
     return out
 
 
@@ -317,9 +326,11 @@ def _damping(s: DampingSurface, speed: FloatArray, kelvin: float | None) -> list
         return [float(f"{b:.6g}") for b in s.damping(speed, kelvin)]
 
 
-def _fit_part(points: SteadyPoints, s: DampingSurface) -> FitPart:
+def _fit_part(points: SteadyPoints, s: DampingSurface, curves: CurveMixture) -> FitPart:
     chart_parts = {
-        "curves": _curves(points, s),
+        "trend": vars(trend_of(Observations.of(points))),
+        "laws": [vars(law) for law in curves.table],
+        "curves": _curves(points, s, curves),
         "cells": _cells(s),
         "transition_curve": _transition_curve(s),
     }

@@ -8,7 +8,7 @@ import numpy as np
 
 from hersey.errors import ParameterError
 from hersey.lubrication.mixed_drag import MixedDrag
-from hersey.motion.drag import AnyDrag, BesideShape, Drag, DragTable
+from hersey.motion.drag import AnyDrag, BesideShape, Drag, DragTable, PowersOfTemperature
 from hersey.motion.simulation import Drivetrain
 
 #: What one line holds.
@@ -16,6 +16,10 @@ Value = str | float | Sequence[float]
 #: Law of viscosity by the name of its first coefficients.
 _VISCOSITIES = {("prefactor", "activation_energy"): "arrhenius", ("prefactor", "slope"): "vogel"}
 _WALTHER = "walther"
+_POWERS = (
+    *("reference_temperature", "temperature_zero"),
+    *("force_temperature_exponent", "speed_temperature_exponent", "rest_temperature_slope"),
+)
 _NEAR_REST = ("bristle_stiffness", "bristle_damping", "static_force")
 
 
@@ -33,8 +37,7 @@ def drive_values(train: Drivetrain, drag: AnyDrag) -> dict[str, Value]:
     if isinstance(drag, Drag):
         values |= _power(drag)
     elif isinstance(drag, DragTable):
-        values |= {"law": "table", "speeds": drag.speeds, "forces": drag.forces}
-        values |= {"temperature_law": "none"}
+        values |= {"law": "table", "speeds": drag.speeds, "forces": drag.forces, **_temperature_law(drag)}
     elif isinstance(drag, MixedDrag):
         values |= _mixed(drag)
     else:
@@ -52,14 +55,15 @@ def drive_values(train: Drivetrain, drag: AnyDrag) -> dict[str, Value]:
 
 def _power(drag: Drag) -> dict[str, Value]:
     names = ["transition_force", "transition_speed", "ehl_exponent", "mixed_exponent"]
-    values: dict[str, Value] = {"law": "power", "temperature_law": "none"}
-    if drag.reference_temperature is not None:
-        values["temperature_law"] = "power"
-        names += ["reference_temperature", "temperature_zero"]
-        names += ["force_temperature_exponent", "speed_temperature_exponent", "rest_temperature_slope"]
     if drag.static_growth:
         names += ["static_growth", "static_growth_time"]
-    return values | {name: getattr(drag, name) for name in names}
+    return {"law": "power", **_temperature_law(drag), **{name: getattr(drag, name) for name in names}}
+
+
+def _temperature_law(drag: PowersOfTemperature) -> dict[str, Value]:
+    if drag.reference_temperature is None:
+        return {"temperature_law": "none"}
+    return {"temperature_law": "power", **{name: getattr(drag, name) for name in _POWERS}}
 
 
 def _mixed(drag: MixedDrag) -> dict[str, Value]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import KW_ONLY, dataclass, replace
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -103,8 +104,70 @@ class BesideShape(AnyDrag):
         return static, float(self.rest_force), float(self.rest_damping)
 
 
+@dataclass(frozen=True, kw_only=True)
+class PowersOfTemperature(BesideShape):
+    """How a drag law varies with temperature, if a ``reference_temperature`` is given.
+
+    All forces vary as (T/T_ref)^force_temperature_exponent and all speeds as
+    (T/T_ref)^speed_temperature_exponent, T counted from ``temperature_zero`` (273.15 for degC). What the
+    drive takes without the contact changes by ``rest_temperature_slope`` (relative, per K).
+    """
+
+    reference_temperature: float | None = None
+    force_temperature_exponent: float = 0.0
+    speed_temperature_exponent: float = 0.0
+    temperature_zero: float = 0.0
+    rest_temperature_slope: float = 0.0
+
+    @property
+    def varies_with_temperature(self) -> bool:
+        """Whether the law varies with temperature."""
+        return self.reference_temperature is not None
+
+    def _varying(self, law: _core.Law) -> _core.Law:
+        """A law of the core with this dependence on temperature."""
+        if self.reference_temperature is None:
+            return law
+        return law.with_temperature_law(
+            self.reference_temperature - self.temperature_zero,
+            float(self.force_temperature_exponent),
+            float(self.speed_temperature_exponent),
+            float(self.rest_temperature_slope),
+        )
+
+    @takes_si(temperature="temperature")
+    def at(self, temperature: float | None) -> Self:
+        """Return the law at one temperature, K, as one that does not vary; itself if it does not vary."""
+        law = self.law_at(temperature)
+        if temperature is None or self.reference_temperature is None:
+            return self
+        ratio = (temperature - self.temperature_zero) / (self.reference_temperature - self.temperature_zero)
+        force, speed = (
+            ratio**power for power in (self.force_temperature_exponent, self.speed_temperature_exponent)
+        )
+        return replace(
+            self,
+            **self._scaled(force, speed),
+            static_force=None if self.static_force is None else law.breakaway_force,
+            rest_force=law.rest[0],
+            rest_damping=law.rest[1],
+            rest_temperature_slope=0.0,
+            reference_temperature=None,
+            force_temperature_exponent=0.0,
+            speed_temperature_exponent=0.0,
+            temperature_zero=0.0,
+        )
+
+    def _scaled(self, force: float, speed: float) -> dict[str, Any]:
+        """What of the shape is a force or a speed, times a factor each."""
+        raise NotImplementedError
+
+
+_TEMPERATURES = dict.fromkeys(("reference_temperature", "temperature_zero"), "temperature")
+
+
 @dataclass(frozen=True)
-class Drag(BesideShape):
+class Drag(PowersOfTemperature):
     """Drag force against belt speed (Eqs. 17-30), and temperature if a ``reference_temperature`` is given.
 
     ``F = F_t (v/v_t)^(1+n)`` with n the damping exponent of the branch: ``ehl_exponent`` above the
@@ -113,8 +176,7 @@ class Drag(BesideShape):
     (stops dead), ``stribeck`` (smooth) or ``lugre`` (bristles, of ``bristle_stiffness`` and
     ``bristle_damping``).
 
-    With temperature all forces vary as (T/T_ref)^force_temperature_exponent and all speeds as
-    (T/T_ref)^speed_temperature_exponent, T counted from ``temperature_zero`` (273.15 for degC).
+    With temperature it varies as `PowersOfTemperature`.
 
     ``static_force`` is the drag that a belt at rest can bear; if not given it is such that drag falls by a
     factor e up to the stick speed, continuously (Eqs. 28-30). The rest of the drive, what moves with the
@@ -138,19 +200,13 @@ class Drag(BesideShape):
     mixed_exponent: float
     stick_speed: float
     _: KW_ONLY
-    reference_temperature: float | None = None
-    force_temperature_exponent: float = 0.0
-    speed_temperature_exponent: float = 0.0
-    temperature_zero: float = 0.0
-    rest_temperature_slope: float = 0.0
     static_growth: float = 0.0
     static_growth_time: float | None = None
 
     def __post_init__(self) -> None:
         """Bring the values to SI if they come with units, and let the core check them."""
-        temperatures = dict.fromkeys(("reference_temperature", "temperature_zero"), "temperature")
         kinds = {"transition_force": "force", "transition_speed": "belt speed", "static_growth_time": "time"}
-        fields_in_si(self, {**kinds, **KINDS, **temperatures})
+        fields_in_si(self, {**kinds, **KINDS, **_TEMPERATURES})
         if self.static_growth and (self.closure != "stiction" or self.static_growth_time is None):
             needed = "static_growth_time" if self.closure == "stiction" else "closure 'stiction'"
             raise ParameterError(f"static_growth is {self.static_growth:g}: it needs {needed}")
@@ -169,31 +225,12 @@ class Drag(BesideShape):
             raise ParameterError(f"roll_radius is {roll_radius}: it must be greater than 0")
         return cls(transition_torque / roll_radius, transition_speed * roll_radius, **rest)  # type: ignore[arg-type]
 
-    @property
-    def varies_with_temperature(self) -> bool:
-        """Whether the law varies with temperature."""
-        return self.reference_temperature is not None
-
-    @takes_si(temperature="temperature")
-    def at(self, temperature: float | None) -> Drag:
-        """Return the law at one temperature, K, as one that does not vary; itself if it does not vary."""
-        law = self.law_at(temperature)
-        if not self.varies_with_temperature:
-            return self
-        return replace(
-            self,
-            transition_force=law.transition_force,
-            transition_speed=law.transition_speed,
-            stick_speed=law.stick_speed,
-            static_force=None if self.static_force is None else law.breakaway_force,
-            rest_force=law.rest[0],
-            rest_damping=law.rest[1],
-            rest_temperature_slope=0.0,
-            reference_temperature=None,
-            force_temperature_exponent=0.0,
-            speed_temperature_exponent=0.0,
-            temperature_zero=0.0,
-        )
+    def _scaled(self, force: float, speed: float) -> dict[str, Any]:
+        return {
+            "transition_force": self.transition_force * force,
+            "transition_speed": self.transition_speed * speed,
+            "stick_speed": self.stick_speed * speed,
+        }
 
     def law(self) -> _core.Law:
         """Return the law as the core holds it."""
@@ -206,15 +243,7 @@ class Drag(BesideShape):
         ).with_common(self._beside)
         if self.static_growth and self.static_growth_time is not None:
             law = law.with_strengthening(float(self.static_growth), float(self.static_growth_time))
-        if self.reference_temperature is None:
-            return law
-        reference = self.reference_temperature - self.temperature_zero
-        return law.with_temperature_law(
-            reference,
-            float(self.force_temperature_exponent),
-            float(self.speed_temperature_exponent),
-            float(self.rest_temperature_slope),
-        )
+        return self._varying(law)
 
     def beside(self, sets: int) -> list[FloatArray] | None:
         """Return `BESIDE`, each for so many sets; not a number where there is no static force.
@@ -232,10 +261,11 @@ class Drag(BesideShape):
 
 
 @dataclass(frozen=True)
-class DragTable(BesideShape):
+class DragTable(PowersOfTemperature):
     """Drag through measured points: straight lines between them in logarithmic scales, monotone therefore.
 
-    Beyond the points the outer lines go on; the transition is the point of least force.
+    Beyond the points the outer lines go on; the transition is the point of least force. With temperature all
+    points vary as `PowersOfTemperature`.
 
     Raises
     ------
@@ -255,7 +285,7 @@ class DragTable(BesideShape):
 
     def __post_init__(self) -> None:
         """Bring the values to SI if they come with units, and let the core check them."""
-        fields_in_si(self, {"speeds": "belt speed", "forces": "force", **KINDS})
+        fields_in_si(self, {"speeds": "belt speed", "forces": "force", **KINDS, **_TEMPERATURES})
         object.__setattr__(self, "speeds", tuple(float(v) for v in self.speeds))
         object.__setattr__(self, "forces", tuple(float(f) for f in self.forces))
         self.law()
@@ -265,4 +295,15 @@ class DragTable(BesideShape):
         law = _core.Law.tabulated(
             list(self.speeds), list(self.forces), float(self.stick_speed), self._closure
         )
-        return law.with_common(self._beside)
+        return self._varying(law.with_common(self._beside))
+
+    def _scaled(self, force: float, speed: float) -> dict[str, Any]:
+        return {
+            "speeds": tuple(v * speed for v in self.speeds),
+            "forces": tuple(f * force for f in self.forces),
+            "stick_speed": self.stick_speed * speed,
+        }
+
+
+#: A law whose forces and speeds vary as powers of temperature.
+PowerDrag = Drag | DragTable

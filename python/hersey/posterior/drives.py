@@ -17,7 +17,7 @@ from hersey.posterior.priors import NUMBERS, DrivePriors
 #: Distance of the points of a drawn curve in ln speed, and how far they reach: below the slowest stick speed
 #: and above the fastest dwell, as factors.
 STEP, BELOW, ABOVE = 0.08, 0.6, 4.0
-#: Greatest stick speed over the transition speed of a draw: above there is no falling branch to stick on.
+#: Greatest stick speed over the speed of least drag of a draw whose drag falls before it rises.
 _BELOW_TRANSITION = 0.95
 
 
@@ -101,9 +101,16 @@ class DriveModel:
         return np.asarray(stated * np.exp(moved))
 
     def sticking_speed(self, drives: Drives, kelvin: float | None) -> FloatArray:
-        """Return the stick speed (m/s) of each draw, but 95 % of its transition at the most."""
-        least = self.speeds()[np.argmin(self.log_force(drives, kelvin), axis=1)]
-        return np.asarray(np.minimum(self.stick_speed(drives, kelvin), _BELOW_TRANSITION * least))
+        """Return the stick speed (m/s) of each draw, below the speed of least drag where there is one.
+
+        Drag that rises from the slowest stick speed on is least at the stick speed, wherever that is.
+        """
+        return self._sticking(drives, kelvin, self.log_force(drives, kelvin))
+
+    def _sticking(self, drives: Drives, kelvin: float | None, log_force: FloatArray) -> FloatArray:
+        stick, least = self.stick_speed(drives, kelvin), np.argmin(log_force, axis=1)
+        falls = least > 0
+        return np.where(falls, np.minimum(stick, _BELOW_TRANSITION * self.speeds()[least]), stick)
 
     def no_load(self, kelvin: float | None) -> tuple[float, float]:
         """Return the no-load drag at a temperature: a constant (N) and a part per speed (N s/m)."""
@@ -121,17 +128,18 @@ class DriveModel:
         accuracy: float = 1e-3,
         threads: int = 1,
         stick_speed: FloatArray | None = None,
+        slips: bool = True,
     ) -> _core.CurveFolds:
         """Return transition, V* and the force that starts a belt (m/s, m/s, N) of each draw.
 
-        ``stick_speed`` (m/s, at this temperature) takes the place of those drawn.
+        ``stick_speed`` (m/s, at this temperature) takes the place of those drawn. Unless it ``slips`` the
+        roll grips any force.
         """
         curves, columns = self._belts(drives, kelvin)
         if stick_speed is not None:
             columns[2] = np.ascontiguousarray(stick_speed)
-        return _core.curve_folds(
-            curves, columns, self.machine.train.grip, accuracy, threads, None, int(MOST_STEPS)
-        )
+        grip = self.machine.train.grip if slips else None
+        return _core.curve_folds(curves, columns, grip, accuracy, threads, None, int(MOST_STEPS))
 
     def starts(
         self,
@@ -168,8 +176,7 @@ class DriveModel:
         """Curves and numbers of the draws, as the core takes them."""
         speeds, numbers = self.speeds(), self.numbers(drives)
         log_force = np.ascontiguousarray(self.log_force(drives, kelvin))
-        least = speeds[np.argmin(log_force, axis=1)]
-        stick = np.minimum(self.stick_speed(drives, kelvin), _BELOW_TRANSITION * least)
+        stick = self._sticking(drives, kelvin, log_force)
         force, damping = self.no_load(kelvin)
         one = np.ones(len(drives))
         columns = [numbers[:, 1], numbers[:, 2], stick, numbers[:, 3], force * one, damping * one]

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from hersey.arrays import BoolArray, FloatArray
 from hersey.damping.curves import LawWeight
+from hersey.damping.curves.words import weight_lines
 from hersey.errors import ParameterError
 from hersey.posterior.drives import DriveModel, Drives
 from hersey.posterior.evidence import Evidence
@@ -42,7 +43,8 @@ _FARTHEST = 1e4
 class Edges:
     """Speeds (m/s) and forces (N) of each draw at one temperature, shape (draws,).
 
-    ``fold`` is V*, at least the transition; ``holding`` the force that starts a belt at rest.
+    ``fold`` is V*, at least the transition; ``holding`` the force that starts a belt at rest. Where the
+    roll's grip does not start the belt (``stalls``), V* is that of a roll that grips.
     """
 
     transition: FloatArray
@@ -127,12 +129,12 @@ class Posterior(Result):
 
     def fold_interval(self, kelvin: float | None) -> tuple[float, float, float]:
         """Return the median of V* (m/s) and the ends of its 95 % interval at a temperature (K)."""
-        low, middle, high = quantiles(self._started(kelvin), (0.025, 0.5, 0.975))
+        low, middle, high = quantiles(self.edges(kelvin).fold, (0.025, 0.5, 0.975))
         return middle, low, high
 
     def safe_speed(self, kelvin: float | None) -> float:
         """Return the least drive speed (m/s) that is smooth from any start with 97.5 % probability."""
-        return quantiles(self._started(kelvin), (SAFE,))[0]
+        return quantiles(self.edges(kelvin).fold, (SAFE,))[0]
 
     def map_edges(self, kelvin: FloatArray | None, *, most: int = 200, threads: int = 1) -> GivenEdges:
         """Return medians and intervals of the edges at temperatures (K; None if isothermal) for a map.
@@ -150,11 +152,8 @@ class Posterior(Result):
         for level in levels:
             headline = level == self.temperature
             edges = self.edges(level, most=None if headline else most, threads=threads)
-            started = ~edges.stalls
-            fold = edges.fold[started] if np.mean(started) >= 0.1 else edges.fold
-            rows.append(
-                [quantiles(each, (0.5, 0.025, 0.975)) for each in (edges.transition, fold, edges.holding)]
-            )
+            speeds_and_force = edges.transition, edges.fold, edges.holding
+            rows.append([quantiles(each, (0.5, 0.025, 0.975)) for each in speeds_and_force])
         table = np.array(rows)
         if kelvin is not None:
             at = np.array(levels, dtype=float)
@@ -168,12 +167,6 @@ class Posterior(Result):
             table = table.transpose(1, 2, 0)
         (turn, fold_, held) = table
         return GivenEdges(turn[0], fold_[0], held[0], turn[1:], fold_[1:], held[1:], NUMBERS)
-
-    def _started(self, kelvin: float | None) -> FloatArray:
-        """V* of the draws that the drive starts; of all where hardly any does."""
-        edges = self.edges(kelvin)
-        starts = ~edges.stalls
-        return edges.fold[starts] if np.mean(starts) >= 0.1 else edges.fold
 
     def probability(self, kelvin: float | None, speed: float) -> PointProbability:
         """Return the probability of each outcome at a temperature (K) and drive speed (m/s)."""
@@ -281,7 +274,10 @@ def edges_at(model: DriveModel, drives: Drives, kelvin: float | None, *, threads
     """
     model.surface.check_temperature(kelvin)
     found = model.folds(drives, kelvin, threads=threads)
-    upper = np.minimum(found.upper, _FARTHEST * found.transition)
+    upper, stalls = np.array(found.upper), np.flatnonzero(found.stalls)
+    if stalls.size:
+        upper[stalls] = model.folds(drives.take(stalls), kelvin, threads=threads, slips=False).upper
+    upper = np.minimum(upper, _FARTHEST * found.transition)
     columns = [found.transition, np.fmax(upper, found.transition), found.holding]
     lost = np.any([np.isnan(each) for each in columns], axis=0)
     if np.mean(lost) > _LOST:
@@ -315,11 +311,7 @@ def _lines(found: Posterior) -> list[str]:
         unit, factor = _SHOWN[name]
         shown = [f"{factor * v:.3g}" for v in (value, low, high)]
         lines.append(f"{name.replace('_', ' '):14s} {shown[0]} [{shown[1]}, {shown[2]}] {unit}".rstrip())
-    lines += ["", "drag curves by weight"]
-    lines += [
-        f"  {100 * law.weight:5.1f} %  {law.words}{' (rejected)' if law.rejected else ''}"
-        for law in found.laws
-    ]
+    lines += ["", "drag curves by weight", *weight_lines(found.laws)]
     counted = [type(each).__name__ for each in found.evidence]
     lines += ["", f"evidence beyond the dwells: {', '.join(counted) or 'none'}"]
     lines += [f"  not used: {text}" for text in found.unused]

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.damping.curves import fit_curves
+from hersey.damping.curves import CurveMixture, fit_curves
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.fit import fit
 from hersey.damping.surface import DampingSurface
@@ -46,6 +46,7 @@ def posterior(
     machine: Machine,
     *,
     surface: DampingSurface | None = None,
+    curves: CurveMixture | None = None,
     traces: Sequence[TorqueLog] = (),
     evidence: Sequence[Evidence] | None = None,
     temperature: float | None = None,
@@ -62,8 +63,9 @@ def posterior(
         From `TorqueLog.steady`; no-load torque subtracted.
     machine
         What its file states, with ranges; `hersey.posterior.priors` has the defaults.
-    surface
-        The fit of the points, if there is one already.
+    surface, curves
+        The fit of the points and their drag curves (`hersey.damping.curves.fit_curves`), if there are any
+        already.
     traces
         Recordings of the machine, from `hersey.read`, that show starts from rest or stick-slip.
     evidence
@@ -79,8 +81,6 @@ def posterior(
 
     Raises
     ------
-    InsufficientDataError
-        If the data show no falling branch.
     ParameterError
         If draws or seed are out of range, or evidence lacks the temperature that the fit needs.
 
@@ -97,9 +97,9 @@ def posterior(
         name, value, least = ("draws", draws, 20 * CHAINS) if draws < 20 * CHAINS else ("seed", seed, 0)
         raise ParameterError(f"{name} is {value}: it must be at least {least}")
     found = surface or fit(points)
-    seen = _given(evidence, found) if evidence is not None else _seen(points, found, machine, traces)
+    curves = curves or fit_curves(points, found)
+    seen = _given(evidence, found) if evidence is not None else _seen(points, curves, found, machine, traces)
     counted, unused = (*seen.evidence, *_stated(machine, found)), seen.unused
-    curves = fit_curves(points, found)
     kelvin = temperature if temperature is not None else decision_temperature(found, machine)
 
     def populations_of(model: DriveModel, evidence: Sequence[Evidence]) -> list[Population]:
@@ -173,10 +173,14 @@ def _contradicting(evidence: Evidence) -> str:
 
 
 def _seen(
-    points: SteadyPoints, surface: DampingSurface, machine: Machine, traces: Sequence[TorqueLog]
+    points: SteadyPoints,
+    curves: CurveMixture,
+    surface: DampingSurface,
+    machine: Machine,
+    traces: Sequence[TorqueLog],
 ) -> Found:
     """Evidence of the log of the points and of the traces."""
-    seen = evidence_of_log(points, surface, machine)
+    seen = evidence_of_log(points, curves, machine)
     for trace in traces:
         seen = seen + evidence_of_trace(trace, machine, zero=points.tare)
     kept: dict[Evidence, Evidence] = {}

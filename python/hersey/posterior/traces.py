@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hersey.arrays import FloatArray
+from hersey.damping.curves import CurveMixture
 from hersey.damping.dwells import SteadyPoints
-from hersey.damping.surface import DampingSurface
 from hersey.errors import HerseyError
 from hersey.log import TorqueLog
 from hersey.log.torque_log import Run
@@ -40,8 +40,9 @@ PEAK_RESOLVED, CYCLE_RESOLVED = 8.0, 3.0
 _REACHED = 0.97
 #: Error of a mean cycle that no scatter shows.
 _FLOOR = 0.005
-#: Share of the transition speed below which dwells slide only on a drive stiffer than the machine.
-_STIFFER = 0.8
+#: Share of the speed of least torque below which dwells slide only on a drive stiffer than the machine,
+#: and the probability of such a dwell from which the log's drive counts as stiffer.
+_STIFFER, _SURELY_NOT = 0.8, 0.05
 #: Factor by which a loading slope may exceed the stiffness of the machine before it is that of another drive.
 _OTHER_DRIVE = 1.5
 
@@ -58,17 +59,16 @@ class Found:
         return Found(self.evidence + other.evidence, self.unused + other.unused)
 
 
-def evidence_of_log(points: SteadyPoints, surface: DampingSurface, machine: Machine) -> Found:
+def evidence_of_log(points: SteadyPoints, curves: CurveMixture, machine: Machine) -> Found:
     """Return the stick-slip and the starts of the log that the dwells are from.
 
-    Starts count only where the log's drive is that of the machine: one that holds dwells steady well below
-    the transition, where the machine would stick, is stiffer.
+    Starts count only where the log's drive is that of the machine: one that may have held dwells steady well
+    below the speed of least torque, where the machine would stick, may be stiffer.
     """
     if not isinstance(points.log, TorqueLog):
         return Found()
-    stiffer = _held_by_a_stiffer_drive(points, surface)
     found = evidence_of_trace(points.log, machine, zero=points.tare)
-    if not stiffer:
+    if curves.falls_among_dwells(_STIFFER) < _SURELY_NOT:
         return found
     kept = tuple(e for e in found.evidence if isinstance(e, StickSlip))
     return Found(kept, found.unused)
@@ -258,13 +258,3 @@ def _peak(run: Run, force: FloatArray, stretch: _Stretch, machine: Machine) -> t
         return None  # no peak stands out of what sliding takes
     noise = float(np.median(np.abs(np.diff(rows)))) / 0.954
     return peak, float(np.hypot(0.01, 1.5 * noise / np.sqrt(width) / peak))
-
-
-def _held_by_a_stiffer_drive(points: SteadyPoints, surface: DampingSurface) -> bool:
-    """Whether dwells slid steadily where the machine would stick for certain."""
-    speed = np.abs(points.column("speed"))
-    if surface.b is None:
-        least = np.full(speed.size, surface.transition_speed())
-    else:
-        least = np.array([surface.transition_speed(float(t)) for t in points.column("temperature")])
-    return bool(np.any(speed < _STIFFER * least))

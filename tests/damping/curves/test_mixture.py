@@ -11,7 +11,6 @@ import pytest
 import hersey
 from hersey.damping.curves import CurveMixture, fit_curves
 from hersey.damping.curves.beyond import BEYOND
-from hersey.errors import InsufficientDataError
 from hersey.log.means import read_means
 
 Curve = Callable[[np.ndarray], np.ndarray]
@@ -34,6 +33,10 @@ def corner(w: np.ndarray) -> np.ndarray:
 
 def rounded(w: np.ndarray) -> np.ndarray:
     return 0.25 * ((w / 3.0) ** 0.4 + (w / 3.0) ** -0.5)
+
+
+def rising(w: np.ndarray) -> np.ndarray:
+    return 0.2 * w**0.4
 
 
 def stribeck(w: np.ndarray) -> np.ndarray:
@@ -102,7 +105,23 @@ def test_curves_spread_beyond_the_dwells_and_never_fall_towards_rest(tmp_path: P
     assert gain.max() > 0.9 * 0.5 * np.log(10.0)
 
 
-def test_a_log_without_a_falling_branch_has_no_curves(tmp_path: Path) -> None:
-    points = _points(tmp_path, lambda w: 0.2 * w**0.4)
-    with pytest.raises(InsufficientDataError, match="no falling branch"):
-        fit_curves(points, hersey.fit(points))
+def test_torque_that_only_rises_has_curves_too(tmp_path: Path) -> None:
+    """Among the dwells they follow it; whether it falls below them is left open."""
+    points = _points(tmp_path, rising)
+    assert hersey.fit(points).transition is None
+    mixture = _fitted(points)
+    assert mixture.falls_among_dwells(0.8) < 0.05
+    law = mixture.shares(300)
+    latent = np.random.default_rng(0).standard_normal((300, mixture.size))
+    speeds = 0.04 * np.exp(0.05 * np.arange(140))
+    drawn = np.exp(mixture.log_torque(law, latent, speeds, None))
+    among = speeds > 0.45
+    assert np.median(drawn[:, among], axis=0) == pytest.approx(0.2 * speeds[among] ** 0.4, rel=0.03)
+    falls = drawn[:, 0] > drawn.min(axis=1) * 1.02
+    assert 0.02 < np.mean(falls) < 0.9
+
+
+@pytest.mark.parametrize(("curve", "sure"), [(corner, True), (rounded, True), (rising, False)])
+def test_whether_dwells_lie_below_the_least_torque(tmp_path: Path, curve: Curve, sure: bool) -> None:
+    chance = _fitted(_points(tmp_path, curve)).falls_among_dwells(0.8)
+    assert chance == pytest.approx(1.0 if sure else 0.0, abs=0.05)

@@ -243,7 +243,7 @@ impl<'a> Laps<'a> {
             holding: at_rest.pull,
             stalls: at_rest.pull >= grip,
         };
-        if release.pull >= grip || transition <= self.belt.stick_speed {
+        if release.pull >= grip {
             return Ok(found);
         }
         let upper = self.last(|w| Ok(self.lap(w, release, work)?.sticks.is_some()), transition)?;

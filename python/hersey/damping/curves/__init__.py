@@ -6,6 +6,7 @@ dwells   what a law must predict: dwells with their errors, shared ones too
 fitting  the likeliest numbers of a law, their covariance, and its AICc
 beyond   how curves go on where there are no dwells
 mixture  all laws by weight, and curves drawn from them
+words    the laws by weight, as text
 =======  ======================================================================
 
 A law is a function of the Hersey number, viscosity times speed: temperature moves its speeds. Laws are

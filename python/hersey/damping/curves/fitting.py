@@ -31,6 +31,8 @@ _STEP = 1e-4
 INFLATED = 1.2
 #: Draws and seed that the mean weight of the draws of a law is taken from.
 _MEANS, _MEANS_SEED = 2000, 7
+#: Speeds among the dwells at which the least torque is looked for.
+_LOOKS = 60
 #: Greatest ln weight of a draw over the mean of a normal posterior: no single one far out may rule (Ionides,
 #: J. Comput. Graph. Stat. 17 (2008) 295).
 _GREATEST = 3.0
@@ -62,6 +64,21 @@ class FittedLaw:
     ) -> FloatArray:
         """Return ln(speed/reference) that has the same Hersey number at the reference, (draws, points)."""
         return _scaled(numbers, log_speed, np.asarray(shape))
+
+    def log_level(self, numbers: FloatArray, shape: float) -> FloatArray:
+        """Return the change of ln torque with temperature at the same Hersey number, (draws,)."""
+        return np.asarray(numbers[:, _COMMON.index("force")] * shape)
+
+    def slowest_below_least(self, numbers: FloatArray) -> FloatArray:
+        """Return ln of the slowest dwell over the speed of least torque among the dwells, (draws,).
+
+        Both at the Hersey number of the reference temperature.
+        """
+        dwells = self.dwells
+        measured = self.scaled_speed(self.numbers[None], dwells.log_speed, dwells.temperature)
+        grid = np.linspace(measured.min(), measured.max(), _LOOKS)
+        least = np.argmin(self.log_torque(numbers, grid, 0.0), axis=1)
+        return np.asarray(grid[0] - grid[least])
 
     @property
     def log_scatter(self) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -15,12 +16,15 @@ from hersey.damping.curves.shapes import SHAPES, Shape
 from hersey.damping.distributions import square_above
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.surface import DampingSurface
-from hersey.errors import InsufficientDataError
 
 #: A law whose misfit is as large by chance in fewer logs than this is rejected.
 REJECTED = 0.005
 #: A law that weighs less is left out.
 LEAST_WEIGHT = 0.002
+#: Draws of which it is asked whether torque falls among the dwells.
+_LOOKED_AT = 400
+#: Exponent of viscosity in temperature where a search begins that knows of none: usual, and at the most.
+_USUAL, _STEEPEST = 2.0, 6.0
 
 
 @dataclass(frozen=True)
@@ -63,6 +67,13 @@ class CurveMixture:
         law = self.laws[int(np.argmax(self.weights))]
         return float(np.exp(law.log_scatter))
 
+    def falls_among_dwells(self, share: float) -> float:
+        """Return the probability that a dwell is slower than a share of the speed of least torque."""
+        law, count = self.shares(_LOOKED_AT), _LOOKED_AT
+        latent = np.random.default_rng(count).standard_normal((count, self.size))
+        below = self._of_each(law, latent, lambda one, numbers: one.slowest_below_least(numbers))
+        return float(np.mean(below < np.log(share)))
+
     def shares(self, count: int) -> IntArray:
         """Return the law of each of so many draws, in proportion to the weights."""
         edges = np.cumsum(self.weights) * count
@@ -93,14 +104,38 @@ class CurveMixture:
                 out[mine] = log_torque_beyond(one, numbers, latent[mine][:, :BEYOND], z, s)
         return out
 
+    def torque(self, speed: FloatArray, kelvin: float | None) -> FloatArray:
+        """Return the torque (N m) of all laws by weight at speeds (rad/s) and one temperature (K), (speeds,).
+
+        Each law has its likeliest numbers; means are of ln torque.
+        """
+        z, s = np.log(speed / self.dwells.reference_speed), self.dwells.shape_of(kelvin)
+        each = [law.log_torque(law.numbers[None], z, s)[0] for law in self.laws]
+        return np.asarray(np.exp(np.average(each, axis=0, weights=self.weights)))
+
     def shift(self, law: IntArray, latent: FloatArray, kelvin: float | None) -> FloatArray:
         """Return ln of viscosity over that at the reference temperature of each draw, shape (draws,)."""
-        s, out = self.dwells.shape_of(kelvin), np.zeros(law.size)
+        s = self.dwells.shape_of(kelvin)
+        at = np.zeros(1)
+        return self._of_each(law, latent, lambda one, numbers: one.scaled_speed(numbers, at, s)[:, 0])
+
+    def level(self, law: IntArray, latent: FloatArray, kelvin: float | None) -> FloatArray:
+        """Return ln of torque over that at the reference temperature and the same Hersey number, (draws,)."""
+        s = self.dwells.shape_of(kelvin)
+        return self._of_each(law, latent, lambda one, numbers: one.log_level(numbers, s))
+
+    def _of_each(
+        self,
+        law: IntArray,
+        latent: FloatArray,
+        figure: Callable[[FittedLaw, FloatArray], FloatArray],
+    ) -> FloatArray:
+        """A figure of each draw by its law and the law's numbers, shape (draws,)."""
+        out = np.zeros(law.size)
         for index, one in enumerate(self.laws):
             mine = law == index
             if mine.any():
-                numbers = one.at(latent[mine][:, BEYOND : BEYOND + one.size])
-                out[mine] = one.scaled_speed(numbers, np.zeros(1), s)[:, 0]
+                out[mine] = figure(one, one.at(latent[mine][:, BEYOND : BEYOND + one.size]))
         return out
 
 
@@ -112,18 +147,9 @@ def fit_curves(points: SteadyPoints, surface: DampingSurface) -> CurveMixture:
     points
         From `TorqueLog.steady`; torque that is not the film's is subtracted before.
     surface
-        Their fit, with a transition.
-
-    Raises
-    ------
-    InsufficientDataError
-        If the fit has no transition: then no law that falls is determined.
+        Their fit: the search begins at its branches. Without a transition the search begins with the least
+        torque below, within and above the dwells.
     """
-    if surface.transition is None:
-        raise InsufficientDataError(
-            f"the data show no falling branch ({surface.rejected_transition}); "
-            "record slower dwells, until torque rises as the drive slows"
-        )
     dwells = dwells_of(points, surface)
     fits = [fit_shape(shape, dwells, _starts(shape, dwells, surface)) for shape in SHAPES]
     return _weighed(fits, dwells)
@@ -132,12 +158,29 @@ def fit_curves(points: SteadyPoints, surface: DampingSurface) -> CurveMixture:
 def _starts(shape: Shape, dwells: Dwells, surface: DampingSurface) -> list[FloatArray]:
     """Where the search for the numbers of a law begins: the branches of the surface, and beside them."""
     t = surface.transition
-    assert t is not None
+    if t is None:
+        return [start for branches in _any_branches(dwells, surface) for start in _about(shape, *branches)]
     at = float(np.log(t.speed.value / dwells.reference_speed))
     level = float(np.log(surface.transition_torque()))
     move = -t.temperature_exponent if dwells.thermal is not None else 0.0
     up = float(np.log(max(1.0 + surface.c.value, 0.1)))
     down = float(np.log(max(-1.0 - t.mixed_exponent.value, 0.05)))
+    return _about(shape, level, at, move, up, down)
+
+
+def _any_branches(dwells: Dwells, surface: DampingSurface) -> list[tuple[float, float, float, float, float]]:
+    """Branches that meet below, within and above the dwells, for a fit that has one branch."""
+    power = 1.0 + surface.c.value
+    slow, fast = float(dwells.log_speed.min()), float(dwells.log_speed.max())
+    level, move = float(np.median(dwells.log_torque)), 0.0
+    if surface.b is not None:  # torque that falls with temperature: a film that rises, or a branch that falls
+        move = float(np.clip(surface.b.value / max(power, 0.2), -_STEEPEST, _STEEPEST)) or -_USUAL
+    up, down = float(np.log(np.clip(power, 0.2, 1.0))), float(np.log(np.clip(-power, 0.2, 1.0)))
+    return [(level, at, move, up, down) for at in (slow, 0.5 * (slow + fast), fast)]
+
+
+def _about(shape: Shape, level: float, at: float, move: float, up: float, down: float) -> list[FloatArray]:
+    """Starts of the search beside two branches: their torque and ln speed, and ln of their exponents."""
     common = [level, at, move, 0.0, 0.0]
     if shape.name in ("blend", "free"):
         return [np.array([*common, up, down, ln_p]) for ln_p in (0.3, 1.6)]

@@ -11,11 +11,13 @@ from typing import Any, TypeVar
 import numpy as np
 
 from hersey.arrays import FloatArray
+from hersey.damping.curves import CurveMixture
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.surface import DampingSurface
 from hersey.decision.judge import Verdict, judge
+from hersey.decision.mapping import map_of
 from hersey.decision.measurement import Measurement, next_measurement
-from hersey.decision.start_up import plan_start_up, response, typical_drag
+from hersey.decision.start_up import plan_start_up, response
 from hersey.document.decision.reasons import in_words
 from hersey.errors import HerseyError
 from hersey.log import TorqueLog
@@ -27,9 +29,10 @@ from hersey.motion.simulation import Drivetrain, Trajectory
 from hersey.posterior import Posterior, posterior
 from hersey.posterior.drives import Drives
 from hersey.posterior.priors import CLOSURES, NUMBERS
+from hersey.posterior.typical import typical_drag, typical_draw
 from hersey.stability.disturbance import Disturbance, SafeStep, disturbance, safe_step
 from hersey.stability.hysteresis import HysteresisBand, hysteresis
-from hersey.stability.operating_map import OperatingMap, operating_map
+from hersey.stability.operating_map import OperatingMap
 from hersey.stability.plan import Plan
 
 #: Draws of the posterior of a report.
@@ -104,12 +107,14 @@ class Working:
         surface: DampingSurface,
         machine: Machine,
         traces: Sequence[TorqueLog] = (),
+        curves: CurveMixture | None = None,
     ) -> None:
         """Begin, in threads: the core computes without Python's lock."""
         judged = tuple(point for point in machine.points if _has_meaning(surface, point))
         self._unjudged = tuple(point for point in machine.points if point not in judged)
         machine = replace(machine, points=judged)
-        self._points, self._surface, self._machine, self._traces = points, surface, machine, traces
+        self._points, self._surface, self._curves = points, surface, curves
+        self._machine, self._traces = machine, traces
         # each piece waits for the posterior in its own thread
         self._pool = ThreadPoolExecutor(len(machine.points) + 4)
         self._posterior = self._begin(self._drawn)
@@ -155,21 +160,18 @@ class Working:
 
     def _drawn(self) -> Posterior:
         found = posterior(
-            self._points, self._machine, surface=self._surface, traces=self._traces, draws=DRAWS
+            self._points,
+            self._machine,
+            surface=self._surface,
+            curves=self._curves,
+            traces=self._traces,
+            draws=DRAWS,
         )
         found.edges(found.temperature, threads=os.cpu_count() or 1)
         return found
 
     def _mapped(self) -> OperatingMap:
-        machine, found = self._machine, self._posterior.result()
-        return operating_map(
-            self._surface,
-            machine.train,
-            **machine.belt,
-            limits=machine.limits,
-            points=machine.points,
-            edges_of=lambda kelvin: found.map_edges(kelvin, threads=os.cpu_count() or 1),
-        )
+        return map_of(self._posterior.result(), threads=os.cpu_count() or 1)
 
     def _at_the_band(self) -> tuple[HysteresisBand, StickSpeeds]:
         found = self._posterior.result()
@@ -243,10 +245,8 @@ def _has_meaning(surface: DampingSurface, point: OperatingPoint) -> bool:
 
 
 def _typical(found: Posterior, kelvin: float | None, count: int) -> Drives:
-    """The draw whose V* is the median, so many times."""
-    fold = found.edges(kelvin).fold
-    index = int(np.argsort(fold)[fold.size // 2])
-    return found.drives.take(np.full(count, index, dtype=np.intp))
+    """The typical draw, so many times."""
+    return typical_draw(found, kelvin).take(np.zeros(count, dtype=np.intp))
 
 
 def _moved(drives: Drives, latent: FloatArray, closure: int | None = None) -> Drives:
@@ -314,7 +314,6 @@ def _done(work: Future[Any]) -> tuple[Any, str]:
         return None, in_words(error)
 
 
-#: For the document's simulation: the typical drive at a temperature.
 def typical(found: Behaviour) -> tuple[Drivetrain, DragTable]:
     """Return the typical drive at the temperature of the decision."""
     return typical_drag(found.posterior, found.temperature)

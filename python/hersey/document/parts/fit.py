@@ -35,8 +35,28 @@ class TransitionPart(Part):
     )
 
 
+class CurveWeightPart(Part):
+    """A law of drag curves and its weight."""
+
+    name: str
+    words: str
+    weight: float
+    delta_aicc: float
+    p_value: float = Field(description="probability of so large a misfit by chance")
+    rejected: bool
+
+
+class TrendPart(Part):
+    """What torque does as speed rises, tested on the dwells themselves."""
+
+    rises: bool
+    falls: bool
+    least: float = Field(description="speed of least mean torque, rad/s")
+    spread: float = Field(description="half the range of mean torques at one temperature, relative")
+
+
 class Curve(Part):
-    """The fitted law at one temperature (K; null if none): speeds in rad/s, damping in N m s/rad."""
+    """Drag curves by weight at a temperature (K; null if none): speeds in rad/s, damping in N m s/rad."""
 
     temperature: float | None
     speed: list[float]
@@ -105,7 +125,9 @@ class FitPart(Part):
         default=None, description="taken off the torque before the fit, which is that of the film"
     )
     summary: str
-    curves: list[Curve] = Field(default=[], description="the law at the temperatures measured")
+    laws: list[CurveWeightPart] = Field(default=[], description="drag curves, of which decisions are made")
+    trend: TrendPart | None = None
+    curves: list[Curve] = Field(default=[], description="those by weight at the temperatures measured")
     cells: list[Cell] = Field(default=[], description="the law over the range measured")
     transition_curve: list[TransitionAt] = Field(default=[], description="over the range measured")
 

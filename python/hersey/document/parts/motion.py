@@ -36,13 +36,9 @@ class TrainPart(Part):
     grip: float | None = Field(default=None, description="force up to which the roll grips the belt, N")
 
 
-class DragPart(Part):
-    """A law of drag; temperatures in K."""
+class ClosedDragPart(Part):
+    """What laws of drag have beside their shape; temperatures in K."""
 
-    transition_force: float = Field(description="N")
-    transition_speed: float = Field(description="m/s")
-    ehl_exponent: float
-    mixed_exponent: float
     stick_speed: float = Field(description="m/s")
     closure: str
     bristle_stiffness: float | None = Field(description="N/m")
@@ -52,11 +48,27 @@ class DragPart(Part):
     speed_temperature_exponent: float
     temperature_zero: float
     static_force: float | None = Field(default=None, description="what the contact bears at rest, N")
-    static_growth: float = Field(default=0.0, description="of the static force, for each e-fold of time")
-    static_growth_time: float | None = Field(default=None, description="s")
     rest_force: float = Field(default=0.0, description="of the rest of the drive, N")
     rest_damping: float = Field(default=0.0, description="of the rest of the drive, N s/m")
     rest_temperature_slope: float = Field(default=0.0, description="relative, 1/K")
+
+
+class DragPart(ClosedDragPart):
+    """A law of drag with two branches."""
+
+    transition_force: float = Field(description="N")
+    transition_speed: float = Field(description="m/s")
+    ehl_exponent: float
+    mixed_exponent: float
+    static_growth: float = Field(default=0.0, description="of the static force, for each e-fold of time")
+    static_growth_time: float | None = Field(default=None, description="s")
+
+
+class DragTablePart(ClosedDragPart):
+    """A drag curve through points, straight between them in logarithms; shapes (n,)."""
+
+    speeds: Numbers = Field(description="m/s, ascending")
+    forces: Numbers = Field(description="N")
 
 
 class EnergyPart(Part):

@@ -7,18 +7,8 @@ from typing import Any
 from pydantic import Field
 
 from hersey.document.parts.decision import SpeedPart
+from hersey.document.parts.fit import CurveWeightPart
 from hersey.document.parts.part import Part
-
-
-class CurveWeightPart(Part):
-    """A law of drag curves and its weight."""
-
-    name: str
-    words: str
-    weight: float
-    delta_aicc: float
-    p_value: float = Field(description="probability of so large a misfit by chance")
-    rejected: bool
 
 
 class ConvergencePart(Part):

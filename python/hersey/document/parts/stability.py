@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from hersey.document.parts.motion import DragPart, TrainPart
+from hersey.document.parts.motion import DragPart, DragTablePart, TrainPart
 from hersey.document.parts.part import Holed, Numbers, Part
 
 
@@ -103,7 +103,7 @@ class MapPart(Part):
     warnings: list[str]
     roll_radius: float = Field(description="m")
     train: TrainPart
-    drag: DragPart
+    drag: DragTablePart | DragPart
     stick_speed_rule: Literal["with transition", "fixed"]
     given: bool = Field(default=False, description="whether the edges are those of a posterior of drives")
 

@@ -48,7 +48,9 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
   out.hidden = true;
   const outs = {
     Link: () => link(), Command: () => known.command(setting, answer.law, answer.duration), TOML: () => known.toml(setting, answer.law),
+    ...(map.drag.speeds ? { Drag: () => known.curve(answer.law) } : {}),
   };
+  const FILES = { TOML: "setting.toml", Drag: "drag.csv" };
   const behind = numbers(place);
   const buttons = Object.keys(outs).map((name) => {
     const each = button(foot, name, () => { open = open === name ? "" : name; output(); });
@@ -248,7 +250,7 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
   }
   function showAnswer() {
     const now = told({ setting, answer, found, kicked });
-    // the machine of the report has the verdict of the report; what is drawn is its fitted law with two branches
+    // the machine of the report has the verdict of the report, which counts all draws; drawn is the typical one
     const ofReport = map.given && !setting.profile && machineKey(setting) === machineKey(base);
     const { zone, signal: kind, words, sub } = ofReport ? { ...now, ...reported(setting) } : now;
     const [least, most] = (spread ?? []).map((v) => digits(1e3 * v));
@@ -340,10 +342,10 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
       field.rows = 5;
       const line = add(out, "div", "", "foot");
       button(line, "Copy", (from) => copy(field.value, from));
-      out.save = button(line, "Save", () => save(open === "TOML" ? "setting.toml" : `${open.toLowerCase()}.txt`, field.value, "text/plain"));
+      out.save = button(line, "Save", () => save(FILES[open] ?? `${open.toLowerCase()}.txt`, field.value, "text/plain"));
     }
     const field = out.querySelector("textarea");
-    const names = { Link: "Address of this setting", Command: "Command that reproduces this setting", TOML: "Machine’s file of this setting" };
+    const names = { Link: "Address of this setting", Command: "Command that reproduces this setting", TOML: "Machine’s file of this setting", Drag: "Drag curve of this setting" };
     field.setAttribute("aria-label", names[open]);
     field.value = outs[open]();
   }

@@ -62,12 +62,16 @@ function settings(analysis) {
   const neat = (value) => Number(value.toPrecision(6));
   const beside = (law) => map.train.grip !== null || law.rest_force !== 0 || law.rest_damping !== 0;
   function command(setting, law, duration) {
+    const shape = map.drag.speeds ? [["static-force", law.breakaway_force, "N"]]
+      : [["transition-force", law.transition_force, "N"], ["transition-speed", law.transition_speed, "m/s"]];
     const amounts = [...(setting.profile ? [] : [["drive-speed", setting.speed, "m/s"]]), ["stiffness", setting.stiffness, "N/m"], ["mass", setting.mass, "kg"],
-      ["transition-force", law.transition_force, "N"], ["transition-speed", law.transition_speed, "m/s"], ["stick-speed", law.stick_speed, "m/s"],
+      ...shape, ["stick-speed", law.stick_speed, "m/s"],
       ...(setting.closure === "lugre"
         ? [["bristle-stiffness", setting.bristle_stiffness, "N/m"], ["bristle-damping", setting.bristle_damping, "N*s/m"]] : [])];
     const words = amounts.map(([name, value, unit]) => `--${name} "${neat(value)} ${unit}"`);
-    const plain = [`--ehl-exponent=${neat(map.drag.ehl_exponent)}`, `--mixed-exponent=${neat(map.drag.mixed_exponent)}`, `--closure ${setting.closure}`];
+    const curve = map.drag.speeds ? ["--drag-table drag.csv"]
+      : [`--ehl-exponent=${neat(map.drag.ehl_exponent)}`, `--mixed-exponent=${neat(map.drag.mixed_exponent)}`];
+    const plain = [...curve, `--closure ${setting.closure}`];
     const machine = beside(law) ? ["--machine setting.toml"] : [];
     const course = setting.profile ? ["--profile profile.csv", `--duration "${duration} s"`] : [];
     return ["hersey simulate", ...course, ...machine, ...words, ...plain].join(" ");
@@ -93,7 +97,13 @@ function settings(analysis) {
     }
     return `${lines.join("\n")}\n`;
   }
+  // The drag curve at the temperature of a law, as a file of the command: that of the contact alone.
+  function curve(law) {
+    const { speeds, forces } = map.drag, least = forces.indexOf(Math.min(...forces));
+    const faster = law.transition_speed / speeds[least], stronger = law.transition_force / forces[least];
+    return csv(["speed (m/s)", "force (N)"], speeds.map((v, i) => [String(neat(v * faster)), String(neat(forces[i] * stronger))]));
+  }
   // The profile as a file of the command.
   const course = (profile) => csv(["time (s)", "speed (mm/s)"], profile.map(([t, v]) => [String(t), String(neat(1e3 * v))]));
-  return { own, drag, train, link, read, rows, command, toml, course, stick, closures: CLOSURES };
+  return { own, drag, train, link, read, rows, command, toml, curve, course, stick, closures: CLOSURES };
 }

@@ -3,7 +3,14 @@
 function torqueNote() {
   const dwells = plural(data.points.length, "dwell");
   const level = radius === null ? "" : ` 10 rpm is ${perSecond((10 / TO_RPM) * radius)} mm/s at the belt.`;
-  return `${dwells}; filled: reached from below, open: from above, bars: two standard errors. Lines: the fitted law.${data.fit.rest ? " The rest of the drive is taken off." : ""}${level}`;
+  return `${dwells}; filled: reached from below, open: from above, bars: two standard errors. Lines: ${curveNames()}.${data.fit.rest ? " The rest of the drive is taken off." : ""}${level}`;
+}
+// The laws of the drag curves that carry most of the weight.
+function curveNames() {
+  const names = new Map();
+  for (const { words, weight } of data.fit.laws ?? []) names.set(words, (names.get(words) ?? 0) + weight);
+  const most = [...names].filter(([, weight]) => weight >= 0.05).sort((a, b) => b[1] - a[1]);
+  return most.length ? most.map(([words, weight]) => `${words}${most.length > 1 ? ` (${digits(100 * weight, 2)} %)` : ""}`).join(", ") : "the fitted law";
 }
 // Transition speeds over temperature, by the map as far as dwells were measured.
 function transitions() {
@@ -13,25 +20,22 @@ function transitions() {
   return map.temperature.map((temperature, i) => ({ temperature, speed: (map.transition[i] ?? 0) / map.roll_radius }))
     .filter((each) => each.speed > 0 && each.temperature >= low - 1 && each.temperature <= high + 1);
 }
+// What torque does with speed: claims of rising and falling are those of the tests on the dwells.
 function torqueFinding() {
-  const { transition, reference_temperature: level } = data.fit;
-  const curve = transitions();
-  if (!transition) return untoldFinding();
-  if (curve.length < 2) return `Torque falls up to ${rolled(transition.speed.value)}${level === null ? "" : ` at ${degrees(level)}`} and rises above.`;
-  const [cold, hot] = [curve[0], curve.at(-1)];
-  const way = hot.speed > cold.speed ? "climbs" : "falls";
-  return `Torque rises with speed above the transition and falls below it; the transition ${way} from ${rolled(cold.speed)} at ${whole(cold.temperature)} to ${rolled(hot.speed)} at ${whole(hot.temperature)}.`;
-}
-// Without a transition: where torque falls with speed, damping falls faster than as its inverse.
-function untoldFinding() {
-  const c = data.fit.coefficients.c.value;
-  const [slow, fast] = data.regime.lack_of_fit?.local_exponents ?? [c, c];
-  const fallsSlow = slow < -1;
-  if (fallsSlow !== fast < -1) {
-    const [falls, rises] = fallsSlow ? ["slow", "fast"] : ["fast", "slow"];
-    return `Torque falls with speed at the ${falls} end (exponent of damping ${twoPlaces(fallsSlow ? slow : fast)}) and rises at the ${rises} one; no transition is told.`;
+  const { transition, trend, reference_temperature: level } = data.fit, [slow, fast] = data.fit.speed_range;
+  const rises = trend?.rises ?? true, falls = trend?.falls ?? transition !== null, curve = transitions();
+  if (rises && falls && curve.length >= 2) {
+    const [cold, hot] = [curve[0], curve.at(-1)];
+    const way = hot.speed > cold.speed ? "climbs" : "falls";
+    return `Torque rises with speed above the transition and falls below it; the transition ${way} from ${rolled(cold.speed)} at ${whole(cold.temperature)} to ${rolled(hot.speed)} at ${whole(hot.temperature)}.`;
   }
-  return fallsSlow ? "Torque falls with speed over all speeds measured." : "Torque rises with speed over all speeds measured; no falling branch is seen.";
+  if (rises && falls) {
+    const at = transition ? `up to ${rolled(transition.speed.value)}${level === null ? "" : ` at ${degrees(level)}`}` : "at the slow end";
+    return `Torque falls with speed ${at} and rises above.`;
+  }
+  const over = `from ${rolled(slow)} to ${rolled(fast)}`;
+  if (rises || falls) return `Torque ${rises ? "rises" : "falls"} with speed ${over}.`;
+  return `Torque is constant within ${digits(100 * trend.spread, 2)} % ${over}.`;
 }
 async function torqueSection(parent) {
   const finding = torqueFinding();

@@ -9,12 +9,12 @@ window     the temperatures and speeds shown where none are asked for
 intervals  how far the transition speed and V* are known
 state      what the belt does at one temperature and drive speed
 result     `OperatingMap`, what can be asked of it, and its words
-mapping    `operating_map`: from a fitted surface and a machine to the map
+mapping    `operating_map`, of a fitted surface; `given_map`, of edges found elsewhere
 =========  ======================================================================
 """
 
-from hersey.stability.operating_map.mapping import operating_map
+from hersey.stability.operating_map.mapping import given_map, operating_map
 from hersey.stability.operating_map.result import OperatingMap
 from hersey.stability.operating_map.state import STATES, MapState, PlacedPoint
 
-__all__ = ["STATES", "MapState", "OperatingMap", "PlacedPoint", "operating_map"]
+__all__ = ["STATES", "MapState", "OperatingMap", "PlacedPoint", "given_map", "operating_map"]

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import overload
 
 import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.damping.surface import FIXED, WITH_TRANSITION
 from hersey.errors import ParameterError
-from hersey.motion.drag import Drag
+from hersey.motion.drag import Drag, DragTable, PowerDrag
 from hersey.motion.simulation import Drivetrain
 from hersey.stability.hysteresis import hysteresis
 from hersey.stability.hysteresis_sweep import SweptBands, sweep_bands
@@ -32,7 +33,7 @@ class GivenEdges:
     uncertain: tuple[str, ...]
 
 
-def check_temperatures(kelvin: FloatArray, drag: Drag) -> None:
+def check_temperatures(kelvin: FloatArray, drag: PowerDrag) -> None:
     """Refuse temperatures (K) at which the powers of the law have no meaning."""
     scale = "degC" if drag.temperature_zero else "K"
     wrong = kelvin[~(np.isfinite(kelvin) & (kelvin > drag.temperature_zero))]
@@ -43,11 +44,11 @@ def check_temperatures(kelvin: FloatArray, drag: Drag) -> None:
 
 
 def edges_at(
-    train: Drivetrain, drag: Drag, kelvin: FloatArray | None, rule: str = WITH_TRANSITION
+    train: Drivetrain, drag: PowerDrag, kelvin: FloatArray | None, rule: str = WITH_TRANSITION
 ) -> dict[str, FloatArray]:
     """The bands at each temperature; an isothermal drag has one."""
     names = ("lower", "transition", "upper")
-    if kelvin is not None and rule == FIXED:
+    if isinstance(drag, DragTable) or (kelvin is not None and rule == FIXED):
         bands = [hysteresis(train, law, sensitivity=False) for law in laws_at(drag, kelvin, rule)]
         edges = {name: np.array([getattr(band, name) for band in bands]) for name in names}
     else:
@@ -66,18 +67,35 @@ def require_all(band: SweptBands) -> None:
         raise ParameterError(f"the bands cannot be computed: {band.failures[0]}")
 
 
-def law_at(drag: Drag, kelvin: float | None, rule: str) -> Drag:
+@overload
+def law_at(drag: Drag, kelvin: float | None, rule: str) -> Drag: ...
+@overload
+def law_at(drag: PowerDrag, kelvin: float | None, rule: str) -> PowerDrag: ...
+def law_at(drag: PowerDrag, kelvin: float | None, rule: str) -> PowerDrag:
     """Return the drag at a temperature (K; None if it does not vary), its stick speed by the rule."""
     law = drag.at(kelvin)
     return replace(law, stick_speed=drag.stick_speed) if rule == FIXED else law
 
 
-def laws_at(drag: Drag, kelvin: FloatArray | None, rule: str = WITH_TRANSITION) -> list[Drag]:
+@overload
+def laws_at(drag: Drag, kelvin: FloatArray | None, rule: str = ...) -> list[Drag]: ...
+@overload
+def laws_at(drag: PowerDrag, kelvin: FloatArray | None, rule: str = ...) -> list[PowerDrag]: ...
+def laws_at(
+    drag: PowerDrag, kelvin: FloatArray | None, rule: str = WITH_TRANSITION
+) -> list[Drag] | list[PowerDrag]:
     """Return the drag at each temperature (K), or the one that does not vary."""
     return [drag] if kelvin is None else [law_at(drag, t, rule) for t in kelvin.tolist()]
 
 
-def contour(laws: Sequence[Drag], force: float) -> tuple[FloatArray, FloatArray]:
+def shown_laws(drag: PowerDrag, kelvin: FloatArray | None, rule: str) -> Sequence[PowerDrag]:
+    """Return the drag at each temperature for its torque; that beside given edges moves its stick speed."""
+    if isinstance(drag, DragTable):
+        return laws_at(drag, kelvin)
+    return laws_at(drag, kelvin, rule)
+
+
+def contour(laws: Sequence[PowerDrag], force: float) -> tuple[FloatArray, FloatArray]:
     """Speeds of a force on the falling and the rising branch of each law."""
     below, above = np.array([law.speeds_of(force) for law in laws]).T
     return below, above

@@ -14,8 +14,9 @@ from hersey.damping.surface import FIXED, WITH_TRANSITION, DampingSurface
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.uncertainty import Uncertainty
+from hersey.motion.drag import DragTable, PowerDrag
 from hersey.motion.simulation import Drivetrain
-from hersey.stability.operating_map.edges import GivenEdges, contour, edges_at, laws_at
+from hersey.stability.operating_map.edges import GivenEdges, contour, edges_at, laws_at, shown_laws
 from hersey.stability.operating_map.intervals import FOLD_DRAWS, Intervals, intervals
 from hersey.stability.operating_map.result import OperatingMap
 from hersey.stability.operating_map.state import PlacedPoint
@@ -50,7 +51,6 @@ def operating_map(
     draws: int = FOLD_DRAWS,
     threads: int = 1,
     client: Client | str | None = None,
-    edges_of: Callable[[FloatArray | None], GivenEdges] | None = None,
 ) -> OperatingMap:
     """Return what the belt does at each temperature and drive speed.
 
@@ -82,9 +82,6 @@ def operating_map(
     client
         A ``distributed.Client``, or the address of a scheduler: its workers find the interval of V*, a
         temperature each. On one machine threads are quicker; more machines pay from some 10,000 draws on.
-    edges_of
-        Edges found elsewhere, from a posterior of drives, at the temperatures (K) of the map; then nothing is
-        drawn here.
 
     Raises
     ------
@@ -121,33 +118,104 @@ def operating_map(
     known = dict(uncertainty or {})
     if "stick_speed" in known:  # stated with the stick speed, so at its temperature
         known["stick_speed"] = known["stick_speed"].times(first / stick_speed)
-    reach = surface.speed_range[0] * roll_radius, surface.speed_range[1] * roll_radius
     kelvin = shown_temperatures(surface, drag, points, temperatures)
-    given = None if edges_of is None else edges_of(kelvin)
-    edges = edges_at(train, drag, kelvin, stick_speed_rule) if given is None else _edges_of(given)
+    edges = edges_at(train, drag, kelvin, stick_speed_rule)
+    found = intervals(
+        surface, train, drag, kelvin, known, roll_radius, stick_speed_rule, seed, draws, threads, client
+    )
+    holding = np.array([law.holding_force for law in laws_at(drag, kelvin, stick_speed_rule)])
+    return _drawn(
+        surface,
+        train,
+        drag,
+        kelvin,
+        edges,
+        holding * roll_radius,
+        found,
+        roll_radius=roll_radius,
+        stick_speed_rule=stick_speed_rule,
+        limits=limits,
+        points=points,
+        speeds=speeds,
+    )
+
+
+def given_map(
+    surface: DampingSurface,
+    train: Drivetrain,
+    drag: DragTable,
+    edges_of: Callable[[FloatArray | None], GivenEdges],
+    *,
+    roll_radius: float,
+    stick_speed_rule: str = WITH_TRANSITION,
+    limits: Limits | None = None,
+    points: Sequence[OperatingPoint] = (),
+) -> OperatingMap:
+    """Return a map whose edges were found elsewhere, from a posterior of drives.
+
+    Parameters
+    ----------
+    surface
+        The fit, for the ranges of its dwells.
+    train, drag
+        The drive, and the typical drag, whose torque is shown.
+    edges_of
+        Edges at the temperatures (K; None if isothermal) of the map.
+    roll_radius, stick_speed_rule, limits, points
+        As in `operating_map`.
+    """
+    limits = limits or Limits()
+    kelvin = shown_temperatures(surface, drag, points, None)
+    given = edges_of(kelvin)
+    edges = {
+        "lower": given.transition,
+        "transition": given.transition,
+        "upper": np.maximum(given.upper, given.transition),
+    }
+    found = Intervals(
+        given.transition_interval,
+        given.upper_interval,
+        given.holding_interval * roll_radius,
+        given.uncertain,
+        (),
+    )
+    return _drawn(
+        surface,
+        limits.gripping(train),
+        drag,
+        kelvin,
+        edges,
+        given.holding * roll_radius,
+        found,
+        roll_radius=roll_radius,
+        stick_speed_rule=stick_speed_rule,
+        limits=limits,
+        points=points,
+        speeds=None,
+    )
+
+
+def _drawn(
+    surface: DampingSurface,
+    train: Drivetrain,
+    drag: PowerDrag,
+    kelvin: FloatArray | None,
+    edges: dict[str, FloatArray],
+    holding: FloatArray,
+    found: Intervals,
+    *,
+    roll_radius: float,
+    stick_speed_rule: str,
+    limits: Limits,
+    points: Sequence[OperatingPoint],
+    speeds: ArrayLike | None,
+) -> OperatingMap:
+    """The map of edges (m/s) and starting torques (N m), with torque, stall and points."""
+    reach = surface.speed_range[0] * roll_radius, surface.speed_range[1] * roll_radius
     speed_grid = shown_speeds(edges, reach, points, limits.speed, speeds)
-    # beside given edges only the torque of the fitted law is shown, whatever its stick speed
-    laws = laws_at(drag, kelvin, stick_speed_rule if given is None else WITH_TRANSITION)
+    laws = shown_laws(drag, kelvin, stick_speed_rule)
     limit, limited_by = torque_limit(train.grip, limits.motor_torque, roll_radius)
     below, above = contour(laws, np.inf if limit is None else limit / roll_radius)
-    holding = np.array([law.holding_force for law in laws])
-    if given is None:
-        found = intervals(
-            surface,
-            train,
-            drag,
-            kelvin,
-            known,
-            roll_radius,
-            stick_speed_rule,
-            seed,
-            draws,
-            threads,
-            client,
-        )
-    else:
-        found = _intervals_of(given, roll_radius)
-        holding = given.holding
     map_ = OperatingMap(
         temperature=kelvin,
         speed=speed_grid,
@@ -157,7 +225,7 @@ def operating_map(
         stall_below=below,
         stall_above=above,
         torque=np.array([law.force(speed_grid) for law in laws]) * roll_radius,
-        holding=holding * roll_radius,
+        holding=holding,
         holding_interval=found.holding,
         torque_limit=limit,
         limited_by=limited_by,
@@ -171,26 +239,9 @@ def operating_map(
         train=train,
         drag=drag,
         stick_speed_rule=stick_speed_rule,
-        given=given is not None,
     )
     placed = tuple(_placed(map_, point) for point in points)
     return replace(map_, points=placed, warnings=(*found.warnings, *_remarks(map_, placed)))
-
-
-def _edges_of(given: GivenEdges) -> dict[str, FloatArray]:
-    """Edges that were found elsewhere, by name; small swings have no strip of their own."""
-    upper = np.maximum(given.upper, given.transition)
-    return {"lower": given.transition, "transition": given.transition, "upper": upper}
-
-
-def _intervals_of(given: GivenEdges, roll_radius: float) -> Intervals:
-    return Intervals(
-        given.transition_interval,
-        given.upper_interval,
-        given.holding_interval * roll_radius,
-        given.uncertain,
-        (),
-    )
 
 
 def torque_limit(
@@ -212,7 +263,7 @@ def _placed(map_: OperatingMap, point: OperatingPoint) -> PlacedPoint:
 
 def _remarks(map_: OperatingMap, points: Sequence[PlacedPoint]) -> list[str]:
     """What a reader of the map must know, one sentence each."""
-    laws = laws_at(map_.drag, map_.temperature, WITH_TRANSITION if map_.given else map_.stick_speed_rule)
+    laws = shown_laws(map_.drag, map_.temperature, map_.stick_speed_rule)
     hot, moved = map_.drag.reference_temperature, ""
     where = "" if hot is None else f" at {convert(hot, 'K', 'degC'):.0f} degC"
     if hot is not None and map_.stick_speed_rule == FIXED:

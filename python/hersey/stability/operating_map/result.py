@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -10,12 +10,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hersey.arrays import FloatArray, numbers_of
-from hersey.damping.surface import WITH_TRANSITION
 from hersey.errors import ParameterError
-from hersey.motion.drag import Drag
+from hersey.motion.drag import DragTable, PowerDrag
 from hersey.motion.simulation import Drivetrain
 from hersey.result import Result, json_record
-from hersey.stability.operating_map.edges import check_temperatures, contour, edges_at, laws_at
+from hersey.stability.operating_map.edges import check_temperatures, contour, edges_at, shown_laws
 from hersey.stability.operating_map.state import MapState, PlacedPoint
 from hersey.units import convert, takes_si
 
@@ -39,9 +38,9 @@ class OperatingMap(Result):
     counted: where it exceeds ``torque_limit`` the drive does not start the belt; ``holding_interval`` counts
     what that of V* does. The bands are those of the roll with its grip (``train``), on which the belt slips
     where a lap asks for more; ``lower`` is zero where no belt sticks and slips in turn, as one that sticks is
-    held for good. ``stick_speed_rule`` says how the stick speed depends on temperature. Where ``given``,
-    transition and V* are those of a posterior of drives, and are interpolated between temperatures; ``drag``
-    is the fitted law with two branches all the same.
+    held for good. ``stick_speed_rule`` says how the stick speed depends on temperature. Where edges are
+    ``given``, transition and V* are those of a posterior of drives, and are interpolated between
+    temperatures; ``drag`` is that of its typical draw.
     """
 
     temperature: FloatArray | None
@@ -66,9 +65,13 @@ class OperatingMap(Result):
     warnings: tuple[str, ...]
     roll_radius: float
     train: Drivetrain
-    drag: Drag
+    drag: PowerDrag
     stick_speed_rule: str
-    given: bool = False
+
+    @property
+    def given(self) -> bool:
+        """Whether the edges are those of a posterior of drives."""
+        return isinstance(self.drag, DragTable)
 
     @property
     def starts(self) -> NDArray[np.bool_]:
@@ -133,7 +136,7 @@ class OperatingMap(Result):
 
     def to_dict(self) -> dict[str, Any]:
         """Return the whole map in SI; None stands for a speed beyond all that was searched."""
-        return json_record(vars(self))
+        return json_record({**vars(self), "given": self.given})
 
     def to_frame(self) -> pl.DataFrame:
         """Return the dividing speeds at each temperature (one row if isothermal)."""
@@ -186,9 +189,10 @@ class OperatingMap(Result):
         if temperature is not None:
             check_temperatures(levels, self.drag)
         at = None if temperature is None else levels
-        edges = (
-            self._given_at(at) if self.given else edges_at(self.train, self.drag, at, self.stick_speed_rule)
-        )
+        if isinstance(self.drag, DragTable):
+            edges = self._given_at(at)
+        else:
+            edges = edges_at(self.train, self.drag, at, self.stick_speed_rule)
         laws = self._laws(at)
         rows = zip(speeds.tolist(), kelvin.tolist(), place.ravel().tolist(), strict=True)
         return [self._state(laws[i], {k: float(v[i]) for k, v in edges.items()}, t, v) for v, t, i in rows]
@@ -204,10 +208,10 @@ class OperatingMap(Result):
         """The state beyond ``torque_limit``: the roll slips, or the motor gives up."""
         return "motor" if self.limited_by == "motor torque" else "stall"
 
-    def _laws(self, kelvin: FloatArray | None) -> list[Drag]:
-        return laws_at(self.drag, kelvin, WITH_TRANSITION if self.given else self.stick_speed_rule)
+    def _laws(self, kelvin: FloatArray | None) -> Sequence[PowerDrag]:
+        return shown_laws(self.drag, kelvin, self.stick_speed_rule)
 
-    def _state(self, law: Drag, edges: Mapping[str, float], kelvin: float, speed: float) -> MapState:
+    def _state(self, law: PowerDrag, edges: Mapping[str, float], kelvin: float, speed: float) -> MapState:
         torque, holding = (force * self.roll_radius for force in (float(law.force(speed)), law.holding_force))
         if self.given:
             holding = self.at(self.holding, kelvin)

@@ -12,7 +12,7 @@ from hersey.arrays import FloatArray, numbers_of
 from hersey.damping.surface import DampingSurface
 from hersey.errors import ParameterError
 from hersey.machine.limits import OperatingPoint
-from hersey.motion.drag import Drag
+from hersey.motion.drag import PowerDrag
 from hersey.stability.operating_map.edges import check_temperatures
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ _REACH = 10.0
 
 
 def shown_temperatures(
-    surface: DampingSurface, drag: Drag, points: Sequence[OperatingPoint], given: ArrayLike | None
+    surface: DampingSurface, drag: PowerDrag, points: Sequence[OperatingPoint], given: ArrayLike | None
 ) -> FloatArray | None:
     """Return temperatures (K) as given, or those measured and a little beyond; None for an isothermal law."""
     if surface.temperature_range is None or not drag.varies_with_temperature:

@@ -1,0 +1,157 @@
+"""The options that describe a belt, its spring and its drag."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+if TYPE_CHECKING:
+    from hersey.cli.amounts import Amounts
+    from hersey.machine.machine import Machine
+    from hersey.machine.motor import MotorUse
+    from hersey.motion.drag import PowerDrag
+    from hersey.motion.simulation import Drivetrain, Trajectory
+
+#: Numbers of a belt that need not be given.
+_OPTIONAL = ("bristle_stiffness", "bristle_damping", "static_force")
+
+
+@dataclass(frozen=True)
+class Belt:
+    """The options that describe a belt, its spring and its drag; the defaults are the paper's baseline.
+
+    Numbers are texts: with a unit, or bare in any consistent set of units (see `hersey.cli.amounts`).
+    """
+
+    stiffness: Annotated[
+        str | None, typer.Option(help="Spring stiffness k, as '11 N/mm'.  [default: 1000]")
+    ] = None
+    mass: Annotated[str | None, typer.Option(help="Belt mass m, as '11 kg'.  [default: 1]")] = None
+    transition_force: Annotated[
+        str | None,
+        typer.Option(help="Drag at the transition speed (B0 of the paper), as '14 N'.  [default: 50]"),
+    ] = None
+    transition_speed: Annotated[
+        str | None, typer.Option(help="Speed where the branches meet, as '25 mm/s'.  [default: 1]")
+    ] = None
+    ehl_exponent: Annotated[float, typer.Option(help="Damping exponent above it.")] = -0.7
+    mixed_exponent: Annotated[float, typer.Option(help="Damping exponent below it.")] = -1.2
+    stick_speed: Annotated[
+        str | None,
+        typer.Option(help="Speed below which the belt sticks, as '0.3 mm/s'.  [default: 0.01]"),
+    ] = None
+    static_force: Annotated[
+        str | None,
+        typer.Option(help="Drag at rest, as '40 N'.  [default: e times that at the stick speed]"),
+    ] = None
+    drag_table: Annotated[
+        Path | None,
+        typer.Option(
+            "--drag-table",
+            metavar="FILE",
+            help="In place of the branches: a CSV of the drag curve, columns 'speed (mm/s)' and 'force (N)'.",
+        ),
+    ] = None
+    closure: Annotated[
+        str, typer.Option(help="What happens below it: retained, stiction, stribeck or lugre.")
+    ] = "retained"
+    bristle_stiffness: Annotated[
+        str | None, typer.Option(help="Of lugre: force per deflection of the bristles, as '1000 N/mm'.")
+    ] = None
+    bristle_damping: Annotated[
+        str | None, typer.Option(help="Of lugre: force per rate of deflection, as '10 N*s/m'.")
+    ] = None
+    machine: Annotated[
+        Path | None,
+        typer.Option(
+            "--machine",
+            metavar="TOML",
+            help="Machine's file: stiffness, mass and stick speed where they are not given.",
+        ),
+    ] = None
+
+    def parts(
+        self, *, needed: tuple[str, ...] = (), **further: str | None
+    ) -> tuple[Drivetrain, PowerDrag, Amounts]:
+        """Return drivetrain and drag, and all numbers; ``further`` are those of the command.
+
+        Of ``further`` those in ``needed`` are of the paper's baseline where they are not given.
+        """
+        from hersey.cli.amounts import amounts
+        from hersey.cli.drag_table import read_drag_table
+        from hersey.errors import ParameterError
+        from hersey.motion.drag import Drag
+        from hersey.motion.simulation import Drivetrain
+
+        plain = {name: getattr(self, name) for name in ("ehl_exponent", "mixed_exponent", "closure")}
+        no_number = (*plain, "machine", "drag_table")
+        texts = {f.name: getattr(self, f.name) for f in fields(self) if f.name not in no_number}
+        if self.drag_table is not None:
+            self._check_table(texts)
+        numbers = amounts(
+            {**texts, **further},
+            needed=(*(name for name in texts if name not in _OPTIONAL), *needed),
+            machine_file=self.machine,
+        )
+        of_belt: dict[str, Any] = {name: numbers.values[name] for name in texts}
+        train = Drivetrain(of_belt.pop("stiffness"), of_belt.pop("mass"))
+        drag: PowerDrag
+        if self.drag_table is None:
+            drag = Drag(**of_belt, **plain)
+        else:
+            if not numbers.in_si:
+                raise ParameterError("--drag-table has units: write the other numbers with units too")
+            drag = read_drag_table(self.drag_table, **of_belt, closure=self.closure)
+        if self.machine is None:
+            return train, drag, numbers
+        from hersey.machine.machine import read_machine
+
+        return _of_the_machine(train, drag, numbers, read_machine(self.machine))
+
+    def _check_table(self, texts: dict[str, str | None]) -> None:
+        """Refuse numbers of the branches beside a drag table, and a table beside bare numbers."""
+        from hersey.errors import ParameterError
+
+        for name in ("transition_force", "transition_speed"):
+            if texts.pop(name) is not None:
+                raise ParameterError(
+                    f"--drag-table takes the place of --{name.replace('_', '-')}: leave one out"
+                )
+        if texts["stick_speed"] is None and self.machine is None:
+            raise ParameterError("--drag-table needs the stick speed: --stick-speed '0.3 mm/s'")
+
+    def motor_use(self, run: Trajectory) -> MotorUse | None:
+        """Return what a motion asks of the machine's motor, None where its file states no torque of it."""
+        if self.machine is None:
+            return None
+        from hersey.machine.machine import read_machine
+        from hersey.machine.motor import motor_use
+
+        machine = read_machine(self.machine)
+        if machine.limits.motor_torque is None:
+            return None
+        return motor_use(run, motor_torque=machine.limits.motor_torque, roll_radius=machine.roll_radius)
+
+
+def _of_the_machine(
+    train: Drivetrain, film: PowerDrag, numbers: Amounts, machine: Machine
+) -> tuple[Drivetrain, PowerDrag, Amounts]:
+    """The belt given and, beside it, what the machine says of its roll's grip and the rest of its drive."""
+    from hersey.damping.rest import with_rest
+    from hersey.motion.drag import DragTable
+
+    train, drag, told = machine.limits.gripping(train), film, [numbers.filled]
+    if machine.rest is not None:
+        # a curve without a temperature has the no-load torque of that log's own temperature
+        kelvin = machine.rest.reference_temperature if isinstance(film, DragTable) else None
+        drag = with_rest(film, machine.rest, machine.roll_radius, kelvin)
+    if drag != film:
+        told.append(f"the rest of the drive acts beside the drag given: {machine.rest}")
+    if train.grip is not None:
+        told.append(f"the roll grips the belt with up to {train.grip:.4g} N")
+    if train.grip is not None and drag.holding_force > train.grip:
+        told.append(f"it does not start one at rest, which bears {drag.holding_force:.4g} N")
+    return train, drag, replace(numbers, filled="; ".join(filter(None, told)))
