@@ -6,14 +6,17 @@ sampler and likelihood are right, the rank of the truth among its draws is unifo
 arXiv 1804.06788). Unlike `benchmarks.decisions` this shares all assumptions with the product: it finds
 mistakes of the sampler and the likelihood, not of the model.
 
-Usage: python -m benchmarks.calibration [--truths 100] [--seed 1] [--draws 600]
+Usage: python -m benchmarks.calibration [--truths 100] [--seed 1] [--draws 600] [--workers 2]
 """
 
 from __future__ import annotations
 
 import argparse
+import multiprocessing
 import time
-from dataclasses import replace
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, replace
+from functools import cache, partial
 from pathlib import Path
 
 import numpy as np
@@ -75,6 +78,59 @@ def quantities(found: Posterior, drives: Drives) -> list[np.ndarray]:
     return [np.maximum(folds.upper, folds.transition), folds.transition, *found.model.numbers(drives).T]
 
 
+@dataclass(frozen=True)
+class Ranked:
+    """What came of one truth: the rank of each quantity, recordings left out, and whether it converged."""
+
+    ranks: list[float]
+    left_out: int
+    converged: bool
+
+
+@cache
+def _machine() -> hersey.Machine:
+    return hersey.read_machine(ROOT / "examples" / "machine.toml")
+
+
+@cache
+def _points() -> hersey.SteadyPoints:
+    rest = _machine().rest
+    assert rest is not None
+    return hersey.read(ROOT / "examples" / "bench.csv").steady(tare="standing").without(rest)
+
+
+@cache
+def _prior(seed: int) -> Posterior:
+    """The draws that the dwells of the shipped log leave open."""
+    return hersey.posterior(_points(), _machine(), evidence=(), draws=PRIOR_DRAWS, seed=seed)
+
+
+def ranked(seed: int, draws: int, number: int) -> Ranked | None:
+    """Draw a truth and rank it; None if it shows nothing."""
+    prior, random = _prior(seed), np.random.default_rng([seed, number])
+    which = int(random.integers(len(KINDS)))
+    model = prior.model
+    # a measured break-away force widens the prior of static friction: so for the truth
+    wide = DrivePriors.of(model.machine, break_away_known=KINDS[which] == "break-away")
+    from_ = replace(prior, model=replace(model, priors=wide))
+    truth = prior.drives.take(np.array([random.integers(len(prior.drives))], dtype=np.intp))
+    seen = evidence_of(from_, truth, KINDS[which], random)
+    if not seen:
+        return None
+    found = hersey.posterior(
+        _points(),
+        model.machine,
+        surface=model.surface,
+        curves=model.curves,
+        evidence=seen,
+        draws=draws,
+        seed=number + 1,
+    )
+    pairs = zip(quantities(found, found.drives), quantities(from_, truth), strict=True)
+    ranks = [float(np.mean(d < t[0]) + random.random() * np.mean(d == t[0])) for d, t in pairs]
+    return Ranked(ranks, len(found.unused), found.convergence.converged)
+
+
 def main() -> None:
     """Draw as many truths as asked for and print the table of ranks."""
     parser = argparse.ArgumentParser(
@@ -83,34 +139,17 @@ def main() -> None:
     parser.add_argument("--truths", type=int, default=100)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--draws", type=int, default=600)
+    parser.add_argument("--workers", type=int, default=2, help="processes on this machine")
     given = parser.parse_args()
-    machine = hersey.read_machine(ROOT / "examples" / "machine.toml")
-    points = hersey.read(ROOT / "examples" / "bench.csv").steady(tare="standing").without(machine.rest)
-    surface = hersey.fit(points)
-    prior = hersey.posterior(
-        points, machine, surface=surface, evidence=(), draws=PRIOR_DRAWS, seed=given.seed
-    )
-    began, ranks, left_out, apart = time.perf_counter(), [], 0, 0
-    for number in range(given.truths):
-        random = np.random.default_rng([given.seed, number])
-        which = int(random.integers(len(KINDS)))
-        # a measured break-away force widens the prior of static friction: so for the truth
-        wide = DrivePriors.of(machine, break_away_known=KINDS[which] == "break-away")
-        from_ = replace(prior, model=replace(prior.model, priors=wide))
-        truth = prior.drives.take(np.array([random.integers(len(prior.drives))], dtype=np.intp))
-        seen = evidence_of(from_, truth, KINDS[which], random)
-        if not seen:
-            continue
-        found = hersey.posterior(
-            points, machine, surface=surface, evidence=seen, draws=given.draws, seed=number + 1
-        )
-        left_out, apart = left_out + len(found.unused), apart + (not found.convergence.converged)
-        pairs = zip(quantities(found, found.drives), quantities(from_, truth), strict=True)
-        ranks.append([float(np.mean(d < t[0]) + random.random() * np.mean(d == t[0])) for d, t in pairs])
-    kept = np.array(ranks)
+    began = time.perf_counter()
+    with ProcessPoolExecutor(given.workers, mp_context=multiprocessing.get_context("spawn")) as pool:
+        every = list(pool.map(partial(ranked, given.seed, given.draws), range(given.truths)))
+    results = [each for each in every if each is not None]
+    kept = np.array([each.ranks for each in results])
     print(
         f"seed {given.seed}: {len(kept)} truths with evidence, {given.draws} draws each, "
-        f"{left_out} recordings left out, {apart} not converged, {time.perf_counter() - began:.0f} s"
+        f"{sum(each.left_out for each in results)} recordings left out, "
+        f"{sum(not each.converged for each in results)} not converged, {time.perf_counter() - began:.0f} s"
     )
     print("| quantity | ranks in tenths | p of uniform | in the 95 % interval |\n|---|---|---|---|")
     for name, column in zip(NAMES, kept.T, strict=True):

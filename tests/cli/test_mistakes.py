@@ -209,15 +209,6 @@ def given_as(it: Refused) -> list[str]:
     return [*it.arguments[: at - 1], match[2], match[3], *it.arguments[at + 1 :]]
 
 
-def slower_recorded(it: Refused) -> list[str]:
-    """Record slower dwells, in which torque rises as the drive slows."""
-    assert "record slower dwells, until torque rises as the drive slows" in it.message
-    mixed = rows((1, 2, 3, 4, 6, 8, 10, 20, 40, 80, 120), (100,))
-    slow = [(t, q * max(1.0, (10 / w) ** 0.85), w, k) for t, q, w, k in mixed]
-    (it.folder / "log.csv").write_text(table(slow))
-    return it.arguments
-
-
 def shorter_log(*speeds: float) -> dict[str, str]:
     return {"log.csv": table(rows(speeds))}
 
@@ -427,12 +418,6 @@ MISTAKES: dict[str, Mistake] = {
         {**GOOD, "machine.toml": MACHINE},
         "report log.csv --machine machine.tml",
         ("machine.tml: there is no such file",),
-    ),
-    "a map of a log without a transition": Mistake(
-        {**GOOD, "machine.toml": MACHINE},
-        "map machine.toml log.csv --isothermal",
-        ("no falling branch",),
-        slower_recorded,
     ),
     "logs without common speeds": Mistake(
         {"a.csv": table(rows()), "log.csv": table(rows((200, 300, 400, 500)))},

@@ -18,7 +18,7 @@ from hersey.damping.dwells import SteadyPoints
 from hersey.damping.surface import DampingSurface
 
 #: A law whose misfit is as large by chance in fewer logs than this is rejected.
-REJECTED = 0.005
+REJECTED = 0.001
 #: A law that weighs less is left out.
 LEAST_WEIGHT = 0.002
 #: Draws of which it is asked whether torque falls among the dwells.

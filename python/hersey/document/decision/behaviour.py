@@ -282,6 +282,8 @@ def _against_stick_speed(found: Posterior, machine: Machine) -> StickSpeeds:
     closure = np.append(drives.closure[:-1], list(CLOSURES).index("stiction")).astype(np.intp)
     folds = found.model.folds(Drives(drives.law, closure, drives.latent), kelvin, stick_speed=speeds)
     within = speeds[:-1] < _BELOW * folds.transition[:-1]
+    if not within.any():  # drag rises from the stick speed on, wherever that is
+        within[:] = True
     starts = ~folds.stalls.astype(bool)
     upper = np.where(starts, folds.upper, np.nan)
     stated = machine.uncertainty.get("stick_speed")
