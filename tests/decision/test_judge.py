@@ -12,6 +12,7 @@ from hersey.decision import judge, next_measurement
 from hersey.decision.judge import drive_limit
 from hersey.decision.measurement import measurements
 from hersey.decision.start_up import plan_start_up
+from hersey.document.decision.advice import design_part, ranking
 from hersey.machine.limits import Limits
 from hersey.posterior import Posterior
 from hersey.posterior.sampling import posterior
@@ -128,3 +129,18 @@ def test_starts_are_proposed_at_speeds_of_the_drive(found: Posterior) -> None:
     made = _with(found, Limits(speed=0.12))
     proposed = [each for each in measurements(made) if each.kind == "starts"]
     assert max(speed for each in proposed for speed in each.speeds) <= 0.12
+
+
+def test_design_ranks_what_would_narrow_v_star(found: Posterior) -> None:
+    """Lines and JSON name the same measurements, the most useful first."""
+    ranked = measurements(found)
+    lines = ranking(found, ranked)
+    part = design_part(found, ranked)
+    assert [each.kind for each in part.measurements] == [each.kind for each in ranked]
+    assert [each.left for each in ranked] == sorted(each.left for each in ranked)
+    assert {each.kind for each in ranked} == {"starts", "break-away", "dwell", "stick-slip"}
+    assert lines[0].startswith("At 180 °C V* is ")
+    assert len(lines) == 2 + len(ranked)
+    assert part.fold is not None
+    assert part.fold.low < part.fold.value < part.fold.high
+    assert ranking(found, ())[-1] == "No measurement would narrow it much."

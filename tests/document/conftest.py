@@ -11,9 +11,9 @@ import pytest
 import hersey
 from hersey.damping.rest import RestOfDrive
 from hersey.damping.surface import DampingSurface
+from hersey.decision.behaviour import Behaviour, Working
 from hersey.decision.judge import judge
-from hersey.document.decision import behaviour, decision
-from hersey.document.decision.behaviour import Behaviour, Working
+from hersey.document.decision import decision
 from hersey.document.parts import CarriedPart, DecisionPart, FilmPart, RegimePart
 from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.machine import Machine, read_machine
@@ -49,9 +49,7 @@ POINTS = {"crawl": SLOW, "thick paper": BETWEEN, "near": 0.1, "full speed": FAST
 def found(points: hersey.SteadyPoints, surface: DampingSurface) -> Behaviour:
     """What the machine of the stand does, of few draws."""
     known = replace(points, rest=RestOfDrive.stated(constant=1e-9))
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(behaviour, "DRAWS", 240)
-        return Working(known, replace(surface, rest=None), _machine()).result()
+    return Working(known, replace(surface, rest=None), _machine(), draws=240).result()
 
 
 @pytest.fixture(scope="session")

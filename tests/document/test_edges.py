@@ -13,10 +13,9 @@ import hersey
 from hersey.damping.estimate import Estimate
 from hersey.damping.surface import DampingSurface
 from hersey.damping.trend import Trend
+from hersey.decision.behaviour import Behaviour, PointBehaviour, Working
+from hersey.decision.edges import Edge, Edges, edges_of
 from hersey.decision.judge import judge
-from hersey.document.decision import behaviour
-from hersey.document.decision.behaviour import Behaviour, PointBehaviour, Working
-from hersey.document.decision.edges import Edge, Edges, edges_of
 from hersey.document.decision.flags import flags
 from hersey.document.decision.instruction import of_log
 from hersey.document.decision.points import points_of_log
@@ -170,11 +169,10 @@ def test_without_a_map_only_what_was_measured_is_judged(surface: DampingSurface,
 
 
 def test_a_step_is_taken_between_points_of_one_temperature(
-    points: hersey.SteadyPoints, surface: DampingSurface, machine: Machine, monkeypatch: pytest.MonkeyPatch
+    points: hersey.SteadyPoints, surface: DampingSurface, machine: Machine
 ) -> None:
-    monkeypatch.setattr(behaviour, "DRAWS", 80)
     states = (("slow", 0.06, HOT), ("fast", 0.12, HOT), ("cool", 0.12, HOT - 20.0))
     asked = tuple(OperatingPoint(*state) for state in states)
-    found = Working(points, surface, replace(machine, points=asked)).result()
+    found = Working(points, surface, replace(machine, points=asked), draws=80).result()
     stepped = [[step.from_speed for step in point.steps] for point in found.points]
     assert stepped == [[0.12], [0.06], []]

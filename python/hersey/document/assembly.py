@@ -20,9 +20,9 @@ from hersey.damping.dwells import SteadyPoints, groups_of_temperature
 from hersey.damping.fit import fit
 from hersey.damping.surface import DampingSurface
 from hersey.damping.trend import trend_of
+from hersey.decision.behaviour import Behaviour, Step, Working, ranges, typical
 from hersey.document.carried_part import carried_part
 from hersey.document.decision import decision
-from hersey.document.decision.behaviour import Behaviour, Step, Working, ranges, typical
 from hersey.document.decision.parts import behaviour_parts
 from hersey.document.decision.reasons import in_words
 from hersey.document.display_units import display_units

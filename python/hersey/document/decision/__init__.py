@@ -5,8 +5,6 @@ module      what it holds
 =========== ==================================================================
 words       numbers as the first screen writes them
 reasons     why something cannot be computed
-behaviour   what the machine does: map, band, plans, worked out in threads
-edges       transition and V* at one temperature, with their intervals
 instruction the sentence, its interval, and what happens otherwise
 points      what is said of each operating point
 advice      the next measurement, in words

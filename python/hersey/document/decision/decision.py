@@ -9,10 +9,10 @@ from hersey.damping.candidates.observations import Observations
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.surface import DampingSurface
 from hersey.damping.trend import trend_of
+from hersey.decision.behaviour import Behaviour
+from hersey.decision.edges import edges_of
 from hersey.decision.plausibility import asked
 from hersey.document.decision.advice import advised
-from hersey.document.decision.behaviour import Behaviour
-from hersey.document.decision.edges import edges_of
 from hersey.document.decision.flags import flags
 from hersey.document.decision.instruction import of_log, of_machine
 from hersey.document.decision.missing import missing

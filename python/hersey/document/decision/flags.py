@@ -7,8 +7,9 @@ import numpy as np
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.dwells.doubtful import doubtful_order, doubtful_tare
 from hersey.damping.surface import DampingSurface
-from hersey.document.decision.behaviour import Behaviour
-from hersey.document.decision.edges import edges_of
+from hersey.decision.behaviour import Behaviour
+from hersey.decision.edges import edges_of
+from hersey.document.decision.reasons import in_words
 from hersey.document.decision.words import at, figures, listed, mm, signed, starting
 from hersey.document.parts import CarriedPart, ComparisonPart, FilmPart, RegimePart
 from hersey.document.parts.decision import FlagPart, Signal
@@ -51,8 +52,8 @@ def flags(
         out += [*_whole(points), *_of_machine(found, map_, unit)]
     if found is not None:
         out += [
-            FlagPart(signal="watch", title="No map.", text=_sentence(reason), section="band")
-            for reason in found.reasons
+            FlagPart(signal="watch", title="No map.", text=f"{_sentence(in_words(error))}.", section="band")
+            for error in found.errors
         ]
         out += [*_plans(found), *_unused(found)]
     scatter = surface.statistics.scatter if found is None else found.posterior.model.curves.scatter

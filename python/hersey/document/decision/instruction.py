@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from hersey.damping.surface import DampingSurface
 from hersey.damping.trend import Trend
-from hersey.document.decision.behaviour import Behaviour, PointBehaviour
-from hersey.document.decision.edges import Edge, Edges, edges_of
+from hersey.decision.behaviour import Behaviour, PointBehaviour
+from hersey.decision.edges import Edge, Edges, edges_of
 from hersey.document.decision.words import (
     at,
     between,
@@ -28,6 +30,23 @@ from hersey.stability.operating_map import OperatingMap
 
 #: Signals, the gravest last.
 _ORDER: tuple[Signal, ...] = ("good", "watch", "act")
+
+
+class Words(NamedTuple):
+    """What is said of one speed, and of several."""
+
+    one: str
+    several: str
+
+
+_OF_KIND: Mapping[str, tuple[Words, Signal]] = {
+    "smooth": (Words("runs smoothly", "run smoothly"), "good"),
+    "unknown": (Words("may stick", "may stick"), "watch"),
+    "sticks": (Words("sticks from any start", "stick from any start"), "act"),
+    "not started": (Words("does not start", "do not start"), "act"),
+    "stalls": (Words("stalls", "stall"), "act"),
+    "too fast": (Words("is faster than the drive", "are faster than the drive"), "act"),
+}
 
 
 @dataclass(frozen=True)
@@ -62,7 +81,7 @@ def of_machine(found: Behaviour, map_: OperatingMap, unit: str) -> Instruction:
 
 def _of_points(found: Behaviour) -> tuple[str, Signal]:
     """One sentence for each verdict on the user's points, and the gravest signal of them."""
-    grouped: dict[str, list[str]] = {}
+    grouped: dict[Words, list[str]] = {}
     signals: list[Signal] = []
     levels = {point.point.temperature for point in found.points}
     for each in found.points:
@@ -70,29 +89,22 @@ def _of_points(found: Behaviour) -> tuple[str, Signal]:
         where = f" at {degrees(each.point.temperature)}" if len(levels) > 1 else ""
         grouped.setdefault(words, []).append(f"{mm(each.point.speed)} mm/s{where}")
         signals.append(signal)
-    sentences = []
-    for words, speeds in grouped.items():
-        one, many = words.split("|")
-        sentences.append(f"{listed(speeds)} {one if len(speeds) == 1 else many}")
+    sentences = [
+        f"{listed(speeds)} {words.one if len(speeds) == 1 else words.several}"
+        for words, speeds in grouped.items()
+    ]
     return ". ".join(sentences), max(signals, key=_ORDER.index, default="good")
 
 
-def _verdict_words(found: PointBehaviour) -> tuple[str, Signal]:
-    """What happens at a point, of one speed and of several, and its signal."""
+def _verdict_words(found: PointBehaviour) -> tuple[Words, Signal]:
+    """What happens at a point, and its signal."""
     kind, plan = found.verdict.kind, found.plan
     planned = plan is not None and plan.found
-    if kind == "smooth":
-        return "runs smoothly|run smoothly", "good"
+    if kind == "depends" and not planned:
+        return Words("is smooth only if slowed from above", "are smooth only if slowed from above"), "act"
     if kind in ("depends", "unknown") and planned:
-        return "needs the start-up profile|need the start-up profile", "watch"
-    if kind == "depends":
-        return "is smooth only if slowed from above|are smooth only if slowed from above", "act"
-    return {
-        "sticks": ("sticks from any start|stick from any start", "act"),
-        "not started": ("does not start|do not start", "act"),
-        "stalls": ("stalls|stall", "act"),
-        "too fast": ("is faster than the drive|are faster than the drive", "act"),
-    }.get(kind, ("may stick|may stick", "watch"))  # type: ignore[return-value]
+        return Words("needs the start-up profile", "need the start-up profile"), "watch"
+    return _OF_KIND[kind]
 
 
 def _general(edges: Edges, map_: OperatingMap, unit: str) -> tuple[str, Signal]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from hersey.document.decision.behaviour import Behaviour
+from hersey.decision.behaviour import Behaviour
 from hersey.document.parts import BandPart, MapPart, PosteriorPart, StickSpeedPart
 from hersey.result import json_record
 

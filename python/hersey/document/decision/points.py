@@ -7,9 +7,10 @@ import math
 import numpy as np
 
 from hersey.damping.surface import DampingSurface
+from hersey.decision.behaviour import PointBehaviour
+from hersey.decision.edges import Edges, edges_of
 from hersey.decision.judge import Verdict
-from hersey.document.decision.behaviour import PointBehaviour
-from hersey.document.decision.edges import Edges, edges_of
+from hersey.document.decision.reasons import in_words
 from hersey.document.decision.words import between, mm, per_cent, starting, torque
 from hersey.document.parts.decision import PointDecisionPart, Signal, StartPart
 from hersey.document.parts.stability import DisturbancePart, PlanPart, StepPart
@@ -60,7 +61,7 @@ def point_decision(
         steps=[StepPart(**json_record(vars(step))) for step in found.steps],
         plan=None if plan is None else PlanPart(**plan.to_dict()),
         motion=_motion(found),
-        reason=found.reason,
+        reason="; ".join(in_words(error) for error in found.errors),
     )
 
 
@@ -129,7 +130,7 @@ def _with_plan(found: PointBehaviour, verdict: Verdict) -> tuple[Signal, str]:
     sure = verdict.kind == "depends"
     chance = f"smooth from any start with {per_cent(chances.smooth)}" if chances.smooth >= 0.005 else ""
     if plan is not None and plan.found:
-        words = "needs the start-up profile (plan)"
+        words = "needs the start-up profile"
         return "watch", f"{words}; {chance}" if chance else words
     if plan is not None and any(each.limit == "target_speed" for each in plan.obstacles):
         return "act", f"may stick: lies below the speed of least drag with {per_cent(chances.sticks)}"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pydantic import Field
 
+from hersey.document.parts.decision import MeasurementPart, SpeedPart
 from hersey.document.parts.fit import LackOfFitPart, SharedScatterPart
 from hersey.document.parts.part import Holed, Numbers, OpenInterval, Part
 
@@ -157,7 +158,7 @@ class DesignPointPart(Part):
 
 
 class DesignPart(Part):
-    """The next dwells, in the order of their worth."""
+    """The next dwells, or measurements that narrow V*, in the order of their worth."""
 
     quantity: str
     unit: str
@@ -165,3 +166,5 @@ class DesignPart(Part):
     points: list[DesignPointPart]
     law: str
     seed: int
+    fold: SpeedPart | None = Field(default=None, description="V* of the machine that was named, m/s")
+    measurements: list[MeasurementPart] = Field(default=[], description="what would narrow it")

@@ -76,6 +76,7 @@ class PlacedPart(Part):
     speed: float
     temperature: float
     at: StatePart
+    judged: str = Field(default="", description="verdict of the posterior that the edges are from")
 
 
 class MapPart(Part):

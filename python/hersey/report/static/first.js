@@ -88,7 +88,7 @@ function points(row, all) {
     word.append(signal(point.signal), SIGNALS[point.signal]);
     add(line, "td", point.name, point.name.length < 16 ? "n short" : "n");
     add(line, "td", `${perSecond(point.speed)} mm/s${levels.size > 1 ? `, ${degrees(point.temperature)}` : ""}`, "v");
-    const words = add(line, "td", pretty(point.words.replace(/ \(plan\)$/, "")), "w");
+    const words = add(line, "td", pretty(point.words), "w");
     if (point.plan) {
       words.append(" (");
       link(words, "plan", "plan");

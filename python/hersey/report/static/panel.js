@@ -252,10 +252,10 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
     const now = told({ setting, answer, found, kicked });
     // the machine of the report has the verdict of the report, which counts all draws; drawn is the typical one
     const ofReport = map.given && !setting.profile && machineKey(setting) === machineKey(base);
-    const { zone, signal: kind, words, sub } = ofReport ? { ...now, ...reported(setting) } : now;
+    const { zone, signal: kind, words, sub, own } = ofReport ? { ...now, ...reported(setting) } : now;
     const [least, most] = (spread ?? []).map((v) => digits(1e3 * v));
     controls.spread.textContent = spread ? `With this spread V* is ${digits(1e3 * found.upper)} [${least}, ${most}] mm/s.` : "\u00a0";
-    const far = extrapolated() ? " (extrapolated)" : "";
+    const far = extrapolated() && !own ? " (extrapolated)" : "";
     verdict.replaceChildren();
     const word = add(verdict, "span", "", `signal ${kind}`);
     word.append(signal(kind), { good: "Good:", watch: "Watch:", act: "Act:" }[kind]);

@@ -15,13 +15,13 @@ function verdicts({ map, points, limit, motor, questions }) {
     return row[right - 1] * (row[right] / row[right - 1]) ** share;
   };
   function reported({ speed, temperature }) {
+    const own = points.find((p) => Math.abs(p.speed / speed - 1) < 1e-6 && (!map.temperature || Math.abs(p.temperature - temperature) < 1e-6));
+    if (own) return { signal: own.signal, words: own.words, own: true };
     if (map.speed_limit !== null && speed > map.speed_limit * (1 + 1e-9)) {
       return { signal: "act", words: `faster than the drive, ${digits(1e3 * map.speed_limit)} mm/s` };
     }
     const held = (map.holding_interval ?? []).map((row) => between(row, temperature));
     if (map.torque_limit !== null && held[0] > map.torque_limit) return { signal: "act", words: "does not start from rest" };
-    const own = points.find((p) => Math.abs(p.speed / speed - 1) < 1e-6 && (!map.temperature || Math.abs(p.temperature - temperature) < 1e-6));
-    if (own) return { signal: own.signal, words: own.words.replace(/ \(plan\)/, "") };
     const [turn, fold] = [map.transition_interval, map.upper_interval].map((ends) => ends.map((row) => between(row, temperature)));
     const kind = speed >= Math.max(fold[1], turn[1]) ? "smooth" : speed < turn[0] ? "stick_slip" : speed >= turn[1] && speed < fold[0] ? "bistable" : "open";
     const [signal, words] = WORDS[map.torque_limit !== null && held[1] > map.torque_limit && kind !== "stick_slip" ? "unstarted" : kind];

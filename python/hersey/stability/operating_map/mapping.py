@@ -291,7 +291,7 @@ def _remarks(map_: OperatingMap, points: Sequence[PlacedPoint]) -> list[str]:
             f"a belt at rest bears {bears} before it starts{_started(map_)}"
         )
     for p in points:
-        within = _within(map_, p)
+        within = "" if map_.given else _within(map_, p)
         if within:
             said.append(f"{p.name}: within the 95 % interval of {within}, so the verdict is not certain")
         if p.at.extrapolated:

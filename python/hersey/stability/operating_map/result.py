@@ -265,7 +265,7 @@ def _summary(map_: OperatingMap) -> str:
         where = f"{_mm(point.speed)} mm/s" + (
             "" if map_.temperature is None else f", {_celsius(point.temperature)}"
         )
-        lines.append(f"{point.name} ({where}, {point.at.torque:.3g} N m): {point.at.verdict()}")
+        lines.append(f"{point.name} ({where}, {point.at.torque:.3g} N m): {point.verdict()}")
     return "\n".join(lines)
 
 

@@ -64,11 +64,31 @@ class MapState:
         return _NOT_STARTED[self.state] + ("; one that slides already goes on sliding." if slides else ".")
 
 
+#: Verdicts of a posterior of drives, in words.
+_OF_DRAWS = {
+    "smooth": "Smooth from any start.",
+    "depends": "Smooth once it slides; from rest it may stick.",
+    "sticks": "Sticks from any start.",
+    "not started": "The drive does not start it.",
+    "stalls": "It stalls: sliding takes more than the drive gives.",
+    "too fast": "Faster than the drive.",
+    "unknown": "Not sure.",
+}
+
+
 @dataclass(frozen=True)
 class PlacedPoint:
-    """An operating point of the user's and what the map says there: speed in m/s, temperature in K."""
+    """An operating point of the user's and what the map says there: speed in m/s, temperature in K.
+
+    ``judged`` is the verdict of the posterior that the edges are from; empty where there is none.
+    """
 
     name: str
     speed: float
     temperature: float
     at: MapState
+    judged: str = ""
+
+    def verdict(self) -> str:
+        """Return what happens there, in one sentence."""
+        return _OF_DRAWS[self.judged] if self.judged else self.at.verdict()

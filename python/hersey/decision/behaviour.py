@@ -18,7 +18,6 @@ from hersey.decision.judge import Verdict, judge
 from hersey.decision.mapping import map_of
 from hersey.decision.measurement import Measurement, next_measurement
 from hersey.decision.start_up import plan_start_up, response
-from hersey.document.decision.reasons import in_words
 from hersey.errors import HerseyError
 from hersey.log import TorqueLog
 from hersey.machine.limits import OperatingPoint
@@ -29,14 +28,13 @@ from hersey.motion.simulation import Drivetrain, Trajectory
 from hersey.posterior import Posterior, posterior
 from hersey.posterior.drives import Drives
 from hersey.posterior.priors import CLOSURES, NUMBERS
+from hersey.posterior.sampling import DRAWS
 from hersey.posterior.typical import typical_drag, typical_draw
 from hersey.stability.disturbance import Disturbance, SafeStep, disturbance, safe_step
 from hersey.stability.hysteresis import HysteresisBand, hysteresis
 from hersey.stability.operating_map import OperatingMap
 from hersey.stability.plan import Plan
 
-#: Draws of the posterior of a report.
-DRAWS = 600
 #: Stick speeds of the curve of V*, and how far it reaches where no range is stated.
 _STICK_SPEEDS = 17
 #: The curve goes to this share of the transition speed at the most.
@@ -61,7 +59,7 @@ class PointBehaviour:
     steps: tuple[SafeStep, ...] = ()
     plan: Plan | None = None
     straight: Trajectory | None = None  #: straight up to the point, beside the plan
-    reason: str = ""  #: why something of it is missing
+    errors: tuple[HerseyError, ...] = ()  #: why something of it is missing
 
 
 @dataclass(frozen=True)
@@ -94,7 +92,7 @@ class Behaviour:
     map: OperatingMap | None
     points: tuple[PointBehaviour, ...]
     measurement: Measurement | None
-    reasons: tuple[str, ...]
+    errors: tuple[HerseyError, ...]  #: why there is no map
     unjudged: tuple[OperatingPoint, ...] = ()  #: points at whose temperature the fitted law has no meaning
 
 
@@ -108,13 +106,14 @@ class Working:
         machine: Machine,
         traces: Sequence[TorqueLog] = (),
         curves: CurveMixture | None = None,
+        draws: int = DRAWS,
     ) -> None:
         """Begin, in threads: the core computes without Python's lock."""
         judged = tuple(point for point in machine.points if _has_meaning(surface, point))
         self._unjudged = tuple(point for point in machine.points if point not in judged)
         machine = replace(machine, points=judged)
         self._points, self._surface, self._curves = points, surface, curves
-        self._machine, self._traces = machine, traces
+        self._machine, self._traces, self._draws = machine, traces, draws
         # each piece waits for the posterior in its own thread
         self._pool = ThreadPoolExecutor(len(machine.points) + 4)
         self._posterior = self._begin(self._drawn)
@@ -143,16 +142,14 @@ class Working:
         found = self._posterior.result()
         step("finding the bands")
         band, stick = self._band.result()
-        map_: OperatingMap | None
-        map_, why = _done(self._map)
+        map_, no_map = _done(self._map)
         points = []
         for point, future in zip(self._machine.points, self._judged, strict=True):
             step(f"planning {point.name}")
             points.append(future.result())
         measurement, _ = _done(self._next)
-        reasons = (f"no map: {why}",) if why else ()
         return Behaviour(
-            found.temperature, found, band, stick, map_, tuple(points), measurement, reasons, self._unjudged
+            found.temperature, found, band, stick, map_, tuple(points), measurement, no_map, self._unjudged
         )
 
     def _begin(self, work: Callable[..., _T], *given: object) -> Future[_T]:
@@ -165,13 +162,14 @@ class Working:
             surface=self._surface,
             curves=self._curves,
             traces=self._traces,
-            draws=DRAWS,
+            draws=self._draws,
         )
         found.edges(found.temperature, threads=os.cpu_count() or 1)
         return found
 
     def _mapped(self) -> OperatingMap:
-        return map_of(self._posterior.result(), threads=os.cpu_count() or 1)
+        kinds = [each.result().verdict.kind for each in self._judged]
+        return map_of(self._posterior.result(), judged=kinds, threads=os.cpu_count() or 1)
 
     def _at_the_band(self) -> tuple[HysteresisBand, StickSpeeds]:
         found = self._posterior.result()
@@ -187,18 +185,18 @@ class Working:
     def _of_point(self, point: OperatingPoint) -> PointBehaviour:
         found, kelvin = self._posterior.result(), self._at(point)
         verdict = judge(found, kelvin, point.speed)
-        plan, straight, no_plan = None, None, ""
+        plan, straight, errors = None, None, list[HerseyError]()
         try:
             if verdict.kind in ("depends", "unknown"):
                 plan, straight = self._planned(found, kelvin, point.speed)
         except HerseyError as error:
-            no_plan = in_words(error)
+            errors.append(error)
         try:
             withstands, steps = self._withstood(found, kelvin, point)
         except HerseyError as error:
             withstands, steps = None, ()
-            no_plan = "; ".join(filter(None, (no_plan, in_words(error))))
-        return PointBehaviour(point, verdict, withstands, steps, plan, straight, no_plan)
+            errors.append(error)
+        return PointBehaviour(point, verdict, withstands, steps, plan, straight, tuple(errors))
 
     def _planned(
         self, found: Posterior, kelvin: float | None, speed: float
@@ -308,12 +306,12 @@ def ranges(machine: Machine) -> dict[str, tuple[float, float]]:
     return found
 
 
-def _done(work: Future[Any]) -> tuple[Any, str]:
+def _done(work: Future[Any]) -> tuple[Any, tuple[HerseyError, ...]]:
     """What came of a piece of work, or why nothing did."""
     try:
-        return work.result(), ""
+        return work.result(), ()
     except HerseyError as error:
-        return None, in_words(error)
+        return None, (error,)
 
 
 def typical(found: Behaviour) -> tuple[Drivetrain, DragTable]:
