@@ -80,10 +80,10 @@ def quantities(found: Posterior, drives: Drives) -> list[np.ndarray]:
 
 @dataclass(frozen=True)
 class Ranked:
-    """What came of one truth: the rank of each quantity, recordings left out, and whether it converged."""
+    """What came of one truth: the rank of each quantity, recordings excluded, and whether it converged."""
 
     ranks: list[float]
-    left_out: int
+    excluded: int
     converged: bool
 
 
@@ -148,7 +148,7 @@ def main() -> None:
     kept = np.array([each.ranks for each in results])
     print(
         f"seed {given.seed}: {len(kept)} truths with evidence, {given.draws} draws each, "
-        f"{sum(each.left_out for each in results)} recordings left out, "
+        f"{sum(each.excluded for each in results)} recordings excluded, "
         f"{sum(not each.converged for each in results)} not converged, {time.perf_counter() - began:.0f} s"
     )
     print("| quantity | ranks in tenths | p of uniform | in the 95 % interval |\n|---|---|---|---|")

@@ -28,8 +28,8 @@ HOT, COOL = 453.15, 403.15
 #: Words of each verdict: the sentence of one speed and of several, the list, and the signal.
 SENTENCE = {
     "smooth": r"runs? smoothly",
-    "depends": r"needs? the start-up profile|(is|are) smooth only if slowed from above",
-    "unknown": r"needs? the start-up profile|may stick",
+    "depends": r"needs? the start-up profile|may stick from rest",
+    "unknown": r"needs? the start-up profile|may stick|cannot be judged",
     "sticks": r"sticks? from any start",
     "not started": r"(does|do) not start",
     "stalls": r"stalls?",
@@ -37,8 +37,8 @@ SENTENCE = {
 }
 LISTED = {
     "smooth": r"^smooth from any start",
-    "depends": r"^(needs the start-up profile|smooth only if|may not start)",
-    "unknown": r"^(needs the start-up profile|may |smooth only if)",
+    "depends": r"^(needs the start-up profile|may stick from rest|may not start)",
+    "unknown": r"^(needs the start-up profile|may |not known)",
     "sticks": r"^sticks from any start",
     "not started": r"^does not start",
     "stalls": r"^stalls",

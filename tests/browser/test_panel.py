@@ -23,8 +23,8 @@ from hersey.motion.drag import DragTable
 from hersey.motion.simulation import Drivetrain, StickSlipCycle, stick_slip
 from hersey.report.page import render
 from hersey.stability.disturbance import disturbance
+from hersey.stability.hysteresis import hysteresis
 from hersey.stability.operating_map import OperatingMap
-from hersey.stability.operating_map.edges import edges_at
 from tests.browser.opening import Opened
 from tests.cli.command import run
 
@@ -46,9 +46,11 @@ def part(document: Analysis) -> MapPart:
     assert isinstance(given.drag, DragTablePart)
     drag = given.drag.model_copy(update={"closure": "retained", "static_force": None})
     train = Drivetrain(given.train.stiffness, given.train.mass)
-    edges = edges_at(
-        train, DragTable(**drag.model_dump()), np.asarray(given.temperature), given.stick_speed_rule
-    )
+    table = DragTable(**drag.model_dump())
+    bands = [hysteresis(train, table.at(t), sensitivity=False) for t in given.temperature]
+    edges = {
+        name: np.array([getattr(band, name) for band in bands]) for name in ("lower", "transition", "upper")
+    }
     many = len(given.temperature)
     told = {name: values.tolist() for name, values in edges.items()}
     intervals = {

@@ -50,6 +50,7 @@ def test_a_table_of_two_branches_moves_as_they_do(here: Path) -> None:
     ("words", "said"),
     [
         (("--stick-speed", "1 mm/s", "--transition-force", "4 N"), "leave one out"),
+        (("--stick-speed", "1 mm/s", "--ehl-exponent", "-0.5"), "leave one out"),
         ((), "--stick-speed '0.3 mm/s'"),
         (("--stick-speed", "2"), "write the other numbers with units too"),
         (("--stick-speed", "30 mm/s"), "drag.csv: stick_speed is 0.03: it must be less than 0.025"),

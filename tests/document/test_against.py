@@ -43,7 +43,9 @@ def dwells(path: Path) -> hersey.SteadyPoints:
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return tmp_path_factory.mktemp("two")
+    made = tmp_path_factory.mktemp("two")
+    written(made, "new.csv")
+    return made
 
 
 @pytest.fixture(scope="module")

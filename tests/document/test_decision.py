@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -54,7 +55,7 @@ def test_the_first_sentence_is_about_the_users_points(decide: Decide, found: Beh
 
 def test_each_point_has_the_signal_of_its_verdict(decide: Decide, found: Behaviour) -> None:
     said = decide(found)
-    signals = {p.name: (p.signal, p.verdict, p.words.split(":")[0]) for p in said.points}
+    signals = {p.name: (p.signal, p.verdict, re.split("[:;] (?!extra)", p.words)[0]) for p in said.points}
     assert signals == {
         "crawl": ("act", "sticks", "sticks from any start"),
         "thick paper": ("watch", "depends", "needs the start-up profile"),
@@ -98,8 +99,11 @@ def test_a_plan_that_is_impossible_is_something_to_act_on(decide: Decide, found:
     point = replace(found.points[1], plan=none)
     said = decide(replace(found, points=(point,)))
     assert said.signal == said.points[0].signal == "act"
-    assert said.points[0].words == "smooth only if slowed from above: no start-up within the limits works"
-    assert said.instruction == "45 mm/s is smooth only if slowed from above"
+    assert (
+        said.points[0].words
+        == "may stick from rest, smooth once it slides: no start-up within the limits works"
+    )
+    assert said.instruction == "45 mm/s may stick from rest, and is smooth once it slides"
     assert said.flags[0].title == "No start for thick paper."
     assert said.flags[0].section == "plan"
 
@@ -309,14 +313,16 @@ def _table(speeds: np.ndarray, torques: np.ndarray, machine: Machine | None = No
     return document
 
 
-def test_a_stick_speed_above_the_transition_leaves_no_falling_branch(
+def test_a_stick_speed_above_the_transition_does_not_end_the_report(
     log: hersey.TorqueLog, machine: Machine
 ) -> None:
-    """The belt would stick wherever drag falls: the report is made all the same."""
+    """Faster than all but a few dwells: drag rises from it on, or falls only a little."""
     points = log.steady(tare="standing")
-    document = analyse(log, points, machine=replace(machine, stick_speed=0.5, uncertainty={}))
+    document = analyse(log, points, machine=replace(machine, stick_speed=0.04, uncertainty={}))
     assert document.decision is not None
-    assert document.band is not None
+    assert document.map is not None
+    assert document.decision.fold is not None
+    assert document.decision.fold.high > 0.04
 
 
 def test_how_the_belt_stops_is_said_where_it_moves_v_star(decide: Decide, found: Behaviour) -> None:

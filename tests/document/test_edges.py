@@ -28,7 +28,7 @@ from tests.document.conftest import HOT, Decide
 
 def test_a_drive_starts_by_the_ends_of_what_a_start_takes() -> None:
     held = Edge(1.0, 0.5, 2.0)
-    edges = Edges(Edge(0.03, 0.02, 0.09), Edge(0.05, 0.04, 0.07), 0.09, 1.0, held, 3.0)
+    edges = Edges(Edge(0.03, 0.02, 0.09), Edge(0.05, 0.04, 0.07), 0.09, 0.02, 1.0, held, 3.0)
     assert not edges.bistable
     assert replace(edges, transition=Edge(0.03, 0.02, 0.04)).bistable
     assert [replace(edges, limit=limit).starts for limit in (2.0, 1.9, 0.5, 0.4)] == [True, None, None, False]

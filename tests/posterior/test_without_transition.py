@@ -74,5 +74,6 @@ def test_the_interval_of_each_closure_holds_its_truth(
     for index, closure in enumerate(("retained", "stiction")):
         low, high = np.quantile(folds[found.drives.closure == index], [0.025, 0.975])
         assert low < _true(drag, closure) < high
-    # not by saying nothing: with dwells alone the safe speed is a few times the greatest V*
-    assert found.safe_speed(None) < 4.0 * _true(drag, "stiction")
+    # not by saying nothing, though friction that no dwell reaches may raise V* many times
+    most = 4.0 if drag is bottom else 20.0
+    assert found.safe_speed(None) < most * _true(drag, "stiction")

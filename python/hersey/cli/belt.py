@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from hersey.motion.drag import PowerDrag
     from hersey.motion.simulation import Drivetrain, Trajectory
 
+#: Damping exponents of the paper's baseline.
+_EXPONENTS = {"ehl_exponent": -0.7, "mixed_exponent": -1.2}
 #: Numbers of a belt that need not be given.
 _OPTIONAL = ("bristle_stiffness", "bristle_damping", "static_force")
 
@@ -37,15 +39,19 @@ class Belt:
     transition_speed: Annotated[
         str | None, typer.Option(help="Speed where the branches meet, as '25 mm/s'.  [default: 1]")
     ] = None
-    ehl_exponent: Annotated[float, typer.Option(help="Damping exponent above it.")] = -0.7
-    mixed_exponent: Annotated[float, typer.Option(help="Damping exponent below it.")] = -1.2
+    ehl_exponent: Annotated[
+        float | None, typer.Option(help="Damping exponent above it.  [default: -0.7]")
+    ] = None
+    mixed_exponent: Annotated[
+        float | None, typer.Option(help="Damping exponent below it.  [default: -1.2]")
+    ] = None
     stick_speed: Annotated[
         str | None,
         typer.Option(help="Speed below which the belt sticks, as '0.3 mm/s'.  [default: 0.01]"),
     ] = None
     static_force: Annotated[
         str | None,
-        typer.Option(help="Drag at rest, as '40 N'.  [default: e times that at the stick speed]"),
+        typer.Option(help="Break-away drag, e.g. '40 N'.  [default: e times that at the stick speed]"),
     ] = None
     drag_table: Annotated[
         Path | None,
@@ -86,8 +92,7 @@ class Belt:
         from hersey.motion.drag import Drag
         from hersey.motion.simulation import Drivetrain
 
-        plain = {name: getattr(self, name) for name in ("ehl_exponent", "mixed_exponent", "closure")}
-        no_number = (*plain, "machine", "drag_table")
+        no_number = (*_EXPONENTS, "closure", "machine", "drag_table")
         texts = {f.name: getattr(self, f.name) for f in fields(self) if f.name not in no_number}
         if self.drag_table is not None:
             self._check_table(texts)
@@ -100,7 +105,9 @@ class Belt:
         train = Drivetrain(of_belt.pop("stiffness"), of_belt.pop("mass"))
         drag: PowerDrag
         if self.drag_table is None:
-            drag = Drag(**of_belt, **plain)
+            stated = {name: getattr(self, name) for name in _EXPONENTS}
+            exponents = {n: _EXPONENTS[n] if value is None else value for n, value in stated.items()}
+            drag = Drag(**of_belt, **exponents, closure=self.closure)
         else:
             if not numbers.in_si:
                 raise ParameterError("--drag-table has units: write the other numbers with units too")
@@ -112,11 +119,12 @@ class Belt:
         return _of_the_machine(train, drag, numbers, read_machine(self.machine))
 
     def _check_table(self, texts: dict[str, str | None]) -> None:
-        """Refuse numbers of the branches beside a drag table, and a table beside bare numbers."""
+        """Refuse numbers of the branches beside a drag table, and a table without a stick speed."""
         from hersey.errors import ParameterError
 
-        for name in ("transition_force", "transition_speed"):
-            if texts.pop(name) is not None:
+        of_branches = {name: texts.pop(name) for name in ("transition_force", "transition_speed")}
+        for name, value in {**of_branches, **{n: getattr(self, n) for n in _EXPONENTS}}.items():
+            if value is not None:
                 raise ParameterError(
                     f"--drag-table takes the place of --{name.replace('_', '-')}: leave one out"
                 )
@@ -142,14 +150,17 @@ def _of_the_machine(
     """The belt given and, beside it, what the machine says of its roll's grip and the rest of its drive."""
     from hersey.damping.rest import with_rest
     from hersey.motion.drag import DragTable
+    from hersey.units import celsius
 
     train, drag, told = machine.limits.gripping(train), film, [numbers.filled]
+    kelvin = None
     if machine.rest is not None:
         # a curve without a temperature has the no-load torque of that log's own temperature
         kelvin = machine.rest.reference_temperature if isinstance(film, DragTable) else None
         drag = with_rest(film, machine.rest, machine.roll_radius, kelvin)
     if drag != film:
-        told.append(f"the rest of the drive acts beside the drag given: {machine.rest}")
+        at = "" if kelvin is None else f" (at {celsius(kelvin):.0f} degC)"
+        told.append(f"the rest of the drive acts beside the drag given: {machine.rest}{at}")
     if train.grip is not None:
         told.append(f"the roll grips the belt with up to {train.grip:.4g} N")
     if train.grip is not None and drag.holding_force > train.grip:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import inspect
+import os
 import re
 import sys
 from collections.abc import Callable
@@ -319,7 +320,14 @@ class Reading:
         points = self.points(self.log(paths, machine), machine)
         surface = fit(points, temperature_scale=self.temperature_scale)
         with working("drawing the drives that the log allows"):
-            return surface, posterior(points, machine, surface=surface, traces=recorded, seed=seed)
+            return surface, posterior(
+                points,
+                machine,
+                surface=surface,
+                traces=recorded,
+                seed=seed,
+                threads=os.cpu_count() or 1,
+            )
 
     def surface(
         self, paths: list[Path] | None, fit_file: Path | None, machine: Machine | None = None

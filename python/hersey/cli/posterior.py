@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import Annotated
 
@@ -58,6 +59,7 @@ def posterior(
             draws=draws,
             seed=seed,
             progress=lambda share: progress(round(_STEPS * share), _STEPS),
+            threads=os.cpu_count() or 1,
         )
     if out is not None:
         _WRITERS[out.suffix](found, out)

@@ -89,7 +89,7 @@ def _means(
 
 
 def _scatter(data: Observations) -> tuple[float, float]:
-    """Scatter of dwells about the best curve that falls and then rises, and its degrees of freedom."""
+    """Scatter of dwells about the best curve that turns once, and its degrees of freedom."""
     squares, freedom = 0.0, 0.0
     for group in np.unique(data.inputs.group):
         members = np.flatnonzero(data.inputs.group == group)
@@ -97,9 +97,10 @@ def _scatter(data: Observations) -> tuple[float, float]:
         y = data.log_torque[order]
         best = float(np.sum((y - y.mean()) ** 2))
         for i in range(1, y.size):
-            falling = optimize.isotonic_regression(y[:i], increasing=False).x
-            rising = optimize.isotonic_regression(y[i:]).x
-            best = min(best, float(np.sum((y - np.append(falling, rising)) ** 2)))
+            for first_rises in (False, True):
+                before = optimize.isotonic_regression(y[:i], increasing=first_rises).x
+                after = optimize.isotonic_regression(y[i:], increasing=not first_rises).x
+                best = min(best, float(np.sum((y - np.append(before, after)) ** 2)))
         squares += best
         # an isotonic curve takes up about a third of as many dwells
         freedom += max(2.0 * y.size / 3.0 - 1.0, 0.5)

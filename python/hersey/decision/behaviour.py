@@ -14,7 +14,7 @@ from hersey.arrays import FloatArray
 from hersey.damping.curves import CurveMixture
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.surface import DampingSurface
-from hersey.decision.judge import Verdict, judge
+from hersey.decision.judge import Unjudged, Verdict, judge, meaningless
 from hersey.decision.mapping import map_of
 from hersey.decision.measurement import Measurement, next_measurement
 from hersey.decision.start_up import plan_start_up, response
@@ -28,6 +28,7 @@ from hersey.motion.simulation import Drivetrain, Trajectory
 from hersey.posterior import Posterior, posterior
 from hersey.posterior.drives import Drives
 from hersey.posterior.priors import CLOSURES, NUMBERS
+from hersey.posterior.result import SAFE
 from hersey.posterior.sampling import DRAWS
 from hersey.posterior.typical import typical_drag, typical_draw
 from hersey.stability.disturbance import Disturbance, SafeStep, disturbance, safe_step
@@ -87,13 +88,14 @@ class Behaviour:
 
     temperature: float | None
     posterior: Posterior
-    band: HysteresisBand
+    band: HysteresisBand | None
     stick_speeds: StickSpeeds | None
     map: OperatingMap | None
     points: tuple[PointBehaviour, ...]
     measurement: Measurement | None
-    errors: tuple[HerseyError, ...]  #: why there is no map
-    unjudged: tuple[OperatingPoint, ...] = ()  #: points at whose temperature the fitted law has no meaning
+    no_band: tuple[HerseyError, ...]
+    no_map: tuple[HerseyError, ...]
+    unjudged: tuple[Unjudged, ...] = ()
 
 
 class Working:
@@ -109,9 +111,9 @@ class Working:
         draws: int = DRAWS,
     ) -> None:
         """Begin, in threads: the core computes without Python's lock."""
-        judged = tuple(point for point in machine.points if _has_meaning(surface, point))
-        self._unjudged = tuple(point for point in machine.points if point not in judged)
-        machine = replace(machine, points=judged)
+        self._unjudged = meaningless(surface, machine)
+        without = [each.point for each in self._unjudged]
+        machine = replace(machine, points=tuple(p for p in machine.points if p not in without))
         self._points, self._surface, self._curves = points, surface, curves
         self._machine, self._traces, self._draws = machine, traces, draws
         # each piece waits for the posterior in its own thread
@@ -141,34 +143,46 @@ class Working:
         step("drawing what dwells and starts leave open")
         found = self._posterior.result()
         step("finding the bands")
-        band, stick = self._band.result()
+        bands, no_band = _done(self._band)
+        band, stick = bands or (None, None)
         map_, no_map = _done(self._map)
-        points = []
+        points, unjudged = list[PointBehaviour](), list(self._unjudged)
         for point, future in zip(self._machine.points, self._judged, strict=True):
             step(f"planning {point.name}")
-            points.append(future.result())
+            behaviour, not_judged = _done(future)
+            points += [behaviour] if behaviour is not None else []
+            unjudged += [Unjudged(point, error) for error in not_judged]
         measurement, _ = _done(self._next)
         return Behaviour(
-            found.temperature, found, band, stick, map_, tuple(points), measurement, no_map, self._unjudged
+            found.temperature,
+            found,
+            band,
+            stick,
+            map_,
+            tuple(points),
+            measurement,
+            no_band,
+            no_map,
+            tuple(unjudged),
         )
 
     def _begin(self, work: Callable[..., _T], *given: object) -> Future[_T]:
         return self._pool.submit(work, *given)
 
     def _drawn(self) -> Posterior:
-        found = posterior(
+        return posterior(
             self._points,
             self._machine,
             surface=self._surface,
             curves=self._curves,
             traces=self._traces,
             draws=self._draws,
+            threads=os.cpu_count() or 1,
         )
-        found.edges(found.temperature, threads=os.cpu_count() or 1)
-        return found
 
     def _mapped(self) -> OperatingMap:
-        kinds = [each.result().verdict.kind for each in self._judged]
+        found = [_done(each)[0] for each in self._judged]
+        kinds = [each.verdict.kind if each is not None else None for each in found]
         return map_of(self._posterior.result(), judged=kinds, threads=os.cpu_count() or 1)
 
     def _at_the_band(self) -> tuple[HysteresisBand, StickSpeeds]:
@@ -187,7 +201,8 @@ class Working:
         verdict = judge(found, kelvin, point.speed)
         plan, straight, errors = None, None, list[HerseyError]()
         try:
-            if verdict.kind in ("depends", "unknown"):
+            known = verdict.probability.unknown <= 1.0 - SAFE
+            if verdict.kind in ("depends", "unknown") and known:
                 plan, straight = self._planned(found, kelvin, point.speed)
         except HerseyError as error:
             errors.append(error)
@@ -231,15 +246,6 @@ class Working:
             if speed >= drag.law_at(None).transition_speed
         ]
         return disturbance(train, drag, drive_speed=point.speed), tuple(steps)
-
-
-def _has_meaning(surface: DampingSurface, point: OperatingPoint) -> bool:
-    """Whether the law of the fit holds at the temperature of a point."""
-    try:
-        surface.check_temperature(point.temperature)
-    except HerseyError:
-        return False
-    return True
 
 
 def _typical(found: Posterior, kelvin: float | None, count: int) -> Drives:

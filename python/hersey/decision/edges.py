@@ -11,8 +11,8 @@ from hersey.decision.judge import drive_limit
 from hersey.posterior import Posterior
 from hersey.posterior.result import quantiles
 
-#: V* is not determined where its interval reaches so many transition speeds: the search ends at 10,000.
-_DETERMINED = 5e3
+#: V* is not determined where its interval reaches so many times the fastest dwell.
+_DETERMINED = 30.0
 
 
 @dataclass(frozen=True)
@@ -33,13 +33,16 @@ class Edge:
 class Edges:
     """Transition and V* at a temperature (m/s); ``greatest`` is the speed (m/s) that the drive reaches.
 
-    ``safe`` is the speed from which on the belt is smooth from any start with 97.5 % probability; ``holding``
-    the torque that starts a belt at rest (N m), ``limit`` what the drive gives.
+    ``safe`` is the speed from which on the belt is smooth from any start with 97.5 % probability, and below
+    ``sticks_below`` it sticks with 97.5 %; ``holding`` is the torque that starts a belt at rest (N m),
+    ``limit`` what the drive gives. Transition and V* have no upper end where torque may still fall at the
+    fastest dwell.
     """
 
     transition: Edge
     fold: Edge
     safe: float
+    sticks_below: float
     greatest: float
     holding: Edge
     limit: float
@@ -50,6 +53,11 @@ class Edges:
         if self.holding.high <= self.limit:
             return True
         return False if self.holding.low > self.limit else None
+
+    @property
+    def turns(self) -> bool:
+        """Whether torque turns among the dwells in nearly all draws."""
+        return math.isfinite(self.transition.high)
 
     @property
     def bistable(self) -> bool:
@@ -63,12 +71,13 @@ def edges_of(found: Posterior, kelvin: float | None) -> Edges:
     radius = machine.roll_radius
     value, low, high = found.fold_interval(kelvin)
     safe = found.safe_speed(kelvin)
-    far = _DETERMINED * float(np.median(edges.transition))
-    fold = Edge(value, low, high) if high <= far else Edge(value, low, math.inf)
+    far = _DETERMINED * found.model.surface.speed_range[1] * radius
+    fold = Edge(*(v if v <= far else math.inf for v in (value, low, high)))
     return Edges(
-        transition=_edge(edges.transition),
+        transition=_edge(np.where(np.isfinite(edges.turns_by), math.inf, edges.transition)),
         fold=fold,
         safe=safe if safe <= far else math.inf,
+        sticks_below=quantiles(np.minimum(edges.transition, edges.turns_by), (0.025,))[0],
         greatest=machine.limits.speed or math.inf,
         holding=_edge(edges.holding * radius),
         limit=drive_limit(machine.limits, radius, machine.train.grip) * radius,

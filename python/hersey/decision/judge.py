@@ -9,7 +9,10 @@ from typing import Literal
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.machine.limits import Limits
+from hersey.damping.surface import DampingSurface
+from hersey.errors import HerseyError
+from hersey.machine.limits import Limits, OperatingPoint
+from hersey.machine.machine import Machine
 from hersey.posterior import PointProbability, Posterior
 from hersey.posterior.result import SAFE
 
@@ -31,6 +34,14 @@ class Verdict:
     probability: PointProbability
     starts: float
     bears: float
+
+
+@dataclass(frozen=True)
+class Unjudged:
+    """An operating point without a verdict, and why."""
+
+    point: OperatingPoint
+    error: HerseyError
 
 
 def judge(found: Posterior, kelvin: float | None, speed: float) -> Verdict:
@@ -74,3 +85,14 @@ def steady_force(found: Posterior, kelvin: float | None, speed: float) -> FloatA
     """Return the force (N) that sliding takes at a drive speed (m/s) in each draw."""
     constant, damping = found.model.no_load(kelvin)
     return found.model.force_at(found.drives, kelvin, speed) + constant + damping * speed
+
+
+def meaningless(surface: DampingSurface, machine: Machine) -> tuple[Unjudged, ...]:
+    """Return the operating points at whose temperature the law of the fit has no meaning."""
+    out = []
+    for point in machine.points:
+        try:
+            surface.check_temperature(point.temperature)
+        except HerseyError as error:
+            out.append(Unjudged(point, error))
+    return tuple(out)

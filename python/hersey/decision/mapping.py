@@ -5,30 +5,45 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from hersey.decision.judge import Kind, judge
+from hersey.decision.judge import Kind, judge, meaningless
+from hersey.errors import HerseyError
 from hersey.posterior import Posterior
 from hersey.posterior.typical import typical_of_all_temperatures
 from hersey.stability.operating_map import OperatingMap, given_map
 
 
-def map_of(found: Posterior, *, judged: Sequence[Kind] | None = None, threads: int = 1) -> OperatingMap:
+def map_of(
+    found: Posterior, *, judged: Sequence[Kind | None] | None = None, threads: int = 1
+) -> OperatingMap:
     """Return the map of the machine that a posterior is of, with its operating points.
 
-    ``judged`` are the verdicts on the points, where they are known already.
+    ``judged`` are the verdicts on the points, where they are known already; None for one that cannot be
+    judged. Points at whose temperature the fitted law has no meaning are named in the warnings.
     """
-    machine, drag = found.model.machine, typical_of_all_temperatures(found)
+    model, drag = found.model, typical_of_all_temperatures(found)
+    without = meaningless(model.surface, model.machine)
+    points = tuple(p for p in model.machine.points if p not in [each.point for each in without])
     map_ = given_map(
-        found.model.surface,
-        machine.train,
+        model.surface,
+        model.machine.train,
         drag,
         lambda kelvin: found.map_edges(kelvin, threads=threads),
-        roll_radius=machine.roll_radius,
-        stick_speed_rule=machine.stick_speed_rule,
-        limits=machine.limits,
-        points=machine.points,
+        roll_radius=model.machine.roll_radius,
+        stick_speed_rule=model.machine.stick_speed_rule,
+        limits=model.machine.limits,
+        points=points,
     )
     if judged is None:
-        varies = drag.varies_with_temperature
-        judged = [judge(found, p.temperature if varies else None, p.speed).kind for p in map_.points]
-    points = (replace(point, judged=kind) for point, kind in zip(map_.points, judged, strict=True))
-    return replace(map_, points=tuple(points))
+        varies = map_.temperature is not None
+        judged = [_kind(found, point.temperature if varies else None, point.speed) for point in points]
+    placed = (replace(point, judged=kind or "") for point, kind in zip(map_.points, judged, strict=True))
+    said = [f"{each.point.name}: not judged, {each.error}" for each in without]
+    return replace(map_, points=tuple(placed), warnings=(*map_.warnings, *said))
+
+
+def _kind(found: Posterior, kelvin: float | None, speed: float) -> Kind | None:
+    """The verdict; None where too many draws cannot be followed."""
+    try:
+        return judge(found, kelvin, speed).kind
+    except HerseyError:
+        return None

@@ -106,8 +106,8 @@ def analyse(
     step("fitting the surface")
     surface = fit(points, temperature_scale=temperature_scale)
     curves = fit_curves(points, surface)
-    working = None if machine is None else Working(points, surface, machine, traces, curves)
     beside["fit"] = _fit_part(points, surface, curves)
+    working = None if machine is None else Working(points, surface, machine, traces, curves)
     with nullcontext() if working is None else working:
         return _analysed(log, points, surface, command, machine, machine_file, made, step, working, beside)
 

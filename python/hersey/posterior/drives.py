@@ -17,8 +17,9 @@ from hersey.posterior.priors import NUMBERS, DrivePriors
 #: Distance of the points of a drawn curve in ln speed, and how far they reach: below the slowest stick speed
 #: and above the fastest dwell, as factors.
 STEP, BELOW, ABOVE = 0.08, 0.6, 4.0
-#: Greatest stick speed over the speed of least drag of a draw whose drag falls before it rises.
-_BELOW_TRANSITION = 0.95
+#: Ratio of speeds just below the fastest dwell over which the slope there is taken, and the fall in ln force
+#: from which drag still falls.
+_LAST, _FALLS = 1.25, 0.002
 
 
 @dataclass(frozen=True)
@@ -64,24 +65,43 @@ class DriveModel:
         """Return ln of the likelihood of the dwells over the density that the draws come from."""
         return self.curves.log_weight(drives.law, drives.latent[:, len(NUMBERS) :])
 
-    def speeds(self) -> FloatArray:
-        """Return the speeds (m/s) of the points of the curves."""
+    def speeds(self, kelvin: float | None = None) -> FloatArray:
+        """Return the speeds (m/s) of the points of the curves at a temperature (K)."""
         radius = self.machine.roll_radius
-        low = BELOW * min(self.priors.range_of("stick_speed")[0], self.surface.speed_range[0] * radius)
+        stick = self.priors.range_of("stick_speed")[0] * min(self._moves_stick_speed(kelvin), 1.0)
+        low = BELOW * min(stick, self.surface.speed_range[0] * radius)
         high = ABOVE * self.surface.speed_range[1] * radius
         count = max(int(np.ceil(np.log(high / low) / STEP)), 8)
         return np.asarray(low * np.exp(STEP * np.arange(count + 1)))
+
+    def _moves_stick_speed(self, kelvin: float | None) -> float:
+        """The stick speed at a temperature over the stated one, of the likeliest curves."""
+        law = np.arange(len(self.curves.laws), dtype=np.intp)
+        drives = Drives(law, np.zeros_like(law), np.zeros((law.size, self.size)))
+        return float(np.min(self.stick_speed(drives, kelvin) / self.numbers(drives)[:, 0]))
 
     def log_force(self, drives: Drives, kelvin: float | None) -> FloatArray:
         """Return ln of the drag of the film (N) of each draw at `speeds`, shape (draws, speeds)."""
         radius = self.machine.roll_radius
         latent = drives.latent[:, len(NUMBERS) :]
-        torque = self.curves.log_torque(drives.law, latent, self.speeds() / radius, kelvin)
+        torque = self.curves.log_torque(drives.law, latent, self.speeds(kelvin) / radius, kelvin)
         return np.asarray(torque - np.log(radius))
+
+    def turns_by(self, drives: Drives, kelvin: float | None) -> FloatArray:
+        """Return the speed (m/s) at a temperature (K) up to which drag falls in the dwells, (draws,).
+
+        It is that of the dwell with the greatest Hersey number if drag still falls there, as nothing bounds
+        the speed at which it turns then; otherwise it is infinite.
+        """
+        latent = drives.latent[:, len(NUMBERS) :]
+        fastest = self.machine.roll_radius * self.curves.fastest(drives.law, latent, kelvin)
+        before = self.force_at(drives, kelvin, fastest / _LAST)
+        falls = np.log(self.force_at(drives, kelvin, fastest) / before) < -_FALLS
+        return np.where(falls, fastest, np.inf)
 
     def force_at(self, drives: Drives, kelvin: float | None, speed: FloatArray | float) -> FloatArray:
         """Return the drag of the film (N) of each draw at a speed (m/s), common or of its own, (draws,)."""
-        grid, curve = np.log(self.speeds()), self.log_force(drives, kelvin)
+        grid, curve = np.log(self.speeds(kelvin)), self.log_force(drives, kelvin)
         at = np.broadcast_to(np.log(speed), (len(drives),))
         place = np.clip((at - grid[0]) / STEP, 0.0, None)
         left = np.minimum(place.astype(np.intp), grid.size - 2)
@@ -99,18 +119,6 @@ class DriveModel:
         latent = drives.latent[:, len(NUMBERS) :]
         moved = self.curves.shift(drives.law, latent, at) - self.curves.shift(drives.law, latent, kelvin)
         return np.asarray(stated * np.exp(moved))
-
-    def sticking_speed(self, drives: Drives, kelvin: float | None) -> FloatArray:
-        """Return the stick speed (m/s) of each draw, below the speed of least drag where there is one.
-
-        Drag that rises from the slowest stick speed on is least at the stick speed, wherever that is.
-        """
-        return self._sticking(drives, kelvin, self.log_force(drives, kelvin))
-
-    def _sticking(self, drives: Drives, kelvin: float | None, log_force: FloatArray) -> FloatArray:
-        stick, least = self.stick_speed(drives, kelvin), np.argmin(log_force, axis=1)
-        falls = least > 0
-        return np.where(falls, np.minimum(stick, _BELOW_TRANSITION * self.speeds()[least]), stick)
 
     def no_load(self, kelvin: float | None) -> tuple[float, float]:
         """Return the no-load drag at a temperature: a constant (N) and a part per speed (N s/m)."""
@@ -174,9 +182,9 @@ class DriveModel:
         self, drives: Drives, kelvin: float | None
     ) -> tuple[tuple[float, float, FloatArray], list[FloatArray]]:
         """Curves and numbers of the draws, as the core takes them."""
-        speeds, numbers = self.speeds(), self.numbers(drives)
+        speeds, numbers = self.speeds(kelvin), self.numbers(drives)
         log_force = np.ascontiguousarray(self.log_force(drives, kelvin))
-        stick = self._sticking(drives, kelvin, log_force)
+        stick = self.stick_speed(drives, kelvin)
         force, damping = self.no_load(kelvin)
         one = np.ones(len(drives))
         columns = [numbers[:, 1], numbers[:, 2], stick, numbers[:, 3], force * one, damping * one]

@@ -24,21 +24,23 @@ _NO_CYCLE = -12.0
 _FARTHEST = 8.0
 
 
-def log_likelihood(model: DriveModel, drives: Drives, evidence: Sequence[Evidence]) -> FloatArray:
+def log_likelihood(
+    model: DriveModel, drives: Drives, evidence: Sequence[Evidence], threads: int = 1
+) -> FloatArray:
     """Return ln of the likelihood of all evidence for each draw, shape (draws,)."""
     out = np.zeros(len(drives))
     for each in evidence:
-        out += _of_one(model, drives, each)
+        out += _of_one(model, drives, each, threads)
     return out
 
 
-def _of_one(model: DriveModel, drives: Drives, evidence: Evidence) -> FloatArray:
+def _of_one(model: DriveModel, drives: Drives, evidence: Evidence, threads: int = 1) -> FloatArray:
     if isinstance(evidence, BreakAway):
         force = break_away_force(model, drives, evidence.temperature)
         return _normal(np.log(force / evidence.force), evidence.error)
     if isinstance(evidence, Start):
-        return _of_start(model, drives, evidence)
-    found = model.starts(drives, evidence.temperature, evidence.drive_speed)
+        return _of_start(model, drives, evidence, threads)
+    found = model.starts(drives, evidence.temperature, evidence.drive_speed, threads=threads)
     sticks = np.asarray(found.sticks)
     out = _read(sticks, outcome=True)
     if evidence.figures is None:
@@ -52,11 +54,11 @@ def _of_one(model: DriveModel, drives: Drives, evidence: Evidence) -> FloatArray
     return out + _of_figures(seen, sticks, evidence.figures)
 
 
-def _of_start(model: DriveModel, drives: Drives, evidence: Start) -> FloatArray:
+def _of_start(model: DriveModel, drives: Drives, evidence: Start, threads: int) -> FloatArray:
     """A start as the drive made it: one that comes up gently may slide where a sudden one sticks."""
     speed, rise = evidence.drive_speed, evidence.rise
     profile = [(0.0, 0.0), (rise, speed)] if rise > 0.0 else [(0.0, speed)]
-    found = model.start_ups(drives, evidence.temperature, profile)
+    found = model.start_ups(drives, evidence.temperature, profile, threads=threads)
     out = _read(found.slides, evidence.slid)
     if evidence.peak is None:
         return out
@@ -91,7 +93,7 @@ def _normal(off: FloatArray, error: float) -> FloatArray:
 
 def break_away_force(model: DriveModel, drives: Drives, kelvin: float | None) -> FloatArray:
     """Return the force (N) that starts each draw from rest at a temperature, no-load drag included."""
-    sliding = model.force_at(drives, kelvin, model.sticking_speed(drives, kelvin))
+    sliding = model.force_at(drives, kelvin, model.stick_speed(drives, kelvin))
     return np.asarray(model.numbers(drives)[:, 3] * sliding + model.no_load(kelvin)[0])
 
 

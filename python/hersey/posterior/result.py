@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 SAFE = 0.975
 #: Ratio of the medians and ends of V* of two populations from which a result counts as converged.
 CONVERGED = 1.15
+#: The same for a wide V*: a share of the width of its interval, in logarithms.
+OF_WIDTH = 0.08
 #: Temperatures of a map at which draws are followed; between them edges are interpolated.
 MAP_TEMPERATURES = 9
 #: Share of draws whose motion may be lost.
@@ -44,39 +46,46 @@ class Edges:
     """Speeds (m/s) and forces (N) of each draw at one temperature, shape (draws,).
 
     ``fold`` is V*, at least the transition; ``holding`` the force that starts a belt at rest. Where the
-    roll's grip does not start the belt (``stalls``), V* is that of a roll that grips.
+    roll's grip does not start the belt (``stalls``), V* is that of a roll that grips. ``turns_by`` is the
+    speed up to which drag was seen to fall, where it still falls at the fastest dwell: transition and V* are
+    not known then. It is infinite where drag turns among the dwells.
     """
 
     transition: FloatArray
     fold: FloatArray
     holding: FloatArray
     stalls: BoolArray
+    turns_by: FloatArray
 
 
 @dataclass(frozen=True)
 class PointProbability:
-    """How likely each outcome is at one operating point; the four add up to one.
+    """How likely each outcome is at one operating point; they add up to one.
 
     ``smooth``: from any start. ``from_above``: only if it slides already, or starts gently. ``sticks``: from
-    any start. ``stalls``: the roll's grip does not start the belt.
+    any start. ``stalls``: the roll's grip does not start the belt. ``unknown``: drag still falls at the
+    fastest dwell, and no dwell shows what happens there.
     """
 
     smooth: float
     from_above: float
     sticks: float
     stalls: float
+    unknown: float = 0.0
 
 
 @dataclass(frozen=True)
 class Convergence:
     """How two populations that know nothing of each other compare.
 
-    ``ratio`` is the greatest ratio of their quantiles of V* (5, 50 and 95 %); ``accepted`` the share of moves
+    ``ratio`` is the greatest ratio of their quantiles of V* (5, 50 and 95 %), ``width`` that of the outer
+    quantiles of all; ``accepted`` the share of moves
     in the last stage, ``distinct`` the share of draws that no other equals; ``counted`` is the degree to
     which the evidence is in, 1 where all of it is.
     """
 
     ratio: float
+    width: float
     accepted: float
     distinct: float
     stages: int
@@ -86,7 +95,8 @@ class Convergence:
     @property
     def converged(self) -> bool:
         """Whether all evidence is in and the populations agree."""
-        return self.ratio <= CONVERGED and self.distinct >= 0.5 and self.counted >= 1.0
+        agree = self.ratio <= max(CONVERGED, self.width**OF_WIDTH)
+        return agree and self.distinct >= 0.5 and self.counted >= 1.0
 
 
 @dataclass(frozen=True, repr=False)
@@ -127,6 +137,10 @@ class Posterior(Result):
             self._edges[kelvin, count] = edges_at(self.model, self.drives.take(few), kelvin, threads=threads)
         return self._edges[kelvin, count]
 
+    def keep(self, kelvin: float | None, edges: Edges) -> None:
+        """Keep the edges of all draws at a temperature, which were computed before."""
+        self._edges[kelvin, len(self.drives)] = edges
+
     def fold_interval(self, kelvin: float | None) -> tuple[float, float, float]:
         """Return the median of V* (m/s) and the ends of its 95 % interval at a temperature (K)."""
         low, middle, high = quantiles(self.edges(kelvin).fold, (0.025, 0.5, 0.975))
@@ -148,15 +162,20 @@ class Posterior(Result):
             if self.temperature is not None and kelvin[0] < self.temperature < kelvin[-1]:
                 drawn = np.union1d(drawn, self.temperature)  # there the map says what the headline says
             levels = drawn.tolist()
-        rows = []
+        rows, failed = {}, list[ParameterError]()
         for level in levels:
-            headline = level == self.temperature
-            edges = self.edges(level, most=None if headline else most, threads=threads)
+            try:
+                edges = self.edges(level, most=None if level == self.temperature else most, threads=threads)
+            except ParameterError as error:  # beyond the dwells V* of many draws may be out of reach
+                failed.append(error)
+                continue
             speeds_and_force = edges.transition, edges.fold, edges.holding
-            rows.append([quantiles(each, (0.5, 0.025, 0.975)) for each in speeds_and_force])
-        table = np.array(rows)
+            rows[level] = [quantiles(each, (0.5, 0.025, 0.975)) for each in speeds_and_force]
+        if not rows:
+            raise failed[0]
+        table = np.array(list(rows.values()))
         if kelvin is not None:
-            at = np.array(levels, dtype=float)
+            at = np.array(list(rows), dtype=float)
             table = np.exp(
                 [
                     [np.interp(kelvin, at, column) for column in quantity]
@@ -173,9 +192,10 @@ class Posterior(Result):
         edges = self.edges(kelvin)
         stalls = edges.stalls
         smooth = ~stalls & (edges.fold < speed)
-        sticks = ~stalls & (speed < edges.transition)
-        shares = [float(np.mean(each)) for each in (smooth, sticks, stalls)]
-        return PointProbability(shares[0], max(1.0 - sum(shares), 0.0), shares[1], shares[2])
+        sticks = ~stalls & (speed < np.minimum(edges.transition, edges.turns_by))
+        unknown = ~stalls & ~sticks & np.isfinite(edges.turns_by)
+        shares = [float(np.mean(each)) for each in (smooth, sticks, stalls, unknown)]
+        return PointProbability(shares[0], max(1.0 - sum(shares), 0.0), *shares[1:])
 
     def closures(self) -> dict[str, float]:
         """Return the probability of each closure."""
@@ -270,7 +290,8 @@ class Posterior(Result):
 def edges_at(model: DriveModel, drives: Drives, kelvin: float | None, *, threads: int = 1) -> Edges:
     """Return transition, V* and starting force of draws at a temperature (K; None if isothermal).
 
-    A draw whose motion cannot be followed counts as the worst of the others.
+    A draw whose motion cannot be followed counts as the worst of the others. V* of one whose drag still falls
+    at the fastest dwell lies beyond all that is looked at.
     """
     model.surface.check_temperature(kelvin)
     found = model.folds(drives, kelvin, threads=threads)
@@ -278,6 +299,8 @@ def edges_at(model: DriveModel, drives: Drives, kelvin: float | None, *, threads
     if stalls.size:
         upper[stalls] = model.folds(drives.take(stalls), kelvin, threads=threads, slips=False).upper
     upper = np.minimum(upper, _FARTHEST * found.transition)
+    turns_by = model.turns_by(drives, kelvin)
+    upper = np.where(np.isfinite(turns_by), _FARTHEST * found.transition, upper)
     columns = [found.transition, np.fmax(upper, found.transition), found.holding]
     lost = np.any([np.isnan(each) for each in columns], axis=0)
     if np.mean(lost) > _LOST:
@@ -287,7 +310,7 @@ def edges_at(model: DriveModel, drives: Drives, kelvin: float | None, *, threads
             "check stick speed, stiffness and mass"
         )
     transition, fold, holding = (np.where(lost, np.nanmax(each), each) for each in columns)
-    return Edges(transition, fold, holding, found.stalls.astype(bool))
+    return Edges(transition, fold, holding, found.stalls.astype(bool), turns_by)
 
 
 #: Units of the numbers as people read them, and how many make one in SI.

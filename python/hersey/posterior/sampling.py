@@ -27,8 +27,6 @@ from hersey.posterior.traces import Found, evidence_of_log, evidence_of_trace
 DRAWS = 1000
 #: Populations that know nothing of each other.
 CHAINS = 2
-#: Draws of each population at which convergence is judged.
-_JUDGED = 150
 #: Misfit (a chi-square) from which evidence contradicts dwells and machine file together, and does not count:
 #: of figures; of an outcome, which most draws then do not show.
 CONTRADICTS, UNLIKE = 20.0, 5.0
@@ -54,6 +52,7 @@ def posterior(
     seed: int = 1,
     moves: Moves | None = None,
     progress: Progress | None = None,
+    threads: int = 1,
 ) -> Posterior:
     """Return draws of drag curve, closure, stick speed, stiffness and mass that all evidence allows.
 
@@ -78,6 +77,8 @@ def posterior(
         Of the random draws.
     progress
         Called with the share of the work that is done.
+    threads
+        For the motion of the draws; the result does not depend on it.
 
     Raises
     ------
@@ -103,9 +104,10 @@ def posterior(
     kelvin = temperature if temperature is not None else decision_temperature(found, machine)
 
     def populations_of(model: DriveModel, evidence: Sequence[Evidence]) -> list[Population]:
+        chosen = moves or Moves()
         return [
             _population(
-                model, evidence, draws // CHAINS, seed, chain, moves or Moves(), _part(progress, chain)
+                model, evidence, draws // CHAINS, seed, chain, chosen, _part(progress, chain), threads
             )
             for chain in range(CHAINS)
         ]
@@ -122,17 +124,21 @@ def posterior(
             break
         unused += tuple(_contradicting(e) for e, is_wrong in zip(counted, wrong, strict=True) if is_wrong)
         counted = tuple(e for e, is_wrong in zip(counted, wrong, strict=True) if not is_wrong)
-    return Posterior(
+    headline = kelvin if found.b is not None else None
+    edges = edges_at(model, drives, headline, threads=threads)
+    drawn = Posterior(
         model=model,
         drives=drives,
-        temperature=kelvin if found.b is not None else None,
+        temperature=headline,
         laws=model.curves.table,
         evidence=counted,
         unused=unused,
-        convergence=_convergence(model, populations, kelvin if found.b is not None else None),
+        convergence=_convergence(populations, edges.fold),
         seed=seed,
         chains=CHAINS,
     )
+    drawn.keep(headline, edges)
+    return drawn
 
 
 def decision_temperature(surface: DampingSurface, machine: Machine) -> float | None:
@@ -217,6 +223,7 @@ def _population(
     chain: int,
     moves: Moves,
     progress: Progress | None,
+    threads: int,
 ) -> Population:
     random = np.random.default_rng([seed, chain])
     chances = np.array(list(CLOSURES.values()))
@@ -232,7 +239,7 @@ def _population(
     def target(drives: Drives) -> FloatArray:
         value = model.log_weight(drives)
         if evidence:
-            value = value + log_likelihood(model, drives, evidence)
+            value = value + log_likelihood(model, drives, evidence, threads)
         # a draw whose motion cannot be followed does not count
         return np.where(np.isnan(value), -np.inf, value)
 
@@ -247,15 +254,14 @@ def _joined(parts: Sequence[Drives]) -> Drives:
     )
 
 
-def _convergence(model: DriveModel, populations: Sequence[Population], kelvin: float | None) -> Convergence:
-    """Compare the quantiles of V* of the populations."""
-    ends = []
-    for population in populations:
-        few = np.linspace(0, len(population.drives) - 1, min(_JUDGED, len(population.drives))).astype(np.intp)
-        ends.append(quantiles(edges_at(model, population.drives.take(few), kelvin).fold, (0.05, 0.5, 0.95)))
-    low, high = np.min(ends, axis=0), np.max(ends, axis=0)
+def _convergence(populations: Sequence[Population], fold: FloatArray) -> Convergence:
+    """Compare the quantiles of V* (m/s, of all draws) of the populations."""
+    each = np.split(fold, np.cumsum([len(p.drives) for p in populations])[:-1])
+    ends = np.array([quantiles(values, (0.05, 0.5, 0.95)) for values in each])
+    low, high = ends.min(axis=0), ends.max(axis=0)
     return Convergence(
         ratio=float(np.max(high / np.maximum(low, 1e-300))),
+        width=float(high[-1] / max(low[0], 1e-300)),
         accepted=min(p.accepted for p in populations),
         distinct=min(p.distinct for p in populations),
         stages=max(p.stages for p in populations),

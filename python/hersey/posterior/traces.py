@@ -24,8 +24,8 @@ BLOCK, SAME, LEAST = 0.25, 0.05, 3.0
 #: Blocks back from which a speed is compared.
 _RECENT = 40
 #: Standing: less than this share of the speed that follows, for as long (s), ending no more than this before
-#: it.
-STANDING, STOOD, RAMP = 0.05, 1.0, 3.0
+#: it. A drive that creeps is faster.
+STANDING, STOOD, RAMP = 0.01, 1.0, 3.0
 #: Torque that swings by more than this share of its mean (standard deviation) may be stick-slip.
 SWINGS = 0.06
 #: Share of a stretch, from its end, whose motion is judged.

@@ -27,12 +27,10 @@ def typical_drag(found: Posterior, kelvin: float | None) -> tuple[Drivetrain, Dr
     """Return the typical draw at a temperature (K; None if isothermal): drivetrain and table of drag."""
     model, draw = found.model, typical_draw(found, kelvin)
     numbers = model.numbers(draw)[0]
-    stick = float(model.sticking_speed(draw, kelvin)[0])
-    speeds, force = model.speeds(), np.exp(model.log_force(draw, kelvin)[0])
+    stick = float(model.stick_speed(draw, kelvin)[0])
+    speeds, force = model.speeds(kelvin), np.exp(model.log_force(draw, kelvin)[0])
     static = float(numbers[3]) * float(np.exp(np.interp(np.log(stick), np.log(speeds), np.log(force))))
-    if (
-        np.argmin(force) == 0
-    ):  # drag that rises from the stick speed on is least at the first point of the table
+    if speeds[np.argmin(force)] <= stick:  # drag that rises from the stick speed on is least right above it
         speeds, force = speeds[speeds > stick], force[speeds > stick]
     needed = _needed(np.log(speeds), np.log(force))
     constant, damping = model.no_load(kelvin)

@@ -3,7 +3,9 @@
 Where there are dwells a draw follows its law. Below the slowest dwell friction may go on rising as a power of
 speed, or saturate. Every draw starts there with the slope of its law at the slowest dwell, and the slope
 fades over a random length in ln speed (long: a power law; short: saturation). Where the law itself steepens,
-as beside a minimum, a random part of that is kept. Above the fastest dwell the slope drifts a little.
+as beside a minimum, a random part of that is kept. Below dwells whose torque only rises, boundary friction
+may be hidden: each draw has some, of a random size and place. Above the fastest dwell the slope drifts a
+little.
 """
 
 from __future__ import annotations
@@ -14,12 +16,19 @@ from hersey.arrays import FloatArray
 from hersey.damping.curves.fitting import FittedLaw
 from hersey.damping.distributions import normal_above
 
-#: Latents of a curve beyond the dwells: fading, drift below, part of the steepening, drift above.
-BEYOND = 4
+#: Latents of a curve beyond the dwells: fading, drift below, part of the steepening, drift above, size and
+#: place of boundary friction that no dwell reaches.
+BEYOND = 6
 #: Median of the length in ln speed over which the slope fades, and the standard deviation of its logarithm.
 FADES = (8.0, 1.5)
 #: Standard deviations of the drift of the slope below and above the dwells.
 DRIFT = (0.08, 0.06)
+#: Boundary friction below dwells whose torque only rises: median over the drag at the slowest dwell, standard
+#: deviation of its logarithm, and the power of speed with which it decays (Armstrong-Helouvry 1994).
+HIDDEN, DECAY = (0.5, 1.2), 1.2
+#: Slowest dwell over the speed at which it has decayed by a factor e, at the least, and the standard
+#: deviation of the logarithm of that ratio.
+PLACE = (3.5, 0.8)
 #: Step in ln speed by which the slope at the slowest dwell is taken.
 _STEP = 0.05
 
@@ -48,7 +57,17 @@ def log_torque_beyond(
         return np.asarray(out)
     at_edge = law.log_torque(numbers, low[:, None] + np.array([-_STEP, 0.0, _STEP]), shape)
     edge = (at_edge[:, 2] - at_edge[:, 0]) / (2.0 * _STEP)
-    return np.asarray(np.where(below > 0.0, at_edge[:, 1:2] - _gone(inside, edge, below, latent, z), out))
+    down = at_edge[:, 1:2] - _gone(inside, edge, below, latent, z)
+    down = down + np.where(edge[:, None] > 0.0, _hidden(below, latent), 0.0)
+    return np.asarray(np.where(below > 0.0, down, out))
+
+
+def _hidden(below: FloatArray, latent: FloatArray) -> FloatArray:
+    """Ln of the factor by which boundary friction raises drag below dwells that do not show it."""
+    size = HIDDEN[0] * np.exp(HIDDEN[1] * latent[:, 4:5])
+    ratio = PLACE[0] * np.exp(PLACE[1] * np.abs(latent[:, 5:6]))
+    share = np.exp(-((ratio * np.exp(-below)) ** DECAY)) - np.exp(-(ratio**DECAY))
+    return np.asarray(np.log1p(size * np.maximum(share, 0.0)))
 
 
 def _gone(

@@ -65,6 +65,12 @@ class FittedLaw:
         """Return ln(speed/reference) that has the same Hersey number at the reference, (draws, points)."""
         return _scaled(numbers, log_speed, np.asarray(shape))
 
+    def fastest(self, numbers: FloatArray, shape: float) -> FloatArray:
+        """Return ln(speed/reference) at s(T) of the greatest Hersey number measured, (draws,)."""
+        dwells = self.dwells
+        measured = self.scaled_speed(self.numbers[None], dwells.log_speed, dwells.temperature)
+        return np.asarray(measured.max() - self.scaled_speed(numbers, np.zeros(1), shape)[:, 0])
+
     def log_level(self, numbers: FloatArray, shape: float) -> FloatArray:
         """Return the change of ln torque with temperature at the same Hersey number, (draws,)."""
         return np.asarray(numbers[:, _COMMON.index("force")] * shape)

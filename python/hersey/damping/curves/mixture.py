@@ -119,6 +119,11 @@ class CurveMixture:
         at = np.zeros(1)
         return self._of_each(law, latent, lambda one, numbers: one.scaled_speed(numbers, at, s)[:, 0])
 
+    def fastest(self, law: IntArray, latent: FloatArray, kelvin: float | None) -> FloatArray:
+        """Return the speed (rad/s) at a temperature (K) of the greatest Hersey number measured, (draws,)."""
+        s, reference = self.dwells.shape_of(kelvin), self.dwells.reference_speed
+        return self._of_each(law, latent, lambda one, numbers: reference * np.exp(one.fastest(numbers, s)))
+
     def level(self, law: IntArray, latent: FloatArray, kelvin: float | None) -> FloatArray:
         """Return ln of torque over that at the reference temperature and the same Hersey number, (draws,)."""
         s = self.dwells.shape_of(kelvin)

@@ -39,7 +39,7 @@ def decision(
 ) -> DecisionPart:
     """Return what to do, why, and what stands against it.
 
-    ``found`` is None without machine or transition, or where nothing can be computed, for the reason ``why``;
+    ``found`` is None without a machine, or where nothing can be computed, for the reason ``why``;
     ``compared`` is this log over an earlier one, ``unit`` that of torques in words.
     """
     map_ = None if found is None else found.map

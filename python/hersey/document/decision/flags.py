@@ -45,17 +45,19 @@ def flags(
     What a comparison says was asked for, and stands among them whatever it is, first of its kind.
     """
     map_ = None if found is None else found.map
-    out = [*_contradictions(film, carried), *_of_log(points, surface)]
+    out = [] if found is None else _unused(found)
+    out += [*_contradictions(film, carried), *_of_log(points, surface)]
     if why:
         out.append(FlagPart(signal="act", title="No band.", text=f"{_sentence(why)}.", section="band"))
     if found is not None and map_ is not None:
         out += [*_whole(points), *_of_machine(found, map_, unit)]
     if found is not None:
         out += [
-            FlagPart(signal="watch", title="No map.", text=f"{_sentence(in_words(error))}.", section="band")
-            for error in found.errors
+            FlagPart(signal="watch", title=title, text=f"{_sentence(in_words(error))}.", section="band")
+            for title, errors in (("No band.", found.no_band), ("No map.", found.no_map))
+            for error in errors
         ]
-        out += [*_plans(found), *_unused(found)]
+        out += _plans(found)
     scatter = surface.statistics.scatter if found is None else found.posterior.model.curves.scatter
     out += _left_open(points, seen, scatter)
     grave = {"act": 0, "watch": 1, "good": 2}

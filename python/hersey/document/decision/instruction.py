@@ -26,6 +26,7 @@ from hersey.document.decision.words import (
     within,
 )
 from hersey.document.parts.decision import Signal
+from hersey.posterior.result import SAFE
 from hersey.stability.operating_map import OperatingMap
 
 #: Signals, the gravest last.
@@ -39,6 +40,14 @@ class Words(NamedTuple):
     several: str
 
 
+_SLIDES_ON = Words(
+    "may stick from rest, and is smooth once it slides",
+    "may stick from rest, and are smooth once they slide",
+)
+_NOT_KNOWN = Words(
+    "cannot be judged: torque may still fall at the fastest dwell",
+    "cannot be judged: torque may still fall at the fastest dwell",
+)
 _OF_KIND: Mapping[str, tuple[Words, Signal]] = {
     "smooth": (Words("runs smoothly", "run smoothly"), "good"),
     "unknown": (Words("may stick", "may stick"), "watch"),
@@ -66,9 +75,12 @@ def of_machine(found: Behaviour, map_: OperatingMap, unit: str) -> Instruction:
     where, fold, turn = at(kelvin), edges.fold, edges.transition
     if edges.starts is False:
         return _not_started(where, kelvin, edges, map_, unit)
-    interval = (
-        _interval(f"{where}V* is", fold) if edges.bistable else _interval(f"{where}drag is least at", turn)
-    )
+    if not edges.turns:
+        interval = f"{where}V* is not known: torque may still fall at the fastest dwell"
+    elif edges.bistable:
+        interval = _interval(f"{where}V* is", fold)
+    else:
+        interval = _interval(f"{where}drag is least at", turn)
     said, signal = _of_points(found)
     general, of_general = _general(edges, map_, unit)
     if not said:
@@ -100,8 +112,10 @@ def _verdict_words(found: PointBehaviour) -> tuple[Words, Signal]:
     """What happens at a point, and its signal."""
     kind, plan = found.verdict.kind, found.plan
     planned = plan is not None and plan.found
+    if kind == "unknown" and found.verdict.probability.unknown > 1.0 - SAFE:
+        return _NOT_KNOWN, "watch"
     if kind == "depends" and not planned:
-        return Words("is smooth only if slowed from above", "are smooth only if slowed from above"), "act"
+        return _SLIDES_ON, "act"
     if kind in ("depends", "unknown") and planned:
         return Words("needs the start-up profile", "need the start-up profile"), "watch"
     return _OF_KIND[kind]
@@ -110,6 +124,11 @@ def _verdict_words(found: PointBehaviour) -> tuple[Words, Signal]:
 def _general(edges: Edges, map_: OperatingMap, unit: str) -> tuple[str, Signal]:
     """What to do without operating points."""
     if not math.isfinite(edges.safe):
+        if not edges.turns:
+            return (
+                "record faster dwells: torque may still fall at the fastest, so V* is not known",
+                "watch",
+            )
         return "do not rely on a start from rest: no speed is known to be smooth", "watch"
     run = f"run above {_up(edges.safe)} mm/s"
     if edges.safe > edges.greatest:
@@ -126,7 +145,7 @@ def _slides(edges: Edges) -> str:
 
 
 def _below(edges: Edges) -> str:
-    return f"Below {figures(1e3 * edges.transition.low, up=False)} mm/s it sticks."
+    return f"Below {figures(1e3 * edges.sticks_below, up=False)} mm/s it sticks."
 
 
 def _capital(text: str) -> str:

@@ -14,10 +14,9 @@ def behaviour_parts(found: Behaviour | None) -> dict[str, Any]:
     if found is None:
         return {}
     map_, stick = found.map, found.stick_speeds
-    band = found.band.to_dict()
     return {
         "map": None if map_ is None else MapPart.model_validate(map_.to_dict()),
-        "band": BandPart.model_validate(band),
+        "band": None if found.band is None else BandPart.model_validate(found.band.to_dict()),
         "posterior": PosteriorPart.model_validate(found.posterior.to_dict()),
         "stick_speed_sweep": None
         if stick is None

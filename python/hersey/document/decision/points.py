@@ -9,15 +9,15 @@ import numpy as np
 from hersey.damping.surface import DampingSurface
 from hersey.decision.behaviour import PointBehaviour
 from hersey.decision.edges import Edges, edges_of
-from hersey.decision.judge import Verdict
+from hersey.decision.judge import Unjudged, Verdict
 from hersey.document.decision.reasons import in_words
 from hersey.document.decision.words import between, mm, per_cent, starting, torque
 from hersey.document.parts.decision import PointDecisionPart, Signal, StartPart
 from hersey.document.parts.stability import DisturbancePart, PlanPart, StepPart
 from hersey.document.thinning import kept
-from hersey.machine.limits import OperatingPoint
 from hersey.machine.machine import Machine
 from hersey.posterior import Posterior
+from hersey.posterior.result import SAFE
 from hersey.result import json_record
 from hersey.stability.operating_map import OperatingMap
 
@@ -65,14 +65,14 @@ def point_decision(
     )
 
 
-def unjudged(point: OperatingPoint) -> PointDecisionPart:
-    """Return what is said of a point at whose temperature the fitted law has no meaning."""
+def unjudged(found: Unjudged) -> PointDecisionPart:
+    """Return what is said of a point without a verdict."""
     return PointDecisionPart(
-        name=point.name,
-        speed=point.speed,
-        temperature=point.temperature,
+        name=found.point.name,
+        speed=found.point.speed,
+        temperature=found.point.temperature,
         signal="watch",
-        words="not judged: the fitted law holds above 0 °C only",
+        words=f"not judged: {in_words(found.error)}",
     )
 
 
@@ -116,9 +116,13 @@ def _judged(
         return "act", f"stalls: {_beyond(map_, found, unit)}"
     if kind == "sticks":
         turn = edges.transition
+        if not edges.turns:
+            return "act", "sticks from any start: drag falls at this speed"
         return "act", f"sticks from any start: {between('drag is least at', turn.value, turn.low, turn.high)}"
     if kind == "smooth":
         return "good", f"smooth from any start, {per_cent(chances.smooth)}"
+    if chances.unknown > 1.0 - SAFE:
+        return "watch", "not known: torque may still fall at the fastest dwell"
     if verdict.starts < 1.0 and edges.starts is None:
         return "watch", f"may not start: {needs}"
     return _with_plan(found, verdict)
@@ -135,9 +139,9 @@ def _with_plan(found: PointBehaviour, verdict: Verdict) -> tuple[Signal, str]:
     if plan is not None and any(each.limit == "target_speed" for each in plan.obstacles):
         return "act", f"may stick: lies below the speed of least drag with {per_cent(chances.sticks)}"
     if plan is not None:
-        why = "smooth only if slowed from above" if sure else "may stick"
+        why = "may stick from rest, smooth once it slides" if sure else "may stick"
         return "act", f"{why}: no start-up within the limits works"
-    return "watch", f"smooth only if slowed from above{f'; {chance}' if chance else ''}"
+    return "watch", f"may stick from rest, smooth once it slides{f'; {chance}' if chance else ''}"
 
 
 def _beyond(map_: OperatingMap, found: PointBehaviour, unit: str) -> str:

@@ -15,6 +15,7 @@ class ConvergencePart(Part):
     """How two independent populations of draws compare."""
 
     ratio: float = Field(description="greatest ratio of their quantiles of V*")
+    width: float = Field(description="ratio of the outer quantiles of all")
     accepted: float = Field(description="share of moves accepted in the last stage")
     distinct: float = Field(description="share of draws that no other equals")
     stages: int

@@ -24,6 +24,9 @@ function transitions() {
 function torqueFinding() {
   const { transition, trend, reference_temperature: level } = data.fit, [slow, fast] = data.fit.speed_range;
   const rises = trend?.rises ?? true, falls = trend?.falls ?? transition !== null, curve = transitions();
+  if (rises && falls && trend && !(trend.least > 1.01 * slow && trend.least < 0.99 * fast)) {
+    return `Torque rises with speed and falls again, from ${rolled(slow)} to ${rolled(fast)}.`;
+  }
   if (rises && falls && curve.length >= 2) {
     const [cold, hot] = [curve[0], curve.at(-1)];
     const way = hot.speed > cold.speed ? "climbs" : "falls";

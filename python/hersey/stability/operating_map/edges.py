@@ -44,11 +44,11 @@ def check_temperatures(kelvin: FloatArray, drag: PowerDrag) -> None:
 
 
 def edges_at(
-    train: Drivetrain, drag: PowerDrag, kelvin: FloatArray | None, rule: str = WITH_TRANSITION
+    train: Drivetrain, drag: Drag, kelvin: FloatArray | None, rule: str = WITH_TRANSITION
 ) -> dict[str, FloatArray]:
     """The bands at each temperature; an isothermal drag has one."""
     names = ("lower", "transition", "upper")
-    if isinstance(drag, DragTable) or (kelvin is not None and rule == FIXED):
+    if kelvin is not None and rule == FIXED:
         bands = [hysteresis(train, law, sensitivity=False) for law in laws_at(drag, kelvin, rule)]
         edges = {name: np.array([getattr(band, name) for band in bands]) for name in names}
     else:
