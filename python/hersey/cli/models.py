@@ -37,6 +37,8 @@ def models(
     Example: [bold]hersey models examples/bench.csv --tare standing[/bold]
     """
     from hersey.damping.candidates import compare_models
+    from hersey.damping.curves import fit_curves
+    from hersey.damping.curves.words import weight_lines
     from hersey.damping.fit import fit
     from hersey.errors import InsufficientDataError
     from hersey.machine.machine import read_machine
@@ -59,9 +61,14 @@ def models(
     except InsufficientDataError:  # other laws may hold where the surface has no meaning
         surface = None
     doubts = cautions(points, surface)
+    curves = () if surface is None else fit_curves(points, surface).table
     if as_json:
-        print_json("models", {**comparison.to_dict(), "warnings": doubts})
+        laws = [vars(law) for law in curves]
+        print_json("models", {**comparison.to_dict(), "warnings": doubts, "drag_curves": laws})
         return
     say(comparison.summary())
+    if curves:
+        say("[[Drag curves]]    (V* and verdicts are made of these, by weight)")
+        say("\n".join(weight_lines(curves)))
     for doubt in doubts:
         say(f"- {doubt}")

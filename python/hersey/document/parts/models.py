@@ -5,7 +5,7 @@ from __future__ import annotations
 from pydantic import Field
 
 from hersey.document.parts.decision import MeasurementPart, SpeedPart
-from hersey.document.parts.fit import LackOfFitPart, SharedScatterPart
+from hersey.document.parts.fit import CurveWeightPart, LackOfFitPart, SharedScatterPart
 from hersey.document.parts.part import Holed, Numbers, OpenInterval, Part
 
 
@@ -111,6 +111,9 @@ class ModelsPart(Part):
     refused: list[RefusedPart]
     chosen: str = Field(description="key of a candidate")
     reasons: list[str]
+    drag_curves: list[CurveWeightPart] = Field(
+        default=[], description="laws of drag curves, of which decisions are made"
+    )
     parameters: list[ParameterPart]
     bootstrap: BootstrapPart
     errors_in_variables: OrthogonalPart
