@@ -17,8 +17,9 @@ from hersey.damping.distributions import square_above
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.surface import DampingSurface
 
-#: A law whose misfit is as large by chance in fewer logs than this is rejected.
-REJECTED = 0.001
+#: A law whose misfit is as large by chance in fewer logs than this is rejected. The chances are a little too
+#: small: of 40 logs of true laws two had less than a hundred times this.
+REJECTED = 1e-5
 #: A law that weighs less is left out.
 LEAST_WEIGHT = 0.002
 #: Draws of which it is asked whether torque falls among the dwells.
