@@ -19,6 +19,8 @@ from hersey.damping.dwells import SAME_SPEED
 
 #: Probability with which a constant torque seems to rise or to fall somewhere.
 BY_CHANCE = 0.002
+#: Share of the squares about a curve that falls and then rises, below which one that rises first counts.
+_HUMP = 0.1
 #: Least relative scatter between dwells that is assumed: sensors repeat no better.
 _LEAST_SCATTER = 1e-3
 
@@ -88,6 +90,16 @@ def _means(
     return np.array(mean), np.array(variance), np.array(tare)
 
 
+def _about_one_turn(y: FloatArray, first_rises: bool) -> float:
+    """Sum of squares about the best curve that rises or falls, turns once, and goes the other way."""
+    best = float(np.sum((y - y.mean()) ** 2))
+    for i in range(1, y.size):
+        before = optimize.isotonic_regression(y[:i], increasing=first_rises).x
+        after = optimize.isotonic_regression(y[i:], increasing=not first_rises).x
+        best = min(best, float(np.sum((y - np.append(before, after)) ** 2)))
+    return best
+
+
 def _scatter(data: Observations) -> tuple[float, float]:
     """Scatter of dwells about the best curve that turns once, and its degrees of freedom."""
     squares, freedom = 0.0, 0.0
@@ -95,13 +107,9 @@ def _scatter(data: Observations) -> tuple[float, float]:
         members = np.flatnonzero(data.inputs.group == group)
         order = members[np.argsort(data.inputs.log_speed[members], kind="stable")]
         y = data.log_torque[order]
-        best = float(np.sum((y - y.mean()) ** 2))
-        for i in range(1, y.size):
-            for first_rises in (False, True):
-                before = optimize.isotonic_regression(y[:i], increasing=first_rises).x
-                after = optimize.isotonic_regression(y[i:], increasing=not first_rises).x
-                best = min(best, float(np.sum((y - np.append(before, after)) ** 2)))
+        valley, hump = (_about_one_turn(y, first_rises) for first_rises in (False, True))
+        best = hump if hump < _HUMP * valley else valley
         squares += best
-        # an isotonic curve takes up about a third of as many dwells
-        freedom += max(2.0 * y.size / 3.0 - 1.0, 0.5)
+        # what is left of noise alone about the best curve that falls and then rises, by simulation
+        freedom += max(0.62 * y.size - 2.4, 0.3)
     return max(float(np.sqrt(squares / max(freedom, 1.0))), _LEAST_SCATTER), max(freedom, 2.0)
