@@ -10,7 +10,7 @@ import pytest
 
 import hersey
 from hersey.damping.candidates.observations import Observations
-from hersey.damping.trend import Trend, trend_of
+from hersey.damping.trend import Trend, _about_one_turn, _freedom, trend_of
 from hersey.log.means import read_means
 
 Law = Callable[[np.ndarray], np.ndarray]
@@ -57,3 +57,16 @@ def test_chance_alone_makes_no_trend(tmp_path: Path) -> None:
 def test_the_least_torque_is_where_the_dwells_have_it(tmp_path: Path) -> None:
     found = _trend(tmp_path, LAWS["two branches"][0], 3, scatter=0.003)
     assert found.least == pytest.approx(5.0, rel=0.35)
+
+
+def test_the_scatter_of_noise_alone_is_told_as_it_is() -> None:
+    """Squares about the best curve over the degrees of freedom of `trend`: one, for noise of one."""
+    rng = np.random.default_rng(6)
+    for size in (8, 11, 15):
+        squares = [_about_one_turn(rng.standard_normal(size), first_rises=False) for _ in range(300)]
+        assert np.mean(squares) == pytest.approx(_freedom(size), rel=0.15)
+
+
+def test_a_hump_rises_and_falls(tmp_path: Path) -> None:
+    found = _trend(tmp_path, lambda w: 0.2 * np.exp(-(np.log(w / 5.0) ** 2) / 8.0), 1)
+    assert (found.rises, found.falls) == (True, True)

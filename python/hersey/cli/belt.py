@@ -152,7 +152,7 @@ def _of_the_machine(
     from hersey.motion.drag import DragTable
     from hersey.units import celsius
 
-    train, drag, told = machine.limits.gripping(train), film, [numbers.filled]
+    train, drag, notes = machine.limits.gripping(train), film, [numbers.filled]
     kelvin = None
     if machine.rest is not None:
         # a curve without a temperature has the no-load torque of that log's own temperature
@@ -160,9 +160,9 @@ def _of_the_machine(
         drag = with_rest(film, machine.rest, machine.roll_radius, kelvin)
     if drag != film:
         at = "" if kelvin is None else f" (at {celsius(kelvin):.0f} degC)"
-        told.append(f"the rest of the drive acts beside the drag given: {machine.rest}{at}")
+        notes.append(f"the rest of the drive acts beside the drag given: {machine.rest}{at}")
     if train.grip is not None:
-        told.append(f"the roll grips the belt with up to {train.grip:.4g} N")
+        notes.append(f"the roll grips the belt with up to {train.grip:.4g} N")
     if train.grip is not None and drag.holding_force > train.grip:
-        told.append(f"it does not start one at rest, which bears {drag.holding_force:.4g} N")
-    return train, drag, replace(numbers, filled="; ".join(filter(None, told)))
+        notes.append(f"it does not start one at rest, which bears {drag.holding_force:.4g} N")
+    return train, drag, replace(numbers, filled="; ".join(filter(None, notes)))

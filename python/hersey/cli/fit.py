@@ -67,7 +67,7 @@ def fit(
     log = reading.log(logs, machine)
 
     from hersey.damping.curves import fit_curves
-    from hersey.damping.curves.words import weight_lines
+    from hersey.damping.curves.words import drag_curves
     from hersey.damping.fit import fit as fitted
     from hersey.document.assembly import fit_document
     from hersey.verdict.cautions import cautions
@@ -81,8 +81,7 @@ def fit(
         print_json("fit", fit_document(log, points, surface, curves))
         return
     say(surface.summary())
-    say("[[Drag curves]]    (V* and verdicts are made of these, by weight)")
-    say("\n".join(weight_lines(curves.table)))
+    say(drag_curves(curves.table))
     say(regime(points, surface).verdict)
     for caution in cautions(points, surface):
         say(f"- {caution}")

@@ -38,7 +38,7 @@ def models(
     """
     from hersey.damping.candidates import compare_models
     from hersey.damping.curves import fit_curves
-    from hersey.damping.curves.words import weight_lines
+    from hersey.damping.curves.words import drag_curves
     from hersey.damping.fit import fit
     from hersey.errors import InsufficientDataError
     from hersey.machine.machine import read_machine
@@ -68,7 +68,6 @@ def models(
         return
     say(comparison.summary())
     if curves:
-        say("[[Drag curves]]    (V* and verdicts are made of these, by weight)")
-        say("\n".join(weight_lines(curves)))
+        say(drag_curves(curves))
     for doubt in doubts:
         say(f"- {doubt}")

@@ -100,6 +100,11 @@ def _about_one_turn(y: FloatArray, first_rises: bool) -> float:
     return best
 
 
+def _freedom(size: int) -> float:
+    """Squares that noise of one leaves about the best curve that falls and then rises, by simulation."""
+    return max(0.62 * size - 2.4, 0.3)
+
+
 def _scatter(data: Observations) -> tuple[float, float]:
     """Scatter of dwells about the best curve that turns once, and its degrees of freedom."""
     squares, freedom = 0.0, 0.0
@@ -110,6 +115,5 @@ def _scatter(data: Observations) -> tuple[float, float]:
         valley, hump = (_about_one_turn(y, first_rises) for first_rises in (False, True))
         best = hump if hump < _HUMP * valley else valley
         squares += best
-        # what is left of noise alone about the best curve that falls and then rises, by simulation
-        freedom += max(0.62 * y.size - 2.4, 0.3)
+        freedom += _freedom(y.size)
     return max(float(np.sqrt(squares / max(freedom, 1.0))), _LEAST_SCATTER), max(freedom, 2.0)

@@ -10,7 +10,7 @@ import pytest
 
 import hersey
 from hersey.damping.curves import CurveMixture, fit_curves
-from hersey.damping.curves.beyond import BEYOND
+from hersey.damping.curves.beyond import BEYOND, _hidden
 from hersey.log.means import read_means
 
 Curve = Callable[[np.ndarray], np.ndarray]
@@ -125,3 +125,14 @@ def test_torque_that_only_rises_has_curves_too(tmp_path: Path) -> None:
 def test_whether_dwells_lie_below_the_least_torque(tmp_path: Path, curve: Curve, sure: bool) -> None:
     chance = _fitted(_points(tmp_path, curve)).falls_among_dwells(0.8)
     assert chance == pytest.approx(1.0 if sure else 0.0, abs=0.05)
+
+
+def test_boundary_friction_hides_below_the_dwells() -> None:
+    """By hand: half of the drag, e-folded where the speed is 3.5 times below the slowest dwell."""
+    latent = np.zeros((2, BEYOND))
+    latent[1, 4] = 1.0  # a standard deviation more: exp(1.2) times as much
+    below = np.array([[0.0, np.log(3.5), 20.0]] * 2)
+    at_the_dwell = np.exp(-(3.5**1.2))
+    left = np.array([0.0, np.exp(-1.0) - at_the_dwell, 1.0 - at_the_dwell])
+    expected = np.log1p(np.array([[0.5], [0.5 * np.exp(1.2)]]) * left)
+    assert _hidden(below, latent) == pytest.approx(expected, abs=1e-9)

@@ -46,10 +46,8 @@ def log_torque_beyond(
         Ascending, shape (speeds,).
     """
     inside = law.log_torque(numbers, z, shape)
-    dwells = law.dwells
-    measured = law.scaled_speed(law.numbers[None], dwells.log_speed, dwells.temperature)
     shift = law.scaled_speed(numbers, np.zeros(1), shape)[:, 0]
-    low, high = float(measured.min()) - shift, float(measured.max()) - shift
+    low, high = (end - shift for end in law.reach)
     above = np.maximum(z - high[:, None], 0.0)
     out = inside + DRIFT[1] * latent[:, 3:4] * _eased(above)
     below = np.maximum(low[:, None] - z, 0.0)

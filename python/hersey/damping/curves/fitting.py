@@ -65,11 +65,16 @@ class FittedLaw:
         """Return ln(speed/reference) that has the same Hersey number at the reference, (draws, points)."""
         return _scaled(numbers, log_speed, np.asarray(shape))
 
-    def fastest(self, numbers: FloatArray, shape: float) -> FloatArray:
-        """Return ln(speed/reference) at s(T) of the greatest Hersey number measured, (draws,)."""
+    @cached_property
+    def reach(self) -> tuple[float, float]:
+        """Range of the dwells in ln(speed/reference) at the same Hersey number at the reference."""
         dwells = self.dwells
         measured = self.scaled_speed(self.numbers[None], dwells.log_speed, dwells.temperature)
-        return np.asarray(measured.max() - self.scaled_speed(numbers, np.zeros(1), shape)[:, 0])
+        return float(measured.min()), float(measured.max())
+
+    def fastest(self, numbers: FloatArray, shape: float) -> FloatArray:
+        """Return ln(speed/reference) at s(T) of the greatest Hersey number measured, (draws,)."""
+        return np.asarray(self.reach[1] - self.scaled_speed(numbers, np.zeros(1), shape)[:, 0])
 
     def log_level(self, numbers: FloatArray, shape: float) -> FloatArray:
         """Return the change of ln torque with temperature at the same Hersey number, (draws,)."""
@@ -80,9 +85,7 @@ class FittedLaw:
 
         Both at the Hersey number of the reference temperature.
         """
-        dwells = self.dwells
-        measured = self.scaled_speed(self.numbers[None], dwells.log_speed, dwells.temperature)
-        grid = np.linspace(measured.min(), measured.max(), _LOOKS)
+        grid = np.linspace(*self.reach, _LOOKS)
         least = np.argmin(self.log_torque(numbers, grid, 0.0), axis=1)
         return np.asarray(grid[0] - grid[least])
 

@@ -12,3 +12,9 @@ def weight_lines(laws: Sequence[LawWeight]) -> list[str]:
     return [
         f"  {100 * law.weight:5.1f} %  {law.words}{' (rejected)' if law.rejected else ''}" for law in laws
     ]
+
+
+def drag_curves(laws: Sequence[LawWeight]) -> str:
+    """Return the laws by weight under their heading, for the terminal."""
+    heading = "[[Drag curves]]    (V* and verdicts are made of these, by weight)"
+    return "\n".join([heading, *weight_lines(laws)])
