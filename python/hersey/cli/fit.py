@@ -76,7 +76,7 @@ def fit(
     with working("fitting the surface"):
         points = reading.points(log, machine)
         surface = fitted(points, temperature_scale=reading.temperature_scale)
-        curves = fit_curves(points, surface)
+        curves = fit_curves(points, surface, None if machine is None else machine.mixed)
     if as_json:
         print_json("fit", fit_document(log, points, surface, curves))
         return

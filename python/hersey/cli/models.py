@@ -61,7 +61,7 @@ def models(
     except InsufficientDataError:  # other laws may hold where the surface has no meaning
         surface = None
     doubts = cautions(points, surface)
-    curves = () if surface is None else fit_curves(points, surface).table
+    curves = () if surface is None else fit_curves(points, surface, contact).table
     if as_json:
         laws = [vars(law) for law in curves]
         print_json("models", {**comparison.to_dict(), "warnings": doubts, "drag_curves": laws})

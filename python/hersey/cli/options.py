@@ -308,10 +308,9 @@ class Reading:
         traces: list[Path] | None = None,
         *,
         seed: int = 1,
-        draw: bool = True,
     ) -> tuple[DampingSurface, Posterior | None]:
         """Read a finished fit, or fit a log and draw the drives that it allows; no draws without a log."""
-        if fit_file is not None or not paths or not draw:
+        if fit_file is not None or not paths:
             return self.surface(paths, fit_file, machine), None
         from hersey.damping.fit import fit
         from hersey.posterior.sampling import posterior

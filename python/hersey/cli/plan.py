@@ -25,6 +25,11 @@ from hersey.cli.outputs import give, may_write_table_and_figure
 from hersey.cli.progress import bar, working
 from hersey.errors import ParameterError
 
+#: What a plan rests on that knows no dwells.
+_FIT_ALONE = (
+    "--fit holds one law with two branches: give the log to count other drag curves, both closures and starts"
+)
+
 
 @reads_logs
 def plan(
@@ -84,6 +89,8 @@ def plan(
 
     import numpy as np
 
+    from hersey.decision.start_up import plan_start_up
+    from hersey.decision.warming import plan_warm_start
     from hersey.log import memory_limit
     from hersey.machine.machine import read_machine
     from hersey.machine.temperature_profile import read_temperature_profile
@@ -95,28 +102,36 @@ def plan(
     warmth = heat_of(machine, machine_file, start) if heat else None
     with memory_limit(reading.max_memory):
         profile = None if profile_file is None else read_temperature_profile(profile_file)
-    # through changing temperatures the fitted law with two branches is followed
-    steady = not heat and profile is None
-    surface, drawn = reading.surface_and_posterior(logs, fit_file, machine, trace, seed=seed, draw=steady)
-    if drawn is not None:
-        from hersey.decision.start_up import plan_start_up
-
+    surface, drawn = reading.surface_and_posterior(logs, fit_file, machine, trace, seed=seed)
+    if drawn is not None and not heat and profile is None:
         check_temperature(surface, kelvin)
         with working("planning"):
             planned = plan_start_up(drawn, kelvin, wanted, confidence=confidence)
         give("plan", planned, called="profile", table=out, figure=figure, as_json=as_json)
         return
     with bar("planning", unit="profiles") as progress:
-        planned = plan_of_log(
-            surface,
-            machine,
-            target_speed=wanted,
-            temperature=kelvin if profile is None else profile,
-            heat=warmth,
-            confidence=confidence,
-            seed=seed,
-            progress=progress,
-        )
+        if drawn is not None:
+            planned = plan_warm_start(
+                drawn,
+                wanted,
+                temperature=profile,
+                heat=warmth,
+                confidence=confidence,
+                seed=seed,
+                progress=progress,
+            )
+        else:
+            planned = plan_of_log(
+                surface,
+                machine,
+                target_speed=wanted,
+                temperature=kelvin if profile is None else profile,
+                heat=warmth,
+                confidence=confidence,
+                seed=seed,
+                progress=progress,
+            )
+            planned = replace(planned, warnings=(*planned.warnings, _FIT_ALONE))
     course = planned.course if heat else profile
     if planned.course is not None:
         film = np.asarray(planned.course.values)

@@ -8,6 +8,7 @@ mapping      the operating map of a posterior
 measurement  the one measurement that would narrow V* most, and by how much
 plausibility numbers that cannot be what they are called
 start_up     a start-up profile that works on nearly all draws, whatever the closure
+warming      the same while temperature changes
 ===========  ======================================================================
 """
 

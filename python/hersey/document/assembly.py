@@ -105,7 +105,7 @@ def analyse(
         beside = _compared(log, points, against)
     step("fitting the surface")
     surface = fit(points, temperature_scale=temperature_scale)
-    curves = fit_curves(points, surface)
+    curves = fit_curves(points, surface, None if machine is None else machine.mixed)
     beside["fit"] = _fit_part(points, surface, curves)
     working = None if machine is None else Working(points, surface, machine, traces, curves)
     with nullcontext() if working is None else working:

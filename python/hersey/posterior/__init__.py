@@ -9,6 +9,7 @@ likelihood  how likely the evidence is for each draw
 sampler     tempered sequential Monte Carlo, with its convergence
 result      the posterior: V*, probabilities of an operating point, draws
 sampling    from log and machine to the posterior
+drags       draws as drivetrains and tables of drag, also through many temperatures
 typical     the draw whose motion is shown, as a drivetrain and a table of drag
 ==========  ======================================================================
 """

@@ -98,7 +98,7 @@ def posterior(
         name, value, least = ("draws", draws, 20 * CHAINS) if draws < 20 * CHAINS else ("seed", seed, 0)
         raise ParameterError(f"{name} is {value}: it must be at least {least}")
     found = surface or fit(points)
-    curves = curves or fit_curves(points, found)
+    curves = curves or fit_curves(points, found, machine.mixed)
     seen = _given(evidence, found) if evidence is not None else _seen(points, curves, found, machine, traces)
     counted, unused = (*seen.evidence, *_stated(machine, found)), seen.unused
     kelvin = temperature if temperature is not None else decision_temperature(found, machine)

@@ -9,10 +9,12 @@ from functools import cached_property
 import numpy as np
 
 from hersey.arrays import FloatArray, IntArray
+from hersey.damping.candidates.shared_load import SharedLoad
 from hersey.damping.curves.beyond import BEYOND, log_torque_beyond
 from hersey.damping.curves.dwells import Dwells, dwells_of
 from hersey.damping.curves.fitting import FittedLaw, fit_shape
 from hersey.damping.curves.shapes import SHAPES, Shape
+from hersey.damping.curves.shared_load import least, shared_load_shape
 from hersey.damping.distributions import square_above
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.surface import DampingSurface
@@ -22,6 +24,8 @@ from hersey.damping.surface import DampingSurface
 REJECTED = 1e-5
 #: A law that weighs less is left out.
 LEAST_WEIGHT = 0.002
+#: Temperature (K) of the boundary friction of a contact where the dwells have none.
+_WARM = 400.0
 #: Draws of which it is asked whether torque falls among the dwells.
 _LOOKED_AT = 400
 #: Exponent of viscosity in temperature where a search begins that knows of none: usual, and at the most.
@@ -145,7 +149,9 @@ class CurveMixture:
         return out
 
 
-def fit_curves(points: SteadyPoints, surface: DampingSurface) -> CurveMixture:
+def fit_curves(
+    points: SteadyPoints, surface: DampingSurface, contact: SharedLoad | None = None
+) -> CurveMixture:
     """Fit every law of drag curves to steady points and weigh them.
 
     Parameters
@@ -155,9 +161,12 @@ def fit_curves(points: SteadyPoints, surface: DampingSurface) -> CurveMixture:
     surface
         Their fit: the search begins at its branches. Without a transition the search begins with the least
         torque below, within and above the dwells.
+    contact
+        What shares the load, `Machine.mixed`: its curve is one more law.
     """
     dwells = dwells_of(points, surface)
-    fits = [fit_shape(shape, dwells, _starts(shape, dwells, surface)) for shape in SHAPES]
+    own = () if contact is None else (shared_load_shape(contact, surface.reference_temperature or _WARM),)
+    fits = [fit_shape(shape, dwells, _starts(shape, dwells, surface)) for shape in (*own, *SHAPES)]
     return _weighed(fits, dwells)
 
 
@@ -192,6 +201,9 @@ def _about(shape: Shape, level: float, at: float, move: float, up: float, down: 
         return [np.array([*common, up, down, ln_p]) for ln_p in (0.3, 1.6)]
     if shape.name == "sharp":
         return [np.array([*common, up, down])]
+    if shape.name == "mixed":
+        place, drag = least(shape)
+        return [np.array([level - drag, at - place, move, 0.0, 0.0, film]) for film in (-0.7, 0.0, 0.7)]
     if shape.name == "plus":
         return [np.array([*common, up, -1.0])]
     out = []

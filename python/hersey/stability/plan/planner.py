@@ -42,6 +42,8 @@ _LEVEL = 0.999
 _ALLOWED, _STRICT = 2, 0.99
 #: Level of the bound of the share that is stated, and least number of fresh draws behind it.
 _STATED, _FRESH = 0.95, 1500
+#: Least number of machines that may be given, and share of the failures asked for that the search allows.
+_LEAST, _HALF = 40, 0.5
 #: Profiles verified before giving up; after each the search takes the draws it failed on.
 _VERIFIED = 5
 #: Share of the failures that a verification lets pass which the search allows after one, two...
@@ -69,6 +71,7 @@ def plan_profile(
     roll_radius: float | None = None,
     uncertainty: Mapping[str, Uncertainty] | None = None,
     samples: Mapping[str, ArrayLike] | None = None,
+    machines: Sequence[tuple[Drivetrain, AnyDrag]] = (),
     confidence: float = 0.95,
     seed: int = 1,
     progress: Progress | None = None,
@@ -97,6 +100,9 @@ def plan_profile(
     samples
         Draws that go together, arrays of equal length by parameter (`DampingSurface.drag_samples`), for a
         drag that varies with temperature at its reference temperature. They come before ``uncertainty``.
+    machines
+        Instead of both: whole machines drawn at random, at least 40. The search tries every other one, and
+        the rest prove what it finds.
     confidence
         Share of the belts that must be smooth and keep the limits, 0.5 to 0.999.
     seed
@@ -122,11 +128,14 @@ def plan_profile(
     """
     limits = Limits() if limits is None else limits
     _check(drag, target_speed, limits, confidence, seed)
+    if machines and (uncertainty or samples or len(machines) < _LEAST):
+        raise ParameterError(f"machines: give at least {_LEAST}, without uncertainty and samples")
     if heat is not None and temperature is not None:
         raise ParameterError("give either temperature or heat, which makes it")
     reach = Reach.of(limits, roll_radius, train.grip)
     gripping, train = limits.gripping(train), replace(train, grip=None)  # the grip is a limit of force here
-    unknown = Unknown(train, drag, dict(uncertainty or {}), dict(samples or {}), seed)
+    given = [MachineSample(replace(each, grip=None), of) for each, of in machines]
+    unknown = Unknown(train, drag, dict(uncertainty or {}), dict(samples or {}), seed, given)
     asked = _Asked(unknown, gripping, target_speed, limits, reach, confidence, progress)
     if heat is None:
         return asked.on(TemperatureProfile(temperature))[0]
@@ -191,8 +200,8 @@ class _Asked:
                     facts |= {"tried": search.count, "warnings": _warnings(reach, proof.impossible)}
                     machine = MachineSample(self.gripping, unknown.drag)
                     return _found(machine, shape, thermal, proof, reach, facts), shape
-                if number == _VERIFIED:
-                    break
+                if number == _VERIFIED or unknown.machines:
+                    break  # given machines prove one profile: after that none of them is new
                 share = _STRICTER[number - 1] * most_failures(self.confidence, _LEVEL, proof.draws)
                 share /= proof.draws
                 known = len(search.trials.machines) + proof.draws
@@ -252,6 +261,7 @@ class Unknown:
     uncertainty: Mapping[str, Uncertainty]
     samples: Mapping[str, ArrayLike]
     seed: int
+    machines: Sequence[MachineSample] = ()
 
     def draws(self, stream: int, count: int) -> list[MachineSample]:
         """Return machines of a stream of random draws; the nominal one alone if all is known."""
@@ -259,6 +269,8 @@ class Unknown:
 
     def drawn(self, stream: int, count: int) -> tuple[list[MachineSample], float]:
         """Return the same with the share of the draws that are no machine."""
+        if self.machines:
+            return list(self.machines[1::2] if stream else self.machines[::2]), 0.0
         if not self.uncertainty and not self.samples:
             return [MachineSample(self.train, self.drag)], 0.0
         rng = np.random.default_rng([self.seed, stream])
@@ -266,6 +278,9 @@ class Unknown:
 
     def trials(self, confidence: float, thermal: TemperatureProfile, force_limit: float) -> Trials:
         """Return the machines of the search."""
+        if self.machines:
+            half = self.draws(0, 0)
+            return Trials(half, math.floor(_HALF * (1.0 - confidence) * len(half)), thermal, force_limit)
         if not self.uncertainty and not self.samples:
             return Trials(neighbours(self.train, self.drag), 0, thermal, force_limit)
         allowed = _ALLOWED if confidence <= _STRICT else 0
@@ -304,6 +319,9 @@ class Unknown:
         failures = Counter(_failures(found, duration))
         good = len(found) - failures.total()
         share = good / len(found)
+        enough = good == 1 if len(found) == 1 else lower_bound(good, len(found), _LEVEL) >= confidence
+        if self.machines:
+            enough = share >= confidence
         return Proof(
             duration=duration,
             share=share,
@@ -311,8 +329,7 @@ class Unknown:
             draws=len(found),
             failures=dict(sorted(failures.items())),
             peak_force=float(np.quantile([f.peak_force for f in found], confidence, method="higher")),
-            accepted=nominal.ready < math.inf
-            and (good == 1 if len(found) == 1 else lower_bound(good, len(found), _LEVEL) >= confidence),
+            accepted=nominal.ready < math.inf and enough,
             machines=machines,
             impossible=impossible,
         )

@@ -1,0 +1,52 @@
+"""The curve of a contact that the machine file states: film and asperities share its load.
+
+Drag of film and asperities over boundary friction, against ln(viscosity speed/reference), comes from the core
+once, as a table. A draw moves it along speed and torque, and makes the film's part larger or smaller, as
+other viscosity, roughness and boundary friction would.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from hersey import _core
+from hersey.arrays import FloatArray
+from hersey.damping.candidates.shared_load import SharedLoad
+from hersey.damping.curves.shapes import Prior, Shape
+
+#: Ends of the table in ln(viscosity speed/reference), and the distance of its points.
+_ENDS, _STEP = (-16.0, 16.0), 0.02
+#: Standard deviation of ln of the film's part over the stated one.
+_FILM = 0.7
+
+
+def shared_load_shape(contact: SharedLoad, kelvin: float) -> Shape:
+    """Return the curve of a contact, `hersey.lubrication.MixedContact`, as a law of drag curves.
+
+    Boundary friction is that at a temperature (K).
+    """
+    grid = np.arange(_ENDS[0], _ENDS[1] + _STEP, _STEP)
+    numbers = dict(zip(_core.SHARING, contact.numbers(np.array([kelvin])), strict=True))
+    given = [
+        np.broadcast_to(np.asarray(numbers[name], dtype=np.float64), grid.shape) for name in _core.SHARING
+    ]
+    product = numbers["reference"] * np.exp(grid)
+    state = _core.mixed_contact([np.ascontiguousarray(each) for each in (product, *given)])
+    most = float(np.max(state.boundary))
+    asperities, film = state.boundary / most, np.log((state.shear + state.rolling) / most)
+
+    def curve(x: FloatArray, own: FloatArray) -> FloatArray:
+        at = np.clip(x, grid[0], grid[-1])
+        carried = np.interp(at, grid, asperities)
+        return np.asarray(np.log(carried + np.exp(np.interp(at, grid, film) + own[:, :1])))
+
+    prior = Prior("ln film", 0.0, _FILM)
+    return Shape("mixed", "film and asperities of the machine's contact", (prior,), curve)
+
+
+def least(shape: Shape) -> tuple[float, float]:
+    """Return where the curve of a contact is least, ln(viscosity speed/reference), and ln drag there."""
+    grid = np.arange(_ENDS[0], _ENDS[1] + _STEP, _STEP)
+    drag = shape.curve(grid[None], np.zeros((1, 1)))[0]
+    at = int(np.argmin(drag))
+    return float(grid[at]), float(drag[at])
