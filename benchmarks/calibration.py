@@ -32,8 +32,9 @@ from hersey.posterior.priors import DrivePriors
 ROOT = Path(__file__).parent.parent
 #: Of the first posterior, whose draws are the truths.
 PRIOR_DRAWS = 2000
-#: Shares of the transition at which stick-slip is recorded, and of V* at which starts are made.
-SLIPS, STARTS = (0.3, 0.7), (0.7, 1.1)
+#: Shares of a transition at which stick-slip is recorded, and of a V* at which starts are made. Both are of
+#: another draw: speeds that follow the truth would tell of it what no likelihood counts.
+SLIPS, STARTS = (0.3, 0.7), (0.8, 1.2)
 #: Relative errors of figures and of a break-away force, as stated to the posterior.
 FIGURES, FORCE = 0.01, 0.04
 BINS = 10
@@ -41,11 +42,13 @@ KINDS = ("starts", "stick-slip", "break-away")
 NAMES = ("V*", "transition", "stick speed", "stiffness", "mass", "static ratio")
 
 
-def evidence_of(found: Posterior, truth: Drives, kind: str, random: np.random.Generator) -> list[Evidence]:
-    """What one draw shows, with noise as large as the posterior takes it to be."""
+def evidence_of(
+    found: Posterior, truth: Drives, other: Drives, kind: str, random: np.random.Generator
+) -> list[Evidence]:
+    """What one draw shows at speeds about another, with noise as large as the posterior takes it to be."""
     model, kelvin = found.model, found.temperature
-    fold = float(model.folds(truth, kelvin).upper[0])
-    turn = float(model.folds(truth, kelvin).transition[0])
+    about = model.folds(other, kelvin)
+    fold, turn = float(about.upper[0]), float(about.transition[0])
     out: list[Evidence] = []
     if kind == "starts":
         for share in STARTS:
@@ -57,6 +60,7 @@ def evidence_of(found: Posterior, truth: Drives, kind: str, random: np.random.Ge
             speed = share * turn
             seen = model.starts(truth, kelvin, speed)
             if not seen.sticks[0]:
+                out.append(Start(kelvin, speed, slid=True))
                 continue
             error = float(np.hypot(FIGURES, OF_CYCLES))
             top, low = float(seen.pull_max[0]), float(seen.pull_min[0])
@@ -105,18 +109,18 @@ def _prior(seed: int) -> Posterior:
     return hersey.posterior(_points(), _machine(), evidence=(), draws=PRIOR_DRAWS, seed=seed)
 
 
-def ranked(seed: int, draws: int, number: int) -> Ranked | None:
-    """Draw a truth and rank it; None if it shows nothing."""
+def ranked(seed: int, draws: int, number: int) -> Ranked:
+    """Draw a truth and rank it."""
     prior, random = _prior(seed), np.random.default_rng([seed, number])
     which = int(random.integers(len(KINDS)))
     model = prior.model
     # a measured break-away force widens the prior of static friction: so for the truth
     wide = DrivePriors.of(model.machine, break_away_known=KINDS[which] == "break-away")
     from_ = replace(prior, model=replace(model, priors=wide))
-    truth = prior.drives.take(np.array([random.integers(len(prior.drives))], dtype=np.intp))
-    seen = evidence_of(from_, truth, KINDS[which], random)
-    if not seen:
-        return None
+    truth, other = (
+        prior.drives.take(np.array([random.integers(len(prior.drives))], dtype=np.intp)) for _ in range(2)
+    )
+    seen = evidence_of(from_, truth, other, KINDS[which], random)
     found = hersey.posterior(
         _points(),
         model.machine,
@@ -143,11 +147,10 @@ def main() -> None:
     given = parser.parse_args()
     began = time.perf_counter()
     with ProcessPoolExecutor(given.workers, mp_context=multiprocessing.get_context("spawn")) as pool:
-        every = list(pool.map(partial(ranked, given.seed, given.draws), range(given.truths)))
-    results = [each for each in every if each is not None]
+        results = list(pool.map(partial(ranked, given.seed, given.draws), range(given.truths)))
     kept = np.array([each.ranks for each in results])
     print(
-        f"seed {given.seed}: {len(kept)} truths with evidence, {given.draws} draws each, "
+        f"seed {given.seed}: {len(kept)} truths, {given.draws} draws each, "
         f"{sum(each.excluded for each in results)} recordings excluded, "
         f"{sum(not each.converged for each in results)} not converged, {time.perf_counter() - began:.0f} s"
     )

@@ -53,6 +53,8 @@ SLIP_AT, FIGURE_ERROR = 0.5, 0.01
 MODE_AT, MODE_WIDTH, MODE_WEIGHT = 2.0, 0.1, 0.2
 #: Most draws of a run whose V* is found.
 MOST = 10_000
+#: Standard deviation of a closure from which its share is compared.
+LEAST_SPREAD = 0.05
 CASES = ("dwells", "starts", "stick-slip", "two modes")
 
 
@@ -149,7 +151,7 @@ def _weighed(problem: Problem, cube: FloatArray, log_weight: FloatArray, log_z: 
     return Run(problem.from_cube(cube[chosen]), own, log_z)
 
 
-def hersey_smc(problem: Problem, seed: int, draws: int = DRAWS) -> Run:
+def hersey_smc(problem: Problem, seed: int, draws: int = DRAWS, moves: Moves | None = None) -> Run:
     """The package's own sampler, as `hersey.posterior` calls it."""
     parts, evidence = [], []
     for chain in range(CHAINS):
@@ -160,7 +162,7 @@ def hersey_smc(problem: Problem, seed: int, draws: int = DRAWS) -> Run:
             _index(CHANCES, even),
             random.standard_normal((count, problem.size)),
         )
-        found = sample(start, problem.target, CHANCES, problem.laws, random, Moves())
+        found = sample(start, problem.target, CHANCES, problem.laws, random, moves or Moves())
         parts.append(found.drives)
         evidence.append(found.log_evidence)
     law, closure, latent = (
@@ -174,15 +176,21 @@ def hersey_large(problem: Problem, seed: int) -> Run:
     return hersey_smc(problem, seed, 10 * DRAWS)
 
 
+def hersey_moves(problem: Problem, seed: int) -> Run:
+    """The package's own sampler with four times the moves."""
+    usual = Moves()
+    return hersey_smc(problem, seed, moves=Moves(4 * usual.often, 4 * usual.rounds, 4 * usual.last))
+
+
 def importance(problem: Problem, seed: int) -> Run:
     """Draws of the prior by the weight of their likelihood, without moves."""
     random = np.random.default_rng(seed)
-    prior = problem.prior(20 * DRAWS, random)
+    prior = problem.prior(10 * DRAWS, random)
     value = problem.target(prior)
     weight = np.exp(value - value.max())
     own = float(weight.sum() ** 2 / np.sum(weight**2))
     log_z = float(np.log(weight.mean()) + value.max())
-    return Run(prior.take(_equal(weight, 2 * DRAWS, random)), own, log_z)
+    return Run(prior.take(_equal(weight, DRAWS, random)), own, log_z)
 
 
 def dynesty_nested(problem: Problem, seed: int) -> Run:
@@ -297,6 +305,7 @@ def blackjax_smc(problem: Problem, seed: int) -> Run:
 SAMPLERS: dict[str, tuple[str, Callable[[Problem, int], Run]]] = {
     "hersey": ("hersey", hersey_smc),
     "hersey, 10 x draws": ("hersey", hersey_large),
+    "hersey, 4 x moves": ("hersey", hersey_moves),
     "importance": ("hersey", importance),
     "dynesty": ("dynesty", dynesty_nested),
     "blackjax": ("blackjax", blackjax_smc),
@@ -408,9 +417,11 @@ def effective(problem: Problem, runs: Sequence[Figures], truth: Figures) -> floa
     """Return one over the mean square of error over standard deviation against the reference."""
     out = []
     spread = np.sqrt(truth.closures * (1.0 - truth.closures))
+    # the share of a closure that hardly any draw has says nothing
+    told = spread > LEAST_SPREAD
     ordered = np.sort(truth.values)
     for run in runs:
-        off = list(((run.closures - truth.closures) / np.maximum(spread, 1e-3))[:2])
+        off = [float(o) for o in ((run.closures - truth.closures)[told] / spread[told])[:2]]
         if problem.real:
             rank = 0.5 * sum(
                 np.searchsorted(ordered, run.values, side) / ordered.size for side in ("left", "right")

@@ -48,8 +48,9 @@ class InsufficientDataError(HerseyError, ValueError):
 class ParameterError(HerseyError, ValueError):
     """A parameter outside what the physics allows.
 
-    ``quantity`` names it as the message does, ``value`` and ``limit`` are in ``unit``; ``index`` is the place
-    among the sets or points of a call that takes many. Each is None where it is not known.
+    ``quantity`` names it as the message does, ``value`` and ``limit`` are in ``unit``; ``bound`` says where
+    the value must lie: ``above`` the limit, ``at most`` at it or ``below`` it; ``index`` is the place among
+    the sets or points of a call that takes many. Each is None where it is not known.
     """
 
     def __init__(
@@ -60,10 +61,12 @@ class ParameterError(HerseyError, ValueError):
         limit: float | None = None,
         unit: str | None = None,
         index: int | None = None,
+        bound: str | None = None,
     ) -> None:
         """Take the message and what is known of the parameter."""
         super().__init__(*message)
         self.quantity, self.value, self.limit, self.unit, self.index = quantity, value, limit, unit, index
+        self.bound = bound
 
 
 class ForkedError(HerseyError, RuntimeError):

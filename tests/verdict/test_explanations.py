@@ -107,6 +107,13 @@ def test_torque_falls_over_the_whole_range_only_if_it_falls_at_both_ends() -> No
     assert said == {True, False}
 
 
+def test_a_fall_is_claimed_only_where_the_dwells_show_it() -> None:
+    """With 6 % of scatter an exponent below -1 may come from a few dwells; with 1 % torque falls."""
+    words = [seen(SPEEDS**-0.15, scatter, 2).verdict for scatter in (0.06, 0.01)]
+    assert "the dwells alone do not show that it falls" in words[0]
+    assert "Torque falls as speed rises" in words[1]
+
+
 def test_an_exponent_between_two_regimes_says_why_none_is_named() -> None:
     """One law holds, and it is that of no regime: the reason is never empty."""
     found = seen(2.0 * SPEEDS**0.2)

@@ -29,6 +29,16 @@ fn into_raised(built: PyResult<Bound<'_, PyAny>>) -> PyErr {
     built.map_or_else(|own| own, PyErr::from_value)
 }
 
+/// On which side of its limit a value must lie, as `ParameterError.bound` names it.
+fn bound(error: &Error) -> Option<&'static str> {
+    match error {
+        Error::TooSmall { .. } => Some("above"),
+        Error::TooLarge { .. } => Some("at most"),
+        Error::NotBelow { .. } => Some("below"),
+        _ => None,
+    }
+}
+
 /// An exception, not yet raised.
 pub fn exception<'py>(
     py: Python<'py>,
@@ -45,6 +55,7 @@ pub fn exception<'py>(
         fields.set_item("steps", error.steps())?;
     } else {
         fields.set_item("limit", error.limit())?;
+        fields.set_item("bound", bound(error))?;
     }
     let message = match place {
         None => error.to_string(),

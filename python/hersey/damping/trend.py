@@ -2,7 +2,8 @@
 
 At each temperature the mean torques of all pairs of speeds are compared. Torque rises somewhere if one pair
 differs upward by more than its errors, which count scatter between dwells and what a wrong zero would do to
-both; the significance is divided by the number of pairs (Bonferroni).
+both; the significance is divided by the number of pairs (Bonferroni). A few dwells are tested together
+too (`order`).
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from hersey.arrays import FloatArray, IntArray
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.distributions import student_quantile
 from hersey.damping.dwells import SAME_SPEED
+from hersey.damping.order import MOST, chances
 
 #: Probability with which a constant torque seems to rise or to fall somewhere.
 BY_CHANCE = 0.002
@@ -52,7 +54,9 @@ def trend_of(data: Observations) -> Trend:
     groups = [np.flatnonzero(data.inputs.group == g) for g in np.unique(data.inputs.group)]
     levels = [_levels(data, members) for members in groups]
     pairs = sum(len(each) * (len(each) - 1) // 2 for each in levels)
-    limit = float(student_quantile(1.0 - 0.5 * BY_CHANCE / max(pairs, 1), freedom))
+    few = data.log_torque.size <= MOST
+    chance = 0.25 * BY_CHANCE if few else 0.5 * BY_CHANCE  # of each claim and each test
+    limit = float(student_quantile(1.0 - chance / max(pairs, 1), freedom))
     for each in levels:
         if len(each) < 2:
             continue
@@ -64,8 +68,20 @@ def trend_of(data: Observations) -> Trend:
         falls |= bool(np.any(z < -limit))
         spreads.append(0.5 * float(np.ptp(mean)))
         lows.append(float(np.exp(np.mean(data.inputs.log_speed[each[int(np.argmin(mean))]]))))
+    if few:
+        by_chance = _together(data, groups)
+        rises, falls = rises or by_chance[0] < chance, falls or by_chance[1] < chance
     least = data.reference_speed * float(np.median(lows)) if lows else data.reference_speed
     return Trend(rises, falls, least, float(np.expm1(max(spreads))))
+
+
+def _together(data: Observations, groups: list[IntArray]) -> tuple[float, float]:
+    """How often chance makes torque rise, and fall, as it does whatever the zero, within two deviations."""
+    sorted_ = [each[np.argsort(data.inputs.log_speed[each], kind="stable")] for each in groups]
+    zeros = [np.zeros_like(data.log_torque)]
+    zeros += [sign * 2.0 * column for column in data.tare.T for sign in (-1.0, 1.0)]
+    found = [chances([(data.log_torque + zero)[each] for each in sorted_]) for zero in zeros]
+    return max(rise for rise, _ in found), max(fall for _, fall in found)
 
 
 def _levels(data: Observations, members: IntArray) -> list[IntArray]:

@@ -9,9 +9,11 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.damping.candidates.lack_of_fit import LackOfFit
+from hersey.damping.candidates.observations import Observations
 from hersey.damping.dwells import SteadyPoints, distinct_speeds, groups_of_temperature
 from hersey.damping.estimate import Estimate, estimate
 from hersey.damping.surface import DampingSurface
+from hersey.damping.trend import Trend, trend_of
 from hersey.lubrication.contact import Contact
 from hersey.lubrication.lubricant import Lubricant
 from hersey.result import Result, json_record
@@ -122,6 +124,7 @@ def regime(
         law = film_law(contact, lubricant, table, temperature)
     hypotheses = judged(surface.c, table=table)
     by = explained(points, surface, hypotheses, law)
+    verdict = _verdict(surface, by, table, trend_of(Observations.of(points)))
     return Regime(
         branch_exponents(points, surface),
         hypotheses,
@@ -129,7 +132,7 @@ def regime(
         by.named,
         by.why_unnamed or _left(by),
         by.lack_of_fit,
-        " ".join(filter(None, (_verdict(surface, by, table), _taken_off(points), points.dropped()))),
+        " ".join(filter(None, (verdict, _taken_off(points), points.dropped()))),
         by.tried,
     )
 
@@ -184,10 +187,10 @@ def _slope(speed: FloatArray, torque: FloatArray, error: FloatArray, surface: Da
     return estimate(slope, deviation, surface.c.freedom)
 
 
-def _verdict(surface: DampingSurface, by: Explained, table: tuple[RegimeRow, ...]) -> str:
+def _verdict(surface: DampingSurface, by: Explained, table: tuple[RegimeRow, ...], trend: Trend) -> str:
     exponent = _exponent(surface, by, table)
     if surface.transition is None:
-        return f"{exponent} {_no_transition(surface, by)}"
+        return f"{exponent} {_no_transition(surface, by, trend)}"
     t = surface.transition
     where = f"{rpm(t.speed.value):.3g} rpm"
     where += f" [{rpm(t.speed.low):.3g}, {rpm(t.speed.high):.3g}]" if t.speed.told else " (interval not told)"
@@ -234,9 +237,14 @@ def _films(by: Explained, table: tuple[RegimeRow, ...]) -> list[Explanation]:
     return [e for e in by.explanations if e.key in {row.name for row in table}]
 
 
-def _no_transition(surface: DampingSurface, by: Explained) -> str:
-    if surface.c.high >= -1.0:
+def _no_transition(surface: DampingSurface, by: Explained, trend: Trend) -> str:
+    if not trend.falls and surface.c.high < -1.0:
+        return "So torque would fall as speed rises, but the dwells alone do not show that it falls."
+    if not trend.falls:
         return "No transition to a falling branch shows in these data."
+    if surface.c.high >= -1.0:
+        where = f"below about {rpm(trend.least):.3g} rpm"
+        return f"Torque also falls with speed, {where}: too few dwells lie there to fit a falling branch."
     lack = by.lack_of_fit
     ends = (surface.c.high,) if lack is None else (*lack.local_exponents, *lack.by_temperature)
     bent = " where its exponent is below -1" if lack is not None and lack.in_speed else ""

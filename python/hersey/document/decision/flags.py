@@ -145,11 +145,15 @@ def _closures(found: Behaviour) -> list[FlagPart]:
     if soft is None or dead is None or dead < _APART * soft:
         return []
     text = (
-        "It may come to rest gradually or stop abruptly; this log does not show which. "
-        f"V* is {mm(soft)} or {mm(dead)} mm/s."
+        f"It may come to rest gradually ({_chance(chances['retained'])}) or stop abruptly "
+        f"({_chance(chances['stiction'])}). V* is {mm(soft)} or {mm(dead)} mm/s."
     )
     title = "The safe speed depends on how the belt comes to rest."
     return [FlagPart(signal="watch", title=title, text=text, section="band")]
+
+
+def _chance(value: float) -> str:
+    return f"{100.0 * value:.0f} %"
 
 
 def _unused(found: Behaviour) -> list[FlagPart]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from hersey.document.decision.words import figures, mm
 from hersey.errors import HerseyError, ParameterError, UnfinishedError
 
@@ -17,6 +19,8 @@ _NAMED = {
     "grip": "the grip of the roll",
     "rest_force": "the drag of the rest of the drive",
 }
+#: Where a value must lie, by `ParameterError.bound`.
+_BOUNDS = {"above": "be greater than", "at most": "not exceed", "below": "be less than"}
 _UNITS = {"stiffness": "N/m", "mass": "kg", "transition_force": "N", "grip": "N", "rest_force": "N"}
 
 
@@ -35,12 +39,12 @@ def in_words(error: HerseyError) -> str:
             f"{mm(error.limit)} mm/s: state less"
         )
     name = _NAMED.get(error.quantity, error.quantity.replace("_", " "))
-    said = str(error)
-    for bound in ("be greater than", "be less than", "not exceed"):
-        if f"must {bound}" in said and error.limit is not None:
-            value, limit = (_amount(error.quantity, each, error.unit) for each in (error.value, error.limit))
-            return f"{name} is {value}: it must {bound} {limit}"
-    return said.replace(error.quantity, name)
+    if not math.isfinite(error.value):
+        return f"{name} is {error.value}: it must be finite"
+    if error.bound is None or error.limit is None:
+        return str(error)
+    value, limit = (_amount(error.quantity, each, error.unit) for each in (error.value, error.limit))
+    return f"{name} is {value}: it must {_BOUNDS[error.bound]} {limit}"
 
 
 def _amount(quantity: str, value: float, unit: str | None) -> str:
