@@ -297,7 +297,10 @@ def blackjax_smc(problem: Problem, seed: int) -> Run:
         key, now = jax.random.split(key)
         state, info = advance(now, state)
         log_z += float(info.log_likelihood_increment)
-    drawn = np.asarray(state.sampler_state.particles)
+    # its draws move before they are weighed, so that the last weights are still to be counted
+    weight = np.array(state.sampler_state.weights)
+    chosen = _equal(weight, DRAWS, np.random.default_rng(seed))
+    drawn = np.asarray(state.sampler_state.particles)[chosen]
     return Run(problem.from_normals(drawn), float(np.unique(drawn[:, 0]).size), log_z)
 
 

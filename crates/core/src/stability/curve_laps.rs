@@ -129,7 +129,7 @@ struct Lap {
 }
 
 /// Where a lap begins.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Release {
     pub pull: f64,
     pub speed: f64,
