@@ -38,7 +38,7 @@ from hersey.posterior.likelihood import log_likelihood
 from hersey.posterior.priors import CLOSURES, NUMBERS, DrivePriors
 from hersey.posterior.result import edges_at
 from hersey.posterior.sampler import Moves, sample
-from hersey.posterior.sampling import CHAINS, DRAWS, decision_temperature
+from hersey.posterior.sampling import CHAINS, DRAWS, FIRST, decision_temperature
 
 ROOT = Path(__file__).parent.parent
 #: Prior probability of each closure.
@@ -156,13 +156,14 @@ def hersey_smc(problem: Problem, seed: int, draws: int = DRAWS, moves: Moves | N
     parts, evidence = [], []
     for chain in range(CHAINS):
         random, count = np.random.default_rng([seed, chain]), draws // CHAINS
-        even = (np.arange(count) + 0.5) / count
+        even = (np.arange(FIRST * count) + 0.5) / (FIRST * count)
         start = Drives(
             random.permutation(_index(problem.laws, even)),
-            _index(CHANCES, even),
-            random.standard_normal((count, problem.size)),
+            random.permutation(_index(CHANCES, even)),
+            random.standard_normal((FIRST * count, problem.size)),
         )
-        found = sample(start, problem.target, CHANCES, problem.laws, random, moves or Moves())
+        moves = moves or Moves()
+        found = sample(start, problem.target, CHANCES, problem.laws, random, moves, count=count)
         parts.append(found.drives)
         evidence.append(found.log_evidence)
     law, closure, latent = (

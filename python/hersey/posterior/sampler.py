@@ -19,7 +19,7 @@ from hersey.posterior.drives import Drives
 
 #: ln weight of dwells and of evidence of each draw.
 Target = Callable[[Drives], FloatArray]
-#: Share of the draws that must stay effective from one degree of evidence to the next.
+#: Share of the draws kept that must stay effective from one degree of evidence to the next.
 _EFFECTIVE = 0.5
 #: Most degrees, and the least by which each brings evidence in.
 _STAGES, _LEAST = 60, 1e-4
@@ -48,9 +48,9 @@ class Moves:
     ``last`` holds after the last stage.
     """
 
-    often: float = 1.0
-    rounds: int = 6
-    last: int = 12
+    often: float = 2.0
+    rounds: int = 12
+    last: int = 24
 
 
 def sample(
@@ -61,6 +61,8 @@ def sample(
     random: np.random.Generator,
     moves: Moves,
     progress: Callable[[float], object] | None = None,
+    *,
+    count: int | None = None,
 ) -> Population:
     """Return draws of the target, starting from those of the prior.
 
@@ -68,6 +70,8 @@ def sample(
     ----------
     draws
         From the prior: latents standard normal.
+    count
+        How many are kept, as many as there are by default; with more at first fewer are equal later.
     target
         ln of the likelihood of everything for each draw.
     closures
@@ -77,15 +81,15 @@ def sample(
     progress
         Called with the share of the evidence that is in.
     """
-    value = target(draws)
+    value, kept_count = target(draws), count or len(draws)
     beta, log_evidence, stage, accepted = 0.0, 0.0, 0, 1.0
     part = _PART
     while beta < 1.0 and stage < _STAGES:
-        step = _step(value, beta)
+        step = _step(value, beta, _EFFECTIVE * kept_count)
         weight = np.exp(step * (value - value.max()))
         log_evidence += float(np.log(weight.mean()) + step * value.max())
         beta, stage = min(beta + step, 1.0), stage + 1
-        kept = _resampled(weight, random)
+        kept = _resampled(weight, kept_count, random)
         draws, value = draws.take(kept), value[kept]
         moved, last = 0.0, beta >= 1.0
         for _ in range(moves.last if last else moves.rounds):
@@ -100,32 +104,31 @@ def sample(
     return Population(draws, log_evidence, stage, accepted, distinct, beta)
 
 
-def _step(value: FloatArray, beta: float) -> float:
-    """By how much evidence may be brought in so that half of the draws stay effective."""
+def _step(value: FloatArray, beta: float, least: float) -> float:
+    """By how much evidence may be brought in so that as many draws stay effective."""
 
     def effective(step: float) -> float:
         weight = np.exp(step * (value - value.max()))
-        return float(weight.sum() ** 2 / np.sum(weight**2) / weight.size)
+        return float(weight.sum() ** 2 / np.sum(weight**2))
 
     low, high = 0.0, 1.0 - beta
-    if effective(high) >= _EFFECTIVE:
+    if effective(high) >= least:
         return high
     for _ in range(40):
         middle = 0.5 * (low + high)
-        low, high = (middle, high) if effective(middle) >= _EFFECTIVE else (low, middle)
+        low, high = (middle, high) if effective(middle) >= least else (low, middle)
     return max(low, min(_LEAST, 1.0 - beta))
 
 
-def _resampled(weight: FloatArray, random: np.random.Generator) -> IntArray:
-    """Indices drawn by weight, systematically: each as often as its share asks for, to one.
+def _resampled(weight: FloatArray, count: int, random: np.random.Generator) -> IntArray:
+    """So many indices drawn by weight, systematically: each as often as its share asks for, to one.
 
     In random order, as weights that repeat with the spacing of the samples would be drawn wrongly.
     """
-    count = weight.size
-    order = random.permutation(count)
+    order = random.permutation(weight.size)
     edges = np.cumsum(weight[order]) / weight.sum()
     at = (np.arange(count) + random.random()) / count
-    return order[np.minimum(np.searchsorted(edges, at), count - 1)].astype(np.intp)
+    return order[np.minimum(np.searchsorted(edges, at), weight.size - 1)].astype(np.intp)
 
 
 def _moved(
