@@ -1,91 +1,87 @@
 """Whether a few torques rise or fall with speed, tested on all of them together.
 
-The torques are compared with the best curve that never falls (or never rises), and with the best curve that
-falls and then rises. Where scatter alone makes the first so much worse than the second is known from draws of
-constant torque (Robertson, Wright and Dykstra, Order Restricted Statistical Inference, 1988). Pairs of speeds
-tell as much where there are many dwells; with a dozen they leave too few degrees of freedom.
+Squares about the best curve that never falls (or never rises) are compared with squares off parabolas through
+neighbours, which tell the scatter. How large chance makes their ratio is known from draws of constant torque
+(Robertson, Wright and Dykstra, Order Restricted Statistical Inference, 1988). Pairs of speeds tell as much
+where there are many dwells; a dozen leave them too few degrees of freedom.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import lru_cache
 
 import numpy as np
 
 from hersey.arrays import FloatArray
 
 #: Greatest number of torques, all temperatures together: beyond, pairs of speeds tell enough.
-MOST = 16
+MOST = 24
 #: Draws of constant torque behind a chance, and their seed.
 _DRAWS, _SEED = 4000, 11
 #: Squares over others from which they are rounding.
 _EXACT = 1e-20
 
 
-def chances(groups: Sequence[FloatArray]) -> tuple[float, float]:
+def chances(groups: Sequence[tuple[FloatArray, FloatArray]]) -> tuple[float, float]:
     """Return how often constant torque seems to rise, and to fall, as much as these.
 
     Parameters
     ----------
     groups
-        ln torque of the dwells at each temperature, the slowest first.
+        ln speed and ln torque of the dwells at each temperature, the slowest first.
     """
-    rise, fall = _ratios([each[None, :] for each in groups])
-    by_chance, _ = _of_constant(tuple(sorted(each.size for each in groups)))
-    # constant torque seems to fall as often as it seems to rise
-    return _share(by_chance, rise), _share(by_chance, fall)
-
-
-def _share(by_chance: FloatArray, found: FloatArray) -> float:
-    return float((1 + np.count_nonzero(by_chance >= found[0])) / (1 + by_chance.size))
-
-
-@lru_cache(maxsize=32)
-def _of_constant(sizes: tuple[int, ...]) -> tuple[FloatArray, FloatArray]:
     random = np.random.default_rng(_SEED)
-    return _ratios([random.standard_normal((_DRAWS, size)) for size in sizes])
+    of_chance = [(z, random.standard_normal((_DRAWS, z.size))) for z, _ in groups]
+    found = _ratios([(z, y[None, :]) for z, y in groups])
+    by_chance = _ratios(of_chance)
+    rise, fall = (
+        (1 + np.count_nonzero(chance >= seen[0])) / (1 + _DRAWS)
+        for chance, seen in zip(by_chance, found, strict=True)
+    )
+    return float(rise), float(fall)
 
 
-def _ratios(groups: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
-    """Squares about a curve that never rises, and that never falls, over those about one that turns once."""
-    falling = np.zeros(groups[0].shape[0])
-    rising, turning = np.zeros_like(falling), np.zeros_like(falling)
-    for y in groups:
-        before = _squares_of_starts(-y)  # about a curve that never rises, of each start of the sequence
-        after = _squares_of_starts(-y[:, ::-1])[:, ::-1]  # about one that never falls, of each end
-        falling += before[:, -1]
-        rising += after[:, 0]
-        turned = np.minimum(
-            np.min(before[:, :-1] + after[:, 1:], axis=1), np.minimum(before[:, -1], after[:, 0])
-        )
-        turning += turned
-    return _over(falling, turning), _over(rising, turning)
+def _ratios(groups: Sequence[tuple[FloatArray, FloatArray]]) -> tuple[FloatArray, FloatArray]:
+    """Squares about a curve that never rises, and that never falls, over those off parabolas."""
+    rise, fall, scatter = (np.zeros(groups[0][1].shape[0]) for _ in range(3))
+    for z, y in groups:
+        rise += _about_order(-y)
+        fall += _about_order(y)
+        if z.size > 3:
+            scatter += np.sum(off_parabolas(z, y) ** 2, axis=1)
+    return _over(rise, scatter), _over(fall, scatter)
 
 
-def _over(squares: FloatArray, least: FloatArray) -> FloatArray:
-    """Ratio of squares; where a curve that turns once misses nothing, infinite or, if neither does, 0."""
-    exact = least <= _EXACT * squares
-    ratio = squares / np.where(exact, 1.0, least)
+def _over(squares: FloatArray, scatter: FloatArray) -> FloatArray:
+    """Ratio of squares; without scatter infinite or, if there is nothing to compare either, 0."""
+    exact = scatter <= _EXACT * squares
+    ratio = squares / np.where(exact, 1.0, scatter)
     return np.asarray(np.where(exact, np.where(squares > 0.0, np.inf, 0.0), ratio))
 
 
-def _squares_of_starts(y: FloatArray) -> FloatArray:
-    """Squares about the best curve that never falls, of the first one, two ... of each sequence.
+def _about_order(y: FloatArray) -> FloatArray:
+    """Squares about the best curve that never falls, of sequences of shape (draws, points).
 
     The curve at i is the greatest over a <= i of the least over b >= i of the mean from a to b.
     """
     count, size = y.shape
     total = np.concatenate([np.zeros((count, 1)), np.cumsum(y, axis=1)], axis=1)
-    ends = np.arange(size)
-    length = np.maximum(ends[None, :] - ends[:, None] + 1, 1)
-    means = (total[:, None, 1:] - total[:, :-1, None]) / length
-    means = np.where(ends[None, :] >= ends[:, None], means, np.inf)
-    out = np.zeros((count, size))
-    for last in range(1, size):
-        part = means[:, : last + 1, : last + 1]
-        least = np.minimum.accumulate(part[:, :, ::-1], axis=2)[:, :, ::-1]
-        usable = np.where(ends[: last + 1, None] <= ends[None, : last + 1], least, -np.inf)
-        curve = usable.max(axis=1)
-        out[:, last] = np.sum((y[:, : last + 1] - curve) ** 2, axis=1)
-    return out
+    curve = np.full((count, size), -np.inf)
+    for first in range(size):
+        means = (total[:, first + 1 :] - total[:, first : first + 1]) / np.arange(1, size - first + 1)
+        least = np.minimum.accumulate(means[:, ::-1], axis=1)[:, ::-1]
+        curve[:, first:] = np.maximum(curve[:, first:], least)
+    return np.asarray(np.sum((y - curve) ** 2, axis=1))
+
+
+def off_parabolas(z: FloatArray, y: FloatArray) -> FloatArray:
+    """Return how far every four neighbours lie off a parabola, shape (draws, points - 3).
+
+    Noise of standard deviation 1 makes it 1. ``z`` ascends, shape (points,); ``y`` has shape (draws, points).
+    """
+    return np.column_stack([y[:, i : i + 4] @ _off_parabola(z[i : i + 4]) for i in range(z.size - 3)])
+
+
+def _off_parabola(z: FloatArray) -> FloatArray:
+    """The one combination of four values, of length 1, that every parabola makes 0."""
+    return np.asarray(np.linalg.svd(np.vander(z - z[0], 3).T)[2][3])

@@ -17,12 +17,14 @@ from hersey.arrays import FloatArray, IntArray
 from hersey.damping.candidates.observations import Observations
 from hersey.damping.distributions import student_quantile
 from hersey.damping.dwells import SAME_SPEED
-from hersey.damping.order import MOST, chances
+from hersey.damping.order import MOST, chances, off_parabolas
 
 #: Probability with which a constant torque seems to rise or to fall somewhere.
 BY_CHANCE = 0.002
 #: Share of the squares about a curve that falls and then rises, below which one that rises first counts.
 _HUMP = 0.1
+#: Fours of neighbouring speeds whose distance from a parabola tells the scatter.
+_ENOUGH = 5
 #: Least relative scatter between dwells that is assumed: sensors repeat no better.
 _LEAST_SCATTER = 1e-3
 
@@ -80,7 +82,8 @@ def _together(data: Observations, groups: list[IntArray]) -> tuple[float, float]
     sorted_ = [each[np.argsort(data.inputs.log_speed[each], kind="stable")] for each in groups]
     zeros = [np.zeros_like(data.log_torque)]
     zeros += [sign * 2.0 * column for column in data.tare.T for sign in (-1.0, 1.0)]
-    found = [chances([(data.log_torque + zero)[each] for each in sorted_]) for zero in zeros]
+    z = data.inputs.log_speed
+    found = [chances([(z[each], (data.log_torque + zero)[each]) for each in sorted_]) for zero in zeros]
     return max(rise for rise, _ in found), max(fall for _, fall in found)
 
 
@@ -122,8 +125,13 @@ def _freedom(size: int) -> float:
 
 
 def _scatter(data: Observations) -> tuple[float, float]:
-    """Scatter of dwells about the best curve that turns once, and its degrees of freedom."""
+    """Scatter of dwells about the best curve that turns once, and its degrees of freedom.
+
+    Where torque changes by more than its scatter from speed to speed that curve misses nothing: then the
+    scatter is that about parabolas through neighbours.
+    """
     squares, freedom = 0.0, 0.0
+    apart: list[float] = []
     for group in np.unique(data.inputs.group):
         members = np.flatnonzero(data.inputs.group == group)
         order = members[np.argsort(data.inputs.log_speed[members], kind="stable")]
@@ -132,4 +140,18 @@ def _scatter(data: Observations) -> tuple[float, float]:
         best = hump if hump < _HUMP * valley else valley
         squares += best
         freedom += _freedom(y.size)
-    return max(float(np.sqrt(squares / max(freedom, 1.0))), _LEAST_SCATTER), max(freedom, 2.0)
+        apart += _about_parabolas(data, _levels(data, members))
+    scatter = float(np.sqrt(squares / max(freedom, 1.0)))
+    if len(apart) >= _ENOUGH:  # the median of the magnitude of noise of one is 0.6745
+        scatter = max(scatter, float(np.median(apart)) / 0.6745)
+    return max(scatter, _LEAST_SCATTER), max(freedom, 2.0)
+
+
+def _about_parabolas(data: Observations, levels: list[IntArray]) -> list[float]:
+    """How far four neighbouring speeds lie off a parabola, as a standard deviation of dwells."""
+    if len(levels) < 4:
+        return []
+    z = np.array([float(np.mean(data.inputs.log_speed[level])) for level in levels])
+    y = np.array([float(np.mean(data.log_torque[level])) for level in levels])
+    repeats = float(np.mean([level.size for level in levels]))
+    return [float(abs(each)) for each in off_parabolas(z, y[None, :])[0] * np.sqrt(repeats)]

@@ -242,6 +242,8 @@ def _no_transition(surface: DampingSurface, by: Explained, trend: Trend) -> str:
         return "So torque would fall as speed rises, but the dwells alone do not show that it falls."
     if not trend.falls:
         return "No transition to a falling branch shows in these data."
+    if surface.c.high >= -1.0 and not trend.rises:
+        return "Torque falls with speed among the dwells; the exponent does not exclude a level torque."
     if surface.c.high >= -1.0:
         where = f"below about {rpm(trend.least):.3g} rpm"
         return f"Torque also falls with speed, {where}: too few dwells lie there to fit a falling branch."
