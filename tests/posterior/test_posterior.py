@@ -160,6 +160,18 @@ def test_probabilities_add_up_and_follow_the_draws(alone: Posterior) -> None:
     assert alone.probability(HOT, alone.safe_speed(HOT) * 1.0001).smooth >= 0.975
 
 
+@pytest.mark.filterwarnings("ignore::FutureWarning")
+def test_arviz_takes_the_draws(alone: Posterior) -> None:
+    """Populations that agree have an R-hat near 1, and their own standard deviation as a summary's."""
+    arviz = pytest.importorskip("arviz")
+    data = alone.dataset()
+    table = arviz.summary(data)
+    assert set(table.index) == set(data.data_vars)
+    assert table["r_hat"].max() < 1.1
+    spread = float(np.std(alone.numbers()["stiffness"], ddof=1))
+    assert float(arviz.summary(data, round_to="none")["sd"]["stiffness"]) == pytest.approx(spread, rel=0.01)
+
+
 def test_draws_are_an_arviz_data_set(alone: Posterior) -> None:
     data = alone.dataset()
     assert data.sizes == {"chain": 2, "draw": 200}
