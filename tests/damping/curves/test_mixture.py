@@ -105,6 +105,22 @@ def test_curves_spread_beyond_the_dwells_and_never_fall_towards_rest(tmp_path: P
     assert gain.max() > 0.9 * 0.5 * np.log(10.0)
 
 
+def test_above_the_dwells_the_slope_grows_or_fades(tmp_path: Path) -> None:
+    """By exp(0.5 (1 - 1/r)) for a latent of one, at r times the fastest dwell; drag that rises never falls."""
+    mixture = _fitted(_points(tmp_path, rising))
+    latent = np.zeros((4, mixture.size))
+    latent[:, 3] = (0.0, 1.0, -1.0, -6.0)
+    law = np.zeros(4, dtype=np.intp)
+    fastest = 40.0
+    speeds = fastest * np.exp(np.array([0.0, 0.5, 1.0, 1.4]))
+    drawn = mixture.log_torque(law, latent, speeds, None)
+    gain = drawn - drawn[:, :1]
+    grown = np.exp(0.5 * (1.0 - fastest / speeds[1:]))
+    assert gain[1, 1:] / gain[0, 1:] == pytest.approx(grown, rel=1e-6)
+    assert gain[2, 1:] / gain[0, 1:] == pytest.approx(1.0 / grown, rel=1e-6)
+    assert np.all(np.diff(gain, axis=1) > 0.0)
+
+
 def test_torque_that_only_rises_has_curves_too(tmp_path: Path) -> None:
     """Among the dwells they follow it; whether it falls below them is left open."""
     points = _points(tmp_path, rising)

@@ -4,8 +4,8 @@ Where there are dwells a draw follows its law. Below the slowest dwell friction 
 speed, or saturate. Every draw starts there with the slope of its law at the slowest dwell, and the slope
 fades over a random length in ln speed (long: a power law; short: saturation). Where the law itself steepens,
 as beside a minimum, a random part of that is kept. Below dwells whose torque only rises, boundary friction
-may be hidden: each draw has some, of a random size and place. Above the fastest dwell the slope drifts a
-little.
+may be hidden: each draw has some, of a random size and place. Above the fastest dwell each draw goes on as
+its law, with a slope that becomes larger or smaller by a random factor.
 """
 
 from __future__ import annotations
@@ -21,14 +21,16 @@ from hersey.damping.distributions import normal_above
 BEYOND = 6
 #: Median of the length in ln speed over which the slope fades, and the standard deviation of its logarithm.
 FADES = (8.0, 1.5)
-#: Standard deviations of the drift of the slope below and above the dwells.
-DRIFT = (0.08, 0.06)
+#: Standard deviations of the drift of the slope below the dwells, and of ln of its factor above them.
+DRIFT, STEEPER = 0.08, 0.5
 #: Boundary friction below dwells whose torque only rises: median over the drag at the slowest dwell, standard
 #: deviation of its logarithm, and the power of speed with which it decays (Armstrong-Helouvry 1994).
 HIDDEN, DECAY = (0.5, 1.2), 1.2
 #: Slowest dwell over the speed at which it has decayed by a factor e, at the least, and the standard
 #: deviation of the logarithm of that ratio.
 PLACE = (3.5, 0.8)
+#: Deviations of that factor beyond which drag that rises might fall.
+_MOST = 4.0
 #: Step in ln speed by which the slope at the slowest dwell is taken.
 _STEP = 0.05
 
@@ -49,7 +51,12 @@ def log_torque_beyond(
     shift = law.scaled_speed(numbers, np.zeros(1), shape)[:, 0]
     low, high = (end - shift for end in law.reach)
     above = np.maximum(z - high[:, None], 0.0)
-    out = inside + DRIFT[1] * latent[:, 3:4] * _eased(above)
+    if np.any(above > 0.0):
+        at_high = law.log_torque(numbers, high[:, None], shape)
+        factor = np.exp(STEEPER * np.clip(latent[:, 3:4], -_MOST, _MOST) * -np.expm1(-above))
+        out = np.where(above > 0.0, at_high + (inside - at_high) * factor, inside)
+    else:
+        out = inside
     below = np.maximum(low[:, None] - z, 0.0)
     if not np.any(below > 0.0):
         return np.asarray(out)
@@ -79,14 +86,9 @@ def _gone(
     fading = np.exp(-below / fades)
     steeper = np.minimum(np.gradient(inside, z, axis=1) - edge[:, None], 0.0)
     slope = (edge[:, None] + normal_above(-latent[:, 2:3]) * steeper) * fading
-    slope = slope + DRIFT[0] * latent[:, 1:2] * (1.0 - np.exp(-below))
+    slope = slope + DRIFT * latent[:, 1:2] * (1.0 - np.exp(-below))
     slope = np.where(edge[:, None] < 0.0, np.minimum(slope, 0.0), slope)
     middle = 0.5 * (slope[:, 1:] + slope[:, :-1])
     steps = -np.diff(below, axis=1)  # what of each step lies below the edge
     total = np.cumsum((middle * steps)[:, ::-1], axis=1)[:, ::-1]
     return np.concatenate([total, np.zeros((total.shape[0], 1))], axis=1)
-
-
-def _eased(away: FloatArray) -> FloatArray:
-    """Integral of a change of slope that sets in over a unit of ln speed."""
-    return np.asarray(away - 1.0 + np.exp(-away))
