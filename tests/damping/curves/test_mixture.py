@@ -106,7 +106,7 @@ def test_curves_spread_beyond_the_dwells_and_never_fall_towards_rest(tmp_path: P
 
 
 def test_above_the_dwells_the_slope_grows_or_fades(tmp_path: Path) -> None:
-    """By exp(0.5 (1 - 1/r)) for a latent of one, at r times the fastest dwell; drag that rises never falls."""
+    """By exp(0.5 (1 - 1/r)) for a latent of one, r times above the dwells; drag that rises never falls."""
     mixture = _fitted(_points(tmp_path, rising))
     latent = np.zeros((4, mixture.size))
     latent[:, 3] = (0.0, 1.0, -1.0, -6.0)
