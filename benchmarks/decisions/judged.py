@@ -77,14 +77,7 @@ def judged(machine: Machine, number: int, seed: int, folder: Path) -> Judged:
     out = Judged(number, machine.curve.family, machine.closure, machine.evidence)
     files = write(machine, folder, np.random.default_rng([seed, number, 1]))
     try:
-        made = subprocess.run(
-            _command(files),
-            capture_output=True,
-            text=True,
-            timeout=_PATIENCE,
-            check=False,
-            env={**dict.fromkeys(_THREADS, "1"), **os.environ},
-        )
+        made = reported(files)
     except subprocess.TimeoutExpired:
         out.fault = f"no report after {_PATIENCE} s"
         return out
@@ -93,6 +86,18 @@ def judged(machine: Machine, number: int, seed: int, folder: Path) -> Judged:
         return out
     (folder / "document.json").write_text(made.stdout)
     return tried(out, machine, read(json.loads(made.stdout)))
+
+
+def reported(files: Files) -> subprocess.CompletedProcess[str]:
+    """Run `hersey report --json` on the files of a machine."""
+    return subprocess.run(
+        _command(files),
+        capture_output=True,
+        text=True,
+        timeout=_PATIENCE,
+        check=False,
+        env={**dict.fromkeys(_THREADS, "1"), **os.environ},
+    )
 
 
 def _command(files: Files) -> list[str]:
