@@ -2,7 +2,7 @@
 
 `python -m benchmarks.decisions --keep FOLDER` leaves logs, traces and documents there. Each machine with a
 trace is reported again without it. With 20 s of stick-slip the interval of V* should be at most a third as
-wide; with starts on both sides of V* no wider than from the fastest start that stuck to the slowest that slid.
+wide; with starts on both sides of V* no wider than from the fastest that stuck to the slowest that slid.
 
 Usage: python -m benchmarks.decisions.narrowed FOLDER --seed N [--workers 2]
 """
