@@ -99,7 +99,11 @@ def test_words_follow_what_the_dwells_show(
     assert found.instruction.startswith(said)
     assert found.signal == "watch"
     if not rises and not falls:
-        assert found.instruction.endswith("torque is constant within 1.3 %")
+        assert found.instruction.endswith("torque stays about its mean within 1.3 %")
+        level = replace(straight, c=replace(straight.c, low=-1.2, high=-0.5))
+        assert of_log(level, Trend(False, False, 2.0, 0.013)).instruction.endswith(
+            "torque is constant within 1.3 %"
+        )
 
 
 def test_an_interval_of_the_transition_that_is_not_told_gives_no_speed(

@@ -196,10 +196,12 @@ def _one_branch(surface: DampingSurface, trend: Trend) -> Instruction:
             f"{roll(trend.least)} rpm.",
         )
     if trend.constant:
+        # the exponent of one law may exclude a level torque where no test without a law does
+        level = not c.told or c.low <= -1.0 <= c.high
+        what = "torque is constant within" if level else "torque stays about its mean within"
         return Instruction(
             "watch",
-            f"Record dwells slower than {low} and faster than {high} rpm: torque is constant within "
-            f"{per_cent_of(trend.spread)}",
+            f"Record dwells slower than {low} and faster than {high} rpm: {what} {per_cent_of(trend.spread)}",
             interval,
             "Whether torque falls at lower speeds is not known, so sticking cannot be ruled out.",
         )
