@@ -11,6 +11,7 @@ scaled         dwells of all temperatures on one curve
 gradual        a gradual bend: its minimum, and what motion is given of it
 branches       two branches of the law: whether, and where torque is least
 trend          whether torque rises or falls with speed, by the dwells themselves
+order          the same of a few dwells, all of them together
 shown          whether the dwells show a transition, in each direction
 fitted_law     a fitted law: its numbers, the torque it gives, its limits
 surface        the same with its transition, and the drag on a belt

@@ -21,7 +21,7 @@ _FILM = 0.7
 
 
 def shared_load_shape(contact: SharedLoad, kelvin: float) -> Shape:
-    """Return the curve of a contact, `hersey.lubrication.MixedContact`, as a law of drag curves.
+    """Return the curve of a contact, `hersey.lubrication.mixed.MixedContact`, as a law of drag curves.
 
     Boundary friction is that at a temperature (K).
     """
