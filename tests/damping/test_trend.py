@@ -70,3 +70,18 @@ def test_the_scatter_of_noise_alone_is_told_as_it_is() -> None:
 def test_a_hump_rises_and_falls(tmp_path: Path) -> None:
     found = _trend(tmp_path, lambda w: 0.2 * np.exp(-(np.log(w / 5.0) ** 2) / 8.0), 1)
     assert (found.rises, found.falls) == (True, True)
+
+
+def test_a_few_noisy_dwells_tell_nothing(tmp_path: Path) -> None:
+    """Constant torque at 4 to 6 speeds with 10 % scatter: at most one log in 120 seems to rise or to fall."""
+    wrong = 0
+    for seed in range(120):
+        rng = np.random.default_rng(seed)
+        speeds = np.geomspace(0.5, 50.0, 4 + seed % 3)
+        torques = 0.2 * np.exp(0.1 * rng.standard_normal(speeds.size))
+        path = tmp_path / "few.csv"
+        rows = [f"{w:.9g},{t:.9g}" for w, t in zip(speeds, torques, strict=True)]
+        path.write_text("\n".join(["Speed [rad/s],Torque [N*m]", *rows]) + "\n")
+        points = hersey.SteadyPoints.from_table(read_means([path], isothermal=True))
+        wrong += not trend_of(Observations.of(points)).constant
+    assert wrong <= 1

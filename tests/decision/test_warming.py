@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -97,3 +98,38 @@ def test_a_target_below_the_transition_is_refused(drawn: Posterior) -> None:
 def test_temperature_comes_from_one_place(drawn: Posterior) -> None:
     with pytest.raises(ParameterError, match="either temperature"):
         plan_warm_start(drawn, 0.1)
+
+
+def test_a_stick_speed_that_stays_is_refused(drawn: Posterior) -> None:
+    """A table moves its stick speed with temperature: one that is fixed cannot be followed."""
+    fixed = replace(drawn.model.machine, stick_speed_rule="fixed")
+    found = replace(drawn, model=replace(drawn.model, machine=fixed))
+    with pytest.raises(ParameterError, match="fixed"):
+        plan_warm_start(found, 0.1, temperature=WARMING)
+
+
+def test_the_cold_drag_is_as_open_as_the_draws_leave_it(drawn: Posterior) -> None:
+    """At 20 degC, far below the dwells: spread and middle of the tables are those of the draws."""
+    cold = 293.15
+    few = drawn.drives.take(np.arange(0, 400, 4))
+    tables = drags_through(drawn.model, few, HOT, cold)
+    speed = 0.045
+    constant, damping = drawn.model.no_load(cold)
+    of_tables = [float(table.force(speed, cold)) - constant - damping * speed for _, table in tables]
+    of_draws = drawn.model.force_at(few, cold, speed)
+    low, middle, high = np.quantile(of_tables, (0.05, 0.5, 0.95))
+    expected = np.quantile(of_draws, (0.05, 0.5, 0.95))
+    assert middle == pytest.approx(expected[1], rel=0.15)
+    assert high / low == pytest.approx(expected[2] / expected[0], rel=0.35)
+
+
+def test_a_profile_that_fresh_draws_refuse_is_said_to_be_so(
+    drawn: Posterior, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A search that allows too many failures finds a profile that less than 99 % of fresh draws follow."""
+    monkeypatch.setattr("hersey.stability.plan.planner._STRICTLY", 2.0)
+    plan = plan_warm_start(drawn, 0.1, temperature=WARMING, confidence=0.99)
+    [obstacle] = plan.obstacles
+    assert obstacle.limit == "confidence"
+    assert obstacle.needed is not None
+    assert 0.9 < obstacle.needed < 0.99

@@ -114,6 +114,14 @@ def test_a_fall_is_claimed_only_where_the_dwells_show_it() -> None:
     assert "Torque falls as speed rises" in words[1]
 
 
+def test_a_hump_is_not_said_to_fall_below_a_speed() -> None:
+    """Torque that rises and then falls is least at an end: no falling branch lies below that."""
+    z = np.log(SPEEDS / MIDDLE)
+    found = seen(np.exp(-0.06 * z**2), 0.003, 1)
+    assert "it rises first" in found.verdict
+    assert "too few dwells lie there" not in found.verdict
+
+
 def test_an_exponent_between_two_regimes_says_why_none_is_named() -> None:
     """One law holds, and it is that of no regime: the reason is never empty."""
     found = seen(2.0 * SPEEDS**0.2)

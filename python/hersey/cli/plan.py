@@ -133,8 +133,8 @@ def plan(
             )
             planned = replace(planned, warnings=(*planned.warnings, _FIT_ALONE))
     course = planned.course if heat else profile
-    if planned.course is not None:
-        film = np.asarray(planned.course.values)
+    if course is not None:
+        film = np.asarray(course.values)
         said = beyond_the_log(surface, float(film.min()), float(film.max()))
         planned = replace(planned, warnings=(*planned.warnings, *said))
     give("plan", planned, called="profile", table=out, figure=figure, as_json=as_json, temperature=course)

@@ -3,7 +3,7 @@
 At each temperature the mean torques of all pairs of speeds are compared. Torque rises somewhere if one pair
 differs upward by more than its errors, which count scatter between dwells and what a wrong zero would do to
 both; the significance is divided by the number of pairs (Bonferroni). A few dwells are tested together
-too (`order`).
+instead (`order`).
 """
 
 from __future__ import annotations
@@ -23,6 +23,8 @@ from hersey.damping.order import MOST, chances, off_parabolas
 BY_CHANCE = 0.002
 #: Share of the squares about a curve that falls and then rises, below which one that rises first counts.
 _HUMP = 0.1
+#: Dwells from which it is asked whether torque rises first: fewer lie on either curve by chance.
+_BOTH = 6
 #: Fours of neighbouring speeds whose distance from a parabola tells the scatter.
 _ENOUGH = 5
 #: Least relative scatter between dwells that is assumed: sensors repeat no better.
@@ -56,8 +58,7 @@ def trend_of(data: Observations) -> Trend:
     groups = [np.flatnonzero(data.inputs.group == g) for g in np.unique(data.inputs.group)]
     levels = [_levels(data, members) for members in groups]
     pairs = sum(len(each) * (len(each) - 1) // 2 for each in levels)
-    few = data.log_torque.size <= MOST
-    chance = 0.25 * BY_CHANCE if few else 0.5 * BY_CHANCE  # of each claim and each test
+    chance = 0.5 * BY_CHANCE  # of each claim
     limit = float(student_quantile(1.0 - chance / max(pairs, 1), freedom))
     for each in levels:
         if len(each) < 2:
@@ -70,9 +71,9 @@ def trend_of(data: Observations) -> Trend:
         falls |= bool(np.any(z < -limit))
         spreads.append(0.5 * float(np.ptp(mean)))
         lows.append(float(np.exp(np.mean(data.inputs.log_speed[each[int(np.argmin(mean))]]))))
-    if few:
+    if data.log_torque.size <= MOST:
         by_chance = _together(data, groups)
-        rises, falls = rises or by_chance[0] < chance, falls or by_chance[1] < chance
+        rises, falls = by_chance[0] < chance, by_chance[1] < chance
     least = data.reference_speed * float(np.median(lows)) if lows else data.reference_speed
     return Trend(rises, falls, least, float(np.expm1(max(spreads))))
 
@@ -137,7 +138,7 @@ def _scatter(data: Observations) -> tuple[float, float]:
         order = members[np.argsort(data.inputs.log_speed[members], kind="stable")]
         y = data.log_torque[order]
         valley, hump = (_about_one_turn(y, first_rises) for first_rises in (False, True))
-        best = hump if hump < _HUMP * valley else valley
+        best = hump if hump < _HUMP * valley and y.size >= _BOTH else valley
         squares += best
         freedom += _freedom(y.size)
         apart += _about_parabolas(data, _levels(data, members))

@@ -220,8 +220,10 @@ def _obstacle(asked: _Asked, below_transition: float) -> Obstacle:
     if asked.limits.speed is not None and asked.target > asked.limits.speed:
         text = f"{speed} is faster than the drive, {1e3 * asked.limits.speed:.3g} mm/s"
         return Obstacle("speed", asked.limits.speed, asked.target, text)
+    searched = 100 * max(SEARCHED, 0.5 * (1.0 + asked.confidence))
     text = (
-        f"no profile within the limits brings {100 * asked.confidence:.0f} % of the draws to slide at {speed}"
+        f"no profile tried within the limits brings {searched:.3g} % of the draws to slide at {speed}, "
+        f"which the search asks for to be sure of {100 * asked.confidence:.3g} %"
     )
     return Obstacle("speed", asked.limits.speed or math.inf, None, text)
 

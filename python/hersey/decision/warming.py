@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+from hersey.damping.surface import FIXED, WITH_TRANSITION
 from hersey.errors import ParameterError
 from hersey.motion.heat import HeatBalance
 from hersey.motion.schedule import Schedule
@@ -51,12 +54,20 @@ def plan_warm_start(
     if (temperature is None) == (heat is None):
         raise ParameterError("give either temperature, as a profile, or heat, which makes it")
     model, machine = found.model, found.model.machine
+    if machine.stick_speed_rule == FIXED:
+        raise ParameterError(
+            f"a stick speed that is '{FIXED}' at all temperatures cannot be followed while temperature "
+            f"changes: give one temperature, or stick_speed_rule '{WITH_TRANSITION}'"
+        )
     course = TemperatureProfile(temperature)
     last = course.at(course.end) if heat is None else heat.setpoint
     kelvin = last or found.temperature or model.surface.reference_temperature
     if kelvin is None:
         raise ParameterError("the log is isothermal: its drag does not vary with temperature")
-    [(train, drag)] = drags_through(model, typical_draw(found, kelvin), kelvin)
+    coldest = _coldest(course, heat)
+    [(train, drag)] = drags_through(model, typical_draw(found, kelvin), kelvin, coldest)
+    if drag.closure == "stribeck":  # what is drawn of a plan needs a stuck phase
+        drag = replace(drag, closure="retained")
     return plan_profile(
         train,
         drag,
@@ -65,8 +76,14 @@ def plan_warm_start(
         heat=heat,
         limits=machine.limits,
         roll_radius=machine.roll_radius,
-        machines=drags_through(model, found.drives, kelvin),
+        machines=drags_through(model, found.drives, kelvin, coldest),
         confidence=confidence,
         seed=seed,
         progress=progress,
     )
+
+
+def _coldest(course: TemperatureProfile, heat: HeatBalance | None) -> float:
+    if heat is None:
+        return min(value for _, value in course.levels)
+    return min(float(heat.film_temperature), float(heat.roll_temperature))

@@ -10,19 +10,23 @@ from hersey.arrays import FloatArray, IntArray
 from hersey.errors import ParameterError
 from hersey.motion.drag import DragTable
 from hersey.motion.simulation import Drivetrain
-from hersey.posterior.drives import DriveModel, Drives
+from hersey.posterior.drives import ABOVE, DriveModel, Drives
 from hersey.posterior.priors import CLOSURES, NUMBERS
 
 #: Change of ln force by which the straight lines of a table may miss the curve.
 _STRAIGHT = 1e-3
+#: Greatest factor of speed by which a table reaches farther for a colder film.
+_FARTHEST = 1e4
 #: Temperatures at which the powers of a draw are fitted to its law.
 _LEVELS = 9
 
 
-def drags_at(model: DriveModel, draws: Drives, kelvin: float | None) -> list[tuple[Drivetrain, DragTable]]:
-    """Return each draw at a temperature (K; None if isothermal)."""
+def drags_at(
+    model: DriveModel, draws: Drives, kelvin: float | None, *, above: float = ABOVE
+) -> list[tuple[Drivetrain, DragTable]]:
+    """Return each draw at a temperature (K; None if isothermal), up to so many times the fastest dwell."""
     numbers, stick = model.numbers(draws), model.stick_speed(draws, kelvin)
-    speeds, force = model.speeds(kelvin), np.exp(model.log_force(draws, kelvin))
+    speeds, force = model.speeds(kelvin, above), np.exp(model.log_force(draws, kelvin, above))
     constant, damping = model.no_load(kelvin)
     static = numbers[:, 3] * model.force_at(draws, kelvin, stick)
     out = []
@@ -40,10 +44,14 @@ def drags_at(model: DriveModel, draws: Drives, kelvin: float | None) -> list[tup
     return out
 
 
-def drags_through(model: DriveModel, draws: Drives, kelvin: float) -> list[tuple[Drivetrain, DragTable]]:
+def drags_through(
+    model: DriveModel, draws: Drives, kelvin: float, coldest: float | None = None
+) -> list[tuple[Drivetrain, DragTable]]:
     """Return each draw with a drag that varies with temperature, exact at one temperature (K).
 
-    Powers of temperature stand for the draw's law of viscosity, over the temperatures of the dwells.
+    Powers of temperature stand for the draw's law of viscosity, over the temperatures of the dwells and down
+    to the ``coldest`` (K) that is asked for. The tables reach as fast as that temperature needs: a cold film
+    is that of a faster roll.
 
     Raises
     ------
@@ -53,15 +61,19 @@ def drags_through(model: DriveModel, draws: Drives, kelvin: float) -> list[tuple
     surface, radius = model.surface, model.machine.roll_radius
     if surface.b is None or surface.temperature_range is None:
         raise ParameterError("the log is isothermal: its drag does not vary with temperature")
-    levels = np.linspace(*surface.temperature_range, _LEVELS)
+    low, high = surface.temperature_range
+    low = low if coldest is None else min(coldest, low)
+    levels = np.linspace(low, high, _LEVELS)
     away = np.log((levels - surface.temperature_zero) / (kelvin - surface.temperature_zero))
     weight = away / float(away @ away)
     speed, force = _moved(model, draws, levels)
     here_speed, here_force = _moved(model, draws, np.array([kelvin]))
     of_speed, of_force = (speed - here_speed) @ weight, (force - here_force) @ weight
     rest = None if surface.rest is None else surface.rest.at_the_belt(radius, kelvin)
+    colder = float(np.exp(np.max(here_speed - speed))) if coldest is not None else 1.0
+    above = ABOVE * min(max(colder, 1.0), _FARTHEST)
     out = []
-    for i, (train, table) in enumerate(drags_at(model, draws, kelvin)):
+    for i, (train, table) in enumerate(drags_at(model, draws, kelvin, above=above)):
         varying = replace(
             table,
             reference_temperature=kelvin,

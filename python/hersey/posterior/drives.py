@@ -65,12 +65,15 @@ class DriveModel:
         """Return ln of the likelihood of the dwells over the density that the draws come from."""
         return self.curves.log_weight(drives.law, drives.latent[:, len(NUMBERS) :])
 
-    def speeds(self, kelvin: float | None = None) -> FloatArray:
-        """Return the speeds (m/s) of the points of the curves at a temperature (K)."""
+    def speeds(self, kelvin: float | None = None, above: float = ABOVE) -> FloatArray:
+        """Return the speeds (m/s) of the points of the curves at a temperature (K).
+
+        They end ``above`` times the fastest dwell.
+        """
         radius = self.machine.roll_radius
         stick = self.priors.range_of("stick_speed")[0] * min(self._moves_stick_speed(kelvin), 1.0)
         low = BELOW * min(stick, self.surface.speed_range[0] * radius)
-        high = ABOVE * self.surface.speed_range[1] * radius
+        high = above * self.surface.speed_range[1] * radius
         count = max(int(np.ceil(np.log(high / low) / STEP)), 8)
         return np.asarray(low * np.exp(STEP * np.arange(count + 1)))
 
@@ -80,11 +83,11 @@ class DriveModel:
         drives = Drives(law, np.zeros_like(law), np.zeros((law.size, self.size)))
         return float(np.min(self.stick_speed(drives, kelvin) / self.numbers(drives)[:, 0]))
 
-    def log_force(self, drives: Drives, kelvin: float | None) -> FloatArray:
+    def log_force(self, drives: Drives, kelvin: float | None, above: float = ABOVE) -> FloatArray:
         """Return ln of the drag of the film (N) of each draw at `speeds`, shape (draws, speeds)."""
         radius = self.machine.roll_radius
         latent = drives.latent[:, len(NUMBERS) :]
-        torque = self.curves.log_torque(drives.law, latent, self.speeds(kelvin) / radius, kelvin)
+        torque = self.curves.log_torque(drives.law, latent, self.speeds(kelvin, above) / radius, kelvin)
         return np.asarray(torque - np.log(radius))
 
     def turns_by(self, drives: Drives, kelvin: float | None) -> FloatArray:

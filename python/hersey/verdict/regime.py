@@ -244,6 +244,9 @@ def _no_transition(surface: DampingSurface, by: Explained, trend: Trend) -> str:
         return "No transition to a falling branch shows in these data."
     if surface.c.high >= -1.0 and not trend.rises:
         return "Torque falls with speed among the dwells; the exponent does not exclude a level torque."
+    low, high = surface.speed_range
+    if surface.c.high >= -1.0 and not 1.01 * low < trend.least < 0.99 * high:
+        return "Torque also falls with speed, but not below a speed at which it is least: it rises first."
     if surface.c.high >= -1.0:
         where = f"below about {rpm(trend.least):.3g} rpm"
         return f"Torque also falls with speed, {where}: too few dwells lie there to fit a falling branch."

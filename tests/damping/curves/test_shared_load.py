@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -75,3 +76,21 @@ def test_a_log_of_the_contact_is_explained_by_it(tmp_path: Path) -> None:
     film = contact.at(speed=1.4 * speeds, temperature=HOT)
     true = speeds[np.argmin(film.torque + 0.2 * film.boundary_torque)]
     assert lowest * mixture.dwells.reference_speed == pytest.approx(true, rel=0.02)
+
+
+def test_a_contact_without_friction_at_the_dwells_is_no_law(tmp_path: Path) -> None:
+    """Friction of 180 degC that falls by 2.3 % per K is negative at 133 degC: the other laws stay."""
+    contact = _contact()
+    friction = hersey.BoundaryFriction(0.05, 0.05 * 0.023, HOT)
+    sloped = replace(contact, friction=friction)
+    path = tmp_path / "means.csv"
+    rows = [
+        f"{w:.6g},{0.3 * w**0.3 * (t / 120.0) ** -0.5:.6g},{t}"
+        for t in (90.0, 120.0, 150.0)
+        for w in np.geomspace(1.0, 30.0, 8).tolist()
+    ]
+    path.write_text("\n".join(["Speed [rad/s],Torque [N*m],Temperature [degC]", *rows]) + "\n")
+    points = hersey.SteadyPoints.from_table(read_means([path]))
+    names = {law.name for law in fit_curves(points, hersey.fit(points), sloped).table}
+    assert "mixed" not in names
+    assert "blend" in names

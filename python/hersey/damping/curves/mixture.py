@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -18,6 +19,7 @@ from hersey.damping.curves.shared_load import least, shared_load_shape
 from hersey.damping.distributions import square_above
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.surface import DampingSurface
+from hersey.errors import ParameterError
 
 #: A law whose misfit is as large by chance in fewer logs than this is rejected. The chances are a little too
 #: small: of 40 logs of true laws two had less than a hundred times this.
@@ -162,10 +164,15 @@ def fit_curves(
         Their fit: the search begins at its branches. Without a transition the search begins with the least
         torque below, within and above the dwells.
     contact
-        What shares the load, `Machine.mixed`: its curve is one more law.
+        What shares the load, `Machine.mixed`: its curve is one more law, if its boundary friction holds at
+        the reference temperature.
     """
     dwells = dwells_of(points, surface)
-    own = () if contact is None else (shared_load_shape(contact, surface.reference_temperature or _WARM),)
+    own: tuple[Shape, ...] = ()
+    if contact is not None:
+        # boundary friction that is stated for other temperatures may not hold here: then the law is left out
+        with suppress(ParameterError):
+            own = (shared_load_shape(contact, surface.reference_temperature or _WARM),)
     fits = [fit_shape(shape, dwells, _starts(shape, dwells, surface)) for shape in (*own, *SHAPES)]
     return _weighed(fits, dwells)
 

@@ -43,7 +43,9 @@ _ALLOWED, _STRICT = 2, 0.99
 #: Level of the bound of the share that is stated, and least number of fresh draws behind it.
 _STATED, _FRESH = 0.95, 1500
 #: Least number of machines that may be given, and share of the failures asked for that the search allows.
-_LEAST, _HALF = 40, 0.5
+_LEAST, _STRICTLY = 40, 0.25
+#: Machines at the most that the search tries of those given.
+_MOST = 250
 #: Profiles verified before giving up; after each the search takes the draws it failed on.
 _VERIFIED = 5
 #: Share of the failures that a verification lets pass which the search allows after one, two...
@@ -200,14 +202,25 @@ class _Asked:
                     facts |= {"tried": search.count, "warnings": _warnings(reach, proof.impossible)}
                     machine = MachineSample(self.gripping, unknown.drag)
                     return _found(machine, shape, thermal, proof, reach, facts), shape
-                if number == _VERIFIED or unknown.machines:
-                    break  # given machines prove one profile: after that none of them is new
+                if unknown.machines:  # given machines prove one profile: after that none of them is new
+                    return self._unproven(facts, search.count, proof.share), None
+                if number == _VERIFIED:
+                    break
                 share = _STRICTER[number - 1] * most_failures(self.confidence, _LEVEL, proof.draws)
                 share /= proof.draws
                 known = len(search.trials.machines) + proof.draws
                 shape = search.again(proof.machines, math.floor(share * known))
             reasons = obstacles(search, limits, reach, wide, searched=True)
         return Plan(**facts, **NOTHING, warnings=(), obstacles=reasons, tried=search.count), None
+
+    def _unproven(self, facts: Mapping[str, Any], tried: int, share: float) -> Plan:
+        """The plan without the profile that the search found and fresh draws refuse."""
+        text = (
+            f"the profile found works on {100 * share:.4g} % of fresh draws, and "
+            f"{100 * self.confidence:.4g} % are asked for: ask for less confidence"
+        )
+        obstacle = Obstacle("confidence", self.confidence, share, text)
+        return Plan(**facts, **NOTHING, warnings=(), obstacles=(obstacle,), tried=tried)
 
     def proven(self, plan: Plan, shape: Shape, thermal: TemperatureProfile, heat: HeatBalance) -> Plan:
         """Return the plan with a proof of its own: temperature is a state of every motion."""
@@ -280,7 +293,8 @@ class Unknown:
         """Return the machines of the search."""
         if self.machines:
             half = self.draws(0, 0)
-            return Trials(half, math.floor(_HALF * (1.0 - confidence) * len(half)), thermal, force_limit)
+            half = half[:: max(math.ceil(len(half) / _MOST), 1)]
+            return Trials(half, math.floor(_STRICTLY * (1.0 - confidence) * len(half)), thermal, force_limit)
         if not self.uncertainty and not self.samples:
             return Trials(neighbours(self.train, self.drag), 0, thermal, force_limit)
         allowed = _ALLOWED if confidence <= _STRICT else 0
