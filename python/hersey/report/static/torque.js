@@ -39,8 +39,8 @@ function torqueFinding() {
   const over = `from ${rolled(slow)} to ${rolled(fast)}`;
   if (rises || falls) return `Torque ${rises ? "rises" : "falls"} with speed ${over}.`;
   // the exponent of one law may exclude a level torque where no test without a law does
-  const { low, high } = data.fit.coefficients.c, level = low === null || high === null || (low <= -1 && high >= -1);
-  return `Torque ${level ? "is constant within" : "stays about its mean within"} ${digits(100 * trend.spread, 2)} % ${over}.`;
+  const { low, high } = data.fit.coefficients.c, flat = low === null || high === null || (low <= -1 && high >= -1);
+  return `Torque ${flat ? "is constant within" : "stays about its mean within"} ${digits(100 * trend.spread, 2)} % ${over}.`;
 }
 async function torqueSection(parent) {
   const finding = torqueFinding();
