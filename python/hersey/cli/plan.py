@@ -55,10 +55,10 @@ def plan(
     ] = None,
     heat: Annotated[
         bool,
-        typer.Option("--heat", help="Instead: the temperature that [heat] of the file and the plan make."),
+        typer.Option("--heat", help="Instead: the temperature that \\[heat] of the file and the plan make."),
     ] = False,
     start: Annotated[
-        str, typer.Option("--from", help="With --heat: of the cold start.  [default: that of [heat]]")
+        str, typer.Option("--from", help="With --heat: of the cold start.  [default: that of \\[heat]]")
     ] = "",
     confidence: Annotated[
         float, typer.Option("--confidence", help="Share of the belts that must run smoothly, 0.5 to 0.999.")

@@ -29,7 +29,7 @@ from hersey.errors import ParameterError
 @reads_logs
 def warmup(
     machine_file: Annotated[
-        Path, typer.Argument(metavar="MACHINE", help="TOML file of the drivetrain, its limits and [heat].")
+        Path, typer.Argument(metavar="MACHINE", help="TOML file of the drivetrain, its limits and \\[heat].")
     ],
     reading: Reading,
     logs: SomeLogs = None,
@@ -38,7 +38,7 @@ def warmup(
         str, typer.Option(help="Full speed of the belt, as '120 mm/s', or of the roll, as '80 rpm'.")
     ] = "",
     start: Annotated[
-        str, typer.Option("--from", help="Temperature of the cold start.  [default: that of [heat]]")
+        str, typer.Option("--from", help="Temperature of the cold start.  [default: that of \\[heat]]")
     ] = "",
     margin: Annotated[str, typer.Option(help="Share of the limit of force that is kept to spare.")] = "10 %",
     longest: Annotated[str, typer.Option(help="Time looked at, with its unit.")] = "30 min",
