@@ -69,6 +69,20 @@ def test_a_motion_that_was_saved_goes_on_to_the_last_bit(through):
         assert follow(other, until) == follow(copy.copy(stepper), until)
 
 
+def test_what_was_saved_brings_its_drive_and_temperature():
+    """Into a stepper that began slower and colder, or was driven otherwise: as if nothing had happened."""
+    stepper = Stepper(TRAIN, WARM, drive_speed=1.0, temperature=380.0)
+    stepper.advance(0.2)
+    saved = stepper.save()
+    expected = follow(stepper, 1.5)
+    for drive, temperature in ((1.0, 380.0), (0.3, 360.0), (2.0, 400.0)):
+        other = Stepper(TRAIN, WARM, drive_speed=drive, temperature=temperature)
+        other.advance(0.1)
+        other.set_inputs(drive=0.7, temperature=390.0, temperature_rate=1.0)
+        other.restore(saved)
+        assert follow(other, 1.5) == expected
+
+
 def test_inputs_that_change_on_the_way_are_a_schedule():
     times, speeds = [0.0, 0.3, 0.3, 0.7, 0.9], [0.5, 0.5, 1.2, 0.2, 1.0]
     warmth = [380.0, 380.0, 372.0, 372.0, 390.0]

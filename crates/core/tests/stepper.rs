@@ -190,8 +190,44 @@ fn a_motion_that_was_saved_goes_on_to_the_last_bit_in_every_mode() {
     assert!(modes.len() >= 7, "{modes:?}");
 }
 
+/// A belt at these inputs, from rest.
+fn driven(drive: f64, temperature: Option<f64>) -> Stepper {
+    let drag = law(Closure::Retained, &mut Random(5));
+    let train = Drivetrain::new(60.0, 0.4).unwrap();
+    let drive = Drive::Speed(Schedule::constant(drive));
+    let system = System::new(train, &drag, drive, temperature.map(Schedule::constant)).unwrap();
+    Stepper::new(system, Start::REST, TOLERANCE, Integrator::Adaptive).unwrap()
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(30) })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(60) })]
+    #[test]
+    fn a_moment_takes_its_inputs_along(
+        inputs in [0.05..0.5_f64, 0.05..0.5_f64, 0.05..0.5_f64],
+        heats in [350.0..400.0_f64, 350.0..400.0_f64, 350.0..400.0_f64],
+        warmed in any::<[bool; 2]>(),
+        times in [0.0..2.0_f64, 0.0..2.0_f64, 0.0..2.0_f64],
+        changed in any::<[bool; 2]>(),
+    ) {
+        let heat = |i: usize| warmed[i % 2].then_some(heats[i]);
+        let mut stepper = driven(inputs[0], heat(0));
+        go_on(&mut stepper, times[0]);
+        let drive = changed[0].then_some([inputs[1], 0.0, 0.0, 0.0]);
+        let temperature = changed[1].then_some([heats[1], 0.0, 0.0, 0.0]);
+        stepper.set_inputs(drive, temperature).unwrap();
+        go_on(&mut stepper, times[0] + times[1]);
+        // into one that began, and was driven, otherwise
+        let mut other = driven(inputs[2], heat(1));
+        go_on(&mut other, times[2]);
+        other.set_inputs(Some([inputs[1], 0.1, 0.0, 0.0]), Some([heats[2], 0.5, 0.0, 0.0])).unwrap();
+        other.restore(Moment::from_numbers(&stepper.moment().numbers()).unwrap()).unwrap();
+        prop_assert_eq!(bits(&other), bits(&stepper));
+        let end = times[0] + times[1] + 1.5;
+        prop_assert_eq!(go_on(&mut other, end), go_on(&mut stepper, end));
+        prop_assert_eq!(bits(&other), bits(&stepper));
+        prop_assert_eq!(other.state(), stepper.state());
+    }
+
     #[test]
     fn where_one_stops_changes_nothing(
         which in 0..24_usize,
@@ -442,7 +478,8 @@ fn what_cannot_be_is_refused_and_changes_nothing() {
     go_on(&mut stepper, 1.0);
     let before = bits(&stepper);
     for (i, number) in [
-        (0, 2.0),
+        (0, 1.0),
+        (0, 3.0),
         (1, 9.0),
         (3, 4.0),
         (3, 0.5),

@@ -196,7 +196,9 @@ class Stepper:
         return tuple(self._core.numbers())
 
     def restore(self, saved: Sequence[float]) -> None:
-        """Go on from what `save` returned, of this stepper or of another of the same arguments.
+        """Go on from what `save` returned, of this stepper or of another of the same drivetrain and drag.
+
+        Drive and temperature are part of what was saved.
 
         Raises
         ------

@@ -57,6 +57,40 @@ fn a_state_goes_on_to_the_last_bit_also_elsewhere() {
 }
 
 #[test]
+fn a_state_brings_its_inputs_into_an_instance_that_began_with_others() {
+    for text in [BASELINE, TORQUE, WARMED] {
+        let mut one = Instance::new(text).unwrap();
+        let drive = one.description.drive_place();
+        let warmed = one.has(TEMPERATURE);
+        let set = |instance: &mut Instance, factor: f64, kelvin: f64| {
+            let value = factor * instance.values[drive];
+            instance.set(drive, value).unwrap();
+            if warmed {
+                instance.set(TEMPERATURE, kelvin).unwrap();
+            }
+        };
+        set(&mut one, 0.8, 420.0);
+        one.begin(Phase::Step).unwrap();
+        one.advance(0.3, 0.0, false).unwrap();
+        let saved = one.saved();
+        one.advance(0.8, 0.0, false).unwrap();
+        // one that is new, one with other inputs from the start, and one that was driven otherwise on the way
+        let (fresh, mut started, mut driven) =
+            (Instance::new(text).unwrap(), Instance::new(text).unwrap(), begun(text));
+        set(&mut started, 1.7, 380.0);
+        started.begin(Phase::Step).unwrap();
+        driven.advance(0.2, 0.0, false).unwrap();
+        set(&mut driven, 1.3, 390.0);
+        driven.advance(0.4, 0.0, false).unwrap();
+        for mut other in [fresh, started, driven] {
+            other.restore(&saved).unwrap();
+            other.advance(0.8, 0.0, false).unwrap();
+            assert_eq!(moving(&mut other), moving(&mut one));
+        }
+    }
+}
+
+#[test]
 fn a_parameter_of_the_saved_state_comes_back_with_it() {
     let mut one = Instance::new(BASELINE).unwrap();
     one.set(place_of("mass").unwrap(), 2.0).unwrap();

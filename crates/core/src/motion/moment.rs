@@ -22,7 +22,8 @@ pub struct Moment {
     pub(super) next_step: f64,
     pub(super) events_at_once: u32,
     pub(super) crawled: u32,
-    /// Drive and temperature where they are not those that the motion began with: since when, and the course from there.
+    /// Drive and temperature: since when, and the course from there. None where they are those that the motion began
+    /// with, and in a saved moment only where those are no one value.
     pub(super) drive: Option<(f64, Cubic)>,
     pub(super) temperature: Option<(f64, Cubic)>,
 }
@@ -65,7 +66,7 @@ const NAMES: [&str; Moment::NUMBERS] = [
 ];
 
 /// The first number, by which others of another layout are told.
-const LAYOUT: f64 = 1.0;
+const LAYOUT: f64 = 2.0;
 
 impl Moment {
     /// How many numbers a moment is.

@@ -86,9 +86,24 @@ impl Stepper {
     }
 
     /// All that changes, from which `restore` goes on to the last bit.
+    ///
+    /// Drive and temperature that stay go along, so that a stepper that began with others goes on the same. Of a drive
+    /// or a temperature that was given as a course in time, the stepper that takes the moment must have the same.
     #[must_use]
     pub fn moment(&self) -> Moment {
-        self.moment
+        let mut moment = self.moment;
+        let [drive, temperature] = self.given.steady_inputs(moment.segments);
+        if moment.drive.is_none()
+            && let Some(course) = drive
+        {
+            (moment.drive, moment.segments[0]) = (Some((0.0, course)), 0);
+        }
+        if moment.temperature.is_none()
+            && let Some(course) = temperature
+        {
+            (moment.temperature, moment.segments[1]) = (Some((0.0, course)), 0);
+        }
+        moment
     }
 
     /// On to `until`, or to the first change of mode before or at it, which is returned: the state is then just after it.

@@ -221,6 +221,16 @@ impl System {
         self.given.as_ref().map_or(reference, |(_, temperature)| *temperature)
     }
 
+    /// Drive and temperature that hold one value from `segments` on for good, as courses; no temperature where the law
+    /// does not vary.
+    pub(super) fn steady_inputs(&self, segments: [usize; 2]) -> [Option<Cubic>; 2] {
+        let course = |value: f64| [value, 0.0, 0.0, 0.0];
+        let schedule = self.drive.schedule();
+        let drive = schedule.steady().filter(|_| schedule.end(segments[0]).is_infinite());
+        let varies = self.law().temperature_law().is_some() && self.temperature.is_none();
+        [drive.map(course), varies.then(|| course(self.steady_temperature()))]
+    }
+
     /// Whether the temperature, of which `segment` holds, goes on for good as `course` does, in the time from `time` on.
     #[allow(clippy::float_cmp)] // the same to the last bit
     pub(super) fn temperature_goes_on_as(&self, segment: usize, time: f64, course: &Cubic) -> bool {
