@@ -58,12 +58,14 @@ def simulate(
     heat: Annotated[
         bool,
         typer.Option(
-            "--heat", help="Temperature as a state, by \\[heat] of --machine and the drag of --fit, from cold."
+            "--heat",
+            help="Temperature as a state, by \\[heat] of --machine and the drag of --fit, from cold.",
         ),
     ] = False,
     fit_file: FitFile = None,
     begin: Annotated[
-        str, typer.Option("--from", help="With --heat: temperature at the start.  [default: that of \\[heat]]")
+        str,
+        typer.Option("--from", help="With --heat: temperature at the start.  [default: that of \\[heat]]"),
     ] = "",
     figure: Annotated[
         Path | None, typer.Option("--figure", help="Draw the motion: .html, .png, .svg or .pdf.")
