@@ -71,6 +71,18 @@ def test_the_rest_of_the_drive_does_not_heat_the_film() -> None:
     assert gained == pytest.approx(2000.0 + run.energy.dissipated - 16.0 * 3.0 * 20.0, rel=1e-4)
 
 
+def test_friction_of_a_belt_that_is_held_against_the_pull_never_cools() -> None:
+    """The belt of the paper is thrown ahead and held while the spring pulls it back."""
+    drag = replace(_DRAG, closure="retained")
+    heat = replace(_HEAT, film_loss=0.0, exchange=0.0, heater_power=0.0, film_temperature=400.0)
+    run = hersey.simulate(_TRAIN, drag, drive_speed=0.05, heat=heat, duration=8.0, samples=2001)
+    assert run.film_temperature is not None
+    assert run.spring_force.min() < -100.0
+    assert np.diff(run.film_temperature).min() > -1e-10
+    gained = 20.0 * np.ptp(run.film_temperature)
+    assert gained == pytest.approx(run.energy.dissipated + run.energy.owed, rel=1e-8)
+
+
 def test_a_heater_holds_its_setpoint() -> None:
     heat = replace(_HEAT, setpoint=400.0, heater_power=2000.0, heater_gain=500.0)
     run = hersey.simulate(_TRAIN, _DRAG, drive_speed=0.0, heat=heat, duration=400.0, samples=401)

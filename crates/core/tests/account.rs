@@ -219,6 +219,60 @@ fn the_work_of_random_runs_is_accounted_for() {
     assert!(outcomes["accounted for"] > 220, "{outcomes:?}");
 }
 
+/// A film that keeps its heat gains what friction takes, but for what the contact has given the belt and not got back.
+#[test]
+fn the_heat_of_an_insulated_film_is_what_friction_dissipates() {
+    let (mut compared, mut owing) = (0, 0);
+    for seed in 0..240_u64 {
+        let random = &mut Random(0x4ea7_0000 + seed);
+        let (stiffness, mass) = (random.decades(1.0, 5.0), random.decades(-2.0, 1.0));
+        let Ok(drag) = drag_of(random, stiffness, mass, seed % 4 == 0) else { continue };
+        let drag = drag.with_rest(Rest::default()).unwrap();
+        let train = Drivetrain::new(stiffness, mass).unwrap();
+        let duration = 20.0 * train.time_scale()
+            + 2.0 * drag.holding_force(0.0) / (stiffness * drag.transition_speed());
+        let drive = drive_of(random, drag.transition_speed(), duration).unwrap();
+        let none = || Schedule::constant(0.0);
+        let capacity = random.decades(0.0, 3.0);
+        let heat = HeatBalance {
+            capacity: [capacity, 1.0],
+            exchange: 0.0,
+            loss: [0.0; 2],
+            surroundings: REFERENCE,
+            heater: Heater::Power(none()),
+            load: [none(), none()],
+            start: [REFERENCE; 2],
+            temperature_zero: 0.0,
+        };
+        let Ok(system) = System::with_heat(train, &drag, drive, heat) else { continue };
+        let work = Work::unwatched(10_000_000);
+        let Ok(run) =
+            simulate(&system, Start::REST, duration, 101, 1e-10, Integrator::Adaptive, &work)
+        else {
+            continue;
+        };
+        let film: Vec<f64> = run.temperature.iter().map(|t| t[0]).collect();
+        let gained = capacity * (film[film.len() - 1] - film[0]);
+        let missing = run.energy.dissipated + run.energy.owed - gained;
+        // rounding of a temperature of some hundred kelvin, too
+        let rounding = 1e-13 * capacity * REFERENCE;
+        assert!(
+            missing.abs() <= 1e-8 * run.energy.turnover + rounding,
+            "{missing:e} of {:e} J: seed {seed}, {:?}",
+            run.energy.turnover,
+            drag.closure()
+        );
+        assert!(
+            film.windows(2).all(|t| t[1] >= t[0] - 1e-13 * t[0]),
+            "friction cools: seed {seed}"
+        );
+        compared += 1;
+        owing += usize::from(run.energy.owed > 1e-6 * run.energy.turnover);
+    }
+    assert!(compared > 180, "{compared}");
+    println!("{compared} compared, {owing} owe");
+}
+
 #[test]
 #[ignore = "minutes: make fuzz"]
 fn the_work_of_many_random_runs_is_accounted_for() {

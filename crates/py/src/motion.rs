@@ -45,6 +45,8 @@ pub struct Energy {
     work: f64,
     dissipated: f64,
     slipped: f64,
+    /// Of what was dissipated, what has not heated the film: the contact gave it and has not got it back.
+    owed: f64,
     stored: f64,
     residual: f64,
 }
@@ -192,7 +194,7 @@ pub fn simulate(
         motion::simulate(&system, start, duration, samples, tolerance, integrator, work)
     })?;
     let modes: Vec<u8> = run.mode.iter().map(|m| *m as u8).collect();
-    let motion::Energy { work, dissipated, slipped, stored, .. } = run.energy;
+    let motion::Energy { work, dissipated, slipped, owed, stored, .. } = run.energy;
     let residual = run.energy.residual();
     Ok(Trajectory {
         time: run.time.into_pyarray(py).unbind(),
@@ -204,7 +206,7 @@ pub fn simulate(
             [0, 1].map(|i| PyArray1::from_iter(py, run.temperature.iter().map(|t| t[i])).unbind())
         }),
         events: Py::new(py, Events::from(run.events.as_slice()))?,
-        energy: Py::new(py, Energy { work, dissipated, slipped, stored, residual })?,
+        energy: Py::new(py, Energy { work, dissipated, slipped, owed, stored, residual })?,
         steps: run.steps,
     })
 }

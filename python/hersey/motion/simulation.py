@@ -106,12 +106,18 @@ class Energy:
 
     ``slipped`` was lost where the roll slipped on the belt; ``residual`` is what is missing (work less
     dissipated less slipped less stored) as a share of all energy turned over.
+
+    The closure ``retained`` keeps the speed of a belt that it holds, even against a pull that points back: there the
+    contact gives energy. With ``heat`` the film does not cool for that: what friction takes afterwards pays the debt
+    before it heats. ``owed`` is what is left of the debt at the end, so the contact has heated the film by dissipated
+    plus owed, less what the rest of the drive took.
     """
 
     work: float
     dissipated: float
     slipped: float
     stored: float
+    owed: float
     residual: float
 
 
@@ -195,6 +201,11 @@ class Trajectory(Result):
             f"  stretch         {self.stretch.min():.6f} to {self.stretch.max():.6f}",
             f"  spring force    {self.spring_force.min():.6f} to {self.spring_force.max():.6f}",
             *self._heating(),
+            *(
+                [f"  {self.energy.owed:.3g} J given by the contact did not come back"]
+                if self.energy.owed
+                else []
+            ),
             *([f"  {self.slipping_in_words()}"] if self.roll_slips else []),
             f"energy balance: {self.energy.residual:.1e} of the energy turned over is missing",
         ]
@@ -421,7 +432,9 @@ def simulate(
         film_temperature=None if trajectory.temperature is None else trajectory.temperature[0],
         roll_temperature=None if trajectory.temperature is None else trajectory.temperature[1],
         events=tuple(map(Event._make, zip(*_event_columns(trajectory.events), strict=True))),
-        energy=Energy(energy.work, energy.dissipated, energy.slipped, energy.stored, energy.residual),
+        energy=Energy(
+            energy.work, energy.dissipated, energy.slipped, energy.stored, energy.owed, energy.residual
+        ),
         steps=trajectory.steps,
         check=_self_check(lambda: run("dormand-prince"), trajectory) if check else None,
     )

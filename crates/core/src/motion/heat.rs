@@ -5,9 +5,14 @@
 //! `C_2 T_2' = H (T_1 - T_2) - W_2 - G_2 (T_2 - T_0)`: heater power `P`, friction of the contact `q`, what paper takes
 //! `W`, exchange `H`, losses `G` to surroundings of `T_0`. The drag law follows `T_1`, and heats it: each piece of the
 //! motion is made anew until the temperature that it assumed is the one that its own friction makes.
+//!
+//! A contact that holds a belt at a small speed, as the paper's rule has it, may push it on: its power is negative then.
+//! Friction cools nothing, so such energy is owed, and what friction takes afterwards pays it back before it heats.
 
 use super::piece::{Path, Piece};
-use super::polynomial::{INVERSE, ORDER, Polynomial, derivative, first_crossing, value};
+use super::polynomial::{
+    INVERSE, INVERSE_NEXT, ORDER, Polynomial, derivative, first_crossing, value,
+};
 use super::schedule::Schedule;
 use super::taylor::{product, rough_root};
 use crate::drag::Mode;
@@ -69,6 +74,9 @@ impl HeatBalance {
     }
 }
 
+/// Share of a debt that is rounding.
+const PAID: f64 = 1e-12;
+
 /// Which law the heater follows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Heating {
@@ -84,6 +92,9 @@ pub(super) struct Heat<'a> {
     /// Temperatures from now on.
     pub courses: [Polynomial; 2],
     heating: Heating,
+    /// Energy that the contact has given the belt and not got back, J, and the power that changes it from now on.
+    pub owed: f64,
+    owing: Polynomial,
     /// Segments of heater power and loads that hold now.
     segments: [usize; 3],
 }
@@ -95,7 +106,8 @@ impl<'a> Heat<'a> {
             course[0] = t;
             course
         });
-        let mut heat = Self { balance, courses, heating: Heating::Given, segments: [0; 3] };
+        let (heating, owing) = (Heating::Given, [0.0; ORDER + 1]);
+        let mut heat = Self { balance, courses, heating, owed: 0.0, owing, segments: [0; 3] };
         heat.segments = heat.schedules().map(|s| s.map_or(0, |s| s.segment(0.0)));
         heat.choose_heating();
         heat
@@ -144,6 +156,30 @@ impl<'a> Heat<'a> {
             (false, true) => Heating::Proportional,
             (false, false) => Heating::Off,
         };
+    }
+
+    /// What of the `power` of the contact heats from now on, and how long that is so within `span`.
+    pub(super) fn heating_part(&mut self, power: &Polynomial, span: f64) -> (Polynomial, f64) {
+        let span = if span.is_finite() { span } else { 1e9 };
+        let first = power.iter().find(|c| **c != 0.0).copied().unwrap_or(0.0);
+        if self.owed == 0.0 && first >= 0.0 {
+            self.owing = [0.0; ORDER + 1];
+            return (*power, first_crossing(power, span).unwrap_or(f64::INFINITY));
+        }
+        self.owing = *power;
+        let mut debt = [0.0; ORDER + 1];
+        debt[0] = self.owed;
+        for n in 0..ORDER {
+            debt[n + 1] = -power[n] * INVERSE_NEXT[n];
+        }
+        ([0.0; ORDER + 1], first_crossing(&debt, span).unwrap_or(f64::INFINITY))
+    }
+
+    /// Take up energy at once.
+    pub(super) fn take(&mut self, energy: f64) {
+        let paid = energy.min(self.owed);
+        self.owed -= paid;
+        self.courses[0][0] += (energy - paid) / self.balance.capacity[0];
     }
 
     /// Temperatures from `time` on under the heat of friction, and how long their first `terms` powers are good for: to the
@@ -221,6 +257,11 @@ impl<'a> Heat<'a> {
 
     /// Go on by `elapsed` along the courses.
     pub(super) fn pass(&mut self, elapsed: f64) {
+        let given = elapsed
+            * (0..=ORDER).rev().fold(0.0, |sum, n| sum * elapsed + self.owing[n] * INVERSE_NEXT[n]);
+        // paid back but for rounding is paid
+        let left = self.owed - given;
+        self.owed = if left > PAID * (self.owed + given.abs()) { left } else { 0.0 };
         for course in &mut self.courses {
             let (now, rate) = (value(course, elapsed), value(&derivative(course), elapsed));
             *course = [0.0; ORDER + 1];
@@ -246,16 +287,21 @@ impl<'a> Heat<'a> {
 }
 
 impl Piece<'_> {
-    /// Heat that friction of the contact makes over the piece, `factor` that of the rest of the drive along it; of one made
-    /// of steps, by its values at four times.
-    pub(super) fn heat_of_contact(&self, factor: &Polynomial) -> Polynomial {
+    /// Power that the contact takes from the belt over the piece, `factor` that of the rest of the drive along it; of one
+    /// made of steps, by its values at four times.
+    pub(super) fn power_of_contact(&self, factor: &Polynomial) -> Polynomial {
         let rest = self.flow.drag.rest();
         match &self.path {
             Path::Series(series) => {
-                // a held belt is braked by just the pull
-                let held = self.start.mode == Mode::Stuck || self.start.creeping;
-                let braking = if held { &series.pull } else { &series.drag };
-                let mut contact = *braking;
+                // a held belt is braked by just the pull, and a creeping one by that and its own slowing down
+                let mut contact = match self.start.mode {
+                    Mode::Stuck => series.pull,
+                    _ if self.start.creeping => {
+                        let slowing = derivative(&series.speed);
+                        std::array::from_fn(|n| series.pull[n] - self.flow.mass * slowing[n])
+                    }
+                    _ => series.drag,
+                };
                 for (n, c) in contact.iter_mut().enumerate() {
                     *c -= rest.force * factor[n] + rest.damping * product(&series.speed, factor, n);
                 }

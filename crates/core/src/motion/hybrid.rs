@@ -253,13 +253,15 @@ impl<'a> Motion<'a> {
         for _ in 0..MAX_ROUNDS {
             self.next_step = step;
             let mut piece = self.piece(longest)?;
-            let heat_of_contact = piece.heat_of_contact(&self.now.rest_course());
+            let power = piece.power_of_contact(&self.now.rest_course());
             let time = self.now.time;
             let Some(heat) = &mut self.now.heat else { return Ok(piece) };
+            let (warming, until) = heat.heating_part(&power, piece.duration);
             let assumed = heat.courses; // those to come take their slope already
             // steps follow a cubic
             let terms = if matches!(piece.path, Path::Steps { .. }) { 4 } else { ORDER };
-            let (courses, good) = heat.foreseen(time, &heat_of_contact, terms, tolerance);
+            let (courses, good) = heat.foreseen(time, &warming, terms, tolerance);
+            let good = good.min(until);
             if piece.duration > good {
                 (piece.duration, longest) = (good, good);
             }
@@ -419,6 +421,11 @@ impl<'a> Motion<'a> {
     #[inline]
     pub(super) fn drive_rate(&self) -> Cubic {
         self.now.rate(self.phase.direction)
+    }
+
+    /// What the contact has given the belt and not got back.
+    pub(super) fn owed(&self) -> f64 {
+        self.now.heat.as_ref().map_or(0.0, |heat| heat.owed)
     }
 
     /// Factor of the static force of a belt that has stood until now.

@@ -147,7 +147,11 @@ impl Motion<'_> {
     }
 
     fn stop_dead(&mut self) {
-        self.stopped += 0.5 * self.now.system.train.mass() * self.phase.speed * self.phase.speed;
+        let lost = 0.5 * self.now.system.train.mass() * self.phase.speed * self.phase.speed;
+        self.stopped += lost;
+        if let Some(heat) = &mut self.now.heat {
+            heat.take(lost);
+        }
         self.phase.speed = 0.0;
     }
 

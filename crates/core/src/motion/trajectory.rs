@@ -45,6 +45,9 @@ pub struct Energy {
     pub slipped: f64,
     /// Growth of kinetic and spring energy.
     pub stored: f64,
+    /// What the contact has given the belt and not got back, where the temperature is a state: of what was dissipated it
+    /// has not heated the film.
+    pub owed: f64,
     /// Sum of the magnitudes of all work done, the measure of the residual.
     pub turnover: f64,
 }
@@ -128,6 +131,7 @@ pub fn simulate(
     }
     let end = stored(system, end_state, duration);
     energy.dissipated += motion.stopped;
+    energy.owed = motion.owed();
     energy.stored = (end.0 - initial.0) + (end.1 - initial.1);
     energy.turnover += energy.stored.abs();
     let stretch = time.iter().zip(&pull).map(|(t, p)| system.stretch(*p, *t)).collect();

@@ -78,6 +78,7 @@ class EnergyPart(Part):
     dissipated: float
     slipped: float
     stored: float
+    owed: float = Field(default=0.0, description="given by a contact that holds a belt, and not got back")
     residual: float
 
 
