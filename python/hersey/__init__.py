@@ -103,10 +103,11 @@ if TYPE_CHECKING:
         read_machine,
         read_temperature_profile,
     )
+    from hersey.motion.belt import Drivetrain
     from hersey.motion.drag import Drag, DragTable
     from hersey.motion.heat import HeatBalance
     from hersey.motion.schedule import Schedule
-    from hersey.motion.simulation import Drivetrain, StickSlipCycle, Trajectory, simulate, stick_slip
+    from hersey.motion.simulation import StickSlipCycle, Trajectory, simulate, stick_slip
     from hersey.motion.stepper import Stepper
     from hersey.motion.sweep import sweep
     from hersey.posterior.evidence import BreakAway, Start, StickSlip

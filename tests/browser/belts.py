@@ -11,9 +11,10 @@ from hersey import Drag, _core
 from hersey.arrays import FloatArray
 from hersey.errors import HerseyError
 from hersey.lubrication.mixed_drag import MixedDrag
+from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import AnyDrag, DragTable
 from hersey.motion.schedule import Schedule
-from hersey.motion.simulation import Drivetrain, simulate, stick_slip
+from hersey.motion.simulation import simulate, stick_slip
 from hersey.stability.hysteresis import hysteresis
 from tests.lubrication.roll import MIXED, WARM
 

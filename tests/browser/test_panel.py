@@ -19,8 +19,9 @@ from playwright.sync_api import Browser, Page
 from hersey.document.parts import Analysis
 from hersey.document.parts.motion import DragTablePart, TrainPart
 from hersey.document.parts.stability import MapPart
+from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import DragTable
-from hersey.motion.simulation import Drivetrain, StickSlipCycle, stick_slip
+from hersey.motion.simulation import StickSlipCycle, stick_slip
 from hersey.report.page import render
 from hersey.stability.disturbance import disturbance
 from hersey.stability.hysteresis import hysteresis

@@ -17,7 +17,7 @@ from playwright.sync_api import Browser, Page
 from hersey import Drag
 from hersey.arrays import FloatArray
 from hersey.damping.surface import FIXED, WITH_TRANSITION
-from hersey.motion.simulation import Drivetrain
+from hersey.motion.belt import Drivetrain
 from hersey.stability.operating_map.edges import edges_at
 from tests.browser.belts import Setting, settings
 

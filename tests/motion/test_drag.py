@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from hersey.errors import ParameterError
+from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import Drag, DragTable
-from hersey.motion.simulation import Drivetrain
 
 PLAIN = Drag(50, 2, ehl_exponent=-0.7, mixed_exponent=-1.3, stick_speed=0.01)
 WARM = replace(

@@ -12,8 +12,9 @@ if TYPE_CHECKING:
     from hersey.cli.amounts import Amounts
     from hersey.machine.machine import Machine
     from hersey.machine.motor import MotorUse
+    from hersey.motion.belt import Drivetrain
     from hersey.motion.drag import PowerDrag
-    from hersey.motion.simulation import Drivetrain, Trajectory
+from hersey.motion.simulation import Trajectory
 
 #: Damping exponents of the paper's baseline.
 _EXPONENTS = {"ehl_exponent": -0.7, "mixed_exponent": -1.2}
@@ -89,8 +90,8 @@ class Belt:
         from hersey.cli.amounts import amounts
         from hersey.cli.drag_table import read_drag_table
         from hersey.errors import ParameterError
+        from hersey.motion.belt import Drivetrain
         from hersey.motion.drag import Drag
-        from hersey.motion.simulation import Drivetrain
 
         no_number = (*_EXPONENTS, "closure", "machine", "drag_table")
         texts = {f.name: getattr(self, f.name) for f in fields(self) if f.name not in no_number}

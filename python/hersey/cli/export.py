@@ -18,8 +18,8 @@ from hersey.errors import OutputError, ParameterError
 if TYPE_CHECKING:
     from hersey.damping.surface import DampingSurface
     from hersey.machine.machine import Machine
+    from hersey.motion.belt import Drivetrain
     from hersey.motion.drag import Drag
-    from hersey.motion.simulation import Drivetrain
 
 export = typer.Typer(
     no_args_is_help=True,

@@ -61,15 +61,7 @@ def map_(
         if drawn is not None:
             map_of_belt = map_of(drawn, threads=threads)
         else:
-            map_of_belt = operating_map(
-                surface,
-                machine.train,
-                **machine.belt,
-                limits=machine.limits,
-                points=machine.points,
-                uncertainty=machine.uncertainty,
-                threads=threads,
-            )
+            map_of_belt = operating_map(surface, machine, threads=threads)
     if path is not None:
         from hersey.charts import chart_of
         from hersey.charts.render import picture

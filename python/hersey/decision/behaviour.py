@@ -22,9 +22,10 @@ from hersey.errors import HerseyError
 from hersey.log import TorqueLog
 from hersey.machine.limits import OperatingPoint
 from hersey.machine.machine import Machine
+from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import DragTable
 from hersey.motion.schedule import Schedule
-from hersey.motion.simulation import Drivetrain, Trajectory
+from hersey.motion.simulation import Trajectory
 from hersey.posterior import Posterior, posterior
 from hersey.posterior.drives import Drives
 from hersey.posterior.priors import CLOSURES, NUMBERS

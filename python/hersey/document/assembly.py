@@ -52,8 +52,9 @@ from hersey.files.reading import hash_of
 from hersey.log import TorqueLog
 from hersey.log.means import MeansTable
 from hersey.machine.machine import Machine
+from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import DragTable
-from hersey.motion.simulation import Drivetrain, simulate, stick_slip
+from hersey.motion.simulation import simulate, stick_slip
 from hersey.units import celsius, rpm
 from hersey.verdict.cautions import cautions
 from hersey.verdict.regime import regime

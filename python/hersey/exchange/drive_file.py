@@ -8,8 +8,8 @@ import numpy as np
 
 from hersey.errors import ParameterError
 from hersey.lubrication.mixed_drag import MixedDrag
+from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import AnyDrag, BesideShape, Drag, DragTable, PowersOfTemperature
-from hersey.motion.simulation import Drivetrain
 
 #: What one line holds.
 Value = str | float | Sequence[float]

@@ -10,8 +10,9 @@ import numpy as np
 
 from hersey.errors import ParameterError
 from hersey.exchange.unit import DRIVES, ExportedUnit
+from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import AnyDrag
-from hersey.motion.simulation import Drivetrain, Trajectory, simulate
+from hersey.motion.simulation import Trajectory, simulate
 
 #: How far unit and core may differ, as a share of the greatest value.
 AGREEMENT = 1e-9

@@ -21,8 +21,9 @@ from hersey.exchange.drive_file import Value, drive_text, drive_values
 from hersey.exchange.platforms import own_library, platform_named, read_library, this_platform
 from hersey.exchange.variables import Variable, variables_of
 from hersey.files.writing import write_atomically
+from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import AnyDrag
-from hersey.motion.simulation import TOLERANCE, Drivetrain, simulate
+from hersey.motion.simulation import TOLERANCE, simulate
 from hersey.result import json_record
 from hersey.spelling import printable
 from hersey.units import celsius, rpm, takes_si

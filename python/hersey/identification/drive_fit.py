@@ -15,9 +15,9 @@ from hersey.errors import ParameterError
 from hersey.identification.cycle_record import CycleRecord
 from hersey.identification.independence import TOLD
 from hersey.identification.waveform import FEWEST_LAPS, ModelLap, Waveform, model_lap
+from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import Drag
 from hersey.motion.parameters import OF_THE_BELT, PARAMETERS
-from hersey.motion.simulation import Drivetrain
 
 #: Range that is believed: of exponents, and of speeds over the drive speed.
 EXPONENTS = {"ehl_exponent": (-0.995, 0.3), "mixed_exponent": (-2.5, -1.005)}

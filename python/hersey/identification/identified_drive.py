@@ -16,9 +16,9 @@ from hersey.identification.drive_fit import EXPONENTS, NORMAL_REACH, DriveFit
 from hersey.identification.independence import TOLD, in_words
 from hersey.identification.motion_kind import LONGEST_OF_LAP
 from hersey.identification.waveform import FEWEST_LAPS, Waveform, mean_waveform
+from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import Drag
 from hersey.motion.parameters import KINDS, OF_THE_BELT
-from hersey.motion.simulation import Drivetrain
 from hersey.result import Result, json_record
 from hersey.units import argument
 

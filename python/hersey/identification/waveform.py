@@ -10,8 +10,9 @@ from scipy.interpolate import CubicHermiteSpline
 from hersey.arrays import FloatArray
 from hersey.errors import InsufficientDataError, ParameterError, UnfinishedError
 from hersey.identification.cycle_record import CycleRecord
+from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import AnyDrag
-from hersey.motion.simulation import Drivetrain, simulate, stick_slip
+from hersey.motion.simulation import simulate, stick_slip
 
 #: Fewest laps of which a mean and its error are taken.
 FEWEST_LAPS = 6

@@ -18,7 +18,8 @@ from hersey.errors import InsufficientDataError, ParameterError
 from hersey.units import fields_in_si, takes_si
 
 if TYPE_CHECKING:
-    from hersey.motion.simulation import Drivetrain, StickSlipCycle
+    from hersey.motion.belt import Drivetrain
+from hersey.motion.simulation import StickSlipCycle
 
 
 @dataclass(frozen=True, repr=False)

@@ -8,7 +8,7 @@ from typing import Annotated
 from pydantic.dataclasses import dataclass
 
 from hersey.files.toml import Quantity, Share, Table, Text
-from hersey.motion.simulation import Drivetrain
+from hersey.motion.belt import Drivetrain
 
 _Speed = Annotated[float, Quantity("belt speed", 1e-6, 1e3)]
 

@@ -29,8 +29,8 @@ from hersey.machine.nip import ContactTable, LubricantTable
 from hersey.machine.rest import RestTable
 from hersey.machine.sharing import NEEDED, AsperitiesTable, BoundaryTable
 from hersey.machine.uncertainty import Uncertainty, read_uncertainty
+from hersey.motion.belt import Drivetrain
 from hersey.motion.heat import HeatBalance
-from hersey.motion.simulation import Drivetrain
 from hersey.spelling import printable
 from hersey.units import takes_si
 

@@ -15,9 +15,10 @@ from pydantic.dataclasses import dataclass
 from hersey.arrays import FloatArray
 from hersey.errors import ParameterError
 from hersey.files.toml import Quantity, Table, naming, read_tables, read_toml
+from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import Drag
 from hersey.motion.parameters import MOST_SETS, PARAMETERS
-from hersey.motion.simulation import TOLERANCE, Drivetrain
+from hersey.motion.simulation import TOLERANCE
 from hersey.motion.sweep import planned, sweep
 
 if TYPE_CHECKING:

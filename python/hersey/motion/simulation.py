@@ -7,7 +7,6 @@ for stiffness, angular speed for belt speed.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
@@ -20,12 +19,13 @@ from numpy.typing import NDArray
 from hersey import _core
 from hersey.arrays import FloatArray
 from hersey.errors import HerseyError, ParameterError
+from hersey.motion.belt import BeltDrag, Drivetrain, Train, belt_of
 from hersey.motion.drag import AnyDrag
 from hersey.motion.heat import HeatBalance
 from hersey.motion.parameters import MOST_STEPS, whole
 from hersey.motion.schedule import Schedule
 from hersey.result import Result, json_record, table_of
-from hersey.units import celsius, fields_in_si, takes_si
+from hersey.units import celsius, takes_si
 
 if TYPE_CHECKING:
     import polars as pl
@@ -34,56 +34,6 @@ if TYPE_CHECKING:
 TOLERANCE = 1e-9
 #: Share of the drive speed by which a steady start is off.
 NUDGE = _core.NUDGE
-
-
-@dataclass(frozen=True)
-class Drivetrain:
-    """Spring (gear train, roll core and rubber) of ``stiffness`` and moving ``mass``.
-
-    ``grip`` is the force up to which the roll grips the belt, its friction times the load; beyond, it
-    slips. If it is not given the roll never slips, as Eq. 11 assumes.
-    """
-
-    stiffness: float
-    mass: float
-    grip: float | None = None
-
-    def __post_init__(self) -> None:
-        """Bring the values to SI if they come with units."""
-        fields_in_si(self, {"stiffness": "stiffness", "mass": "mass", "grip": "force"})
-
-    @classmethod
-    @takes_si(stiffness="torsional stiffness", inertia="moment of inertia", roll_radius="length")
-    def rotational(cls, *, stiffness: float, inertia: float, roll_radius: float) -> Drivetrain:
-        """Return the drivetrain at the surface of a roll: k = K/r^2, m = J/r^2.
-
-        Parameters
-        ----------
-        stiffness
-            Torsional stiffness K, N m/rad.
-        inertia
-            Moment of inertia J, kg m^2.
-        roll_radius
-            m.
-
-        Examples
-        --------
-        >>> Drivetrain.rotational(stiffness=2.0, inertia=4e-4, roll_radius=0.02).mass
-        1.0
-        """
-        for name, value in (("stiffness", stiffness), ("inertia", inertia), ("roll_radius", roll_radius)):
-            if not value > 0 or not np.isfinite(value):
-                raise ParameterError(f"{name} is {value}: it must be greater than 0")
-        return cls(stiffness / roll_radius**2, inertia / roll_radius**2)
-
-    @property
-    def free_period(self) -> float:
-        """Period of spring and mass without drag, s: 2 pi sqrt(m/k)."""
-        return 2.0 * math.pi * math.sqrt(self.mass / self.stiffness)
-
-    @property
-    def _arguments(self) -> tuple[float, float, float | None]:
-        return float(self.stiffness), float(self.mass), None if self.grip is None else float(self.grip)
 
 
 class Event(NamedTuple):
@@ -107,10 +57,10 @@ class Energy:
     ``slipped`` was lost where the roll slipped on the belt; ``residual`` is what is missing (work less
     dissipated less slipped less stored) as a share of all energy turned over.
 
-    The closure ``retained`` keeps the speed of a belt that it holds, even against a pull that points back: there the
-    contact gives energy. With ``heat`` the film does not cool for that: what friction takes afterwards pays the debt
-    before it heats. ``owed`` is what is left of the debt at the end, so the contact has heated the film by dissipated
-    plus owed, less what the rest of the drive took.
+    The closure ``retained`` keeps the speed of a belt that it holds, even against a pull that points back:
+    there the contact gives energy. With ``heat`` the film does not cool for that: what friction takes
+    afterwards pays the debt before it heats. ``owed`` is what is left of the debt at the end, so the
+    contact has heated the film by dissipated plus owed, less what the rest of the drive took.
     """
 
     work: float
@@ -477,8 +427,8 @@ def _difference(one: FloatArray, two: FloatArray) -> float:
 
 @takes_si(drive_speed="belt speed", temperature="temperature")
 def stick_slip(
-    train: Drivetrain,
-    drag: AnyDrag,
+    train: Train,
+    drag: BeltDrag,
     *,
     drive_speed: float,
     temperature: float | None = None,
@@ -511,6 +461,12 @@ def stick_slip(
     ``unsettled``
         None of these was reached within the laps allowed, or the time.
 
+    Parameters
+    ----------
+    train, drag
+        A drivetrain and its drag; or a machine (`hersey.read_machine`) and the surface fitted to its log,
+        which take radius, stick speed and grip from the machine's file.
+
     Raises
     ------
     ParameterError
@@ -526,6 +482,7 @@ def stick_slip(
     >>> cycle.kind, round(cycle.frequency, 5)
     ('stick_slip', 3.94031)
     """
+    train, drag, temperature = belt_of(train, drag, temperature)
     law = drag.law_at(temperature)
     state = start_state(train, law, Schedule.of(drive_speed), None, start, is_torque=False, nudged=True)
     steps = whole("most_steps", most_steps)

@@ -8,10 +8,11 @@ from typing import Any, NamedTuple
 
 from hersey import _core
 from hersey.errors import ParameterError
+from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import AnyDrag
 from hersey.motion.parameters import MOST_STEPS, whole
 from hersey.motion.schedule import Schedule
-from hersey.motion.simulation import TOLERANCE, Drivetrain, Event, check_inputs, start_state
+from hersey.motion.simulation import TOLERANCE, Event, check_inputs, start_state
 from hersey.units import takes_si
 
 

@@ -12,11 +12,12 @@ from numpy.typing import ArrayLike
 from hersey import _core
 from hersey.arrays import numbers_of
 from hersey.errors import ParameterError
+from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import Drag
 from hersey.motion.following import NUMBERS, Rules, values_of
 from hersey.motion.parameters import KINDS, MOST_STEPS, refuse_too_many, whole
 from hersey.motion.sets import Sets
-from hersey.motion.simulation import TOLERANCE, Drivetrain
+from hersey.motion.simulation import TOLERANCE
 from hersey.units import takes_si
 
 if TYPE_CHECKING:

@@ -15,8 +15,8 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.charts.style import INK, WIDTH, Chart, Row, plot, ramp
+from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import Drag
-from hersey.motion.simulation import Drivetrain
 from hersey.motion.sweep import sweep
 from hersey.paper_figures.figure import Claim, OwnFigure, Verdict
 from hersey.paper_figures.sweep import Case

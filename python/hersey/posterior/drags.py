@@ -8,8 +8,8 @@ import numpy as np
 
 from hersey.arrays import FloatArray, IntArray
 from hersey.errors import ParameterError
+from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import DragTable
-from hersey.motion.simulation import Drivetrain
 from hersey.posterior.drives import ABOVE, DriveModel, Drives
 from hersey.posterior.priors import CLOSURES, NUMBERS
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import DragTable
-from hersey.motion.simulation import Drivetrain
 from hersey.posterior.drags import drags_at, drags_through
 from hersey.posterior.drives import Drives
 from hersey.posterior.priors import NUMBERS

@@ -11,9 +11,10 @@ from dataclasses import dataclass
 from math import inf, pi, sqrt
 
 from hersey.errors import ParameterError
+from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import AnyDrag
 from hersey.motion.schedule import Schedule
-from hersey.motion.simulation import Drivetrain, StickSlipCycle, simulate, steady_start, stick_slip
+from hersey.motion.simulation import StickSlipCycle, simulate, steady_start, stick_slip
 from hersey.stability.hysteresis import hysteresis
 from hersey.units import takes_si
 

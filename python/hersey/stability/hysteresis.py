@@ -18,9 +18,9 @@ from numpy.typing import ArrayLike, NDArray
 from hersey import _core
 from hersey.arrays import FloatArray, numbers_of, together
 from hersey.errors import ParameterError
-from hersey.motion.drag import AnyDrag, Drag
+from hersey.motion.belt import BeltDrag, Drivetrain, Train, belt_of
+from hersey.motion.drag import Drag
 from hersey.motion.parameters import MOST_STEPS, OF_THE_BELT, whole
-from hersey.motion.simulation import Drivetrain
 from hersey.result import Result, json_record, table_of
 from hersey.stability.hysteresis_sweep import PARAMETER_KINDS, TOLERANCE, BandRules
 from hersey.units import argument, takes_si
@@ -176,8 +176,8 @@ class CyclesWithoutSticking:
 
 @takes_si(temperature="temperature")
 def hysteresis(
-    train: Drivetrain,
-    drag: AnyDrag,
+    train: Train,
+    drag: BeltDrag,
     *,
     temperature: float | None = None,
     samples: Mapping[str, ArrayLike] | None = None,
@@ -193,6 +193,9 @@ def hysteresis(
 
     Parameters
     ----------
+    train, drag
+        A drivetrain and its drag; or a machine (`hersey.read_machine`) and the surface fitted to its log,
+        which take radius, stick speed and grip from the machine's file.
     temperature
         K; needed if the drag varies with it: the band is that at this temperature.
     samples
@@ -224,6 +227,7 @@ def hysteresis(
     >>> round(band.sensitivity["stick_speed"], 3)  # one per cent on v_s moves V* by a quarter of a per cent
     -0.233
     """
+    train, drag, temperature = belt_of(train, drag, temperature)
     steps = whole("most_steps", most_steps)
     band = _core.band(train._arguments, drag.law_at(temperature), float(tolerance), steps)
     plain = drag.at(temperature) if isinstance(drag, Drag) else None

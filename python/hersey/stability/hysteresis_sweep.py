@@ -15,10 +15,10 @@ from numpy.typing import ArrayLike, NDArray
 from hersey import _core
 from hersey.arrays import FloatArray, crossed, numbers_of, together
 from hersey.errors import ParameterError
+from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import BESIDE, Drag
 from hersey.motion.following import usual_chunk
 from hersey.motion.parameters import KINDS, MOST_STEPS, OF_THE_BELT, refuse_too_many, whole
-from hersey.motion.simulation import Drivetrain
 from hersey.scale.cluster import connected, threads_of
 from hersey.scale.tasks import done
 from hersey.units import takes_si

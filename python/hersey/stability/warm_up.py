@@ -16,10 +16,11 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.errors import ParameterError, UnfinishedError
+from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import AnyDrag
 from hersey.motion.heat import HeatBalance
 from hersey.motion.schedule import Schedule
-from hersey.motion.simulation import Drivetrain, Trajectory, simulate
+from hersey.motion.simulation import Trajectory, simulate
 from hersey.result import Result, json_record
 from hersey.stability.hysteresis import hysteresis
 from hersey.units import celsius, takes_si

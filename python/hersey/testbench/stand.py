@@ -19,7 +19,8 @@ from hersey import _core
 from hersey.arrays import FloatArray
 from hersey.errors import ParameterError
 from hersey.files.writing import write_atomically
-from hersey.motion.simulation import Drivetrain, simulate
+from hersey.motion.belt import Drivetrain
+from hersey.motion.simulation import simulate
 from hersey.result import json_value
 from hersey.testbench.physical import PhysicalTruth
 from hersey.testbench.truth import RPM, Truth

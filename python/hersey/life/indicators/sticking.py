@@ -27,7 +27,7 @@ from hersey.units import celsius
 if TYPE_CHECKING:
     from hersey.damping.rest import RestOfDrive
     from hersey.machine import Machine
-    from hersey.motion.simulation import Drivetrain
+    from hersey.motion.belt import Drivetrain
 
 #: Runs whose fold is sought at the most, those whose draws tell its error, and draws of each.
 MOST_FOLDS, DRAWN_RUNS, _DRAWS = 24, 3, 3

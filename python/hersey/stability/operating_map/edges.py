@@ -11,8 +11,8 @@ import numpy as np
 from hersey.arrays import FloatArray
 from hersey.damping.surface import FIXED, WITH_TRANSITION
 from hersey.errors import ParameterError
+from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import Drag, DragTable, PowerDrag
-from hersey.motion.simulation import Drivetrain
 from hersey.stability.hysteresis import hysteresis
 from hersey.stability.hysteresis_sweep import SweptBands, sweep_bands
 

@@ -12,8 +12,8 @@ import numpy as np
 from hersey.arrays import FloatArray
 from hersey.damping.surface import DampingSurface
 from hersey.machine.uncertainty import Uncertainty
+from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import Drag
-from hersey.motion.simulation import Drivetrain
 from hersey.scale.tasks import done, in_order
 from hersey.stability.hysteresis_sweep import sweep_bands
 from hersey.stability.operating_map.edges import law_at, laws_at, require_all

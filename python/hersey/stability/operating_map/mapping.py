@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,9 +13,10 @@ from hersey.arrays import FloatArray
 from hersey.damping.surface import FIXED, WITH_TRANSITION, DampingSurface
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.machine.limits import Limits, OperatingPoint
+from hersey.machine.machine import Machine
 from hersey.machine.uncertainty import Uncertainty
+from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import DragTable, PowerDrag
-from hersey.motion.simulation import Drivetrain
 from hersey.stability.operating_map.edges import GivenEdges, contour, edges_at, laws_at, shown_laws
 from hersey.stability.operating_map.intervals import FOLD_DRAWS, Intervals, intervals
 from hersey.stability.operating_map.result import OperatingMap
@@ -36,14 +37,14 @@ if TYPE_CHECKING:
 )
 def operating_map(
     surface: DampingSurface,
-    train: Drivetrain,
+    machine: Machine | Drivetrain,
     *,
-    roll_radius: float,
-    stick_speed: float,
+    roll_radius: float | None = None,
+    stick_speed: float | None = None,
     stick_speed_temperature: float | None = None,
-    stick_speed_rule: str = WITH_TRANSITION,
+    stick_speed_rule: str | None = None,
     limits: Limits | None = None,
-    points: Sequence[OperatingPoint] = (),
+    points: Sequence[OperatingPoint] | None = None,
     uncertainty: Mapping[str, Uncertainty] | None = None,
     temperatures: ArrayLike | None = None,
     speeds: ArrayLike | None = None,
@@ -58,14 +59,15 @@ def operating_map(
     ----------
     surface
         The fitted surface; it must have a transition.
-    train
-        Stiffness (N/m) and mass (kg) at the belt.
+    machine
+        The machine's file (`hersey.read_machine`), which states all up to ``uncertainty``; what is given
+        beside it comes before its own. Or a drivetrain: stiffness (N/m) and mass (kg) at the belt.
     roll_radius, stick_speed, stick_speed_temperature, stick_speed_rule
-        As in `DampingSurface.drag`; by default the stick speed is that at the fit's reference temperature and
-        moves with temperature as the transition speed does.
+        As in `DampingSurface.drag`; with a drivetrain the first two are needed, the stick speed is that at
+        the fit's reference temperature if no other is given, and moves as the transition speed does.
     limits
         What the drive can bear: ``motor_torque``, or ``roll_friction`` with ``nip_load``, gives the stall;
-        a grip that ``train`` states comes before theirs.
+        a grip that the drivetrain states comes before theirs.
     points
         Operating points to judge.
     uncertainty
@@ -98,8 +100,25 @@ def operating_map(
     >>> [map_.state_at(180 + 273.15, v).state for v in (0.02, 0.045, 0.2)]
     ['stick_slip', 'bistable', 'smooth']
     """
-    limits = limits or Limits()
-    train = limits.gripping(train)
+    given: dict[str, Any] = {
+        "roll_radius": roll_radius,
+        "stick_speed": stick_speed,
+        "stick_speed_temperature": stick_speed_temperature,
+        "stick_speed_rule": stick_speed_rule,
+        "limits": limits,
+        "points": points,
+        "uncertainty": uncertainty,
+    }
+    given = {name: value for name, value in given.items() if value is not None}
+    if isinstance(machine, Machine):
+        stated = replace(machine, **given)
+        train = stated.train
+    else:
+        for needed in ("roll_radius", "stick_speed"):
+            if needed not in given:
+                raise ParameterError(f"{needed} is missing: give it, or the machine in place of its train")
+        stated = Machine(machine.stiffness, machine.mass, **given)
+        train = stated.limits.gripping(machine)
     if draws < 1:
         raise ParameterError(f"draws is {draws}: at least 1 is needed")
     if surface.transition is None:
@@ -110,32 +129,31 @@ def operating_map(
     at = surface.reference_temperature
     first = surface.stick_speed_at(
         at,
-        stick_speed=stick_speed,
-        stick_speed_temperature=stick_speed_temperature,
-        stick_speed_rule=stick_speed_rule,
+        stick_speed=stated.stick_speed,
+        stick_speed_temperature=stated.stick_speed_temperature,
+        stick_speed_rule=stated.stick_speed_rule,
     )
-    drag = surface.drag(roll_radius=roll_radius, stick_speed=first)
-    known = dict(uncertainty or {})
+    radius, rule = stated.roll_radius, stated.stick_speed_rule
+    drag = surface.drag(roll_radius=radius, stick_speed=first)
+    known = dict(stated.uncertainty)
     if "stick_speed" in known:  # stated with the stick speed, so at its temperature
-        known["stick_speed"] = known["stick_speed"].times(first / stick_speed)
-    kelvin = shown_temperatures(surface, drag, points, temperatures)
-    edges = edges_at(train, drag, kelvin, stick_speed_rule)
-    found = intervals(
-        surface, train, drag, kelvin, known, roll_radius, stick_speed_rule, seed, draws, threads, client
-    )
-    holding = np.array([law.holding_force for law in laws_at(drag, kelvin, stick_speed_rule)])
+        known["stick_speed"] = known["stick_speed"].times(first / stated.stick_speed)
+    kelvin = shown_temperatures(surface, drag, stated.points, temperatures)
+    edges = edges_at(train, drag, kelvin, rule)
+    found = intervals(surface, train, drag, kelvin, known, radius, rule, seed, draws, threads, client)
+    holding = np.array([law.holding_force for law in laws_at(drag, kelvin, rule)])
     return _drawn(
         surface,
         train,
         drag,
         kelvin,
         edges,
-        holding * roll_radius,
+        holding * radius,
         found,
-        roll_radius=roll_radius,
-        stick_speed_rule=stick_speed_rule,
-        limits=limits,
-        points=points,
+        roll_radius=radius,
+        stick_speed_rule=rule,
+        limits=stated.limits,
+        points=stated.points,
         speeds=speeds,
     )
 

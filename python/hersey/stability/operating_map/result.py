@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from hersey.arrays import FloatArray, numbers_of
 from hersey.errors import ParameterError
+from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import DragTable, PowerDrag
-from hersey.motion.simulation import Drivetrain
 from hersey.result import Result, json_record
 from hersey.stability.operating_map.edges import check_temperatures, contour, edges_at, shown_laws
 from hersey.stability.operating_map.state import MapState, PlacedPoint

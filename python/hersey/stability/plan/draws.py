@@ -14,9 +14,9 @@ from hersey.arrays import FloatArray
 from hersey.damping.distributions import beta_quantile
 from hersey.errors import ParameterError
 from hersey.machine.uncertainty import Uncertainty
+from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import BESIDE, AnyDrag
 from hersey.motion.parameters import OF_THE_BELT
-from hersey.motion.simulation import Drivetrain
 from hersey.stability.plan.trial import COARSE, MachineSample, Shape, TemperatureProfile, outcomes
 
 #: Relative distance that a profile for known parameters keeps from failure, in each of them.

@@ -13,11 +13,13 @@ from numpy.typing import ArrayLike
 
 from hersey.errors import ParameterError
 from hersey.machine.limits import Limits
+from hersey.machine.machine import Machine
 from hersey.machine.uncertainty import Uncertainty
+from hersey.motion.belt import BeltDrag, Drivetrain, Train, belt_of
 from hersey.motion.drag import AnyDrag
 from hersey.motion.heat import HeatBalance
 from hersey.motion.schedule import Schedule
-from hersey.motion.simulation import Drivetrain, simulate
+from hersey.motion.simulation import simulate
 from hersey.stability.hysteresis import hysteresis
 from hersey.stability.plan.draws import Trials, drawn, lower_bound, most_failures, needed, neighbours
 from hersey.stability.plan.obstacles import Obstacle, Reach, obstacles
@@ -63,8 +65,8 @@ _CLOSURES = ("retained", "stiction")
 
 @takes_si(target_speed="belt speed", temperature="temperature", roll_radius="length")
 def plan_profile(
-    train: Drivetrain,
-    drag: AnyDrag,
+    train: Train,
+    drag: BeltDrag,
     *,
     target_speed: float,
     temperature: float | Schedule | None = None,
@@ -82,6 +84,10 @@ def plan_profile(
 
     Parameters
     ----------
+    train, drag
+        A drivetrain and its drag; or a machine (`hersey.read_machine`) and the surface fitted to its log,
+        which take radius, stick speed and grip from the machine's file. A machine also states what is not
+        given of limits, uncertainty and roll radius.
     target_speed
         m/s, as all speeds here.
     temperature
@@ -128,6 +134,11 @@ def plan_profile(
     >>> plan.kind, plan.share
     ('overshoot', 1.0)
     """
+    if isinstance(train, Machine):
+        limits = train.limits if limits is None else limits
+        uncertainty = train.uncertainty if uncertainty is None and not machines else uncertainty
+        roll_radius = train.roll_radius if roll_radius is None else roll_radius
+    train, drag, temperature = belt_of(train, drag, temperature)
     limits = Limits() if limits is None else limits
     _check(drag, target_speed, limits, confidence, seed)
     if machines and (uncertainty or samples or len(machines) < _LEAST):

@@ -17,11 +17,11 @@ import numpy as np
 
 from hersey import _core
 from hersey.arrays import FloatArray
+from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import AnyDrag
 from hersey.motion.heat import HeatBalance
 from hersey.motion.parameters import MOST_STEPS
 from hersey.motion.schedule import Schedule, ScheduleArguments
-from hersey.motion.simulation import Drivetrain
 
 #: Significant digits of the durations and of the peak speed: what is tried is what is written.
 _DIGITS = 6

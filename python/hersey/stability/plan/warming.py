@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from hersey.arrays import FloatArray
+from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import AnyDrag
 from hersey.motion.heat import HeatBalance
 from hersey.motion.schedule import Schedule
-from hersey.motion.simulation import Drivetrain, simulate
+from hersey.motion.simulation import simulate
 
 #: Rounds of plan and temperature at most, and what the film's temperature may change by in the last, K.
 ROUNDS, ALIKE = 8, 0.05

@@ -1,0 +1,112 @@
+"""What moves: a drivetrain with its drag, or a machine's file with the fitted law of its log."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, Protocol, TypeAlias, TypeVar, cast
+
+import numpy as np
+
+from hersey.errors import ParameterError
+from hersey.motion.drag import AnyDrag
+from hersey.units import fields_in_si, takes_si
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Drivetrain:
+    """Spring (gear train, roll core and rubber) of ``stiffness`` and moving ``mass``.
+
+    ``grip`` is the force up to which the roll grips the belt, its friction times the load; beyond, it
+    slips. If it is not given the roll never slips, as Eq. 11 assumes.
+    """
+
+    stiffness: float
+    mass: float
+    grip: float | None = None
+
+    def __post_init__(self) -> None:
+        """Bring the values to SI if they come with units."""
+        fields_in_si(self, {"stiffness": "stiffness", "mass": "mass", "grip": "force"})
+
+    @classmethod
+    @takes_si(stiffness="torsional stiffness", inertia="moment of inertia", roll_radius="length")
+    def rotational(cls, *, stiffness: float, inertia: float, roll_radius: float) -> Drivetrain:
+        """Return the drivetrain at the surface of a roll: k = K/r^2, m = J/r^2.
+
+        Parameters
+        ----------
+        stiffness
+            Torsional stiffness K, N m/rad.
+        inertia
+            Moment of inertia J, kg m^2.
+        roll_radius
+            m.
+
+        Examples
+        --------
+        >>> Drivetrain.rotational(stiffness=2.0, inertia=4e-4, roll_radius=0.02).mass
+        1.0
+        """
+        for name, value in (("stiffness", stiffness), ("inertia", inertia), ("roll_radius", roll_radius)):
+            if not value > 0 or not np.isfinite(value):
+                raise ParameterError(f"{name} is {value}: it must be greater than 0")
+        return cls(stiffness / roll_radius**2, inertia / roll_radius**2)
+
+    @property
+    def free_period(self) -> float:
+        """Period of spring and mass without drag, s: 2 pi sqrt(m/k)."""
+        return 2.0 * math.pi * math.sqrt(self.mass / self.stiffness)
+
+    @property
+    def _arguments(self) -> tuple[float, float, float | None]:
+        return float(self.stiffness), float(self.mass), None if self.grip is None else float(self.grip)
+
+
+class StatedMachine(Protocol):
+    """A machine's file, `hersey.machine.Machine`."""
+
+    @property
+    def train(self) -> Drivetrain:
+        """Stiffness, mass and grip at the belt."""
+
+    @property
+    def belt(self) -> dict[str, Any]:
+        """Roll radius, and the stick speed with its temperature and rule."""
+
+
+class FittedLaw(Protocol):
+    """A law of the torque at the roll, `hersey.DampingSurface`."""
+
+    def drag(self, *, temperature: float | None = None, **belt: Any) -> AnyDrag:
+        """Return the drag at the belt."""
+
+
+Train: TypeAlias = "Drivetrain | StatedMachine"
+BeltDrag: TypeAlias = "AnyDrag | FittedLaw"
+
+
+def belt_of(train: Train, drag: BeltDrag, temperature: T) -> tuple[Drivetrain, AnyDrag, T | None]:
+    """Return drivetrain, drag and temperature; of a machine with all that its file says of the belt.
+
+    A stick speed that is ``fixed`` holds at one temperature (K): the drag is that there, and varies no more.
+
+    Raises
+    ------
+    ParameterError
+        If a fitted law comes with a drivetrain, which knows neither radius nor stick speed.
+    """
+    machine = cast("StatedMachine", train) if hasattr(train, "belt") else None
+    plain = cast("Drivetrain", train) if machine is None else machine.train
+    if isinstance(drag, AnyDrag):
+        return plain, drag, temperature
+    if machine is None:
+        raise ParameterError(
+            "a fitted surface needs the machine, whose file states roll radius and stick speed: give "
+            "read_machine(...) in place of its train, or surface.drag(...) in place of the surface"
+        )
+    if machine.belt["stick_speed_rule"] == "fixed" and isinstance(temperature, int | float):
+        return plain, drag.drag(**machine.belt, temperature=temperature), None
+    return plain, drag.drag(**machine.belt), temperature
