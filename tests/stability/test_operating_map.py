@@ -31,6 +31,7 @@ from tests.conftest import ROOT
 
 #: What a belt settles to from rest and from steady sliding, by state of the map.
 SETTLES_TO = {
+    "creep": ("steady_sliding", "steady_sliding"),
     "stick_slip": ("stick_slip", "stick_slip"),
     "swing": ("stick_slip", "oscillation"),
     "bistable": ("stick_slip", "steady_sliding"),
@@ -82,9 +83,9 @@ def test_the_map_agrees_with_simulation_from_below_and_above(
     surface: DampingSurface, machine: Machine, size: int
 ) -> None:
     drawn = operating_map(surface, machine.train, **QUICK)
-    kelvin, speed = np.linspace(360.0, 466.0, size), np.geomspace(2e-3, 0.15, size)
+    kelvin, speed = np.linspace(360.0, 466.0, size), np.geomspace(2e-4, 0.15, size)
     states = drawn.states(kelvin[:, None], speed[None, :])
-    assert {"stick_slip", "bistable", "smooth"} <= set(states.ravel())
+    assert {"creep", "stick_slip", "bistable", "smooth"} <= set(states.ravel())
     rest, steady = simulated(machine.train, drawn, kelvin, speed)
     padded = np.pad(states, 1, mode="edge")
     for i, j in np.ndindex(states.shape):
@@ -104,6 +105,36 @@ def test_the_edges_part_what_simulation_finds_beside_them(surface: DampingSurfac
         for speed, state in zip(beside, expected, strict=True):
             rest, steady = simulated(machine.train, drawn, np.array([t]), np.array([speed]))
             assert (rest[0, 0], steady[0, 0]) == SETTLES_TO[state], (t, speed)
+
+
+def test_below_the_stick_speed_the_belt_creeps(surface: DampingSurface, machine: Machine) -> None:
+    kelvin = np.array([400.0, 435.85])
+    drawn = operating_map(surface, machine.train, **QUICK, temperatures=kelvin)
+    for t, stick in zip(kelvin, drawn.stick_speed, strict=True):
+        assert stick == drawn.drag.at(t).stick_speed
+        assert drawn.states(t, [0.1 * stick, 0.999 * stick, 1.001 * stick]).tolist() == [
+            "creep",
+            "creep",
+            "stick_slip",
+        ]
+        for share, state in ((0.1, "creep"), (0.999, "creep"), (1.001, "stick_slip")):
+            rest, steady = simulated(machine.train, drawn, np.array([t]), np.array([share * stick]))
+            assert (rest[0, 0], steady[0, 0]) == SETTLES_TO[state], (t, share)
+
+
+def test_where_the_roll_slips_a_belt_may_swing_without_sticking(
+    surface: DampingSurface, machine: Machine
+) -> None:
+    """Just below V* of a roll whose grip is a little more than starts the belt."""
+    kelvin = 453.15
+    law = operating_map(surface, machine.train, **QUICK, temperatures=[kelvin, 460.0]).drag.at(kelvin)
+    limits = Limits(roll_friction=0.5, nip_load=2 * 1.02 * law.holding_force)
+    drawn = operating_map(surface, machine.train, **QUICK, limits=limits, temperatures=[kelvin, 460.0])
+    state = drawn.state_at(kelvin, 0.9999 * drawn.upper[0])
+    assert state.state == "bistable"
+    assert "swings while the roll slips" in state.verdict()
+    free = operating_map(surface, machine.train, **QUICK, temperatures=[kelvin, 460.0])
+    assert "slips." in free.state_at(kelvin, 0.99 * free.upper[0]).verdict()
 
 
 def test_stall_is_where_the_drag_exceeds_the_limit(surface: DampingSurface, machine: Machine) -> None:

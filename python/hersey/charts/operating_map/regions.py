@@ -18,6 +18,7 @@ REGIONS = (
     ("bistable", "bistable: smooth only from above", "smooth only from above", "#f5cf7f"),
     ("swing", "small swing without sticking", "small swing", "#e08f2d"),
     ("stick_slip", "stick-slip", "stick-slip", "#cc6a3d"),
+    ("creep", "slower than the stick speed", "creeps or sticks", "#a8503a"),
     ("stall", "stall: the roll slips", "stall", "#44444e"),
     ("motor", "more than the motor bears", "motor stops", "#44444e"),
 )
@@ -37,6 +38,7 @@ def bands_of(result: OperatingMap, frame: Frame) -> Bands:
         frame.clipped(side_to_side(result, getattr(result, n))) for n in names
     )
     below = np.where(side_to_side(result, result.starts.astype(float)) > 0, below, frame.high)
+    sticks = frame.clipped(np.array([0.0]) if result.given else side_to_side(result, result.stick_speed))
     bottom, top = np.full_like(below, frame.low), np.full_like(below, frame.high)
 
     def between(low: FloatArray, high: FloatArray) -> Edges:
@@ -44,7 +46,8 @@ def bands_of(result: OperatingMap, frame: Frame) -> Bands:
         return low, np.maximum(np.clip(high, below, above), low)
 
     bands = {
-        "stick_slip": [between(bottom, lower)],
+        "creep": [between(bottom, np.minimum(sticks, lower))],
+        "stick_slip": [between(np.maximum(bottom, sticks), lower)],
         "swing": [between(lower, bend)],
         "bistable": [between(bend, upper)],
         "smooth": [between(upper, top)],

@@ -67,6 +67,7 @@ class StatePart(Part):
     upper: float | None
     stick_speed: float = Field(description="at this temperature")
     extrapolated: bool
+    slipping: bool = Field(default=False, description="the roll may slip for a part of the laps")
 
 
 class PlacedPart(Part):

@@ -28,7 +28,7 @@ async function live(analysis, bytes, { map: mapPlace, panel: place }) {
   const CLOSURES = {
     retained: "retained: keeps its creep", stiction: "stiction: stops dead", stribeck: "Stribeck, smooth", lugre: "LuGre, bristles",
   };
-  const ZONES = { stick_slip: "sticks", swing: "depends", bistable: "depends", smooth: "smooth", stall: "stall", motor: "stall" };
+  const ZONES = { creep: "sticks", stick_slip: "sticks", swing: "depends", bistable: "depends", smooth: "smooth", stall: "stall", motor: "stall" };
   let point = worst(), base = known.own(point), setting = known.read(location.hash, base) ?? { ...base };
   let answer = null, found = null, kicked = null, spread = null, asked = 0, drawn = 0, mapped = "", bandCost = 0, spoken = 0, open = "";
 

@@ -74,6 +74,11 @@ class OperatingMap(Result):
         return isinstance(self.drag, DragTable)
 
     @property
+    def stick_speed(self) -> FloatArray:
+        """Stick speed (m/s) at each temperature."""
+        return np.array([law.stick_speed for law in self._laws(self.temperature)])
+
+    @property
     def starts(self) -> NDArray[np.bool_]:
         """Whether the drive starts a belt at rest, at each temperature."""
         return self.holding <= self._limit
@@ -221,6 +226,8 @@ class OperatingMap(Result):
         held = edges["lower"] == 0 and speed < edges["transition"]
         if torque > self._limit or (held and not starts):
             moving = self.beyond
+        elif speed < law.stick_speed and not self.given:
+            moving = "creep"
         elif speed < edges["lower"]:
             moving = "stick_slip"
         elif speed < edges["transition"]:
@@ -241,6 +248,7 @@ class OperatingMap(Result):
             **edges,
             stick_speed=law.stick_speed,
             extrapolated=outside,
+            slipping=self.train.grip is not None,
         )
 
 

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    pass
-
-#: States, from the slow side up. ``swing``: a small swing without sticking survives, a stuck belt sticks on.
-#: ``stall``: the roll slips on the belt; ``motor``: the motor gives up.
-STATES = ("stick_slip", "swing", "bistable", "smooth", "stall", "motor")
+#: States, from the slow side up. ``creep``: below the stick speed the closure ``retained`` takes the belt
+#: along at the speed of the drive. ``swing``: a small swing without sticking survives, a stuck belt sticks
+#: on. ``stall``: the roll slips on the belt; ``motor``: the motor gives up.
+STATES = ("creep", "stick_slip", "swing", "bistable", "smooth", "stall", "motor")
 _VERDICTS = {
+    "creep": "Slower than the stick speed, where nothing is measured: the belt creeps along or sticks.",
     "stick_slip": "Stick-slip is certain.",
     "swing": "The belt swings; it sticks once it has stuck.",
     "bistable": "Smooth only if it comes from above; from rest it sticks and slips.",
@@ -19,6 +17,10 @@ _VERDICTS = {
     "stall": "The drag is more than the roll grips: it slips on the belt.",
     "motor": "The drag is more than the motor can bear.",
 }
+#: The same on a roll that may slip on the belt.
+_SLIPPING = (
+    "Smooth only if it comes from above; from rest it goes on sticking, or swings while the roll slips."
+)
 #: The same of a belt at rest, which the drive does not start.
 _NOT_STARTED = {
     "stall": "The roll slips on a belt at rest and does not start it",
@@ -38,7 +40,8 @@ class MapState:
     ``holding`` that which a belt at rest bears before it starts; where the drive cannot bear it (``starts``
     is false) the state is ``stall`` or ``motor``, and ``moving`` that of a belt which moves already;
     ``doubtful`` says that the limit lies within the 95 % interval of ``holding``.
-    ``stick_speed`` is that at this temperature. ``extrapolated`` says that no dwell of the
+    ``stick_speed`` is that at this temperature. ``slipping`` says that the roll slips for a part of the laps.
+    ``extrapolated`` says that no dwell of the
     fit lies that far out.
     """
 
@@ -53,13 +56,15 @@ class MapState:
     upper: float
     stick_speed: float
     extrapolated: bool
+    slipping: bool = False
 
     def verdict(self) -> str:
         """Return what the state means, in one sentence."""
+        moving = _SLIPPING if self.slipping and self.moving == "bistable" else _VERDICTS[self.moving]
         if self.doubtful:
-            return f"{_MAY_NOT_START} {_VERDICTS[self.moving]}"
+            return f"{_MAY_NOT_START} {moving}"
         if self.starts:
-            return _VERDICTS[self.state]
+            return moving
         slides = self.moving in ("bistable", "smooth")
         return _NOT_STARTED[self.state] + ("; one that slides already goes on sliding." if slides else ".")
 
