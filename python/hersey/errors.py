@@ -2,9 +2,23 @@
 
 from __future__ import annotations
 
-from typing import Self
+from typing import Literal, Self
 
 from hersey.spelling import printable
+
+#: How a person comes in: the way out is given in the words of it.
+Way = Literal["python", "terminal", "page"]
+_way: list[Way] = ["python"]
+
+
+def speak(way: Way) -> None:
+    """Give ways out in the words of this way in, in the whole process."""
+    _way[0] = way
+
+
+def way_in() -> Way:
+    """Return the way in whose words a way out is given."""
+    return _way[0]
 
 
 class HerseyError(Exception):
@@ -35,6 +49,18 @@ class ChannelError(HerseyError, LookupError):
 
 class UnitError(HerseyError, ValueError):
     """A unit that is missing, unknown or of the wrong dimension."""
+
+
+class UnstatedRoleError(UnitError):
+    """A radius or a normal load that a quantity needs and nobody stated.
+
+    ``role`` is ``radius`` or ``load``, ``proposed`` the columns that are called so.
+    """
+
+    def __init__(self, *message: object, role: str = "", proposed: tuple[str, ...] = ()) -> None:
+        """Take the message, and what is needed."""
+        super().__init__(*message)
+        self.role, self.proposed = role, proposed
 
 
 class WrongKindError(UnitError):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -51,6 +52,28 @@ def test_the_exponent_is_that_of_the_force(wear: Path) -> None:
     assert "torque is 'Friction force' x radius (0.03 m)" in shown.stdout
     assert "5 dwells" in shown.stdout
     assert "dead channel" not in shown.stdout  # a load may stay what it is
+
+
+def test_a_column_of_a_length_is_proposed_as_the_radius_and_not_taken(tmp_path: Path) -> None:
+    lines = ["Time [s],Friction force [N],Sliding speed [mm/s],Wear [um],Track radius [mm],Fn [N]"]
+    lines += [f"{i / 10},5,20,{i},25,50" for i in range(400)]
+    (tmp_path / "wear.csv").write_text("\n".join([*lines, ""]))
+    refused = run("fit", "wear.csv", "--isothermal", cwd=tmp_path)
+    assert refused.returncode == 2
+    assert "'Track radius [mm]' may be the radius: --radius 'Track radius'" in refused.stderr
+    assert "Wear" not in refused.stderr
+    looked = run("inspect", "wear.csv", "--isothermal", "--radius", "Track radius", cwd=tmp_path)
+    assert "'Fn [N]' may be the normal load and is not used: if it is, say --load 'Fn'" in looked.stdout
+    assert run("inspect", "wear.csv", "--save-mapping", cwd=tmp_path).returncode == 0
+    proposal = (tmp_path / "hersey.toml").read_text()
+    assert '# channel = "Track radius"' in proposal
+    assert '# channel = "Fn"' in proposal
+    lines = [line.removeprefix("# ") for line in proposal.splitlines() if "value" not in line]
+    told = tomllib.loads("\n".join(lines[lines.index(next(li for li in lines if "[radius]" in li)) :][:8]))
+    assert told == {
+        "radius": {"channel": "Track radius", "unit": "mm"},
+        "load": {"channel": "Fn", "unit": "N"},
+    }
 
 
 def test_a_load_for_each_run(wear: Path) -> None:

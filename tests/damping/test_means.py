@@ -126,8 +126,10 @@ def test_rows_that_state_no_dwell_are_said() -> None:
 
 def test_loads_that_differ_are_said() -> None:
     columns = {"speed [rpm]": [10, 20, 40], "torque [N*m]": [1.0, 1.1, 1.2], "load [N]": [10, 20, 20]}
-    points = hersey.SteadyPoints.from_table(columns)
+    points = hersey.SteadyPoints.from_table(columns, channels={"load": "load"})
     assert points.varying_load == (10.0, 20.0)
+    unnamed = hersey.SteadyPoints.from_table(columns).log.files[0].notes
+    assert "column 'load [N]' may be the normal load" in unnamed[0]
 
 
 def test_decimal_commas_and_semicolons(tmp_path: Path) -> None:

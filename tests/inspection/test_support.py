@@ -20,7 +20,10 @@ def points(*temperatures: float, load: bool = False) -> hersey.SteadyPoints:
         "torque [N*m]": 2.0 * hot**-0.9 * speed**0.3 * noise,
         "temperature [degC]": hot,
     }
-    return hersey.SteadyPoints.from_table(table | ({"load [N]": 100.0 + speed} if load else {}))
+    if not load:
+        return hersey.SteadyPoints.from_table(table)
+    loaded = table | {"load [N]": 100.0 + speed}
+    return hersey.SteadyPoints.from_table(loaded, channels={"load": "load"})
 
 
 def test_an_exponent_whose_interval_a_fit_does_not_tell_is_not_promised() -> None:

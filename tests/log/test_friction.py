@@ -4,13 +4,21 @@ from __future__ import annotations
 
 import itertools
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import polars as pl
 import pytest
 
 import hersey
-from hersey.errors import ChannelError, HerseyError, ParameterError, UnitError, UnreadableLogError
+from hersey.errors import (
+    ChannelError,
+    HerseyError,
+    ParameterError,
+    UnitError,
+    UnreadableLogError,
+    UnstatedRoleError,
+)
 from hersey.log import list_channels
 from hersey.log.text import delimited
 from tests.conftest import shared
@@ -39,7 +47,7 @@ FRICTION = {"Time [s]": TIME, "Friction force [N]": FORCE, "Sliding speed [mm/s]
 
 def test_a_friction_force_with_its_radius_is_a_torque(tmp_path: Path) -> None:
     path = write(tmp_path / "a.csv", text(**FRICTION))
-    with pytest.raises(UnitError, match=r"force, .* only with the radius: say it with --radius '25 mm'"):
+    with pytest.raises(UnitError, match=r"force, .* only with the radius: state it, e\.g\. radius='25 mm'"):
         hersey.read(path, isothermal=True)
     log = hersey.read(path, isothermal=True, radius="25 mm")
     (run,) = log.runs
@@ -56,24 +64,25 @@ def test_a_friction_force_with_its_radius_is_a_torque(tmp_path: Path) -> None:
 def test_load_and_radius_per_row(tmp_path: Path) -> None:
     columns = FRICTION | {"Radius [mm]": RADIUS, "Normal load [N]": LOAD}
     path = write(tmp_path / "a.csv", text(**columns))
-    (run,) = hersey.read(path, isothermal=True).runs
+    stated = {"radius": "Radius", "load": "Normal load"}
+    (run,) = hersey.read(path, isothermal=True, channels=stated).runs
     np.testing.assert_allclose(run.torque, FORCE * RADIUS * 1e-3, rtol=1e-12)
     np.testing.assert_allclose(run.speed, SLIDING / RADIUS, rtol=1e-12)
     assert run.load is not None
     np.testing.assert_allclose(run.load, LOAD)
-    (same,) = hersey.read(pl.DataFrame(columns), isothermal=True).runs  # the other way through
+    (same,) = hersey.read(pl.DataFrame(columns), isothermal=True, channels=stated).runs  # the other way
     np.testing.assert_allclose(same.torque, run.torque, rtol=1e-12)
     np.testing.assert_allclose(same.speed, run.speed, rtol=1e-12)
     assert same.load is not None
     np.testing.assert_allclose(same.load, LOAD)
-    assert "load (N)" in hersey.read(path, isothermal=True).to_frame().columns
+    assert "load (N)" in hersey.read(path, isothermal=True, channels=stated).to_frame().columns
 
 
 @pytest.mark.parametrize("name", ["COF", "Friction coefficient", "µ [1]", "Friction coefficient [-]"])
 def test_a_coefficient_needs_the_load(name: str, tmp_path: Path) -> None:
     columns = {"Time [s]": TIME, name: 0.1, "v [m/s]": 0.02}
     path = write(tmp_path / "a.csv", text(**columns))
-    with pytest.raises(UnitError, match="only with the normal load: say it with --load '50 N'"):
+    with pytest.raises(UnitError, match=r"only with the normal load: state it, e\.g\. load='50 N'"):
         hersey.read(path, isothermal=True, radius=0.025)
     for source in (path, pl.DataFrame(columns | {"Time [s]": TIME})):
         (run,) = hersey.read(source, isothermal=True, radius=0.025, load="40 N").runs
@@ -85,7 +94,8 @@ def test_a_coefficient_needs_the_load(name: str, tmp_path: Path) -> None:
 
 def test_a_row_of_units_may_hold_that_of_a_coefficient(tmp_path: Path) -> None:
     lines = ["t;mu;v;Load", "s;1;mm/s;N", *(f"{i};0,1;20,5;50" for i in range(30))]
-    log = hersey.read(write(tmp_path / "a.csv", "\n".join(lines)), isothermal=True, radius="25 mm")
+    path = write(tmp_path / "a.csv", "\n".join(lines))
+    log = hersey.read(path, isothermal=True, radius="25 mm", channels={"load": "Load"})
     np.testing.assert_allclose(log.runs[0].torque, 0.1 * 50 * 0.025)
     assert log.rows == 30
 
@@ -97,16 +107,15 @@ def test_a_torque_goes_before_a_force(tmp_path: Path) -> None:
     np.testing.assert_allclose(run.speed, 2 * np.pi)
 
 
-def test_a_load_that_lacks_numbers_costs_no_row(tmp_path: Path) -> None:
+def test_only_a_load_that_is_named_costs_rows(tmp_path: Path) -> None:
     load = ["50.0"] * ROWS
     load[7] = "OVERLOAD"
     columns = FRICTION | {"Radius [mm]": RADIUS, "Load [N]": load}
     path = write(tmp_path / "a.csv", text(**columns))
-    log = hersey.read(path, isothermal=True)
+    log = hersey.read(path, isothermal=True, channels={"radius": "Radius"})
     assert log.rows == ROWS
     assert log.runs[0].load is None
-    assert "the load lacks a number in 1 row(s): it is not used" in log.files[0].notes
-    named = hersey.read(path, isothermal=True, channels={"load": "Load"})
+    named = hersey.read(path, isothermal=True, channels={"radius": "Radius", "load": "Load"})
     assert named.rows == ROWS - 1
     assert named.runs[0].load is not None
 
@@ -120,8 +129,55 @@ def test_a_radius_of_zero_or_less_costs_its_row(wrong: float, turning: bool, tmp
     if turning:
         columns = {n: v for n, v in columns.items() if "Sliding" not in n} | {"Speed [rpm]": SLIDING}
     for source in (write(tmp_path / "a.csv", text(**columns)), pl.DataFrame(columns)):
-        log = hersey.read(source, isothermal=True)
+        log = hersey.read(source, isothermal=True, channels={"radius": "Radius"})
         assert (log.rows, log.files[0].missing_rows) == (ROWS - 1, 1)
+
+
+LENGTHS = ["Wear [um]", "Stroke [mm]", "Roll radius [mm]", "Gap [in]"]
+FORCES = ["Clamp [kN]", "Normal load [N]", "Axial force [N]"]
+
+
+@pytest.mark.parametrize("length", LENGTHS)
+@pytest.mark.parametrize("way", ["text", "frame", "means"])
+def test_no_column_becomes_the_radius_by_its_unit_or_name(length: str, way: str, tmp_path: Path) -> None:
+    read: Any
+    source: Any
+    columns = FRICTION | {length: RADIUS}
+    read, source = hersey.read, pl.DataFrame(columns)
+    if way == "text":
+        source = write(tmp_path / "a.csv", text(**columns))
+    elif way == "means":
+        read, source = hersey.SteadyPoints.from_table, source.drop("Time [s]")
+    with pytest.raises(UnstatedRoleError, match="only with the radius") as caught:
+        read(source, isothermal=True)
+    assert caught.value.role == "radius"
+    assert caught.value.proposed == (("Roll radius",) if "radius" in length else ())
+    if "radius" in length:
+        assert "column 'Roll radius [mm]' may be the radius: channels={'radius': 'Roll radius'}" in str(
+            caught.value
+        )
+
+
+@pytest.mark.parametrize("force", FORCES)
+def test_no_column_becomes_the_load_by_its_unit_or_name(force: str, tmp_path: Path) -> None:
+    columns = FRICTION | {force: LOAD}
+    name = force.partition(" [")[0]
+    proposal = f"column '{force}' may be the normal load and is not used: if it is, say channels="
+    for source in (write(tmp_path / "a.csv", text(**columns)), pl.DataFrame(columns)):
+        log = hersey.read(source, isothermal=True, radius="25 mm")
+        assert log.runs[0].load is None
+        said = [note for note in log.files[0].notes if "normal load" in note]
+        assert said == ([] if name == "Clamp" else [f"{proposal}{{'load': '{name}'}}"])
+    coefficient = {"Time [s]": TIME, "COF": 0.1, "v [m/s]": 0.02, force: LOAD}
+    with pytest.raises(UnstatedRoleError, match="only with the normal load"):
+        hersey.read(pl.DataFrame(coefficient), isothermal=True, radius=0.025)
+
+
+def test_a_unit_of_a_radius_names_no_column(tmp_path: Path) -> None:
+    path = write(tmp_path / "a.csv", text(**(TORQUE | {"Radius": RADIUS})))
+    assert hersey.read(path, isothermal=True).rows == ROWS
+    with pytest.raises(UnstatedRoleError, match="the unit of the radius is stated without it"):
+        hersey.read(path, isothermal=True, units={"radius": "mm"})
 
 
 def test_a_torque_in_percent_is_no_coefficient(tmp_path: Path) -> None:

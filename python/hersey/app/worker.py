@@ -13,12 +13,13 @@ import warnings
 from pathlib import Path
 from typing import Any
 
-from hersey.errors import HerseyError
+from hersey.errors import HerseyError, speak
 from hersey.files.writing import write_atomically
 
 
 def main() -> None:
     """Answer one request."""
+    speak("page")
     request = json.loads(sys.stdin.buffer.readline())
     threading.Thread(target=_end_with_parent, daemon=True).start()
     try:

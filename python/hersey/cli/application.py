@@ -12,7 +12,7 @@ from typer.core import TyperCommand, TyperGroup
 
 from hersey.cli.interruption import INTERRUPTED
 from hersey.cli.terminal import say, warnings_said
-from hersey.errors import HerseyError
+from hersey.errors import HerseyError, speak
 
 #: The verbs in the order of the help, with the first sentence of each, which stands here too so that the list
 #: of verbs is printed without loading them. Each is a module of this folder, with a function of that name.
@@ -113,6 +113,7 @@ app = typer.Typer(
 
 def main() -> None:
     """Run the command line."""
+    speak("terminal")
     code: int | None = None
     try:
         with warnings_said():

@@ -110,7 +110,7 @@ def roles_of(
         else:
             chosen[role] = channel
     try:
-        chosen |= beside(columns, choices, stated, chosen, log.name, dead)
+        chosen |= beside(columns, choices, stated, chosen, log.name)
     except HerseyError as error:
         without.setdefault("torque", str(error).removeprefix(f"{log.name}: "))
     return {role: column for role, (column, _) in chosen.items()}, without

@@ -8,6 +8,7 @@ recording      what a file of any other format holds: channels with clocks of th
 formats        one reader per format, and which one opens a file
 channels       which column plays which role
 friction       friction forces and coefficients as torques, sliding speeds as those of a rotation
+stating        a radius or a load: proposed, used once a person states it
 rows           which rows can be used, and where one run ends and the next begins
 columns        columns as they stand, for readers with roles of their own
 assembly       from a recording to a run on the clock of the torque

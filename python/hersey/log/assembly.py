@@ -19,7 +19,7 @@ from hersey.log.channels import (
     no_channel,
     refuse_two_clocks,
 )
-from hersey.log.friction import beside, in_rotation, notes_on, spare
+from hersey.log.friction import beside, in_rotation, notes_on, unused
 from hersey.log.recording import Recording, Signal
 from hersey.log.rows import LeftOut, runs_with_records
 from hersey.log.text.layout import Column
@@ -74,8 +74,8 @@ class Assembly:
         for role in ("speed",) if isothermal else ("speed", "temperature"):
             self.chosen[role] = self._channel(role, choices, torque)
         near = tuple(c for c in self.columns if c.group == torque.group)
-        self.chosen |= beside(near, choices, stated, self.chosen, self.source.name, self._says_nothing)
-        self.spare = spare(self.chosen, choices)
+        self.chosen |= beside(near, choices, stated, self.chosen, self.source.name)
+        self._unused = unused(near, self.chosen, stated)
         self.parts = {role: self._part(role, choices) for role in self.chosen}
 
     def runs(self, *, drop_missing: bool) -> list[tuple[Run, LogFile]]:
@@ -113,14 +113,13 @@ class Assembly:
             )
         arrays = in_rotation(arrays, self.chosen, self.stated)
         rows = torque.rows[kept]
-        needed = [values for role, values in arrays.items() if role not in self.spare]
-        usable = np.logical_and.reduce([np.isfinite(values) for values in needed])
+        usable = np.logical_and.reduce([np.isfinite(values) for values in arrays.values()])
         if not usable.all():
             bad = rows[~usable]
             left_out.add(bad.size, (f"{self._place(torque, int(row))}: no radius above zero" for row in bad))
             arrays = {role: values[usable] for role, values in arrays.items()}
             rows = rows[usable]
-        notes += [*notes_on(self.chosen, self.stated), *self._dead.values()]
+        notes += [*notes_on(self.chosen, self.stated), *self._dead.values(), *self._unused]
         log = self._record(tuple(note for note in notes if note))
         return runs_with_records(
             log,
@@ -262,8 +261,7 @@ class Assembly:
         torque = self.parts["torque"]
         for tick in dict.fromkeys(part.tick for part in self.parts.values()):
             parts = [part for part in self.parts.values() if part.tick == tick]
-            needed = [p for p in parts if p.role not in self.spare]
-            gone = ~np.logical_and.reduce([_believed(p.time) & _believed(p.values) for p in needed or parts])
+            gone = ~np.logical_and.reduce([_believed(p.time) & _believed(p.values) for p in parts])
             here = left_out if tick == torque.tick else LeftOut()
             here.add(int(gone.sum()), (self._fault(parts, int(row)) for row in np.flatnonzero(gone)))
             here.refuse_many(self.source.name, gone.size, allowed=drop_missing)
@@ -281,7 +279,6 @@ class Assembly:
     def _fault(self, parts: list[_Part], row: int) -> str:
         """The channel of the first number of a sample that is of no use, and what is wrong with it."""
         place = self._place(parts[0], row)
-        parts = [part for part in parts if part.role not in self.spare] or parts
         for part in parts:
             if np.isfinite(part.values[row]) and not _believed(part.values[row]):
                 written = (part.values[row] - part.unit.offset) / part.unit.scale

@@ -129,6 +129,11 @@ def _is_named(pattern: str, column: Column) -> bool:
     return len(column.name) <= _LONGEST_NAME and bool(re.fullmatch(pattern, column.name, re.IGNORECASE))
 
 
+def is_called(role: str, column: Column) -> bool:
+    """Return whether a column has a name that columns of a role have."""
+    return _is_named(_NAMES[role], column)
+
+
 def is_dead(values: FloatArray) -> bool:
     """Return whether a channel says nothing: no number (NaN stands for a missing one), or one throughout."""
     known = values[np.isfinite(values)]
@@ -169,7 +174,7 @@ def role_conversion(role: str, unit: str) -> tuple[str, Conversion]:
 def no_channel(role: str, columns: tuple[Column, ...], file: str) -> ChannelError:
     """Return the error for a role that no column plays."""
     way_out = f"name it with --{role}"
-    if role == "torque" and any(_is_unit_of("force", c.unit) for c in columns):
+    if role == "torque" and any(is_of_kind("force", c.unit) for c in columns):
         way_out += " (a friction force too, with the --radius at which it acts)"
     elif role == "torque" and (current := next((c for c in columns if c.unit in _AMPERES), None)):
         way_out = (
@@ -260,20 +265,21 @@ def _in_friction(role: str, columns: tuple[Column, ...], measured: list[Column])
     """Columns of a friction force, or else a coefficient, or of a sliding speed."""
     if role == "speed":
         sliding = [c for c in columns if _is_named(_FRICTION["belt speed"], c)]
-        return [c for c in measured or sliding if _is_unit_of("belt speed", c.unit)]
+        return [c for c in measured or sliding if is_of_kind("belt speed", c.unit)]
     if role != "torque":
         return []
     coefficients = [c for c in columns if _is_named(_FRICTION["friction coefficient"], c)]
     forces = [c for c in columns if _is_named(_FRICTION["force"], c) and c not in coefficients]
-    forces = [c for c in forces if not c.unit or _is_unit_of("force", c.unit)]
+    forces = [c for c in forces if not c.unit or is_of_kind("force", c.unit)]
     return (
         forces
-        or [c for c in measured if _is_unit_of("force", c.unit)]
+        or [c for c in measured if is_of_kind("force", c.unit)]
         or [c for c in coefficients if not c.unit or c.unit in ("1", "-", "\u2013")]
     )
 
 
-def _is_unit_of(kind: str, unit: str) -> bool:
+def is_of_kind(kind: str, unit: str) -> bool:
+    """Return whether a unit is one of a kind of quantity."""
     try:
         return bool(unit and conversion(kind, unit))
     except UnitError:

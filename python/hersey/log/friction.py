@@ -6,21 +6,20 @@ the speed of rotation that of sliding over the radius. Radius and load are chann
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.errors import HerseyError, ParameterError, UnitError
+from hersey.errors import ParameterError
 from hersey.log.channels import ChannelChoice, Stated, find_channel, role_conversion
+from hersey.log.stating import proposals, unstated
 from hersey.log.text.layout import Column
 from hersey.log.torque_log import LogFile, Run
 from hersey.units import Conversion
 
 Chosen = dict[str, tuple[Column, Conversion]]
-#: Examples of what the user may say, by role.
-_EXAMPLES = {"radius": "25 mm", "load": "50 N"}
 
 
 def beside(
@@ -29,37 +28,40 @@ def beside(
     stated: Stated,
     chosen: Chosen,
     file: str,
-    dead: Callable[[Column], bool] = lambda _: False,
 ) -> Chosen:
-    """Return the columns of load, radius and number of the run that are named, needed or leave no doubt.
+    """Return the columns of load, radius and number of the run that are named.
+
+    A column that nobody named plays none of these roles, whatever its name and unit.
 
     Raises
     ------
     ChannelError, UnitError
-        If torque or speed cannot be had without a radius or a load; the message says how to give it.
+        If a named column is not there or has no unit that its role can have.
+    UnstatedRoleError
+        If torque or speed cannot be had without a radius or a load that nobody stated.
     """
     others: Chosen = {}
-    left = tuple(c for c in columns if all(c != column for column, _ in chosen.values()))
+    left = _without(columns, chosen)
     for role in ("load", "radius", "run"):
-        needs = _needing(role, chosen)
         choice = choices.get(role, ChannelChoice())
-        if choice.name:
-            channel = find_channel(role, left, choice, file)
-        elif role == "run" or getattr(stated, role) is not None or (role == "radius" and not needs):
-            continue
-        else:
-            channel = _found(role, left, choice, file, dead, sure=bool(needs))
-        if channel is not None:
+        if choice.name and (channel := find_channel(role, left, choice, file)):
             others[role] = channel
-        elif needs:
-            raise UnitError(f"{file}: {needs}: say it with --{role} '{_EXAMPLES[role]}', or name its column")
+        elif role != "run" and getattr(stated, role) is None:
+            why = _needing(role, chosen) or (choice.unit and f"the unit of the {role} is stated without it")
+            if why:
+                raise unstated(file, role, why, left)
     return others
 
 
-def spare(chosen: Chosen, choices: Mapping[str, ChannelChoice]) -> frozenset[str]:
-    """Return the roles whose columns are read if they can be, and cost no row otherwise: an unasked load."""
-    asked = choices.get("load", ChannelChoice()).name or _needing("load", chosen)
-    return frozenset() if asked else frozenset({"load"})
+def unused(columns: tuple[Column, ...], chosen: Chosen, stated: Stated) -> list[str]:
+    """Return which columns may be the normal load that nobody stated, and how to state it."""
+    if "load" in chosen or stated.load is not None:
+        return []
+    return proposals("load", _without(columns, chosen))
+
+
+def _without(columns: tuple[Column, ...], chosen: Chosen) -> tuple[Column, ...]:
+    return tuple(c for c in columns if all(c != column for column, _ in chosen.values()))
 
 
 def in_rotation(arrays: dict[str, FloatArray], chosen: Chosen, stated: Stated) -> dict[str, FloatArray]:
@@ -152,21 +154,3 @@ def _needing(role: str, chosen: Chosen) -> str:
         if role == "load" and kind == "friction coefficient":
             return f"'{column}' is a {kind}, which is a force only with the normal load"
     return ""
-
-
-def _found(
-    role: str,
-    columns: tuple[Column, ...],
-    choice: ChannelChoice,
-    file: str,
-    dead: Callable[[Column], bool],
-    *,
-    sure: bool,
-) -> tuple[Column, Conversion] | None:
-    """The column of a role; a doubtful one is left alone unless it is needed."""
-    try:
-        return find_channel(role, columns, choice, file, dead)
-    except HerseyError:
-        if sure:
-            raise
-        return None

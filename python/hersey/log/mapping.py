@@ -38,6 +38,7 @@ from hersey.log.quantities import Amount, amount
 from hersey.log.reading import list_channels, read
 from hersey.log.sensor_tables import SpeedErrors, TemperatureErrors, TorqueErrors, sensors_of
 from hersey.log.sensors import Sensors
+from hersey.log.stating import proposed
 from hersey.log.text.delimited import Progress
 from hersey.log.text.layout import Column
 from hersey.log.torque_log import LogFile
@@ -420,15 +421,11 @@ _EXAMPLES: dict[str, tuple[str, ...]] = {
     ),
     "time": (),
 }
-#: What a friction force needs beside it.
-_RADIUS = (
-    "",
-    "# [radius]                      # at which the friction force acts",
-    '# value = "25 mm"               # or channel = "Radius" and unit = "mm"',
-    "",
-    "# [load]                        # normal load: a friction coefficient needs it",
-    '# value = "50 N"                # or channel = "Load" and unit = "N"',
-)
+#: What a friction force needs beside it: meaning and an amount of each role.
+_BESIDE = {
+    "radius": ("at which the friction force acts", "25 mm"),
+    "load": ("normal load: a friction coefficient needs it", "50 N"),
+}
 
 
 def _proposed(role: str, columns: tuple[Column, ...], choice: ChannelChoice, path: Path) -> list[str]:
@@ -445,8 +442,27 @@ def _proposed(role: str, columns: tuple[Column, ...], choice: ChannelChoice, pat
         return [f"# [{role}]", f"# {printable(said)}", '# channel = ""', '# unit = ""']
     column, unit = channel
     stated = [f"channel = {quoted(column.path)}", f"unit = {quoted(unit.unit)}"]
-    needed = _RADIUS if role_conversion(role, unit.unit)[0] in ("force", "friction coefficient") else ()
-    return [f"[{role}]", *stated, *_EXAMPLES[role], *needed]
+    kind = role_conversion(role, unit.unit)[0]
+    others = _beside(columns, needed=kind in ("force", "friction coefficient")) if role == "torque" else []
+    return [f"[{role}]", *stated, *_EXAMPLES[role], *others]
+
+
+def _beside(columns: tuple[Column, ...], *, needed: bool) -> list[str]:
+    """Radius and load, commented out: where a friction force needs them, or a column is called like one."""
+    lines: list[str] = []
+    for role, (meaning, amount_of) in _BESIDE.items():
+        named = proposed(role, columns)
+        if not (needed or named):
+            continue
+        lines += ["", f"# [{role}]".ljust(32) + f"# {meaning}", f'# value = "{amount_of}"']
+        if named:
+            said = f"column {printable(str(named[0]))} may be it: in the place of a value,"
+            lines += [
+                f"# # {said}",
+                f"# channel = {quoted(named[0].path)}",
+                f"# unit = {quoted(named[0].unit)}",
+            ]
+    return lines
 
 
 def _says_nothing(path: Path, column: Column, *, zero: bool = False) -> bool:

@@ -23,20 +23,19 @@ from hersey.errors import (
     HerseyError,
     InsufficientDataError,
     ParameterError,
-    UnitError,
     UnreadableLogError,
 )
 from hersey.log.channels import ChannelChoice, Stated, called, find_channel, no_channel, role_conversion
 from hersey.log.formats import format_of, opened
 from hersey.log.formats.frame import is_frame
-from hersey.log.friction import beside, in_rotation, notes_on
+from hersey.log.friction import beside, in_rotation, notes_on, unused
 from hersey.log.recording import Cells, Signal, split_unit
 from hersey.log.sensors import Sensors
 from hersey.log.text.delimited import open_delimited
 from hersey.log.text.layout import Column, split
 from hersey.log.torque_log import LARGEST, Channel, LogFile
 from hersey.result import Result, json_record
-from hersey.units import Conversion, conversion, takes_si
+from hersey.units import Conversion, takes_si
 
 #: Rows and bytes of a file that is taken for a table of means without being called one, at the most.
 FEW_ROWS, FEW_BYTES = 300, 200_000
@@ -346,11 +345,11 @@ def _read(
     values = in_rotation(values, roles, said)
     count = _plain(cells, "count")
     counts = np.ones_like(values["torque"]) if count is None else np.maximum(cells.numbers(count), 1.0)
-    run, approach, load = (_plain(cells, name) for name in ("run", "approach", "load"))
+    run, approach = (_plain(cells, name) for name in ("run", "approach"))
     runs = _indices(cells.texts(run)) if run is not None else np.zeros(counts.size, dtype=np.intp)
     runs = runs + (max(row.run for row in before) + 1 if before else 0)
     ways = [_way(text) for text in cells.texts(approach)] if approach is not None else ["start"] * counts.size
-    loads = values.get("load", _load(cells, load))
+    loads = values.get("load")
     temperature = values.get("temperature")
     needed = {role: values[role] for role in roles} | ({} if error is None else {"torque error": error})
     rows, left_out = [], []
@@ -374,7 +373,7 @@ def _read(
     if not rows:
         raise InsufficientDataError(f"{cells.name}: no row holds both a speed and a torque")
     used = tuple(Channel(role, c[0].name, c[1].unit) for role, c in (roles | others).items())
-    notes = (*notes_on(roles | others, said), *_named(left_out))
+    notes = (*notes_on(roles | others, said), *unused(cells.columns, roles | others, said), *_named(left_out))
     file = LogFile(
         cells.name, cells.sha256, cells.size, len(rows), len(left_out), used, cells.comments, False, notes
     )
@@ -435,15 +434,6 @@ def _scaled(cells: _Cells, column: Column, torque: Role) -> FloatArray:
 def _plain(cells: _Cells, name: str) -> Column | None:
     """The column of a role without a conversion, or None."""
     return next((c for c in cells.columns if _plays(c, name, cells.columns)), None)
-
-
-def _load(cells: _Cells, column: Column | None) -> FloatArray | None:
-    if column is None:
-        return None
-    try:
-        return np.asarray(conversion("force", column.unit or "N").scale * cells.numbers(column))
-    except UnitError:
-        return None
 
 
 def _indices(texts: list[str]) -> np.ndarray[tuple[int], np.dtype[np.intp]]:

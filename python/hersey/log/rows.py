@@ -130,11 +130,6 @@ def runs_with_records(
         If too many rows were left out, time runs backwards, or no run has two rows.
     """
     time, rows = arrays["time"], arrays["time"].size + left_out.rows
-    if "load" in arrays and (lacking := int(np.count_nonzero(~np.isfinite(arrays["load"])))):
-        del arrays["load"]
-        file = replace(
-            file, notes=(*file.notes, f"the load lacks a number in {lacking} row(s): it is not used")
-        )
     parts = runs_of(time, arrays.pop("run", None), file.name, place, left_out)
     left_out.refuse_many(file.name, rows, allowed=drop_missing)
     if time.size < 2:

@@ -30,7 +30,7 @@ from hersey.log.channels import (
     no_channel,
     refuse_two_clocks,
 )
-from hersey.log.friction import beside, in_rotation, notes_on, spare
+from hersey.log.friction import beside, in_rotation, notes_on, unused
 from hersey.log.rows import LeftOut, runs_with_records
 from hersey.log.text.footer import end_of_table
 from hersey.log.text.layout import BLANKS, SNIFFED, Column, Layout, find_layout, split, tabbed
@@ -70,7 +70,6 @@ def read_delimited(
         dead = _Dead(file)
         channels = _channels(layout, choices, isothermal, name, stated, dead)
         table = _Table(name, layout, channels, drop_missing, stated)
-        table.spare = spare(channels, choices)
         table.read(file.opened, end.byte, progress)
         growth = file.opened.growth(table.digest.hexdigest())
     used = tuple(Channel(role, column.name, si.unit) for role, (column, si) in table.channels.items())
@@ -85,7 +84,15 @@ def read_delimited(
         used,
         layout.comments,
         end.cut_off,
-        (*layout.notes, *table.notes(), *notes_on(channels, stated), *dead.notes, *end.notes, *growth),
+        (
+            *layout.notes,
+            *table.notes(),
+            *notes_on(channels, stated),
+            *dead.notes,
+            *unused(layout.named, channels, stated),
+            *end.notes,
+            *growth,
+        ),
     )
     return runs_with_records(log, table.arrays(), table.place, table.left_out, drop_missing=drop_missing)
 
@@ -209,7 +216,7 @@ def _channels(
         if other:
             raise ChannelError(f"{name}: column '{channel[0]}' cannot be both {other} and {role}")
         chosen[role] = channel
-    others = beside(layout.named, choices, stated, chosen, name, dead)
+    others = beside(layout.named, choices, stated, chosen, name)
     return {role: chosen[role] for role in used} | others
 
 
@@ -237,7 +244,6 @@ class _Table:
     ) -> None:
         self.name, self.layout, self.channels, self.drop_missing = name, layout, channels, drop_missing
         self.stated, self.strict = stated, False
-        self.spare: frozenset[str] = frozenset()  # roles whose columns cost no row
         self.parts: dict[str, list[FloatArray]] = {}
         self.digest = hashlib.sha256()
         self.left_out = LeftOut()
@@ -329,8 +335,7 @@ class _Table:
     def _add(self, block: _Block) -> None:
         values = self._parsed(block)
         by_role = self._in_si(values)
-        needed = [numbers for role, numbers in by_role.items() if role not in self.spare]
-        gone = ~np.logical_and.reduce([_believed(numbers) for numbers in needed])
+        gone = ~np.logical_and.reduce([_believed(numbers) for numbers in by_role.values()])
         words = (self._fault(block, values, int(row)) for row in np.flatnonzero(gone))
         self.left_out.add(int(gone.sum()), words)
         kept = np.flatnonzero(~gone) if gone.any() else None
@@ -358,8 +363,6 @@ class _Table:
         cells = block.cells(row, self.layout.between)
         place = f"line {block.lines[row]}"
         for (role, (column, si)), numbers in zip(self.channels.items(), values, strict=True):
-            if role in self.spare:
-                continue
             cell = cells[column.index] if column.index < len(cells) else ""
             told = f"{place}, column '{column.name}': "
             if not np.isfinite(numbers[row]):

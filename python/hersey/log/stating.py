@@ -1,0 +1,65 @@
+"""How a person states a radius or a load: what is proposed, in the words of the way in which they came.
+
+Such a role is never taken from the unit or the name of a column: any length could be a radius. A column that
+is called so is proposed, and used once it is named.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from hersey.errors import UnstatedRoleError, way_in
+from hersey.log.channels import is_called, is_of_kind
+from hersey.log.text.layout import Column
+
+#: What each role is called, and an amount of it.
+_ROLES: Final = {"radius": ("radius", "25 mm"), "load": ("normal load", "50 N")}
+_KINDS: Final = {"radius": "length", "load": "force"}
+
+
+def proposed(role: str, columns: tuple[Column, ...]) -> tuple[Column, ...]:
+    """Return the columns that are called like a role, with a unit that it can have or none."""
+    return tuple(
+        c for c in columns if is_called(role, c) and (not c.unit or is_of_kind(_KINDS[role], c.unit))
+    )
+
+
+def by_name(role: str, column: Column) -> str:
+    """Return what to write so that a column plays a role."""
+    unit = {"radius": "mm", "load": "N"}[role]
+    if way_in() == "page":
+        return f"choose the role {role} for '{column.path}'" + ("" if column.unit else f" and a unit, {unit}")
+    if way_in() == "terminal":
+        return f"--{role} '{column.path}'" + ("" if column.unit else f" --{role}-unit {unit}")
+    units = "" if column.unit else f", units={{'{role}': '{unit}'}}"
+    return f"channels={{'{role}': {column.path!r}}}{units}"
+
+
+def by_amount(role: str) -> str:
+    """Return what to write to state an amount."""
+    amount = _ROLES[role][1]
+    if way_in() == "page":
+        return f"write the {role}, e.g. {amount}, below the table"
+    return f"--{role} '{amount}'" if way_in() == "terminal" else f"{role}='{amount}'"
+
+
+def unstated(file: str, role: str, why: str, columns: tuple[Column, ...]) -> UnstatedRoleError:
+    """Return the error for a radius or a load that is needed and that nobody stated."""
+    named = proposed(role, columns)
+    word = _ROLES[role][0]
+    maybe = "".join(f"; column '{column}' may be the {word}: {by_name(role, column)}" for column in named[:3])
+    other = maybe or f", or name its column: {by_name(role, Column(0, 'its name', '1'))}"
+    return UnstatedRoleError(
+        f"{file}: {why}: state it, e.g. {by_amount(role)}{other}",
+        role=role,
+        proposed=tuple(column.path for column in named),
+    )
+
+
+def proposals(role: str, columns: tuple[Column, ...]) -> list[str]:
+    """Return which columns may play a role that nobody stated, and what to write to use them."""
+    word = _ROLES[role][0]
+    return [
+        f"column '{column}' may be the {word} and is not used: if it is, say {by_name(role, column)}"
+        for column in proposed(role, columns)
+    ]
