@@ -33,6 +33,7 @@ from hersey.log.recording import Cells, Signal, split_unit
 from hersey.log.sensors import Sensors
 from hersey.log.text.delimited import open_delimited
 from hersey.log.text.layout import Column, split
+from hersey.log.text.repeated_header import refuse_another_header
 from hersey.log.torque_log import LARGEST, Channel, LogFile
 from hersey.result import Result, json_record
 from hersey.units import Conversion, takes_si
@@ -138,8 +139,12 @@ class _Cells:
 
     def numbers(self, column: Column) -> FloatArray:
         """Return a column as written, NaN where a cell is no number."""
-        values = [self._number(cell) for cell in self.cells[self.columns.index(column)]]
-        return np.array(values, dtype=np.float64)
+        cells = self.cells[self.columns.index(column)]
+        values = np.array([self._number(cell) for cell in cells], dtype=np.float64)
+        for row in np.flatnonzero(np.isnan(values)):
+            if isinstance(cell := cells[row], str):
+                refuse_another_header(f"{self.name}, row {row + 1}", column, cell, self.columns)
+        return values
 
     def texts(self, column: Column) -> list[str]:
         """Return a column as text."""

@@ -16,6 +16,7 @@ from hersey.errors import HerseyError
 from hersey.log.recording import LONGEST_CELL, Cells, Recording, Signal, library
 from hersey.log.text.footer import summary_lines
 from hersey.log.text.layout import SNIFFED, Column, Layout, find_layout
+from hersey.log.text.repeated_header import refuse_another_header
 from hersey.log.text.stamps import Stamps
 
 #: What stands between the cells of a row where the table is looked for: no cell holds one then.
@@ -138,6 +139,9 @@ def _load(recording: Recording, place: str, cells: pl.Series, layout: Layout, co
     written = layout.style if style is None else Stamps(style)
     text = cells.fill_null("")
     odd = ~written.readable(text)
+    for row in odd.arg_true() if style is None else ():
+        where = f"{recording.source.name}, {place}row {layout.first_line + row}"
+        refuse_another_header(where, column, text[row][:LONGEST_CELL], layout.columns)
     for row in odd.arg_true()[:1]:
         more = f", and {int(odd.sum()) - 1} more in this column" if odd.sum() > 1 else ""
         note = f"'{text[row][:40]}' is no {'number' if style is None else 'time'}"

@@ -35,6 +35,7 @@ from hersey.log.rows import LeftOut, runs_with_records
 from hersey.log.text.footer import end_of_table
 from hersey.log.text.layout import BLANKS, SNIFFED, Column, Layout, find_layout, split, tabbed
 from hersey.log.text.numbers import MISSING, is_missing, looks_numeric
+from hersey.log.text.repeated_header import refuse_another_header
 from hersey.log.text.stamps import Stamps
 from hersey.log.torque_log import LARGEST, NO_CLOCK, Channel, LogFile, Run
 from hersey.spelling import printable
@@ -441,6 +442,9 @@ class _Table:
         stamps = self.stamps.get(column.index)
         odd = ~(stamps or self.layout.style).readable(text)
         for row in odd.arg_true():
+            if stamps is None:
+                place = f"{self.name}, line {block.lines[row]}"
+                refuse_another_header(place, column, cells[row], self.layout.columns)
             if self.strict or (stamps is None and looks_numeric(cells[row])):
                 raise UnreadableLogError(
                     f"{self.name}, line {block.lines[row]}, column '{column.name}': "
