@@ -246,3 +246,27 @@ def test_the_slider_through_the_command(speed: int, kind: str, slips: int) -> No
     assert document["kind"] == kind
     assert document["slips"] == pytest.approx(slips, rel=0.05)
     assert document["unit"] == "1"
+
+
+def test_a_clock_that_starts_anew_parts_the_trace_as_it_parts_a_log(tmp_path: Path) -> None:
+    lines = [line for line in CSV.read_text().splitlines() if not line.startswith("#")]
+    half = len(lines) // 2
+    start = float(lines[half].split(",")[0])
+    again = [f"{float(line.split(',')[0]) - start:.6f},{line.split(',')[1]}" for line in lines[half:]]
+    twice = tmp_path / "twice.csv"
+    twice.write_text("\n".join([*lines[:half], *again, ""]))
+    halves = []
+    for name, part in (("one.csv", lines[:half]), ("two.csv", [lines[0], *again])):
+        (tmp_path / name).write_text("\n".join([*part, ""]))
+        halves.append(json.loads(printed(tmp_path / name, "--json"))["slips"])
+    text = printed(twice)
+    assert [f"stick slip: {slips} slips" in text for slips in halves] == [True, True]
+    assert "run 2 of 2: the clock starts anew" in text
+    for number, slips in enumerate(halves, start=1):
+        assert json.loads(printed(twice, "--run-number", str(number), "--json"))["slips"] == slips
+    refused = run("cycles", twice, "--json", cwd=tmp_path)
+    assert (refused.returncode, "--run-number 1 to 2" in refused.stderr) == (2, True)
+    refused = run("cycles", twice, "--run-number", "3", cwd=tmp_path)
+    assert (refused.returncode, "holds 2 runs" in refused.stderr) == (2, True)
+    with pytest.raises(UnreadableLogError, match=r"twice\.csv holds 2 runs, for its clock starts anew"):
+        read_trace(twice)

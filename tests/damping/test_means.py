@@ -8,9 +8,10 @@ from pathlib import Path
 import numpy as np
 import polars as pl
 import pytest
+from scipy.io import savemat
 
 import hersey
-from hersey.errors import ChannelError, InsufficientDataError, UnitError
+from hersey.errors import ChannelError, InsufficientDataError, UnitError, UnreadableLogError
 from hersey.log.means import is_means_table, read_means
 from tests.cli.command import run
 from tests.damping.test_dwells import RPM
@@ -193,3 +194,14 @@ def test_a_table_of_means_has_no_tare_and_no_corrections(tmp_path: Path) -> None
     assert "states corrections" in refused.stderr
     (tmp_path / "hersey.toml").write_text('[torque]\nchannel = "Torque"\nunit = "mN*m"\n')
     assert run("fit", "means.csv", cwd=tmp_path).returncode == 0
+
+
+def test_only_the_columns_that_are_used_must_have_one_length(tmp_path: Path) -> None:
+    held = {"speed_rpm": [10.0, 20.0, 40.0], "torque_Nm": [1.0, 1.1, 1.2], "trace": np.arange(500.0)}
+    savemat(tmp_path / "a.mat", held | {"other_speed": np.arange(7.0)})
+    named = {"speed": "speed", "torque": "torque"}
+    for channels in (named, {"speed": "speed"}, {}):
+        points = hersey.SteadyPoints.from_table(tmp_path / "a.mat", channels=channels)
+        assert points.column("torque").tolist() == [1.0, 1.1, 1.2]
+    with pytest.raises(UnreadableLogError, match=r"'other_speed' \(speed\) has 7 rows and .* \(torque\) 3"):
+        hersey.SteadyPoints.from_table(tmp_path / "a.mat", channels=named | {"speed": "other_speed"})

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -78,6 +79,13 @@ def cycles(
     figure: Annotated[
         Path | None, typer.Option("--figure", help="Draw trace, slips and fit: .html, .png, .svg or .pdf.")
     ] = None,
+    run_number: Annotated[
+        int,
+        typer.Option(
+            metavar="N",
+            help="Look only at this run, counted from 1, where the clock of the file starts anew.",
+        ),
+    ] = 0,
     max_memory: MaxMemory = "2 GB",
     as_json: AsJson = False,
     force: Force = False,
@@ -96,48 +104,72 @@ def cycles(
     from hersey.files.writing import write_atomically
     from hersey.identification.cycle_record import cycles as find_cycles
     from hersey.identification.identified_drive import identify as identify_drive
-    from hersey.identification.trace_file import read_trace
+    from hersey.identification.trace_file import read_trace_runs
     from hersey.log import memory_limit
 
     with memory_limit(max_memory):
-        given = read_trace(trace, quantity=quantity, time=time, value=value, time_unit=time_unit, unit=unit)
-        channel = (
-            read_trace(trace, quantity="speed", value=drive_speed_channel) if drive_speed_channel else None
+        runs = read_trace_runs(
+            trace, quantity=quantity, time=time, value=value, time_unit=time_unit, unit=unit
         )
-    unit_shown = given.unit.replace("*", " ")
-    speed = _drive_speed(drive_speed, given) if channel is None else _of_channel(channel, given)
-    values = _known(known or [], given)
-    record = find_cycles(
-        given.time,
-        given.value,
-        drive_speed=speed,
-        drive_speed_uncertainty=share("--drive-speed-uncertainty", drive_speed_uncertainty)
-        if drive_speed_uncertainty
-        else None,
-        quantity="speed" if given.quantity == "speed" else "force",
-        least_drop=_least_drop(least_drop, given),
-    )
-    drive = None
-    if identify:
-        with working("identifying the drive"):
-            drive = identify_drive(record, known=values, closures=tuple(closures.replace(" ", "").split(",")))
-    if figure is not None:
-        from hersey.charts import chart_of
-        from hersey.charts.render import picture
+        channels: tuple[TraceFile, ...] = ()
+        if drive_speed_channel:
+            channels = read_trace_runs(
+                trace, quantity="speed", value=drive_speed_channel, time=time, time_unit=time_unit
+            )
+    chosen = _chosen(trace, len(runs), run_number, alone=figure is not None or as_json)
+    for number in chosen:
+        given = runs[number]
+        unit_shown = given.unit.replace("*", " ")
+        speed = _drive_speed(drive_speed, given) if not channels else _of_channel(channels[number], given)
+        values = _known(known or [], given)
+        record = find_cycles(
+            given.time,
+            given.value,
+            drive_speed=speed,
+            drive_speed_uncertainty=share("--drive-speed-uncertainty", drive_speed_uncertainty)
+            if drive_speed_uncertainty
+            else None,
+            quantity="speed" if given.quantity == "speed" else "force",
+            least_drop=_least_drop(least_drop, given),
+        )
+        record = replace(record, notes=(*record.notes, *given.notes))
+        drive = None
+        if identify:
+            with working("identifying the drive"):
+                drive = identify_drive(
+                    record, known=values, closures=tuple(closures.replace(" ", "").split(","))
+                )
+        if figure is not None:
+            from hersey.charts import chart_of
+            from hersey.charts.render import picture
 
-        unit_text = "share of the weight" if given.unit == "1" else unit_shown
-        with working("drawing"):
-            drawing = picture(chart_of(record, drive=drive, unit=unit_text), figure.suffix)
-        write_atomically(figure, drawing, overwrite=True)
-    if as_json:
-        driven = None if drive is None else drive.to_dict()
-        print_json("cycles", record.to_dict() | {"unit": given.unit, "drive": driven})
-        return
-    say(record.summary(unit_shown))
-    if drive is not None:
-        say("\n" + drive.summary(unit_shown))
-    if figure is not None:
-        say(f"figure: {figure}")
+            unit_text = "share of the weight" if given.unit == "1" else unit_shown
+            with working("drawing"):
+                drawing = picture(chart_of(record, drive=drive, unit=unit_text), figure.suffix)
+            write_atomically(figure, drawing, overwrite=True)
+        if as_json:
+            driven = None if drive is None else drive.to_dict()
+            print_json("cycles", record.to_dict() | {"unit": given.unit, "drive": driven})
+            continue
+        say("\n" * (number != chosen[0]) + record.summary(unit_shown))
+        if drive is not None:
+            say("\n" + drive.summary(unit_shown))
+        if figure is not None:
+            say(f"figure: {figure}")
+
+
+def _chosen(trace: Path, runs: int, stated: int, *, alone: bool) -> list[int]:
+    """Which runs of a file are looked at, counted from 0; ``alone``: only one can be."""
+    if stated > runs or stated < 0:
+        raise ParameterError(f"--run-number is {stated}: {trace.name} holds {runs} run{'s' * (runs > 1)}")
+    if stated:
+        return [stated - 1]
+    if alone and runs > 1:
+        raise ParameterError(
+            f"{trace.name} holds {runs} runs, for its clock starts anew: a figure or --json shows one, "
+            f"choose it with --run-number 1 to {runs}"
+        )
+    return list(range(runs))
 
 
 def _of_channel(channel: TraceFile, given: TraceFile) -> FloatArray:

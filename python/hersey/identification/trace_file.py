@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from hersey.arrays import FloatArray
 from hersey.errors import ChannelError, ParameterError, UnitError, UnreadableLogError
 from hersey.log.channels import called
 from hersey.log.columns import OpenColumns, open_columns
+from hersey.log.rows import LeftOut, runs_of
 from hersey.log.text.layout import Column
 from hersey.units import KINDS, conversion
 
@@ -33,6 +34,7 @@ class TraceFile:
     quantity: str
     unit: str
     name: str
+    notes: tuple[str, ...] = ()  #: which run of the file this is, and rows that were left out
 
 
 def read_trace(
@@ -44,7 +46,36 @@ def read_trace(
     time_unit: str = "",
     unit: str = "",
 ) -> TraceFile:
-    """Read a trace from a table with a heading such as ``time [s],force [N]``, or a file of another format.
+    """Read the only run in a file, as `read_trace_runs`.
+
+    Raises
+    ------
+    UnreadableLogError
+        If its clock starts anew: a trace is one run.
+    HerseyError
+        As `read_trace_runs`.
+    """
+    runs = read_trace_runs(path, quantity=quantity, time=time, value=value, time_unit=time_unit, unit=unit)
+    if len(runs) > 1:
+        raise UnreadableLogError(
+            f"{Path(path).name} holds {len(runs)} runs, for its clock starts anew: read them with "
+            "hersey.identification.trace_file.read_trace_runs"
+        )
+    return runs[0]
+
+
+def read_trace_runs(
+    path: str | Path,
+    *,
+    quantity: str = "",
+    time: str = "",
+    value: str = "",
+    time_unit: str = "",
+    unit: str = "",
+) -> tuple[TraceFile, ...]:
+    """Read the traces in a table with a heading such as ``time [s],force [N]``, or a file of another format.
+
+    A run ends where the clock starts anew, as in a log; a row whose time lies apart is left out and noted.
 
     Parameters
     ----------
@@ -68,12 +99,29 @@ def read_trace(
         quantity = quantity or _quantity(opened, value)
         chosen = _chosen(opened, opened.columns, value, QUANTITIES[quantity][1], quantity)
         times, values = _with_time(opened, chosen, time, time_unit)
-    used = unit or chosen.unit
-    if used == RELATIVE and quantity == "force":
-        return TraceFile(times, values, quantity, RELATIVE, str(chosen))
-    kind = _kind(quantity, used)
-    converted = _si(opened.file, kind, values, used, chosen, "--unit")
-    return TraceFile(times, converted, quantity, KINDS[kind][0], str(chosen))
+    used, si = unit or chosen.unit, RELATIVE
+    if used != RELATIVE or quantity != "force":
+        kind = _kind(quantity, used)
+        values, si = _si(opened.file, kind, values, used, chosen, "--unit"), KINDS[kind][0]
+    return _runs(TraceFile(times, values, quantity, si, str(chosen)), opened.file)
+
+
+def _runs(whole: TraceFile, file: str) -> tuple[TraceFile, ...]:
+    """The runs in what a file holds, split as the runs of a log are."""
+    left_out = LeftOut()
+    runs = runs_of(whole.time, None, file, lambda row: f"row {row + 1} of the table", left_out)
+    notes = tuple(left_out.notes())
+    if len(runs) == 1:
+        return (replace(whole, time=whole.time[runs[0]], value=whole.value[runs[0]], notes=notes),)
+    return tuple(
+        replace(
+            whole,
+            time=whole.time[rows],
+            value=whole.value[rows],
+            notes=(*(notes if number == 1 else ()), f"run {number} of {len(runs)}: the clock starts anew"),
+        )
+        for number, rows in enumerate(runs, start=1)
+    )
 
 
 def _with_time(opened: OpenColumns, chosen: Column, time: str, unit: str) -> tuple[FloatArray, FloatArray]:

@@ -142,7 +142,8 @@ class _Cells:
         cells = self.cells[self.columns.index(column)]
         values = np.array([self._number(cell) for cell in cells], dtype=np.float64)
         for row in np.flatnonzero(np.isnan(values)):
-            if isinstance(cell := cells[row], str):
+            cell = cells[int(row)]
+            if isinstance(cell, str):
                 refuse_another_header(f"{self.name}, row {row + 1}", column, cell, self.columns)
         return values
 
@@ -238,7 +239,8 @@ def is_means_table(path: Path, channels: Mapping[str, str], units: Mapping[str, 
         if not path.is_file() or path.stat().st_size > FEW_BYTES:
             return False
         cells = _cells(path, path.name)
-        if not cells.cells or not 0 < len(cells.cells[0]) <= FEW_ROWS or _clock(cells.columns):
+        lengths = {len(each) for each in cells.cells}
+        if len(lengths) != 1 or not 0 < max(lengths) <= FEW_ROWS or _clock(cells.columns):
             return False
         if (clock := channels.get("time")) and called(clock, cells.columns):
             return False
@@ -280,8 +282,6 @@ def _cells(table: Any, name: str) -> _Cells:
             columns = tuple(Column(i, s.name, s.unit, s.group) for i, s in enumerate(held))
             loaded: tuple[Sequence[object], ...] = tuple(list(each.load()) for each in held)
             source, comments = recording.source, recording.comments
-        if len({len(cells) for cells in loaded}) > 1:
-            raise UnreadableLogError(f"{path.name}: its columns differ in length: it is no table of means")
         if source is None:
             content = path.read_bytes()
             return _Cells(path.name, _sha(content), len(content), columns, loaded, float, comments)
@@ -341,6 +341,7 @@ def _read(
     isothermal: bool,
     before: list[MeanRow],
 ) -> tuple[list[MeanRow], LogFile, bool]:
+    cells = _as_long_as_torque(cells, choices)
     roles = _roles(cells, choices, isothermal)
     others = beside(cells.columns, choices, said, roles, cells.name)
     values = {role: _si(cells, *role_of) for role, role_of in (roles | others).items()}
@@ -383,6 +384,31 @@ def _read(
         cells.name, cells.sha256, cells.size, len(rows), len(left_out), used, cells.comments, False, notes
     )
     return rows, file, error is not None
+
+
+def _as_long_as_torque(cells: _Cells, choices: dict[str, ChannelChoice]) -> _Cells:
+    """The columns that have as many rows as the torque; one that is named must have."""
+    size = {column: len(each) for column, each in zip(cells.columns, cells.cells, strict=True)}
+    if len(set(size.values())) < 2:
+        return cells
+    among = cells.columns if choices["torque"].name else _measured(cells.columns)
+    torque = find_channel("torque", among, choices["torque"], cells.name)
+    if torque is None:
+        raise no_channel("torque", among, cells.name)
+    rows = size[torque[0]]
+    for role, choice in choices.items():
+        named = called(choice.name, cells.columns) if choice.name else []
+        if named and all(size[column] != rows for column in named):
+            raise UnreadableLogError(
+                f"{cells.name}: column '{named[0]}' ({role}) has {size[named[0]]} rows and column "
+                f"'{torque[0]}' (torque) {rows}: name columns of one table"
+            )
+    kept = [i for i, column in enumerate(cells.columns) if size[column] == rows]
+    return replace(
+        cells,
+        columns=tuple(cells.columns[i] for i in kept),
+        cells=tuple(cells.cells[i] for i in kept),
+    )
 
 
 Role = tuple[Column, Conversion]

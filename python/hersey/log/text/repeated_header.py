@@ -52,11 +52,14 @@ def _is(name: str, column: Column) -> bool:
 
 @lru_cache(maxsize=1024)
 def _of_kind(kind: str, unit: str) -> tuple[float, float] | None:
+    """Scale and offset of a unit that is one of a kind, or None."""
+    if not unit:
+        return None
     try:
-        line = conversion(kind, unit) if unit else None
+        line = conversion(kind, unit)
     except UnitError:
         return None
-    return line and (line.scale, line.offset)
+    return line.scale, line.offset
 
 
 def _same_kind(one: str, other: str) -> bool:
