@@ -10,6 +10,7 @@ from typing import Any
 from hersey.errors import UnitError
 from hersey.log.channels import ROLES, role_conversion
 from hersey.log.doubtful import RARE, TOO_HOT
+from hersey.log.slow_channels import is_slow
 from hersey.units import KINDS, ZERO_CELSIUS, nearest_unit
 
 #: Units to choose from, by role; any other can be written.
@@ -205,7 +206,9 @@ def _of_one(
             )
         ]
     faults = _unit_faults(role, channel, unit, options)
-    if not faults and channel["missing"] > max(1, _FEW * channel["rows"]) and not options["drop_missing"]:
+    slow = role == "temperature" and is_slow(channel["rows"], channel["rows"] - channel["missing"])
+    many = channel["missing"] > max(1, _FEW * channel["rows"]) and not slow
+    if not faults and many and not options["drop_missing"]:
         share = 100 * channel["missing"] / channel["rows"]
         faults.append(
             Fault(

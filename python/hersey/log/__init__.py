@@ -9,6 +9,7 @@ formats        one reader per format, and which one opens a file
 channels       which column plays which role
 friction       friction forces and coefficients as torques, sliding speeds as those of a rotation
 stating        a radius or a load: proposed, used once a person states it
+slow_channels  a temperature or a load that is slower than the rows: interpolated between its values
 rows           which rows can be used, and where one run ends and the next begins
 columns        columns as they stand, for readers with roles of their own
 assembly       from a recording to a run on the clock of the torque

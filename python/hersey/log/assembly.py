@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from hersey.arrays import FloatArray, IntArray
+from hersey.arrays import BoolArray, FloatArray, IntArray
 from hersey.errors import ChannelError, HerseyError, UnreadableLogError
 from hersey.log.channels import (
     OTHER_ROLES,
@@ -19,7 +19,7 @@ from hersey.log.channels import (
     no_channel,
     refuse_two_clocks,
 )
-from hersey.log.friction import beside, in_rotation, notes_on, unused
+from hersey.log.friction import beside, in_rotation, notes_on, slow_roles, unused
 from hersey.log.recording import Recording, Signal
 from hersey.log.rows import LeftOut, runs_with_records
 from hersey.log.text.layout import Column
@@ -67,6 +67,7 @@ class Assembly:
         if not recording.signals:
             raise nothing_to_read(recording)
         self.columns = columns(recording)
+        self._lacking: dict[str, LeftOut] = {}  # rows of the torque that lack a role that may be slow
         self._clocks: dict[str, tuple[FloatArray, str, Channel]] = {}
         self._dead: dict[int, str] = {}
         self.chosen = {"torque": self._channel("torque", choices, None)}
@@ -113,7 +114,8 @@ class Assembly:
             )
         arrays = in_rotation(arrays, self.chosen, self.stated)
         rows = torque.rows[kept]
-        usable = np.logical_and.reduce([np.isfinite(values) for values in arrays.values()])
+        needed = [values for role, values in arrays.items() if role not in self._lacking]
+        usable = np.logical_and.reduce([np.isfinite(values) for values in needed])
         if not usable.all():
             bad = rows[~usable]
             left_out.add(bad.size, (f"{self._place(torque, int(row))}: no radius above zero" for row in bad))
@@ -126,6 +128,7 @@ class Assembly:
             arrays,
             lambda row: self._place(torque, int(rows[row])),
             left_out,
+            self._lacking,
             drop_missing=drop_missing,
         )
 
@@ -261,9 +264,13 @@ class Assembly:
         torque = self.parts["torque"]
         for tick in dict.fromkeys(part.tick for part in self.parts.values()):
             parts = [part for part in self.parts.values() if part.tick == tick]
-            gone = ~np.logical_and.reduce([_believed(p.time) & _believed(p.values) for p in parts])
+            slow = [p for p in parts if tick == torque.tick and p.role in slow_roles(self.chosen)]
+            needed = [p for p in parts if p not in slow]
+            gone = ~np.logical_and.reduce([_believed(p.time) & _believed(p.values) for p in needed])
+            for part in slow:
+                self._set_apart(part, gone)
             here = left_out if tick == torque.tick else LeftOut()
-            here.add(int(gone.sum()), (self._fault(parts, int(row)) for row in np.flatnonzero(gone)))
+            here.add(int(gone.sum()), (self._fault(needed, int(row)) for row in np.flatnonzero(gone)))
             here.refuse_many(self.source.name, gone.size, allowed=drop_missing)
             if here is not left_out:
                 left_out.add(here.rows, here.words)
@@ -275,6 +282,15 @@ class Assembly:
                 raise UnreadableLogError(
                     f"{self.source.name}: channel '{name}' has {count} samples with a number"
                 )
+
+    def _set_apart(self, part: _Part, gone: BoolArray) -> None:
+        """Count the samples that lack only what may be slow, and note the first of them."""
+        known = _believed(part.values)
+        rows = np.flatnonzero(~known & ~gone)
+        lacking = LeftOut()
+        lacking.add(rows.size, (self._fault([part], int(row)) for row in rows))
+        self._lacking[part.role] = lacking
+        part.values = np.where(known, part.values, np.nan)
 
     def _fault(self, parts: list[_Part], row: int) -> str:
         """The channel of the first number of a sample that is of no use, and what is wrong with it."""

@@ -64,6 +64,12 @@ def _without(columns: tuple[Column, ...], chosen: Chosen) -> tuple[Column, ...]:
     return tuple(c for c in columns if all(c != column for column, _ in chosen.values()))
 
 
+def slow_roles(chosen: Chosen) -> frozenset[str]:
+    """Return the roles that may be slow: interpolated between values, so no load that makes the torque."""
+    of_coefficient = role_conversion("torque", chosen["torque"][1].unit)[0] == "friction coefficient"
+    return frozenset({"temperature"} if of_coefficient else {"temperature", "load"})
+
+
 def in_rotation(arrays: dict[str, FloatArray], chosen: Chosen, stated: Stated) -> dict[str, FloatArray]:
     """Return torque, N m, and speed, rad/s, from what the columns hold, in SI; the load, N, where known.
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from hersey.arrays import BoolArray, FloatArray, IntArray
 from hersey.errors import UnreadableLogError
+from hersey.log.slow_channels import SlowChannel, is_slow
 from hersey.log.torque_log import LogFile, Run
 
 #: Rows of a run.
@@ -117,29 +118,45 @@ def runs_with_records(
     arrays: dict[str, FloatArray],
     place: Callable[[int], str],
     left_out: LeftOut,
+    lacking: Mapping[str, LeftOut],
     *,
     drop_missing: bool,
 ) -> list[tuple[Run, LogFile]]:
     """Return the runs in a file, each with its record: that of the file with rows and notes of its own.
 
     ``arrays`` holds, in SI, time, torque and speed, and temperature, load and number of the run where known.
+    A role of ``lacking`` may lack numbers (NaN): if few rows have one it is a slow channel, interpolated
+    between them, otherwise these rows are left out.
 
     Raises
     ------
     UnreadableLogError
         If too many rows were left out, time runs backwards, or no run has two rows.
     """
-    time, rows = arrays["time"], arrays["time"].size + left_out.rows
+    rows = arrays["time"].size + left_out.rows
+    slow, gone = _slow(file, arrays, lacking)
+    if gone.any():
+        left_out.add(int(gone.sum()), itertools.chain.from_iterable(each.words for each in lacking.values()))
+        arrays = {role: values[~gone] for role, values in arrays.items()}
+        place = _among(place, np.flatnonzero(~gone))
+    time = arrays["time"]
     parts = runs_of(time, arrays.pop("run", None), file.name, place, left_out)
     left_out.refuse_many(file.name, rows, allowed=drop_missing)
     if time.size < 2:
         raise UnreadableLogError(f"{file.name} has {time.size} row(s) with a number in every column needed")
     runs = [{role: values[part] for role, values in arrays.items()} for part in parts]
+    runs = [_bridged(run, slow, _among(place, part)) for run, part in zip(runs, parts, strict=True)]
+    for channel in slow:
+        gaps = LeftOut(channel.in_gaps, [f"{channel.first_gap}: {channel.role} '{channel.name}' has a gap"])
+        gaps.refuse_many(file.name, rows, allowed=drop_missing)
     long = [i for i, run in enumerate(runs) if run["time"].size > 1 and run["time"][-1] > run["time"][0]]
     if not long:
-        raise UnreadableLogError(f"{file.name}: all rows carry the same time")
+        why = "; ".join(note for channel in slow for note in channel.notes())
+        raise UnreadableLogError(f"{file.name}: {why or 'all rows carry the same time'}")
     for i in set(range(len(runs))) - set(long):
         count = runs[i]["time"].size
+        if not count:  # lost to a slow channel, which counts them
+            continue
         left_out.add(
             count, [f"{place(_first(parts[i]))}: {count} row(s) of one time between two runs"] * count
         )
@@ -147,7 +164,8 @@ def runs_with_records(
     for number, i in enumerate(long, start=1):
         name = file.name if len(long) == 1 else f"{file.name}, run {number} of {len(long)}"
         run = runs[i]
-        notes = (*file.notes, *left_out.notes()) if number == 1 else ()
+        of_slow = [note for channel in slow for note in channel.notes()]
+        notes = (*file.notes, *of_slow, *left_out.notes()) if number == 1 else ()
         if len(long) > 1:
             notes = (
                 *notes,
@@ -161,12 +179,46 @@ def runs_with_records(
                     file,
                     name=name,
                     rows=run["time"].size,
-                    missing_rows=left_out.rows if number == 1 else 0,
+                    missing_rows=left_out.rows + sum(c.lost for c in slow) if number == 1 else 0,
                     notes=notes,
                 ),
             )
         )
     return records
+
+
+def _slow(
+    file: LogFile, arrays: dict[str, FloatArray], lacking: Mapping[str, LeftOut]
+) -> tuple[list[SlowChannel], BoolArray]:
+    """The slow channels, and the rows that lack a number of a channel that is not slow."""
+    time, slow = arrays["time"], []
+    gone = np.zeros(time.size, dtype=bool)
+    names = {channel.role: channel.name for channel in file.channels}
+    for role in lacking:
+        known = np.isfinite(arrays[role])
+        if is_slow(known.size, int(known.sum())):
+            slow.append(SlowChannel.of(role, names[role], time, known))
+        else:
+            gone |= ~known
+    return slow, gone
+
+
+def _bridged(
+    run: dict[str, FloatArray], slow: list[SlowChannel], place: Callable[[int], str]
+) -> dict[str, FloatArray]:
+    """A run without the rows for which a slow channel has no value."""
+    if not slow:
+        return run
+    for channel in slow:
+        run[channel.role] = channel.filled(run["time"], run[channel.role], place)
+    kept = np.logical_and.reduce([np.isfinite(run[channel.role]) for channel in slow])
+    return {role: values[kept] for role, values in run.items()}
+
+
+def _among(place: Callable[[int], str], rows: Rows) -> Callable[[int], str]:
+    """What puts a row in words that is counted among these."""
+    start = _first(rows)
+    return lambda row: place(start + row if isinstance(rows, slice) else int(rows[row]))
 
 
 def _first(rows: Rows) -> int:

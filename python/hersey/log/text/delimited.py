@@ -30,7 +30,7 @@ from hersey.log.channels import (
     no_channel,
     refuse_two_clocks,
 )
-from hersey.log.friction import beside, in_rotation, notes_on, unused
+from hersey.log.friction import beside, in_rotation, notes_on, slow_roles, unused
 from hersey.log.rows import LeftOut, runs_with_records
 from hersey.log.text.footer import end_of_table
 from hersey.log.text.layout import BLANKS, SNIFFED, Column, Layout, find_layout, split, tabbed
@@ -71,6 +71,7 @@ def read_delimited(
         dead = _Dead(file)
         channels = _channels(layout, choices, isothermal, name, stated, dead)
         table = _Table(name, layout, channels, drop_missing, stated)
+        table.slow = slow_roles(channels)
         table.read(file.opened, end.byte, progress)
         growth = file.opened.growth(table.digest.hexdigest())
     used = tuple(Channel(role, column.name, si.unit) for role, (column, si) in table.channels.items())
@@ -95,7 +96,9 @@ def read_delimited(
             *growth,
         ),
     )
-    return runs_with_records(log, table.arrays(), table.place, table.left_out, drop_missing=drop_missing)
+    return runs_with_records(
+        log, table.arrays(), table.place, table.left_out, table.lacking, drop_missing=drop_missing
+    )
 
 
 def delimited_columns(path: Path) -> tuple[Column, ...]:
@@ -245,6 +248,8 @@ class _Table:
     ) -> None:
         self.name, self.layout, self.channels, self.drop_missing = name, layout, channels, drop_missing
         self.stated, self.strict = stated, False
+        self.slow: frozenset[str] = frozenset()  # roles that a row may lack until the whole is known
+        self.lacking: dict[str, LeftOut] = {}  # rows that lack such a role alone
         self.parts: dict[str, list[FloatArray]] = {}
         self.digest = hashlib.sha256()
         self.left_out = LeftOut()
@@ -336,7 +341,14 @@ class _Table:
     def _add(self, block: _Block) -> None:
         values = self._parsed(block)
         by_role = self._in_si(values)
-        gone = ~np.logical_and.reduce([_believed(numbers) for numbers in by_role.values()])
+        needed = [numbers for role, numbers in by_role.items() if role not in self.slow]
+        gone = ~np.logical_and.reduce([_believed(numbers) for numbers in needed])
+        for role in self.slow & by_role.keys():
+            known = _believed(by_role[role])
+            by_role[role] = np.where(known, by_role[role], np.nan)
+            rows = np.flatnonzero(~known & ~gone)
+            faults = (self._fault(block, values, int(row)) for row in rows)
+            self.lacking.setdefault(role, LeftOut()).add(rows.size, faults)
         words = (self._fault(block, values, int(row)) for row in np.flatnonzero(gone))
         self.left_out.add(int(gone.sum()), words)
         kept = np.flatnonzero(~gone) if gone.any() else None

@@ -1,0 +1,88 @@
+"""Channels that are slower than the rows of their table: blank cells between the values.
+
+A temperature, or a load from which no torque is computed, changes slowly: it is interpolated linearly between
+its own values. Torque, speed, radius and time never are: a row that lacks one of them is no row.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from hersey.arrays import BoolArray, FloatArray
+
+#: A channel is slow if it has a value in this share of the rows at the most.
+SLOW = 0.5
+#: Longest gap that is bridged, in usual intervals between the values of the channel.
+LONGEST_GAP = 3.0
+
+
+def is_slow(rows: int, known: int) -> bool:
+    """Return whether a channel with so many values in so many rows is slower than its table."""
+    return 2 <= known <= SLOW * rows
+
+
+@dataclass
+class SlowChannel:
+    """A slow channel: the usual time between its values, s, and what became of its rows."""
+
+    role: str
+    name: str
+    interval: float
+    rows_per_value: float
+    outside: int = 0  #: rows before its first value of a run, or after its last
+    in_gaps: int = 0  #: rows in gaps that are too long
+    first_gap: str = ""  #: where the first of those gaps begins
+
+    @classmethod
+    def of(cls, role: str, name: str, time: FloatArray, known: BoolArray) -> SlowChannel:
+        """Return a channel with values in the rows that are ``known``; ``time`` in s, shape (rows,)."""
+        steps = np.diff(time[known])
+        forward = steps[steps > 0]
+        interval = float(np.median(forward)) if forward.size else 0.0
+        return cls(role, name, interval, known.size / int(known.sum()))
+
+    def filled(self, time: FloatArray, values: FloatArray, place: Callable[[int], str]) -> FloatArray:
+        """Return the values of a run, NaN in rows that no two near values enclose; rows lost are counted.
+
+        ``place`` gives a row of the run in words.
+        """
+        known = np.flatnonzero(np.isfinite(values))
+        if known.size < 2:
+            self.outside += values.size - known.size
+            return values
+        filled = np.interp(time, time[known], values[known], left=np.nan, right=np.nan)
+        filled[known] = values[known]
+        self.outside += int(np.count_nonzero(np.isnan(filled)))
+        steps = np.diff(time[known])
+        wide = steps > LONGEST_GAP * self.interval
+        for before, after in zip(known[:-1][wide], known[1:][wide], strict=True):
+            filled[before + 1 : after] = np.nan
+            self.first_gap = self.first_gap or place(int(before) + 1)
+            self.in_gaps += int(after - before - 1)
+        return filled
+
+    @property
+    def lost(self) -> int:
+        """Rows that have no value."""
+        return self.outside + self.in_gaps
+
+    def notes(self) -> list[str]:
+        """Return what was done, in words."""
+        out = [
+            f"{self.role} '{self.name}' has 1 value in {self.rows_per_value:.3g} rows, every "
+            f"{self.interval:.3g} s: interpolated linearly between its values"
+        ]
+        if self.outside:
+            out.append(
+                f"{self.outside} row(s) before the first or behind the last value of {self.role} "
+                f"'{self.name}' were left out"
+            )
+        if self.in_gaps:
+            out.append(
+                f"{self.in_gaps} row(s) were left out in gaps of {self.role} '{self.name}' longer than "
+                f"{LONGEST_GAP * self.interval:.3g} s, the first from {self.first_gap} on"
+            )
+        return out

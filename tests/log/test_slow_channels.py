@@ -1,0 +1,112 @@
+"""A temperature at 1 Hz in a table of 50 Hz: interpolated between its own values, and never beyond them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import polars as pl
+import pytest
+
+import hersey
+from hersey.errors import UnreadableLogError
+
+RATE, LASTS, EVERY = 50, 60, 50
+TIME = np.arange(RATE * LASTS) / RATE
+TORQUE = 1.0 + 0.001 * np.arange(TIME.size)
+#: Exact between whole seconds: a straight line with a kink at 30 s, which is a value of the channel.
+HEAT = np.where(TIME < 30.0, 100.0 + TIME, 130.0 - 2.0 * (TIME - 30.0))
+
+
+def sparse(values: np.ndarray, every: int = EVERY, *, first: int = 0) -> list[float | None]:
+    """One value in so many rows, nothing between."""
+    return [float(v) if i >= first and (i - first) % every == 0 else None for i, v in enumerate(values)]
+
+
+def table(**columns: object) -> pl.DataFrame:
+    """A log of 60 s; further columns, or others of the same name."""
+    held = {"Time [s]": TIME, "Torque [N*m]": TORQUE, "Speed [rpm]": np.full(TIME.size, 60.0)}
+    return pl.DataFrame(held | {"Temp [degC]": sparse(HEAT)} | columns)
+
+
+def sources(frame: pl.DataFrame, folder: Path) -> list[object]:
+    """The same table as text, as Parquet and in memory."""
+    frame.write_csv(folder / "a.csv")
+    frame.write_parquet(folder / "a.parquet")
+    return [folder / "a.csv", folder / "a.parquet", frame]
+
+
+def test_a_slow_temperature_is_interpolated_between_its_values(tmp_path: Path) -> None:
+    for source in sources(table(), tmp_path):
+        log = hersey.read(source)
+        (run,) = log.runs
+        within = TIME <= 59.0
+        np.testing.assert_allclose(run.time, TIME[within], rtol=1e-12)
+        assert run.temperature is not None
+        np.testing.assert_allclose(run.temperature - 273.15, HEAT[within], atol=1e-9)
+        np.testing.assert_array_equal(run.torque, TORQUE[within])
+        assert log.files[0].missing_rows == 49
+        notes = " / ".join(log.files[0].notes)
+        assert "temperature 'Temp' has 1 value in 50 rows, every 1 s: interpolated linearly" in notes
+        assert "49 row(s) before the first or behind the last value of temperature 'Temp'" in notes
+
+
+def test_rows_before_the_first_value_are_left_out(tmp_path: Path) -> None:
+    for source in sources(table(**{"Temp [degC]": sparse(HEAT, first=500)}), tmp_path):
+        log = hersey.read(source)
+        assert log.runs[0].time[0] == pytest.approx(10.0)
+        assert log.files[0].missing_rows == 500 + 49
+
+
+def test_a_long_gap_is_not_bridged(tmp_path: Path) -> None:
+    holes = [None if 20.0 < t < 25.0 else v for t, v in zip(TIME, sparse(HEAT), strict=True)]
+    for source in sources(table(**{"Temp [degC]": holes}), tmp_path):
+        with pytest.raises(UnreadableLogError, match=r"temperature 'Temp' has a gap .* 249 such rows"):
+            hersey.read(source)
+        log = hersey.read(source, drop_missing=True)
+        time = log.runs[0].time
+        assert not np.any((time > 20.0 + 1e-9) & (time < 25.0 - 1e-9))
+        assert log.files[0].missing_rows == 249 + 49
+        assert any("249 row(s) were left out in gaps" in note for note in log.files[0].notes)
+    with pytest.raises(UnreadableLogError, match=r"a\.csv, line 1003: temperature"):
+        hersey.read(tmp_path / "a.csv")
+
+
+@pytest.mark.parametrize("role", ["Torque [N*m]", "Speed [rpm]"])
+def test_torque_and_speed_are_never_interpolated(role: str, tmp_path: Path) -> None:
+    for source in sources(table(**{role: sparse(TORQUE), "Temp [degC]": HEAT}), tmp_path):
+        for drop in (False, True):
+            with pytest.raises(UnreadableLogError, match=r"2940 such rows of 3000\); too few rows are left"):
+                hersey.read(source, drop_missing=drop)
+
+
+def test_a_slow_load_is_interpolated_unless_the_torque_is_made_of_it(tmp_path: Path) -> None:
+    load = 50.0 + TIME
+    columns = {"Temp [degC]": HEAT, "Load [N]": sparse(load)}
+    for source in sources(table(**columns), tmp_path):
+        (run,) = hersey.read(source, channels={"load": "Load"}).runs
+        assert run.load is not None
+        np.testing.assert_allclose(run.load, load[TIME <= 59.0], rtol=1e-12)
+    coefficient = table(**columns).rename({"Torque [N*m]": "COF"})
+    for source in sources(coefficient, tmp_path):
+        with pytest.raises(UnreadableLogError, match="2940 such rows of 3000"):
+            hersey.read(source, channels={"load": "Load"}, radius=0.02)
+
+
+def test_no_value_is_interpolated_across_two_runs(tmp_path: Path) -> None:
+    twice = pl.concat([table(), table(**{"Temp [degC]": sparse(HEAT + 50.0)})])
+    for source in sources(twice, tmp_path):
+        log = hersey.read(source)
+        assert [run.time.size for run in log.runs] == [2951, 2951]
+        assert [file.missing_rows for file in log.files] == [98, 0]
+        for run, offset in zip(log.runs, (0.0, 50.0), strict=True):
+            assert run.temperature is not None
+            np.testing.assert_allclose(run.temperature - 273.15 - offset, HEAT[TIME <= 59.0], atol=1e-9)
+
+
+def test_what_is_not_slow_is_missing_as_before(tmp_path: Path) -> None:
+    holes = [None if i % 10 == 3 else v for i, v in enumerate(HEAT)]
+    for source in sources(table(**{"Temp [degC]": holes}), tmp_path):
+        with pytest.raises(UnreadableLogError, match="the first of 300 such rows of 3000"):
+            hersey.read(source)
+        assert hersey.read(source, drop_missing=True).rows == 2700
