@@ -77,7 +77,7 @@ def support_of_points(points: SteadyPoints, *, temperature_scale: str = "degC") 
     cannot += [note for note in points.notes if isinstance(log, MeansTable)]
     rejected: Counter[str] = Counter()
     for stretch in points.rejected:
-        rejected[stretch.reason.split(":")[0].split(" by ")[0]] += stretch.rows
+        rejected[stretch.why.label] += stretch.rows
     limits = (float(speed.min()), float(speed.max()))
     return Support(
         len(points), distinct_speeds(speed), limits, levels, dict(rejected), tuple(can), tuple(cannot)

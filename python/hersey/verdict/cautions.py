@@ -50,7 +50,7 @@ def cautions(points: SteadyPoints, surface: DampingSurface | None) -> list[str]:
             f"The load differs from {low:.3g} to {high:.3g} N, and one law is fitted to all dwells: fit "
             "each load alone."
         )
-    swinging = [r for r in points.rejected if "stick-slip" in r.reason]
+    swinging = [r for r in points.rejected if r.why.kind == "stick-slip"]
     if swinging:
         out.append(
             f"Stick-slip was recorded: {len(swinging)} "

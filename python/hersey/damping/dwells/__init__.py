@@ -7,6 +7,8 @@ segments        stretches of a run in which the speed holds
 ripple          dwells whose speed ripples with the shaft, put together again
 noise           the standard error of a mean where neighbours are correlated
 shared_noise    the noise of all dwells together: slow noise is seen
+reasons         why a stretch is not used: a kind with its numbers, and the words of it
+disturbances    spikes and ripples without which a dwell would be steady
 steadiness      whether a stretch is a steady dwell, and why not
 settling        where a dwell has settled, by itself and by what all show together
 judging         which rows of a stretch are a dwell, or why none are

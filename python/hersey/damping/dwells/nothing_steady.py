@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Callable
 
 import numpy as np
@@ -11,6 +10,7 @@ import numpy as np
 from hersey.damping.dwells.groups import MIN_SAMPLES
 from hersey.damping.dwells.judging import Asked
 from hersey.damping.dwells.points import Rejection
+from hersey.damping.dwells.reasons import CAUSES, Reason, cause
 from hersey.log.torque_log import NO_CLOCK, Run, TorqueLog
 from hersey.units import rpm
 
@@ -22,7 +22,6 @@ RUNNING = 0.7
 _BLOCKS, _TURN = 60, 0.1
 #: Median change from row to row, as share of the mean one, below which the speed changes in steps.
 _FEW = 0.2
-_TOO_SHORT = re.compile(r"dwell too short: ([0-9.]+) s or ([0-9]+) rows")
 #: A log shorter than so many dwells has a clock in another unit, or rows less often: so many times, say.
 _TOO_BRIEF, _RARER = 1.0, 50
 
@@ -35,12 +34,18 @@ def nothing_steady(
 ) -> str:
     """Return the message; ``dwells_with`` counts the dwells that another least duration, s, would give."""
     name = log.files[0].name + (f" and {len(log.files) - 1} more" if len(log.files) > 1 else "")
-    reasons: dict[str, int] = {}
+    reasons: dict[str, list[Reason]] = {}
     for r in rejected:
-        kind = r.reason if "opposite signs" in r.reason else r.reason.split(":")[0].split(" by ")[0]
-        reasons[kind] = reasons.get(kind, 0) + 1
-    listed = ", ".join(f"{count} x {reason}" for reason, count in reasons.items())
+        reasons.setdefault(r.why.label, []).append(r.why)
+    listed = ", ".join(f"{len(alike)} x {_in_short(alike)}" for alike in reasons.values())
     return f"{name}: no steady stretch ({listed}); {_way_out(log, rejected, asked, dwells_with)}"
+
+
+def _in_short(alike: list[Reason]) -> str:
+    """Reasons of one kind in words; what says what to do says it."""
+    if alike[0].kind in CAUSES:
+        return f"{alike[0].label}{cause(alike)}"
+    return str(alike[0]) if alike[0].kind == "opposite signs" else alike[0].label
 
 
 def _way_out(
@@ -50,10 +55,10 @@ def _way_out(
     lasted = sum(float(run.time[-1] - run.time[0]) for run in log.runs)
     if lasted < _TOO_BRIEF * asked.min_dwell:
         return f"{held}, and the whole log lasts {lasted:.3g} s: {_other_clock(log)}"
-    if any(r.reason.startswith("rotation not") for r in rejected):
+    if any(r.why.kind == "other rotation" for r in rejected):
         other = "reverse" if asked.rotation == "forward" else "forward"
         return f"the drive turns {other}: say --rotation {other}"
-    short = [(float(m[1]), int(m[2])) for r in rejected if (m := _TOO_SHORT.match(r.reason))]
+    short = [(r.why.lasts, r.why.rows) for r in rejected if r.why.kind == "too short"]
     if _runs_up_and_down(log, rejected):
         slow, fast = (rpm(float(f([f(np.abs(run.speed)) for run in log.runs]))) for f in (np.min, np.max))
         count = sum(map(_ramps, log.runs))
@@ -77,9 +82,9 @@ def _other_clock(log: TorqueLog) -> str:
 
 def _runs_up_and_down(log: TorqueLog, rejected: tuple[Rejection, ...]) -> bool:
     """Whether the speed changes all the time: in what is too short for a dwell, too."""
-    short = [r for r in rejected if _TOO_SHORT.match(r.reason)]
+    short = [r for r in rejected if r.why.kind == "too short"]
     if not short:
-        return bool(rejected) and all(r.reason.startswith("speed changing") for r in rejected)
+        return bool(rejected) and all(r.why.kind == "changing" for r in rejected)
     return float(np.median([abs(_trend(log.runs[r.run], r)) for r in short])) > RUNNING
 
 

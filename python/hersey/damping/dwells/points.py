@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -11,6 +10,7 @@ import numpy as np
 import polars as pl
 
 from hersey.arrays import FloatArray
+from hersey.damping.dwells.reasons import NO_DWELL, Reason, joined
 from hersey.damping.dwells.relaxation import Relaxation
 from hersey.damping.dwells.resolution import Resolution
 from hersey.damping.rest import RestOfDrive
@@ -24,8 +24,6 @@ from hersey.units import rpm
 SAME_LOAD = 0.03
 #: Standard errors by which a torque must exceed the rest of the drive, so that a film is left.
 _BEYOND = 2.0
-#: Reasons of stretches that nobody meant as a dwell.
-_NO_DWELL = ("drive standing", "speed changing", "rotation not")
 
 
 @dataclass(frozen=True)
@@ -36,13 +34,18 @@ class Rejection:
     start: float
     end: float
     rows: int
-    reason: str
+    why: Reason
     speed: float = float("nan")  #: mean, rad/s
+
+    @property
+    def reason(self) -> str:
+        """Why, in words."""
+        return str(self.why)
 
     @property
     def is_dwell(self) -> bool:
         """Whether a speed was held that is asked for: neither standing nor between two speeds."""
-        return np.isfinite(self.speed) and not self.reason.startswith(_NO_DWELL)
+        return bool(np.isfinite(self.speed)) and self.why.kind not in NO_DWELL
 
 
 @dataclass(frozen=True, repr=False)
@@ -258,7 +261,8 @@ class SteadyPoints(Result):
         speeds = np.abs([r.speed for r in lost])
         where = _placed(speeds, np.abs(self.column("speed")))
         verb = "was" if len(lost) == 1 else "were"
-        return f"{len(lost)} of {len(lost) + len(self)} dwells, {where}, {verb} dropped: {_reasons(lost)}."
+        why = joined([r.why for r in lost])
+        return f"{len(lost)} of {len(lost) + len(self)} dwells, {where}, {verb} dropped: {why}."
 
     def _unused(self) -> dict[str, int]:
         """Rows of every other stretch by its reason."""
@@ -272,7 +276,7 @@ class SteadyPoints(Result):
         return json_record(
             {
                 "points": self.table.to_dicts(),
-                "rejected": self.rejected,
+                "rejected": [_record(r) for r in self.rejected],
                 "tare": self.tare,
                 "tare_error": self.tare_error,
                 "tare_errors": self.tare_errors,
@@ -296,6 +300,11 @@ class SteadyPoints(Result):
         }
         units |= {f"{name}_error": units[name] for name in ("speed", "torque", "temperature")}
         return self.table.rename({name: f"{name.replace('_', ' ')} ({unit})" for name, unit in units.items()})
+
+
+def _record(rejection: Rejection) -> dict[str, Any]:
+    """A rejection with its reason in words."""
+    return {**{k: v for k, v in vars(rejection).items() if k != "why"}, "reason": rejection.reason}
 
 
 def _stated(table: MeansTable, rotation: str) -> tuple[list[dict[str, object]], list[Rejection]]:
@@ -330,17 +339,17 @@ def _stated(table: MeansTable, rotation: str) -> tuple[list[dict[str, object]], 
     return dwells, rejected
 
 
-def _no_mean(row: MeanRow, rotation: str) -> str:
-    """Why a row of a table of means is not used, or nothing."""
+def _no_mean(row: MeanRow, rotation: str) -> Reason | None:
+    """Why a row of a table of means is not used, or None."""
     if row.speed == 0.0:
-        return "drive standing"
+        return Reason("standing")
     if rotation != "both" and (row.speed > 0) != (rotation == "forward"):
-        return f"rotation not {rotation}, as asked"
+        return Reason("other rotation", asked=rotation)
     if row.torque == 0.0:
-        return "torque is zero: is the sensor connected?"
+        return Reason("zero torque")
     if row.torque * row.speed < 0.0:
-        return "torque and speed have opposite signs: turn one with --torque-sign -1"
-    return ""
+        return Reason("opposite signs")
+    return None
 
 
 def _notes_of_means(table: MeansTable) -> tuple[str, ...]:
@@ -365,18 +374,3 @@ def _placed(lost: FloatArray, used: FloatArray) -> str:
         return f"{every}above {fastest:.3g} rpm"
     low, high = f"{rpm(float(lost.min())):.3g}", f"{rpm(float(lost.max())):.3g}"
     return f"at {low} rpm" if low == high else f"at {low} to {high} rpm"
-
-
-def _reasons(lost: list[Rejection]) -> str:
-    """Each kind of reason once, with its least and greatest share and how often it occurs."""
-    kinds: dict[str, list[float]] = {}
-    for r in lost:
-        share = re.search(r"(\d+(?:\.\d+)?)%", r.reason)
-        kind = r.reason.split(":")[0].split(" by ")[0]
-        kinds.setdefault(kind, []).append(float(share[1]) if share else float("nan"))
-    said = []
-    for kind, shares in kinds.items():
-        low, high = f"{min(shares):.3g}", f"{max(shares):.3g}"
-        numbers = "" if low == "nan" else f" by {low} %" if low == high else f" by {low} to {high} %"
-        said.append(f"{kind}{numbers}" + (f" ({len(shares)})" if len(kinds) > 1 else ""))
-    return ", ".join(said)

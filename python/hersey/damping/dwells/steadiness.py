@@ -7,6 +7,7 @@ import numpy as np
 from hersey.arrays import FloatArray
 from hersey.damping.dwells.groups import MIN_SAMPLES
 from hersey.damping.dwells.noise import mean_and_error, thinned
+from hersey.damping.dwells.reasons import Reason
 from hersey.damping.dwells.ripple import turned, without_ripple
 from hersey.damping.dwells.shared_noise import Powers, SharedNoise
 from hersey.log.torque_log import Run
@@ -35,43 +36,36 @@ def unsteady(
     noise: SharedNoise | None = None,
     ripple: bool = False,
     step: float = 0.0,
-) -> str | None:
+) -> Reason | None:
     """Why rows [start, end) are not a steady dwell, or None; ``step`` is that of the torque, N m."""
     time, speed, torque = run.time[start:end], run.speed[start:end], run.torque[start:end] - tare
     if end - start < MIN_SAMPLES or time[-1] - time[0] < min_dwell:
         lasted = float(time[-1] - time[0]) if end > start else 0.0
-        return (
-            f"dwell too short: {lasted:.1f} s or {end - start} rows are settled, "
-            f"{min_dwell:g} s and {MIN_SAMPLES} rows are needed"
-        )
+        return Reason("too short", lasts=lasted, rows=end - start, needed=min_dwell)
     if np.mean(torque) == 0.0:
-        return "torque is zero: is the sensor connected?"
+        return Reason("zero torque")
     temperature = None if run.temperature is None else run.temperature[start:end]
     if np.std(speed) > MAX_SPEED_SWING * abs(np.mean(speed)):
         slow, fast = sorted(abs(rpm(float(end))) for end in np.quantile(speed, (0.01, 0.99)))
-        return (
-            f"speed not held: it varies by {np.std(speed) / abs(np.mean(speed)):.0%} (standard deviation), "
-            f"{slow:.3g} to {fast:.3g} rpm"
-        )
+        share = float(np.std(speed) / abs(np.mean(speed)))
+        return Reason("speed not held", share=share, slow=slow, fast=fast)
     swing = float(np.std(torque)) / abs(float(np.mean(torque)))
     if swing > STICK_SLIP_SWING and _skewness_of_changes(torque) < STICK_SLIP_SKEWNESS:
-        return (
-            f"stick-slip: torque swings by {swing:.0%} (standard deviation), rising slowly and dropping fast"
-        )
+        return Reason("stick-slip", share=swing)
     if swing > MAX_TORQUE_SWING:
-        return f"torque swings by {swing:.0%} (standard deviation): no steady sliding"
+        return Reason("swing", share=swing)
     if ripple:
         angle = turned(time, speed)
         speed, torque = without_ripple(angle, speed), without_ripple(angle, torque)
     drift, _ = drift_over(time, speed, least=MAX_SPEED_DRIFT * abs(float(np.mean(speed))))
     if drift:
-        return f"speed drifts by {drift / float(np.mean(speed)):+.1%} over the dwell"
+        return Reason("speed drift", share=drift / float(np.mean(speed)))
     if temperature is not None and (drift := drift_over(time, temperature, least=MAX_TEMPERATURE_DRIFT)[0]):
-        return f"temperature drifts by {drift:+.1f} K over the dwell"
+        return Reason("temperature drift", kelvin=drift)
     least = max(MAX_TORQUE_DRIFT * abs(float(np.mean(torque))), MAX_STEP_DRIFT * step)
     drift, deviation = drift_over(time, torque, noise, least=least)
     if abs(drift) > MAX_DRIFT_TO_NOISE * deviation:
-        return f"torque drifts by {drift / float(np.mean(torque)):+.1%} over the dwell"
+        return Reason("torque drift", share=drift / float(np.mean(torque)))
     return None
 
 

@@ -1,0 +1,194 @@
+"""Why a stretch of a log is not used: a kind with its numbers, and the words made of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from statistics import median
+from typing import Literal
+
+from hersey.damping.dwells.groups import MIN_SAMPLES
+
+Kind = Literal[
+    "changing", "standing", "other rotation", "too short", "zero torque", "speed not held", "stick-slip",
+    "swing", "speed drift", "temperature drift", "torque drift", "opposite signs", "spikes", "ripple",
+]  # fmt: skip
+#: Stretches that nobody meant as a dwell.
+NO_DWELL: tuple[Kind, ...] = ("changing", "standing", "other rotation")
+#: A ripple comes a whole number of times in a turn within this share of one; frequencies closer than this
+#: share are the same.
+WHOLE_TURN = 0.03
+#: More often than this in a turn, any number is near a whole one.
+MOST_WHOLE = 12
+#: A longer dwell averages a ripple out: so many of its periods.
+MANY_PERIODS = 10.0
+#: Causes of what is wrong with a dwell, and what to do about them.
+CAUSES: tuple[Kind, ...] = ("spikes", "ripple")
+_SPIKES = "check the cable of the sensor, and remove these rows"
+_OWN = "look for an oscillation of the drive, a controller or the mains"
+#: What each kind is called, where the words do not depend on a number.
+_LABELS: dict[Kind, str] = {
+    "changing": "speed changing",
+    "standing": "drive standing",
+    "other rotation": "rotation not as asked",
+    "too short": "dwell too short",
+    "zero torque": "torque is zero",
+    "speed not held": "speed not held",
+    "stick-slip": "stick-slip",
+    "swing": "torque swings",
+    "speed drift": "speed drifts",
+    "temperature drift": "temperature drifts",
+    "torque drift": "torque drifts",
+    "opposite signs": "torque and speed have opposite signs",
+    "spikes": "spikes of the torque",
+    "ripple": "ripple of the torque",
+}
+
+
+@dataclass(frozen=True)
+class Reason:
+    """Why a stretch is not used; only what belongs to the ``kind`` is set.
+
+    Attributes
+    ----------
+    kind
+        What is wrong.
+    share
+        How much, as a share of the mean: standard deviation of a swing, drift over the dwell with its sign,
+        median size of the spikes, amplitude of the ripple.
+    kelvin
+        Drift of the temperature over the dwell, K.
+    slow, fast
+        Between what the speed varies, rpm.
+    lasts, rows, needed
+        How long and how many rows are settled, s, and the duration that is needed, s.
+    count
+        Spikes.
+    frequency, per_turn
+        Of a ripple: Hz, and times per revolution of the roll.
+    seen_as
+        What is wrong with the dwell because of spikes or a ripple.
+    asked
+        Rotation that was asked for, ``forward`` or ``reverse``.
+    """
+
+    kind: Kind
+    share: float | None = None
+    kelvin: float | None = None
+    slow: float = 0.0
+    fast: float = 0.0
+    lasts: float = 0.0
+    rows: int = 0
+    needed: float = 0.0
+    count: int = 0
+    frequency: float = 0.0
+    per_turn: float = 0.0
+    seen_as: Kind | None = None
+    asked: str = ""
+
+    @property
+    def drifts(self) -> bool:
+        """Whether a later start of the same dwell may be steady."""
+        return self.kind in ("temperature drift", "torque drift")
+
+    @property
+    def label(self) -> str:
+        """Return what is wrong, without numbers."""
+        if self.kind == "other rotation":
+            return f"rotation not {self.asked}, as asked"
+        return _LABELS[self.kind] + (self._few() if self.kind == "changing" else "")
+
+    def _few(self) -> str:
+        return f", or held for fewer than {MIN_SAMPLES} rows" if 0 < self.rows < MIN_SAMPLES else ""
+
+    def __str__(self) -> str:
+        """Return what is wrong in words, with its numbers and what to do."""
+        share = 0.0 if self.share is None else self.share
+        match self.kind:
+            case "too short":
+                how = f": {self.lasts:.1f} s or {self.rows} rows are settled, "
+                how += f"{self.needed:g} s and {MIN_SAMPLES} rows are needed"
+            case "zero torque":
+                how = ": is the sensor connected?"
+            case "speed not held":
+                how = (
+                    f": it varies by {share:.0%} (standard deviation), {self.slow:.3g} to {self.fast:.3g} rpm"
+                )
+            case "stick-slip":
+                how = f": torque swings by {share:.0%} (standard deviation), rising slowly and dropping fast"
+            case "swing":
+                how = f" by {share:.0%} (standard deviation): no steady sliding"
+            case "speed drift" | "torque drift":
+                how = f" by {share:+.1%} over the dwell"
+            case "temperature drift":
+                how = f" by {self.kelvin or 0.0:+.1f} K over the dwell"
+            case "opposite signs":
+                how = ": turn one with --torque-sign -1"
+            case "spikes":
+                how = f": {self.count} samples lie {_times(share)} the mean apart from their neighbours, "
+                how += f"and without them the dwell is steady; {_SPIKES}"
+            case "ripple":
+                how = f" at {self.frequency:.3g} Hz, amplitude {_times(share)} the mean, {self.turns()}; "
+                how += f"without it the dwell is steady; {self.remedy()}"
+            case _:
+                how = ""
+        return self.label + how
+
+    def turns(self) -> str:
+        """Return how a ripple goes with the revolution of the roll, in words."""
+        times = round(self.per_turn)
+        if 1 <= times <= MOST_WHOLE and abs(self.per_turn - times) <= WHOLE_TURN:
+            return "once per roll revolution" if times == 1 else f"{times} times per roll revolution"
+        if self.per_turn < 1.0:
+            return f"once in {1.0 / self.per_turn:.3g} roll revolutions, as a belt that long would do"
+        return f"{self.per_turn:.3g} times per roll revolution"
+
+    def remedy(self) -> str:
+        """Return what to do about a ripple."""
+        enough = MANY_PERIODS / self.frequency
+        if self.seen_as != "swing" and self.lasts < enough:
+            return f"hold each speed for {enough:.0f} s or longer, which averages it out"
+        return "find what turns at this frequency, and true it"
+
+
+def joined(reasons: list[Reason]) -> str:
+    """Return each kind once, with its least and greatest share and how often it occurs."""
+    kinds: dict[str, list[Reason]] = {}
+    for reason in reasons:
+        kinds.setdefault(reason.label, []).append(reason)
+    said = []
+    for label, alike in kinds.items():
+        numbers = cause(alike) if alike[0].kind in CAUSES else _shares(alike)
+        said.append(f"{label}{numbers}" + (f" ({len(alike)})" if len(kinds) > 1 else ""))
+    return ", ".join(said)
+
+
+def _shares(alike: list[Reason]) -> str:
+    """The least and greatest share of reasons of one kind, or nothing."""
+    digits = 1 if alike[0].kind in ("torque drift", "speed drift") else 0
+    shares = [round(100.0 * abs(r.share), digits) for r in alike if r.share is not None]
+    if not shares:
+        return ""
+    low, high = f"{min(shares):.3g}", f"{max(shares):.3g}"
+    return f" by {low} %" if low == high else f" by {low} to {high} %"
+
+
+def cause(alike: list[Reason]) -> str:
+    """Return numbers of spikes, or of ripples, over several dwells, and what to do."""
+    size = _times(float(median(r.share or 0.0 for r in alike)))
+    if alike[0].kind == "spikes":
+        return f" ({sum(r.count for r in alike)} samples, {size} the mean apart): {_SPIKES}"
+    longest = max(alike, key=lambda r: r.frequency * r.lasts)
+    slow, fast = min(r.frequency for r in alike), max(r.frequency for r in alike)
+    low, high = f"{slow:.3g}", f"{fast:.3g}"
+    at = f" at {low if low == high else f'{low} to {high}'} Hz, amplitude {size} the mean, "
+    turns = [r.per_turn for r in alike]
+    if max(turns) - min(turns) <= 2.0 * WHOLE_TURN * max(turns):
+        return f"{at}{longest.turns()}: {longest.remedy()}"
+    if len(alike) > 1 and fast - slow <= WHOLE_TURN * fast:
+        return f"{at}the same at every speed, so not of roll or belt: {_OWN}"
+    return f"{at}{min(turns):.3g} to {max(turns):.3g} times per roll revolution: {longest.remedy()}"
+
+
+def _times(share: float) -> str:
+    """A share of the mean."""
+    return f"{share:.0%} of" if share < 2.0 else f"{share:.3g} times"
