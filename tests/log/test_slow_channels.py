@@ -110,3 +110,13 @@ def test_what_is_not_slow_is_missing_as_before(tmp_path: Path) -> None:
         with pytest.raises(UnreadableLogError, match="the first of 300 such rows of 3000"):
             hersey.read(source)
         assert hersey.read(source, drop_missing=True).rows == 2700
+
+
+@pytest.mark.parametrize("every", [1500, 550])
+def test_values_few_and_far_between_tell_nothing_of_what_lies_between(every: int, tmp_path: Path) -> None:
+    """8 values, or 11 s between values: as where a temperature is written when it changes alone."""
+    long = pl.concat([table(), *(table(**{"Time [s]": TIME + 60.0 * i}) for i in range(1, 4))])
+    heat = pl.Series("Temp [degC]", sparse(np.tile(HEAT, 4), every))
+    for source in sources(long.with_columns(heat), tmp_path):
+        with pytest.raises(UnreadableLogError, match=r"such rows of 12000.*; too few rows are left"):
+            hersey.read(source, drop_missing=True)

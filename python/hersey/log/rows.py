@@ -10,7 +10,7 @@ import numpy as np
 
 from hersey.arrays import BoolArray, FloatArray, IntArray
 from hersey.errors import UnreadableLogError
-from hersey.log.slow_channels import SlowChannel, is_slow
+from hersey.log.slow_channels import LONGEST_INTERVAL, SlowChannel, is_slow
 from hersey.log.torque_log import LogFile, Run
 
 #: Rows of a run.
@@ -197,9 +197,11 @@ def _slow(
     for role in lacking:
         known = np.isfinite(arrays[role])
         if is_slow(known.size, int(known.sum())):
-            slow.append(SlowChannel.of(role, names[role], time, known))
-        else:
-            gone |= ~known
+            channel = SlowChannel.of(role, names[role], time, known)
+            if channel.interval <= LONGEST_INTERVAL:
+                slow.append(channel)
+                continue
+        gone |= ~known
     return slow, gone
 
 

@@ -15,13 +15,16 @@ from hersey.arrays import BoolArray, FloatArray
 
 #: A channel is slow if it has a value in this share of the rows at the most.
 SLOW = 0.5
+#: Fewest values of a slow channel, and its longest usual interval, s: a temperature that is written where it
+#: changes alone, or by hand, tells nothing of what lies between.
+FEWEST, LONGEST_INTERVAL = 10, 10.0
 #: Longest gap that is bridged, in usual intervals between the values of the channel.
 LONGEST_GAP = 3.0
 
 
 def is_slow(rows: int, known: int) -> bool:
     """Return whether a channel with so many values in so many rows is slower than its table."""
-    return 2 <= known <= SLOW * rows
+    return FEWEST <= known <= SLOW * rows
 
 
 @dataclass
