@@ -466,3 +466,15 @@ def test_a_mapping_names_only_what_was_dropped(tmp_path: Path) -> None:
 
 def test_a_file_of_other_tables_is_neither(tmp_path: Path) -> None:
     assert toml(Analysis(tmp_path), "[project]\n").state == "fault"
+
+
+def test_a_channel_called_a_radius_is_proposed_and_taken_with_its_button_alone(tmp_path: Path) -> None:
+    header = "Time [s],Friction force [N],Speed [rpm],Temperature [degC],Wear [um],Track radius [mm]"
+    one = dropped(tmp_path, log(header, lambda *cells: (*cells, "3", "25")))
+    assert {name for name, choice in one.choices.items() if choice["role"] in ("radius", "load")} == set()
+    fault = only(one)
+    assert (fault.at, fault.button) == ("field:radius.value", "Use “Track radius”")
+    assert fault.mend == {"roles": {"Track radius": "radius"}}
+    one.choices["Track radius"]["role"] = "radius"
+    one.check()
+    assert one.faults == []

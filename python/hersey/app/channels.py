@@ -11,6 +11,8 @@ from hersey.errors import UnitError
 from hersey.log.channels import ROLES, role_conversion
 from hersey.log.doubtful import RARE, TOO_HOT
 from hersey.log.slow_channels import is_slow
+from hersey.log.stating import proposed
+from hersey.log.text.layout import Column
 from hersey.units import KINDS, ZERO_CELSIUS, nearest_unit
 
 #: Units to choose from, by role; any other can be written.
@@ -205,7 +207,9 @@ def _of_one(
                 mend,
             )
         ]
-    faults = _unit_faults(role, channel, unit, options)
+    faults = _unit_faults(role, channel, unit, options) or _lacking_radius(
+        role, channel, unit, choices, look, options
+    )
     slow = role == "temperature" and is_slow(channel["rows"], channel["rows"] - channel["missing"])
     many = channel["missing"] > max(1, _FEW * channel["rows"]) and not slow
     if not faults and many and not options["drop_missing"]:
@@ -249,7 +253,7 @@ def _unit_faults(role: str, channel: Mapping[str, Any], unit: str, options: Mapp
         at, said = "field:torque.motor_constant", "A motor's current needs its motor constant."
         return [] if options["motor_constant"].strip() else [Fault(at, said, text, "motor constant")]
     try:
-        kind, line = role_conversion(role, unit)
+        _, line = role_conversion(role, unit)
     except UnitError as error:
         near = _nearest(role, unit, channel)
         text = f"{error}"
@@ -263,18 +267,38 @@ def _unit_faults(role: str, channel: Mapping[str, Any], unit: str, options: Mapp
                 {"units": {name: near}},
             )
         ]
-    if kind in ("force", "friction coefficient") and role == "torque" and not options["radius"].strip():
-        return [
-            Fault(
-                "field:radius.value",
-                "A friction force needs its radius.",
-                f"“{name}” is a force: torque is force times radius.",
-                "radius of the friction force",
-            )
-        ]
     if role != "temperature" or channel["most"] is None:
         return []
     return _doubtful_heat(channel, unit, line.scale, line.offset)
+
+
+def _lacking_radius(
+    role: str,
+    channel: Mapping[str, Any],
+    unit: str,
+    choices: Mapping[str, Mapping[str, str]],
+    look: Mapping[str, Any],
+    options: Mapping[str, Any],
+) -> list[Fault]:
+    """What a friction force lacks; a channel called like a radius is proposed, and never taken."""
+    if role != "torque" or unit in ("A", "mA"):
+        return []
+    stated = options["radius"].strip() or any(choice["role"] == "radius" for choice in choices.values())
+    if stated or role_conversion(role, unit)[0] == "torque":
+        return []
+    listed = tuple(Column(i, c["name"], c["written"]) for i, c in enumerate(look["channels"]))
+    named = next((column.name for column in proposed("radius", listed)), "")
+    button, mend = (f"Use “{named}”", {"roles": {named: "radius"}}) if named else ("", {})
+    return [
+        Fault(
+            "field:radius.value",
+            "A friction force needs its radius.",
+            f"“{channel['name']}” is a force: torque is force times radius.",
+            "radius of the friction force",
+            button,
+            mend,
+        )
+    ]
 
 
 def _doubtful_heat(channel: Mapping[str, Any], unit: str, scale: float, offset: float) -> list[Fault]:

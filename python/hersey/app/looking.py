@@ -13,9 +13,11 @@ from hersey.arrays import FloatArray
 from hersey.errors import HerseyError, UnreadableLogError
 from hersey.inspection.inspecting import ChannelReport, file_report
 from hersey.inspection.raw import RawLog, raw_channels
-from hersey.log.channels import OTHER_ROLES, ROLES, ChannelChoice, Stated, find_channel, is_dead
+from hersey.log.channels import OTHER_ROLES, ROLES, ChannelChoice, Stated, find_channel, is_called, is_dead
 from hersey.log.mapping import LogMapping, read_with_mapping
 from hersey.log.means import is_means_table
+from hersey.log.stating import proposed
+from hersey.log.text.layout import Column
 
 #: Columns of a preview: each shows the least and the greatest of its rows.
 _COLUMNS = 75
@@ -55,7 +57,7 @@ def look(path: Path) -> dict[str, Any]:
             for i in range(len(names))
         ],
         "without": without,
-        "claims": {role: _claims(log, names, why) for role, why in without.items()},
+        "claims": {role: _claims(role, log, names, why) for role, why in without.items()},
         "problem": "" if without or means else _problem(path),
         "found": found,
     }
@@ -89,10 +91,19 @@ def _units(log: RawLog) -> dict[str, str]:
     return units
 
 
-def _claims(log: RawLog, names: list[str], why: str) -> list[str]:
-    """The channels between which a message does not choose."""
-    shown = [(f"'{channel.column}'", name) for channel, name in zip(log.channels, names, strict=True)]
-    return [name for quoted, name in shown if quoted in why or f"'{name}'" in why]
+def _claims(role: str, log: RawLog, names: list[str], why: str) -> list[str]:
+    """The channels between which a message does not choose; one that it proposes as a radius is none."""
+    return [
+        name
+        for channel, name in zip(log.channels, names, strict=True)
+        if (f"'{channel.column}'" in why or f"'{name}'" in why) and not _is_other(role, channel.column)
+    ]
+
+
+def _is_other(role: str, column: Column) -> bool:
+    """Whether a channel is called a radius or a load, and not like the role."""
+    called = any(proposed(other, (column,)) for other in ("radius", "load"))
+    return called and role in ROLES and not is_called(role, column)
 
 
 def _clock(clock: Any) -> dict[str, Any]:
