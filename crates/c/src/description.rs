@@ -2,7 +2,9 @@
 //!
 //! The format stands in `include/hersey.h`, for those who write it.
 
-use crate::variables::{COUNT, DRIVE_SPEED, DRIVE_TORQUE, TEMPERATURE, VARIABLES, place_of};
+use crate::variables::{
+    COUNT, Causality, DRIVE_SPEED, DRIVE_TORQUE, Port, ROLL_SPEED, TEMPERATURE, VARIABLES, place_of,
+};
 use hersey_core::work::MOST_STEPS;
 
 /// The format that this library reads.
@@ -37,6 +39,10 @@ choice! {
     Drive { Speed = "speed", Torque = "torque" }
 }
 choice! {
+    /// How a drive that is given a speed is coupled.
+    Coupling { Translational = "translational", Rotational = "rotational" }
+}
+choice! {
     /// Shape of the law of drag.
     Law { Power = "power", Table = "table", Mixed = "mixed" }
 }
@@ -57,6 +63,7 @@ choice! {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Choices {
     pub drive: Drive,
+    pub coupling: Coupling,
     pub law: Law,
     pub closure: Closure,
     pub warmth: Warmth,
@@ -71,10 +78,21 @@ enum Belongs {
 }
 
 impl Choices {
+    /// The port of a drive that is given a speed.
+    pub fn port(self) -> Option<Port> {
+        match (self.drive, self.coupling) {
+            (Drive::Torque, _) => None,
+            (Drive::Speed, Coupling::Translational) => Some(Port::Translational),
+            (Drive::Speed, Coupling::Rotational) => Some(Port::Rotational),
+        }
+    }
+
     fn belongs(self, name: &str) -> Belongs {
         let needed = match name {
-            "drive_speed" => self.drive == Drive::Speed,
-            "drive_torque" | "roll_radius" => self.drive == Drive::Torque,
+            "drive_speed" => self.port() == Some(Port::Translational),
+            "roll_speed" => self.port() == Some(Port::Rotational),
+            "drive_torque" => self.drive == Drive::Torque,
+            "roll_radius" => self.port() != Some(Port::Translational),
             "temperature" | "reference_temperature" => self.warmth != Warmth::None,
             "transition_force" | "transition_speed" | "ehl_exponent" | "mixed_exponent" => {
                 self.law == Law::Power
@@ -104,6 +122,15 @@ impl Choices {
     }
 }
 
+/// Least and greatest value at which the law was measured.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Measured {
+    /// Of the belt speed, m/s.
+    pub speed: Option<[f64; 2]>,
+    /// K.
+    pub temperature: Option<[f64; 2]>,
+}
+
 /// A drive as its text describes it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Description {
@@ -117,6 +144,8 @@ pub struct Description {
     pub numbers: Vec<f64>,
     /// Those of the viscosity that moves the law.
     pub viscosity_numbers: Vec<f64>,
+    /// Least and greatest belt speed and temperature at which the law was measured, if they are known.
+    pub measured: Measured,
     /// The word by which a tool makes sure that library and unit belong together.
     pub token: Option<String>,
     /// Steps that one call may take.
@@ -220,13 +249,25 @@ impl<'a> Lines<'a> {
     }
 }
 
+impl Lines<'_> {
+    /// Two positive numbers, the second not below the first.
+    fn range(&self, name: &str, belongs: bool) -> Result<Option<[f64; 2]>, String> {
+        let Some(line) = self.find(name) else { return Ok(None) };
+        match self.list(name, belongs, Some(2))?[..] {
+            [low, high] if low >= 0.0 && low <= high => Ok(Some([low, high])),
+            _ => Err(line.refused("is no range: give the least and the greatest value")),
+        }
+    }
+}
+
 const OUT_OF_PLACE: &str = "does not belong to the other choices of the drive";
 
 /// Names that are no variables.
-const KNOWN: [&str; 12] = [
+const KNOWN: [&str; 15] = [
     "format",
     "token",
     "drive",
+    "port",
     "law",
     "closure",
     "temperature_law",
@@ -235,6 +276,8 @@ const KNOWN: [&str; 12] = [
     "forces",
     "numbers",
     "viscosity_numbers",
+    "measured_speeds",
+    "measured_temperatures",
     "most_steps",
 ];
 
@@ -256,6 +299,7 @@ impl Description {
         }
         let choices = Choices {
             drive: Drive::of(lines.needed("drive")?)?,
+            coupling: lines.find("port").map_or(Ok(Coupling::Translational), Coupling::of)?,
             law: Law::of(lines.needed("law")?)?,
             closure: Closure::of(lines.needed("closure")?)?,
             warmth: Warmth::of(lines.needed("temperature_law")?)?,
@@ -265,6 +309,11 @@ impl Description {
             (choices.drive, choices.start, lines.find("start"))
         {
             return Err(line.refused("needs drive = speed"));
+        }
+        if let (Drive::Torque, Coupling::Rotational, Some(line)) =
+            (choices.drive, choices.coupling, lines.find("port"))
+        {
+            return Err(line.refused("needs drive = speed: a torque acts on the roll already"));
         }
         let coefficients = match choices.warmth {
             Warmth::None | Warmth::Power => None,
@@ -283,6 +332,11 @@ impl Description {
                 coefficients.is_some(),
                 coefficients,
             )?,
+            measured: Measured {
+                speed: lines.range("measured_speeds", true)?,
+                temperature: lines
+                    .range("measured_temperatures", choices.warmth != Warmth::None)?,
+            },
             token: lines.find("token").map(|line| line.value.to_owned()),
             most_steps: lines.find("most_steps").map_or(Ok(MOST_STEPS), |line| {
                 line.value.parse().map_err(|_| line.refused("is no whole number"))
@@ -293,10 +347,18 @@ impl Description {
 
     /// Place of the variable that moves the belt.
     pub fn drive_place(&self) -> usize {
-        match self.choices.drive {
-            Drive::Speed => DRIVE_SPEED,
-            Drive::Torque => DRIVE_TORQUE,
+        match self.choices.port() {
+            Some(Port::Translational) => DRIVE_SPEED,
+            Some(Port::Rotational) => ROLL_SPEED,
+            None => DRIVE_TORQUE,
         }
+    }
+
+    /// Whether such a drive has a variable that is computed: those of another port it has not.
+    pub fn computes(&self, place: usize) -> bool {
+        let variable = &VARIABLES[place];
+        let is_computed = matches!(variable.causality, Causality::Independent | Causality::Output);
+        is_computed && (variable.port.is_none() || variable.port == self.choices.port())
     }
 
     /// Whether the law varies with temperature.
@@ -366,6 +428,15 @@ mod tests {
             ("mass = 1.0", "mass = 1.0\ntemperature = 300", OUT_OF_PLACE),
             ("mass = 1.0", "mass = 1.0\nspeeds = 1 2", OUT_OF_PLACE),
             ("law = power", "law = spline", "law 'spline' is none of power, table, mixed"),
+            ("mass = 1.0", "mass = 1.0\nroll_speed = 2", OUT_OF_PLACE),
+            ("mass = 1.0", "mass = 1.0\nmeasured_speeds = 2 1", "is no range"),
+            ("mass = 1.0", "mass = 1.0\nmeasured_speeds = 2", "has 1 numbers: 2 are needed"),
+            ("mass = 1.0", "mass = 1.0\nmeasured_temperatures = 300 400", OUT_OF_PLACE),
+            (
+                "drive = speed",
+                "drive = speed\nport = rotational",
+                "drive_speed '1.0' does not belong",
+            ),
             ("format = 1", "format = 2", "is not the format 1"),
         ] {
             let words_found = refusal(&BASELINE.replace(from, to));
@@ -374,6 +445,8 @@ mod tests {
         assert!(
             refusal(&TORQUE.replace("start = rest", "start = steady")).contains("drive = speed")
         );
+        let rotational = TORQUE.replace("drive = torque", "drive = torque\nport = rotational");
+        assert!(refusal(&rotational).contains("needs drive = speed"));
         assert!(refusal("").contains("format"));
         assert!(refusal(&"#".repeat(MOST_BYTES + 1)).contains("bytes"));
     }

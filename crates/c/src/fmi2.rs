@@ -11,7 +11,7 @@ use crate::exchange::{
     DISCARD, deserialized, done, dropped, got, instance_at, kept, none_of_kind, refused,
     serialized, set, size,
 };
-use crate::fmi3::known;
+use crate::fmi3::set_logging;
 use crate::handle::{Handle, Logger2, State, Words};
 use crate::instance::Phase::{Initialization, Instantiated, Step, Terminated};
 use crate::memory::{Given, place, text};
@@ -50,11 +50,13 @@ extern "C" fn fmi2GetVersion() -> *const c_char {
 #[unsafe(no_mangle)]
 extern "C" fn fmi2SetDebugLogging(
     component: Component,
-    _on: c_int,
+    on: c_int,
     count: usize,
     categories: *const *const c_char,
 ) -> c_int {
-    done(component, "fmi2SetDebugLogging", |_| known(count, categories))
+    done(component, "fmi2SetDebugLogging", |instance| {
+        set_logging(instance, on != 0, count, categories)
+    })
 }
 
 #[unsafe(no_mangle)]
@@ -189,7 +191,7 @@ fn whole(value: f64) -> c_int {
 
 values! {
     fmi2GetReal, fmi2SetReal: f64 = Float64, |value| value, |value| value;
-    fmi2GetInteger, fmi2SetInteger: c_int = Int32, whole, f64::from;
+    fmi2GetInteger, fmi2SetInteger: c_int = Enumeration, whole, f64::from;
     fmi2GetBoolean, fmi2SetBoolean: c_int = Boolean, whole, f64::from;
 }
 

@@ -12,6 +12,7 @@ use crate::exchange::{
     size,
 };
 use crate::handle::{Handle, Logger3, Words};
+use crate::instance::Instance as Drive;
 use crate::instance::Phase::{Event, Initialization, Instantiated, Step, Terminated};
 use crate::memory::{Given, place, text};
 use crate::variables::Kind;
@@ -31,20 +32,34 @@ const CATEGORIES: [&str; 3] = ["logStatusError", "logStatusWarning", "logAll"];
 #[unsafe(no_mangle)]
 extern "C" fn fmi3SetDebugLogging(
     instance: Instance,
-    _on: u8,
+    on: u8,
     count: usize,
     categories: *const *const c_char,
 ) -> i32 {
-    done(instance, "fmi3SetDebugLogging", |_| known(count, categories))
+    done(instance, "fmi3SetDebugLogging", |instance| {
+        set_logging(instance, on != 0, count, categories)
+    })
 }
 
-/// Refuse categories of which nothing is ever logged.
-pub fn known(count: usize, categories: *const *const c_char) -> Result<(), String> {
+/// Turn warnings on or off, of all categories or those named; refuse one of which nothing is ever logged.
+///
+/// Why a call is refused is always told: without that the caller could not know it.
+pub fn set_logging(
+    instance: &mut Drive,
+    on: bool,
+    count: usize,
+    categories: *const *const c_char,
+) -> Result<(), String> {
+    let mut warnings = count == 0;
     for category in Given::new("categories", categories, count)?.iter() {
         let category = text("category", category)?;
         if !CATEGORIES.contains(&category) {
             return Err(format!("'{category:.40}' is no category: {}", CATEGORIES.join(", ")));
         }
+        warnings |= category != CATEGORIES[0];
+    }
+    if warnings {
+        instance.warns = on;
     }
     Ok(())
 }
@@ -262,13 +277,18 @@ macro_rules! values {
 }
 
 #[allow(clippy::cast_possible_truncation)] // the number of a mode
-fn whole(value: f64) -> i32 {
-    value as i32
+fn whole(value: f64) -> i64 {
+    value as i64
+}
+
+#[allow(clippy::cast_precision_loss)] // no enumeration can be set
+fn number(value: i64) -> f64 {
+    value as f64
 }
 
 values! {
     fmi3GetFloat64, fmi3SetFloat64: f64 = Float64, |value| value, |value| value;
-    fmi3GetInt32, fmi3SetInt32: i32 = Int32, whole, f64::from;
+    fmi3GetInt64, fmi3SetInt64: i64 = Enumeration, whole, number;
     fmi3GetBoolean, fmi3SetBoolean: u8 = Boolean, |value| u8::from(value != 0.0), |value| f64::from(u8::from(value != 0));
 }
 
@@ -290,8 +310,8 @@ no_values! {
     fmi3GetUInt8, "UInt8" (*mut c_void, usize);
     fmi3GetInt16, "Int16" (*mut c_void, usize);
     fmi3GetUInt16, "UInt16" (*mut c_void, usize);
+    fmi3GetInt32, "Int32" (*mut c_void, usize);
     fmi3GetUInt32, "UInt32" (*mut c_void, usize);
-    fmi3GetInt64, "Int64" (*mut c_void, usize);
     fmi3GetUInt64, "UInt64" (*mut c_void, usize);
     fmi3GetString, "String" (*mut c_void, usize);
     fmi3GetBinary, "Binary" (*mut usize, *mut c_void, usize);
@@ -301,8 +321,8 @@ no_values! {
     fmi3SetUInt8, "UInt8" (*const c_void, usize);
     fmi3SetInt16, "Int16" (*const c_void, usize);
     fmi3SetUInt16, "UInt16" (*const c_void, usize);
+    fmi3SetInt32, "Int32" (*const c_void, usize);
     fmi3SetUInt32, "UInt32" (*const c_void, usize);
-    fmi3SetInt64, "Int64" (*const c_void, usize);
     fmi3SetUInt64, "UInt64" (*const c_void, usize);
     fmi3SetString, "String" (*const c_void, usize);
     fmi3SetBinary, "Binary" (*const usize, *const c_void, usize);

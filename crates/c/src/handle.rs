@@ -9,6 +9,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError, TryLockError};
 
 use crate::instance::{Instance, Saved};
+use crate::measured::Crossing;
 
 /// What stands at the beginning of a handle and of a saved state, as long as it is one.
 const OF_HANDLE: u64 = 0x6865_7273_6579_2d31;
@@ -32,23 +33,44 @@ pub enum Words {
         name: CString,
     },
     /// Kept until the next call, for who asks.
-    Kept(Mutex<CString>),
+    Kept(Kept),
 }
 
-/// Status and category under which words go to a logger.
-const ERROR: c_int = 3;
-const CATEGORY: &CStr = c"logStatusError";
+/// Why the last call was refused, and of what the last steps warn.
+#[derive(Default)]
+pub struct Kept {
+    refusal: Mutex<CString>,
+    warning: Mutex<CString>,
+}
+
+/// What words to the caller are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Severity {
+    Warning,
+    Error,
+}
+
+impl Severity {
+    /// Status and category under which they go to a logger.
+    fn status(self) -> (c_int, &'static CStr) {
+        match self {
+            Self::Warning => (1, c"logStatusWarning"),
+            Self::Error => (3, c"logStatusError"),
+        }
+    }
+}
 
 impl Words {
-    /// Tell why a call was refused.
+    /// Tell why a call was refused, or what is odd though it goes on; without a logger nobody hears of it.
     #[allow(unsafe_code)] // a function of the caller is called, as the standard has it
-    pub fn tell(&self, words: &str) {
+    pub fn tell(&self, severity: Severity, words: &str) {
+        let (status, category) = severity.status();
         let text = CString::new(words.replace('\0', " ")).unwrap_or_default();
         match self {
             Self::Version3 { logger, environment } => {
                 if let Some(logger) = logger {
                     // SAFETY: the caller gave function and environment for this
-                    unsafe { logger(*environment, ERROR, CATEGORY.as_ptr(), text.as_ptr()) };
+                    unsafe { logger(*environment, status, category.as_ptr(), text.as_ptr()) };
                 }
             }
             Self::Version2 { logger, environment, name } => {
@@ -59,16 +81,25 @@ impl Words {
                         logger(
                             *environment,
                             name.as_ptr(),
-                            ERROR,
-                            CATEGORY.as_ptr(),
+                            status,
+                            category.as_ptr(),
                             format.as_ptr(),
                         );
                     }
                 }
             }
-            Self::Kept(last) => {
-                *last.lock().unwrap_or_else(PoisonError::into_inner) = text;
+            Self::Kept(kept) => {
+                *kept.of(severity).lock().unwrap_or_else(PoisonError::into_inner) = text;
             }
+        }
+    }
+}
+
+impl Kept {
+    fn of(&self, severity: Severity) -> &Mutex<CString> {
+        match severity {
+            Severity::Warning => &self.warning,
+            Severity::Error => &self.refusal,
         }
     }
 }
@@ -109,7 +140,7 @@ impl Handle {
                 Box::into_raw(Box::new(handle)).cast()
             }
             Err(why) => {
-                words.tell(&why);
+                words.tell(Severity::Error, &why);
                 std::ptr::null_mut()
             }
         }
@@ -123,6 +154,8 @@ impl Handle {
     }
 
     /// Do something with the instance; `function` is the name by which it was asked for.
+    ///
+    /// What it warns of is told once the instance is free again.
     pub fn call<T>(
         &self,
         function: &str,
@@ -134,18 +167,46 @@ impl Handle {
                 TryLockError::Poisoned(_) => FAULT.to_owned(),
                 TryLockError::WouldBlock => BUSY.to_owned(),
             })?;
-            action(&mut instance)
+            let outcome = action(&mut instance);
+            Ok((outcome, instance.take_crossings()))
         }));
-        outcome.unwrap_or_else(|_| Err(FAULT.to_owned())).map_err(|why| {
-            self.words.tell(&format!("{function}: {why}"));
+        let outcome = outcome.unwrap_or_else(|_| Err(FAULT.to_owned()));
+        let outcome = outcome.and_then(|(outcome, crossings)| {
+            self.warn(function, &crossings);
+            outcome
+        });
+        outcome.map_err(|why| {
+            self.words.tell(Severity::Error, &format!("{function}: {why}"));
             Refused
         })
     }
 
-    /// The words of the last refusal, if they are kept.
-    pub fn kept(&self) -> *const c_char {
+    /// Tell what has left the range in which the law was measured: each by itself, or all at once where they are kept.
+    fn warn(&self, function: &str, crossings: &[Crossing]) {
+        let lines: Vec<String> =
+            crossings.iter().map(|crossing| format!("{function}: {crossing}")).collect();
+        if matches!(self.words, Words::Kept(_)) && !lines.is_empty() {
+            self.words.tell(Severity::Warning, &lines.join("\n"));
+            return;
+        }
+        for line in &lines {
+            self.words.tell(Severity::Warning, line);
+        }
+    }
+
+    /// Forget the warnings that are kept.
+    pub fn forget_warning(&self) {
+        if matches!(self.words, Words::Kept(_)) {
+            self.words.tell(Severity::Warning, "");
+        }
+    }
+
+    /// The last words of a kind, if they are kept.
+    pub fn kept(&self, severity: Severity) -> *const c_char {
         match &self.words {
-            Words::Kept(last) => last.lock().unwrap_or_else(PoisonError::into_inner).as_ptr(),
+            Words::Kept(kept) => {
+                kept.of(severity).lock().unwrap_or_else(PoisonError::into_inner).as_ptr()
+            }
             _ => std::ptr::null(),
         }
     }
@@ -199,14 +260,14 @@ mod tests {
 
     #[test]
     fn a_fault_inside_ends_the_instance_and_nothing_else() {
-        let words = || Words::Kept(Mutex::new(CString::default()));
+        let words = || Words::Kept(Kept::default());
         let [one, other] = [(); 2].map(|()| Handle::created(words(), || Instance::new(BASELINE)));
         let handle = Handle::at(one).unwrap();
         assert!(handle.call("whole", |_| Ok(())).is_ok());
         assert!(handle.call::<()>("faulty", |_| panic!("on purpose, for the test")).is_err());
         assert!(handle.call("after", |_| Ok(())).is_err());
         #[allow(unsafe_code)] // SAFETY: words kept until the next call
-        let kept = unsafe { CStr::from_ptr(handle.kept()) };
+        let kept = unsafe { CStr::from_ptr(handle.kept(Severity::Error)) };
         assert_eq!(kept.to_str(), Ok(&*format!("after: {FAULT}")));
         assert!(Handle::at(other).unwrap().call("whole", |_| Ok(())).is_ok());
         Handle::freed(one);
@@ -216,7 +277,7 @@ mod tests {
 
     #[test]
     fn an_instance_at_work_is_not_entered_again() {
-        let words = Words::Kept(Mutex::new(CString::default()));
+        let words = Words::Kept(Kept::default());
         let pointer = Handle::created(words, || Instance::new(BASELINE));
         let handle = Handle::at(pointer).unwrap();
         let inner = handle.call("outer", |_| Ok(handle.call("inner", |_| Ok(())).is_err()));

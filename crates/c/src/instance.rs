@@ -2,12 +2,15 @@
 
 use hersey_core::Work;
 use hersey_core::drag::Mode;
-use hersey_core::motion::{Moment, State, Stepper};
+use hersey_core::motion::{Event, Moment, State, Stepper};
 
-use crate::description::{Description, Values};
+use crate::account::{Account, Acting, CUT, Share};
+use crate::description::{Description, Drive, Values};
 use crate::making::Making;
+use crate::measured::{Crossing, Outside, Watched};
 use crate::variables::{
-    COUNT, Causality, Kind, TEMPERATURE, TIME, TOLERANCE, VARIABLES, Variable, place_at,
+    COUNT, Causality, DRIVE_TORQUE, Kind, TEMPERATURE, TIME, TOLERANCE, VARIABLES, Variable,
+    place_at,
 };
 
 /// Phases of the standard; a plain caller knows the first and that of the steps.
@@ -63,6 +66,8 @@ pub struct Saved {
     pub time: f64,
     pub stop: f64,
     pub seen: Option<Discrete>,
+    pub account: Account,
+    pub outside: Outside,
     pub moment: Option<[f64; Moment::NUMBERS]>,
 }
 
@@ -81,6 +86,13 @@ pub struct Instance {
     now: Option<State>,
     /// Mode and slip as they were last shown.
     seen: Option<Discrete>,
+    /// Ways, work and heat since the start.
+    account: Account,
+    /// What has left the range in which the law was measured, and what of that nobody was told yet.
+    outside: Outside,
+    crossings: Vec<Crossing>,
+    /// Whether anybody wants to be told.
+    pub warns: bool,
     /// Whether they are shown anew only in event mode, and whether a step may end at their change.
     pub event_mode: bool,
     pub early_return: bool,
@@ -88,6 +100,9 @@ pub struct Instance {
 
 /// Difference of two times that comes of rounding alone: share of the step, and of the times.
 const SAME_TIME: (f64, f64) = (1e-6, 16.0 * f64::EPSILON);
+
+/// Steps in which the sums of one call are made at the most: beyond they are made less exactly.
+const MOST_STRIDES: f64 = 1e5;
 
 impl Instance {
     /// A drive as its text describes it.
@@ -104,6 +119,10 @@ impl Instance {
             motion: None,
             now: None,
             seen: None,
+            account: Account::default(),
+            outside: Outside::default(),
+            crossings: Vec::new(),
+            warns: true,
             event_mode: false,
             early_return: false,
         };
@@ -164,6 +183,9 @@ impl Instance {
         self.must_be(&[Phase::Instantiated, Phase::Initialization])?;
         self.moving()?;
         self.seen = Some(self.discrete()?);
+        let state = self.state()?;
+        self.account = Account::begun(&self.acting(state.time), &state);
+        self.watch(&state);
         self.phase = phase;
         Ok(())
     }
@@ -174,6 +196,7 @@ impl Instance {
         self.slopes = [0.0; 2];
         (self.origin, self.time, self.stop) = (0.0, 0.0, f64::INFINITY);
         (self.motion, self.now, self.seen) = (None, None, None);
+        (self.account, self.outside) = (Account::default(), Outside::default());
         self.phase = Phase::Instantiated;
     }
 
@@ -188,6 +211,7 @@ impl Instance {
     /// The motion, begun if it is not.
     fn moving(&mut self) -> Result<&mut Stepper, String> {
         if self.motion.is_none() {
+            self.making().checked_radius()?;
             let motion = self.making().stepper().map_err(|error| self.making().words(error))?;
             self.motion = Some(motion);
             self.now = None;
@@ -246,9 +270,7 @@ impl Instance {
 
     /// Whether this drive has a variable.
     pub fn has(&self, place: usize) -> bool {
-        let causality = VARIABLES[place].causality;
-        let stands_by_itself = matches!(causality, Causality::Independent | Causality::Output);
-        stands_by_itself || !self.values[place].is_nan()
+        self.description.computes(place) || !self.values[place].is_nan()
     }
 
     /// The value of a variable of this drive.
@@ -277,8 +299,29 @@ impl Instance {
             "stretch" => state.stretch,
             "mode" => f64::from(shown.mode as u8),
             "stuck" => f64::from(u8::from(shown.mode == Mode::Stuck)),
-            _ => f64::from(u8::from(shown.slipping)),
+            "slipping" => f64::from(u8::from(shown.slipping)),
+            name => self.sum(name, &state),
         })
+    }
+
+    /// A power, a heat or a way; those since the start are none before it.
+    fn sum(&self, name: &str, state: &State) -> f64 {
+        let (acting, account) = (self.acting(state.time), &self.account);
+        let [friction_power, contact_power] = account.powers(&acting, state);
+        let [friction_energy, contact_energy, slip_energy] = account.heats();
+        match name {
+            "friction_power" => friction_power,
+            "contact_power" => contact_power,
+            "slip_power" => acting.slip_power(state),
+            "friction_energy" => friction_energy,
+            "contact_energy" => contact_energy,
+            "slip_energy" => slip_energy,
+            "reaction_torque" => state.pull * self.making().roll_radius(),
+            _ if self.phase == Phase::Initialization => 0.0,
+            "belt_position" => account.belt_position(acting.is_speed, state),
+            "drive_position" => account.drive_position(state.time),
+            _ => account.drive_position(state.time) / self.making().roll_radius(),
+        }
     }
 
     /// Refuse to set a variable of this drive, or to set it now, or to such a value.
@@ -332,12 +375,59 @@ impl Instance {
         [Some(drive), self.description.is_warmed().then_some(temperature)]
     }
 
+    /// What acts on the motion from a time of it on.
+    fn acting(&self, since: f64) -> Acting {
+        let (making, [drive_slope, slope]) = (self.making(), self.slopes);
+        let drive = self.values[self.description.drive_place()];
+        let temperature = self.values[TEMPERATURE];
+        let rest = making.rest(temperature);
+        let later = making.rest(temperature + slope);
+        Acting {
+            stiffness: making.stiffness(),
+            mass: making.mass(),
+            is_speed: self.description.choices.drive == Drive::Speed,
+            drive: [making.drive(drive), making.drive(drive_slope)],
+            since,
+            rest,
+            rest_slope: [later[0] - rest[0], later[1] - rest[1]],
+        }
+    }
+
     /// Let the motion follow the inputs from now on: what goes on as it was cuts nothing.
-    fn follow(&mut self) -> Result<(), String> {
+    fn follow(&mut self) -> Result<Acting, String> {
         let [drive, temperature] = self.inputs();
         let event = self.moving()?.set_inputs(drive, temperature);
         self.now = None;
-        event.map(|_| ()).map_err(|error| self.making().words(error))
+        event.map_err(|error| self.making().words(error))?;
+        let state = self.moving()?.state();
+        let acting = self.acting(state.time);
+        self.account.follow(&acting, &state);
+        self.watch(&state);
+        Ok(acting)
+    }
+
+    /// Notice what leaves the range in which the law was measured.
+    fn watch(&mut self, state: &State) {
+        let drive = self.description.drive_place();
+        let time = self.origin + state.time;
+        let speed = self.making().drive(self.values[drive]);
+        let all = [
+            (Watched::Drive, Some(speed).filter(|_| drive != DRIVE_TORQUE)),
+            (Watched::Temperature, Some(self.values[TEMPERATURE])),
+            (Watched::Belt, Some(state.belt_speed)),
+        ];
+        for (watched, value) in all {
+            let Some(value) = value else { continue };
+            let left = self.description.measured.left(&mut self.outside, watched, value);
+            if let Some(range) = left.filter(|_| self.warns) {
+                self.crossings.push(Crossing { watched, time, value, range });
+            }
+        }
+    }
+
+    /// What has left its range since this was asked last.
+    pub fn take_crossings(&mut self) -> Vec<Crossing> {
+        std::mem::take(&mut self.crossings)
     }
 
     /// A step of the standard, `length` from `from` on.
@@ -373,25 +463,25 @@ impl Instance {
             return Err(format!("time {until:?} is beyond the stop time {:?}", self.stop));
         }
         let moment = self.moving()?.moment();
+        let (account, outside) = (self.account, self.outside);
         self.now = None;
         self.led(until, stopping).or_else(|words| {
             self.now = None;
+            (self.account, self.outside) = (account, outside);
             self.moving()?.restore(moment).map_err(|error| error.to_string())?;
             Err(words)
         })
     }
 
     fn led(&mut self, until: f64, stopping: bool) -> Result<Reached, String> {
-        self.follow()?;
+        let acting = self.follow()?;
         let (origin, before) = (self.origin, self.time);
         let work = Work::unwatched(self.description.most_steps);
         // the mode may change at once, by a jump of an input
         let mut early = stopping && self.has_changed()?;
         let mut time = if early { before } else { until };
         while !early {
-            let event = self.moving()?.advance(until - origin, &work);
-            self.now = None;
-            let Some(event) = event.map_err(|error| self.making().words(error))? else { break };
+            let Some(event) = self.walk(&acting, until - origin, &work)? else { break };
             early = stopping && event.time + origin < until && self.has_changed()?;
             time = if early { event.time + origin } else { until };
         }
@@ -403,7 +493,9 @@ impl Instance {
                 *slope = if early { *slope } else { 0.0 };
             }
         }
-        let State { belt_speed, stretch, pull, drag, .. } = self.state()?;
+        let state = self.state()?;
+        self.watch(&state);
+        let State { belt_speed, stretch, pull, drag, .. } = state;
         if ![belt_speed, stretch, pull, drag].iter().all(|number| number.is_finite()) {
             return Err(format!("the motion is no longer finite at {time:?}: are the inputs?"));
         }
@@ -412,6 +504,61 @@ impl Instance {
             self.show()?;
         }
         Ok(Reached { time, changed, early })
+    }
+
+    /// On to a time of the motion or to the first event before it, in steps over which all that adds up is known.
+    fn walk(&mut self, acting: &Acting, until: f64, work: &Work) -> Result<Option<Event>, String> {
+        let looking = Work::unwatched(self.description.most_steps);
+        let shortest = (until - self.moving()?.time()) / MOST_STRIDES;
+        loop {
+            self.now = None;
+            let before = self.moving()?.state();
+            let left = until - before.time;
+            let mut length = self.account.next_step(acting, left).max(shortest);
+            let (target, nodes, share) = loop {
+                let stop = before.time + length;
+                let target = if length < left && stop > before.time { stop } else { until };
+                let nodes = self.nodes(&before, target, &looking)?;
+                let share = Share::of(acting, &nodes);
+                let shorter = CUT * (nodes[2].time - before.time);
+                if !share.is_rough() || shorter <= shortest {
+                    break (target, nodes, share);
+                }
+                length = shorter;
+            };
+            let event = self.moving()?.advance(target, work);
+            let event = event.map_err(|error| self.making().words(error))?;
+            let after = self.moving()?.state();
+            self.account.add(acting, &share, &nodes, &after);
+            self.watch(&after);
+            if event.is_some() || target >= until {
+                return Ok(event);
+            }
+        }
+    }
+
+    /// The motion at a time, half-way to it, and before; if an event comes first, just before that.
+    fn nodes(&mut self, before: &State, end: f64, work: &Work) -> Result<[State; 3], String> {
+        self.moving()?;
+        let Some(motion) = &self.motion else { return Ok([*before; 3]) };
+        let look = |end: f64| {
+            let mut along = motion.clone();
+            if let Some(event) = along.advance(f64::midpoint(before.time, end), work)? {
+                return Ok(Err(event.time));
+            }
+            let middle = along.state();
+            let event = along.advance(end, work)?;
+            Ok(event.map_or(Ok([*before, middle, along.state()]), |event| Err(event.time)))
+        };
+        let words = |error| self.making().words(error);
+        let early = match look(end).map_err(words)? {
+            Ok(nodes) => return Ok(nodes),
+            Err(early) => early.next_down(),
+        };
+        if early <= before.time {
+            return Ok([*before; 3]);
+        }
+        Ok(look(early).map_err(words)?.unwrap_or([*before; 3]))
     }
 
     /// All that changes.
@@ -424,6 +571,8 @@ impl Instance {
             time: self.time,
             stop: self.stop,
             seen: self.seen,
+            account: self.account,
+            outside: self.outside,
             moment: self.motion.as_ref().map(|motion| motion.moment().numbers()),
         }
     }
@@ -440,6 +589,7 @@ impl Instance {
     fn take_values(&mut self, saved: &Saved) {
         (self.phase, self.values, self.slopes) = (saved.phase, saved.values, saved.slopes);
         (self.seen, self.now) = (saved.seen, None);
+        (self.account, self.outside) = (saved.account, saved.outside);
         (self.origin, self.time, self.stop) = (saved.origin, saved.time, saved.stop);
     }
 

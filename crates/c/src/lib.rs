@@ -5,6 +5,8 @@
 //! | `variables`   | the one table of variables: names, numbers, units, what they are          |
 //! | `description` | the text that describes a drive, read and checked                         |
 //! | `making`      | the core's objects of a described drive                                   |
+//! | `account`     | ways, work and heat, which add up along a motion                          |
+//! | `measured`    | whether a motion is still where its law was measured                      |
 //! | `instance`    | one drive under way: phase, values, motion, and what of that can be seen  |
 //! | `saving`      | a saved instance as bytes                                                 |
 //! | `memory`      | memory of the caller, read and written                                    |
@@ -16,6 +18,7 @@
 //!
 //! Nothing here is physics: the motion is that of `hersey_core::motion::Stepper`.
 
+mod account;
 mod description;
 mod exchange;
 mod fmi2;
@@ -23,6 +26,7 @@ mod fmi3;
 mod handle;
 mod instance;
 mod making;
+mod measured;
 mod memory;
 mod plain;
 mod saving;

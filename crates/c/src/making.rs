@@ -6,7 +6,9 @@ use hersey_core::lubrication::mixed::{MixedLaw, Sharing};
 use hersey_core::lubrication::viscosity;
 use hersey_core::motion::{self, Drivetrain, Integrator, Schedule, Stepper, System};
 
-use crate::description::{Closure, Description, Drive, Law, Start, Values, Warmth};
+use crate::description::{
+    Choices, Closure, Coupling, Description, Drive, Law, Start, Values, Warmth,
+};
 use crate::variables::{TEMPERATURE, place_of};
 
 /// A drive with the values that its variables have.
@@ -21,6 +23,36 @@ impl Making<'_> {
         self.value("stiffness")
     }
 
+    /// Moving mass.
+    pub fn mass(&self) -> f64 {
+        self.value("mass")
+    }
+
+    /// Refuse a roll without a radius; a drive that has no roll has none.
+    pub fn checked_radius(&self) -> Result<(), String> {
+        match self.given("roll_radius") {
+            Some(radius) if radius <= 0.0 => {
+                Err(format!("roll_radius is {radius}: it must be greater than 0"))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Radius of the roll.
+    pub fn roll_radius(&self) -> f64 {
+        self.value("roll_radius")
+    }
+
+    /// What the rest of the drive takes at a temperature of the input: force, and damping.
+    pub fn rest(&self, temperature: f64) -> [f64; 2] {
+        let warmer = temperature - self.value("reference_temperature");
+        let factor = self
+            .given("rest_temperature_slope")
+            .filter(|_| self.description.is_warmed())
+            .map_or(1.0, |slope| 1.0 + slope * warmer);
+        [factor * self.value("rest_force"), factor * self.value("rest_damping")]
+    }
+
     fn value(&self, name: &str) -> f64 {
         place_of(name).map_or(f64::NAN, |place| self.values[place])
     }
@@ -29,11 +61,13 @@ impl Making<'_> {
         Some(self.value(name)).filter(|value| !value.is_nan())
     }
 
-    /// What moves the belt as the core takes it: a speed, or the force of the torque on the roll (Eq. 11).
+    /// What moves the belt as the core takes it: its speed, or the force of the torque on the roll (Eq. 11).
     pub fn drive(&self, value: f64) -> f64 {
-        match self.description.choices.drive {
-            Drive::Speed => value,
-            Drive::Torque => value / self.value("roll_radius"),
+        let Choices { drive, coupling, .. } = self.description.choices;
+        match (drive, coupling) {
+            (Drive::Speed, Coupling::Translational) => value,
+            (Drive::Speed, Coupling::Rotational) => value * self.roll_radius(),
+            (Drive::Torque, _) => value / self.roll_radius(),
         }
     }
 
@@ -152,7 +186,8 @@ impl Making<'_> {
     pub fn stepper(&self) -> Result<Stepper, Error> {
         let (train, drag) = (self.train()?, self.drag()?);
         let given = self.values[self.description.drive_place()];
-        let now = Schedule::constant(self.drive(given));
+        let given = self.drive(given);
+        let now = Schedule::constant(given);
         let drive = match self.description.choices.drive {
             Drive::Speed => motion::Drive::Speed(now),
             Drive::Torque => motion::Drive::Force(now),

@@ -2,11 +2,10 @@
 
 #![allow(unsafe_code)] // the names, and what the caller's pointers point to
 
-use std::ffi::{CString, c_char, c_int, c_void};
-use std::sync::Mutex;
+use std::ffi::{CStr, c_char, c_int, c_void};
 
 use crate::exchange::asked;
-use crate::handle::{Handle, Words};
+use crate::handle::{Handle, Kept, Severity, Words};
 use crate::instance::{Instance, Phase};
 use crate::memory::{Asked, Given, place, text};
 use crate::saving;
@@ -16,6 +15,8 @@ type Drive = *mut c_void;
 
 /// Version, with the nul at its end.
 const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), "\0");
+
+const NO_DRIVE: &CStr = c"there is no drive at the pointer";
 
 /// What a function returns: it did, it came to a change of mode before, it refused.
 const DONE: c_int = 0;
@@ -39,7 +40,7 @@ extern "C" fn hersey_drive_read(
     room: usize,
 ) -> Drive {
     let mut refusal = String::new();
-    let words = Words::Kept(Mutex::new(CString::default()));
+    let words = Words::Kept(Kept::default());
     let drive = Handle::created(words, || {
         let read = text("text", description).and_then(Instance::new);
         read.inspect_err(|why| refusal.clone_from(why))
@@ -55,7 +56,12 @@ extern "C" fn hersey_drive_read(
 
 #[unsafe(no_mangle)]
 extern "C" fn hersey_why(drive: Drive) -> *const c_char {
-    Handle::at(drive).map_or(c"there is no drive at the pointer".as_ptr(), Handle::kept)
+    Handle::at(drive).map_or(NO_DRIVE.as_ptr(), |handle| handle.kept(Severity::Error))
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn hersey_warning(drive: Drive) -> *const c_char {
+    Handle::at(drive).map_or(NO_DRIVE.as_ptr(), |handle| handle.kept(Severity::Warning))
 }
 
 #[unsafe(no_mangle)]
@@ -69,6 +75,13 @@ fn done(
     action: impl FnOnce(&mut Instance) -> Result<(), String>,
 ) -> c_int {
     asked(drive, function, action).map_or(REFUSED, |()| DONE)
+}
+
+/// Steps warn of what has happened in them alone.
+fn forget_warning(drive: Drive) {
+    if let Some(handle) = Handle::at(drive) {
+        handle.forget_warning();
+    }
 }
 
 /// Place of a variable that the drive has.
@@ -99,6 +112,7 @@ extern "C" fn hersey_get(drive: Drive, name: *const c_char, value: *mut f64) -> 
 
 #[unsafe(no_mangle)]
 extern "C" fn hersey_begin(drive: Drive, time: f64) -> c_int {
+    forget_warning(drive);
     done(drive, "hersey_begin", |instance| {
         instance.set_up(time, None, None)?;
         instance.begin(Phase::Step)
@@ -107,6 +121,7 @@ extern "C" fn hersey_begin(drive: Drive, time: f64) -> c_int {
 
 #[unsafe(no_mangle)]
 extern "C" fn hersey_advance(drive: Drive, until: f64, stop_at_changes: c_int) -> c_int {
+    forget_warning(drive);
     let reached = asked(drive, "hersey_advance", |instance| {
         instance.advance(until, 0.0, stop_at_changes != 0)
     });

@@ -2,16 +2,17 @@
 
 use hersey_core::drag::Mode;
 
+use crate::account::Account;
 use crate::description::sum;
 use crate::instance::{Discrete, Phase, Saved};
 use crate::variables::COUNT;
 
 /// What such bytes begin with; the last is the number of the format.
-const BEGIN: [u8; 8] = *b"hersey\0\x01";
+const BEGIN: [u8; 8] = *b"hersey\0\x02";
 /// Words before the numbers of the motion: begin, drive, phase, mode and slip, whether there is a motion.
 const HEAD: usize = 5;
-/// Numbers of an instance: its values, two slopes, three times.
-const NUMBERS: usize = COUNT + 2 + 3;
+/// Numbers of an instance: its values, two slopes, three times, what adds up, what is outside of its range.
+const NUMBERS: usize = COUNT + 2 + 3 + Account::NUMBERS + 3;
 /// More numbers than a motion has.
 const MOST: usize = 1000;
 const MODES: [Mode; 4] = [Mode::Ehl, Mode::Mixed, Mode::Microslip, Mode::Stuck];
@@ -24,11 +25,14 @@ pub fn written(saved: &Saved, drive: u64) -> Vec<u8> {
     let phase = Phase::ALL.iter().position(|phase| *phase == saved.phase).unwrap_or_default();
     let words =
         [u64::from_le_bytes(BEGIN), drive, phase as u64, seen, u64::from(saved.moment.is_some())];
-    let numbers = saved.values.iter().chain(&saved.slopes).copied().chain([
-        saved.origin,
-        saved.time,
-        saved.stop,
-    ]);
+    let outside = saved.outside.map(|is_outside| f64::from(u8::from(is_outside)));
+    let numbers = saved
+        .values
+        .into_iter()
+        .chain(saved.slopes)
+        .chain([saved.origin, saved.time, saved.stop])
+        .chain(saved.account.numbers())
+        .chain(outside);
     let motion = saved.moment.iter().flatten().copied();
     let all = words.into_iter().chain(numbers.chain(motion).map(f64::to_bits));
     let mut bytes: Vec<u8> = all.flat_map(u64::to_le_bytes).collect();
@@ -66,6 +70,12 @@ pub fn read(bytes: &[u8], drive: u64) -> Result<Saved, String> {
         words[HEAD..words.len() - 1].iter().map(|bits| f64::from_bits(*bits)).collect();
     let (own, motion) = numbers.split_at(NUMBERS);
     let (values, others) = own.split_at(COUNT);
+    let (others, outside) = others.split_at(5 + Account::NUMBERS);
+    let sums = others[5..].try_into().map_err(|_| broken())?;
+    let outside: [f64; 3] = outside.try_into().map_err(|_| broken())?;
+    if !outside.iter().all(|mark| [0.0, 1.0].contains(mark)) {
+        return Err(broken());
+    }
     let moment = match words[4] {
         0 if motion.is_empty() => None,
         1 => Some(motion.try_into().map_err(|_| broken())?),
@@ -79,6 +89,8 @@ pub fn read(bytes: &[u8], drive: u64) -> Result<Saved, String> {
         time: others[3],
         stop: others[4],
         seen,
+        account: Account::from_numbers(sums).ok_or_else(broken)?,
+        outside: outside.map(|mark| mark > 0.5),
         moment,
     })
 }

@@ -17,9 +17,10 @@ from hersey.errors import OutputError, ParameterError
 
 if TYPE_CHECKING:
     from hersey.damping.surface import DampingSurface
+    from hersey.lubrication.mixed_drag import MixedDrag
     from hersey.machine.machine import Machine
     from hersey.motion.belt import Drivetrain
-    from hersey.motion.drag import Drag
+    from hersey.motion.drag import AnyDrag, Drag
 
 export = typer.Typer(
     no_args_is_help=True,
@@ -29,8 +30,9 @@ export = typer.Typer(
         "Write the fitted drive for other tools: a unit that Simulink, Amesim or Modelica run.\n\n"
         "Example: [bold]hersey export fmu fit.json examples/machine.toml --temperature '180 degC' "
         "--out drive.fmu[/bold]\n\n"
-        "The core itself is in it: the motion is that of hersey simulate. The fit is written by "
-        "hersey fit LOG --machine TOML --json > fit.json."
+        "The unit contains the core itself, so its motion is that of hersey simulate. Write the fit with "
+        "hersey fit LOG --machine TOML --json > fit.json. Without a fit, drag is that of the mixed contact "
+        "that \\[asperities] and \\[boundary] of the machine file describe."
     ),
 )
 
@@ -42,13 +44,24 @@ def _root() -> None:
 
 @export.command("fmu")
 def fmu(
-    fit_file: Annotated[
-        Path, typer.Argument(metavar="JSON", help="What hersey fit --machine --json printed.")
+    files: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="[JSON] TOML",
+            help="Fit that hersey fit --machine --json printed, then the machine file. The machine file "
+            "alone exports its mixed contact.",
+        ),
     ],
-    machine_file: Annotated[Path, typer.Argument(metavar="TOML", help="Machine's file.")],
     out: Annotated[Path, typer.Option("--out", metavar="FILE", help="Unit to write, .fmu.")],
     fmi: Annotated[str, typer.Option("--fmi", help="3.0, or 2.0 for older tools.")] = "3.0",
     drive: Annotated[str, typer.Option(help="What moves the drive, an input: speed, or torque.")] = "speed",
+    port: Annotated[
+        str,
+        typer.Option(
+            help="Coupling of a drive by speed: translational (m/s in), or rotational (shaft speed in rad/s "
+            "in, reaction torque in N*m out)."
+        ),
+    ] = "translational",
     drive_speed: Annotated[
         str, typer.Option(help="Speed of the drive until the tool gives another, as '30 mm/s'.  [default: 0]")
     ] = "",
@@ -84,7 +97,7 @@ def fmu(
     as_json: AsJson = False,
     force: Force = False,
 ) -> None:
-    """Write a Functional Mock-up Unit for co-simulation, from a fit and a machine's file.
+    """Write a Functional Mock-up Unit for co-simulation, from a fit and a machine file.
 
     Example: [bold]hersey export fmu fit.json examples/machine.toml --temperature '180 degC'
     --out drive.fmu[/bold]
@@ -96,7 +109,11 @@ def fmu(
     if drive != "speed" and drive_speed:
         raise ParameterError("--drive-speed goes with --drive speed: leave one of them out")
     others = _libraries(library or [])
-    may_write(out, force, [fit_file, machine_file, *others.values()])
+    if len(files) > 2:
+        raise ParameterError(
+            f"{len(files)} files are given: name a fit and a machine file, or the latter alone"
+        )
+    may_write(out, force, [*files, *others.values()])
 
     from tempfile import TemporaryDirectory
 
@@ -105,15 +122,22 @@ def fmu(
     from hersey.machine.machine import read_machine
     from hersey.result import json_value
 
+    *fits, machine_file = files
     machine = read_machine(machine_file)
-    surface = Reading().surface(None, fit_file, machine)
+    surface = Reading().surface(None, fits[0], machine) if fits else None
     kelvin = temperature_of(temperature, "--temperature")
-    train, drag = _parts(surface, machine, machine_file, kelvin, drive)
+    if surface is None:
+        drag: AnyDrag = _contact(machine, machine_file, kelvin)
+    else:
+        drag = _fitted(surface, machine, machine_file, kelvin)
+    # a torque acts on the roll itself: there is none beyond it that could slip
+    train = machine.train if drive == "speed" else replace(machine.train, grip=None)
     near = {"bristle_stiffness": bristle_stiffness, "bristle_damping": bristle_damping}
     drag = replace(drag, closure=closure, **near)  # type: ignore[arg-type]  # the drag reads the texts
     settings: dict[str, Any] = {
         "fmi": fmi,
         "drive": drive,
+        "port": port,
         "drive_speed": target_of(drive_speed, machine, "--drive-speed") if drive_speed else 0.0,
         "temperature": kelvin if drag.varies_with_temperature else None,
         "start": start,
@@ -159,10 +183,8 @@ def _libraries(given: list[str]) -> dict[str, Path]:
     return files
 
 
-def _parts(
-    surface: DampingSurface, machine: Machine, file: Path, temperature: float | None, drive: str
-) -> tuple[Drivetrain, Drag]:
-    """Drivetrain and drag; a stick speed that is fixed has the drag of one temperature."""
+def _fitted(surface: DampingSurface, machine: Machine, file: Path, temperature: float | None) -> Drag:
+    """Drag of a fit; with a stick speed that is fixed it is that of one temperature."""
     from hersey.damping.surface import FIXED
 
     if surface.b is not None and temperature is None:
@@ -177,6 +199,18 @@ def _parts(
             f"{file.name} has a stick speed that is fixed: the unit holds at this one temperature",
             file=sys.stderr,
         )
-    # a torque acts on the roll itself: there is none beyond it that could slip
-    train = machine.train if drive == "speed" else replace(machine.train, grip=None)
-    return train, surface.drag(**machine.belt, temperature=at_one)
+    return surface.drag(**machine.belt, temperature=at_one)
+
+
+def _contact(machine: Machine, file: Path, temperature: float | None) -> MixedDrag:
+    """Drag of the contact that a machine file describes, where there is no fit."""
+    if machine.mixed is None:
+        raise ParameterError(
+            f"{file.name} has no [asperities] and [boundary], so its drag is not known without a fit: give the "
+            "fit before it (hersey fit LOG --machine TOML --json > fit.json), or add both tables"
+        )
+    if temperature is None:
+        raise ParameterError(
+            "a mixed contact varies with temperature: give one to start with, --temperature '180 degC'"
+        )
+    return machine.mixed_drag(temperature)

@@ -15,7 +15,7 @@ from hersey.exchange.variables import Variable
 STOP, STEP = 2.0, 0.001
 COPYRIGHT, LICENSE = "Copyright (c) 2026 The hersey authors", "MIT"
 #: Type of a variable in FMI 2.0.
-_TYPES_2 = {"Float64": "Real", "Int32": "Integer", "Boolean": "Boolean"}
+_TYPES_2 = {"Float64": "Real", "Enumeration": "Enumeration", "Boolean": "Boolean"}
 #: How a variable begins, where FMI lets one say so.
 _INITIAL = {"parameter": "exact", "output": "calculated"}
 _CATEGORIES = {
@@ -61,6 +61,7 @@ def description(model: Model, variables: Sequence[Variable], fmi: str, token: st
     root = Xml.Element("fmiModelDescription", head)
     root.append(_co_simulation(fmi))
     root.append(unit_definitions({v.unit for v in variables if v.unit}))
+    root.append(_types(variables, fmi))
     categories = Xml.SubElement(root, "LogCategories")
     for name, meaning in _CATEGORIES.items():
         Xml.SubElement(categories, "Category", name=name, description=meaning)
@@ -72,6 +73,29 @@ def description(model: Model, variables: Sequence[Variable], fmi: str, token: st
     Xml.indent(root)
     text = Xml.tostring(root, encoding="unicode")
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'.encode()
+
+
+def _type_name(variable: Variable) -> str:
+    """Name of the enumeration that a variable is of; FMI wants one that is no variable's."""
+    return variable.name.capitalize()
+
+
+def _types(variables: Sequence[Variable], fmi: str) -> Xml.Element:
+    """The enumerations, their items numbered as the library numbers them."""
+    top = Xml.Element("TypeDefinitions")
+    for variable in (v for v in variables if v.items):
+        about = {"name": _type_name(variable), "description": variable.description}
+        if fmi == "2.0":
+            listed = Xml.SubElement(Xml.SubElement(top, "SimpleType", about), "Enumeration")
+        else:
+            listed = Xml.SubElement(top, "EnumerationType", about)
+        for number, name in enumerate(variable.items):
+            Xml.SubElement(listed, "Item", name=name, value=str(number))
+    return top
+
+
+def _declared(variable: Variable) -> dict[str, str]:
+    return {"declaredType": _type_name(variable)} if variable.items else {}
 
 
 def _co_simulation(fmi: str) -> Xml.Element:
@@ -119,25 +143,37 @@ def _units(variable: Variable) -> dict[str, str]:
 
 
 def _variable_3(variable: Variable, starts: Mapping[str, float]) -> Xml.Element:
-    kind = {**_common(variable), **_initial(variable), **_units(variable), **_start(variable, starts)}
+    kind = {**_common(variable), **_initial(variable), **_declared(variable), **_units(variable)}
+    kind |= _start(variable, starts)
     return Xml.Element(variable.type, kind)
 
 
 def _variable_2(variable: Variable, starts: Mapping[str, float]) -> Xml.Element:
     element = Xml.Element("ScalarVariable", {**_common(variable), **_initial(variable)})
-    Xml.SubElement(element, _TYPES_2[variable.type], {**_units(variable), **_start(variable, starts)})
+    kind = {**_declared(variable), **_units(variable), **_start(variable, starts)}
+    Xml.SubElement(element, _TYPES_2[variable.type], kind)
     return element
+
+
+_WITH_DRAG = {"temperature", "drive_torque"}
+#: Inputs that an output answers to at once.
+_AT_ONCE = {
+    "drag": _WITH_DRAG,
+    "friction_power": _WITH_DRAG,
+    "contact_power": _WITH_DRAG,
+    "slip_power": {"drive_speed", "roll_speed"},
+}
 
 
 def _hangs_on(variable: Variable, variables: Sequence[Variable]) -> list[Variable] | None:
     """The inputs that an output answers to at once; None for any.
 
-    Motion is a state, so that a tool may close a loop over it. Drag follows temperature and, while it holds
-    the belt, a torque on the roll.
+    Motion, ways and heat since the start are states, so that a tool may close a loop over them. Drag and its
+    powers follow temperature and, while drag holds the belt, a torque on the roll; slip is against the drive.
     """
     if variable.type != "Float64":
         return None
-    at_once = {"temperature", "drive_torque"} if variable.name == "drag" else set()
+    at_once = _AT_ONCE.get(variable.name, set())
     return [v for v in variables if v.causality == "input" and v.name in at_once]
 
 

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from hersey.errors import ParameterError
-from hersey.exchange.unit import DRIVES, ExportedUnit
 from hersey.motion.belt import Drivetrain
+from hersey.exchange.unit import ROTATIONAL, ExportedUnit
 from hersey.motion.drag import AnyDrag
 from hersey.motion.simulation import Trajectory, simulate
 
@@ -91,7 +91,7 @@ def try_unit(unit: ExportedUnit, train: Drivetrain, drag: AnyDrag) -> Trial:
             str(unit.path),
             stop_time=duration,
             output_interval=duration / _STEPS,
-            start_values={DRIVES[unit.drive]: value},
+            start_values={unit.drive_input: value / radius if unit.port == ROTATIONAL else value},
             output=COMPARED,
             validate=False,
         )

@@ -22,6 +22,7 @@ from hersey.exchange.platforms import own_library, platform_named, read_library,
 from hersey.exchange.variables import Variable, variables_of
 from hersey.files.writing import write_atomically
 from hersey.motion.belt import Drivetrain
+from hersey.lubrication.mixed_drag import MixedDrag
 from hersey.motion.drag import AnyDrag
 from hersey.motion.simulation import TOLERANCE, simulate
 from hersey.result import json_record
@@ -30,8 +31,11 @@ from hersey.units import celsius, rpm, takes_si
 
 #: Versions of the Functional Mock-up Interface that the library speaks.
 VERSIONS = ("3.0", "2.0")
-#: The input of each kind of drive.
+#: The input of each kind of drive; of a speed it is that of the port.
 DRIVES = {"speed": "drive_speed", "torque": "drive_torque"}
+#: How a drive that is given a speed is coupled, and the input of each.
+TRANSLATIONAL, ROTATIONAL = "translational", "rotational"
+PORTS = {TRANSLATIONAL: "drive_speed", ROTATIONAL: "roll_speed"}
 #: Time of a motion by which the numbers are tried before a unit is made of them, s.
 _TRIAL = 1e-9
 #: All files of a unit bear this time: the same input gives the same bits.
@@ -43,7 +47,8 @@ _NONE: Mapping[str, str | Path] = MappingProxyType({})
 class ExportedUnit:
     """A unit that was written: file, version, drive, start, token, platforms, variables and their starts.
 
-    ``facts`` say what it was made of, by what they are about.
+    ``facts`` say what it was made of, by what they are about; ``port`` is the coupling of a drive that is
+    given a speed.
     """
 
     path: Path
@@ -55,6 +60,12 @@ class ExportedUnit:
     variables: tuple[Variable, ...]
     starts: Mapping[str, float]
     facts: Mapping[str, str]
+    port: str = TRANSLATIONAL
+
+    @property
+    def drive_input(self) -> str:
+        """Name of the input that moves the belt."""
+        return PORTS[self.port] if self.drive == "speed" else DRIVES[self.drive]
 
     def summary(self) -> str:
         """Return the unit in words: what it takes, gives and is made of."""
@@ -78,7 +89,7 @@ class ExportedUnit:
             | {"start": self.starts.get(v.name)}
             for v in self.variables
         ]
-        own = ("fmi", "drive", "start", "token", "platforms", "facts")
+        own = ("fmi", "drive", "port", "start", "token", "platforms", "facts")
         return json_record({"file": str(self.path), **{n: getattr(self, n) for n in own}, "variables": rows})
 
 
@@ -89,6 +100,7 @@ def export_fmu(
     drag: AnyDrag,
     *,
     drive: str = "speed",
+    port: str = TRANSLATIONAL,
     drive_speed: float = 0.0,
     drive_torque: float = 0.0,
     temperature: float | None = None,
@@ -113,6 +125,10 @@ def export_fmu(
         As of `simulate`, in SI.
     drive
         ``speed``: of the far end of the spring, or ``torque``: on a roll that a spring holds to the ground.
+    port
+        Of a drive by its speed. ``translational``: the input is the belt-side speed ``drive_speed``, m/s.
+        ``rotational``: the input is the speed of the roll's shaft, ``roll_speed`` (rad/s), and the output
+        ``reaction_torque`` (N m) is what brakes that shaft, to be coupled to a motor; needs ``roll_radius``.
     drive_speed, drive_torque, temperature
         Values of the inputs until the tool gives others, m/s, N m and K; a temperature is needed, and an
         input, where the drag varies with it.
@@ -120,9 +136,11 @@ def export_fmu(
         ``rest``, ``steady`` (sliding with the drive as it is when the initialization ends), or a pair of belt
         speed and stretch.
     roll_radius
-        m, at which a torque acts; needed for that drive.
+        m, at which a torque acts; needed for that drive, for a rotational port, and for the unit to know
+        the range of speeds of ``fitted``.
     fitted
-        The fit that the drag is of: its logs and the range of its data are written down.
+        The fit that the drag is of: its logs and the range of its data are written down, and the unit warns
+        when it is run beyond that range. Of a `MixedDrag` that range is the temperatures of its lubricant.
     name
         Of the model, as tools show it.
     fmi
@@ -143,7 +161,7 @@ def export_fmu(
     OutputError
         If the file exists, or cannot be written.
     """
-    _refuse(out, name, drive, fmi, roll_radius)
+    _refuse(out, name, drive, port, fmi, roll_radius)
     if drive == "torque" and start == "steady":
         raise ParameterError("start 'steady' goes with drive 'speed'")
     if temperature is not None and temperature <= drag.temperature_zero:
@@ -162,12 +180,12 @@ def export_fmu(
         samples=2,
         tolerance=tolerance,
     )
-    values = _values(
-        train, drag, drive, (drive_speed, drive_torque), temperature, start, roll_radius, tolerance
-    )
+    given = {"drive_speed": drive_speed, "drive_torque": drive_torque, "temperature": temperature}
+    values = _values(train, drag, drive, port, given, start, roll_radius, tolerance)
+    values |= _measured(drag, fitted, roll_radius)
     variables = _own(variables_of(own_library()), values, fmi)
     binaries, platforms = _binaries(libraries, fmi)
-    facts = _facts(fitted, roll_radius, drive)
+    facts = _facts(drag, fitted, roll_radius, drive, port)
     told = printable(" ".join([f"{name}, driven by a {drive}.", *(f"{k}: {v}." for k, v in facts.items())]))
     starts = {key: value for key, value in values.items() if isinstance(value, int | float)}
     model = Model(name, told, str(values["start"]), tolerance, starts)
@@ -186,13 +204,14 @@ def export_fmu(
     } | contents
     write_atomically(Path(out), _packed(contents), overwrite=overwrite)
     return ExportedUnit(
-        Path(out), fmi, drive, str(values["start"]), token, platforms, variables, starts, facts
+        Path(out), fmi, drive, str(values["start"]), token, platforms, variables, starts, facts, port
     )
 
 
-def _refuse(out: str | Path, name: str, drive: str, fmi: str, roll_radius: float | None) -> None:
+def _refuse(out: str | Path, name: str, drive: str, port: str, fmi: str, roll_radius: float | None) -> None:
     """Refuse what no core is asked about."""
-    for said, value, known in (("drive", drive, tuple(DRIVES)), ("fmi", fmi, VERSIONS)):
+    choices = (("drive", drive, tuple(DRIVES)), ("port", port, tuple(PORTS)), ("fmi", fmi, VERSIONS))
+    for said, value, known in choices:
         if value not in known:
             raise ParameterError(f"{said} is '{value}': it must be {' or '.join(known)}")
     if not (name.strip() and name.isprintable()):
@@ -201,6 +220,10 @@ def _refuse(out: str | Path, name: str, drive: str, fmi: str, roll_radius: float
         raise ParameterError(f"{out}: name a file that ends in .fmu")
     if drive == "torque" and roll_radius is None:
         raise ParameterError("a drive by a torque needs the roll_radius at which it acts")
+    if port == ROTATIONAL and drive != "speed":
+        raise ParameterError("port 'rotational' goes with drive 'speed': a torque acts on the roll already")
+    if port == ROTATIONAL and roll_radius is None:
+        raise ParameterError("a rotational port needs the roll_radius")
     if roll_radius is not None and not 0 < roll_radius < float("inf"):
         raise ParameterError(f"roll_radius is {roll_radius}: it must be greater than 0")
 
@@ -209,31 +232,58 @@ def _values(
     train: Drivetrain,
     drag: AnyDrag,
     drive: str,
-    inputs: tuple[float, float],
-    temperature: float | None,
+    port: str,
+    given: Mapping[str, float | None],
     start: str | tuple[float, float],
     roll_radius: float | None,
     tolerance: float,
 ) -> dict[str, Value]:
-    """All that the library is told."""
-    values = drive_values(train, drag)
-    values |= {"drive": drive, DRIVES[drive]: inputs[drive == "torque"], "tolerance": tolerance}
-    if drive == "torque" and roll_radius is not None:
+    """All that the library is told of the motion; ``given`` are the inputs in the units of the belt."""
+    values = drive_values(train, drag) | {"drive": drive, "tolerance": tolerance}
+    moved, rotates = given[DRIVES[drive]] or 0.0, drive == "speed" and port == ROTATIONAL
+    if rotates and roll_radius is not None:
+        values |= {"port": port, PORTS[port]: moved / roll_radius}
+    else:
+        values[DRIVES[drive]] = moved
+    if roll_radius is not None and (rotates or drive == "torque"):
         values["roll_radius"] = roll_radius
-    if temperature is not None:
+    if (temperature := given["temperature"]) is not None:
         values["temperature"] = temperature
     if isinstance(start, str):
         return values | {"start": start}
     return values | {"start": "given", "start_belt_speed": start[0], "start_stretch": start[1]}
 
 
+def _measured(drag: AnyDrag, fitted: FittedLaw | None, roll_radius: float | None) -> dict[str, Value]:
+    """Belt speeds and temperatures beyond which the library warns, as far as they are known."""
+    found: dict[str, Value] = {}
+    if fitted is not None and roll_radius is not None:
+        found["measured_speeds"] = [speed * roll_radius for speed in fitted.speed_range]
+    heat = _measured_heat(drag, fitted)
+    if heat is not None and drag.varies_with_temperature:
+        found["measured_temperatures"] = list(heat)
+    return found
+
+
+def _measured_heat(drag: AnyDrag, fitted: FittedLaw | None) -> tuple[float, float] | None:
+    """Temperatures at which the fit was measured, or the lubricant of a contact."""
+    if fitted is not None:
+        return fitted.temperature_range
+    if isinstance(drag, MixedDrag) and len(drag.contact.lubricant.points) > 1:
+        return drag.contact.lubricant.temperature_range
+    return None
+
+
 def _own(variables: tuple[Variable, ...], values: Mapping[str, Value], fmi: str) -> tuple[Variable, ...]:
     """The variables that this drive has: of inputs and parameters those that it gives a value.
 
-    FMI 2.0 needs no time among them, and an importer of it finds fault with one.
+    Outputs of a port are those of this one; of a drive by a torque there is none. FMI 2.0 needs no time
+    among them, and an importer of it finds fault with one.
     """
     always = ("output",) if fmi == "2.0" else ("independent", "output")
-    return tuple(v for v in variables if v.causality in always or v.name in values)
+    port = values.get("port", TRANSLATIONAL) if values["drive"] == "speed" else ""
+    computed = [v for v in variables if v.causality in always and v.port in ("", port)]
+    return tuple(v for v in variables if v in computed or v.name in values)
 
 
 def _binaries(libraries: Mapping[str, str | Path], fmi: str) -> tuple[dict[str, bytes], tuple[str, ...]]:
@@ -251,10 +301,21 @@ def _binaries(libraries: Mapping[str, str | Path], fmi: str) -> tuple[dict[str, 
     return found, tuple(files)
 
 
-def _facts(fitted: FittedLaw | None, roll_radius: float | None, drive: str) -> dict[str, str]:
+def _facts(
+    drag: AnyDrag, fitted: FittedLaw | None, roll_radius: float | None, drive: str, port: str
+) -> dict[str, str]:
     """What the unit was made of."""
-    facts = {"Input": f"{drive} of the drive", "Made by": f"hersey {_core.VERSION}"}
+    shaft = drive == "speed" and port == ROTATIONAL
+    moved = "speed of the roll's shaft" if shaft else f"{drive} of the drive"
+    facts = {"Input": moved, "Made by": f"hersey {_core.VERSION}"}
+    heat = _measured_heat(drag, fitted)
     if fitted is None:
+        if isinstance(drag, MixedDrag):
+            facts["Law"] = (
+                f"mixed contact: film of {drag.contact.lubricant.name} and asperities share the load"
+            )
+            if heat is not None:
+                facts["Viscosity known at"] = f"{_degrees(heat)}; beyond, it is extrapolated"
         return facts
     facts["Law"] = " ".join(fitted.headline().split())
     facts["Fitted by"] = f"hersey {fitted.version}"
@@ -263,13 +324,17 @@ def _facts(fitted: FittedLaw | None, roll_radius: float | None, drive: str) -> d
     ranges = f"roll speeds of {rpm(low):.4g} to {rpm(high):.4g} rpm"
     if roll_radius is not None:
         ranges += f" ({1e3 * low * roll_radius:.4g} to {1e3 * high * roll_radius:.4g} mm/s at the belt)"
-    if fitted.temperature_range is not None:
-        cold, hot = map(celsius, fitted.temperature_range)
-        ranges += f" and {cold:.4g} to {hot:.4g} degC"
+    if heat is not None:
+        ranges += f" and {_degrees(heat)}"
     facts["Measured at"] = f"{ranges}; beyond, the law is extrapolated"
     if fitted.rest is not None:
         facts["Beside it"] = " ".join(fitted.rest.headline().split())
     return facts
+
+
+def _degrees(heat: tuple[float, float]) -> str:
+    cold, hot = map(celsius, heat)
+    return f"{cold:.4g} to {hot:.4g} degC"
 
 
 def _token(parts: list[bytes]) -> str:

@@ -29,6 +29,7 @@ _UNITS = {
         Unit("kg", {"kg": 1}),
         Unit("K", {"K": 1}, "degC", 1.0, -ZERO_CELSIUS),
         Unit("1/K", {"K": -1}, "%/K", 100.0),
+        Unit("rad", {"rad": 1}, "deg", 180.0 / math.pi),
         Unit("rad/s", {"rad": 1, "s": -1}, "rpm", 30.0 / math.pi),
         Unit("m/s", {"m": 1, "s": -1}, "mm/s", 1e3),
         Unit("N", {"kg": 1, "m": 1, "s": -2}),

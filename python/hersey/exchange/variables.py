@@ -16,7 +16,9 @@ _TABLE = "hersey_variables"
 class Variable:
     """One variable: its number for FMI, name, type in FMI 3.0, causality and so on.
 
-    ``unit`` is empty where the value is no quantity; ``start`` is where the drive says it.
+    ``unit`` is empty where the value is no quantity; ``start`` is where the drive says it. ``port`` is the
+    coupling that it belongs to, empty if a drive has it with any; ``items`` are the names of an enumeration,
+    numbered from 0.
     """
 
     reference: int
@@ -27,6 +29,8 @@ class Variable:
     unit: str
     start: str
     description: str
+    port: str
+    items: tuple[str, ...]
 
 
 def variables_of(library: Path) -> tuple[Variable, ...]:
@@ -55,4 +59,4 @@ def variables_of(library: Path) -> tuple[Variable, ...]:
 def table(text: str) -> tuple[Variable, ...]:
     """Return the variables of a table: a line each, its parts between tabs."""
     rows = [line.split("\t") for line in text.splitlines() if line.strip() and not line.startswith("#")]
-    return tuple(Variable(int(reference), *rest) for reference, *rest in rows)
+    return tuple(Variable(int(number), *rest, tuple(items.split())) for number, *rest, items in rows)

@@ -216,7 +216,7 @@ fn what_cannot_be_set_is_refused() {
     for (reference, kind, words) in [
         (9999, Kind::Float64, "no variable"),
         (102, Kind::Float64, "no variable"),
-        (10, Kind::Int32, "belt_speed (value reference 10) is Float64, not Int32"),
+        (10, Kind::Enumeration, "belt_speed (value reference 10) is Float64, not Enumeration"),
         (20, Kind::Float64, "not Float64"),
     ] {
         assert!(instance.place(reference, kind).unwrap_err().contains(words));
