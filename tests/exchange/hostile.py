@@ -144,13 +144,13 @@ def phases(hostile: Hostile) -> None:
     hostile.refuses("fmi3UpdateDiscreteStates", one, *[None] * 6, says="between two steps")
     hostile.refuses(put, one, parameter, size(1), doubles, size(1), says="fixed")
     hostile.refuses(get, one, unknown, size(1), doubles, size(1), says="no variable")
-    hostile.refuses(get, one, mode, size(1), doubles, size(1), says="mode (value reference 20) is Int32")
+    hostile.refuses(get, one, mode, size(1), doubles, size(1), says="mode (value reference 20) is Enum")
     hostile.refuses(get, one, outputs, size(2), doubles, size(1), says="2 value references, but 1 values")
     hostile.refuses(get, one, None, size(2), doubles, size(2), says="null")
     hostile.refuses(get, one, outputs, size(2), None, size(2), says="null")
     hostile.refuses(get, one, c.c_void_p(1), size(2), doubles, size(2), says="no array")
     hostile.refuses(get, one, outputs, size(2**62), doubles, size(2**62), says="no array")
-    hostile.refuses("fmi3GetInt64", one, mode, size(1), doubles, size(1), says="no variable is Int64")
+    hostile.refuses("fmi3GetInt32", one, mode, size(1), doubles, size(1), says="no variable is Int32")
     for begin, length in [(0.0, 0.0), (0.0, -1.0), (0.0, float("nan")), (0.5, 0.1), (0.0, 6.0)]:
         hostile.refuses("fmi3DoStep", one, begin, length, 0, *flags, last)
     hostile.refuses("fmi3DoStep", one, 0.0, 0.1, 0, None, None, None, None, says="null")
@@ -168,7 +168,7 @@ def phases(hostile: Hostile) -> None:
 def steps_in_order(hostile: Hostile) -> None:
     """What a step says of itself: whole, or ended early at a change of mode, which waits for its event."""
     event, terminate, early = (c.c_bool(True) for _ in range(3))
-    last, mode, count = c.c_double(), (c.c_int32 * 1)(), c.c_size_t(1)
+    last, mode, count = c.c_double(), (c.c_int64 * 1)(), c.c_size_t(1)
     for event_mode in (False, True):
         one = hostile.version3(event_mode=event_mode)
         said = [c.byref(each) for each in (event, terminate, early, last)]
@@ -182,7 +182,7 @@ def steps_in_order(hostile: Hostile) -> None:
             assert (event.value, terminate.value, early.value) == (stops, False, stops)
             assert last.value == (begin + 0.3 if not stops else last.value)
             assert begin < last.value <= begin + 0.3
-        hostile.call("fmi3GetInt32", one, (c.c_uint32 * 1)(20), count, mode, count)
+        hostile.call("fmi3GetInt64", one, (c.c_uint32 * 1)(20), count, mode, count)
         assert (last.value < 0.35, mode[0] == 3) == (event_mode, True)
         hostile.call("fmi3FreeInstance", one, kind=None)
 

@@ -10,8 +10,25 @@ from typing import Any
 
 import fmpy
 import numpy as np
+from fmpy import fmi2, fmi3
 from fmpy.fmi2 import FMU2Slave
 from fmpy.fmi3 import FMU3Slave
+
+#: Status, category and text of what an instance says.
+Said = tuple[int, str, str]
+
+
+def _callbacks(said: list[Said]) -> fmi2.fmi2CallbackFunctions:
+    """What an instance of FMI 2.0 is called back by: all that it says is kept."""
+    found = fmi2.fmi2CallbackFunctions()
+    found.logger = fmi2.fmi2CallbackLoggerTYPE(
+        lambda _environment, _name, status, category, text: said.append(
+            (status, category.decode(), text.decode())
+        )
+    )
+    found.allocateMemory = fmi2.fmi2CallbackAllocateMemoryTYPE(fmi2.calloc)
+    found.freeMemory = fmi2.fmi2CallbackFreeMemoryTYPE(fmi2.free)
+    return found
 
 
 class Instance:
@@ -24,6 +41,7 @@ class Instance:
         events: bool = False,
         start: dict[str, float] | None = None,
         initialize: bool = True,
+        silent: bool = False,
     ) -> None:
         about = fmpy.read_model_description(folder)
         self.references = {v.name: v.valueReference for v in about.modelVariables}
@@ -35,22 +53,33 @@ class Instance:
             "modelIdentifier": about.coSimulation.modelIdentifier,
             "instanceName": "drive",
         }
-        self.events, self.time, self.said = events, 0.0, []
+        self.events, self.time = events, 0.0
+        self.said: list[Said] = []
         if self.is_2:
             self.fmu: Any = FMU2Slave(**settings)
-            self.fmu.instantiate()
+            self.callbacks = _callbacks(self.said)
+            if silent:
+                self.callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(0)
+            self.fmu.instantiate(callbacks=self.callbacks)
             self.fmu.setupExperiment(startTime=0.0)
         else:
             self.fmu = FMU3Slave(**settings)
+            if silent:
+                make = self.fmu.fmi3InstantiateCoSimulation
+                none = fmi3.fmi3LogMessageCallback(0)
+                self.fmu.fmi3InstantiateCoSimulation = lambda *given: make(*given[:-2], none, given[-1])
             self.fmu.instantiate(
                 eventModeUsed=events,
                 earlyReturnAllowed=events,
-                logMessage=lambda *told: self.said.append(told[-1]),
+                logMessage=self._said,
             )
         self.set(**(start or {}))
         self.fmu.enterInitializationMode()
         if initialize:
             self.initialize()
+
+    def _said(self, _environment: object, status: int, category: bytes, text: bytes) -> None:
+        self.said.append((status, category.decode(), text.decode()))
 
     def initialize(self) -> None:
         self.fmu.exitInitializationMode()
@@ -72,7 +101,7 @@ class Instance:
         return [self._reader(name)([self.references[name]])[0] for name in names]
 
     def _reader(self, name: str) -> Any:
-        kinds = {"Real": "getReal", "Integer": "getInteger"} if self.is_2 else {}
+        kinds = {"Real": "getReal", "Enumeration": "getInteger" if self.is_2 else "getInt64"}
         return getattr(self.fmu, kinds.get(self.types[name], f"get{self.types[name]}"))
 
     def step(self, to: float) -> bool:

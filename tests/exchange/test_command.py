@@ -103,6 +103,58 @@ def test_options_are_heard(options: list[str], typed: Typed) -> None:
     assert starts["temperature"] == pytest.approx(423.15)
 
 
+@pytest.mark.parametrize("fmi", ["3.0", "2.0"])
+def test_a_machine_file_alone_becomes_the_contact_that_it_describes(fmi: str, tmp_path: Path) -> None:
+    """Film and asperities of examples/machine.toml, whose roll the drive turns as a shaft."""
+    file = ROOT / "examples" / "machine.toml"
+    options = ("--fmi", fmi, "--port", "rotational", "--drive-speed", "30 mm/s", "--check", "--json")
+    done = run("export", "fmu", file, *HOT, "--out", "drive.fmu", *options, cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    told = json.loads(done.stdout)
+    assert (told["port"], told["check"]["problems"]) == ("rotational", [])
+    assert max(told["check"]["differences"].values()) < 1e-9
+    starts = {row["name"]: row["start"] for row in told["variables"]}
+    assert starts["roll_speed"] == pytest.approx(0.03 / 0.015)
+    machine = hersey.read_machine(file)
+    core = hersey.simulate(
+        machine.train,
+        machine.mixed_drag(423.15),
+        drive_speed=0.03,
+        temperature=423.15,
+        duration=2.0,
+        samples=51,
+    )
+    got = fmpy.simulate_fmu(str(tmp_path / "drive.fmu"), stop_time=2.0, output_interval=0.04)
+    assert core.events
+    assert far(np.asarray(got["belt_speed"]), core.belt_speed) < 1e-9
+    assert far(np.asarray(got["reaction_torque"]), 0.015 * core.spring_force) < 1e-9
+
+
+@pytest.mark.parametrize(
+    ("machine", "options", "said"),
+    [
+        ("machine.toml", HOT, "machine.toml has no [asperities] and [boundary], so its drag is not known"),
+        (None, [], "a mixed contact varies with temperature: give one to start with, --temperature"),
+        (None, [*HOT, "--port", "sideways"], "port is 'sideways': it must be translational or rotational"),
+    ],
+)
+def test_what_a_machine_file_alone_lacks_is_said(
+    machine: str | None, options: list[str], said: str, folder: Path, tmp_path: Path
+) -> None:
+    file = ROOT / "examples" / "machine.toml" if machine is None else folder / machine
+    done = run("export", "fmu", file, *options, "--out", "drive.fmu", cwd=tmp_path)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert said in done.stderr
+    assert done.stderr.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_three_files_are_refused(typed: Typed, folder: Path) -> None:
+    done = typed(*HOT, str(folder / "machine.toml"))
+    assert done.returncode == 2
+    assert "3 files are given: name a fit and a machine file, or the latter alone" in done.stderr
+
+
 def test_a_stick_speed_that_is_fixed_holds_at_one_temperature(typed: Typed) -> None:
     done = typed(*HOT, "--json", machine="fixed.toml")
     assert done.returncode == 0

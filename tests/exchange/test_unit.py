@@ -160,6 +160,23 @@ def test_units_are_defined_in_base_units_and_shown_as_people_read_them(fmi: str,
     )
 
 
+@pytest.mark.parametrize("fmi", VERSIONS)
+def test_mode_is_an_enumeration_of_its_names(fmi: str, tmp_path: Path) -> None:
+    """Held at the start, whatever the version; tools show the name."""
+    unit = hersey.export_fmu(tmp_path / "drive.fmu", TRAIN, DRAG, fmi=fmi).path
+    about = fmpy.read_model_description(str(unit))
+    (mode,) = (v for v in about.modelVariables if v.name == "mode")
+    assert mode.type == "Enumeration"
+    assert mode.declaredType.name == "Mode"
+    items = {item.name: int(item.value) for item in mode.declaredType.items}
+    assert items == {"ehl": 0, "mixed": 1, "microslip": 2, "stuck": 3}
+    ran = fmpy.simulate_fmu(
+        str(unit), stop_time=1.0, output_interval=0.005, start_values={"drive_speed": 0.03}, output=["mode"]
+    )
+    assert ran["mode"][1] == 3
+    assert set(ran["mode"]) >= {0, 1, 3}
+
+
 @pytest.mark.parametrize("name", list(_UNITS))
 def test_definitions_of_units_agree_with_the_one_door(name: str) -> None:
     """Exponents and factors of each unit are those of the registry that reads units."""
@@ -275,7 +292,9 @@ def test_a_loop_may_be_closed_over_the_motion(fmi: str, tmp_path: Path) -> None:
             u.variable.name: None if u.dependencies is None else {v.name for v in u.dependencies}
             for u in about.outputs
         }
-        assert at_once["drag"] == drag
+        assert [at_once[name] for name in ("drag", "friction_power", "contact_power")] == [drag] * 3
+        assert [at_once[name] for name in ("friction_energy", "belt_position")] == [set()] * 2
+        assert at_once["slip_power"] == ({"drive_speed"} if kind != "torque" else set())
         assert [at_once[name] for name in ("belt_speed", "stretch", "spring_force")] == [set()] * 3
         assert at_once["mode"] is None
         first = {u.variable.name: u.dependencies for u in about.initialUnknowns}

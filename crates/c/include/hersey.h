@@ -10,6 +10,8 @@
  *
  *   format = 1                  always
  *   drive = speed | torque      a speed at the far end of the spring, or a torque on the roll (then roll_radius)
+ *   port = translational | rotational (translational)      of a speed: drive_speed in m/s; or the roll as a shaft, with
+ *               roll_speed in rad/s, roll_radius, and the outputs reaction_torque and roll_angle
  *   law = power | table | mixed drag against speed:
  *       power   transition_force, transition_speed, ehl_exponent, mixed_exponent
  *       table   lists speeds and forces, ascending in speed
@@ -25,7 +27,9 @@
  *       all     rest_temperature_slope (0)
  *   stiffness, mass, stick_speed                          always
  *   grip, static_force, rest_force (0), rest_damping (0)  if there are; grip with drive = speed
- *   drive_speed or drive_torque, and temperature          inputs at the start
+ *   drive_speed, roll_speed or drive_torque, and temperature          inputs at the start
+ *   measured_speeds, measured_temperatures      if known: least and greatest belt speed, and temperature, at which the
+ *               drag was measured; hersey_warning says when they are left
  *   start = rest | steady | given (rest)  given: start_belt_speed, start_stretch; steady with drive = speed
  *   tolerance (1e-9)            relative, of the steps
  *   most_steps (5000000)        that one call may take; one is about a microsecond
@@ -33,7 +37,9 @@
  *
  * Drives are independent: each may be used by a thread of its own. A call on one that is at work in another is refused.
  * After what is refused the drive is as it was before. Same calls, same bits; where and how often a motion is stopped
- * changes none, unless an input has a slope, which begins anew at each stop (rounding, some 1e-15).
+ * changes none, unless an input has a slope, which begins anew at each stop (rounding, some 1e-15). What adds up since
+ * the start (friction_energy, contact_energy, slip_energy, ways while the roll slips) is made by quadrature over the
+ * stops, and agrees to some 1e-9 of the energy turned over.
  */
 #ifndef HERSEY_H
 #define HERSEY_H
@@ -60,9 +66,10 @@ enum { HERSEY_EHL = 0, HERSEY_MIXED = 1, HERSEY_MICROSLIP = 2, HERSEY_STUCK = 3 
 /* Version of the library. */
 const char *hersey_version(void);
 
-/* The table of variables: a line each, of fields separated by tabs: value reference, name, type (Float64, Int32,
- * Boolean), causality, variability, unit, start (empty where the description has it), description. A drive has all
- * outputs, the inputs of its kind, and the parameters that its description gives or that have a start. */
+/* The table of variables: a line each, of fields separated by tabs: value reference, name, type (Float64, Enumeration,
+ * Boolean), causality, variability, unit, start (empty where the description has it), description, port (empty where a
+ * drive has the variable with any), names of an enumeration (numbered from 0). A drive has the outputs of its port, the
+ * inputs of its kind, and the parameters that its description gives or that have a start. */
 const char *hersey_variables(void);
 
 /* The drive that a text describes; null if it is none, with the reason in why (room bytes, the nul among them). */
@@ -73,6 +80,10 @@ void hersey_free(hersey_drive *drive);
 
 /* Why the last call that was refused was so; holds until the next, so print it in a statement of its own. */
 const char *hersey_why(hersey_drive *drive);
+
+/* What the last hersey_begin or hersey_advance warned of, a line each: drive or temperature have left the range of
+ * measured_speeds or measured_temperatures (once each time), or the belt is faster than that (once). Empty if it warned of nothing. */
+const char *hersey_warning(hersey_drive *drive);
 
 /* Set an input, at any time and from then on, or a parameter, before hersey_begin. */
 int hersey_set(hersey_drive *drive, const char *name, double value);

@@ -245,7 +245,8 @@ impl Account {
 
     /// Heat since the start: of all drag, of the contact, of the roll that slips.
     pub fn heats(&self) -> [f64; 3] {
-        [self.friction.energy, self.contact.energy, self.slip]
+        // less than nothing is rounding
+        [self.friction.energy, self.contact.energy, self.slip].map(|energy| energy.max(0.0))
     }
 
     /// Power of all drag on the belt and of the contact alone.

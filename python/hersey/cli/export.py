@@ -19,8 +19,7 @@ if TYPE_CHECKING:
     from hersey.damping.surface import DampingSurface
     from hersey.lubrication.mixed_drag import MixedDrag
     from hersey.machine.machine import Machine
-    from hersey.motion.belt import Drivetrain
-    from hersey.motion.drag import AnyDrag, Drag
+    from hersey.motion.drag import Drag
 
 export = typer.Typer(
     no_args_is_help=True,
@@ -127,7 +126,7 @@ def fmu(
     surface = Reading().surface(None, fits[0], machine) if fits else None
     kelvin = temperature_of(temperature, "--temperature")
     if surface is None:
-        drag: AnyDrag = _contact(machine, machine_file, kelvin)
+        drag: Drag | MixedDrag = _contact(machine, machine_file, kelvin)
     else:
         drag = _fitted(surface, machine, machine_file, kelvin)
     # a torque acts on the roll itself: there is none beyond it that could slip
@@ -206,8 +205,8 @@ def _contact(machine: Machine, file: Path, temperature: float | None) -> MixedDr
     """Drag of the contact that a machine file describes, where there is no fit."""
     if machine.mixed is None:
         raise ParameterError(
-            f"{file.name} has no [asperities] and [boundary], so its drag is not known without a fit: give the "
-            "fit before it (hersey fit LOG --machine TOML --json > fit.json), or add both tables"
+            f"{file.name} has no [asperities] and [boundary], so its drag is not known without a fit: give "
+            "the fit before it (hersey fit LOG --machine TOML --json > fit.json), or add both tables"
         )
     if temperature is None:
         raise ParameterError(

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from hersey.errors import ParameterError
-from hersey.motion.belt import Drivetrain
 from hersey.exchange.unit import ROTATIONAL, ExportedUnit
+from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import AnyDrag
 from hersey.motion.simulation import Trajectory, simulate
 
@@ -94,10 +94,15 @@ def try_unit(unit: ExportedUnit, train: Drivetrain, drag: AnyDrag) -> Trial:
             start_values={unit.drive_input: value / radius if unit.port == ROTATIONAL else value},
             output=COMPARED,
             validate=False,
+            logger=_unheard,
         )
     except Exception as error:  # FMPy raises that of Python's for all that a library refuses
         return Trial((f"it does not run: {error}",), {}, 0)
     return Trial((), _differences(run, ran), len(run.events))
+
+
+def _unheard(*_: object) -> None:
+    """Let pass what the unit warns of: the run may go beyond the speeds that were measured."""
 
 
 def _start(unit: ExportedUnit) -> str | tuple[float, float]:

@@ -21,8 +21,8 @@ from hersey.exchange.drive_file import Value, drive_text, drive_values
 from hersey.exchange.platforms import own_library, platform_named, read_library, this_platform
 from hersey.exchange.variables import Variable, variables_of
 from hersey.files.writing import write_atomically
-from hersey.motion.belt import Drivetrain
 from hersey.lubrication.mixed_drag import MixedDrag
+from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import AnyDrag
 from hersey.motion.simulation import TOLERANCE, simulate
 from hersey.result import json_record
@@ -89,8 +89,11 @@ class ExportedUnit:
             | {"start": self.starts.get(v.name)}
             for v in self.variables
         ]
-        own = ("fmi", "drive", "port", "start", "token", "platforms", "facts")
-        return json_record({"file": str(self.path), **{n: getattr(self, n) for n in own}, "variables": rows})
+        own = ("fmi", "drive", "start", "token", "platforms", "facts")
+        port = self.port if self.drive == "speed" else None
+        return json_record(
+            {"file": str(self.path), "port": port, **{n: getattr(self, n) for n in own}, "variables": rows}
+        )
 
 
 @takes_si(drive_speed="belt speed", drive_torque="torque", temperature="temperature", roll_radius="length")

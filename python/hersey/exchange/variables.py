@@ -59,4 +59,12 @@ def variables_of(library: Path) -> tuple[Variable, ...]:
 def table(text: str) -> tuple[Variable, ...]:
     """Return the variables of a table: a line each, its parts between tabs."""
     rows = [line.split("\t") for line in text.splitlines() if line.strip() and not line.startswith("#")]
-    return tuple(Variable(int(number), *rest, tuple(items.split())) for number, *rest, items in rows)
+    return tuple(_variable(*row) for row in rows)
+
+
+def _variable(reference: str, *others: str) -> Variable:
+    name, kind, causality, variability, unit, start, description, port, items = others
+    listed = tuple(items.split())
+    return Variable(
+        int(reference), name, kind, causality, variability, unit, start, description, port, listed
+    )

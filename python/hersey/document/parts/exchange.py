@@ -32,6 +32,7 @@ class UnitPart(Part):
     file: str
     fmi: str = Field(description="version of the interface")
     drive: str = Field(description="speed, or torque")
+    port: str | None = Field(description="of a speed: translational, or rotational; null with a torque")
     start: str
     token: str = Field(description="sum of the content, by which library and description belong together")
     platforms: list[str]
