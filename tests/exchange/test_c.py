@@ -70,6 +70,22 @@ def test_the_example_in_c_says_what_python_says(tmp_path: Path) -> None:
     assert belts[1] == belts[2]  # from the saved state, to the last bit
 
 
+def test_the_thermal_loop_in_c_follows_drag_times_speed(tmp_path: Path) -> None:
+    """The belt slides at 2 m/s, but for the spring that unloads as drag falls: heat in closed form."""
+    lines = said(compiled(CRATE / "examples" / "heat.c", tmp_path, "-I", str(CRATE / "include")))
+    found = {name: float(value) for name, value in lines}
+    temperature, energy = 400.0, 0.0
+    for _ in range(200):
+        warmer = temperature / 400.0
+        power = 50.0 * warmer**-2 * (2.0 / warmer**3) ** 0.3 * 2.0
+        energy += 0.01 * power
+        temperature += 0.01 * (power - 0.5 * (temperature - 300.0)) / 50.0
+    assert temperature > 402
+    assert found["temperature"] - 400 == pytest.approx(temperature - 400, rel=2e-3)
+    assert found["energy"] == pytest.approx(energy, rel=1e-3)
+    assert found["warnings"] == 1
+
+
 def headers() -> Path:
     """The headers of the standard, which FMPy brings."""
     fmpy = pytest.importorskip("fmpy")
