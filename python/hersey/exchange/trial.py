@@ -89,8 +89,8 @@ def try_unit(unit: ExportedUnit, train: Drivetrain, drag: AnyDrag) -> Trial:
         start=_start(unit),
     )
     try:
-        # FMPy prints what a unit warns of, as that the run goes beyond the speeds measured; a logger of our own
-        # it would keep beyond its life, and call it for the next unit
+        # FMPy prints what a unit warns of, as that the run goes beyond the speeds measured; a logger of our
+        # own it would keep beyond its life, and call it for the next unit
         with redirect_stdout(StringIO()):
             ran = fmpy.simulate_fmu(
                 str(unit.path),
