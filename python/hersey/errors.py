@@ -140,3 +140,25 @@ class UntoldWarning(UserWarning):
             "limits hold for the visits recorded: each temperature was visited once, and how far visits "
             "scatter is not told"
         )
+
+
+class SandboxWarning(UserWarning):
+    """Untrusted files are read without a whole sandbox; ``missing`` names what the system lacks.
+
+    These are ``landlock`` (which files the reading process can open) and ``seccomp`` (which system calls
+    it can make).
+    """
+
+    def __init__(self, missing: tuple[str, ...]) -> None:
+        """Take what is missing."""
+        super().__init__(missing)
+        self.missing = missing
+
+    def __str__(self) -> str:
+        """Return it in words."""
+        lacking = {
+            "landlock": "could open other files (this system lacks Landlock)",
+            "seccomp": "could start processes and change files (this system lacks seccomp)",
+        }
+        could = " and ".join(lacking.get(name, name) for name in self.missing)
+        return f"Untrusted files are not fully sandboxed: one {could}. Open only files that you trust."

@@ -7,6 +7,7 @@ import json
 import math
 import os
 import select
+import signal
 import socket
 import struct
 import subprocess
@@ -19,6 +20,9 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO, Any
 
+from hersey.processes.limits import limit_other, processor_time
+from hersey.processes.starting import started
+
 _LENGTHS = struct.Struct("<QQ")
 _SERVER, _PACKAGE = Path(__file__).with_name("server.py"), str(Path(__file__).absolute().parents[2])
 #: Longest head of a reply, bytes: the rest of a reply is its block of bytes.
@@ -26,6 +30,8 @@ _LONGEST_HEAD = 1 << 28
 #: Where pipes can be waited for, and the time after which to look up, ms.
 _POLL = getattr(select, "poll", None)
 _LOOK_UP = 100
+#: Processor time that a process may take beyond its limit before it is ended from here, s.
+_GRACE = 2.0
 
 
 class LostError(Exception):
@@ -38,6 +44,10 @@ class LostError(Exception):
         """Take what happened and the exit code."""
         super().__init__(message)
         self.code = code
+
+
+class _SpentError(EOFError):
+    """The process has taken more processor time than it may."""
 
 
 class FailedError(Exception):
@@ -69,7 +79,9 @@ class Child:
         self._script, self._environment = script, environment
         self._lock = threading.Lock()
         self._process: subprocess.Popen[bytes] | None = None
-        self._lifeline, self._late = -1, math.inf
+        #: When it has to answer, by the clock, and the processor time that it may have taken by then, s.
+        self._late, self._spent = math.inf, math.inf
+        self._looked = -math.inf  # when its processor time was last looked at
         self._files: socket.socket | None = None
         _children.add(self)
 
@@ -129,15 +141,34 @@ class Child:
 
     def stop(self) -> int | None:
         """End the process, also one that another thread waits for; return its exit code."""
-        process, lifeline, files = self._process, self._lifeline, self._files
+        process, files = self._process, self._files
         code = None
         if process is not None:
+            if process.returncode is None and os.name == "posix":
+                with suppress(OSError):
+                    os.killpg(process.pid, signal.SIGKILL)  # with what it may have started
             with suppress(OSError):
                 process.kill()  # no harm to one that has ended
             code = process.wait()
-        self._process, self._lifeline, self._files = None, -1, None
-        _close(process, lifeline, files)
+        self._process, self._files = None, None
+        _close(process, files)
         return code
+
+    def limit(self, memory: float, seconds: float) -> None:
+        """Let the process take so much more memory, bytes, and processor time, s; infinity lifts a limit.
+
+        Linux; elsewhere a script limits itself (`hersey.processes.limits`).
+
+        Raises
+        ------
+        LostError
+            If the process has ended, or the system forbids it.
+        """
+        with self._lock, self._whole():
+            if self._process is None:
+                raise EOFError("the process ended before it was limited")
+            limit_other(self._process.pid, memory, seconds)
+            self._spent = processor_time(self._process.pid) + seconds + _GRACE
 
     @contextmanager
     def _whole(self) -> Iterator[None]:
@@ -146,6 +177,8 @@ class Child:
             yield
         except (EOFError, OSError, ValueError, RecursionError) as error:
             code = self.stop()
+            if isinstance(error, _SpentError):
+                code = -signal.SIGXCPU
             raise LostError(str(error) or "the process ended before it answered", code) from None
         except BaseException:
             self.stop()
@@ -157,21 +190,26 @@ class Child:
         return self._process or self._start()
 
     def _start(self) -> subprocess.Popen[bytes]:
+        self._spent = math.inf
         theirs: tuple[int, ...] = ()
         if os.name == "posix":
-            end, self._lifeline = os.pipe()
             self._files, files = socket.socketpair()
-            theirs = (end, files.detach())
+            theirs = (files.detach(),)
+        # -P: without the folder of the server, whose modules would hide those of Python
+        command = [sys.executable, "-P", str(_SERVER), str(self._script), *map(str, (os.getpid(), *theirs))]
+        environment = os.environ if self._environment is None else self._environment
         try:
-            # -P: without the folder of the server, whose modules would hide those of Python
-            self._process = subprocess.Popen(
-                [sys.executable, "-P", str(_SERVER), str(self._script), *map(str, theirs)],
-                bufsize=0,
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                stderr=subprocess.DEVNULL,
-                env={**(os.environ if self._environment is None else self._environment), **_import_path()},
-                pass_fds=theirs,
+            self._process = started(
+                lambda: subprocess.Popen(
+                    command,
+                    bufsize=0,
+                    stdin=subprocess.PIPE,
+                    stdout=subprocess.PIPE,
+                    stderr=subprocess.DEVNULL,
+                    env={**environment, **_import_path()},
+                    pass_fds=theirs,
+                    start_new_session=True,  # a group of its own, without a terminal
+                )
             )
         finally:
             for end in theirs:
@@ -207,20 +245,37 @@ class Child:
         into, and Python then never hears of it; this waiting ends with a signal, and looks up now and then
         for one that came just before.
         """
-        if _POLL is not None:
-            poll = _POLL()
-            poll.register(stream, select.POLLOUT if stream.writable() else select.POLLIN)
-            while not poll.poll(_LOOK_UP):
-                if time.monotonic() > self._late:
-                    raise EOFError("the process does not answer")
+        if _POLL is None:
+            return
+        poll = _POLL()
+        poll.register(stream, select.POLLOUT if stream.writable() else select.POLLIN)
+        while True:
+            ready = poll.poll(_LOOK_UP)
+            now = time.monotonic()
+            if now > self._late:  # also one that answers a byte at a time
+                raise EOFError("the process does not answer")
+            if now > self._looked + _LOOK_UP / 1000:
+                self._looked = now
+                self._refuse_overtime()
+            if ready:
+                return
+
+    def _refuse_overtime(self) -> None:
+        """Raise if the process has taken more time than it may: one that does not heed the signal."""
+        process = self._process
+        if self._spent == math.inf or process is None:
+            return
+        with suppress(FileNotFoundError, ProcessLookupError):  # it has ended
+            if processor_time(process.pid) > self._spent:
+                raise _SpentError("the process takes too much processor time")
 
     def _leave_to_parent(self) -> None:
         """Let go, in a forked process, of the child that is the parent's."""
-        process, lifeline, files = self._process, self._lifeline, self._files
-        self._lock, self._process, self._lifeline, self._files = threading.Lock(), None, -1, None
+        process, files = self._process, self._files
+        self._lock, self._process, self._files = threading.Lock(), None, None
         if process is not None:
             process.returncode = 0  # none of ours to wait for
-        _close(process, lifeline, files)
+        _close(process, files)
 
 
 def _import_path() -> dict[str, str]:
@@ -231,16 +286,13 @@ def _import_path() -> dict[str, str]:
     return {"PYTHONPATH": os.pathsep.join(places)}
 
 
-def _close(process: subprocess.Popen[bytes] | None, lifeline: int, files: socket.socket | None) -> None:
+def _close(process: subprocess.Popen[bytes] | None, files: socket.socket | None) -> None:
     """Close our ends of the pipes: the last that a process started half-way needs to end."""
     for stream in (process.stdin, process.stdout) if process is not None else ():
         if stream is not None:
             stream.close()
     if files is not None:
         files.close()
-    if lifeline >= 0:
-        with suppress(OSError):
-            os.close(lifeline)
 
 
 _children: weakref.WeakSet[Child] = weakref.WeakSet()

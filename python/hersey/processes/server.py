@@ -1,10 +1,10 @@
 """What runs in a process of our own: it answers requests with a script's function, until there are no more.
 
-Run as ``python -P server.py SCRIPT [LIFELINE FILES]`` by `hersey.processes.child`: descriptors of a pipe and
-a socket, where the system can pass them. The script defines ``answer(request, payload)``, which returns a
-dictionary that JSON can hold and a block of bytes; ``request["file"]`` is the descriptor of a file. A message
-is the length of its JSON and of its bytes (8 bytes each, little-endian), then both; the JSON of a reply holds
-``reply``, or ``failed`` (the kind of exception) and ``message``.
+Run as ``python -P server.py SCRIPT PARENT [FILES]`` by `hersey.processes.child`: the number of its parent and
+the descriptor of a socket, where the system can pass files. The script defines ``answer(request, payload)``,
+which returns a dictionary that JSON can hold and a block of bytes; ``request["file"]`` is the descriptor of a
+file. A message is the length of its JSON and of its bytes (8 bytes each, little-endian), then both; the JSON
+of a reply holds ``reply``, or ``failed`` (the kind of exception) and ``message``.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from collections.abc import Callable
 from typing import Any, BinaryIO
 
 _LENGTHS = struct.Struct("<QQ")
+_PR_SET_PDEATHSIG = 1
 _Answer = Callable[[dict[str, Any], bytes], tuple[dict[str, Any], bytes]]
 
 
@@ -50,23 +51,17 @@ def received(files: int) -> int:
         return socket.recv_fds(end, 1, 1)[1][0]
 
 
-def die_with_parent(lifeline: int) -> None:
-    """Let the kernel end this process once nobody holds the other end of a pipe, whatever it does then.
+def die_with_parent(parent: int) -> None:
+    """Let the kernel end this process with its parent, whatever it does then.
 
-    A signal by the pipe and not by the parent's death (`PR_SET_PDEATHSIG`): that one comes already when the
-    thread ends that started the process. Elsewhere than on Linux the process ends with its requests.
+    Elsewhere than on Linux the process ends with its requests. The kernel looks at the thread that started
+    this process, see `hersey.processes.starting`.
     """
-    if sys.platform == "linux" and lifeline >= 0:
-        import fcntl
+    if sys.platform == "linux":
+        import ctypes
 
-        signal.signal(signal.SIGIO, signal.SIG_DFL)  # which ends the process
-        fcntl.fcntl(lifeline, fcntl.F_SETOWN, os.getpid())
-        fcntl.fcntl(lifeline, fcntl.F_SETFL, os.O_RDONLY | os.O_NONBLOCK | os.O_ASYNC)
-        try:
-            gone = os.read(lifeline, 1) == b""
-        except BlockingIOError:
-            return
-        if gone:  # before the kernel was asked to watch
+        ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)
+        if os.getppid() != parent:  # it ended before the kernel was asked
             os._exit(1)
 
 
@@ -99,8 +94,8 @@ class NotStarted(Exception):  # noqa: N818 # its name tells the parent what happ
 def main() -> None:
     """Serve a script; what it prints goes nowhere."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the parent too, which stops its processes
-    script, lifeline, files = sys.argv[1], *(int(end) for end in [*sys.argv[2:], "-1", "-1"][:2])
-    die_with_parent(lifeline)
+    script, parent, files = sys.argv[1], *map(int, [*sys.argv[2:], "-1"][:2])
+    die_with_parent(parent)
     leave_no_core()
     replies = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

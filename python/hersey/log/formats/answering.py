@@ -1,7 +1,8 @@
 """The process in which files are read: a reader opens one, and what it holds is sent as it is asked for.
 
-Run by `hersey.processes.server`. Requests: ``open`` (a file, its format and name, bounds of memory and time),
-``load`` and ``clock`` (the numbers of one signal), ``cells`` (the text of one column), ``close``.
+Run by `hersey.processes.server`. Requests: ``prepare`` (a format: loads its library, and says what the
+sandbox lacks on this system), ``open`` (a file, its format and name, bounds of memory and time), ``load`` and
+``clock`` (the numbers of one signal), ``cells`` (the text of one column), ``close``.
 """
 
 from __future__ import annotations
@@ -13,7 +14,8 @@ from contextlib import AbstractContextManager, suppress
 from typing import TYPE_CHECKING, Any, BinaryIO
 
 from hersey.errors import UnreadableLogError
-from hersey.processes.confinement import limit_memory, limit_time, only_read_libraries
+from hersey.processes.confinement import only_read_libraries
+from hersey.processes.limits import limit
 
 if TYPE_CHECKING:
     from hersey.log.recording import Recording
@@ -21,8 +23,10 @@ if TYPE_CHECKING:
 #: Channels of a file at the most.
 _MOST_SIGNALS = 100_000
 
+#: What this system lacks for the sandbox.
+_missing: tuple[str, ...] = ()
 if __name__ == "__main__":  # whoever only imports this is not confined
-    only_read_libraries()  # before anything else runs, threads above all
+    _missing = only_read_libraries()  # before anything else runs, threads above all
 
 
 class _Open:
@@ -36,9 +40,7 @@ class _Open:
     def open(self, request: dict[str, Any]) -> dict[str, Any]:
         """Open a file and say what it holds."""
         reader = importlib.import_module(f"hersey.log.formats.{request['format']}")
-        getattr(reader, "prepare", lambda: None)()
-        limit_memory(request["memory"])
-        limit_time(request["time"])
+        limit(request["memory"], request["time"])
         self.file = open(request.get("file") or request["path"], "rb")  # noqa: PTH123, SIM115 # by number; see `close`
         self.file.seek(0)  # the place in a file that was passed is shared
         self.context = getattr(reader, f"open_{request['format']}")(self.file, request["name"])
@@ -95,7 +97,7 @@ class _Open:
                 self.context.__exit__(None, None, None)
         if self.file is not None:
             self.file.close()
-        limit_time(math.inf)
+        limit(math.inf, math.inf)
 
 
 _open = _Open()
@@ -106,6 +108,10 @@ def answer(request: dict[str, Any], _payload: bytes) -> tuple[dict[str, Any], by
     global _open
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
+        if request["do"] == "prepare":
+            reader = importlib.import_module(f"hersey.log.formats.{request['format']}")
+            getattr(reader, "prepare", lambda: None)()
+            return {"missing": _missing}, b""
         if request["do"] == "open":
             return _open.open(request), b""
         if request["do"] == "close":

@@ -10,7 +10,7 @@ import struct
 import zlib
 
 from hersey.errors import UnreadableLogError
-from hersey.processes.confinement import memory_left
+from hersey.processes.limits import memory_left
 
 _HEADER = 128
 _INT8, _INT32, _UINT32, _MATRIX, _COMPRESSED, _UTF8 = 1, 5, 6, 14, 15, 16

@@ -1,15 +1,17 @@
 """Which format a file has, told by its first bytes or its suffix, and opening it in a process of its own.
 
-The libraries that read binary files were not written for files of strangers: some run code, some end the
+The libraries that read binary files were not written for untrusted files: some run code, some end the
 process, some take all memory. So they run in a process that may open no other file and has bounds of memory
 and time; what comes out of it are names and numbers.
 """
 
 from __future__ import annotations
 
+import math
 import os
 import re
 import signal
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from functools import partial
@@ -20,17 +22,20 @@ import numpy as np
 
 from hersey import errors
 from hersey.arrays import FloatArray
-from hersey.errors import HerseyError, ParameterError, UnreadableLogError
+from hersey.errors import HerseyError, ParameterError, SandboxWarning, UnreadableLogError
 from hersey.files.reading import OpenFile, open_file, unchanged
 from hersey.log.formats.hdf5 import MAGIC as HDF5
 from hersey.log.recording import LONGEST_CELL, Cells, Recording, Signal, Source
 from hersey.processes.child import Child, FailedError, LostError
 from hersey.processes.forks import refuse_after_fork
+from hersey.processes.limits import FROM_OUTSIDE
 from hersey.spelling import printable
 
 #: What a file may take while it is read, bytes, where the user does not say otherwise, and now.
 _USUAL_MEMORY = 2e9
 _memory = _USUAL_MEMORY
+#: Whether the user was warned of a sandbox that is not whole.
+_warned = False
 #: Bytes for each number that is read: it is held here, and so is what is computed from it; for a cell of text
 #: beside its characters.
 _BYTES_PER_NUMBER, _BYTES_PER_CELL = 16, 64
@@ -197,6 +202,29 @@ def opened(path: Path, kind: str) -> Iterator[Recording]:
         file.refuse_other_bytes(digest)
 
 
+@contextmanager
+def _own_descriptor(file: OpenFile) -> Iterator[int]:
+    """Yield a descriptor of an open file whose place and flags are not those of ours; Linux."""
+    shared = file.file.fileno()
+    try:
+        descriptor = os.open(f"/proc/self/fd/{shared}", os.O_RDONLY)
+    except OSError:  # another system, or a file that only who opened it may read
+        yield shared
+        return
+    try:
+        yield descriptor
+    finally:
+        os.close(descriptor)
+
+
+def _warn_of(missing: tuple[str, ...]) -> None:
+    """Warn once that files are read without a whole sandbox."""
+    global _warned
+    if missing and not _warned:
+        _warned = True
+        warnings.warn(SandboxWarning(missing), stacklevel=2)
+
+
 class _Reader:
     """A file while it is read: its own process, and how much of the memory is left."""
 
@@ -220,17 +248,19 @@ class _Reader:
 
     def recording(self, source: Source) -> Recording:
         """What the file holds."""
-        about, _ = self._asked(
-            {
-                "do": "open",
-                "format": self.kind,
-                "name": self.file.path.name,
-                "path": str(self.file.path.resolve()),
-                "memory": int(self.limit),
-                "time": self.time,
-            },
-            file=self.file.file.fileno(),
-        )
+        self._prepare()
+        with _own_descriptor(self.file) as descriptor:
+            about, _ = self._asked(
+                {
+                    "do": "open",
+                    "format": self.kind,
+                    "name": self.file.path.name,
+                    "path": str(self.file.path.resolve()),
+                    "memory": int(self.limit),
+                    "time": self.time,
+                },
+                file=descriptor,
+            )
         signals = about.pop("signals")
         recording = Recording(
             about["format"],
@@ -245,6 +275,21 @@ class _Reader:
         recording.signals = tuple(self._signal(recording, i, about) for i, about in enumerate(signals))
         recording.cells = tuple(self._column(i, about) for i, about in enumerate(about["cells"]))
         return recording
+
+    def _prepare(self) -> None:
+        """Have the library loaded, then limit what the process may take."""
+        if FROM_OUTSIDE and self.child.running:  # what is left of the last file's time is not for this one
+            self._limited(math.inf, math.inf)
+        about, _ = self._asked({"do": "prepare", "format": self.kind})
+        _warn_of(tuple(map(_plain, about["missing"])))
+        if FROM_OUTSIDE:
+            self._limited(self.limit, self.time)
+
+    def _limited(self, memory: float, seconds: float) -> None:
+        try:
+            self.child.limit(memory, seconds)
+        except LostError as error:
+            raise self._not_started(str(error)) from None
 
     def _column(self, index: int, about: dict[str, Any]) -> Cells:
         rows = int(about["rows"])
