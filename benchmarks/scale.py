@@ -37,9 +37,9 @@ import hersey
 from hersey.motion.following import note_of, trial, usual_chunk, values_of
 from hersey.motion.sets import Later
 from hersey.motion.sweep import planned
-from hersey.scale.cluster import local_cluster
 from hersey.scale.cutting import Cut
 from hersey.scale.kinds import kind_of
+from hersey.scale.local import local_workers
 from hersey.scale.tasks import done
 
 WORKERS = 2
@@ -136,7 +136,7 @@ def chunk(folder: Path, sets: int) -> dict[str, Any]:
         columns = piece.piece().sets.columns()
         target.write(number, values, columns, note_of(motions, values, 0))
         writing.append(time.perf_counter() - begun)
-    with local_cluster(WORKERS) as client:
+    with local_workers(WORKERS) as client:
         tasks = 2000
         for _ in done(_nothing, range(100), client=client):
             pass
@@ -156,7 +156,7 @@ def chunk(folder: Path, sets: int) -> dict[str, Any]:
         "following it, s": round(took, 3),
         "per set, us": round(took / cut.size(0) * 1e6, 2),
         "keeping it, ms": round(median(writing) * 1e3, 2),
-        "scheduler and client per task, ms": round(each_task * 1e3, 2),
+        "pipes per task, ms": round(each_task * 1e3, 2),
         "both, of a task": f"{share:.2%} (bound {SHARE:.0%})",
         "time that 40 tasks of 0.5 s take beyond an ideal split": f"{idle:.2%}",
         "kept": share < SHARE,
@@ -176,7 +176,7 @@ def split(folder: Path, sets: int) -> dict[str, Any]:
     """One process and two workers in turn."""
     values = axes(sets)
     alone, shared, same = [], [], True
-    with local_cluster(WORKERS) as client:
+    with local_workers(WORKERS) as client:
         hersey.sweep(TRAIN, DRAG, drive_speed=values["drive_speed"], client=client, out=folder / "warm.zarr")
         for turn in range(3):
             begun = time.perf_counter()

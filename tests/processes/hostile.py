@@ -135,7 +135,7 @@ for _name, _path in {
     "read its own groups of control": "/proc/self/cgroup",
     "read the settings of the kernel": "/proc/sys/kernel/osrelease",
     "read through its own root": "/proc/self/root{secret}",
-    "read through its own root, by the system": "/proc/self/root/etc/passwd",
+    "read through its own root, by the system": "/proc/self/root{system}",
     "open a device": "/dev/zero",
     "open the memory of the machine": "/dev/mem",
     "open the messages of the kernel": "/dev/kmsg",

@@ -83,6 +83,7 @@ class Surroundings:
             "secret": str(self.secret),
             "folder": str(self.folder),
             "home": str(self.home),
+            "system": "/etc/passwd",
             "neighbour": str(self.log.with_name("other.csv")),
             "marker": str(self.folder / "MARK"),
             "empty": str(self.folder / "empty"),

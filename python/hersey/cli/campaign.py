@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from distributed import Client
 
     from hersey.life.campaign import Added, Campaign, RunToAdd
+    from hersey.scale.local import LocalWorkers
 
 campaign = typer.Typer(
     no_args_is_help=True,
@@ -123,7 +124,7 @@ def _add_all(
     reading: Reading,
     machine: Path | None,
     force: bool,
-    client: Client | None,
+    client: Client | LocalWorkers | None,
 ) -> None:
     from hersey.cli.campaign_reading import entries, settings_of
     from hersey.life.campaign import Campaign
@@ -147,7 +148,7 @@ def _add_each(
     reading: Reading,
     machine: Path | None,
     force: bool,
-    client: Client | None,
+    client: Client | LocalWorkers | None,
     failed: list[str],
 ) -> None:
     from hersey.cli.campaign_reading import entries

@@ -26,6 +26,8 @@ from hersey.processes.child import Child, FailedError, LostError
 if TYPE_CHECKING:
     from distributed import Client
 
+    from hersey.scale.local import LocalWorkers
+
 #: Processes that read, runs that are read ahead of the one that is added, and those that are read here.
 _PROCESSES, _AHEAD, _FEW = 2, 6, 8
 
@@ -74,7 +76,10 @@ def answer(request: dict[str, Any], _payload: bytes) -> tuple[dict[str, Any], by
 
 
 def entries(
-    reading: Reading, logs: Sequence[tuple[Path, str]], machine: Path | None, client: Client | None = None
+    reading: Reading,
+    logs: Sequence[tuple[Path, str]],
+    machine: Path | None,
+    client: Client | LocalWorkers | None = None,
 ) -> Iterator[Entry | HerseyError]:
     """Read logs, each with its settings, many several at a time; yield what is kept of each, or why not."""
     if client is not None:

@@ -13,6 +13,8 @@ from hersey.errors import ParameterError
 if TYPE_CHECKING:
     from distributed import Client
 
+    from hersey.scale.local import LocalWorkers
+
 Scheduler = Annotated[
     str | None,
     typer.Option(
@@ -23,22 +25,20 @@ Scheduler = Annotated[
 ]
 Workers = Annotated[
     int | None,
-    typer.Option(
-        "--workers", metavar="N", help="Let so many processes on this machine work, by Dask.", min=1
-    ),
+    typer.Option("--workers", metavar="N", help="Use N worker processes on this machine.", min=1),
 ]
 
 
 @contextmanager
-def workers(scheduler: str | None, count: int | None) -> Iterator[Client | None]:
-    """Yield the client of a scheduler, or of so many processes on this machine; None where neither is asked.
+def workers(scheduler: str | None, count: int | None) -> Iterator[Client | LocalWorkers | None]:
+    """Yield the client of a scheduler, or so many processes on this machine; None where neither is asked.
 
     Raises
     ------
     ParameterError
         If both are asked for, or nothing answers at the address.
     MissingFileError
-        If Dask is not installed.
+        If a scheduler is given and Dask is not installed.
     """
     if scheduler is not None and count is not None:
         raise ParameterError("--scheduler and --workers both say who works: give one")
@@ -48,9 +48,9 @@ def workers(scheduler: str | None, count: int | None) -> Iterator[Client | None]
         with connected(scheduler) as (client, _name):
             yield client
     elif count is not None:
-        from hersey.scale.cluster import local_cluster
+        from hersey.scale.local import local_workers
 
-        with local_cluster(count) as client:
-            yield client
+        with local_workers(count) as processes:
+            yield processes
     else:
         yield None

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from distributed import Client
 
     from hersey.log.torque_log import TorqueLog
+    from hersey.scale.local import LocalWorkers
 
 Item = TypeVar("Item")
 R = TypeVar("R")
@@ -57,7 +58,7 @@ def read_many(
     paths: str | Path | Iterable[str | Path],
     *,
     then: Callable[[TorqueLog], Any] | None = None,
-    client: Client | str | None = None,
+    client: Client | LocalWorkers | str | None = None,
     threads: int = 1,
     keep_going: bool = False,
     progress: Callable[[int, int], object] | None = None,
@@ -114,7 +115,7 @@ def each_of(
     items: Sequence[Item],
     *,
     called: Callable[[Item], object] = str,
-    client: Client | str | None = None,
+    client: Client | LocalWorkers | str | None = None,
     threads: int = 1,
     progress: Callable[[int, int], object] | None = None,
 ) -> Iterator[R]:

@@ -33,6 +33,7 @@ from hersey.motion.sets import Later, Sets
 from hersey.scale.cluster import connected, refuse_others, threads_of
 from hersey.scale.cutting import Cut
 from hersey.scale.kinds import kind_of
+from hersey.scale.local import LocalWorkers
 from hersey.scale.store import (
     Coordinate,
     Folder,
@@ -99,7 +100,7 @@ def kept(
     rules: Rules,
     out: str | Path,
     *,
-    client: Client | str | None = None,
+    client: Client | LocalWorkers | str | None = None,
     threads: int = 1,
     chunk: int | None = None,
     resume: bool = True,
@@ -149,7 +150,7 @@ def _followed(
     sets: Sets,
     rules: Rules,
     folder: Folder,
-    client: Client | None,
+    client: Client | LocalWorkers | None,
     threads: int,
     progress: Callable[[int, int], object] | None,
     notes: list[str],
@@ -203,7 +204,7 @@ def gathered(
     sets: Sets,
     rules: Rules,
     *,
-    client: Client | str,
+    client: Client | LocalWorkers | str,
     chunk: int | None = None,
     progress: Callable[[int, int], object] | None = None,
 ) -> tuple[dict[str, NDArray[Any]], list[str], list[str]]:
@@ -230,7 +231,7 @@ def gathered(
 
 
 @contextmanager
-def _connected(client: Client | str | None) -> Iterator[Client | None]:
+def _connected(client: Client | LocalWorkers | str | None) -> Iterator[Client | LocalWorkers | None]:
     if client is None:
         with nullcontext():
             yield None
@@ -249,8 +250,10 @@ def _cut(sets: Sets, chunk: int) -> Cut:
     return cut
 
 
-def _probed(client: Client, rules: Rules, tried: Trial, seen: Any) -> list[str]:
+def _probed(client: Client | LocalWorkers, rules: Rules, tried: Trial, seen: Any) -> list[str]:
     """Refuse a worker that does not see the folder; return what is told of those with other bits."""
+    if isinstance(client, LocalWorkers):  # this machine, with its folders
+        return []
     found = client.run(probe, rules, tried.sample, seen, on_error="return")
     for error in found.values():
         if isinstance(error, BaseException):

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from distributed import Client
 
     from hersey.motion.kept import Kept
+    from hersey.scale.local import LocalWorkers
 
 
 @plain_dataclass(frozen=True)
@@ -60,7 +61,7 @@ class Scenario:
         *,
         threads: int = 1,
         progress: Callable[[int, int], object] | None = None,
-        client: Client | None = None,
+        client: Client | LocalWorkers | None = None,
     ) -> xr.Dataset:
         """Return what each parameter set settles to; see `hersey.sweep`."""
         train, drag, varied = self._arguments()

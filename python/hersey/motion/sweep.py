@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from distributed import Client
 
     from hersey.motion.kept import Kept
+    from hersey.scale.local import LocalWorkers
 
 
 @takes_si(duration="time", **{name: kind for name, kind in KINDS.items() if kind is not None})
@@ -47,7 +48,7 @@ def sweep(
     tolerance: float = TOLERANCE,
     progress: Callable[[int, int], object] | None = None,
     most_steps: float = MOST_STEPS,
-    client: Client | str | None = None,
+    client: Client | LocalWorkers | str | None = None,
     out: str | Path | None = None,
     chunk: int | None = None,
     resume: bool = True,

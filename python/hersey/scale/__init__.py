@@ -3,8 +3,10 @@
 ==========  ==================================================================================
 module      responsibility
 ==========  ==================================================================================
-cluster     a cluster of Dask: on this machine or by its address
-tasks       tasks done in threads or by the workers of a cluster: results as they end
+local       worker processes on this machine
+worker      what runs in one
+cluster     a cluster of Dask, by its client or address
+tasks       tasks done in threads, in processes or by the workers of a cluster: results as they end
 cutting     a grid cut into chunks
 store       what is kept of a grid that is worked out chunk by chunk
 kinds       the kinds of folder, by the end of the name

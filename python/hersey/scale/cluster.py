@@ -1,20 +1,19 @@
-"""A cluster of Dask: on this machine or by its address, with workers that have the same hersey."""
+"""Who works: processes of this machine, or a cluster of Dask whose workers have the same hersey."""
 
 from __future__ import annotations
 
 import asyncio
 import logging
-import os
 import re
-import signal
 import warnings
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import ExitStack, contextmanager
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from hersey import _core
-from hersey.errors import MissingFileError, ParameterError, UnfinishedError
+from hersey.errors import MissingFileError, ParameterError
+from hersey.scale.local import LocalWorkers
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -23,15 +22,6 @@ if TYPE_CHECKING:
 _ANSWER = 8.0
 #: Time that the first worker has to come, and one after all are lost, s.
 _FIRST, _WORKERS = 20.0, 60.0
-#: Workers of ours: Ctrl-C is for their parent alone, with which they end, and one that could not start again
-#: is made anew soon.
-_SETTINGS = {
-    "distributed.worker.daemon": True,
-    "distributed.worker.preload": ["import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"],
-    "distributed.deploy.lost-worker-timeout": "2s",
-}
-#: What the standard library says of a process that was ended at once, when it clears up behind it.
-_LEAKED = "ignore::UserWarning:multiprocessing.resource_tracker"
 _WAY_OUT = "pip install 'hersey[scale]'"
 
 
@@ -55,14 +45,17 @@ def needs_dask() -> None:
 
 
 @contextmanager
-def connected(client: Client | str) -> Iterator[tuple[Client, str]]:
-    """Yield a client, made where an address is given, and the name of its scheduler.
+def connected(client: Client | LocalWorkers | str) -> Iterator[tuple[Client | LocalWorkers, str]]:
+    """Yield who works, a client made where an address is given, and the name of its scheduler.
 
     Raises
     ------
     ParameterError
         If it is no address, or nothing answers there within some seconds.
     """
+    if isinstance(client, LocalWorkers):
+        yield client, "this machine"
+        return
     needs_dask()
     if not isinstance(client, str):
         if not hasattr(client, "submit") or not hasattr(client, "scheduler_info"):
@@ -106,82 +99,6 @@ async def _answered(address: str) -> None:
     await asyncio.wait_for(ask(), _ANSWER)
 
 
-@contextmanager
-def local_cluster(processes: int) -> Iterator[Client]:
-    """Yield the client of a cluster of so many processes on this machine, which end with this one.
-
-    Raises
-    ------
-    UnfinishedError
-        If they cannot be started.
-    """
-    needs_dask()
-    import dask
-    from distributed import Client, LocalCluster
-
-    quiet()
-    with ExitStack() as stack:
-        try:
-            stack.enter_context(dask.config.set(_SETTINGS))
-            with _without_words(), _deaf_to_ctrl_c():
-                cluster = stack.enter_context(
-                    LocalCluster(
-                        n_workers=processes,
-                        processes=True,
-                        threads_per_worker=1,
-                        dashboard_address=None,
-                        silence_logs=logging.CRITICAL,
-                    )
-                )
-            client = stack.enter_context(Client(cluster, set_as_default=False))
-        except Exception as error:
-            reason = str(error).partition("\n")[0]
-            raise UnfinishedError(
-                f"{processes} workers could not be started on this machine ({reason}): ask for fewer, or try "
-                f"again"
-            ) from None
-        yield client
-
-
-@contextmanager
-def _without_words() -> Iterator[None]:
-    """Let nothing be printed of a port that another has, nor of what is cleared up after a sudden end."""
-    before = os.environ.get("PYTHONWARNINGS")
-    os.environ["PYTHONWARNINGS"] = ",".join(filter(None, (before, _LEAKED)))
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            yield
-    finally:
-        if before is None:
-            del os.environ["PYTHONWARNINGS"]
-        else:
-            os.environ["PYTHONWARNINGS"] = before
-
-
-@contextmanager
-def _deaf_to_ctrl_c() -> Iterator[None]:
-    """Start threads and processes that Ctrl-C does not reach: it is for this one, which ends them."""
-    if not hasattr(signal, "pthread_sigmask"):
-        yield
-        return
-    from multiprocessing import resource_tracker
-
-    resource_tracker.ensure_running()  # which, where it is started, lets Ctrl-C through again
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-def mend(client: Client) -> None:
-    """Have the workers of a cluster of ours that could not start again be made anew."""
-    cluster: Any = getattr(client, "cluster", None)
-    if hasattr(cluster, "worker_spec") and len(cluster.workers) < len(cluster.worker_spec):
-        cluster.scale(len(cluster.worker_spec))
-
-
 def quiet() -> None:
     """Let Dask print nothing: what matters is said in words of ours."""
     import distributed  # noqa: F401 - sets up its loggers when it is imported
@@ -191,13 +108,15 @@ def quiet() -> None:
             logging.getLogger(name).setLevel(logging.CRITICAL + 1)
 
 
-def threads_of(client: Client) -> int:
+def threads_of(client: Client | LocalWorkers) -> int:
     """Return how many threads work for a client now."""
+    if isinstance(client, LocalWorkers):
+        return client.count
     workers: dict[str, Any] = client.scheduler_info(n_workers=-1)["workers"]
     return sum(int(worker["nthreads"]) for worker in workers.values())
 
 
-def refuse_others(client: Client) -> None:
+def refuse_others(client: Client | LocalWorkers) -> None:
     """Refuse workers with another hersey, or none; wait a while for the first.
 
     Raises
@@ -205,6 +124,8 @@ def refuse_others(client: Client) -> None:
     ParameterError
         It names the worker and the way out.
     """
+    if isinstance(client, LocalWorkers):  # which are this hersey
+        return
     from distributed import TimeoutError as NoneCameError
 
     try:

@@ -1,4 +1,4 @@
-"""Tasks done in threads of this process or by the workers of Dask: results as they end."""
+"""Tasks done in threads, in processes of this machine or by the workers of Dask: results as they end."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from hersey import _core
 from hersey.errors import ParameterError, UnfinishedError
-from hersey.scale.cluster import connected, mend, refuse_others, threads_of, without_workers
+from hersey.scale.cluster import connected, refuse_others, threads_of, without_workers
+from hersey.scale.local import LocalWorkers
 
 if TYPE_CHECKING:
     from distributed import Client, Future
@@ -37,7 +38,7 @@ def done(
     task: Callable[[Item], R],
     items: Sequence[Item],
     *,
-    client: Client | str | None = None,
+    client: Client | LocalWorkers | str | None = None,
     threads: int = 1,
     progress: Callable[[int, int], object] | None = None,
     size: Callable[[Item], int] = one,
@@ -53,7 +54,8 @@ def done(
     task
         A function of a module, or a `functools.partial` of one, small: it travels with each item.
     client
-        A ``distributed.Client``, or the address of a scheduler: one item is one task. Without it ``threads``
+        Worker processes of this machine, a ``distributed.Client``, or the address of a scheduler: one item is
+        one task. Without it ``threads``
         of this process work; with one thread that is this one.
     progress
         Called with (done, all), counted by ``size``.
@@ -69,7 +71,9 @@ def done(
     if isinstance(threads, bool) or not isinstance(threads, int) or threads < 1:
         raise ParameterError(f"threads is {threads}: a whole number, at least 1, is needed")
     total, finished = sum(map(size, items)), 0
-    if client is not None:
+    if isinstance(client, LocalWorkers):
+        found = _by_threads(client.task(task), items, client.count)
+    elif client is not None:
         found = _by_workers(task, items, client)
     elif threads == 1:
         found = ((index, task(item)) for index, item in enumerate(items))
@@ -119,6 +123,7 @@ def _by_workers(
     task: Callable[[Item], R], items: Sequence[Item], client: Client | str
 ) -> Iterator[tuple[int, R]]:
     with connected(client) as (known, name):
+        assert not isinstance(known, LocalWorkers)
         refuse_others(known)
         yield from _Window(task, items, known, name).results()
 
@@ -156,7 +161,6 @@ class _Window:
             time.monotonic() - self.asked > _PATIENCE
         ):  # an answer takes as long as a task of some milliseconds
             self.threads, self.asked = threads_of(self.client), time.monotonic()
-            mend(self.client)
         most = max(_AHEAD * self.threads, 1)
         while self.next < len(self.items) and len(self.begun) < most:
             self._begin(self.next, 1)
@@ -182,8 +186,7 @@ class _Window:
             except queue.Empty:
                 if self.client.status != "running":
                     raise self._lost() from None
-                mend(self.client)
-                unseen = 0 if threads_of(self.client) else unseen + 1
+                    unseen = 0 if threads_of(self.client) else unseen + 1
                 if unseen * _PATIENCE > without_workers():
                     raise UnfinishedError(
                         f"no worker of {self.name} is left: start some, and give the same command again"
