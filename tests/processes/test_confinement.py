@@ -215,6 +215,37 @@ def log(tmp_path: Path) -> Path:
     return tmp_path / "run.npz"
 
 
+#: Runs a command where a container forbids Landlock and filters of its own.
+FORBIDDEN = """
+import ctypes, errno, os, platform, struct, sys
+prctl, refuse = {"x86_64": 157, "aarch64": 167}[platform.machine()], 0x00050000 | errno.EPERM
+steps = [(0x20, 0, 0, 0), (0x15, 0, 1, 444), (6, 0, 0, refuse), (0x15, 0, 3, prctl), (0x20, 0, 0, 16),
+         (0x15, 0, 1, 22), (6, 0, 0, refuse), (6, 0, 0, 0x7FFF0000)]
+words = ctypes.create_string_buffer(b"".join(struct.pack("=HBBI", *step) for step in steps))
+libc = ctypes.CDLL(None)
+assert libc.prctl(38, 1, 0, 0, 0) == 0
+assert libc.prctl(22, 2, struct.pack("@HP", len(steps), ctypes.addressof(words)), 0, 0) == 0
+from hersey.cli import main
+main()
+"""
+
+
+def test_a_container_that_forbids_the_sandbox_has_one_line_on_the_terminal(log: Path) -> None:
+    needs_whole_sandbox()
+    (log.parent / "other.npz").write_bytes(log.read_bytes())
+    done = subprocess.run(
+        [sys.executable, "-c", FORBIDDEN, "inspect", str(log), str(log.parent / "other.npz")],
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.stderr == (
+        "hersey: Untrusted files are not fully sandboxed: one could open other files (this system lacks "
+        "Landlock) and could start processes and change files (this system lacks seccomp). Open only files "
+        "that you trust.\n"
+    )
+    assert done.returncode == 0
+    assert "60" in done.stdout
+
+
 @pytest.mark.parametrize("missing", [("landlock",), ("seccomp",), ("landlock", "seccomp")])
 def test_what_the_kernel_lacks_is_said_once(
     missing: tuple[str, ...], log: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

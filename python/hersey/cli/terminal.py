@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any, TextIO
 
+from hersey.errors import SandboxWarning
 from hersey.spelling import printable
 
 #: What stands for a sign that a terminal lacks.
@@ -57,8 +58,10 @@ def warnings_said() -> Iterator[None]:
     """Let warnings come in the same way."""
     usual = warnings.formatwarning
 
-    def formatted(*about: Any, **more: Any) -> str:
-        return printable(usual(*about, **more), lines=True)
+    def formatted(message: Warning | str, *about: Any, **more: Any) -> str:
+        if isinstance(message, SandboxWarning):  # of the system, whatever line of the program finds it
+            return f"hersey: {printable(str(message))}\n"
+        return printable(usual(message, *about, **more), lines=True)
 
     warnings.formatwarning = formatted
     try:
