@@ -292,6 +292,7 @@ def test_only_what_is_installed_on_the_import_path_can_be_read(
 ) -> None:
     """A folder of scripts cannot, nor what stands beside packages that were installed there."""
     (tmp_path / "here" / "extra").mkdir(parents=True)
+    (tmp_path / "here" / "extra" / "__init__.py").touch()
     (tmp_path / "here" / "mine.py").touch()
     records = tmp_path / "here" / "extra-1.0.dist-info"
     records.mkdir()
