@@ -1,4 +1,4 @@
-"""Arrays as arguments: numbers or arrays, the axes that they span, calling the core over them, one thread."""
+"""Arrays: as arguments, the axes that they span, the core called over them, one thread, corners of a curve."""
 
 from __future__ import annotations
 
@@ -111,3 +111,21 @@ def pointwise(function: Callable[[Sequence[FloatArray]], R], *given: ArrayLike) 
         With the core's words, which name the quantity.
     """
     return function(np.broadcast_arrays(*(np.asarray(value, dtype=float) for value in given)))
+
+
+def corners(x: FloatArray, y: FloatArray, off: float, keep: tuple[int, ...] = ()) -> IntArray:
+    """Return the points that straight lines need to follow all of them within ``off`` of y.
+
+    D. H. Douglas and T. K. Peucker, Cartographica 10 (1973) 112. Both ends, and the points ``keep``, are
+    among them.
+    """
+    kept, spans = {0, x.size - 1, *keep}, [(0, x.size - 1)]
+    while spans:
+        first, last = spans.pop()
+        line = y[first] + (y[last] - y[first]) * (x[first:last] - x[first]) / (x[last] - x[first])
+        missed = np.abs(y[first:last] - line)
+        if missed.max() > off:
+            middle = first + int(np.argmax(missed))
+            kept.add(middle)
+            spans += [(first, middle), (middle, last)]
+    return np.array(sorted(kept), dtype=np.intp)

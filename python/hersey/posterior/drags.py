@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from hersey.arrays import FloatArray, IntArray
+from hersey.arrays import FloatArray, corners
 from hersey.errors import ParameterError
 from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import DragTable
@@ -92,22 +92,8 @@ def _needed(
     """Speeds and forces of a table that follows a curve whose least force must lie above the stick speed."""
     if speeds[np.argmin(force)] <= stick:  # drag that rises from the stick speed on is least right above it
         speeds, force = speeds[speeds > stick], force[speeds > stick]
-    kept = _corners(np.log(speeds), np.log(force))
+    kept = corners(np.log(speeds), np.log(force), _STRAIGHT, (int(np.argmin(force)),))
     return tuple(speeds[kept].tolist()), tuple(force[kept].tolist())
-
-
-def _corners(x: FloatArray, y: FloatArray) -> IntArray:
-    """Return the points that straight lines need to follow all of them (Ramer, Douglas and Peucker)."""
-    kept, spans = {0, x.size - 1, int(np.argmin(y))}, [(0, x.size - 1)]
-    while spans:
-        first, last = spans.pop()
-        line = y[first] + (y[last] - y[first]) * (x[first:last] - x[first]) / (x[last] - x[first])
-        off = np.abs(y[first:last] - line)
-        if off.max() > _STRAIGHT:
-            middle = first + int(np.argmax(off))
-            kept.add(middle)
-            spans += [(first, middle), (middle, last)]
-    return np.array(sorted(kept), dtype=np.intp)
 
 
 def _moved(model: DriveModel, draws: Drives, levels: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from hersey.arrays import FloatArray
+from hersey.arrays import corners
 from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import AnyDrag
 from hersey.motion.heat import HeatBalance
@@ -30,7 +30,7 @@ def course_of(
     moving = np.flatnonzero(np.abs(run.film_temperature - last) > ALIKE)
     count = int(moving[-1]) + 2 if moving.size else 1
     time, film = run.time[:count], np.append(run.film_temperature[: count - 1], last)
-    kept = _corners(time, film)
+    kept = corners(time, film, _OFF)
     return Schedule(time[kept], film[kept])
 
 
@@ -38,17 +38,3 @@ def apart(one: Schedule, other: Schedule) -> float:
     """Return how far two courses are apart at the most, K."""
     times = np.union1d(np.asarray(one.times), np.asarray(other.times))
     return float(np.max(np.abs([one.at(t) - other.at(t) for t in times.tolist()])))
-
-
-def _corners(time: FloatArray, value: FloatArray) -> list[int]:
-    """Points that straight lines join to within what a course may be off (Douglas and Peucker)."""
-    kept, spans = {0, time.size - 1}, [(0, time.size - 1)]
-    while spans:
-        low, high = spans.pop()
-        inside = slice(low, high + 1)
-        off = np.abs(value[inside] - np.interp(time[inside], time[[low, high]], value[[low, high]]))
-        worst = low + int(np.argmax(off))
-        if off[worst - low] > _OFF:
-            kept.add(worst)
-            spans += [(low, worst), (worst, high)]
-    return sorted(kept)
