@@ -1,4 +1,4 @@
-"""Arrays: as arguments, the axes that they span, the core called over them, one thread, corners of a curve."""
+"""Arrays: as arguments, the axes they span, the core called over them, one thread, corners of a curve."""
 
 from __future__ import annotations
 
