@@ -6,6 +6,7 @@ distributions  Student's t and the like, from scipy.special
 estimate       a number with its uncertainty
 distributions  quantiles and tails of normal, t, F and chi-square laws
 rest           the rest of the drive: what it takes besides the film
+soundness      whether numbers read from a file can be what they are called
 smoothing      a smooth curve through dwells, and where it is least
 scaled         dwells of all temperatures on one curve
 gradual        a gradual bend: its minimum, and what motion is given of it

@@ -2,7 +2,10 @@
 
 =======  ==========================================================================
 entry    a run as it is kept: its dwells, and all else as text
+records  its records as JSON, and back
 kept     what is kept of a run, from its steady points and back
+guarded  a connection to a file from anywhere: limits of length and work
+content  whether a file holds what this package writes
 store    the file: its schema and version, opening, transactions, what can go wrong
 adding   which runs are new, there already, changed or under another unit
 table    a table of runs: log, unit and age in each row

@@ -69,7 +69,7 @@ def check(
     """
     found = [
         Finding("damaged", f"the file is damaged: {row[0]}: take it from a backup")
-        for row in database.execute("PRAGMA integrity_check")
+        for row in database.execute("PRAGMA integrity_check(100)")
         if row[0] != "ok"
     ]
     unit_of_age = age_unit(database)

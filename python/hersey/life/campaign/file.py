@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import json
 import sqlite3
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
@@ -13,6 +13,7 @@ from hersey.errors import OutputError, ParameterError
 from hersey.life.age import Age
 from hersey.life.campaign.adding import Added, add_entry, age_unit, is_there, lies_at
 from hersey.life.campaign.checks import Findings, check
+from hersey.life.campaign.content import damaged, refuse_unsound_dwells, refuse_unsound_runs
 from hersey.life.campaign.entry import COLUMNS, Entry
 from hersey.life.campaign.store import PATIENCE, open_store, refuse_no_place, told, transaction
 from hersey.spelling import meant
@@ -155,7 +156,11 @@ class Campaign:
     def add_entries(self, entries: Iterable[tuple[Entry, str, Age]], *, force: bool = False) -> list[Added]:
         """Add several runs, each with its unit and age, in one transaction: all or none; errors as `add`."""
         with transaction(self._database, self.path):
-            return [add_entry(self._database, self._home, *each, force=force) for each in entries]
+            added = [add_entry(self._database, self._home, *each, force=force) for each in entries]
+            refuse_unsound_runs(self._database, self.path)  # what is added can be read again
+            for each in added:
+                refuse_unsound_dwells(self._database, self.path, each.run)
+            return added
 
     def there(self, sha256: str, unit: str, age: Age, settings: str) -> Added | None:
         """Return the run of a log with this hash if adding it so would change nothing, or None."""
@@ -206,9 +211,11 @@ class Campaign:
         columns = ", ".join(f'"{name}"' for name in COLUMNS)
         reduction = self._of_run("reduction", run)
         with told(self.path):
+            refuse_unsound_dwells(self._database, self.path, run)
             dwells = self._database.execute(
                 f"SELECT {columns} FROM dwells WHERE run_id = ? ORDER BY number", (run,)
-            )
+            ).fetchall()
+        with self._naming(run, "reduction"):
             return points_of(reduction, dwells)
 
     def drives(self) -> dict[int, tuple[RestOfDrive | None, Sensors]]:
@@ -221,7 +228,19 @@ class Campaign:
         with told(self.path):
             rows = self._database.execute("SELECT id, reduction FROM runs")
             same: dict[str, tuple[RestOfDrive | None, Sensors]] = {}
-            return {number: drive_of(reduction, same) for number, reduction in rows}
+            found = {}
+            for number, reduction in rows:
+                with self._naming(number, "reduction"):
+                    found[number] = drive_of(reduction, same)
+            return found
+
+    @contextmanager
+    def _naming(self, run: int, column: str) -> Iterator[None]:
+        """Name file, run and column in what is wrong with the JSON that is kept of a run."""
+        try:
+            yield
+        except ParameterError as error:
+            raise damaged(self.path, f"'{column}' of run {run}: {error}") from None
 
     def fit(self, run: int) -> dict[str, Any] | None:
         """Return the fit of a run, as `DampingSurface.to_dict` gave it when it was added; None if none fits.
@@ -231,8 +250,11 @@ class Campaign:
         ParameterError
             If there is no such run.
         """
+        from hersey.life.campaign.records import read_json
+
         kept = self._of_run("fit", run)
-        return None if kept is None else json.loads(kept)
+        with self._naming(run, "fit"):
+            return None if kept is None else read_json(kept)
 
     def settings(self, run: int) -> dict[str, Any]:
         """Return how the log of a run was read.
@@ -242,8 +264,11 @@ class Campaign:
         ParameterError
             If there is no such run.
         """
-        kept: dict[str, Any] = json.loads(self._of_run("settings", run))
-        return kept
+        from hersey.life.campaign.records import read_json
+
+        kept = self._of_run("settings", run)
+        with self._naming(run, "settings"):
+            return read_json(kept)
 
     def _of_run(self, column: str, run: int) -> Any:
         with told(self.path):
@@ -265,14 +290,18 @@ class Campaign:
         kinds = {"INTEGER": pl.Int64, "REAL": pl.Float64, "TEXT": pl.String}
         columns = ", ".join(f'd."{name}"' for name in COLUMNS)
         with told(self.path):
+            refuse_unsound_dwells(self._database, self.path)
             rows = self._database.execute(
                 f"SELECT r.id, {columns} FROM runs r JOIN dwells d ON d.run_id = r.id "
                 "ORDER BY r.unit, r.age, r.id, d.number"
-            ).fetchall()
-            reductions = self._database.execute("SELECT id, reduction FROM runs").fetchall()
-        schema = {"run_id": pl.Int64()} | {name: kinds[kind]() for name, kind in COLUMNS.items()}
-        dwells = pl.DataFrame(rows, schema=schema, orient="row")
-        dwells = dwells.with_columns(pl.Series("rest", rests_of(dwells, reductions)))
+            )
+            schema = {"run_id": pl.Int64()} | {name: kinds[kind]() for name, kind in COLUMNS.items()}
+            parts = [pl.DataFrame(schema=schema)]
+            while some := rows.fetchmany(_AT_ONCE):
+                parts.append(pl.DataFrame(some, schema=schema, orient="row"))
+        dwells = pl.concat(parts)
+        rests = {run: rest for run, (rest, _) in self.drives().items()}
+        dwells = dwells.with_columns(pl.Series("rest", rests_of(dwells, rests)))
         of = self.runs().select(pl.col("run").alias("run_id"), "unit", "age", "log")
         joined = of.join(dwells, on="run_id", how="inner", maintain_order="left_right")
         units = {"start": "s", "end": "s", "load": "N", "tare": "N m", "rest": "N m"}
@@ -290,6 +319,7 @@ class Campaign:
         import numpy as np
 
         with told(self.path):
+            refuse_unsound_dwells(self._database, self.path)
             rows = self._database.execute(
                 "SELECT run_id, speed, temperature, torque, torque_error FROM dwells ORDER BY run_id, number"
             )
@@ -321,6 +351,7 @@ class Campaign:
     def check(self, progress: Callable[[int, int], None] | None = None) -> Findings:
         """Check the file, that each log is there and unchanged, the order of the ages, and the fits."""
         with told(self.path):
+            refuse_unsound_dwells(self._database, self.path)
             return check(self._database, self._home, progress)
 
     def summary(self) -> str:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
-from dataclasses import dataclass, fields, is_dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,23 +12,40 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.damping.dwells import Rejection, SteadyPoints
-from hersey.damping.estimate import Estimate
 from hersey.damping.rest import RestOfDrive
+from hersey.damping.soundness import LARGEST, faults_of_rest
 from hersey.errors import HerseyError, ParameterError
 from hersey.life.campaign.entry import COLUMNS, Entry
+from hersey.life.campaign.records import plain, read_json, refuse_others, restored
 from hersey.log.means import MeansTable
-from hersey.log.sensors import Sensors
-from hersey.log.torque_log import Channel, Correction, Effect, LogFile, TorqueLog
+from hersey.log.sensors import OF_ROLE, Sensors
+from hersey.log.torque_log import Correction, LogFile, TorqueLog
 
 if TYPE_CHECKING:
     import polars as pl
 
     from hersey.damping.surface import DampingSurface
 
-#: Records that are written and read back, by name.
-_RECORDS = {
-    kind.__name__: kind
-    for kind in (Channel, Correction, Effect, Estimate, LogFile, Rejection, RestOfDrive, Sensors)
+#: What is kept of a log, of a table of means besides, and of the reduction.
+_LOG = {
+    "runs": tuple[()],
+    "files": tuple[LogFile, ...],
+    "corrections": tuple[Correction, ...],
+    "sensors": Sensors,
+    "kept_rows": int,
+    "thermal": bool,
+}
+_MEANS = {"means": tuple[()], "stated_errors": bool}
+_REDUCTION = {
+    "means": bool,
+    "log": dict,
+    "rejected": tuple[Rejection, ...],
+    "tare": float,
+    "standing_torque": float | None,
+    "tare_errors": FloatArray,
+    "notes": tuple[str, ...],
+    "rest": RestOfDrive | None,
+    "rest_errors": FloatArray,
 }
 
 
@@ -83,7 +100,7 @@ def entry_of(
         written=written,
         version=_core.VERSION,
         settings=json.dumps(settings or {}, sort_keys=True),
-        reduction=json.dumps(_plain(_reduction(points))),
+        reduction=json.dumps(plain(_reduction(points))),
         fit=None if fit is None else json.dumps(fit.to_dict()),
         no_fit=no_fit,
         dwells=[list(row) for row in points.table.select(list(COLUMNS)).rows()],
@@ -96,41 +113,67 @@ def points_of(reduction: str, dwells: Iterable[tuple[Any, ...]]) -> SteadyPoints
 
     kinds = {"INTEGER": pl.Int64, "REAL": pl.Float64, "TEXT": pl.String}
     schema = {name: kinds[kind]() for name, kind in COLUMNS.items()}
-    held = _restored(json.loads(reduction))
-    log = (_KeptMeans if held.pop("means") else _KeptLog)(**held.pop("log"))
-    return SteadyPoints(pl.DataFrame(list(dwells), schema=schema, orient="row"), log=log, **held)
+    held = restored(read_json(reduction), _REDUCTION)
+    means, about, table = held.pop("means"), held.pop("log"), list(dwells)
+    refuse_others(about, _LOG | _MEANS if means else _LOG, "log.")
+    for name in ("tare_errors", "rest_errors"):
+        if held[name].ndim != 2 or len(held[name]) not in (0, len(table)):
+            raise ParameterError(f"'{name}' does not have a row for each dwell")
+    _refuse_unsound(held["rest"], about["sensors"])
+    log = (_KeptMeans if means else _KeptLog)(**about)
+    return SteadyPoints(pl.DataFrame(table, schema=schema, orient="row"), log=log, **held)
 
 
-def rests_of(dwells: pl.DataFrame, reductions: Iterable[tuple[int, str]]) -> FloatArray:
+def rests_of(dwells: pl.DataFrame, rests: Mapping[int, RestOfDrive | None]) -> FloatArray:
     """Return what was taken off as the rest of the drive of each dwell, N m with its sign; shape (dwells,).
 
-    ``dwells`` holds ``run_id``, ``speed`` and ``temperature`` in SI; ``reductions`` go with the runs.
+    ``dwells`` holds ``run_id``, ``speed`` and ``temperature`` in SI; ``rests`` go with the runs, and
+    equal ones are one object.
     """
     import polars as pl
 
-    runs_with: dict[str, list[int]] = {}
-    for run, reduction in reductions:
-        if (rest := json.loads(reduction)["rest"]) is not None:
-            runs_with.setdefault(json.dumps(rest), []).append(run)
+    runs_with: dict[int, list[int]] = {}
+    for run, rest in rests.items():
+        runs_with.setdefault(id(rest), []).append(run)
     taken = np.zeros(dwells.height)
     speed, kelvin = (dwells[name].cast(pl.Float64).to_numpy() for name in ("speed", "temperature"))
-    for text, runs in runs_with.items():
-        rest, of = _restored(json.loads(text)), np.isin(dwells["run_id"].to_numpy(), runs)
-        thermal = bool(np.isfinite(kelvin[of]).all())
-        taken[of] = rest.torque(speed[of], kelvin[of] if thermal else None)
+    for runs in runs_with.values():
+        if (rest := rests[runs[0]]) is not None:
+            of = np.isin(dwells["run_id"].to_numpy(), runs)
+            thermal = bool(np.isfinite(kelvin[of]).all())
+            taken[of] = rest.torque(speed[of], kelvin[of] if thermal else None)
     return taken
 
 
 def drive_of(
     reduction: str, same: dict[str, tuple[RestOfDrive | None, Sensors]]
 ) -> tuple[RestOfDrive | None, Sensors]:
-    """Return the rest of the drive that was taken off a run, and its sensors; ``same``: those met before."""
-    held = json.loads(reduction)
-    both = [held["rest"], held["log"]["sensors"]]
+    """Return the rest of the drive that was taken off a run, and its sensors; ``same``: those met before.
+
+    Raises
+    ------
+    ParameterError
+        If they are not as they are written, naming the key.
+    """
+    held = read_json(reduction)
+    log = held.get("log")
+    both = {"rest": held.get("rest"), "sensors": log.get("sensors") if isinstance(log, dict) else None}
     key = json.dumps(both)
     if key not in same:
-        same[key] = _restored(both)
+        found = restored(both, {"rest": RestOfDrive | None, "sensors": Sensors})
+        _refuse_unsound(**found)
+        same[key] = found["rest"], found["sensors"]
     return same[key]
+
+
+def _refuse_unsound(rest: RestOfDrive | None, sensors: Sensors) -> None:
+    """Refuse numbers that no rest of a drive and no sensor has."""
+    for field, asked in () if rest is None else faults_of_rest(rest):
+        raise ParameterError(f"'rest.{field}' must be {asked}")
+    for name in (name for names in OF_ROLE.values() for name in names):
+        value = getattr(sensors, name)
+        if value is not None and not 0.0 <= value <= LARGEST:
+            raise ParameterError(f"'log.sensors.{name}' must be from 0 to {LARGEST:g}")
 
 
 @dataclass(frozen=True, repr=False)
@@ -173,29 +216,3 @@ def _reduction(points: SteadyPoints) -> dict[str, Any]:
         about |= {"means": (), "stated_errors": log.stated_errors}
     names = ("rejected", "tare", "standing_torque", "tare_errors", "notes", "rest", "rest_errors")
     return {"means": means, "log": about} | {name: getattr(points, name) for name in names}
-
-
-def _plain(value: Any) -> Any:
-    """A value as JSON, records by their names, so that `_restored` gives it back with every digit."""
-    if is_dataclass(value) and not isinstance(value, type):
-        return {"kind": type(value).__name__} | {
-            f.name: _plain(getattr(value, f.name)) for f in fields(value)
-        }
-    if isinstance(value, dict):
-        return {name: _plain(item) for name, item in value.items()}
-    if isinstance(value, np.ndarray):
-        return {"array": value.tolist(), "shape": list(value.shape)}
-    if isinstance(value, tuple | list):
-        return [_plain(item) for item in value]
-    return value.item() if isinstance(value, np.generic) else value
-
-
-def _restored(value: Any) -> Any:
-    if isinstance(value, list):
-        return tuple(_restored(item) for item in value)
-    if not isinstance(value, dict):
-        return value
-    if "shape" in value:
-        return np.array(value["array"], dtype=float).reshape(value["shape"])
-    inside = {name: _restored(item) for name, item in value.items()}
-    return _RECORDS[inside.pop("kind")](**inside) if "kind" in inside else inside

@@ -14,7 +14,9 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from hersey.errors import HerseyError, MissingFileError, OutputError, ParameterError
+from hersey.life.campaign.content import damaged, refuse_damage, refuse_other_tables
 from hersey.life.campaign.entry import COLUMNS
+from hersey.life.campaign.guarded import LONGEST, GuardedConnection, connect
 
 #: End of the name of a campaign.
 SUFFIX = ".hersey"
@@ -52,6 +54,8 @@ CREATE TABLE dwells (
     PRIMARY KEY (run_id, number)
 ) WITHOUT ROWID;
 """
+#: The schema of each version that may be read or brought up to date.
+SCHEMAS = {1: _SCHEMA}
 #: What brings a file of each older version to the next, inside one transaction.
 MIGRATIONS: dict[int, Callable[[sqlite3.Connection], None]] = {}
 
@@ -77,6 +81,7 @@ def open_store(
             if create:
                 _made(database, path, wait)
             _brought_up_to_date(database, path, write)
+            refuse_damage(database, path)
         except BaseException:
             database.close()
             raise
@@ -107,10 +112,8 @@ def refuse_no_place(path: Path, create: bool) -> None:
         raise OutputError(f"{path}: there is no directory {path.parent}")
 
 
-def _connected(path: Path, *, create: bool, write: bool, wait: float) -> sqlite3.Connection:
-    mode = "rwc" if create else "rw" if write else "ro"
-    place = path.absolute().as_uri()
-    database = sqlite3.connect(f"{place}?mode={mode}", uri=True, timeout=wait, isolation_level=None)
+def _connected(path: Path, *, create: bool, write: bool, wait: float) -> GuardedConnection:
+    database = connect(path, mode=f"mode={'rwc' if create else 'rw' if write else 'ro'}", wait=wait)
     try:
         database.execute("SELECT count(*) FROM sqlite_master").fetchone()
     except sqlite3.OperationalError:
@@ -118,9 +121,8 @@ def _connected(path: Path, *, create: bool, write: bool, wait: float) -> sqlite3
         database.close()
         if write or os.access(path.parent, os.W_OK) or path.with_name(f"{path.name}-wal").exists():
             raise
-        database = sqlite3.connect(f"{place}?immutable=1", uri=True, isolation_level=None)
+        database = connect(path, mode="immutable=1")
     database.execute("PRAGMA synchronous = FULL")
-    database.execute("PRAGMA foreign_keys = ON")
     return database
 
 
@@ -155,7 +157,7 @@ def _header(database: sqlite3.Connection, name: str) -> int:
     return int(database.execute(f"PRAGMA {name}").fetchone()[0])
 
 
-def _brought_up_to_date(database: sqlite3.Connection, path: Path, write: bool) -> None:
+def _brought_up_to_date(database: GuardedConnection, path: Path, write: bool) -> None:
     if _header(database, "application_id") != APPLICATION:
         raise _no_campaign(path)
     version = _header(database, "user_version")
@@ -164,6 +166,9 @@ def _brought_up_to_date(database: sqlite3.Connection, path: Path, write: bool) -
             f"{path.name} is a campaign of a newer hersey (version {version} of the file, this one knows "
             f"{VERSION}): use that hersey, or update this one"
         )
+    if version in SCHEMAS:
+        refuse_other_tables(database, path, SCHEMAS[version])
+        database.allow_what_the_size_needs()
     if version == VERSION:
         return
     if not write:
@@ -173,7 +178,7 @@ def _brought_up_to_date(database: sqlite3.Connection, path: Path, write: bool) -
         )
     with transaction(database, path):
         for old in range(_header(database, "user_version"), VERSION):
-            if old not in MIGRATIONS:
+            if old not in MIGRATIONS or old not in SCHEMAS:
                 raise ParameterError(
                     f"{path.name} is a campaign of version {old}, which this hersey cannot bring up to "
                     "date: add the logs to a new one"
@@ -231,6 +236,8 @@ def _said(path: Path, error: sqlite3.Error) -> HerseyError:
             f"{path.name} cannot be opened for this ({error}): see who may write it and its "
             "folder, or copy it"
         )
-    return ParameterError(
-        f"{path.name} is damaged ({error}): take it from a backup, or add the logs to a new one"
-    )
+    if code == sqlite3.SQLITE_TOOBIG:
+        return damaged(path, f"a run in it is longer than {LONGEST} bytes")
+    if code == sqlite3.SQLITE_INTERRUPT:
+        return damaged(path, "reading it takes more work than a file of its size needs")
+    return damaged(path, str(error)[:200])
