@@ -235,7 +235,8 @@ def shared(tmp_path_factory: pytest.TempPathFactory) -> Path:
         {"chunk": [1, 7]},
         {"chunk": "../.."},
         {"shape": [-1, 2, 7]},
-        {"format": 2},
+        {"format": 3},
+        {"format": "1"},
         {"scenario": None},
         {"scenario": []},
         {"scenario": {"parameters": 3}},
@@ -254,10 +255,12 @@ def test_a_damaged_manifest_is_not_believed(change: dict[str, Any], shared: Path
     assert "\n" not in str(caught.value)
 
 
-def test_a_damaged_note_is_told(shared: Path, tmp_path: Path) -> None:
-    out = tmp_path / "a.zarr"
-    shutil.copytree(shared, out)
-    (out / "status" / "notes" / "4.json").write_text('{"kinds": 3}')
+def test_a_damaged_note_is_told(tmp_path: Path) -> None:
+    """One that is whole and says something else than a note does."""
+    out = tmp_path / "a.parquet"
+    hersey.sweep(TRAIN, DRAG, **GRID, out=out, chunk=7)
+    chunk = out / "0000004.parquet"
+    pl.read_parquet(chunk).write_parquet(chunk, metadata={"hersey": '{"kinds": 3}'})
     with pytest.raises(OutputError, match="what is told of chunk 4 is damaged"):
         hersey.sweep(TRAIN, DRAG, **GRID, out=out)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
@@ -158,8 +157,11 @@ def _followed(
     """Do what is not done."""
     tally, count = Tally(), folder.cut.count
     lacking = np.ones(count, dtype=bool)
+    damaged = []
     for number in folder.finished():
-        if (note := folder.note(number)) is not None:
+        if (note := folder.note(number)) is None:
+            damaged.append(number)
+        else:
             try:
                 tally.add(note)
             except (AttributeError, KeyError, TypeError, ValueError):
@@ -168,6 +170,7 @@ def _followed(
                     f"files, and it is done anew"
                 ) from None
             lacking[number] = False
+    notes = [*notes, *folder.mended, *_done_again(folder.path, damaged)]
     before = count - int(lacking.sum())
     ended, there = before, tally.sets
     numbers = np.flatnonzero(lacking).tolist()
@@ -194,6 +197,15 @@ def _followed(
         interrupt.add_note(_left(ended, count))
         raise
     return Kept(folder.path, tally, count, before, tuple(notes))
+
+
+def _done_again(path: Path, damaged: list[int]) -> list[str]:
+    """What is told of chunks that were finished and are no longer whole."""
+    if not damaged:
+        return []
+    named = ", ".join(str(number) for number in damaged[:10]) + (", ..." if len(damaged) > 10 else "")
+    many = "chunks were" if len(damaged) > 1 else "chunk was"
+    return [f"{path.name}: {len(damaged)} {many} damaged and computed again: {named}"]
 
 
 def _left(ended: int, count: int) -> str:
@@ -308,5 +320,7 @@ def opened_dataset(path: Path) -> xr.Dataset:
     """Return a kept sweep as xarray opens it: numbers are read when they are asked for."""
     import xarray as xr
 
-    found: xr.Dataset = xr.open_zarr(os.fspath(path), chunks=None, decode_times=False)
+    from hersey.scale.zarr_reading import checked
+
+    found: xr.Dataset = xr.open_zarr(checked(path), chunks=None, decode_times=False)
     return found

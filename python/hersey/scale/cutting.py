@@ -77,6 +77,13 @@ class Cut:
             place.append(index)
         return tuple(reversed(place))
 
+    def number(self, place: tuple[int, ...]) -> int:
+        """Return the number of the chunk that lies at a place, one index per axis."""
+        number = 0
+        for index, length in zip(place, self.grid, strict=True):
+            number = number * length + index
+        return number
+
     def slices(self, number: int) -> tuple[slice, ...]:
         """Return what a chunk takes of each axis."""
         bounds = zip(self.place(number), self.chunk, self.shape, strict=True)

@@ -27,6 +27,7 @@ class ParquetKind:
 
     manifest = "manifest.parquet"
     lock = ".lock"
+    format = 1
 
     def create(self, path: Path, layout: Layout, manifest: Scenario) -> None:
         """Make an empty folder."""
@@ -59,6 +60,10 @@ class ParquetKind:
         """Return a folder that is there."""
         return ParquetFolder(path, cut, tuple((each.name, tuple(each.words)) for each in variables))
 
+    def mend(self, path: Path, layout: Layout, manifest: Scenario) -> tuple[str, ...]:  # noqa: ARG002 - of `Kind`
+        """Return nothing: beside the chunks there is the manifest alone."""
+        return ()
+
 
 @dataclass(frozen=True)
 class ParquetFolder:
@@ -67,6 +72,7 @@ class ParquetFolder:
     path: Path
     cut: Cut
     columns: tuple[tuple[str, tuple[str, ...]], ...]
+    mended: tuple[str, ...] = ()
 
     def note(self, number: int) -> Note | None:
         """Return the note of a chunk that is finished."""

@@ -13,7 +13,7 @@ import secrets
 import shutil
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import prod
 from pathlib import Path
 from typing import Any, BinaryIO, Protocol
@@ -77,11 +77,15 @@ class Folder(Protocol):
     def cut(self) -> Cut:
         """How its grid is cut."""
 
+    @property
+    def mended(self) -> tuple[str, ...]:
+        """What was damaged beside the chunks and has been written again, a sentence each."""
+
     def note(self, number: int) -> Note | None:
-        """Return the note of a chunk that is finished; None of any other."""
+        """Return the note of a chunk that is finished and whole; None of any other."""
 
     def finished(self) -> list[int]:
-        """Return the numbers of the chunks that are finished, ascending."""
+        """Return the numbers of the chunks that are marked as finished, whole or not, ascending."""
 
     def write(self, number: int, values: Columns, beside: Columns, note: Note) -> None:
         """Keep a chunk: values over it, flat; ``beside`` is what formats without axes need of the axes."""
@@ -93,6 +97,8 @@ class Kind(Protocol):
     #: File of the folder that holds the manifest, and the one that is locked.
     manifest: str
     lock: str
+    #: Number of the format, which stands in the manifest.
+    format: int
 
     def create(self, path: Path, layout: Layout, manifest: Scenario) -> None:
         """Make an empty folder at a path where there is none."""
@@ -102,6 +108,9 @@ class Kind(Protocol):
 
     def open(self, path: Path, cut: Cut, variables: tuple[Variable, ...]) -> Folder:
         """Return a folder that is there."""
+
+    def mend(self, path: Path, layout: Layout, manifest: Scenario) -> tuple[str, ...]:
+        """Write again what is damaged beside the chunks and the manifest; return a sentence for each."""
 
 
 def sha256_of(scenario: Scenario) -> str:
@@ -139,11 +148,12 @@ def opened(
         with _taken(kind, path, scenario, resume=resume, overwrite=overwrite) as begun:
             if begun is None:
                 new = layout(planned())
-                _create(kind, path, new, _manifest(scenario, new))
+                _create(kind, path, new, _manifest(kind, scenario, new))
                 cut = new.cut
             else:
+                _refuse_older(path, kind, begun)
                 cut = _cut_of(path, begun, shape)
-                if _manifest(scenario, layout(cut)) != {**begun, "about": None}:
+                if _manifest(kind, scenario, layout(cut)) != {**begun, "about": None}:
                     raise _damaged(path)
             with _locked(path / kind.lock, path):
                 if asked is not None and asked != cut:
@@ -151,17 +161,30 @@ def opened(
                         f"{path} is cut into chunks of {prod(cut.chunk)} sets, and {prod(asked.chunk)} are "
                         f"asked for: leave the chunk out to go on, or start anew with --no-resume --force"
                     )
-                yield kind.open(path, cut, layout(cut).variables)
+                mended: tuple[str, ...] = ()
+                if begun is not None:
+                    mended = kind.mend(path, layout(cut), _manifest(kind, scenario, layout(cut)))
+                yield replace(kind.open(path, cut, layout(cut).variables), mended=mended)  # type: ignore[type-var]
     except OSError as error:
         if isinstance(error, OutputError):
             raise
         raise OutputError(f"{path} cannot be written: {error.strerror or error}") from None
 
 
-def _manifest(scenario: Scenario, layout: Layout) -> Scenario:
+def _refuse_older(path: Path, kind: Kind, manifest: Scenario) -> None:
+    """Refuse to go on with chunks that cannot be checked."""
+    found = manifest.get("format")
+    if type(found) is int and 0 < found < kind.format:
+        raise OutputError(
+            f"{path} was begun by an older hersey, without checksums that tell damaged chunks: xarray still "
+            f"reads it, but it cannot go on: name another folder, or start anew with --no-resume --force"
+        )
+
+
+def _manifest(kind: Kind, scenario: Scenario, layout: Layout) -> Scenario:
     """What stands in a folder of ours; ``about`` is for readers, and free."""
     return {
-        "format": 1,
+        "format": kind.format,
         "scenario": scenario,
         "scenario_sha256": sha256_of(scenario),
         "shape": list(layout.cut.shape),

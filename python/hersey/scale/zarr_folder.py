@@ -1,9 +1,12 @@
 """A Zarr store (v3), one array per quantity, one file per chunk of each.
 
 The library makes the store and reads it. A chunk of an array is a file that a task writes by itself, as the
-specification has it (C order, little end first, then Blosc): by way of the library it takes ten times as
-long. ``status`` has one element per chunk, 1 where it is finished: of a chunk that holds nothing but the fill
-value one could not tell whether it was ever written.
+specification has it (C order, little end first, Blosc, then the CRC-32C of it all): by way of the library it
+takes ten times as long. ``status`` has one element per chunk, 1 where it is finished: of a chunk that holds
+nothing but the fill value one could not tell whether it was ever written.
+
+The note of a chunk holds the checksum of its file in each array, and one of its own. A chunk is finished only
+if all its files are those: none damaged, cut off, deleted or put in the place of another.
 """
 
 from __future__ import annotations
@@ -13,6 +16,7 @@ import os
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any, Literal
 
 import numpy as np
@@ -33,6 +37,8 @@ class ZarrKind:
 
     manifest = "zarr.json"
     lock = "status/.lock"
+    #: 1 had no checksums.
+    format = 2
 
     def __init__(self) -> None:
         """Refuse where the library is not installed."""
@@ -48,7 +54,7 @@ class ZarrKind:
         import warnings
 
         import zarr
-        from zarr.codecs import BloscCodec
+        from zarr.codecs import BloscCodec, Crc32cCodec, ZstdCodec
 
         named = " ".join(name for name, each in layout.coordinates.items() if each.axes != (name,))
         about = {**layout.attributes, "hersey": manifest, "coordinates": named}
@@ -59,6 +65,7 @@ class ZarrKind:
                 shape=each.values.shape,
                 dtype=each.values.dtype,
                 dimension_names=each.axes,
+                compressors=(ZstdCodec(), Crc32cCodec()),
                 attributes=dict(each.attributes),
             )
             array[...] = each.values
@@ -73,7 +80,7 @@ class ZarrKind:
                 dtype=variable.dtype,
                 dimension_names=layout.axes,
                 fill_value=variable.fill,
-                compressors=codec,
+                compressors=(codec, Crc32cCodec()),
                 attributes=dict(variable.attributes),
             )
         group.create_array(
@@ -106,6 +113,23 @@ class ZarrKind:
         """Return a store that is there."""
         return ZarrFolder(path, cut, tuple((each.name, each.dtype, each.fill) for each in variables))
 
+    def mend(self, path: Path, layout: Layout, manifest: Scenario) -> tuple[str, ...]:
+        """Write again each file of metadata and coordinates that is not as it would be made."""
+        mended = []
+        with TemporaryDirectory() as folder:
+            made = Path(folder) / "made.zarr"
+            self.create(made, layout, manifest)
+            for file in sorted(each for each in made.rglob("*") if each.is_file()):
+                name, content = file.relative_to(made), file.read_bytes()
+                try:
+                    same = (path / name).read_bytes() == content
+                except OSError:
+                    same = False
+                if not same:
+                    write_file(path / name, content)
+                    mended.append(f"{path.name}: {name} was damaged or missing, and is written again")
+        return tuple(mended)
+
 
 @dataclass(frozen=True)
 class ZarrFolder:
@@ -114,15 +138,50 @@ class ZarrFolder:
     path: Path
     cut: Cut
     arrays: tuple[tuple[str, str, float], ...]
+    mended: tuple[str, ...] = ()
 
     def note(self, number: int) -> Note | None:
-        """Return the note of a chunk that is finished."""
+        """Return the note of a chunk that is finished and whole."""
         try:
             if self._status(number).read_bytes() != b"\x01":
                 return None
-            return dict(json.loads(self._note(number).read_bytes()))
-        except (OSError, ValueError, TypeError, RecursionError):
+            told = self._told(number)
+            if any(
+                _checksum_of_chunk(self._file(name, number).read_bytes()) != told["files"][name]
+                for name, _, _ in self.arrays
+            ):
+                return None
+            return dict(told["note"])
+        except (OSError, ValueError, TypeError, KeyError, RecursionError):
             return None
+
+    def refuse_damage(self, name: str, number: int, content: bytes | None) -> None:
+        """Refuse what was read as the chunk of an array unless it is what was written; None if there is none.
+
+        Raises
+        ------
+        OutputError
+            Naming store, chunk and array.
+        """
+        try:
+            if content is not None and _checksum_of_chunk(content) == self._told(number)["files"][name]:
+                return
+            if content is None and not self._status(number).exists():  # not finished: the fill value is right
+                return
+        except (OSError, ValueError, TypeError, KeyError, RecursionError):
+            pass
+        raise OutputError(
+            f"{self.path}: chunk {number} of '{name}' is damaged or missing: repeat the sweep with the same "
+            f"--out, which does damaged chunks again"
+        )
+
+    def _told(self, number: int) -> dict[str, Any]:
+        """What the note's file holds: the note and checksums of all files of the chunk."""
+        whole = json.loads(self._note(number).read_bytes())
+        told: dict[str, Any] = json.loads(whole["told"])
+        if checksum(whole["told"].encode()) != whole["crc32c"]:
+            raise ValueError
+        return told
 
     def finished(self) -> list[int]:
         """Return the numbers of the chunks that are finished."""
@@ -136,13 +195,17 @@ class ZarrFolder:
         """Keep a chunk."""
         if not (self.path / ZarrKind.manifest).exists():
             raise OutputError(f"{self.path} is not seen here, or is gone")
-        place = "/".join(str(index) for index in self.cut.place(number))
-        shape = self.cut.shape_of(number)
+        shape, files = self.cut.shape_of(number), {}
         for name, dtype, fill in self.arrays:
             content = _encoded(np.asarray(values[name]).reshape(shape), self.cut.chunk, dtype, fill)
-            write_file(self.path / name / "c" / place if place else self.path / name / "c", content)
-        write_file(self._note(number), json.dumps(note).encode())
+            write_file(self._file(name, number), content)
+            files[name] = _checksum_of_chunk(content)
+        told = json.dumps({"note": note, "files": files})
+        write_file(self._note(number), json.dumps({"told": told, "crc32c": checksum(told.encode())}).encode())
         write_file(self._status(number), b"\x01")
+
+    def _file(self, name: str, number: int) -> Path:
+        return self.path.joinpath(name, "c", *map(str, self.cut.place(number)))
 
     def _status(self, number: int) -> Path:
         return self.path / "status" / "c" / str(number)
@@ -160,6 +223,28 @@ def _encoded(values: Any, chunk: tuple[int, ...], dtype: str, fill: float) -> by
         padded = np.full(chunk, fill, whole.dtype)
         padded[tuple(slice(length) for length in whole.shape)] = whole
         whole = padded
-    return bytes(
+    packed = bytes(
         blosc.compress(np.ascontiguousarray(whole).reshape(-1), _NAME.encode(), _LEVEL, blosc.SHUFFLE)
     )
+    return packed + checksum(packed).to_bytes(4, "little")
+
+
+def checksum(content: bytes) -> int:
+    """Return the CRC-32C of bytes."""
+    import google_crc32c
+
+    return int(google_crc32c.value(content))
+
+
+def _checksum_of_chunk(content: bytes) -> int:
+    """Return the checksum at the end of a chunk; that of both together is the same for every chunk.
+
+    Raises
+    ------
+    ValueError
+        If it is not that of the bytes before it.
+    """
+    packed, end = content[:-4], int.from_bytes(content[-4:], "little")
+    if len(content) < 4 or checksum(packed) != end:
+        raise ValueError
+    return end
