@@ -20,6 +20,7 @@ from hersey.exchange.trial import Trial, try_unit
 from tests.cli.command import Done, run, run_apart
 from tests.conftest import ROOT
 from tests.exchange.test_against_core import DRAG, TRAIN, far
+from tests.life.test_campaign import means
 
 MACHINE = ROOT / "tests" / "stand" / "machine.toml"
 HOT = ["--temperature", "150 degC"]
@@ -33,12 +34,8 @@ def folder(tmp_path_factory: pytest.TempPathFactory, bench_csv: Path) -> Path:
     fit = run("fit", bench_csv, "--tare", "standing", "--json", cwd=folder).stdout
     (folder / "fit.json").write_text(fit)
     (folder / "short.json").write_text(fit[: len(fit) // 2])
-    document = json.loads(fit)
-    document["fit"]["transition"], document["fit"]["no_transition"] = None, "too few slow dwells"
-    for field in ("values", "variables"):
-        document["fit"][field] = document["fit"][field][:3]
-    document["fit"]["covariance"] = [row[:3] for row in document["fit"]["covariance"][:3]]
-    document["fit"]["variance_parts"], document["fit"]["variance_uncertainty"] = [], []
+    document = json.loads(run("fit", means(folder / "rising.csv"), "--json", cwd=folder).stdout)
+    document["fit"]["no_transition"] = "too few slow dwells"
     (folder / "rising.json").write_text(json.dumps(document))
     isothermal = run("fit", bench_csv, "--tare", "standing", "--isothermal", "--json", cwd=folder)
     (folder / "isothermal.json").write_text(isothermal.stdout)

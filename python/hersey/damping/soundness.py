@@ -70,6 +70,8 @@ def faults_of_estimate(name: str, part: Estimate, scale: str = "linear") -> Iter
                 part.value * float(np.exp(reach / part.value)),
             )
     if scale != "neither":
+        if np.isfinite(part.low) != np.isfinite(part.high):
+            yield name, "with both ends of its interval, or none"
         for end, found, expected in zip(("low", "high"), (part.low, part.high), ends, strict=True):
             if np.isfinite(found) and not np.isclose(found, expected, rtol=AGREES, atol=AGREES * reach):
                 yield f"{name}.{end}", "what value, error and freedom give"

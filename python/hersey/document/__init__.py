@@ -9,5 +9,6 @@ film_part      the film of the nip
 carried_part   what film, contact and rest of the drive take
 thinning       fewer samples to show, the extremes among them
 saved_fit      a fit read back from its JSON
+consistency    whether the numbers of a saved fit agree with each other
 =============  ================================================
 """

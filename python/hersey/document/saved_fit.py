@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +14,9 @@ from hersey.damping.estimate import Estimate
 from hersey.damping.fitted_law import FitStatistics
 from hersey.damping.gradual import Closure
 from hersey.damping.rest import RestOfDrive
+from hersey.damping.soundness import LARGEST
 from hersey.damping.surface import DampingSurface
+from hersey.document.consistency import faults_of_fit
 from hersey.document.parts import ClosurePart, FitPart, InputFile, Interval, Point, RestPart, TransitionPart
 from hersey.errors import ParameterError
 from hersey.files.text import read_text
@@ -47,15 +48,22 @@ def read_fit(path: str | Path) -> DampingSurface:
     """
     path = Path(path)
     try:
-        document = _FitFile.model_validate(json.loads(read_text(path)))
+        document = _FitFile.model_validate_json(read_text(path), strict=True)
     except ValidationError as error:
         first = error.errors()[0]
+        if first["type"] == "json_invalid":
+            raise _broken(path, "document", f"not valid JSON ({first['ctx']['error']})") from None
         place = ".".join(str(part) for part in first["loc"]) or "document"
         raise _broken(path, place, first["msg"]) from None
     except (ValueError, RecursionError) as error:
         raise _broken(path, "document", f"not valid JSON ({error})") from None
-    _check(path, document)
-    return _surface(document)
+    with np.errstate(all="ignore"):  # what overflows is refused
+        _check(path, document)
+        _check_dwells(path, document)
+        surface = _surface(document)
+        for field, asked in faults_of_fit(surface, document.fit, document.points):
+            raise _broken(path, f"fit.{field}", f"it must be {asked}")
+    return surface
 
 
 def _broken(path: Path, field: str, reason: str) -> ParameterError:
@@ -120,6 +128,28 @@ def _check(path: Path, document: _FitFile) -> None:
     for field, value, expected in _derived(fit):
         if not np.isclose(value, expected, rtol=_ROUNDING):
             raise _broken(path, f"fit.{field}", "it differs from fit.values, so one of them was changed")
+
+
+def _check_dwells(path: Path, document: _FitFile) -> None:
+    """Refuse dwells and files with numbers that none has; nothing else in the document follows from them."""
+    for place, point in enumerate(document.points):
+        errors = (point.speed_error, point.torque_error, point.temperature_error or 0.0, point.load or 0.0)
+        counts = (point.run, point.rows, point.settling_rows, point.effective_rows)
+        heats = (point.temperature, point.group_temperature)
+        rules = [
+            ("errors", all(0.0 <= each <= LARGEST for each in errors), "not negative"),
+            ("rows", all(0 <= each <= LARGEST for each in counts), "not negative"),
+            ("end", -LARGEST <= point.start <= point.end <= LARGEST, "at or after start"),
+            ("tare", abs(point.tare) <= LARGEST, f"at most {LARGEST:g}"),
+            ("temperature", all(each is None or 0.0 < each <= LARGEST for each in heats), "above 0 K"),
+        ]
+        for field, holds, asked in rules:
+            if not holds:
+                raise _broken(path, f"points.{place}.{field}", f"it must be {asked}")
+    for place, file in enumerate(document.files):
+        numbers = (file.bytes, file.rows, file.missing_rows, file.duration, file.sampling_interval, file.gaps)
+        if not all(0 <= each <= LARGEST for each in numbers):
+            raise _broken(path, f"files.{place}", f"its numbers must be from 0 to {LARGEST:g}")
 
 
 def _check_closure(path: Path, closure: ClosurePart, size: int) -> None:
