@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+import hersey
+from hersey import _core
 from hersey.document.assembly import fit_document
+from hersey.document.parts import PRINTED
 from hersey.document.saved_fit import read_fit
 from hersey.errors import ParameterError
+from hersey.log.sensors import Sensors
 
 
 @pytest.fixture(scope="module")
 def saved(log: Any, points: Any) -> dict[str, Any]:
-    from hersey import _core
     from hersey.damping.fit import fit
-    from hersey.document.parts import PRINTED
 
     part = PRINTED["fit"].model_validate(fit_document(log, points, fit(points)))
     return {"hersey_version": _core.VERSION} | part.model_dump(mode="json")
@@ -58,3 +61,16 @@ def test_no_document(text: str, tmp_path: Path) -> None:
     (tmp_path / "fit.json").write_text(text, encoding="utf-8")
     with pytest.raises(ParameterError, match=r"fit.json: .*write it anew"):
         read_fit(tmp_path / "fit.json")
+
+
+def test_fits_of_all_kinds_are_read_again(tmp_path: Path) -> None:
+    """Also with a dwell held to the branch on the other side, and with a film that friction heats."""
+    points = hersey.read("examples/bench.csv").steady(tare="standing")
+    rest = hersey.rest_of_drive(hersey.read("examples/no-load.csv").steady(tare="standing"))
+    heated = replace(points, log=replace(points.log, sensors=Sensors(film_heating=3.0)))
+    for each in (points, points.without(rest), heated, heated.without(rest)):
+        surface = hersey.fit(each)
+        part = PRINTED["fit"].model_validate(fit_document(each.log, each, surface))
+        again = read({"hersey_version": _core.VERSION} | part.model_dump(mode="json"), tmp_path)
+        assert isinstance(again, hersey.DampingSurface)
+        assert again.to_dict() == surface.to_dict()

@@ -14,6 +14,7 @@ from hersey.arrays import FloatArray
 from hersey.damping.candidates.thermal import scaled_temperature
 from hersey.damping.estimate import quantile
 from hersey.damping.soundness import (
+    AGREES,
     LARGEST,
     Fault,
     agree,
@@ -27,6 +28,8 @@ from hersey.document.parts import FitPart, Point
 
 #: No relative scatter or error of a dwell is greater.
 _MOST_SCATTER = 10.0
+#: Friction heats no film above what was read by more, K.
+_MOST_HEATING = 200.0
 #: The torque at a gradual bend differs from that of the trend lines by less, in its logarithm.
 _MOST_LIFT = 2.0
 
@@ -178,21 +181,19 @@ def _points(surface: DampingSurface, points: list[Point]) -> Iterator[Fault]:
     if np.any(speed == 0.0) or np.any(torque / speed <= 0.0) or (heats and not np.all(kelvin > 0.0)):
         yield "points", "dwells that turn, with torque against them, above 0 K"
         return
-    for name, values, ends in (
-        ("speed", np.abs(speed), surface.speed_range),
-        ("temperature", kelvin, surface.temperature_range),
-    ):
-        if ends is not None and not agree(np.array(ends), np.array([values.min(), values.max()])):
-            yield f"{name}_range", f"least and greatest {name} of the document's points"
-            return
-    with warnings.catch_warnings():  # a range that agrees to rounding
-        warnings.simplefilter("ignore")
-        law = surface.damping(speed, kelvin if heats else None)
+    if not agree(np.array(surface.speed_range), np.array([np.abs(speed).min(), np.abs(speed).max()])):
+        yield "speed_range", "least and greatest speed of the document's points"
+        return
+    heating = _heating(surface, kelvin)
+    if not 0.0 <= heating <= _MOST_HEATING:
+        yield "temperature_range", "least and greatest temperature of the document's points"
+        return
     damping, fitted = (np.array([getattr(p, n) for p in points]) for n in ("damping", "damping_fitted"))
-    for name, found, expected in (("damping", damping, torque / speed), ("damping_fitted", fitted, law)):
-        if not agree(found, expected):
-            place = int(np.argmax(np.abs(found / expected - 1.0)))
-            yield f"points.{place}.{name}", "what torque, speed and the fit give"
+    if np.any(wrong := ~np.isclose(damping, torque / speed, rtol=AGREES)):
+        yield f"points.{int(np.argmax(wrong))}.damping", "torque over speed"
+    lines = [] if heating else _lines(surface, np.abs(speed), kelvin)
+    if lines and np.any(wrong := ~np.any([np.isclose(fitted, line, rtol=AGREES) for line in lines], axis=0)):
+        yield f"points.{int(np.argmax(wrong))}.damping_fitted", "what the fit gives"
     wrong = np.abs(residual - np.log(damping / np.where(fitted > 0, fitted, 1.0))) > 1e-6 * np.maximum(
         np.abs(residual), 1e-3
     )
@@ -206,3 +207,38 @@ def _points(surface: DampingSurface, points: list[Point]) -> Iterator[Fault]:
         expected_share = 1.0 - left / total if total > 0 else 0.0
         if not np.isclose(getattr(stated, name), expected_share, rtol=1e-6, atol=1e-9):
             yield name, "what the document's points give"
+
+
+def _heating(surface: DampingSurface, kelvin: FloatArray) -> float:
+    """By how much a fit has taken the film as warmer than what was read, at most, K; 0 if it has not."""
+    if surface.temperature_range is None:
+        return 0.0
+    ends = np.array([kelvin.min(), kelvin.max()])
+    away = np.array(surface.temperature_range) - ends
+    if agree(np.array(surface.temperature_range), ends):
+        return 0.0
+    return float(away.max() if away.min() >= 0.0 else -LARGEST)
+
+
+def _lines(surface: DampingSurface, speed: FloatArray, kelvin: FloatArray) -> list[FloatArray]:
+    """Damping at the dwells, N m s/rad; of a gradual bend on either branch, to which each dwell is held."""
+    heats = surface.b is not None
+    found = surface.transition
+    if found is None or found.closure is None:
+        with warnings.catch_warnings():  # a range that agrees to rounding
+            warnings.simplefilter("ignore")
+            return [surface.damping(speed, kelvin if heats else None)]
+    warm = np.zeros(speed.size)
+    if heats:
+        scaled, reference = (
+            scaled_temperature(np.asarray(each), surface.temperature_scale)
+            for each in (kelvin, surface.reference_temperature)
+        )
+        warm = np.log(scaled / reference)
+    z = np.log(speed / surface.reference_speed)
+    level, c = surface.values[0] + (surface.b.value if surface.b else 0.0) * warm, surface.c.value
+    meeting = np.log(found.meeting_speed / surface.reference_speed) + found.temperature_exponent * warm
+    return [
+        np.asarray(np.exp(level + c * z)),
+        np.asarray(np.exp(level + c * meeting + found.mixed_exponent.value * (z - meeting))),
+    ]
