@@ -8,12 +8,13 @@ from collections.abc import Mapping, Set
 from dataclasses import MISSING, fields, is_dataclass
 from functools import cache
 from types import UnionType
-from typing import Any, Union, get_args, get_origin, get_type_hints
+from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.damping.dwells import Rejection
+from hersey.damping.dwells.reasons import Reason
 from hersey.damping.estimate import Estimate
 from hersey.damping.rest import RestOfDrive
 from hersey.errors import ParameterError
@@ -23,8 +24,10 @@ from hersey.log.torque_log import Channel, Correction, Effect, LogFile
 #: Records that are written and read back, by name.
 _RECORDS = {
     kind.__name__: kind
-    for kind in (Channel, Correction, Effect, Estimate, LogFile, Rejection, RestOfDrive, Sensors)
+    for kind in (Channel, Correction, Effect, Estimate, LogFile, Reason, Rejection, RestOfDrive, Sensors)
 }
+#: The name of a record stands under "kind", a field of that name under this.
+_OWN_KIND = "its kind"
 #: Numbers that may be infinite or missing.
 _UNBOUNDED = {
     ("Estimate", "low"),
@@ -38,7 +41,10 @@ _UNBOUNDED = {
 def plain(value: Any) -> Any:
     """Return a value as JSON, records by their names, so that `restored` gives it back with every digit."""
     if is_dataclass(value) and not isinstance(value, type):
-        return {"kind": type(value).__name__} | {f.name: plain(getattr(value, f.name)) for f in fields(value)}
+        own = {f.name: plain(getattr(value, f.name)) for f in fields(value)}
+        if "kind" in own:
+            own[_OWN_KIND] = own.pop("kind")
+        return {"kind": type(value).__name__} | own
     if isinstance(value, dict):
         return {name: plain(item) for name, item in value.items()}
     if isinstance(value, np.ndarray):
@@ -94,6 +100,8 @@ def _restored(value: Any) -> Any:
     record = _RECORDS.get(name) if isinstance(name, str) else None
     if record is None:
         raise ParameterError("'kind' names no record that is known")
+    if _OWN_KIND in inside:
+        inside["kind"] = inside.pop(_OWN_KIND)
     defaults = {f.name for f in fields(record) if f.name not in inside and _has_default(f)}
     kinds = {name: kind for name, kind in _kinds_of(record).items() if name not in defaults}
     refuse_others(inside, kinds, f"{name}.", {field for of, field in _UNBOUNDED if of == name})
@@ -147,6 +155,8 @@ def _is(value: Any, kind: Any, *, finite: bool) -> bool:
     origin, inside = get_origin(kind), get_args(kind)
     if origin in (Union, UnionType):
         return any(_is(value, each, finite=finite) for each in inside)
+    if origin is Literal:
+        return isinstance(value, str) and value in inside
     if origin is tuple:
         each = [inside[0]] * len(value) if inside[-1:] == (...,) and isinstance(value, tuple) else inside
         return (
