@@ -127,6 +127,10 @@ class OutputError(HerseyError, OSError):
     """A result that cannot be written, or would overwrite something."""
 
 
+class ExistingFileError(OutputError, FileExistsError):
+    """A result whose file is there already, and which nobody said to replace."""
+
+
 class ExtrapolationWarning(UserWarning):
     """A fitted law is used outside the range of its data."""
 

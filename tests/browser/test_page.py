@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import json
 import re
 from collections.abc import Callable, Iterator
@@ -18,6 +19,8 @@ from hersey.document.assembly import load
 from hersey.document.parts import Analysis
 from tests.browser.conftest import SCREENS
 from tests.browser.opening import Opened
+from tests.conftest import ROOT
+from tests.files.test_tables import CELLS
 
 Report = Callable[[str], tuple[Path, Analysis]]
 DESK = (1280, 800)
@@ -343,6 +346,19 @@ def test_a_table_is_saved(demo: Opened, report: Report) -> None:
     torques = sorted(float(row[head["Torque, N·m"]]) for row in rows[1:])
     assert torques == pytest.approx(sorted(p.torque for p in document.points), rel=1e-3)
     assert demo.violations == []
+
+
+def test_no_cell_that_is_saved_is_a_formula(demo: Opened) -> None:
+    """By the same rule as the tables that commands write."""
+    source = (ROOT / "python" / "hersey" / "report" / "static" / "drawing.js").read_text()
+    of_cells = source[source.index("const FORMULA") : source.index("// A table that sorts")]
+    texts = [*CELLS, "\u22121.5"]
+    written = demo.page.evaluate(
+        f"(texts) => {{ {of_cells} return csv(['n'], texts.map((text) => [text])); }}", texts
+    )
+    with io.StringIO(written, newline="") as file:
+        cells = [row[0] if row else "" for row in csv.reader(file)]
+    assert cells == ["n", *CELLS.values(), "-1.5"]
 
 
 def test_the_document_is_saved(demo: Opened, report: Report) -> None:

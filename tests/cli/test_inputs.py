@@ -54,8 +54,8 @@ def test_a_map_and_a_plan_never_replace_what_they_read(bench_csv: Path, tmp_path
         "report none.csv --out kept.html",
         "report none.csv --figures kept",
         "inspect none.csv --figure kept.svg",
-        "new none.csv --machine kept.csv",
-        "new none.csv --mapping kept.csv",
+        "new none.csv --machine kept.toml",
+        "new none.csv --mapping kept.toml",
         "film none.toml --log none.csv --figure kept.svg",
         "map none.toml none.csv --out kept.html",
         "posterior none.csv --machine none.toml --out kept.csv",
@@ -73,12 +73,20 @@ def test_a_map_and_a_plan_never_replace_what_they_read(bench_csv: Path, tmp_path
         "warmup none.toml none.csv --target 1 --figure kept.svg",
         "figures --out kept",
         "testbench --size none --out kept.csv",
-        "testbench --size none --out new.csv --truth kept.csv",
+        "testbench --size none --out new.csv --truth kept.json",
     ],
 )
 def test_outputs_are_refused_before_inputs_are_read(typed: str, tmp_path: Path) -> None:
     """What would be replaced is named, not the input that is missing or wrong."""
-    for name in ("kept.html", "kept.svg", "kept.csv", "kept.fmu", "kept/figure.svg"):
+    for name in (
+        "kept.html",
+        "kept.svg",
+        "kept.csv",
+        "kept.fmu",
+        "kept.toml",
+        "kept.json",
+        "kept/figure.svg",
+    ):
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_text("mine")
     done = run(*typed.split(), cwd=tmp_path)
@@ -86,6 +94,44 @@ def test_outputs_are_refused_before_inputs_are_read(typed: str, tmp_path: Path) 
     assert "kept" in done.stderr
     assert "--force" in done.stderr
     assert {path.read_text() for path in tmp_path.rglob("*.*")} == {"mine"}
+
+
+@pytest.mark.parametrize(
+    ("typed", "ends"),
+    [
+        ("report none.csv --out r.pdf", ".html or .htm"),
+        ("report none.csv --out r", ".html or .htm"),
+        ("life none.hersey --machine none.toml --out l.pdf", ".html or .htm"),
+        ("inspect none.csv --figure c.jpg", ".html, .png, .svg or .pdf"),
+        ("film none.toml --figure f.jpg", ".html, .png, .svg or .pdf"),
+        ("map none.toml none.csv --out m.csv", ".html, .png, .svg or .pdf"),
+        ("cycles none.csv --figure c.jpg", ".html, .png, .svg or .pdf"),
+        ("simulate --mass -1 --figure m.jpg", ".html, .png, .svg or .pdf"),
+        ("simulate --mass -1 --csv m.parquet", ".csv"),
+        ("plan none.toml none.csv --target 1 --out p.xlsx", ".csv"),
+        ("plan none.toml none.csv --target 1 --figure p.jpg", ".html, .png, .svg or .pdf"),
+        ("warmup none.toml none.csv --target 1 --out p.xlsx", ".csv"),
+        ("warmup none.toml none.csv --target 1 --figure p.jpg", ".html, .png, .svg or .pdf"),
+        ("posterior none.csv --machine none.toml --out d.xlsx", ".csv, .parquet or .nc"),
+        ("sweep none.toml --out s.xlsx", ".csv, .parquet or .zarr"),
+        ("fit none.csv --each f.xlsx", ".csv or .parquet"),
+        ("campaign export none.hersey --out d.xlsx", ".csv or .parquet"),
+        ("export fmu none.json none.toml --out d.zip", ".fmu"),
+        ("new none.csv --machine m.json", ".toml"),
+        ("new none.csv --mapping m.json", ".toml"),
+        ("testbench --size none --out log.parquet", ".csv"),
+        ("testbench --size none --truth truth.txt", ".json"),
+    ],
+)
+def test_a_kind_of_file_that_cannot_be_written_is_refused_first(
+    typed: str, ends: str, tmp_path: Path
+) -> None:
+    """The kinds that can be written are named, before any input is read."""
+    *_, flag, name = typed.split()
+    done = run(*typed.split(), cwd=tmp_path)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == f"hersey: {flag} {name}: name a file that ends in {ends}\n"
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_every_verb_that_writes_is_refused_above() -> None:

@@ -7,6 +7,7 @@ import os
 import shutil
 import time
 from collections.abc import AsyncIterator, Coroutine
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,7 @@ from hersey.app.course import Courses
 from hersey.app.machine import MACHINE_FILE, MAPPING_FILE
 from hersey.app.uploads import Bounds, TooMuchError, clean_name, megabytes, receive
 from hersey.app.workers import EndedError, Refused, ask
-from hersey.errors import HerseyError, OutputError
+from hersey.errors import ExistingFileError, HerseyError, OutputError
 from hersey.files.writing import write_atomically
 
 #: Analyses that run beside each other.
@@ -300,7 +301,9 @@ class Session:
         text = page.read_bytes()
         for count in range(1, 1000):
             path = self.reports / (f"{stem}.html" if count == 1 else f"{stem}-{count}.html")
-            if not os.path.lexists(path):
+            if os.path.lexists(path):
+                continue
+            with suppress(ExistingFileError):  # somebody was quicker
                 write_atomically(path, text, overwrite=False)
                 return f"{self.reports.name}/{path.name}"
         raise OutputError(f"{self.reports.name} holds a thousand reports of that name: move some away")

@@ -289,9 +289,9 @@ def timeline_temperature(document: Analysis) -> Chart | None:
     return None if series is None else _timeline(document, series, "Temperature (°C)", celsius, None)
 
 
-def write_figures(document: Analysis, folder: Path) -> list[Path]:
+def write_figures(document: Analysis, folder: Path, *, overwrite: bool = True) -> list[Path]:
     """Write every chart as SVG, PNG and PDF and return the paths; all are drawn before one is written."""
-    return write_pictures(charts(document), folder)
+    return write_pictures(charts(document), folder, overwrite=overwrite)
 
 
 def _torque_unit(document: Analysis) -> tuple[float, str]:

@@ -38,6 +38,6 @@ def life_chart(answer: LifeTest) -> Chart:
     return chart_of(answer.endings)
 
 
-def write_life_figures(answer: LifeTest, folder: Path) -> list[Path]:
+def write_life_figures(answer: LifeTest, folder: Path, *, overwrite: bool = True) -> list[Path]:
     """Write every chart as SVG, PNG and PDF and return the paths; all are drawn before one is written."""
-    return write_pictures(life_charts(answer), folder)
+    return write_pictures(life_charts(answer), folder, overwrite=overwrite)

@@ -51,8 +51,14 @@ def picture(chart: Chart, suffix: str) -> bytes:
     return drawn(specification, [suffix.removeprefix(".")])[0]
 
 
-def write_pictures(charts: Mapping[str, Chart], folder: Path) -> list[Path]:
-    """Write every chart as SVG, PNG and PDF and return the paths; all are drawn before one is written."""
+def write_pictures(charts: Mapping[str, Chart], folder: Path, *, overwrite: bool = True) -> list[Path]:
+    """Write every chart as SVG, PNG and PDF and return the paths; all are drawn before one is written.
+
+    Raises
+    ------
+    OutputError
+        If a file exists and ``overwrite`` is false, or one cannot be written.
+    """
     kinds = [suffix.removeprefix(".") for suffix in FIGURES]
     pictures = {
         folder / f"{name}{suffix}": content
@@ -60,7 +66,7 @@ def write_pictures(charts: Mapping[str, Chart], folder: Path) -> list[Path]:
         for suffix, content in zip(FIGURES, drawn(specification_of(chart), kinds), strict=True)
     }
     folder.mkdir(parents=True, exist_ok=True)
-    write_all(pictures, overwrite=True)
+    write_all(pictures, overwrite=overwrite)
     return list(pictures)
 
 

@@ -3,6 +3,7 @@
 ============  ==================================================================
 application   the program: its verbs, errors in one line
 interruption  Ctrl-C, whatever the program is in the midst of
+streams       stdin, stdout and stderr: those that are closed, a result that cannot be written
 asking        questions in a terminal, or answers from a pipe
 amounts       numbers of a belt: with units, bare, or from the machine's file
 loading       what a verb needs, loaded at once
@@ -27,6 +28,13 @@ __all__ = ["main"]
 
 def main() -> None:
     """Run the command line."""
+    from hersey.cli.streams import standard_streams
+
+    with standard_streams():
+        _run()
+
+
+def _run() -> None:
     if sys.argv[1:] == ["--version"]:
         from hersey import __version__
 

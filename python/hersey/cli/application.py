@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import importlib
-import os
 import sys
+from contextlib import suppress
 from typing import Annotated, Any
 
 import typer
@@ -122,11 +122,8 @@ def main() -> None:
         _fail(str(error))
     except typer.Abort:
         raise KeyboardInterrupt from None
-    except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # nothing is left to flush into it
-        sys.exit(0)
-    except OSError as error:
-        _fail(f"cannot write the result: {error.strerror}")
+    except OSError:  # stdout takes no more
+        raise
     except Exception as error:
         usage = getattr(error, "format_message", None)  # click's own errors know how to say it
         if usage is None:
@@ -140,7 +137,8 @@ def main() -> None:
 def _fail(message: str) -> None:
     text = " ".join(message.split())
     if text:
-        say(f"hersey: {text}", file=sys.stderr)
+        with suppress(OSError):  # a stderr that takes nothing
+            say(f"hersey: {text}", file=sys.stderr)
     sys.exit(2)
 
 

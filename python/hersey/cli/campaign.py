@@ -14,6 +14,7 @@ from hersey.cli.progress import bar, working
 from hersey.cli.terminal import say
 from hersey.cli.workers import Scheduler, Workers, workers
 from hersey.errors import HerseyError, OutputError, ParameterError
+from hersey.files.tables import TABLES
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -279,13 +280,11 @@ def export(
 
     Example: [bold]hersey campaign export life.hersey --out dwells.parquet[/bold]
     """
-    if out.suffix not in (".parquet", ".csv"):
-        raise OutputError(f"--out {out}: name a file that ends in .parquet or .csv")
-    may_write(out, force, inputs=[file])
+    overwrite = may_write(out, force, inputs=[file], ends=TABLES)
 
     from hersey.files.writing import write_atomically
     from hersey.life.campaign import Campaign
 
     with Campaign.open(file, write=False) as opened, working("writing the dwells"):
-        write_atomically(out, opened.export(out.suffix), overwrite=True)
+        write_atomically(out, opened.export(out.suffix), overwrite=overwrite)
     say(f"dwells: {out}")

@@ -94,8 +94,7 @@ def cycles(
 
     Example: [bold]hersey cycles examples/stick-slip.csv --drive-speed "20 mm/s" --identify[/bold]
     """
-    if figure is not None:
-        may_draw(figure, force, inputs=[trace])
+    overwrite = figure is not None and may_draw(figure, force, inputs=[trace])
     if drive_speed and drive_speed_channel:
         raise ParameterError("give either --drive-speed or --drive-speed-channel")
     if known and not identify:
@@ -146,7 +145,7 @@ def cycles(
             unit_text = "share of the weight" if given.unit == "1" else unit_shown
             with working("drawing"):
                 drawing = picture(chart_of(record, drive=drive, unit=unit_text), figure.suffix)
-            write_atomically(figure, drawing, overwrite=True)
+            write_atomically(figure, drawing, overwrite=overwrite)
         if as_json:
             driven = None if drive is None else drive.to_dict()
             print_json("cycles", record.to_dict() | {"unit": given.unit, "drive": driven})

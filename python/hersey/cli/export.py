@@ -13,7 +13,7 @@ from hersey.cli.options import AsJson, Force, Reading, target_of, temperature_of
 from hersey.cli.outputs import NOT_FOUND, may_write, print_json
 from hersey.cli.progress import working
 from hersey.cli.terminal import say
-from hersey.errors import OutputError, ParameterError
+from hersey.errors import ParameterError
 
 if TYPE_CHECKING:
     from hersey.damping.surface import DampingSurface
@@ -103,8 +103,6 @@ def fmu(
 
     Exit code 1 says that --check found something; then nothing is written.
     """
-    if out.suffix != ".fmu":
-        raise OutputError(f"--out {out}: name a file that ends in .fmu")
     if drive != "speed" and drive_speed:
         raise ParameterError("--drive-speed goes with --drive speed: leave one of them out")
     others = _libraries(library or [])
@@ -112,7 +110,7 @@ def fmu(
         raise ParameterError(
             f"{len(files)} files are given: name a fit and a machine file, or the latter alone"
         )
-    may_write(out, force, [*files, *others.values()])
+    overwrite = may_write(out, force, [*files, *others.values()], ends=[".fmu"])
 
     from tempfile import TemporaryDirectory
 
@@ -154,7 +152,7 @@ def fmu(
             with working("running the unit beside the core"):
                 tried = try_unit(unit, train, drag)
         if tried is None or tried.ok:
-            write_atomically(out, unit.path.read_bytes(), overwrite=True)
+            write_atomically(out, unit.path.read_bytes(), overwrite=overwrite)
     unit = replace(unit, path=out)
     if as_json:
         print_json("export", unit.to_dict() | {"check": json_value(tried)})

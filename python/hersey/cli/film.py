@@ -66,8 +66,7 @@ def film(
 
     Without a log the film is computed at the points of the file.
     """
-    if figure is not None:
-        may_draw(figure, force, inputs=reading.inputs(machine_file, log))
+    overwrite = figure is not None and may_draw(figure, force, inputs=reading.inputs(machine_file, log))
 
     from hersey.document.film_part import film_document, shared_load
     from hersey.files.writing import write_atomically
@@ -119,7 +118,7 @@ def film(
             turn = None if shared is None else shared.transition
             chart = chart_of(predicted, names=names, measured=measured, transition=turn, mixed=machine.mixed)
             content = picture(chart, figure.suffix)
-        write_atomically(figure, content, overwrite=True)
+        write_atomically(figure, content, overwrite=overwrite)
     if as_json:
         print_json("film", film_document(predicted, names, measured, says, notes, shared, off))
         return

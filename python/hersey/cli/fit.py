@@ -20,6 +20,7 @@ from hersey.cli.progress import working
 from hersey.cli.terminal import say
 from hersey.cli.workers import Scheduler, Workers
 from hersey.errors import ParameterError
+from hersey.files.tables import TABLES
 
 
 @reads_logs
@@ -61,8 +62,8 @@ def fit(
     if each is not None:
         from hersey.cli.fitting_each import fit_each
 
-        may_write(each, force, inputs=reading.inputs(logs, machine_file))
-        fit_each(logs, reading, machine, each, keep_going, scheduler, count)
+        overwrite = may_write(each, force, reading.inputs(logs, machine_file), flag="--each", ends=TABLES)
+        fit_each(logs, reading, machine, each, overwrite, keep_going, scheduler, count)
         return
     log = reading.log(logs, machine)
 

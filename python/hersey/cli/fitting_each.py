@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import sys
 from functools import partial
 from pathlib import Path
@@ -16,7 +15,7 @@ from hersey.cli.outputs import NOT_FOUND
 from hersey.cli.progress import bar
 from hersey.cli.terminal import say
 from hersey.cli.workers import workers
-from hersey.errors import HerseyError, OutputError
+from hersey.errors import HerseyError
 
 if TYPE_CHECKING:
     from hersey.damping.estimate import Estimate
@@ -27,15 +26,13 @@ def fit_each(
     logs: list[Path],
     reading: Reading,
     machine: Machine | None,
-    table: Path,
+    out: Path,
+    overwrite: bool,
     keep_going: bool,
     scheduler: str | None,
     count: int | None,
 ) -> None:
     """Fit each log by itself and write a table with a row for each, in their order."""
-    if table.suffix not in (".csv", ".parquet"):
-        raise OutputError(f"--each {table}: name a file that ends in .csv or .parquet")
-
     from hersey.files.writing import write_atomically
     from hersey.log.many import collected, each_of, told
 
@@ -46,8 +43,8 @@ def fit_each(
         fits = collected(logs, results, keep_going)
     rows = [{"log": str(log), **fits[log]} for log in fits]
     if rows:
-        write_atomically(table, _table(rows, table.suffix), overwrite=True)
-        say(f"fits of {len(rows)} logs: {table}")
+        write_atomically(out, _table(rows, out.suffix), overwrite=overwrite)
+        say(f"fits of {len(rows)} logs: {out}")
     if fits.failures:
         say(*(f"- {told(*failed)}" for failed in fits.failures.items()), file=sys.stderr)
         raise typer.Exit(NOT_FOUND)
@@ -92,11 +89,8 @@ def _columns(name: str, unit: str, known: Estimate | None) -> dict[str, float | 
 def _table(rows: list[dict[str, Any]], suffix: str) -> bytes:
     import polars as pl
 
+    from hersey.files.tables import table
+
     kinds = {"log": pl.String, "regime": pl.String, "dwells": pl.Int64}
     schema = {name: kinds.get(name, pl.Float64) for name in rows[0]}
-    frame, content = pl.DataFrame(rows, schema=schema), io.BytesIO()
-    if suffix == ".parquet":
-        frame.write_parquet(content)
-    else:
-        frame.write_csv(content)
-    return content.getvalue()
+    return table(pl.DataFrame(rows, schema=schema), suffix)

@@ -41,14 +41,13 @@ def inspect(
 
     It works on logs that cannot be fitted too, and says why they cannot.
     """
-    kept, inputs = None, reading.inputs(logs)
+    kept, replace_mapping, inputs = None, False, reading.inputs(logs)
     if save_mapping:
         from hersey.log.mapping import FILE_NAME
 
         kept = logs[0].with_name(FILE_NAME)
-        may_write(kept, force, inputs=inputs)
-    if figure is not None:
-        may_draw(figure, force, inputs)
+        replace_mapping = may_write(kept, force, inputs=inputs)
+    replace_figure = figure is not None and may_draw(figure, force, inputs)
 
     from hersey.files.writing import write_atomically
     from hersey.inspection import inspect as inspected
@@ -70,14 +69,14 @@ def inspect(
     if kept is not None:
         with memory_limit(reading.max_memory):
             proposal = propose_mapping(logs[0], channels=given["channels"], units=given["units"])
-        write_atomically(kept, proposal, overwrite=True)
+        write_atomically(kept, proposal, overwrite=replace_mapping)
     if figure is not None:
         from hersey.charts import chart_of
         from hersey.charts.render import picture
 
         with working("drawing the channels"), memory_limit(reading.max_memory):
             chart = chart_of(inspection, paths=logs)
-            write_atomically(figure, picture(chart, figure.suffix), overwrite=True)
+            write_atomically(figure, picture(chart, figure.suffix), overwrite=replace_figure)
     if as_json:
         print_json("inspect", inspection.to_dict())
         return

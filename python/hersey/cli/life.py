@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from hersey.cli.options import AsJson, Force
-from hersey.cli.outputs import command, may_write, may_write_folder, print_json
+from hersey.cli.outputs import PAGES, command, may_write, may_write_folder, print_json
 from hersey.cli.progress import steps, working
 from hersey.cli.terminal import say
 
@@ -22,7 +22,7 @@ def life(
         typer.Option("--machine", metavar="TOML", help="Machine's file: limits, operating points, film."),
     ],
     out: Annotated[
-        Path | None, typer.Option("--out", help="The page to write.  [default: life.html]")
+        Path | None, typer.Option("--out", help="The page to write, .html.  [default: life.html]")
     ] = None,
     figures: Annotated[
         Path | None,
@@ -42,8 +42,7 @@ def life(
     With --json the whole answer goes to stdout, and a page is written only if --out is given.
     """
     page = out or (None if as_json else Path("life.html"))
-    if page is not None:
-        may_write(page, force, inputs=[file, machine_file])
+    overwrite = page is not None and may_write(page, force, inputs=[file, machine_file], ends=PAGES)
     if figures is not None:
         may_write_folder(figures, force)
 
@@ -61,12 +60,12 @@ def life(
         from hersey.report.life_page import render_life
 
         with working("drawing the page"):
-            write_atomically(page, render_life(answer, runs, command()), overwrite=True)
+            write_atomically(page, render_life(answer, runs, command()), overwrite=overwrite)
     if figures is not None:
         from hersey.charts.life import write_life_figures
 
         with working("writing the figures"):
-            write_life_figures(answer, figures)
+            write_life_figures(answer, figures, overwrite=force)
     if as_json:
         print_json("life", answer.to_dict())
         return

@@ -45,9 +45,10 @@ def map_(
     With --json the whole map goes to stdout, and a picture is drawn only if --out is given.
     """
     path = out or (None if as_json else Path("map.html"))
+    overwrite = False
     if path is not None:
         inputs = reading.inputs(machine_file, logs, fit_file, trace)
-        may_draw(path, force, inputs, flag="--out")
+        overwrite = may_draw(path, force, inputs, flag="--out")
 
     from hersey.decision.mapping import map_of
     from hersey.files.writing import write_atomically
@@ -68,7 +69,7 @@ def map_(
 
         with working("drawing the map"):
             chart = chart_of(map_of_belt, tooltips=path.suffix == ".html")
-            write_atomically(path, picture(chart, path.suffix), overwrite=True)
+            write_atomically(path, picture(chart, path.suffix), overwrite=overwrite)
     if as_json:
         print_json("map", map_of_belt.to_dict())
         return

@@ -51,12 +51,12 @@ def new(
         raise ParameterError("--mapping is about the channels of a log: name the LOG too")
     machine = machine or Path("machine.toml")
     inputs = [] if log is None else [log]
-    may_write(machine, force, inputs)
+    replace = {machine: may_write(machine, force, inputs, flag="--machine", ends=[".toml"])}
     if log is not None:
         from hersey.log.mapping import FILE_NAME
 
         mapping = mapping or log.with_name(FILE_NAME)
-        may_write(mapping, force, inputs)
+        replace[mapping] = may_write(mapping, force, inputs, flag="--mapping", ends=[".toml"])
 
     from hersey.cli.asking import Asking
     from hersey.files.writing import write_all
@@ -72,7 +72,7 @@ def new(
     text = _machine(asked, asking, machine)
     if text:
         contents[machine] = text.encode()
-    write_all(contents, overwrite=True)
+    write_all(contents, overwrite=replace)
     for path in contents:
         say(f"{'mapping' if path == mapping else 'machine'}: {path}")
     if log is not None:

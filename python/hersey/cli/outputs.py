@@ -6,7 +6,7 @@ import json
 import os
 import shlex
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +15,7 @@ import typer
 from hersey.charts import PICTURES
 from hersey.cli.progress import working
 from hersey.cli.terminal import say
-from hersey.errors import OutputError
+from hersey.errors import ExistingFileError, OutputError
 from hersey.spelling import printable
 
 if TYPE_CHECKING:
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from hersey.stability.plan import Plan
     from hersey.stability.warm_up import WarmUp
 
+#: Kinds of file that a page is.
+PAGES = (".html", ".htm")
 #: Exit code where what was sought does not exist.
 NOT_FOUND = 1
 
@@ -48,8 +50,14 @@ def print_document(document: BaseModel) -> None:
     print(json.dumps(document.model_dump(mode="json"), indent=1, allow_nan=False))
 
 
-def may_write(path: Path, force: bool, inputs: Sequence[Path] = ()) -> None:
-    """Refuse early what cannot be written, and ask before replacing anything."""
+def may_write(
+    path: Path, force: bool, inputs: Sequence[Path] = (), *, flag: str = "--out", ends: Sequence[str] = ()
+) -> bool:
+    """Refuse early what cannot be written, and ask before replacing anything.
+
+    ``ends`` are the kinds of file that can be written, any if there are none. Return whether a file of that
+    name may be replaced at the end: one that appears meanwhile may not, unless --force says so.
+    """
     try:
         exists = os.path.lexists(path)
         if path.is_dir():
@@ -64,10 +72,18 @@ def may_write(path: Path, force: bool, inputs: Sequence[Path] = ()) -> None:
         if isinstance(error, OutputError):
             raise
         raise OutputError(f"{path} cannot be written: {error.strerror}") from None
+    if ends and path.suffix not in ends:
+        raise OutputError(f"{flag} {path}: name a file that ends in {_either(ends)}")
     if exists and not force:
         asked = sys.stdin.isatty() and typer.confirm(printable(f"{path} exists. Replace it?"), err=True)
         if not asked:
-            raise OutputError(f"{path} exists: say --force to replace it, or name another file")
+            raise ExistingFileError(f"{path} exists: say --force to replace it, or name another file")
+    return force or exists
+
+
+def _either(ends: Sequence[str]) -> str:
+    *first, last = ends
+    return f"{', '.join(first)} or {last}" if first else last
 
 
 def may_write_folder(folder: Path, force: bool, flag: str = "--figures") -> None:
@@ -98,23 +114,23 @@ def may_draw(
     inputs: Sequence[Path] = (),
     *,
     flag: str = "--figure",
-) -> None:
-    """Refuse early a figure of an unknown kind, or one that cannot be written."""
-    if path.suffix not in PICTURES:
-        raise OutputError(f"{flag} {path}: name a file that ends in {', '.join(PICTURES)}")
-    may_write(path, force, inputs)
+) -> bool:
+    """Refuse early a figure of an unknown kind, or one that cannot be written; return as `may_write`."""
+    return may_write(path, force, inputs, flag=flag, ends=PICTURES)
 
 
 def may_write_table_and_figure(
     table: Path | None, figure: Path | None, force: bool, inputs: Sequence[Path]
-) -> None:
-    """Refuse early what ``--out`` and ``--figure`` name, if it cannot be written."""
+) -> dict[Path, bool]:
+    """Refuse early what ``--out`` and ``--figure`` name, if it cannot be written; return as `may_write`."""
     if table is not None and figure is not None and table.absolute() == figure.absolute():
         raise OutputError(f"--out and --figure both name {table}: name two files")
+    replace = {}
     if figure is not None:
-        may_draw(figure, force, inputs)
+        replace[figure] = may_draw(figure, force, inputs)
     if table is not None:
-        may_write(table, force, inputs)
+        replace[table] = may_write(table, force, inputs, ends=[".csv"])
+    return replace
 
 
 def give(
@@ -124,12 +140,14 @@ def give(
     called: str,
     table: Path | None,
     figure: Path | None,
+    replace: Mapping[Path, bool],
     as_json: bool,
     **chart: Any,
 ) -> None:
     """Write table and figure of a course that a command has found, and print the result.
 
-    ``called`` is what the command calls its table, ``chart`` what else the chart takes. Where nothing was
+    ``called`` is what the command calls its table, ``replace`` what `may_write_table_and_figure` returned,
+    ``chart`` what else the chart takes. Where nothing was
     found nothing is written, and the command ends with `NOT_FOUND`.
     """
     from hersey.files.writing import write_atomically
@@ -140,9 +158,9 @@ def give(
 
         with working("drawing"):
             content = picture(chart_of(result, **chart), figure.suffix)
-        write_atomically(figure, content, overwrite=True)
+        write_atomically(figure, content, overwrite=replace[figure])
     if result.found and table is not None:
-        write_atomically(table, result.table(), overwrite=True)
+        write_atomically(table, result.table(), overwrite=replace[table])
     if as_json:
         print_json(name, result.to_dict())
     else:

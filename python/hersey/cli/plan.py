@@ -81,7 +81,7 @@ def plan(
     Exit code 1 says that no profile exists; then nothing is written.
     """
     inputs = reading.inputs(machine_file, logs, fit_file, profile_file, trace)
-    may_write_table_and_figure(out, figure, force, inputs)
+    replaced = may_write_table_and_figure(out, figure, force, inputs)
     if sum((bool(at), profile_file is not None, heat)) > 1:
         raise ParameterError("give one of --at, --temperature-profile and --heat")
     if start and not heat:
@@ -107,7 +107,7 @@ def plan(
         check_temperature(surface, kelvin)
         with working("planning"):
             planned = plan_start_up(drawn, kelvin, wanted, confidence=confidence)
-        give("plan", planned, called="profile", table=out, figure=figure, as_json=as_json)
+        give("plan", planned, called="profile", table=out, figure=figure, replace=replaced, as_json=as_json)
         return
     with bar("planning", unit="profiles") as progress:
         if drawn is not None:
@@ -137,4 +137,13 @@ def plan(
         film = np.asarray(course.values)
         said = beyond_the_log(surface, float(film.min()), float(film.max()))
         planned = replace(planned, warnings=(*planned.warnings, *said))
-    give("plan", planned, called="profile", table=out, figure=figure, as_json=as_json, temperature=course)
+    give(
+        "plan",
+        planned,
+        called="profile",
+        table=out,
+        figure=figure,
+        replace=replaced,
+        as_json=as_json,
+        temperature=course,
+    )

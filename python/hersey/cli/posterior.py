@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -12,6 +12,10 @@ from hersey.cli.options import AsJson, Force, Logs, Reading, Traces, reads_logs
 from hersey.cli.outputs import may_write, print_json
 from hersey.cli.progress import bar
 from hersey.cli.terminal import say
+from hersey.files.tables import TABLES
+
+if TYPE_CHECKING:
+    from hersey.posterior.result import Posterior
 
 #: Steps of the progress bar.
 _STEPS = 100
@@ -37,12 +41,10 @@ def posterior(
 
     Example: [bold]hersey posterior examples/bench.csv --machine examples/machine.toml --tare standing[/bold]
     """
-    from hersey.errors import ParameterError
-
+    overwrite = False
     if out is not None:
-        if out.suffix not in _WRITERS:
-            raise ParameterError(f"{out}: write draws to a file that ends in {', '.join(_WRITERS)}")
-        may_write(out, force, inputs=reading.inputs(logs, machine_file, trace))
+        inputs = reading.inputs(logs, machine_file, trace)
+        overwrite = may_write(out, force, inputs, ends=[*TABLES, ".nc"])
 
     from hersey.machine.machine import read_machine
     from hersey.posterior.sampling import posterior as drawn
@@ -62,7 +64,7 @@ def posterior(
             threads=os.cpu_count() or 1,
         )
     if out is not None:
-        _WRITERS[out.suffix](found, out)
+        _write(found, out, overwrite)
     if as_json:
         print_json("posterior", found.to_dict())
         return
@@ -71,18 +73,18 @@ def posterior(
         say(f"draws: {out}")
 
 
-def _table(found: object, out: Path) -> None:
+def _write(found: Posterior, out: Path, overwrite: bool) -> None:
+    """Write a row per draw, or with ``.nc`` what ArviZ reads."""
+    from tempfile import TemporaryDirectory
+
+    from hersey.files.tables import table
     from hersey.files.writing import write_atomically
 
-    frame = found.to_frame()  # type: ignore[attr-defined]
-    if out.suffix == ".csv":
-        write_atomically(out, frame.write_csv(), overwrite=True)
+    if out.suffix in TABLES:
+        content = table(found.to_frame(), out.suffix)
     else:
-        frame.write_parquet(out)
-
-
-def _netcdf(found: object, out: Path) -> None:
-    found.dataset().to_netcdf(out, engine="scipy")  # type: ignore[attr-defined]
-
-
-_WRITERS = {".csv": _table, ".parquet": _table, ".nc": _netcdf}
+        with TemporaryDirectory() as folder:
+            netcdf = Path(folder) / out.name
+            found.dataset().to_netcdf(netcdf, engine="scipy")
+            content = netcdf.read_bytes()
+    write_atomically(out, content, overwrite=overwrite)

@@ -18,7 +18,7 @@ from hersey.cli.options import (
     Traces,
     reads_logs,
 )
-from hersey.cli.outputs import command, may_write, may_write_folder, print_document
+from hersey.cli.outputs import PAGES, command, may_write, may_write_folder, print_document
 from hersey.cli.progress import steps, working
 from hersey.cli.terminal import say
 
@@ -28,7 +28,7 @@ def report(
     logs: Logs,
     reading: Reading,
     out: Annotated[
-        Path | None, typer.Option("--out", help="The page to write.  [default: report.html]")
+        Path | None, typer.Option("--out", help="The page to write, .html.  [default: report.html]")
     ] = None,
     figures: Annotated[
         Path | None,
@@ -54,8 +54,10 @@ def report(
     With --json the analysis document goes to stdout, and a page is written only if --out is given.
     """
     page = out or (None if as_json else Path("report.html"))
+    overwrite = False
     if page is not None:
-        may_write(page, force, inputs=reading.inputs(logs, machine_file, [*(against or []), *(trace or [])]))
+        inputs = reading.inputs(logs, machine_file, [*(against or []), *(trace or [])])
+        overwrite = may_write(page, force, inputs, ends=PAGES)
     if figures is not None:
         may_write_folder(figures, force)
 
@@ -86,12 +88,12 @@ def report(
         )
     if page is not None:
         with working("drawing the page"):
-            write_atomically(page, render(document), overwrite=True)
+            write_atomically(page, render(document), overwrite=overwrite)
     if figures is not None:
         from hersey.charts.analysis import write_figures
 
         with working("writing the figures"):
-            write_figures(document, figures)
+            write_figures(document, figures, overwrite=force)
     if as_json:
         print_document(document)
         return

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -81,14 +82,15 @@ def simulate(
     Example: [bold]hersey simulate --stiffness 2000 --drive-speed 1.3[/bold]
     """
     inputs = [path for path in (belt.machine, fit_file, profile) if path is not None]
+    replace = {}
     if csv is not None:
-        may_write(csv, force, inputs)
+        replace[csv] = may_write(csv, force, inputs, flag="--csv", ends=[".csv"])
     if figure is not None:
-        may_draw(figure, force, inputs)
+        replace[figure] = may_draw(figure, force, inputs)
     if profile is not None and (heat or drive_speed is not None):
         raise ParameterError(f"--profile and {'--heat' if heat else '--drive-speed'} exclude each other")
     if heat:
-        _warming(belt, fit_file, drive_speed, duration, start, begin, check, csv, figure, as_json)
+        _warming(belt, fit_file, drive_speed, duration, start, begin, check, csv, figure, replace, as_json)
         return
     if fit_file is not None or begin:
         raise ParameterError(f"{'--from' if begin else '--fit'} goes with --heat")
@@ -119,7 +121,7 @@ def simulate(
     cycle = motion.stick_slip(train, drag, drive_speed=speed, start=state)
     if run is not None:
         motor = belt.motor_use(run)
-        _write(run, csv, figure)
+        _write(run, csv, figure, replace)
     if as_json:
         ran = {} if run is None else {"energy": json_value(run.energy), "check": json_value(run.check)}
         ran |= {} if motor is None else {"motor": json_value(motor)}
@@ -141,7 +143,8 @@ def simulate(
     say("\n".join([*lines, *numbers.words]))
 
 
-def _write(run: Trajectory, csv: Path | None, figure: Path | None) -> None:
+def _write(run: Trajectory, csv: Path | None, figure: Path | None, replace: Mapping[Path, bool]) -> None:
+    from hersey.files.tables import table
     from hersey.files.writing import write_atomically
 
     if csv is not None:
@@ -151,14 +154,14 @@ def _write(run: Trajectory, csv: Path | None, figure: Path | None) -> None:
         columns = {name: getattr(run, name) for name in names} | {"roll_slips": run.slipping}
         bodies = {name: getattr(run, name) for name in ("film_temperature", "roll_temperature")}
         columns |= {name: kelvin for name, kelvin in bodies.items() if kelvin is not None}
-        write_atomically(csv, pl.DataFrame(columns).write_csv(), overwrite=True)
+        write_atomically(csv, table(pl.DataFrame(columns), ".csv"), overwrite=replace[csv])
     if figure is not None:
         from hersey.charts import chart_of
         from hersey.charts.render import picture
 
         with working("drawing"):
             content = picture(chart_of(run), figure.suffix)
-        write_atomically(figure, content, overwrite=True)
+        write_atomically(figure, content, overwrite=replace[figure])
 
 
 def _warming(
@@ -171,6 +174,7 @@ def _warming(
     check: bool,
     csv: Path | None,
     figure: Path | None,
+    replace: Mapping[Path, bool],
     as_json: bool,
 ) -> None:
     """Simulate with temperature as a state, and say what the motion settles to where it ends."""
@@ -203,7 +207,7 @@ def _warming(
     assert film is not None
     state = float(run.belt_speed[-1]), float(run.stretch[-1])
     cycle = stick_slip(machine.train, drag, drive_speed=speed, temperature=float(film[-1]), start=state)
-    _write(run, csv, figure)
+    _write(run, csv, figure, replace)
     if as_json:
         beside = {"energy": json_value(run.energy), "check": json_value(run.check), "warming": run.to_dict()}
         print_json("simulate", cycle.to_dict() | beside)

@@ -19,7 +19,8 @@ from hersey.cli.outputs import may_write, print_json
 from hersey.cli.progress import bar, working
 from hersey.cli.terminal import say
 from hersey.cli.workers import Scheduler, Workers, workers
-from hersey.errors import OutputError, ParameterError
+from hersey.errors import ParameterError
+from hersey.files.tables import TABLES
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -69,10 +70,10 @@ def sweep(
     in_chunks = _in_chunks(out, chunk, scheduler, processes)
     if threads != 1 and not (scheduler is None and processes is None):
         raise ParameterError("--threads is of this process alone: with workers leave it out")
+    overwrite = False
     if out is not None and not in_chunks:
-        if out.suffix not in (".parquet", ".csv"):
-            raise OutputError(f"--out {out}: name a file that ends in .parquet or .csv, or a folder in .zarr")
-        may_write(out, force, inputs=[scenario, *([machine] if machine else [])])
+        ends = [*TABLES, ".zarr"]
+        overwrite = may_write(out, force, inputs=[scenario, *([machine] if machine else [])], ends=ends)
 
     from hersey.motion.parameters import MOST_SETS
     from hersey.motion.scenario import read_scenario, summary
@@ -99,7 +100,7 @@ def sweep(
             counted = summary(result)
             told += result.attrs.get("notes", [])
     if out is not None and not in_chunks:
-        _write(out, result)
+        _write(out, result, overwrite)
     if as_json:
         print_json("sweep", counted)
         return
@@ -144,10 +145,10 @@ def _said_if_interrupted() -> Iterator[None]:
         raise
 
 
-def _write(out: Path, result: xr.Dataset) -> None:
+def _write(out: Path, result: xr.Dataset, overwrite: bool) -> None:
     """Write every set as a row."""
     from hersey.files.writing import write_atomically
     from hersey.motion.scenario import rows
 
     with working("writing the rows"):
-        write_atomically(out, rows(result, out.suffix), overwrite=True)
+        write_atomically(out, rows(result, out.suffix), overwrite=overwrite)

@@ -58,9 +58,9 @@ def testbench(
         _write_campaign(campaign, [flag for flag, given in own.items() if given], machine, seed, force)
         return
     out = out or Path("log.csv")
-    for path in (out, truth):
-        if path is not None:
-            may_write(path, force)
+    replace = {out: may_write(out, force, ends=[".csv"])}
+    if truth is not None:
+        replace[truth] = may_write(truth, force, flag="--truth", ends=[".json"])
     if truth is not None and truth.absolute() == out.absolute():
         raise OutputError(f"--out and --truth both name {out}: name two files")
 
@@ -70,17 +70,17 @@ def testbench(
     from hersey.files.writing import write_atomically
 
     if size:
-        _write_long(out, _bytes(size), seed)
+        _write_long(out, _bytes(size), seed, replace[out])
         document = {**stand.run(seed=seed).truth_document(), "size": size}
     else:
         with working("running the virtual test stand"):
             log = stand.run(seed=seed)
             text = io.StringIO()
             log.write(text)
-            write_atomically(out, text.getvalue(), overwrite=True)
+            write_atomically(out, text.getvalue(), overwrite=replace[out])
             document = log.truth_document()
     if truth is not None:
-        write_atomically(truth, json.dumps(document, indent=1) + "\n", overwrite=True)
+        write_atomically(truth, json.dumps(document, indent=1) + "\n", overwrite=replace[truth])
     say(f"synthetic log (seed {seed}): {out}")
 
 
@@ -120,11 +120,11 @@ def _write_campaign(
     say(f"synthetic campaign (seed {seed}), {len(files) - 2} runs of {given['--units']} units: {folder}")
 
 
-def _write_long(path: Path, size: int, seed: int) -> None:
+def _write_long(path: Path, size: int, seed: int, overwrite: bool) -> None:
     from hersey import testbench as stand
     from hersey.files.writing import written
 
-    with written(path, overwrite=True) as file, bar("writing") as progress:
+    with written(path, overwrite=overwrite) as file, bar("writing") as progress:
         done = 0
         for text in stand.long_log(bytes_wanted=size, seed=seed):
             done += file.write(text.encode())

@@ -61,7 +61,7 @@ def warmup(
     Exit code 1 says that full speed is not reached; then nothing is written.
     """
     inputs = reading.inputs(machine_file, logs, fit_file)
-    may_write_table_and_figure(out, figure, force, inputs)
+    replaced = may_write_table_and_figure(out, figure, force, inputs)
 
     from hersey.machine.machine import read_machine
     from hersey.stability.warm_up import warm_up
@@ -93,4 +93,4 @@ def warmup(
     film = warm.film_temperature
     said = beyond_the_log(surface, float(film.min()), float(film.max()))
     warm = replace(warm, warnings=(*warm.warnings, f"the limit is that of the {limit[0]}", *said))
-    give("warmup", warm, called="course", table=out, figure=figure, as_json=as_json)
+    give("warmup", warm, called="course", table=out, figure=figure, replace=replaced, as_json=as_json)

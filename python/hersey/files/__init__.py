@@ -4,6 +4,7 @@
 patterns  the files that names and patterns stand for
 reading   a file that may change while it is read
 text      opening a text file, and values of it in messages
+tables    tables as files, of which a spreadsheet runs no text
 toml      a TOML file into tables: what each value is, and what is believed
 writing   writing whole or not at all
 ========  =================================================================

@@ -1,4 +1,8 @@
-"""Writing a file whole or not at all."""
+"""Writing a file whole or not at all, and never over one that nobody said to replace.
+
+Where nothing may be replaced, the new file gets its name by a link, which fails if the name is taken. Of two
+processes that write the same name exactly one succeeds.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +13,7 @@ from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import BinaryIO
 
-from hersey.errors import OutputError
+from hersey.errors import ExistingFileError, OutputError
 
 #: End of the name of a file that is not whole yet.
 SUFFIX = ".part"
@@ -24,26 +28,37 @@ def write_atomically(path: Path, content: str | bytes, *, overwrite: bool) -> No
 
     Raises
     ------
+    ExistingFileError
+        If the file exists and ``overwrite`` is false, even where it appears during the write.
     OutputError
-        If the file exists and ``overwrite`` is false, or it cannot be written.
+        If it cannot be written.
     """
     with written(path, overwrite=overwrite) as file:
         file.write(content.encode("utf-8") if isinstance(content, str) else content)
 
 
-def write_all(contents: Mapping[Path, bytes], *, overwrite: bool) -> None:
+def write_all(contents: Mapping[Path, bytes], *, overwrite: bool | Mapping[Path, bool]) -> None:
     """Write files of which none takes its place before all are written; as `write_atomically` for each.
 
-    A process that is killed between the last steps may leave some new and some old, each whole.
+    ``overwrite`` is for all, or by path. If a name turns out to be taken, nothing is replaced and no new file
+    stays. A process that is killed in the last steps may leave some new and some old, each whole.
     """
+    replace = dict.fromkeys(contents, overwrite) if isinstance(overwrite, bool) else overwrite
     with ExitStack() as stack:
-        parts = {path: stack.enter_context(_part_of(path, overwrite)) for path in contents}
+        parts = {path: stack.enter_context(_part_of(path, replace[path])) for path in contents}
         for path, content in contents.items():
             with _named(path):
                 parts[path].write_bytes(content)
-        for path, part in parts.items():
-            with _named(path):
-                part.replace(path)
+        placed: list[Path] = []
+        try:
+            for path in sorted(parts, key=lambda path: replace[path]):  # new ones first: they alone may fail
+                with _named(path):
+                    _place(parts[path], path, replace[path])
+                placed.append(path)
+        except ExistingFileError:
+            for path in placed:  # each of them new
+                path.unlink(missing_ok=True)
+            raise
 
 
 @contextmanager
@@ -54,13 +69,15 @@ def written(path: Path, *, overwrite: bool) -> Iterator[BinaryIO]:
 
     Raises
     ------
+    ExistingFileError
+        If the file exists and ``overwrite`` is false, at the beginning or at the end.
     OutputError
-        If the file exists and ``overwrite`` is false, or it cannot be written.
+        If it cannot be written.
     """
     with _part_of(path, overwrite) as part, _named(path):
         with part.open("xb") as file:
             yield file
-        part.replace(path)
+        _place(part, path, overwrite)
 
 
 @contextmanager
@@ -69,7 +86,7 @@ def _part_of(path: Path, overwrite: bool) -> Iterator[Path]:
     if path.is_dir():
         raise OutputError(f"{path} is a directory: name a file in it")
     if path.exists() and not overwrite:
-        raise OutputError(f"{path} exists: say --force to replace it, or name another file with --out")
+        raise _exists(path)
     part = _part(path)
     _unfinished.add(part)  # before it is there, so that no moment is without it
     try:
@@ -78,6 +95,27 @@ def _part_of(path: Path, overwrite: bool) -> Iterator[Path]:
         with suppress(OSError):
             part.unlink(missing_ok=True)
         _unfinished.discard(part)
+
+
+def _place(part: Path, path: Path, overwrite: bool) -> None:
+    """Give a whole file its name: over another one, or only if the name is free."""
+    if overwrite:
+        part.replace(path)
+        return
+    try:
+        try:
+            os.link(part, path)
+        except FileExistsError:
+            raise
+        except OSError:  # a file system without links, such as FAT: take the name first, empty
+            path.open("xb").close()
+            part.replace(path)
+    except FileExistsError:
+        raise _exists(path) from None
+
+
+def _exists(path: Path) -> ExistingFileError:
+    return ExistingFileError(f"{path} exists: say --force to replace it, or name another file")
 
 
 @contextmanager

@@ -259,22 +259,16 @@ def _is_plain(options: object) -> bool:
 
 def rows(result: xr.Dataset, suffix: str) -> bytes:
     """Return the sweep as a table with one row per set, in the format of ``suffix`` (.parquet or .csv)."""
-    import io
-
     import polars as pl
+
+    from hersey.files.tables import table
 
     shape = tuple(result.sizes.values())
     columns = {}
     for name in [*PARAMETERS, *(name for name in result.data_vars if name not in PARAMETERS)]:
         values = result[name].broadcast_like(result["frequency"]).transpose(*result["frequency"].dims)
         columns[str(name)] = np.asarray(values).reshape(shape).ravel()
-    table = pl.DataFrame(columns)
-    content = io.BytesIO()
-    if suffix == ".parquet":
-        table.write_parquet(content)
-    else:
-        table.write_csv(content)
-    return content.getvalue()
+    return table(pl.DataFrame(columns), suffix)
 
 
 def summary(result: xr.Dataset) -> dict[str, Any]:

@@ -337,16 +337,11 @@ class Campaign:
         OutputError
             If it is another kind.
         """
-        import io
+        from hersey.files.tables import TABLES, table
 
-        content = io.BytesIO()
-        if suffix == ".parquet":
-            self.dwells().write_parquet(content)
-        elif suffix == ".csv":
-            self.dwells().write_csv(content)
-        else:
+        if suffix not in TABLES:
             raise OutputError(f"a campaign is exported as .parquet or .csv, not as '{suffix}'")
-        return content.getvalue()
+        return table(self.dwells(), suffix)
 
     def check(self, progress: Callable[[int, int], None] | None = None) -> Findings:
         """Check the file, that each log is there and unchanged, the order of the ages, and the fits."""

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from hersey.errors import ChannelError, HerseyError, ParameterError, UnreadableLogError
+from hersey.files.tables import text_of
 from hersey.files.text import read_text
 from hersey.life.age import Age
 
@@ -58,7 +59,7 @@ def read_runs(path: str | Path) -> list[RunToAdd]:
     for number, row in enumerate(rows[1:], 2):
         if not any(cell.strip() for cell in row):
             continue
-        cells = {name: row[i].strip() if i < len(row) else "" for name, i in at.items()}
+        cells = {name: text_of(row[i].strip()) if i < len(row) else "" for name, i in at.items()}
         for name, cell in cells.items():
             if not cell:
                 raise UnreadableLogError(f"{path.name}, line {number}: column '{name}' is empty: fill it in")

@@ -93,9 +93,13 @@ async function copy(text, from) {
 // Rows of a fold that are printed.
 const PRINTED = 3;
 const number = (text) => Number.parseFloat(String(text).replaceAll("−", "-").replaceAll(" ", "").replace(/^[^\d.-]+/, ""));
+// An apostrophe before what a spreadsheet would run as a formula, as hersey/files/tables.py puts it.
+const FORMULA = /(^|[;\t\r\n])(?=["'\s]*[=+\-@\t\r\n\uff1d\uff0b\uff0d\uff20])/g;
+const PLAIN_NUMBER = /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i;
 function csv(heads, rows) {
   const cell = (text) => {
-    const plain = String(text).replaceAll("−", "-").replaceAll("–", "");
+    const shown = String(text).replaceAll("−", "-").replaceAll("–", "");
+    const plain = PLAIN_NUMBER.test(shown) ? shown : shown.replace(FORMULA, "$1'");
     return /[",\r\n]/.test(plain) ? `"${plain.replaceAll('"', '""')}"` : plain;
   };
   return [heads, ...rows].map((row) => row.map(cell).join(",")).join("\r\n") + "\r\n";
