@@ -50,7 +50,10 @@ class Asked:
         """Ask with the headers of the page; ``None`` leaves one out, ``_`` stands for ``-``."""
         return run(self.asked(method, path, [body], **headers))
 
-    async def asked(self, method: str, path: str, parts: list[bytes], **headers: str | None) -> Answer:
+    async def asked(
+        self, method: str, path: str, parts: list[bytes], *, hangs: bool = False, **headers: str | None
+    ) -> Answer:
+        """Ask with a body in parts, after which the page goes away, or with ``hangs`` says nothing more."""
         given = OWN | {name.replace("_", "-"): value for name, value in headers.items()}
         raw = [(name.encode(), value.encode()) for name, value in given.items() if value is not None]
         plain, _, query = path.partition("?")
@@ -60,12 +63,14 @@ class Asked:
             "scheme": "http", "headers": raw, "client": ("127.0.0.1", 1), "server": ("127.0.0.1", PORT),
         }  # fmt: skip
         waiting = [
-            {"type": "http.request", "body": part, "more_body": i + 1 < len(parts)}
+            {"type": "http.request", "body": part, "more_body": hangs or i + 1 < len(parts)}
             for i, part in enumerate(parts)
         ]
         sent: list[dict[str, Any]] = []
 
         async def receive() -> dict[str, Any]:
+            if hangs and not waiting:
+                await asyncio.Event().wait()
             return waiting.pop(0) if waiting else {"type": "http.disconnect"}
 
         async def send(message: dict[str, Any]) -> None:

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import asyncio
+from collections.abc import AsyncIterator
 from pathlib import Path
 
 import pytest
 
 from hersey.app.guard import POLICY, SANDBOX
+from hersey.app.machine import file_faults
 from hersey.app.uploads import Bounds, clean_name
 from tests.app.asking import OWN, PORT, TOKEN, Asked, run
+from tests.app.test_mistakes import log
 
 
 @pytest.fixture
@@ -252,3 +256,71 @@ def test_a_machine_s_file_names_only_what_was_dropped(asked: Asked) -> None:
         (fault,) = one.faults
         assert fault.at == "toml"
         assert "drop that file here too" in fault.text
+
+
+@pytest.mark.parametrize(
+    ("body", "said"),
+    [
+        (b"[" * 100_000, "the JSON of the request is nested too deeply"),
+        (b'{"a":' * 100_000, "the JSON of the request is nested too deeply"),
+        (
+            b'{"roles": ' + b"[" * 20_000 + b"]" * 20_000 + b"}",
+            "the JSON of the request is nested too deeply",
+        ),
+        (b"[1]", "the request is no JSON object"),
+        (b"{", "the request is no JSON: "),
+        (b"\xff", "the request is no JSON: "),
+        (b'{"text": "\\ud800"}', "the request is no JSON: "),
+    ],
+)
+@pytest.mark.parametrize("what", ["choices", "machine", "mend"])
+def test_a_body_that_is_no_json_object_is_refused_in_words(
+    asked: Asked, what: str, body: bytes, said: str
+) -> None:
+    answer = asked.ask("POST", f"/api/analyses/{asked.first}/{what}", body)
+    assert answer.status == 400
+    assert answer.json["error"].startswith(said)
+    assert asked.ask("GET", f"/api/analyses/{asked.first}", origin=None).status == 200
+
+
+def test_a_dropped_file_is_never_replaced_by_one_of_ours(asked: Asked) -> None:
+    """Each has the name of a file that is made while it is looked at."""
+    mapping = b'[torque]\nunit = "N*m"\n'
+    dropped = {"look.json": log(), "read.toml": mapping}
+    one = asked.session.analyses[asked.first]
+
+    async def course() -> None:
+        for name, content in dropped.items():
+            await asked.session.drop(one, name, None, at_once(content))
+        while one.waiting:
+            await asyncio.sleep(0.01)
+
+    run(course())
+    assert [file.state for file in one.files.values()] == ["ready", "mapping"]
+    for file in one.files.values():
+        assert file.path.name == file.name
+        assert [each.name for each in file.path.parent.iterdir()] == [file.name]
+        assert file.path.read_bytes() == dropped[file.name]
+
+
+async def at_once(content: bytes) -> AsyncIterator[bytes]:
+    yield content
+
+
+@pytest.mark.parametrize("name", ["machine.toml", "hersey.toml", "results"])
+def test_a_log_beside_the_machine_replaces_nothing_of_ours(name: str, tmp_path: Path) -> None:
+    machine = '[drivetrain]\nstiffness = "11 N/mm"\nmass = "1 kg"\n[rest]\nlog = "NAME"\n'
+    (tmp_path / "results").mkdir()
+    dropped = tmp_path / "of-the-user"
+    dropped.write_bytes(log())
+    (fault,) = file_faults(machine.replace("NAME", name), tmp_path, {name: dropped})
+    assert fault.text == f"[rest] names the log {name}, a name that is taken here: give the log another"
+    assert dropped.read_bytes() == log()
+    assert {each.name for each in tmp_path.iterdir()} == {"results", "of-the-user"}
+
+
+def test_a_log_that_is_dropped_anew_is_the_one_that_counts(tmp_path: Path) -> None:
+    machine = '[rest]\nlog = "idle.csv"\n'
+    for name in ("first", "second"):
+        file_faults(machine, tmp_path, {"idle.csv": tmp_path / name})
+        assert (tmp_path / "idle.csv").readlink() == tmp_path / name

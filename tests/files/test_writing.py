@@ -160,6 +160,10 @@ WRITES = {
     "--each": ("fit examples/bench.csv --tare standing --each fits.csv", "fits.csv"),
     "--save-mapping": ("inspect log.csv --save-mapping", "hersey.toml"),
     "sweep": ("sweep examples/scenario.toml --out sweep.parquet", "sweep.parquet"),
+    "new": ("new log.csv --machine m.toml --mapping h.toml", "h.toml"),
+}
+#: The same of verbs that take longer.
+TAKES_LONGER = {
     "warmup": (
         "warmup examples/machine.toml examples/bench.csv --tare standing --target '120 mm/s' "
         "--from '20 degC' --out course.csv",
@@ -172,7 +176,6 @@ WRITES = {
     ),
     "report": ("report examples/bench.csv --tare standing --out page.html", "page.html"),
     "map": ("map examples/machine.toml examples/bench.csv --tare standing --out map.svg", "map.svg"),
-    "new": ("new log.csv --machine m.toml --mapping h.toml", "h.toml"),
 }
 
 
@@ -180,15 +183,24 @@ WRITES = {
 def test_no_verb_replaces_what_appears_while_it_works(
     what: str, examples_here: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    typed, name = WRITES[what]
-    (examples_here / "log.csv").write_bytes((ROOT / "examples" / "bench.csv").read_bytes())
-    if what in ("--out", "--truth"):
-        (examples_here / "log.csv").unlink()
+    if what not in ("--out", "--truth"):  # which write it
+        (examples_here / "log.csv").write_bytes((ROOT / "examples" / "bench.csv").read_bytes())
+    refused_at_the_end(*WRITES[what], examples_here, monkeypatch)
+
+
+@pytest.mark.parametrize("what", TAKES_LONGER)
+def test_no_long_verb_replaces_what_appears_while_it_works(
+    what: str, examples_here: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    refused_at_the_end(*TAKES_LONGER[what], examples_here, monkeypatch)
+
+
+def refused_at_the_end(typed: str, name: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(writing, "_place", appearing(Path(name), writing._place))
-    done = run(*shlex.split(typed), cwd=examples_here, answers="\n" * 8)
+    done = run(*shlex.split(typed), cwd=folder, answers="\n" * 8)
     assert (done.returncode, done.stderr.count("exists: say --force")) == (2, 1), done.stderr
-    assert (examples_here / name).read_text() == "theirs"
-    assert not list(examples_here.glob(".*.part"))
+    assert (folder / name).read_text() == "theirs"
+    assert not list(folder.glob(".*.part"))
 
 
 #: A command that says when it has its result, and writes it when it is told to.

@@ -3,6 +3,7 @@
 ========  =====================================================================
 starting  a free port, a token, a folder of this start's own; until Ctrl-C
 server    what the page may ask, and the answers
+door      connections: those that only hold one open are ended
 guard     who may ask: this computer, this page, with this start's token
 uploads   dropped files, to disk as they come, within bounds
 session   the analyses of one start

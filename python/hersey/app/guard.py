@@ -12,6 +12,8 @@ from collections.abc import Sequence
 
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from hersey.app.door import Door
+
 #: The policy of the app's page: its own files, nothing else; no text becomes markup.
 POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self'; "
@@ -33,9 +35,9 @@ _ALWAYS = {
 class Guard:
     """Refuses, before anything else is looked at, what does not come from the page of this start."""
 
-    def __init__(self, app: ASGIApp, *, token: str, port: int) -> None:
-        """Take the token and the port that is listened on."""
-        self._app, self._token = app, token
+    def __init__(self, app: ASGIApp, *, token: str, port: int, door: Door | None = None) -> None:
+        """Take the token, the port that is listened on, and where connections come in."""
+        self._app, self._token, self._door = app, token, door
         self._hosts = (f"127.0.0.1:{port}", f"localhost:{port}")
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -58,6 +60,8 @@ class Guard:
 
         refusal = self._refusal(scope)
         if refusal is None:
+            if self._door is not None and path.startswith("/api/"):  # the token was right
+                self._door.know(scope["client"])
             await self._app(scope, receive, with_headers)
             return
         body = json.dumps({"error": refusal}).encode()

@@ -6,6 +6,7 @@ import re
 import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 from hersey.app.channels import Fault
@@ -172,8 +173,13 @@ def _lay(named: str, folder: Path, dropped: Mapping[str, Path], what: str) -> No
     if named not in dropped:
         raise HerseyError(f"{what} {named}: drop that file here too")
     beside = folder / named
-    if not beside.exists():
-        beside.symlink_to(dropped[named])
+    if named in (MACHINE_FILE, MAPPING_FILE) or (beside.exists() and not beside.is_symlink()):
+        raise HerseyError(f"{what} {named}, a name that is taken here: give the log another")
+    if beside.is_symlink():
+        if beside.readlink() == dropped[named]:
+            return
+        beside.unlink()  # of that name another file was dropped before
+    beside.symlink_to(dropped[named])
 
 
 def named_logs(text: str, others: Mapping[str, Any]) -> set[str]:
@@ -238,12 +244,11 @@ def mapping_said(path: Path) -> tuple[dict[str, str], dict[str, Any]] | None:
         for section, table in document.items()
     }
     answers, _, others = answers_of(plain)
-    beside = path.with_name("read.toml")
-    try:  # as it is written anew, without the log that it names, which may be dropped later
-        write_atomically(beside, mapping_text(answers, others=others), overwrite=True)
-        read_mapping(beside)
-    except HerseyError as error:
-        raise type(error)(str(error).removeprefix("read.toml: ").removeprefix("read.toml ")) from None
-    finally:
-        beside.unlink(missing_ok=True)
+    with TemporaryDirectory() as folder:
+        anew = Path(folder) / "read.toml"
+        try:  # as it is written anew, without the log that it names, which may be dropped later
+            write_atomically(anew, mapping_text(answers, others=others), overwrite=True)
+            read_mapping(anew)
+        except HerseyError as error:
+            raise type(error)(str(error).removeprefix("read.toml: ").removeprefix("read.toml ")) from None
     return answers_of(document)[::2]

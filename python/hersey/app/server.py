@@ -17,6 +17,7 @@ from starlette.responses import FileResponse, JSONResponse, PlainTextResponse, R
 from starlette.routing import Route
 
 from hersey.app.analysis import CORRECTIONS, Analysis
+from hersey.app.door import Door, Patience, SlowError
 from hersey.app.guard import SANDBOX, Guard
 from hersey.app.session import NotNowError, Session, UnknownError
 from hersey.app.uploads import TooMuchError
@@ -38,8 +39,15 @@ _STATIC = {
 }
 
 
-def application(session: Session, *, token: str, port: int) -> Starlette:
-    """Return the server of a session, for the port on which it listens."""
+class BadRequestError(Exception):
+    """A body that is no JSON object; the message says why."""
+
+
+def application(session: Session, *, token: str, port: int, door: Door | None = None) -> Starlette:
+    """Return the server of a session, for the port on which it listens.
+
+    ``door`` is where its connections come in, if it has one.
+    """
     routes = _Routes(session)
 
     @asynccontextmanager
@@ -70,7 +78,7 @@ def application(session: Session, *, token: str, port: int) -> Starlette:
             Route(f"{one}/machine.toml", _safe(routes.machine_file), methods=["GET"]),
             Route(f"{one}/report.html", _safe(routes.report_file), methods=["GET"]),
         ],
-        middleware=[Middleware(Guard, token=token, port=port)],
+        middleware=[Middleware(Guard, token=token, port=port, door=door), Middleware(Patience)],
         lifespan=until_the_end,
     )
 
@@ -103,6 +111,10 @@ def _safe(handler: Handler) -> Handler:
             return _refused(409, str(error))
         except ClientDisconnect:
             return _refused(400, "the page went away")
+        except BadRequestError as error:
+            return _refused(400, str(error))
+        except SlowError as error:
+            return _refused(408, str(error))
         except (ValueError, TypeError, KeyError):
             return _refused(400, "that cannot be chosen")
         except HerseyError as error:
@@ -130,9 +142,15 @@ class _Routes:
             body += chunk
             if len(body) > self._session.bounds.request:
                 raise TooMuchError("that is too long")
-        given = json.loads(body or b"{}")
-        if not isinstance(given, dict):
-            raise ValueError("an object is needed")
+        try:
+            given = json.loads(body or b"{}")
+            if not isinstance(given, dict):
+                raise BadRequestError("the request is no JSON object")
+            json.dumps(given, ensure_ascii=False).encode()  # which no half of a character survives
+        except RecursionError:
+            raise BadRequestError("the JSON of the request is nested too deeply") from None
+        except ValueError as error:
+            raise BadRequestError(f"the request is no JSON: {error}") from None
         return given
 
     async def questions(self, _request: Request) -> Response:

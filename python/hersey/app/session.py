@@ -1,4 +1,9 @@
-"""The analyses of one start: what the page changes, and the processes that read and compute for it."""
+"""The analyses of one start: what the page changes, and the processes that read and compute for it.
+
+An analysis has a folder with a random name. It holds the machine's file and the mapping, with links to the
+logs that these name, a folder ``results``, and a folder for each dropped file. In the last the file lies
+alone in ``dropped``, so that nothing of ours can have its name.
+"""
 
 from __future__ import annotations
 
@@ -22,6 +27,10 @@ from hersey.files.writing import write_atomically
 
 #: Analyses that run beside each other.
 _AT_ONCE = max(1, (os.cpu_count() or 1) // 2)
+
+
+#: Folders of what is computed, and of one dropped file.
+_RESULTS, _DROPPED = "results", "dropped"
 
 
 class UnknownError(Exception):
@@ -69,6 +78,7 @@ class Session:
         one = Analysis(Path())
         one.folder = self.folder / one.id
         one.folder.mkdir(mode=0o700)
+        (one.folder / _RESULTS).mkdir(mode=0o700)
         self.analyses[one.id] = one
         return one
 
@@ -109,7 +119,8 @@ class Session:
         if count >= self.bounds.files:
             raise NotNowError(f"{count} files are here already: remove some first")
         file = Dropped(clean_name(name), Path())
-        folder = one.folder / file.id
+        folder = one.folder / file.id / _DROPPED
+        folder.parent.mkdir(mode=0o700)
         folder.mkdir(mode=0o700)
         file.path = folder / file.name
         most = min(self.bounds.file, self.bounds.all_files - held)
@@ -158,7 +169,9 @@ class Session:
     async def _look(self, one: Analysis, file: Dropped) -> None:
         try:
             async with self._looking:
-                look = await ask({"task": "look", "path": str(file.path)}, file.path.parent, lambda *_: None)
+                look = await ask(
+                    {"task": "look", "path": str(file.path)}, one.folder / file.id, lambda *_: None
+                )
             async with one.lock:
                 if any(_same(other.look, look) for other in one.files.values()):
                     raise Refused("the same log is here already")
@@ -245,7 +258,8 @@ class Session:
             course.step(step)
             one.step, one.share = step, share
 
-        page = one.folder / f"{number()}.html"
+        results = one.folder / _RESULTS
+        page = results / f"{number()}.html"
         machine = one.folder / MACHINE_FILE
         request = {
             "task": "run",
@@ -267,7 +281,7 @@ class Session:
                 )
                 one.state, one.step = "running", "starting"
                 one.course = course = self._courses.begin(alike)
-                one.result = await ask(request, one.folder, said)
+                one.result = await ask(request, results, said)
                 self._courses.keep(alike, course)
             one.saved = await asyncio.to_thread(self._kept, one, page)
             self.shown.pop(one.report, None)

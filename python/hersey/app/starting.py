@@ -15,6 +15,7 @@ from pathlib import Path
 
 import uvicorn
 
+from hersey.app.door import Door
 from hersey.app.server import application, new_token
 from hersey.app.session import Session
 from hersey.app.uploads import Bounds
@@ -49,7 +50,8 @@ def serve(
     """
     with _socket(port) as listening, private_folder() as folder:
         port, token = listening.getsockname()[1], new_token()
-        app = application(Session(folder, reports, bounds), token=token, port=port)
+        door = Door()
+        app = application(Session(folder, reports, bounds), token=token, port=port, door=door)
         config = uvicorn.Config(
             app,
             log_config=None,
@@ -58,9 +60,8 @@ def serve(
             date_header=False,
             proxy_headers=False,
             loop="asyncio",
-            http="h11",
+            http=door.protocol(),
             ws="none",
-            limit_concurrency=100,
             timeout_graceful_shutdown=1,
         )
         address = f"http://127.0.0.1:{port}/#{token}"
