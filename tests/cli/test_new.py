@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
+import re
 import select
+import shlex
 import signal
 import subprocess
 from pathlib import Path
@@ -15,6 +17,7 @@ from hersey.log.mapping import read_mapping
 from hersey.machine.machine import read_machine
 from tests.cli.command import HERSEY, run
 from tests.cli.test_bad_input import staircase, text
+from tests.life.test_campaign import means
 
 #: Eight answers about channels, all as proposed; then the machine, one point.
 CHANNELS = [""] * 8
@@ -158,3 +161,72 @@ def test_in_a_terminal_a_wrong_answer_is_asked_again_and_ctrl_c_leaves_nothing(f
     terminal.until("hersey: interrupted")
     assert terminal.process.wait() == 130
     assert [path.name for path in folder.iterdir()] == ["log.csv"]
+
+
+#: What a person who knows the test stand writes into each line, by role and field.
+KNOWN = {
+    "torque": {"channel": "a1", "unit": "mN*m"},
+    "speed": {"channel": "b1", "unit": "rpm"},
+    "temperature": {"channel": "hot", "unit": "degC"},
+    "time": {"channel": "when", "unit": "s"},
+}
+
+
+@pytest.mark.parametrize(
+    ("heading", "lines_to_complete"),
+    [
+        (
+            "time,torque,speed,temperature",
+            "line 5 (unit of the torque), line 14 (unit of the speed), line 20 (unit of the temperature), "
+            "line 26 (unit of the time)",
+        ),
+        ("Time [s],torque,Speed [rpm],Temperature [degC]", "line 5 (unit of the torque)"),
+        (
+            "when [s],a1,b1,hot [degC]",
+            "line 4 (channel of the torque), line 5 (unit of the torque), line 13 (channel of the speed), "
+            "line 14 (unit of the speed)",
+        ),
+    ],
+)
+def test_what_no_log_tells_is_left_to_be_completed(
+    heading: str, lines_to_complete: str, tmp_path: Path
+) -> None:
+    """The file names the lines, guesses no unit, and with them the next command works as it is printed."""
+    content = text(staircase()).decode()
+    (tmp_path / "log.csv").write_text("\n".join([heading, *content.splitlines()[1:]]) + "\n")
+    done = run("new", "log.csv", cwd=tmp_path, answers=lines(*CHANNELS, ""))
+    assert done.returncode == 0, done.stderr
+    first, complete, then = done.stdout.splitlines()
+    assert (first, complete) == ("mapping: hersey.toml", f"complete first: hersey.toml, {lines_to_complete}")
+    assert then == "then: hersey report log.csv"
+    mapping = tmp_path / "hersey.toml"
+    named = [int(number) for number in re.findall(r"line (\d+)", complete)]
+    written = mapping.read_text().splitlines()
+    assert [i for i, line in enumerate(written, 1) if re.match(r'\w+ = "" ', line)] == named
+    refused = run("report", "log.csv", cwd=tmp_path)
+    assert refused.returncode == 2
+    assert re.search("hersey.toml: [a-z]+[.](unit|channel) is empty: fill it in", refused.stderr)
+    role = ""
+    for i, line in enumerate(written):
+        role = line.strip("[]") if line.startswith("[") else role
+        if i + 1 in named:
+            field = line.split()[0]
+            written[i] = f'{field} = "{KNOWN[role][field]}"'
+    mapping.write_text("\n".join(written))
+    report = run(*shlex.split(then)[2:], cwd=tmp_path)
+    assert report.returncode == 0, report.stderr
+    assert (tmp_path / "report.html").is_file()
+
+
+def test_a_log_without_temperature_gets_a_command_that_works(tmp_path: Path) -> None:
+    rows = [",".join(line.split(",")[:3]) for line in text(staircase()).decode().splitlines()]
+    (tmp_path / "log.csv").write_text("\n".join(rows) + "\n")
+    done = run("new", "log.csv", cwd=tmp_path, answers=lines(*CHANNELS, ""))
+    assert done.stdout.splitlines()[1:] == ["now: hersey report log.csv --isothermal"]
+    assert run("report", "log.csv", "--isothermal", cwd=tmp_path).returncode == 0
+
+
+def test_a_table_of_means_needs_no_time(tmp_path: Path) -> None:
+    means(tmp_path / "log.csv")
+    done = run("new", "log.csv", cwd=tmp_path, answers=lines(*CHANNELS, ""))
+    assert done.stdout.splitlines() == ["mapping: hersey.toml", "now: hersey report log.csv"]

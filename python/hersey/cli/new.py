@@ -13,7 +13,7 @@ import typer
 from hersey.cli.options import Force
 from hersey.cli.outputs import may_write
 from hersey.cli.terminal import say
-from hersey.errors import ParameterError
+from hersey.errors import HerseyError, ParameterError
 
 if TYPE_CHECKING:
     from hersey.cli.asking import Asking
@@ -68,21 +68,41 @@ def new(
     asking = Asking([*order, f"{', '.join(q.field for q in POINT)} of each operating point"])
     contents: dict[Path, bytes] = {}
     if log is not None and mapping is not None:
-        contents[mapping] = _mapping(log, asking).encode()
+        told, given = _mapping(log, asking)
+        contents[mapping] = told.encode()
     text = _machine(asked, asking, machine)
     if text:
         contents[machine] = text.encode()
     write_all(contents, overwrite=replace)
     for path in contents:
         say(f"{'mapping' if path == mapping else 'machine'}: {path}")
-    if log is not None:
-        parts = ["hersey", "report", str(log)]
+    if log is not None and mapping is not None:
+        to_complete = _to_complete(contents[mapping].decode())
+        if to_complete:
+            say(f"complete first: {mapping}, {', '.join(to_complete)}")
+        parts = ["hersey", "report", str(log), *given]
         parts += [] if mapping == log.with_name("hersey.toml") else ["--mapping", str(mapping)]
-        say(f"now: {shlex.join([*parts, *(['--machine', str(machine)] if text else [])])}")
+        parts += ["--machine", str(machine)] if text else []
+        say(f"{'then' if to_complete else 'now'}: {shlex.join(parts)}")
 
 
-def _mapping(log: Path, asking: Asking) -> str:
-    """The mapping of a log, whose channels are proposed as they are found."""
+def _to_complete(mapping: str) -> list[str]:
+    """The lines of a mapping whose values are empty, each with what belongs there."""
+    found, role = [], ""
+    for number, line in enumerate(mapping.splitlines(), 1):
+        stated = line.partition("#")[0].strip()
+        if stated.startswith("["):
+            role = stated.strip("[]")
+        elif stated.endswith('= ""'):
+            found.append(f"line {number} ({stated.split()[0]} of the {role})")
+    return found
+
+
+def _mapping(log: Path, asking: Asking) -> tuple[str, list[str]]:
+    """The mapping of a log, whose channels are proposed as they are found, and options that the log needs.
+
+    What the log does not tell and nobody answered is left to be completed in the file.
+    """
     from hersey.app.looking import look
     from hersey.log.channels import ChannelChoice, find_channel, role_conversion
     from hersey.log.reading import list_channels
@@ -94,6 +114,8 @@ def _mapping(log: Path, asking: Asking) -> str:
     known = {channel["name"]: channel for channel in seen["channels"]}
     say(f"{log.name}: {', '.join(map(str, columns[:40]))}", file=sys.stderr)
     answers: dict[str, str] = {}
+    lacking: list[str] = []
+    options: list[str] = []
     for role in _ROLES:
 
         def named(text: str, role: str = role) -> str:
@@ -106,16 +128,38 @@ def _mapping(log: Path, asking: Asking) -> str:
             role_conversion(role, text)
             return text
 
-        proposed = seen["found"].get(role, "")
+        claims = seen["claims"].get(role, [])
+        proposed = seen["found"].get(role, "") or (claims[0] if len(claims) == 1 else "")
         why = seen["without"].get(role, "")
         if why:
             say(f"  {why}", file=sys.stderr)
         name = asking.ask(f"channel of the {role}", named, proposed=proposed)
         told = known.get(name or "", {}).get("unit", "")
-        of = asking.ask(f"unit of the {role}", unit, proposed=told if name else "", needed=bool(name))
+        of = asking.ask(f"unit of the {role}", unit, proposed=told if _is_of(role, told) else "")
+        if name:
+            answers[f"{role}.channel"] = name
         if name and of:
-            answers |= {f"{role}.channel": name, f"{role}.unit": of}
-    return mapping_text(answers, title=f"Channels of {log.name}, as told to hersey new.")
+            answers[f"{role}.unit"] = of
+        if name is None and not claims and not proposed and role == "temperature":
+            options.append("--isothermal")
+        elif name is None and (proposed or (role == "time" and (seen["own_clock"] or seen["means"]))):
+            continue
+        else:
+            lacking += [key for field in ("channel", "unit") if (key := f"{role}.{field}") not in answers]
+    return mapping_text(
+        answers, title=f"Channels of {log.name}, as told to hersey new.", lacking=lacking
+    ), options
+
+
+def _is_of(role: str, unit: str) -> bool:
+    """Whether a unit measures what a role is."""
+    from hersey.log.channels import role_conversion
+
+    try:
+        role_conversion(role, unit)
+    except HerseyError:
+        return False
+    return True
 
 
 def _machine(asked: list[Question], asking: Asking, path: Path) -> str:

@@ -132,7 +132,7 @@ def _share(given: object, info: ValidationInfo[Any]) -> object:
 
 def _not_blank(text: str, info: ValidationInfo[Any]) -> str:
     if info.context is not None and not text.strip():
-        raise ParameterError(f"is {shown(text)}: write a text")
+        raise ParameterError("is empty: fill it in, or delete its line")
     return text
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Any
 
 from hersey.errors import ParameterError
@@ -62,15 +62,24 @@ def machine_text(
     return "\n".join(lines) + "\n"
 
 
-def mapping_text(answers: Mapping[str, str], *, title: str = "", others: Others | None = None) -> str:
+def mapping_text(
+    answers: Mapping[str, str],
+    *,
+    title: str = "",
+    others: Others | None = None,
+    lacking: Collection[str] = (),
+) -> str:
     """Return ``hersey.toml`` as text; ``title`` is a first line of its own, ``others`` what no question asks.
+
+    ``lacking`` are questions that must be answered and are not: their values are empty, which no reader
+    takes, with a comment that says what to write there.
 
     Raises
     ------
     ParameterError, UnitError
         If an answer cannot be read, in the reader's words.
     """
-    lines = _tables(MAPPING, _values(answers), others or {})
+    lines = _tables(MAPPING, _values(answers), others or {}, lacking)
     return "\n".join([*([f"# {title}"] if title else []), *lines]) + "\n"
 
 
@@ -143,13 +152,15 @@ def _values(answers: Mapping[str, str]) -> dict[str, Any]:
     return values
 
 
-def _tables(questions: Iterable[Question], values: Mapping[str, Any], others: Others) -> list[str]:
+def _tables(
+    questions: Iterable[Question], values: Mapping[str, Any], others: Others, lacking: Collection[str] = ()
+) -> list[str]:
     lines = [_line(key, value, "") for key, value in others.items() if not isinstance(value, dict)]
     sections = list(dict.fromkeys(q.section for q in questions))
     for section in sections:
         own = [q for q in questions if q.section == section]
         more = others.get(section, {})
-        stated = any(q.key in values for q in own) or bool(more)
+        stated = any(q.key in values or q.key in lacking for q in own) or bool(more)
         mark = "" if stated else "# "
         lines += [""] if lines else []
         lines += [f"# {TITLES[section]}"] if TITLES[section] else []
@@ -159,6 +170,10 @@ def _tables(questions: Iterable[Question], values: Mapping[str, Any], others: Ot
         for q in own:
             if q.key in values:
                 lines.append(_line(q.field, values[q.key], q.words))
+            elif q.key in lacking:
+                lines.append(
+                    _line(q.field, "", f"write the {q.words.removeprefix('its ')}, as {_example(q)}")
+                )
             else:
                 lines.append(f"# {_line(q.field, _example(q), q.words)}")
         lines += [_line(key, value, "") for key, value in more.items()]
