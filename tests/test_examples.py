@@ -5,11 +5,13 @@ from __future__ import annotations
 import re
 import runpy
 import shlex
+import shutil
 import sys
 from pathlib import Path
 
 import pytest
 
+from hersey import testbench
 from hersey.cli.application import VERBS
 from tests.cli.command import run
 from tests.cli.test_cli import example
@@ -35,26 +37,57 @@ def blocks(language: str) -> list[str]:
     return re.findall(rf"```{language}\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
 
 
-def without_output(line: str) -> str:
-    return re.sub(r" --out \S+", "", line)
+def typed(line: str, folder: Path) -> None:
+    """Type a line of a README in a folder; what goes behind ``>`` is the file for its output."""
+    words, _, output = line.partition(" > ")
+    done = run(*shlex.split(words)[1:], cwd=folder)
+    assert done.returncode == 0, f"{line}: {done.stderr}"
+    if output:
+        (folder / output).write_text(done.stdout)
 
 
 def test_readme_commands(tmp_path: Path) -> None:
-    (tmp_path / "examples").symlink_to(ROOT / "examples")
-    lines = [line for block in blocks("sh") for line in block.splitlines() if line.startswith("hersey")]
-    lines = [line for line in lines if "bench.csv --torque" not in line]  # the reader's own file
-    assert len(lines) >= 4
-    # those that stand in the help too, but for the name of an output, are typed by tests/cli/test_cli.py
-    helped = {without_output(example(verb)) for verb in VERBS}
-    for line in (line for line in lines if without_output(line) not in helped):
-        done = run(*shlex.split(line)[1:], cwd=tmp_path)
-        assert done.returncode == 0, f"{line}: {done.stderr}"
+    """As they are typed, one after the other, in a fresh copy."""
+    shutil.copytree(ROOT / "examples", tmp_path / "examples")
+    lines = [line for line in commands() if line not in OWN]
+    assert len(lines) >= 15
+    helped = {example(verb) for verb in VERBS}  # which tests/cli/test_cli.py types
+    for line in lines:
+        if line not in helped:
+            typed(line, tmp_path)
 
 
-def test_readme_code(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(ROOT)
-    (code,) = blocks("python")
-    exec(compile(code, "README.md", "exec"), {})
+#: Commands of the README for the reader's own files: those of the line, made here of the example's.
+OWN = {
+    'hersey report bench.csv --torque "Tq (ozf.in)" --speed-unit rpm': ["bench.csv"],
+    "hersey report NEW.csv --against OLD.csv": ["NEW.csv", "OLD.csv"],
+}
+
+
+@pytest.mark.parametrize("line", OWN)
+def test_readme_commands_of_the_reader(line: str, tmp_path: Path) -> None:
+    text = (ROOT / "examples" / "bench.csv").read_text()
+    if "Tq" in line:
+        text = text.replace("Drive torque [N*m]", "Tq (ozf.in)").replace("Drive speed [rpm]", "Drive speed")
+    for name in OWN[line]:
+        (tmp_path / name).write_text(text)
+    if "OLD.csv" in OWN[line]:
+        testbench.run(seed=5).write(tmp_path / "OLD.csv")
+    typed(line, tmp_path)
+    assert (tmp_path / "report.html").is_file()
+
+
+def test_readme_has_no_other_command() -> None:
+    """A command with files in a sentence is one for the reader's own, or names a verb alone."""
+    inline = re.findall(r"`(hersey [^`]*)`", (ROOT / "README.md").read_text())
+    assert OWN.keys() <= {*inline, *commands()}
+    assert all(
+        line in OWN or re.fullmatch(r"hersey (COMMAND --help|[a-z]+( fmu| LOG)?)", line) for line in inline
+    )
+
+
+def commands() -> list[str]:
+    return [line for block in blocks("sh") for line in block.splitlines() if line.startswith("hersey")]
 
 
 def test_readme_names_only_targets_that_exist() -> None:
