@@ -57,5 +57,7 @@ def _give_up_stdout() -> None:
 
 
 def _complain(message: str) -> None:
+    from hersey.cli.terminal import say
+
     with suppress(OSError):
-        print(f"hersey: {message}", file=sys.stderr)
+        say(f"hersey: {message}", file=sys.stderr)
