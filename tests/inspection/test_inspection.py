@@ -365,7 +365,7 @@ def test_a_doubtful_unit_is_told_of_logs_and_of_tables_of_means(tmp_path: Path) 
     rows = [f"{0.05 * i:.2f},{1 + i / 1e4},{60 + 10 * (i // 400)},{150 + i / 1e3}" for i in range(2000)]
     log, heading = tmp_path / "log.csv", "time [s],torque [N*m],speed [rpm],temp"
     log.write_text("\n".join([f"{heading} [degC]", *rows[:900], "45,1,80,900", *rows[901:]]))
-    ordered, one_way = inspect(log).cautions
+    ordered, one_way = inspect(log).cautions[:2]
     assert one_way.startswith("Speeds were approached from below only")
     assert ordered.startswith("Speed and time go together")
     kelvin = [f"{row.rsplit(',', 1)[0]},{float(row.rsplit(',', 1)[1]) + 273.15:.3f}" for row in rows]

@@ -308,7 +308,10 @@ def test_a_time_that_lies_apart_costs_its_row(odd: float, row: int, tmp_path: Pa
     time[row] = odd
     log = hersey.read(write(tmp_path / "a.csv", text(**(TORQUE | {"Time [s]": time}))), isothermal=True)
     np.testing.assert_allclose(log.runs[0].time, np.delete(TIME, row))
-    assert f"line {row + 2}: time runs" in log.files[0].notes[0]
+    assert (
+        f"line {row + 2}, column 'Time': {odd:.0f} s (once) is no time, off the clock"
+        in log.files[0].notes[0]
+    )
 
 
 def test_rows_without_a_clock_and_their_interval(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -84,7 +84,7 @@ class Inspection(Result):
     needed
         Flags without which they could not.
     dropped
-        Rows left out because a number is missing, by file.
+        Rows left out because a number is missing or cannot be right, by file.
     corrections
         What the mapping had corrected.
     support
@@ -144,7 +144,8 @@ class Inspection(Result):
             lines += [*_file_lines(file, table=len(self.files) <= _TABLES), ""]
         lines += [f"corrected: {correction}" for correction in self.corrections]
         lines += [
-            f"{rows} rows of {name} are left out: a number is missing" for name, rows in self.dropped.items()
+            f"{rows} rows of {name} are left out: a number is missing or cannot be right"
+            for name, rows in self.dropped.items()
         ]
         if self.needed:
             lines.append(f"readable as a log of torque with {' '.join(self.needed)}")

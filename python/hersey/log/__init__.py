@@ -11,6 +11,9 @@ friction       friction forces and coefficients as torques, sliding speeds as th
 stating        a radius or a load: proposed, used once a person states it
 slow_channels  a temperature or a load that is slower than the rows: interpolated between its values
 rows           which rows can be used, and where one run ends and the next begins
+believed       what a channel of a drive can read at all, and codes for no reading
+impossible     readings that cannot be right: found, named, left out
+stray_times    rows whose time lies off the clock around them
 columns        columns as they stand, for readers with roles of their own
 assembly       from a recording to a run on the clock of the torque
 reading        `read`: from files to a log

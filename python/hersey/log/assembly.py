@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from hersey.arrays import BoolArray, FloatArray, IntArray
 from hersey.errors import ChannelError, HerseyError, UnreadableLogError
+from hersey.log.believed import in_si
 from hersey.log.channels import (
     OTHER_ROLES,
     ROLES,
@@ -18,13 +19,15 @@ from hersey.log.channels import (
     is_dead,
     no_channel,
     refuse_two_clocks,
+    role_conversion,
 )
 from hersey.log.friction import beside, in_rotation, notes_on, slow_roles, unused
+from hersey.log.impossible import Impossible, Reading, impossible_rows
 from hersey.log.recording import Recording, Signal
 from hersey.log.rows import LeftOut, runs_with_records
 from hersey.log.text.layout import Column
 from hersey.log.text.stamps import counted_since, is_clock_name
-from hersey.log.torque_log import LARGEST, NO_CLOCK, Channel, LogFile, Run
+from hersey.log.torque_log import NO_CLOCK, Channel, LogFile, Run
 from hersey.units import Conversion
 
 
@@ -90,6 +93,8 @@ class Assembly:
         left_out, torque = LeftOut(), self.parts["torque"]
         notes = list(self.recording.notes)
         self._leave_out_missing(left_out, drop_missing)
+        impossible, rows_of_them = self._leave_out_impossible(drop_missing)
+        notes += [each.note() for each in impossible]
         kept = np.ones(torque.time.size, dtype=bool)
         for part in self.parts.values():
             if part.tick != torque.tick:
@@ -123,6 +128,7 @@ class Assembly:
             rows = rows[usable]
         notes += [*notes_on(self.chosen, self.stated), *self._dead.values(), *self._unused]
         log = self._record(tuple(note for note in notes if note))
+        log = replace(log, missing_rows=rows_of_them, impossible=impossible)
         return runs_with_records(
             log,
             arrays,
@@ -185,9 +191,7 @@ class Assembly:
                 f"{self.source.name}: channel '{column.path}' has {values.size} values and its clock "
                 f"{time.size}: the file is damaged or cut off"
             )
-        with np.errstate(over="ignore", invalid="ignore"):
-            values = values * unit.scale + unit.offset
-        return _Part(role, column, unit, values, time, tick, np.arange(values.size))
+        return _Part(role, column, unit, in_si(values, unit), time, tick, np.arange(values.size))
 
     def _says_nothing(self, column: Column) -> bool:
         """Whether a channel holds one value throughout, or none; it is noted then."""
@@ -239,8 +243,7 @@ class Assembly:
         chosen, unit = clock
         tick = f"column {chosen.index}"
         if tick not in self._clocks:
-            with np.errstate(over="ignore", invalid="ignore"):
-                values = self.recording.signals[chosen.index].load() * unit.scale + unit.offset
+            values = in_si(self.recording.signals[chosen.index].load(), unit)
             self._clocks[tick] = (values, tick, Channel("time", chosen.path, unit.unit))
         return self._clocks[tick]
 
@@ -266,7 +269,7 @@ class Assembly:
             parts = [part for part in self.parts.values() if part.tick == tick]
             slow = [p for p in parts if tick == torque.tick and p.role in slow_roles(self.chosen)]
             needed = [p for p in parts if p not in slow]
-            gone = ~np.logical_and.reduce([_believed(p.time) & _believed(p.values) for p in needed])
+            gone = ~np.logical_and.reduce([np.isfinite(p.time) & np.isfinite(p.values) for p in needed])
             for part in slow:
                 self._set_apart(part, gone)
             here = left_out if tick == torque.tick else LeftOut()
@@ -285,22 +288,38 @@ class Assembly:
 
     def _set_apart(self, part: _Part, gone: BoolArray) -> None:
         """Count the samples that lack only what may be slow, and note the first of them."""
-        known = _believed(part.values)
+        known = np.isfinite(part.values)
         rows = np.flatnonzero(~known & ~gone)
         lacking = LeftOut()
         lacking.add(rows.size, (self._fault([part], int(row)) for row in rows))
         self._lacking[part.role] = lacking
         part.values = np.where(known, part.values, np.nan)
 
+    def _leave_out_impossible(self, allowed: bool) -> tuple[tuple[Impossible, ...], int]:
+        """Leave out samples that cannot be right, of every channel on one clock; what they were, how many."""
+        found: tuple[Impossible, ...] = ()
+        rows = 0
+        for tick in dict.fromkeys(part.tick for part in self.parts.values()):
+            parts = [part for part in self.parts.values() if part.tick == tick]
+            readings = [Reading(part.role, part.column, part.unit, part.values) for part in parts]
+            if (clock := self._clocks[tick][2]).name != NO_CLOCK:
+                unit = role_conversion("time", clock.unit)[1]
+                readings.insert(0, Reading("time", Column(-1, clock.name, clock.unit), unit, parts[0].time))
+            gone, here = impossible_rows(
+                readings, self.source.name, partial(self._where, parts[0]), allowed=allowed
+            )
+            for part in parts if gone.any() else ():
+                part.values, part.time, part.rows = part.values[~gone], part.time[~gone], part.rows[~gone]
+            found, rows = (*found, *here), rows + int(gone.sum())
+        return found, rows
+
+    def _where(self, part: _Part, row: int, column: Column) -> str:
+        """A channel and one of its samples that are left, in words."""
+        return f"channel '{column.path}', {self._place(part, int(part.rows[row]))}"
+
     def _fault(self, parts: list[_Part], row: int) -> str:
-        """The channel of the first number of a sample that is of no use, and what is wrong with it."""
+        """The channel of the first number of a sample that is missing, in words."""
         place = self._place(parts[0], row)
-        for part in parts:
-            if np.isfinite(part.values[row]) and not _believed(part.values[row]):
-                written = (part.values[row] - part.unit.offset) / part.unit.scale
-                return (
-                    f"channel '{part.column.path}', {place}: {written:g} {part.unit.unit} is no {part.role}"
-                )
         bad = next((part for part in parts if not np.isfinite(part.values[row])), None)
         name = bad.column.path if bad else self._clocks[parts[0].tick][2].name
         return f"channel '{name}', {place}: no number stands where one is needed"
@@ -317,11 +336,6 @@ class Assembly:
 
     def _spans(self) -> str:
         return ", ".join(f"{p.role} from {p.time[0]:.6g} to {p.time[-1]:.6g} s" for p in self.parts.values())
-
-
-def _believed(numbers: Any) -> Any:
-    """Whether numbers in SI are finite, and of a size that a drive has."""
-    return np.isfinite(numbers) & (np.abs(numbers) <= LARGEST)
 
 
 def _has(role: str, part: tuple[Column, ...], choice: ChannelChoice, file: str) -> bool:

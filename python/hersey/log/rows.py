@@ -179,7 +179,10 @@ def runs_with_records(
                     file,
                     name=name,
                     rows=run["time"].size,
-                    missing_rows=left_out.rows + sum(c.lost for c in slow) if number == 1 else 0,
+                    missing_rows=file.missing_rows + left_out.rows + sum(c.lost for c in slow)
+                    if number == 1
+                    else 0,
+                    impossible=file.impossible if number == 1 else (),
                     notes=notes,
                 ),
             )

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hersey.arrays import FloatArray
+from hersey.log.impossible import Impossible
 from hersey.log.sensors import Sensors
 from hersey.result import Result, json_record
 from hersey.units import celsius, rpm, takes_si
@@ -45,11 +46,12 @@ class LogFile:
     sha256: str
     bytes: int
     rows: int
-    missing_rows: int
+    missing_rows: int  #: left out: a number is missing, or cannot be right
     channels: tuple[Channel, ...]
     comments: tuple[str, ...]  #: comment lines above the header
     cut_off: bool = False  #: the file ends before its time
     notes: tuple[str, ...] = ()  #: what was done to read it: clocks aligned, time stamps, lines left out
+    impossible: tuple[Impossible, ...] = ()  #: readings that cannot be right; their rows are left out
 
 
 @dataclass(frozen=True)

@@ -106,6 +106,21 @@ class PointsPart(Part):
     rest_errors: list[list[float]] = Field(default=[], description="N m, shape (points, errors)")
 
 
+class ImpossiblePart(Part):
+    """Readings of a channel that cannot be right, for one reason; values in its unit as written."""
+
+    role: str
+    channel: str
+    unit: str
+    reason: str = Field(description="range, code, outlier, sign, drop-out, jump or clock")
+    rows: int
+    values: list[tuple[float, int]] = Field(description="the most frequent ones, and how often they occur")
+    low: float
+    high: float
+    where: str = Field(description="the first of them, in words")
+    limits: str = Field(description="what is believed, in words; empty unless the reason is range")
+
+
 class LogFilePart(Part):
     """A file that was read."""
 
@@ -118,6 +133,7 @@ class LogFilePart(Part):
     comments: list[str] = Field(description="comment lines above the header")
     cut_off: bool = Field(description="the file ends before its time")
     notes: list[str]
+    impossible: list[ImpossiblePart] = Field(default=[], description="readings that cannot be right")
 
 
 class RunPart(Part):

@@ -21,6 +21,7 @@ import polars as pl
 from hersey.arrays import BoolArray, FloatArray, IntArray
 from hersey.errors import ChannelError, UnreadableLogError
 from hersey.files.reading import OpenFile, appended
+from hersey.log.believed import in_si
 from hersey.log.channels import (
     ROLES,
     ChannelChoice,
@@ -31,13 +32,14 @@ from hersey.log.channels import (
     refuse_two_clocks,
 )
 from hersey.log.friction import beside, in_rotation, notes_on, slow_roles, unused
+from hersey.log.impossible import Impossible, Reading, impossible_rows
 from hersey.log.rows import LeftOut, runs_with_records
 from hersey.log.text.footer import end_of_table
 from hersey.log.text.layout import BLANKS, SNIFFED, Column, Layout, find_layout, split, tabbed
 from hersey.log.text.numbers import MISSING, is_missing, looks_numeric
 from hersey.log.text.repeated_header import refuse_another_header
 from hersey.log.text.stamps import Stamps
-from hersey.log.torque_log import LARGEST, NO_CLOCK, Channel, LogFile, Run
+from hersey.log.torque_log import NO_CLOCK, Channel, LogFile, Run
 from hersey.spelling import printable
 from hersey.units import Conversion
 
@@ -74,6 +76,7 @@ def read_delimited(
         table.slow = slow_roles(channels)
         table.read(file.opened, end.byte, progress)
         growth = file.opened.growth(table.digest.hexdigest())
+    arrays, impossible = table.arrays()
     used = tuple(Channel(role, column.name, si.unit) for role, (column, si) in table.channels.items())
     if stated.every is not None:
         used = (Channel("time", NO_CLOCK, f"{stated.every:g} s"), *used)
@@ -82,7 +85,7 @@ def read_delimited(
         table.digest.hexdigest(),
         size,
         0,
-        0,
+        table.impossible_rows,
         used,
         layout.comments,
         end.cut_off,
@@ -94,10 +97,12 @@ def read_delimited(
             *unused(layout.named, channels, stated),
             *end.notes,
             *growth,
+            *(each.note() for each in impossible),
         ),
+        impossible,
     )
     return runs_with_records(
-        log, table.arrays(), table.place, table.left_out, table.lacking, drop_missing=drop_missing
+        log, arrays, table.place, table.left_out, table.lacking, drop_missing=drop_missing
     )
 
 
@@ -256,6 +261,7 @@ class _Table:
         self.rows = 0  # so far, those that were left out among them
         self.stamps = {i: Stamps(style) for i, style in layout.stamps.items()}
         self._kept_last = 0
+        self._believed: IntArray | None = None  # rows that were kept and believed, None for all
         self._lines: list[tuple[int, Sequence[int], IntArray | None]] = []  # first row, lines, those kept
 
     @property
@@ -303,14 +309,36 @@ class _Table:
         columns = [column for column in self.columns if column.index in self.stamps]
         return [self.stamps[column.index].note(column.name) for column in columns]
 
-    def arrays(self) -> dict[str, FloatArray]:
+    def arrays(self) -> tuple[dict[str, FloatArray], tuple[Impossible, ...]]:
+        """What the rows hold, by role, as a log has it, and readings that cannot be right, left out."""
         arrays = {}
         for role in tuple(self.parts):  # one after another, so that only one is held twice
             arrays[role] = np.concatenate(self.parts.pop(role))
-        return arrays
+        readings = [
+            Reading(role, *self.channels[role], values)
+            for role, values in arrays.items()
+            if role in self.channels
+        ]
+        gone, found = impossible_rows(
+            readings,
+            self.name,
+            lambda row, column: f"{self.place(row)}, column '{column.name}'",
+            allowed=self.drop_missing,
+        )
+        if gone.any():
+            self._believed = np.flatnonzero(~gone)
+            arrays = {role: values[self._believed] for role, values in arrays.items()}
+        return in_rotation(arrays, self.channels, self.stated), found
+
+    @property
+    def impossible_rows(self) -> int:
+        """Rows that were left out because a reading cannot be right."""
+        kept = self._lines[-1][0] + self._kept_last if self._lines else 0
+        return 0 if self._believed is None else kept - self._believed.size
 
     def place(self, row: int) -> str:
         """Where a row that was kept stands in the file."""
+        row = row if self._believed is None else int(self._believed[row])
         first, lines, kept = self._lines[bisect_right(self._lines, row, key=lambda block: block[0]) - 1]
         return f"line {lines[row - first if kept is None else int(kept[row - first])]}"
 
@@ -342,9 +370,10 @@ class _Table:
         values = self._parsed(block)
         by_role = self._in_si(values)
         needed = [numbers for role, numbers in by_role.items() if role not in self.slow]
-        gone = ~np.logical_and.reduce([_believed(numbers) for numbers in needed])
+        gone = ~np.logical_and.reduce([np.isfinite(numbers) for numbers in needed])
+        gone |= ~self._has_radius(by_role)
         for role in self.slow & by_role.keys():
-            known = _believed(by_role[role])
+            known = np.isfinite(by_role[role])
             by_role[role] = np.where(known, by_role[role], np.nan)
             rows = np.flatnonzero(~known & ~gone)
             faults = (self._fault(block, values, int(row)) for row in rows)
@@ -360,22 +389,26 @@ class _Table:
         self.rows += len(block.lines)
 
     def _in_si(self, values: list[FloatArray]) -> dict[str, FloatArray]:
-        """What the columns hold, by role, as a log has it; not finite where a number is missing."""
-        arrays: dict[str, FloatArray] = {}
-        with np.errstate(over="ignore", invalid="ignore"):
-            for (role, (_, si)), numbers in zip(self.channels.items(), values, strict=True):
-                arrays[role] = np.asarray(numbers * si.scale + si.offset, dtype=float)
-        arrays = in_rotation(arrays, self.channels, self.stated)
+        """What the columns hold, by role, in SI; NaN where a number is missing."""
+        arrays = {
+            role: in_si(numbers, si)
+            for (role, (_, si)), numbers in zip(self.channels.items(), values, strict=True)
+        }
         if self.stated.every is not None:
             numbers = self.rows + np.arange(arrays["torque"].size, dtype=float)
             arrays["time"] = numbers * self.stated.every
         return arrays
 
+    def _has_radius(self, by_role: dict[str, FloatArray]) -> BoolArray:
+        """Whether a row has a radius where torque or speed can be had only with one."""
+        rotated = in_rotation(dict(by_role), self.channels, self.stated)
+        return ~(np.isnan(rotated["torque"]) | np.isnan(rotated["speed"]))
+
     def _fault(self, block: _Block, values: list[FloatArray], row: int) -> str:
         """Line and column of the first cell of a row that is of no use, and what is wrong with it."""
         cells = block.cells(row, self.layout.between)
         place = f"line {block.lines[row]}"
-        for (role, (column, si)), numbers in zip(self.channels.items(), values, strict=True):
+        for (column, _), numbers in zip(self.channels.values(), values, strict=True):
             cell = cells[column.index] if column.index < len(cells) else ""
             told = f"{place}, column '{column.name}': "
             if not np.isfinite(numbers[row]):
@@ -383,9 +416,6 @@ class _Table:
                     what = f"'{cell[:40]}' stands" if cell else "nothing stands"
                     return f"{told}{what} where a number is needed"
                 return f"{told}'{cell[:40]}' is not a {self._what(column)}"
-            with np.errstate(over="ignore"):
-                if not _believed(np.asarray(numbers[row] * si.scale + si.offset)):
-                    return f"{told}{numbers[row]:g} {si.unit} is no {role}"
         return (
             f"{place}: torque and speed cannot be had from what stands there: a radius that is not positive?"
         )
@@ -465,11 +495,6 @@ class _Table:
         values = self._values(column, text.set(odd, ""))
         assert values is not None
         return values
-
-
-def _believed(numbers: FloatArray) -> BoolArray:
-    """Whether numbers in SI are finite, and of a size that a drive has."""
-    return np.isfinite(numbers) & (np.abs(numbers) <= LARGEST)
 
 
 def _blocks(

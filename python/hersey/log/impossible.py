@@ -1,0 +1,401 @@
+"""Readings that cannot be right: beyond every drive, codes of a logger, and what neighbours rule out.
+
+A reading is compared with what the quantity can be at all, then with the ordinary range of its channel, that
+of all but 2 % of its rows at either end; rows beyond it are given up only if something else speaks against
+them: a code that loggers write, the size of a jump, or steady rows around them. A drive may well reach ten
+times its ordinary torque or speed for a while: such rows stay.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from enum import StrEnum
+
+import numpy as np
+
+from hersey.arrays import BoolArray, FloatArray, IntArray
+from hersey.errors import UnreadableLogError
+from hersey.log.believed import BELIEVED, Believed, as_written, is_code, is_wrapped
+from hersey.log.channels import role_conversion
+from hersey.log.stray_times import stray_times
+from hersey.log.text.layout import Column
+from hersey.units import Conversion
+
+#: Fewer rows than this show no ordinary range.
+FEWEST = 50
+#: Rows from which the ordinary range is taken, at the most.
+_LOOKED_AT = 50_000
+#: Share of rows at either end that the ordinary range leaves out.
+_ENDS = 0.02
+#: A channel has an ordinary range if its rows without codes are at least this share.
+_LEAST_SOUND = 0.3
+#: Temperatures of a channel span at least so many kelvin, for the rules below.
+_LEAST_SPAN = 20.0
+#: A code counts if it lies so many sizes (span, or greatest value) beyond the ordinary range, a reading that
+#: may be a wrapped counter so many.
+_CODE, _WRAP = 1.0, 3.0
+#: Any other reading if it lies so many sizes beyond, for so many rows at the most.
+_BURSTS = ((5.0, 2), (20.0, 20), (1000.0, 1_000_000_000))
+#: Rows beside what is impossible go with it where they lie beyond the ordinary range by more than this many
+#: sizes and change by more than this many from one to the next: a reading on its way there.
+_BESIDE, _ON_ITS_WAY = 0.25, 0.1
+#: Rows at the most in which a reading drops out or changes its sign, and steady rows on either side.
+_SHORT, _AROUND = 2, 5
+#: Rows are steady if they span at most this share of their median, and opposite to it within the second.
+_STEADY_FLIP, _STEADY_DROP = 0.5, 0.3
+#: A temperature is no drop-out to zero within so many kelvin of zero.
+_NEAR_ZERO = 20.0
+#: No temperature jumps by so many kelvin from row to row, and back again, with rows at most so many s apart.
+_JUMP, _ROWS_APART = 100.0, 10.0
+#: Rows that only neighbours speak against are few, this share at the most: more are the signal.
+_FEW = 0.05
+#: Short runs are looked at one by one unless they start in more than this share of the rows.
+_MOST_STARTS = 0.3
+#: Share of the rows of a channel that may be impossible; with leave to drop rows.
+MOST, MOST_ALLOWED = 0.2, 0.5
+#: Distinct values that are named, at the most.
+_NAMED = 3
+#: Units in which a temperature may have been meant, and the range of those that are likely, K.
+_LIKELY = (233.15, 673.15)
+#: Larger numbers, in SI, are cut to this before they are compared: their differences would overflow.
+_NO_LARGER = 1e30
+
+
+class Reason(StrEnum):
+    """Why a reading cannot be right."""
+
+    RANGE = "range"
+    CODE = "code"
+    OUTLIER = "outlier"
+    SIGN = "sign"
+    DROP_OUT = "drop-out"
+    JUMP = "jump"
+    CLOCK = "clock"
+
+
+_WORDS = {
+    Reason.CODE: "a code of the logger or sensor, far from all other readings",
+    Reason.OUTLIER: "far beyond all other readings",
+    Reason.SIGN: "the opposite sign of steady readings before and after",
+    Reason.DROP_OUT: "a drop-out among steady readings",
+    Reason.JUMP: "a jump there and back that no temperature makes",
+    Reason.CLOCK: "off the clock of the rows before and after",
+}
+
+
+@dataclass(frozen=True)
+class Impossible:
+    """Readings of one channel that were left out for one reason.
+
+    ``values`` are the most frequent ones with their counts, in ``unit`` as written; ``low`` and ``high`` the
+    least and greatest of them all; ``where`` is the first, in words; ``limits`` in words for `Reason.RANGE`.
+    """
+
+    role: str
+    channel: str
+    unit: str
+    reason: Reason
+    rows: int
+    values: tuple[tuple[float, int], ...]
+    low: float
+    high: float
+    where: str
+    limits: str = ""
+
+    def __str__(self) -> str:
+        """Return what was read, how often, where first, and why it is not believed."""
+        why = f"outside {self.limits}" if self.reason is Reason.RANGE else _WORDS[self.reason]
+        unit = f" {self.unit}" if self.unit else ""
+        if sum(count for _, count in self.values) == self.rows:
+            read = ", ".join(f"{value:.10g}{unit} ({_times(count)})" for value, count in self.values)
+        else:
+            read = f"{self.low:.10g} to {self.high:.10g}{unit} ({_times(self.rows)})"
+        return f"{self.where}: {read} is no {self.role}, {why}"
+
+    def note(self) -> str:
+        """Return it as what was done to a file."""
+        return f"{self.rows} row(s) were left out: {self}"
+
+
+@dataclass(frozen=True)
+class Reading:
+    """A channel to look at: its role, column and unit, and its numbers in SI, shape (rows,)."""
+
+    role: str
+    column: Column
+    unit: Conversion
+    values: FloatArray
+
+
+def impossible_rows(
+    readings: list[Reading],
+    file: str,
+    where: Callable[[int, Column], str],
+    *,
+    allowed: bool,
+) -> tuple[BoolArray, tuple[Impossible, ...]]:
+    """Return which rows hold a reading that cannot be right, and what was found, by channel and reason.
+
+    Parameters
+    ----------
+    readings
+        Channels on one clock, that of the role ``time`` among them if there is one; NaN is passed over.
+    where
+        The place of a row and a column in words.
+    allowed
+        Whether more rows may be left out than unasked.
+
+    Raises
+    ------
+    UnreadableLogError
+        If too much of a channel is impossible; it says how much.
+    """
+    time = next((each.values for each in readings if each.role == "time"), None)
+    rows = readings[0].values.size
+    gone = np.zeros(rows, dtype=bool)
+    found: list[Impossible] = []
+    for each in readings:
+        if each.role == "run":
+            continue
+        kind = role_conversion(each.role, each.unit.unit)[0]
+        known = np.isfinite(each.values)
+        sound = each if known.all() else replace(each, values=each.values[known])
+        masks = _of_clock(sound.values) if each.role == "time" else _of_channel(sound, kind, time, known)
+        masks = {
+            reason: _at(np.flatnonzero(known)[mask], rows) for reason, mask in masks.items() if mask.any()
+        }
+        if not masks:
+            continue
+        here = [_record(each, kind, reason, mask, where) for reason, mask in masks.items()]
+        bad = np.logical_or.reduce(list(masks.values()))
+        found += here
+        _refuse_many(here, each, kind, int(bad.sum()), rows, file, allowed=allowed)
+        gone |= bad
+    return gone, tuple(found)
+
+
+def _of_clock(time: FloatArray) -> dict[Reason, BoolArray]:
+    believed = BELIEVED["time"]
+    beyond = (time < believed.low) | (time > believed.high)
+    stray = np.zeros(time.size, dtype=bool)
+    stray[~beyond] = stray_times(time[~beyond])
+    return {Reason.RANGE: beyond, Reason.CLOCK: stray}
+
+
+def _of_channel(
+    reading: Reading, kind: str, time: FloatArray | None, known: BoolArray
+) -> dict[Reason, BoolArray]:
+    """Rows that cannot be right by reason, each row under one; ``known`` are its rows among those of time."""
+    values, believed = np.clip(reading.values, -_NO_LARGER, _NO_LARGER), BELIEVED[kind]
+    masks = {Reason.RANGE: (values < believed.low) | (values > believed.high)}
+    if values.size < FEWEST:
+        return masks
+    ordinary = _ordinary(reading, kind, believed)
+    if ordinary is None:
+        return masks
+    low, high, size = ordinary
+    taken = masks[Reason.RANGE].copy()
+
+    def take(reason: Reason, mask: BoolArray) -> None:
+        masks[reason] = masks.get(reason, np.zeros(values.size, dtype=bool)) | (mask & ~taken)
+        taken[:] |= mask
+
+    far = np.flatnonzero((values > high + _CODE * size) | (values < low - _CODE * size))
+    if far.size:
+        beyond = np.maximum(values[far] - high, low - values[far]) / size if size > 0 else np.inf
+        wrapped = is_wrapped(values[far], reading.unit) & (beyond > _WRAP)
+        take(Reason.CODE, _at(far[is_code(values[far], reading.unit, kind) | wrapped], values.size))
+    if size > 0:
+        take(Reason.OUTLIER, _few(_bursts(values, low, high, size) & ~taken))
+    take(Reason.DROP_OUT, _few(_drop_outs(values, reading, kind) & ~taken))
+    if kind == "temperature" and time is not None:
+        take(Reason.JUMP, _pulses(values, time[known], max(_JUMP, high - low)))
+    if taken.any() and size > 0:
+        take(Reason.OUTLIER, _on_its_way(values, taken, low, high, size) & ~taken)
+    if kind in ("torque", "force", "friction coefficient", "speed", "belt speed"):
+        take(Reason.SIGN, _few(_flips(values) & ~taken))
+    return masks
+
+
+def _ordinary(reading: Reading, kind: str, believed: Believed) -> tuple[float, float, float] | None:
+    """Ends of the ordinary range and its size, SI, or None if most readings are codes."""
+    values = reading.values[:: max(1, reading.values.size // _LOOKED_AT)]
+    values = values[np.isfinite(values) & (values >= believed.low) & (values <= believed.high)]
+    sound = values[~is_code(values, reading.unit, kind) & ~is_wrapped(values, reading.unit)]
+    if not sound.size or sound.size < _LEAST_SOUND * values.size:
+        return None
+    low, high = (float(end) for end in np.quantile(sound, [_ENDS, 1.0 - _ENDS]))
+    size = max(high - low, _LEAST_SPAN if kind == "temperature" else max(abs(low), abs(high)))
+    return low, high, size
+
+
+def _bursts(values: FloatArray, low: float, high: float, size: float) -> BoolArray:
+    """Runs of rows so far beyond the ordinary range as no drive goes for so short a time, and comes back."""
+    found = np.zeros(values.size, dtype=bool)
+    for far, longest in _BURSTS:
+        beyond = (values > high + far * size) | (values < low - far * size)
+        for start, end in _runs(beyond):
+            if end - start <= longest and start > 0 and end < values.size:
+                found[start:end] = True
+    return found
+
+
+def _on_its_way(values: FloatArray, seeds: BoolArray, low: float, high: float, size: float) -> BoolArray:
+    """Rows beside impossible ones that lead there: beyond the ordinary range, and changing fast."""
+    near = (values > high + _BESIDE * size) | (values < low - _BESIDE * size)
+    found = np.zeros(values.size, dtype=bool)
+    for start, end in _runs(seeds):
+        for row, step in ((start - 1, -1), (end, 1)):
+            while 0 <= row < values.size and near[row] and not seeds[row]:
+                if abs(values[row] - values[row - step]) < _ON_ITS_WAY * size:
+                    break
+                found[row] = True
+                row += step  # walks on
+    return found
+
+
+def _pulses(values: FloatArray, time: FloatArray, jump: float) -> BoolArray:
+    """Rows between a jump and the one that leads back to the level before it."""
+    steps = np.diff(values)
+    jumps = np.flatnonzero((np.abs(steps) > jump) & (np.diff(time) <= _ROWS_APART)) + 1
+    found = np.zeros(values.size, dtype=bool)
+    longest, i = MOST * values.size, 0
+    while i < jumps.size:
+        start = jumps[i]
+        level = values[start - 1]
+        back = next(
+            (
+                k
+                for k in range(i + 1, jumps.size)
+                if abs(values[jumps[k]] - level) < 0.3 * jump or jumps[k] - start > longest
+            ),
+            None,
+        )
+        if back is None or jumps[back] - start > longest:
+            i += 1
+            continue
+        found[start : jumps[back]] = True
+        i = back + 1
+    return found
+
+
+def _flips(values: FloatArray) -> BoolArray:
+    """Rows of the sign opposite to that of steady rows before and after, and about as large."""
+    negative = values < 0.0
+    starts = np.flatnonzero(negative[1:] != negative[:-1]) + 1
+
+    def opposite(inside: FloatArray, level: FloatArray) -> BoolArray:
+        return np.asarray(np.abs(inside + level[:, None]) <= _STEADY_FLIP * np.abs(level)[:, None])
+
+    return _between_steady(values, starts, _STEADY_FLIP, 0.0, opposite)
+
+
+def _drop_outs(values: FloatArray, reading: Reading, kind: str) -> BoolArray:
+    """Rows that read zero, as written, between steady rows far from it."""
+    zero = reading.unit.offset
+    none_read = values == zero if zero == 0.0 else np.abs(values - zero) <= 1e-12 * abs(zero)
+    starts = np.flatnonzero(none_read[1:] & ~none_read[:-1]) + 1
+    from_zero = np.where(none_read, 0.0, values - zero) if starts.size else values
+    least = _NEAR_ZERO if kind == "temperature" else 0.0
+
+    def none(inside: FloatArray, _level: FloatArray) -> BoolArray:
+        return np.asarray(inside == 0.0)
+
+    return _between_steady(from_zero, starts, _STEADY_DROP, least, none)
+
+
+def _between_steady(
+    values: FloatArray,
+    starts: IntArray,
+    steady: float,
+    least: float,
+    odd: Callable[[FloatArray, FloatArray], BoolArray],
+) -> BoolArray:
+    """Rows of short runs that are odd between rows that are steady, and larger than the least."""
+    found = np.zeros(values.size, dtype=bool)
+    if not starts.size or starts.size > _MOST_STARTS * values.size:
+        return found
+    for length in range(1, _SHORT + 1):
+        at = starts[(starts >= _AROUND) & (starts + length + _AROUND <= values.size)]
+        before = values[at[:, None] - 1 - np.arange(_AROUND)]
+        after = values[at[:, None] + length + np.arange(_AROUND)]
+        around = np.hstack([before, after])
+        level = np.median(around, axis=1)
+        inside = values[at[:, None] + np.arange(length)]
+        calm = np.ptp(around, axis=1) <= steady * np.abs(level)
+        hit = at[calm & (np.abs(level) > least) & odd(inside, level).all(axis=1)]
+        for row in range(length):
+            found[hit + row] = True
+    return found
+
+
+def _few(mask: BoolArray) -> BoolArray:
+    """Rows if they are few, else none: what is frequent is the signal."""
+    return mask if mask.sum() <= _FEW * mask.size else np.zeros_like(mask)
+
+
+def _runs(mask: BoolArray) -> list[tuple[int, int]]:
+    """First row and row behind the last of each run of true."""
+    edges = np.flatnonzero(np.diff(mask.astype(np.int8), prepend=0, append=0))
+    return [(int(start), int(end)) for start, end in edges.reshape(-1, 2)]
+
+
+def _at(rows: IntArray, size: int) -> BoolArray:
+    mask = np.zeros(size, dtype=bool)
+    mask[rows] = True
+    return mask
+
+
+def _record(
+    reading: Reading,
+    kind: str,
+    reason: Reason,
+    mask: BoolArray,
+    where: Callable[[int, Column], str],
+) -> Impossible:
+    written = as_written(reading.values[mask], reading.unit)
+    distinct, counts = np.unique(np.array([float(f"{v:.10g}") for v in written[:10_000]]), return_counts=True)
+    most = np.argsort(-counts, kind="stable")[:_NAMED]
+    return Impossible(
+        reading.role,
+        reading.column.path,
+        reading.unit.unit,
+        reason,
+        int(mask.sum()),
+        tuple((float(distinct[i]), int(counts[i])) for i in most),
+        float(written.min()),
+        float(written.max()),
+        where(int(np.argmax(mask)), reading.column),
+        str(BELIEVED[kind]) if reason is Reason.RANGE else "",
+    )
+
+
+def _refuse_many(
+    found: list[Impossible], reading: Reading, kind: str, bad: int, rows: int, file: str, *, allowed: bool
+) -> None:
+    if bad <= max(1.0, (MOST_ALLOWED if allowed else MOST) * rows):
+        return
+    share = (
+        f"{bad / rows:.0%} of {reading.role} '{reading.column.path}' cannot be right ({bad} of {rows} rows)"
+    )
+    way_out = "name another column, or mend the file"
+    if bad <= MOST_ALLOWED * rows:
+        way_out = f"{way_out}, or say --drop-missing to leave such rows out"
+    meant = _meant_unit(reading) if kind == "temperature" else ""
+    unit = f"if its unit is another, say --{reading.role}-unit '{meant or '...'}'"
+    raise UnreadableLogError(f"{file}, {found[0]}; {share}; {unit}; otherwise {way_out}")
+
+
+def _meant_unit(reading: Reading) -> str:
+    """The unit in which most of the temperatures written would be ordinary, or nothing."""
+    written = as_written(reading.values, reading.unit)
+    for unit in ("degC", "K", "degF"):
+        si = role_conversion("temperature", unit)[1]
+        if _LIKELY[0] < float(np.median(written)) * si.scale + si.offset < _LIKELY[1]:
+            return unit if unit != reading.unit.unit else ""
+    return ""
+
+
+def _times(count: int) -> str:
+    return "once" if count == 1 else f"{count} times"
