@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from hersey.arrays import FloatArray
 from hersey.damping.dwells import SteadyPoints, distinct_speeds, groups_of_temperature
+from hersey.damping.dwells.constant import constant_torque
 from hersey.damping.estimate import Estimate
 from hersey.damping.fit import fit
 from hersey.damping.rising import Rising, rising
@@ -66,10 +67,17 @@ def support_of_points(points: SteadyPoints, *, temperature_scale: str = "degC") 
     fitted = _fitted(_comparable(points, len(groups)), temperature_scale)
     can: list[str] = []
     cannot: list[str] = []
+    constant = constant_torque(points)
     for says in (
-        _speed(speed),
-        _temperature(levels, points, fitted),
-        _branches(points, groups or [np.arange(speed.size)], speed, fitted),
+        *(
+            (
+                _speed(speed),
+                _temperature(levels, points, fitted),
+                _branches(points, groups or [np.arange(speed.size)], speed, fitted),
+            )
+            if constant is None
+            else (_nothing(constant),)
+        ),
         *(() if isinstance(log, MeansTable) else (_approach(points), _tare(points))),
     ):
         can += says[0]
@@ -93,6 +101,14 @@ def _fitted(points: SteadyPoints, scale: str) -> DampingSurface | str:
         return fit(points, temperature_scale=scale)
     except InsufficientDataError as error:
         return str(error)
+
+
+def _nothing(torque: float) -> Said:
+    """What a torque that stands still tells."""
+    return [], [
+        f"any exponent: torque does not vary from {1e3 * torque:.4g} mN m; check the sensor and its cable, "
+        "or name another column with --torque"
+    ]
 
 
 def _speed(speed: FloatArray) -> Said:

@@ -9,6 +9,7 @@ import numpy as np
 
 from hersey.arrays import FloatArray, IntArray
 from hersey.damping.dwells import SAME_SPEED, SteadyPoints, distinct_speeds, groups_of_temperature
+from hersey.damping.dwells.constant import refuse_constant_torque
 from hersey.damping.dwells.misleading import lagging, one_direction, unlinked_runs
 from hersey.errors import InsufficientDataError
 from hersey.log.means import MeansTable
@@ -67,7 +68,13 @@ class Observations:
 
     @classmethod
     def of(cls, points: SteadyPoints, *, fewest_speeds: int = 3) -> Observations:
-        """Return the observations that steady points are, if they have so many speeds."""
+        """Return the observations that steady points are, if they have so many speeds and torque varies.
+
+        Raises
+        ------
+        InsufficientDataError
+            If they have fewer, or if torque stands still (which it may where one speed is enough).
+        """
         speed, torque = np.abs(points.column("speed")), np.abs(points.column("torque"))
         if distinct_speeds(speed) < fewest_speeds:
             held = " and ".join(f"{v} rpm" for v in sorted({f"{rpm(w):.3g}" for w in speed}, key=float)[:2])
@@ -75,6 +82,8 @@ class Observations:
                 f"the steady points are all at {held}: no law of speed can be fitted or compared; "
                 "record dwells at three speeds or more"
             )
+        if fewest_speeds > 1:
+            refuse_constant_torque(points)
         kelvin = points.column("temperature") if points.log.has_temperature else None
         group, means = _groups(kelvin, speed.size)
         run = points.column("run").astype(np.intp)

@@ -15,6 +15,7 @@ judging         which rows of a stretch are a dwell, or why none are
 nothing_steady  why a log has no dwell at all, and what to do
 zero            the zero of the torque over the log, from every standing stretch
 doubtful        what is doubtful before a fit: the tare, and what goes together with time
+constant        whether the torque varies at all
 resolution      the step of a sensor, and the error that rounding leaves in a dwell
 relaxation      torque that still relaxes after each change of speed
 misleading      errors that the order of a log hides or that its sensors leave

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from hersey.damping.dwells.groups import MIN_SAMPLES
+from hersey.damping.dwells.groups import MIN_SAMPLES, distinct_speeds
 from hersey.damping.dwells.judging import Asked
 from hersey.damping.dwells.points import Rejection
 from hersey.damping.dwells.reasons import CAUSES, Reason, cause
@@ -22,6 +22,8 @@ RUNNING = 0.7
 _BLOCKS, _TURN = 60, 0.1
 #: Median change from row to row, as share of the mean one, below which the speed changes in steps.
 _FEW = 0.2
+#: Share of the rows of a drive that turns, beyond which it holds a speed throughout.
+_HELD = 0.9
 #: A log shorter than so many dwells has a clock in another unit, or rows less often: so many times, say.
 _TOO_BRIEF, _RARER = 1.0, 50
 
@@ -69,7 +71,22 @@ def _way_out(
     for shorter in enough:
         if (count := dwells_with(shorter)) >= WORTH_IT:
             return f"{held}: {count} dwells are there with --min-dwell '{shorter:g} s'"
+    if (speed := _only_speed(rejected)) is not None:
+        return (
+            f"the speed is {rpm(speed):.3g} rpm throughout, so no law of speed can be fitted: record dwells "
+            "at three speeds or more, or name another column with --speed"
+        )
     return held
+
+
+def _only_speed(rejected: tuple[Rejection, ...]) -> float | None:
+    """The speed, rad/s without sign, that the drive holds whenever it turns, or None."""
+    held = [r for r in rejected if r.is_dwell]
+    turning = sum(r.rows for r in rejected if not r.reason.startswith("drive standing"))
+    speeds = np.abs([r.speed for r in held])
+    if sum(r.rows for r in held) < _HELD * turning or not held or distinct_speeds(speeds) > 1:
+        return None
+    return float(np.mean(speeds))
 
 
 def _other_clock(log: TorqueLog) -> str:

@@ -1,0 +1,64 @@
+"""Whether the torque of dwells varies at all: a channel that stands still measures nothing."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from hersey.arrays import FloatArray
+from hersey.damping.dwells.points import SteadyPoints
+from hersey.errors import InsufficientDataError
+from hersey.log.means import MeansTable
+
+#: Differences below this share of a reading are rounding of the arithmetic.
+ROUNDING = 1e-9
+
+
+def constant_torque(points: SteadyPoints) -> float | None:
+    """Return the torque, N m, that all readings of all dwells show but for one step, or None if they vary.
+
+    A friction that is constant shows more: the noise of its sensor. Readings that flicker between two values
+    within a dwell are a step apart; two values of which each dwell holds one are a friction that changes.
+    """
+    dwells = _readings(points)
+    low = min(float(each.min()) for each in dwells)
+    high = max(float(each.max()) for each in dwells)
+    least = ROUNDING * max(abs(low), abs(high))
+    if high - low <= least:
+        return high
+    two = not any(np.any((each > low + least) & (each < high - least)) for each in dwells)
+    flickers = any(float(np.ptp(each)) > least for each in dwells)
+    return 0.5 * (low + high) if two and flickers else None
+
+
+def refuse_constant_torque(points: SteadyPoints) -> None:
+    """Raise if torque does not vary.
+
+    Raises
+    ------
+    InsufficientDataError
+        It says at which torque it stands.
+    """
+    torque = constant_torque(points)
+    if torque is not None:
+        raise InsufficientDataError(
+            f"{points.log.files[0].name}: torque ({_name(points)}) does not vary: it reads "
+            f"{1e3 * torque:.4g} mN m at all speeds, to one step of its resolution, so it measures no "
+            "friction; check the sensor and its cable, or name another column with --torque"
+        )
+
+
+def _readings(points: SteadyPoints) -> list[FloatArray]:
+    """Torque of the rows of each dwell without the sign of the rotation, N m; of a table its means."""
+    if isinstance(points.log, MeansTable):
+        return list(np.abs(points.column("torque"))[:, None])
+    parts = []
+    for index, start, end in points.table.select("run", "start", "end").iter_rows():
+        run = points.log.runs[index]
+        rows = slice(np.searchsorted(run.time, start), np.searchsorted(run.time, end, side="right"))
+        parts.append(run.torque[rows] * np.sign(np.mean(run.speed[rows])))
+    return parts
+
+
+def _name(points: SteadyPoints) -> str:
+    """The channel of the torque as the file has it."""
+    return next((f"'{c.name}'" for c in points.log.files[0].channels if c.role == "torque"), "torque")
