@@ -22,8 +22,8 @@ from hersey.log.channels import (
     role_conversion,
 )
 from hersey.log.friction import beside, in_rotation, notes_on, slow_roles, unused
-from hersey.log.impossible import Impossible, Reading, impossible_rows
-from hersey.log.recording import Recording, Signal
+from hersey.log.impossible import Impossible, Reading, impossible_rows, marked_rows
+from hersey.log.recording import INVALID, INVALID_TIME, SOUND, Recording, Signal
 from hersey.log.rows import LeftOut, runs_with_records
 from hersey.log.text.layout import Column
 from hersey.log.text.stamps import counted_since, is_clock_name
@@ -42,6 +42,12 @@ class _Part:
     time: FloatArray
     tick: str
     rows: IntArray
+    marked: FloatArray  #: what the file itself says of each sample: see `Signal.marked`
+
+    def keep(self, rows: BoolArray) -> None:
+        """Leave out all other samples."""
+        self.values, self.time = self.values[rows], self.time[rows]
+        self.rows, self.marked = self.rows[rows], self.marked[rows]
 
 
 class Assembly:
@@ -92,8 +98,10 @@ class Assembly:
         """
         left_out, torque = LeftOut(), self.parts["torque"]
         notes = list(self.recording.notes)
+        marked, rows_marked = self._leave_out_marked(drop_missing)
         self._leave_out_missing(left_out, drop_missing)
-        impossible, rows_of_them = self._leave_out_impossible(drop_missing)
+        impossible, rows_impossible = self._leave_out_impossible(drop_missing)
+        impossible = (*marked, *impossible)
         notes += [each.note() for each in impossible]
         kept = np.ones(torque.time.size, dtype=bool)
         for part in self.parts.values():
@@ -128,7 +136,7 @@ class Assembly:
             rows = rows[usable]
         notes += [*notes_on(self.chosen, self.stated), *self._dead.values(), *self._unused]
         log = self._record(tuple(note for note in notes if note))
-        log = replace(log, missing_rows=rows_of_them, impossible=impossible)
+        log = replace(log, missing_rows=rows_marked + rows_impossible, impossible=impossible)
         return runs_with_records(
             log,
             arrays,
@@ -191,7 +199,8 @@ class Assembly:
                 f"{self.source.name}: channel '{column.path}' has {values.size} values and its clock "
                 f"{time.size}: the file is damaged or cut off"
             )
-        return _Part(role, column, unit, in_si(values, unit), time, tick, np.arange(values.size))
+        marked = np.full(values.size, SOUND) if signal.marked is None else signal.marked()
+        return _Part(role, column, unit, in_si(values, unit), time, tick, np.arange(values.size), marked)
 
     def _says_nothing(self, column: Column) -> bool:
         """Whether a channel holds one value throughout, or none; it is noted then."""
@@ -278,8 +287,7 @@ class Assembly:
             if here is not left_out:
                 left_out.add(here.rows, here.words)
             for part in parts:
-                part.rows = np.flatnonzero(~gone)
-                part.values, part.time = part.values[~gone], part.time[~gone]
+                part.keep(~gone)
             if parts[0].time.size < 2:
                 name, count = parts[0].column.path, parts[0].time.size
                 raise UnreadableLogError(
@@ -295,6 +303,23 @@ class Assembly:
         self._lacking[part.role] = lacking
         part.values = np.where(known, part.values, np.nan)
 
+    def _leave_out_marked(self, allowed: bool) -> tuple[tuple[Impossible, ...], int]:
+        """Leave out samples that the file itself marks as invalid, of every channel on one clock."""
+        found: tuple[Impossible, ...] = ()
+        rows = 0
+        for tick in dict.fromkeys(part.tick for part in self.parts.values()):
+            parts = [part for part in self.parts.values() if part.tick == tick]
+            clock = self._clocks[tick][2]
+            marks = [
+                ("time", Column(-1, clock.name, clock.unit), clock.unit, parts[0].marked == INVALID_TIME)
+            ]
+            marks += [(part.role, part.column, part.unit.unit, part.marked == INVALID) for part in parts]
+            gone, here = marked_rows(marks, self.source.name, partial(self._where, parts[0]), allowed=allowed)
+            for part in parts if gone.any() else ():
+                part.keep(~gone)
+            found, rows = (*found, *here), rows + int(gone.sum())
+        return found, rows
+
     def _leave_out_impossible(self, allowed: bool) -> tuple[tuple[Impossible, ...], int]:
         """Leave out samples that cannot be right, of every channel on one clock; what they were, how many."""
         found: tuple[Impossible, ...] = ()
@@ -309,7 +334,7 @@ class Assembly:
                 readings, self.source.name, partial(self._where, parts[0]), allowed=allowed
             )
             for part in parts if gone.any() else ():
-                part.values, part.time, part.rows = part.values[~gone], part.time[~gone], part.rows[~gone]
+                part.keep(~gone)
             found, rows = (*found, *here), rows + int(gone.sum())
         return found, rows
 
@@ -319,7 +344,7 @@ class Assembly:
 
     def _fault(self, parts: list[_Part], row: int) -> str:
         """The channel of the first number of a sample that is missing, in words."""
-        place = self._place(parts[0], row)
+        place = self._place(parts[0], int(parts[0].rows[row]))
         bad = next((part for part in parts if not np.isfinite(part.values[row])), None)
         name = bad.column.path if bad else self._clocks[parts[0].tick][2].name
         return f"channel '{name}', {place}: no number stands where one is needed"

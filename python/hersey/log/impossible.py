@@ -72,6 +72,7 @@ class Reason(StrEnum):
     DROP_OUT = "drop-out"
     JUMP = "jump"
     CLOCK = "clock"
+    MARKED = "marked"
 
 
 _WORDS = {
@@ -80,6 +81,7 @@ _WORDS = {
     Reason.SIGN: "the opposite sign of steady readings before and after",
     Reason.DROP_OUT: "a drop-out among steady readings",
     Reason.JUMP: "a jump there and back that no temperature makes",
+    Reason.MARKED: "marked as invalid by the file itself",
     Reason.CLOCK: "off the clock of the rows before and after",
 }
 
@@ -89,7 +91,8 @@ class Impossible:
     """Readings of one channel that were left out for one reason.
 
     ``values`` are the most frequent ones with their counts, in ``unit`` as written; ``low`` and ``high`` the
-    least and greatest of them all; ``where`` is the first, in words; ``limits`` in words for `Reason.RANGE`.
+    least and greatest of them all (none and None for `Reason.MARKED`); ``where`` is the first, in words;
+    ``limits`` in words for `Reason.RANGE`.
     """
 
     role: str
@@ -98,8 +101,8 @@ class Impossible:
     reason: Reason
     rows: int
     values: tuple[tuple[float, int], ...]
-    low: float
-    high: float
+    low: float | None
+    high: float | None
     where: str
     limits: str = ""
 
@@ -107,6 +110,8 @@ class Impossible:
         """Return what was read, how often, where first, and why it is not believed."""
         why = f"outside {self.limits}" if self.reason is Reason.RANGE else _WORDS[self.reason]
         unit = f" {self.unit}" if self.unit else ""
+        if self.low is None:
+            return f"{self.where}: {self.role} is {why} ({_times(self.rows)})"
         if sum(count for _, count in self.values) == self.rows:
             read = ", ".join(f"{value:.10g}{unit} ({_times(count)})" for value, count in self.values)
         else:
@@ -173,6 +178,49 @@ def impossible_rows(
         _refuse_many(here, each, kind, int(bad.sum()), rows, file, allowed=allowed)
         gone |= bad
     return gone, tuple(found)
+
+
+def marked_rows(
+    marks: list[tuple[str, Column, str, BoolArray]],
+    file: str,
+    where: Callable[[int, Column], str],
+    *,
+    allowed: bool,
+) -> tuple[BoolArray, tuple[Impossible, ...]]:
+    """Return which rows a file itself marks as invalid, and what was found, by channel.
+
+    Parameters
+    ----------
+    marks
+        Role, column, unit and marks of each channel on one clock, shape (rows,).
+    where, allowed
+        As for `impossible_rows`.
+
+    Raises
+    ------
+    UnreadableLogError
+        If too much of a channel is marked; it says how much.
+    """
+    gone = np.zeros(marks[0][3].size, dtype=bool)
+    found = []
+    for role, column, unit, mask in marks:
+        rows = int(mask.sum())
+        if not rows:
+            continue
+        first = where(int(np.argmax(mask)), column)
+        found.append(Impossible(role, column.path, unit, Reason.MARKED, rows, (), None, None, first))
+        if rows > max(1.0, (MOST_ALLOWED if allowed else MOST) * mask.size):
+            share = f"{rows / mask.size:.0%} of the channel ({rows} of {mask.size} samples)"
+            leave = ", or say --isothermal to leave temperature out" if role == "temperature" else ""
+            raise UnreadableLogError(f"{file}, {found[-1]}; {share}; {_way_out(rows, mask.size)}{leave}")
+        gone |= mask
+    return gone, tuple(found)
+
+
+def _way_out(bad: int, rows: int) -> str:
+    """What to do about so many rows that cannot be used."""
+    drop = ", or say --drop-missing to leave such rows out" if bad <= MOST_ALLOWED * rows else ""
+    return f"name another column, or mend the file{drop}"
 
 
 def _of_clock(time: FloatArray) -> dict[Reason, BoolArray]:
@@ -379,12 +427,9 @@ def _refuse_many(
     share = (
         f"{bad / rows:.0%} of {reading.role} '{reading.column.path}' cannot be right ({bad} of {rows} rows)"
     )
-    way_out = "name another column, or mend the file"
-    if bad <= MOST_ALLOWED * rows:
-        way_out = f"{way_out}, or say --drop-missing to leave such rows out"
     meant = _meant_unit(reading) if kind == "temperature" else ""
     unit = f"if its unit is another, say --{reading.role}-unit '{meant or '...'}'"
-    raise UnreadableLogError(f"{file}, {found[0]}; {share}; {unit}; otherwise {way_out}")
+    raise UnreadableLogError(f"{file}, {found[0]}; {share}; {unit}; otherwise {_way_out(bad, rows)}")
 
 
 def _meant_unit(reading: Reading) -> str:

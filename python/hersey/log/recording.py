@@ -41,6 +41,10 @@ _ENDINGS = {
 }
 
 
+#: What a file may say of a sample: nothing, that its value is invalid, or that its time is.
+SOUND, INVALID, INVALID_TIME = 0.0, 1.0, 2.0
+
+
 @dataclass(frozen=True)
 class Signal:
     """One channel as recorded.
@@ -48,7 +52,9 @@ class Signal:
     ``load`` returns the numbers in the unit as written, shape (rows,), NaN where a value is missing;
     ``clock`` the time of each in s on a scale common to the file, or is None where a channel of the group
     holds the time. ``tick`` names the clock: two signals with the same tick need no alignment. ``line`` is
-    the row of the file in which the first sample stands, 0 where a file has none.
+    the row of the file in which the first sample stands, 0 where a file has none. ``marked`` returns for each
+    sample whether the file itself marks it as invalid: `SOUND`, `INVALID` or `INVALID_TIME`; None if it
+    marks none.
     """
 
     name: str
@@ -59,6 +65,7 @@ class Signal:
     tick: str = ""
     group: str = ""
     line: int = 0
+    marked: Callable[[], FloatArray] | None = None
 
 
 @dataclass(frozen=True)

@@ -82,7 +82,7 @@ def _way_out(
 def _only_speed(rejected: tuple[Rejection, ...]) -> float | None:
     """The speed, rad/s without sign, that the drive holds whenever it turns, or None."""
     held = [r for r in rejected if r.is_dwell]
-    turning = sum(r.rows for r in rejected if not r.reason.startswith("drive standing"))
+    turning = sum(r.rows for r in rejected if r.why.kind != "standing")
     speeds = np.abs([r.speed for r in held])
     if sum(r.rows for r in held) < _HELD * turning or not held or distinct_speeds(speeds) > 1:
         return None

@@ -112,11 +112,11 @@ class ImpossiblePart(Part):
     role: str
     channel: str
     unit: str
-    reason: str = Field(description="range, code, outlier, sign, drop-out, jump or clock")
+    reason: str = Field(description="range, code, outlier, sign, drop-out, jump, clock or marked")
     rows: int
     values: list[tuple[float, int]] = Field(description="the most frequent ones, and how often they occur")
-    low: float
-    high: float
+    low: float | None = Field(description="null where the file itself marks them as invalid")
+    high: float | None
     where: str = Field(description="the first of them, in words")
     limits: str = Field(description="what is believed, in words; empty unless the reason is range")
 

@@ -1,8 +1,8 @@
 """The process in which files are read: a reader opens one, and what it holds is sent as it is asked for.
 
 Run by `hersey.processes.server`. Requests: ``prepare`` (a format: loads its library, and says what the
-sandbox lacks on this system), ``open`` (a file, its format and name, bounds of memory and time), ``load`` and
-``clock`` (the numbers of one signal), ``cells`` (the text of one column), ``close``.
+sandbox lacks on this system), ``open`` (a file, its format and name, bounds of memory and time), ``load``,
+``clock`` and ``marked`` (the numbers of one signal), ``cells`` (the text of one column), ``close``.
 """
 
 from __future__ import annotations
@@ -62,6 +62,7 @@ class _Open:
                     "tick": signal.tick,
                     "group": signal.group,
                     "line": signal.line,
+                    "marked": signal.marked is not None,
                 }
                 for signal in recording.signals
             ],
@@ -77,10 +78,10 @@ class _Open:
         return {"notes": self.recording.notes, "cut_off": self.recording.cut_off}
 
     def numbers(self, what: str, index: int) -> bytes:
-        """The values of a signal, or its clock, as float64."""
+        """The values of a signal, its clock, or what the file says of each sample, as float64."""
         assert self.recording is not None
         signal = self.recording.signals[index]
-        source = signal.clock if what == "clock" else signal.load
+        source = {"clock": signal.clock, "marked": signal.marked}.get(what, signal.load)
         assert source is not None
         return source().tobytes()
 

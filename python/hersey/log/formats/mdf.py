@@ -17,13 +17,24 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
-from hersey.arrays import FloatArray
+from hersey.arrays import BoolArray, FloatArray
 from hersey.errors import UnreadableLogError
 from hersey.log.formats.formula import evaluate
-from hersey.log.recording import Recording, Signal, floats, library, listening, split_unit
+from hersey.log.recording import (
+    INVALID,
+    INVALID_TIME,
+    SOUND,
+    Recording,
+    Signal,
+    floats,
+    library,
+    listening,
+    split_unit,
+)
 
 _MASTERS = (2, 3)  # channel types: master, virtual master
 _TIME = (0, 1)  # kinds of master: none given (MDF 3), time
+_ALL_INVALID, _SOME_INVALID = 1, 2  # flags of a channel of MDF 4: which of its samples are marked
 _OF_OLD_CLOCKS = (0, 65535)  # conversions of a clock of MDF 3 that asammdf applies: linear, none
 _BUS = ("CAN_", "LIN_", "FLX_", "ETH_", "MOST_", "K_LINE_")
 #: Variables of a formula in asammdf: the raw value, and parameters and constants of its own formulas.
@@ -116,12 +127,12 @@ def _signal(
     group, index, full_name, unit, rows = channel
     name, ending = (full_name, unit) if unit else split_unit(full_name)
 
-    def get() -> tuple[FloatArray, FloatArray]:
+    def get() -> tuple[FloatArray, FloatArray, FloatArray]:
         heard.clear()
         _refusals.clear()
         _powers.clear()
         try:
-            values, times = _values(mdf, group, index)
+            values, times, marked = _values(mdf, group, index)
         except UnreadableLogError as error:
             raise UnreadableLogError(f"channel '{full_name}' {error}") from None
         for formula in _powers:
@@ -137,19 +148,35 @@ def _signal(
         if count < rows and not recording.cut_off:
             recording.cut_off = True
             recording.notes.append(f"'{full_name}' has {count} of {rows} values: the rest is missing")
-        return values, times
+        return values, times, marked
 
     def part(which: int) -> FloatArray:
         return get()[which]
 
     clock = f"group {group}"
+    marked = partial(part, 2) if _may_be_marked(mdf, group, index) else None
     return Signal(
-        name, ending, rows, partial(part, 0), partial(part, 1), clock, str(group) if several else ""
+        name,
+        ending,
+        rows,
+        partial(part, 0),
+        partial(part, 1),
+        clock,
+        str(group) if several else "",
+        0,
+        marked,
     )
 
 
-def _values(mdf: Any, group: int, index: int) -> tuple[FloatArray, FloatArray]:
-    """Values and times of a channel, s."""
+def _may_be_marked(mdf: Any, group: int, index: int) -> bool:
+    """Whether the file may mark samples of a channel, or of its clock, as invalid."""
+    channels, master = mdf.groups[group].channels, mdf.masters_db.get(group)
+    of_either = [index] if master is None else [index, master]
+    return any(getattr(channels[i], "flags", 0) & (_ALL_INVALID | _SOME_INVALID) for i in of_either)
+
+
+def _values(mdf: Any, group: int, index: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Values and times of a channel, s, and what the file says of each sample; NaN where it is invalid."""
     master = mdf.masters_db.get(group)
     channels = mdf.groups[group].channels
     if master is None or getattr(channels[master], "sync_type", 1) not in _TIME:
@@ -158,12 +185,27 @@ def _values(mdf: Any, group: int, index: int) -> tuple[FloatArray, FloatArray]:
     if mdf.version < "4" and conversion is not None and conversion.conversion_type not in _OF_OLD_CLOCKS:
         told = f": it has the formula {conversion.formula[:80]!r}" if conversion.formula else ""
         raise UnreadableLogError(f"has a clock whose conversion cannot be applied{told}")
-    signal = mdf.get(group=group, index=index)
+    # otherwise asammdf drops samples that are invalid from this channel alone
+    signal = mdf.get(group=group, index=index, ignore_invalidation_bits=True)
     values = signal.samples
     if values.ndim != 1 or values.dtype.kind not in "iufb":
         what = "arrays" if values.ndim != 1 or values.dtype.names else "text"
         raise UnreadableLogError(f"holds {what}, not numbers")
-    values = values.astype(float)
-    if signal.invalidation_bits is not None:
-        values[signal.invalidation_bits.astype(bool)] = np.nan
-    return values, floats(signal.timestamps)
+    values, times = values.astype(float), floats(signal.timestamps)
+    marked = np.full(values.size, SOUND)
+    marked[_invalid(channels[index], signal)] = INVALID
+    if getattr(channels[master], "flags", 0) & (_ALL_INVALID | _SOME_INVALID) and mdf.version >= "4":
+        clock = mdf.get(group=group, index=master, ignore_invalidation_bits=True)
+        marked[_invalid(channels[master], clock)] = INVALID_TIME
+        times = np.where(marked == INVALID_TIME, np.nan, times)
+    values[marked != SOUND] = np.nan
+    return values, times, marked
+
+
+def _invalid(channel: Any, signal: Any) -> BoolArray:
+    """Whether the file marks each sample of a channel as invalid."""
+    if getattr(channel, "flags", 0) & _ALL_INVALID and hasattr(channel, "pos_invalidation_bit"):
+        return np.ones(signal.samples.shape[0], dtype=bool)
+    if signal.invalidation_bits is None:
+        return np.zeros(signal.samples.shape[0], dtype=bool)
+    return np.asarray(signal.invalidation_bits, dtype=bool)

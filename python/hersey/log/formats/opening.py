@@ -308,6 +308,7 @@ class _Reader:
             about["tick"],
             _plain(about["group"], _LONGEST_NAME),
             int(about["line"]),
+            partial(numbers, "marked") if about["marked"] else None,
         )
 
     def _numbers(self, recording: Recording, index: int, rows: int, what: str) -> FloatArray:
