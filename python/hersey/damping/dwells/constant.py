@@ -48,8 +48,8 @@ def refuse_constant_torque(points: SteadyPoints) -> None:
 
 
 def _readings(points: SteadyPoints) -> list[FloatArray]:
-    """Torque of the rows of each dwell without the sign of the rotation, N m; of a table its means."""
-    if isinstance(points.log, MeansTable):
+    """Torque of the rows of each dwell without the sign of the rotation, N m; of means alone these."""
+    if isinstance(points.log, MeansTable) or not {"start", "end"} <= set(points.table.columns):
         return list(np.abs(points.column("torque"))[:, None])
     parts = []
     for index, start, end in points.table.select("run", "start", "end").iter_rows():
