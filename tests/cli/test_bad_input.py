@@ -102,7 +102,7 @@ def test_bad_file(case: str, tmp_path: Path) -> None:
 ONE_ROW: dict[str, tuple[bytes, list[str]]] = {
     "text in a number column": (altered(57, 1, "high"), ["line 57", "'Torque'", "'high'"]),
     "text in the first row": (altered(2, 1, "high"), ["line 2", "'Torque'", "'high'"]),
-    "a time that lies apart": (altered(80, 0, "0.5"), ["line 80", "backwards"]),
+    "a time that lies apart": (altered(80, 0, "0.5"), ["line 80", "'Time': 0.5 s (once)", "off the clock"]),
     "an endless cell": (altered(99, 2, "1" * 200_000), ["line 99", "'Speed'"]),
     "NaN row": (altered(99, 2, "NaN"), ["line 99", "'Speed'"]),
     "empty cell": (altered(99, 2, ""), ["line 99", "'Speed'"]),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -114,3 +115,12 @@ def test_a_temperature_that_does_not_vary_is_allowed() -> None:
     surface = hersey.fit(hersey.read(cold, isothermal=True).steady())
     assert surface.b is None
     assert surface.c.value == pytest.approx(-0.6, abs=5e-3)
+
+
+def test_points_without_their_log_are_judged_by_their_means() -> None:
+    """Those of a campaign were kept without rows."""
+    points = hersey.read(frame(CONSTANT["to the bit"])).steady()
+    kept = replace(points, log=replace(points.log, runs=()))
+    assert constant_torque(kept) == pytest.approx(0.5)
+    varying = hersey.read(frame(500.0 * (SPEED / 30.0) ** 0.4)).steady()
+    assert constant_torque(replace(varying, log=replace(varying.log, runs=()))) is None

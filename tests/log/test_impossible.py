@@ -264,3 +264,12 @@ def test_every_verb_says_so(verb: str, tmp_path: Path) -> None:
     assert result.returncode == 0, result.stderr
     said = " ".join(f"{result.stdout} {result.stderr}".split())
     assert "5 row(s) were left out: line 102, column 'Temperature': 1000000 degC (5 times)" in said
+
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+@pytest.mark.parametrize("name", ["bench.csv", "no-load.csv"])
+def test_the_examples_lose_no_row(name: str) -> None:
+    file = hersey.read(EXAMPLES / name, isothermal=name == "no-load.csv").files[0]
+    assert (file.missing_rows, file.impossible) == (0, ())

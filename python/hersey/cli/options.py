@@ -111,7 +111,8 @@ class Reading:
     drop_missing: Annotated[
         bool,
         typer.Option(
-            "--drop-missing", help="Leave out rows in which a number is missing, also where they are many."
+            "--drop-missing",
+            help="Leave out rows in which a number is missing or impossible, also where they are many.",
         ),
     ] = False
     means: Annotated[

@@ -51,7 +51,8 @@ def read(
         Leave temperature out.
     drop_missing
         Leave out rows in which a number is missing, and count them, also where they are many; few are left
-        out, with a note, in any case.
+        out, with a note, in any case. So are readings that cannot be right, up to a fifth of a channel, and
+        with this up to a half.
     every
         Time between rows, s, where the file has no clock.
     radius

@@ -7,7 +7,6 @@ import numpy as np
 from hersey.arrays import FloatArray
 from hersey.damping.dwells.points import SteadyPoints
 from hersey.errors import InsufficientDataError
-from hersey.log.means import MeansTable
 
 #: Differences below this share of a reading are rounding of the arithmetic.
 ROUNDING = 1e-9
@@ -49,7 +48,7 @@ def refuse_constant_torque(points: SteadyPoints) -> None:
 
 def _readings(points: SteadyPoints) -> list[FloatArray]:
     """Torque of the rows of each dwell without the sign of the rotation, N m; of means alone these."""
-    if isinstance(points.log, MeansTable) or not {"start", "end"} <= set(points.table.columns):
+    if not points.log.runs or not {"start", "end"} <= set(points.table.columns):
         return list(np.abs(points.column("torque"))[:, None])
     parts = []
     for index, start, end in points.table.select("run", "start", "end").iter_rows():
