@@ -122,6 +122,8 @@ def corners(x: FloatArray, y: FloatArray, off: float, keep: tuple[int, ...] = ()
     kept, spans = {0, x.size - 1, *keep}, [(0, x.size - 1)]
     while spans:
         first, last = spans.pop()
+        if last - first < 2:
+            continue
         line = y[first] + (y[last] - y[first]) * (x[first:last] - x[first]) / (x[last] - x[first])
         missed = np.abs(y[first:last] - line)
         if missed.max() > off:

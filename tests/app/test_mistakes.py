@@ -143,7 +143,7 @@ MISTAKES: dict[str, tuple[bytes, str, str, str]] = {
     "time backwards": (
         log(change=lambda t, q, n, c: (round(60 - float(t), 1) if 20 < float(t) < 30 else t, q, n, c)),
         "role:Time",
-        "Time is out of order. Line 203: time runs ahead",
+        "Time is out of order. Line 251: time runs ahead",
         "",
     ),
     "a friction force": (

@@ -15,6 +15,7 @@ from pathlib import Path
 from unittest import mock
 
 from hersey.cli import main
+from hersey.errors import speak
 
 #: The command in a process of its own.
 HERSEY = [sys.executable, "-m", "hersey.cli"]
@@ -47,6 +48,7 @@ def run(*arguments: str | Path, cwd: Path, answers: str = "") -> Done:
         except SystemExit as end:
             code = end.code or 0
         finally:
+            speak("python")  # the command line gives its advice in flags
             gc.unfreeze()  # what a process of its own would keep to its end
     assert isinstance(code, int)
     return Done(code, stdout.getvalue(), stderr.getvalue())

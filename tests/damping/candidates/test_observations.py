@@ -44,7 +44,7 @@ def points(
         table=table,
         zero_errors=0.002 * np.column_stack([np.ones(9), np.linspace(-1.0, 1.0, 9)]),
         log=SimpleNamespace(
-            has_temperature=temperature, sensors=Sensors(film_heating=heating), corrections=()
+            has_temperature=temperature, sensors=Sensors(film_heating=heating), corrections=(), runs=()
         ),
         temperature_rates=np.empty(0),
         column=lambda name: table[name].to_numpy(),
