@@ -19,7 +19,7 @@ from hersey.units import fields_in_si, takes_si
 
 if TYPE_CHECKING:
     from hersey.motion.belt import Drivetrain
-from hersey.motion.simulation import StickSlipCycle
+    from hersey.motion.simulation import StickSlipCycle
 
 
 @dataclass(frozen=True, repr=False)
