@@ -23,7 +23,7 @@ from hersey.log.channels import (
 )
 from hersey.log.friction import beside, in_rotation, notes_on, slow_roles, unused
 from hersey.log.impossible import Impossible, Reading, impossible_rows, marked_rows
-from hersey.log.recording import INVALID, INVALID_TIME, SOUND, Recording, Signal
+from hersey.log.recording import INVALID, INVALID_TIME, Recording, Signal
 from hersey.log.rows import LeftOut, runs_with_records
 from hersey.log.text.layout import Column
 from hersey.log.text.stamps import counted_since, is_clock_name
@@ -42,12 +42,13 @@ class _Part:
     time: FloatArray
     tick: str
     rows: IntArray
-    marked: FloatArray  #: what the file itself says of each sample: see `Signal.marked`
+    marked: FloatArray | None  #: what the file itself says of each sample: see `Signal.marked`
 
     def keep(self, rows: BoolArray) -> None:
         """Leave out all other samples."""
         self.values, self.time = self.values[rows], self.time[rows]
-        self.rows, self.marked = self.rows[rows], self.marked[rows]
+        self.rows = self.rows[rows]
+        self.marked = None if self.marked is None else self.marked[rows]
 
 
 class Assembly:
@@ -199,7 +200,7 @@ class Assembly:
                 f"{self.source.name}: channel '{column.path}' has {values.size} values and its clock "
                 f"{time.size}: the file is damaged or cut off"
             )
-        marked = np.full(values.size, SOUND) if signal.marked is None else signal.marked()
+        marked = None if signal.marked is None else signal.marked()
         return _Part(role, column, unit, in_si(values, unit), time, tick, np.arange(values.size), marked)
 
     def _says_nothing(self, column: Column) -> bool:
@@ -309,11 +310,12 @@ class Assembly:
         rows = 0
         for tick in dict.fromkeys(part.tick for part in self.parts.values()):
             parts = [part for part in self.parts.values() if part.tick == tick]
+            told = [(part, part.marked) for part in parts if part.marked is not None]
+            if not told:
+                continue
             clock = self._clocks[tick][2]
-            marks = [
-                ("time", Column(-1, clock.name, clock.unit), clock.unit, parts[0].marked == INVALID_TIME)
-            ]
-            marks += [(part.role, part.column, part.unit.unit, part.marked == INVALID) for part in parts]
+            marks = [("time", Column(-1, clock.name, clock.unit), clock.unit, told[0][1] == INVALID_TIME)]
+            marks += [(part.role, part.column, part.unit.unit, marked == INVALID) for part, marked in told]
             gone, here = marked_rows(marks, self.source.name, partial(self._where, parts[0]), allowed=allowed)
             for part in parts if gone.any() else ():
                 part.keep(~gone)

@@ -222,8 +222,10 @@ def _bridged(
 
 def _among(place: Callable[[int], str], rows: Rows) -> Callable[[int], str]:
     """What puts a row in words that is counted among these."""
-    start = _first(rows)
-    return lambda row: place(start + row if isinstance(rows, slice) else int(rows[row]))
+    if isinstance(rows, slice):
+        start = _first(rows)
+        return lambda row: place(start + row)
+    return lambda row: place(int(rows[row]))
 
 
 def _first(rows: Rows) -> int:
