@@ -97,6 +97,46 @@ def test_ctrl_c_ends_a_command(verb: str, moment: int, tmp_path: Path) -> None:
         assert path.is_dir() or is_whole(path), path
 
 
+def test_an_interrupted_question_leaves_its_line(tmp_path: Path) -> None:
+    process = subprocess.Popen(
+        [sys.executable, "-c", READY, "new", BENCH[0], "--mapping", "h.toml", "--machine", "m.toml"],
+        cwd=tmp_path,
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    )
+    assert process.stderr is not None
+    asked = b""
+    while not asked.endswith(b"[Drive torque]: "):
+        asked += process.stderr.read(1)
+    process.send_signal(signal.SIGINT)
+    assert process.communicate()[1] == b"\nhersey: interrupted\n"
+    assert process.returncode == 130
+
+
+@pytest.mark.parametrize("moment", range(6))
+def test_an_interrupt_while_the_core_loads(moment: int) -> None:
+    """The signal comes in the middle of an import of NumPy's that the core makes."""
+    halted = f"""
+import os, signal, sys
+from hersey.cli.interruption import end
+left = {moment + 1} * 12
+class Halts:
+    def find_spec(self, name, path=None, target=None):
+        global left
+        left -= 1
+        if not left:
+            os.kill(os.getpid(), signal.SIGINT)
+sys.meta_path.insert(0, Halts())
+try:
+    import hersey._core
+except KeyboardInterrupt:
+    end()
+"""
+    ended = subprocess.run([sys.executable, "-c", halted], capture_output=True, text=True, check=False)
+    assert (ended.returncode, ended.stderr) == (130, "hersey: interrupted\n")
+
+
 def processor_time(process: int) -> float:
     """Processor time of a process itself, s."""
     fields = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()

@@ -60,7 +60,9 @@ mod _core {
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
         use hersey_core::drag::Mode;
-        // what NumPy must import is imported now, and not where a signal may cut in
+        // what NumPy must import is imported now: the crate panics where an interrupt cuts in
+        module.py().import("numpy")?;
+        module.py().check_signals()?;
         numpy::PyArray1::<f64>::zeros(module.py(), 0, false).readonly();
         let modes = [Mode::Ehl, Mode::Mixed, Mode::Microslip, Mode::Stuck];
         module.add("MODES", modes.map(super::motion::mode_name))?;

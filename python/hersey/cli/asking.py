@@ -64,7 +64,11 @@ class Asking:
         default = f" [{proposed}]" if proposed else "" if needed else " [left out]"
         sys.stderr.write(printable(f"{what}{f' ({words})' if words else ''}{default}: "))
         sys.stderr.flush()
-        line = sys.stdin.readline()
+        try:
+            line = sys.stdin.readline()
+        except KeyboardInterrupt:
+            sys.stderr.write("\n")  # what is said of it begins a line of its own
+            raise
         if not self._terminal:
             sys.stderr.write("\n")
         self._count += 1
