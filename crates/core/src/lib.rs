@@ -29,6 +29,7 @@
 //! | `motion::trajectory`      | the motion sampled at given times, with its event table and energies               |
 //! | `motion::lap`             | one lap: its sections, its extremes, and where the laps are heading                |
 //! | `motion::cycle`           | what the motion settles to: steady sliding, oscillation, stick-slip                |
+//! | `motion::overtakings`     | a motion seen only where the belt overtakes the drive                              |
 //! | `motion::returning`       | where a belt that overtakes the drive overtakes it again                           |
 //! | `motion::lanes`           | slip laps of many belts at once, several to a register                             |
 //! | `motion::ensemble`        | what thousands of belts settle to                                                  |

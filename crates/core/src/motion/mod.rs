@@ -23,6 +23,7 @@
 //! | `ensemble`    | what thousands of belts settle to                                         |
 //! | `lap`         | one lap: its sections, its extremes, and where the laps are heading       |
 //! | `cycle`       | what the motion settles to: steady sliding, oscillation, stick-slip       |
+//! | `overtakings` | a motion seen only where the belt overtakes the drive                     |
 //! | `returning`   | where a belt that overtakes the drive overtakes it again                  |
 //! | `start_up`    | from when on a belt that starts from rest slides for good                 |
 //! | `start_ups`   | many of them at once, in lanes                                            |
@@ -39,6 +40,7 @@ pub(crate) mod lanes;
 mod lap;
 mod modes;
 mod moment;
+mod overtakings;
 mod piece;
 mod polynomial;
 mod returning;
@@ -61,6 +63,7 @@ pub use event::{Event, Guard};
 pub use heat::{HeatBalance, Heater};
 pub(crate) use hybrid::first_slide;
 pub use moment::Moment;
+pub(crate) use overtakings::Overtakings;
 pub(crate) use returning::{Return, next_return};
 pub use schedule::{Cubic, Schedule};
 pub use start_up::{Ending, StartUp, Started, start_up};

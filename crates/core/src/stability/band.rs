@@ -3,6 +3,7 @@
 use super::cycles;
 use super::fold::{Fold, Gripped, SlippingFold, folds, gripped};
 use super::slip_lap::SlipLap;
+use super::smooth::SmoothBelt;
 use crate::drag::{Closure, Drag};
 use crate::error::{Error, unless_stopped};
 use crate::motion::{
@@ -58,6 +59,8 @@ const HALVED_LOWER: f64 = 1e-4;
 /// against 1e-14, the worst was off by 346 up to 32 transition speeds and by 1,024 up to 100.
 const MEETING: f64 = 400.0;
 const GROWS_FROM: f64 = 15.0;
+/// Accuracy of the lower edge of smooth closures, from the least of a few swings.
+const FOUND_LOWER: f64 = 1e-5;
 /// The same of folds by simulation, which pass slowly by the motion that is about to vanish.
 const PASSING: f64 = 1e4;
 /// How far above the fold the belt is started from rest to see whether some deeper stick-slip lasts.
@@ -115,7 +118,7 @@ pub fn bands(
         let (lower, lower_accuracy) = match lowers[i] {
             _ if !lower => (f64::NAN, f64::NAN),
             Some(edge) => (edge * transition, MEETING * tolerance),
-            None => (lower_by_simulation(&motions)?, HALVED_LOWER),
+            None => lower_by_motions(&motions)?,
         };
         let (upper, upper_accuracy) = if let Some(fold) = half {
             let far = (fold.drive_speed / GROWS_FROM).max(1.0);
@@ -124,7 +127,13 @@ pub fn bands(
             let from = uppers[i].map_or(1.0, |fold| fold.drive_speed * (1.0 + ABOVE));
             let near = if drag.closure().is_smooth() { HALVED_SMOOTH } else { HALVED };
             let start = if stalls { released(train, drag) } else { Start::REST };
-            let upper = upper_by_simulation(&motions, start, from * transition, near)?;
+            let upper = match motions.smooth() {
+                Some(belt) => {
+                    let range = [from * transition, drag.stick_speed(), FASTEST * transition];
+                    belt.upper(range, near, &motions.together)?
+                }
+                None => upper_by_simulation(&motions, start, from * transition, near)?,
+            };
             (upper, near.max(PASSING * tolerance))
         };
         // no swing is wider than that on which the roll slips
@@ -188,6 +197,13 @@ impl<'a> Motions<'a> {
     /// Whether the belt goes on to stick and slip.
     fn stick(&self, drive_speed: f64, start: Start) -> Result<bool, Error> {
         Ok(lasts(&self.settle(drive_speed, start)?, self.drag))
+    }
+
+    /// The belt as one whose edges one or two laps decide: its closure is smooth, and the roll always grips.
+    fn smooth(&self) -> Option<SmoothBelt<'_>> {
+        let (train, drag, tolerance) = (self.train, self.drag, self.tolerance);
+        let known = drag.closure().is_smooth() && train.grip().is_infinite();
+        known.then_some(SmoothBelt { train, drag, tolerance })
     }
 
     fn settle(&self, drive_speed: f64, start: Start) -> Result<StickSlipCycle, Error> {
@@ -411,7 +427,7 @@ fn lower_edges(
 }
 
 /// Bottom of the parabola through the least point and its neighbours, if it lies between them.
-fn below_three(points: &[(f64, f64)]) -> Option<f64> {
+pub(super) fn below_three(points: &[(f64, f64)]) -> Option<f64> {
     let least = (0..points.len()).min_by(|i, j| points[*i].1.total_cmp(&points[*j].1))?;
     if least == 0 || least + 1 == points.len() {
         return None;
@@ -453,6 +469,17 @@ fn upper_by_simulation(
         }
     }
     halved(low, high, accuracy, sticks)
+}
+
+/// The lower edge where half laps do not give it, and its accuracy.
+fn lower_by_motions(motions: &Motions) -> Result<(f64, f64), Error> {
+    if let Some(belt) = motions.smooth()
+        && let Some(edge) =
+            belt.lower(motions.drag.rising_from(), &motions.together)?
+    {
+        return Ok((edge, FOUND_LOWER));
+    }
+    Ok((lower_by_simulation(motions)?, HALVED_LOWER))
 }
 
 /// Drive speed below the transition under which a belt nudged from steady sliding comes to stick.

@@ -7,6 +7,7 @@
 //! | `fold` | drive speed at which a slip lap comes back to its start, many at once              |
 //! | `cycles` | swings that never stick, by their slowest speed                                 |
 //! | `band` | lower edge, transition and upper fold of a belt, for every closure                 |
+//! | `smooth` | edges of a belt with a smooth closure, decided by a lap or two                   |
 //! | `curve_laps` | slip laps and fold of a belt whose drag is a smooth curve                    |
 //! | `curve_start_up` | what a profile of drive speed does to such a belt                             |
 //! | `unstable` | the lap between the starts that come to slide and those that come to stick    |
@@ -18,6 +19,7 @@ mod cycles;
 mod fold;
 mod secant;
 mod slip_lap;
+mod smooth;
 mod unstable;
 
 pub use band::{Band, Method, bands, slip_lap};

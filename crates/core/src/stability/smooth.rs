@@ -1,0 +1,214 @@
+//! Edges of a belt whose closure is smooth, from where it overtakes the drive.
+//!
+//! How hard the spring pulls where the belt overtakes the drive decides what follows: above the speed of the bristles,
+//! if there are any, they have long forgotten. So each lap maps a pull to the next, and a lap without sticking cannot
+//! swap two pulls. Once such a lap brings less pull than the one before, all later laps do, and the belt
+//! never sticks again: one or two laps decide what takes hundreds to die out. Stick-slip itself need not repeat: with
+//! `LuGre` it is often chaotic, so there is no orbit to follow; it ends where a lap just comes
+//! to the unstable cycle around steady sliding.
+
+use std::collections::VecDeque;
+
+use super::band::below_three;
+use crate::drag::Drag;
+use crate::error::Error;
+use crate::motion::{Drivetrain, Overtakings, Start, System};
+use crate::work::Work;
+
+/// Laps after which a motion that still sticks is taken to go on so.
+const MOST_LAPS: usize = 200;
+/// The same while the edge is narrowed, beyond those that the faster drive took to let the belt slide.
+const LAPS_BEYOND: usize = 24;
+/// Change of the pull between laps, in tolerances, from which the motion repeats itself.
+const CLOSED: f64 = 100.0;
+/// Laps after which a motion with memory may repeat itself.
+const MAX_PERIOD: usize = 16;
+/// Laps in a row without sticking that bring less pull, from which the belt is known to slide: bristles may take one.
+const FALLING: usize = 2;
+/// Relative distance below the edge at which the motion is followed as long as any, and how often that may disagree.
+const BESIDE: f64 = 5e-5;
+const DISAGREEMENTS: usize = 8;
+/// Share of the accuracy to which the edge is narrowed.
+const NARROWED: f64 = 0.2;
+/// Growth of the drive speed in search of one at which the belt slides.
+const GROWTH: f64 = 1.25;
+
+/// What becomes of stick-slip at a drive speed.
+#[derive(Clone, Copy, PartialEq)]
+enum Fate {
+    Lasts,
+    /// It has ended for good after so many laps.
+    Ends(usize),
+}
+
+/// A belt whose roll always grips.
+pub(super) struct SmoothBelt<'a> {
+    pub train: &'a Drivetrain,
+    pub drag: &'a Drag,
+    pub tolerance: f64,
+}
+
+impl SmoothBelt<'_> {
+    /// Greatest drive speed at which a belt from rest goes on to stick, found between `least` and `most`; infinite if it does at `most`.
+    ///
+    /// # Errors
+    /// If a motion cannot be followed, or `work` ends before.
+    pub(super) fn upper(
+        &self,
+        [from, least, most]: [f64; 3],
+        accuracy: f64,
+        work: &Work,
+    ) -> Result<f64, Error> {
+        let fate = |drive_speed: f64, laps: usize| self.fate(drive_speed, laps, work);
+        let (mut low, mut high) = (from, from);
+        let mut ended = loop {
+            match fate(high, MOST_LAPS)? {
+                Fate::Ends(laps) => break laps,
+                Fate::Lasts if high > most => return Ok(f64::INFINITY),
+                Fate::Lasts => (low, high) = (high, GROWTH * high),
+            }
+        };
+        if low == high {
+            while let Fate::Ends(laps) = fate(low, MOST_LAPS)? {
+                (low, high, ended) = (low / GROWTH, low, laps);
+                if low < least {
+                    return Ok(low);
+                }
+            }
+        }
+        let mut disagreed = 0;
+        loop {
+            let mut lasting = low;
+            while high - lasting > NARROWED * accuracy * high {
+                let middle = 0.5 * (lasting + high);
+                let laps = if disagreed < DISAGREEMENTS { ended + LAPS_BEYOND } else { MOST_LAPS };
+                match fate(middle, laps)? {
+                    Fate::Lasts => lasting = middle,
+                    Fate::Ends(laps) => (high, ended) = (middle, laps),
+                }
+            }
+            let beside = (1.0 - BESIDE) * high;
+            if disagreed >= DISAGREEMENTS || beside <= low {
+                return Ok(0.5 * (lasting + high));
+            }
+            match fate(beside, MOST_LAPS)? {
+                Fate::Lasts => return Ok(0.5 * (lasting + high)),
+                Fate::Ends(laps) => (high, ended, disagreed) = (beside, laps, disagreed + 1),
+            }
+        }
+    }
+
+    /// What becomes of the stick-slip of a belt from rest, within so many laps.
+    fn fate(&self, drive_speed: f64, most: usize, work: &Work) -> Result<Fate, Error> {
+        let system = System::at_speed(*self.train, self.drag, drive_speed)?;
+        let mut laps = Overtakings::from(&system, drive_speed, Start::REST, self.tolerance, work)?;
+        let period = if self.drag.closure().has_memory() { MAX_PERIOD } else { 1 };
+        let mut past = VecDeque::new();
+        let (mut falling, mut sliding) = (0, 0);
+        for lap in 1..=most {
+            let Some(met) = laps.next()? else { return Ok(Fate::Ends(lap)) };
+            sliding = if met.stuck { 0 } else { sliding + 1 };
+            let falls = past.front().is_some_and(|before| !met.stuck && met.pull < *before);
+            falling = if falls { falling + 1 } else { 0 };
+            if falling == FALLING {
+                return Ok(Fate::Ends(lap));
+            }
+            let near = CLOSED * self.tolerance * met.pull.abs();
+            if past.iter().any(|before: &f64| (met.pull - before).abs() <= near) {
+                return Ok(if sliding > past.len() { Fate::Ends(lap) } else { Fate::Lasts });
+            }
+            past.push_front(met.pull);
+            past.truncate(period);
+        }
+        Ok(if sliding > MAX_PERIOD { Fate::Ends(most) } else { Fate::Lasts })
+    }
+}
+
+/// Sizes of the swings looked at: their excess of pull over the transition speed times `sqrt(k m)`.
+const SIZES: [f64; 7] = [0.05, 0.12, 0.25, 0.4, 0.55, 0.7, 0.9];
+/// Parabolas drawn through the least of three points, after those sizes.
+const PARABOLAS: usize = 5;
+/// Drive speeds between which the swing of a size is looked for, over the transition speed.
+const SLOWEST: f64 = 0.8;
+const FASTEST: f64 = 1.1;
+/// Relative accuracy of the drive speed of a swing, and laps at most on the way to it.
+const FOUND: f64 = 1e-8;
+const MOST_TRIES: usize = 60;
+
+impl SmoothBelt<'_> {
+    /// Least drive speed of any swing that never sticks, no more than `none`, below which drag falls; no number if it is
+    /// slower than any looked at.
+    ///
+    /// # Errors
+    /// As for [`Self::upper`].
+    pub(super) fn lower(&self, none: f64, work: &Work) -> Result<Option<f64>, Error> {
+        let mut seen: Vec<(f64, f64)> = Vec::new();
+        for size in SIZES {
+            let Some(drive_speed) = self.drive_of(size, work)? else { return Ok(None) };
+            seen.push((size, drive_speed));
+        }
+        for _ in 0..PARABOLAS {
+            let Some(size) = below_three(&seen) else { break };
+            let Some(drive_speed) = self.drive_of(size, work)? else { break };
+            let place = seen.partition_point(|(s, _)| *s < size);
+            seen.insert(place, (size, drive_speed));
+        }
+        Ok(Some(seen.iter().fold(none, |least, (_, drive_speed)| least.min(*drive_speed))))
+    }
+
+    /// Drive speed at which a swing of this size neither grows nor falls; the fastest looked at if it is no slower.
+    fn drive_of(&self, size: f64, work: &Work) -> Result<Option<f64>, Error> {
+        let transition = self.drag.transition_speed();
+        let (mut low, mut high) = ((SLOWEST * transition, None), (FASTEST * transition, None));
+        match self.growth(low.0, size, work)? {
+            Growth::Falls(_) => return Ok(None),
+            Growth::Grows(by) => low.1 = by,
+        }
+        match self.growth(high.0, size, work)? {
+            Growth::Grows(_) => return Ok(Some(high.0)),
+            Growth::Falls(by) => high.1 = by,
+        }
+        // false position, and halving where that has no value or closes in from one side only
+        for count in 0..MOST_TRIES {
+            if high.0 - low.0 <= FOUND * high.0 {
+                break;
+            }
+            let middle = 0.5 * (low.0 + high.0);
+            let secant = low.1.zip(high.1).map(|(g, f)| low.0 + (high.0 - low.0) * g / (g + f));
+            let inside = |w: &f64| *w > low.0 && *w < high.0;
+            let drive_speed = secant.filter(|w| count % 3 < 2 && inside(w)).unwrap_or(middle);
+            match self.growth(drive_speed, size, work)? {
+                Growth::Grows(by) => low = (drive_speed, by),
+                Growth::Falls(by) => high = (drive_speed, by),
+            }
+        }
+        Ok(Some(0.5 * (low.0 + high.0)))
+    }
+
+    /// What becomes of a swing of this size: its second lap against the first, in which bristles fall in with it.
+    fn growth(&self, drive_speed: f64, size: f64, work: &Work) -> Result<Growth, Error> {
+        let system = System::at_speed(*self.train, self.drag, drive_speed)?;
+        let impedance = (self.train.stiffness() * self.train.mass()).sqrt();
+        let excess = size * self.drag.transition_speed() * impedance;
+        let pull = self.drag.force(drive_speed) + excess;
+        let start = Start { belt_speed: drive_speed, stretch: pull / self.train.stiffness() };
+        let mut laps = Overtakings::from(&system, drive_speed, start, self.tolerance, work)?;
+        let mut before = pull;
+        for lap in 0..2 {
+            match laps.next()? {
+                None => return Ok(Growth::Falls(None)),
+                Some(met) if met.stuck => return Ok(Growth::Grows(None)),
+                Some(met) if lap == 0 => before = met.pull,
+                Some(met) if met.pull < before => return Ok(Growth::Falls(Some(before - met.pull))),
+                Some(met) => return Ok(Growth::Grows(Some(met.pull - before))),
+            }
+        }
+        Ok(Growth::Falls(None))
+    }
+}
+
+/// Which way the pull goes from lap to lap: up, or to sticking, or down to sliding; by so much where that is known.
+enum Growth {
+    Grows(Option<f64>),
+    Falls(Option<f64>),
+}
