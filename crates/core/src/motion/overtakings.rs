@@ -17,12 +17,12 @@ const ONCE: f64 = 1e-6;
 /// The belt overtakes the drive.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Overtaking {
-    /// When it does.
-    pub time: f64,
     /// Pull of the spring.
     pub pull: f64,
     /// Whether the belt has been below the stick speed since the last time, or the start.
     pub stuck: bool,
+    /// Least belt speed since then, at the ends of the steps.
+    pub slowest: f64,
 }
 
 /// The motion from one overtaking to the next.
@@ -49,15 +49,16 @@ impl<'a> Overtakings<'a> {
     /// The next overtaking, if there is one.
     pub(crate) fn next(&mut self) -> Result<Option<Overtaking>, Error> {
         let below = |mode| matches!(mode, Mode::Stuck | Mode::Microslip);
-        let mut stuck = false;
+        let (mut stuck, mut slowest) = (false, f64::INFINITY);
         for _ in 0..MOST_PIECES {
             let (piece, event) = self.motion.advance(f64::INFINITY)?;
             stuck |= below(piece.start.mode);
+            slowest = slowest.min(piece.start.direction * piece.start.speed);
             if let Some((time, pull)) = self.met(&piece, event)
                 && time > self.last + self.once
             {
                 self.last = time;
-                return Ok(Some(Overtaking { time, pull, stuck }));
+                return Ok(Some(Overtaking { pull, stuck, slowest }));
             }
             if piece.duration.is_infinite() {
                 return Ok(None);

@@ -45,7 +45,8 @@ const MAX_HALVINGS: usize = 50;
 #[allow(clippy::large_enum_variant)] // the large one is the common one, and lives on the stack
 pub(super) enum Path {
     Series(Series),
-    Steps { formula: Formula, scales: State, tolerance: f64 },
+    /// With the length of the step and the state at its end.
+    Steps { formula: Formula, scales: State, tolerance: f64, end: (f64, State) },
 }
 
 /// A stretch of smooth motion from `time` on, `duration` long.
@@ -95,7 +96,9 @@ impl Piece<'_> {
             Path::Series(series) => {
                 [value(&series.pull, elapsed), value(&series.speed, elapsed), self.start.bristle]
             }
-            Path::Steps { formula, scales, tolerance } => {
+            // what the step itself has found, to the last bit
+            Path::Steps { end: (time, end), .. } if elapsed.to_bits() == time.to_bits() => *end,
+            Path::Steps { formula, scales, tolerance, .. } => {
                 formula.at(&self.flow, &self.start.state(), elapsed, scales, *tolerance)
             }
         }

@@ -217,16 +217,52 @@ const RADAU_A: [[f64; 3]; 3] = [
     [(296.0 + 169.0 * ROOT6) / 1800.0, (88.0 + 7.0 * ROOT6) / 360.0, (-2.0 - 3.0 * ROOT6) / 225.0],
     [(16.0 - ROOT6) / 36.0, (16.0 + ROOT6) / 36.0, 1.0 / 9.0],
 ];
+/// That matrix times itself.
+const RADAU_A2: [[f64; 3]; 3] = squared(&RADAU_A);
+
+const fn squared(a: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
+    let mut square = [[0.0; 3]; 3];
+    let mut i = 0;
+    while i < 9 {
+        let (row, column) = (i / 3, i % 3);
+        square[row][column] =
+            a[row][0] * a[0][column] + a[row][1] * a[1][column] + a[row][2] * a[2][column];
+        i += 1;
+    }
+    square
+}
 
 /// One step of Radau IIA, order 5.
+///
+/// The pull follows from the speed by `p' = driven - k u`, so only speeds and deflections of the stages are solved for.
 fn radau(flow: &Flow, t: f64, y: &State, h: f64, scales: &State, tolerance: f64) -> Option<State> {
-    const M: usize = 3 * N;
+    if flow.drag.closure().has_memory() {
+        radau_of::<6>(flow, t, y, h, scales, tolerance)
+    } else {
+        radau_of::<3>(flow, t, y, h, scales, tolerance)
+    }
+}
+
+/// The same with `M` unknowns: the speeds of the three stages, and with bristles their deflections.
+fn radau_of<const M: usize>(
+    flow: &Flow,
+    t: f64,
+    y: &State,
+    h: f64,
+    scales: &State,
+    tolerance: f64,
+) -> Option<State> {
     let jacobian = flow.jacobian(t, y);
+    let pulled = h * h * flow.stiffness / flow.mass;
     let mut matrix = [[0.0; M]; M];
     for (i, row) in matrix.iter_mut().enumerate() {
         for (j, entry) in row.iter_mut().enumerate() {
             let identity = f64::from(u8::from(i == j));
-            *entry = identity - h * RADAU_A[i / N][j / N] * jacobian[i % N][j % N];
+            let (stage, other) = (i % 3, j % 3);
+            *entry = identity - h * RADAU_A[stage][other] * jacobian[1 + i / 3][1 + j / 3];
+            if i < 3 && j < 3 {
+                *entry += pulled * RADAU_A2[stage][other];
+            }
         }
     }
     let pivots = factorised(&mut matrix)?;
@@ -236,16 +272,30 @@ fn radau(flow: &Flow, t: f64, y: &State, h: f64, scales: &State, tolerance: f64)
         let rates: [State; 3] = std::array::from_fn(|i| {
             flow.rates(t + RADAU_C[i] * h, &std::array::from_fn(|l| y[l] + z[i][l]))
         });
-        let mut correction: [f64; M] = std::array::from_fn(|i| {
-            let (stage, l) = (i / N, i % N);
+        let off = |stage: usize, l: usize| {
             let sum: f64 = (0..3).map(|j| RADAU_A[stage][j] * rates[j][l]).sum();
             h * sum - z[stage][l]
+        };
+        let pulls: [f64; 3] = std::array::from_fn(|stage| off(stage, 0));
+        let weighted = |stage: usize, of: &[f64]| -> f64 {
+            RADAU_A[stage].iter().zip(of).map(|(a, x)| h * a * x).sum()
+        };
+        let mut correction: [f64; M] = std::array::from_fn(|i| {
+            let own = off(i % 3, 1 + i / 3);
+            if i < 3 { own + weighted(i, &pulls) / flow.mass } else { own }
         });
         solve(&matrix, &pivots, &mut correction);
         let mut size = 0.0_f64;
+        let mut correct = |stage: usize, l: usize, c: f64| {
+            z[stage][l] += c;
+            size = size.max(c.abs() / scales[l]);
+        };
+        for stage in 0..3 {
+            let speeds = weighted(stage, &correction[..3]);
+            correct(stage, 0, pulls[stage] - flow.stiffness * speeds);
+        }
         for (i, c) in correction.iter().enumerate() {
-            z[i / N][i % N] += c;
-            size = size.max(c.abs() / scales[i % N]);
+            correct(i % 3, 1 + i / 3, *c);
         }
         // the iteration has done what it can when corrections no longer shrink
         if size <= 1e-3 * tolerance || (size >= 0.5 * last && size <= 0.1 * tolerance) {

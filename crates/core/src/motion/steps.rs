@@ -408,25 +408,25 @@ impl<'a> Motion<'a> {
         // where nothing moves, one step is as good as another
         duration = duration.min(longest).min(FARTHEST);
         let mut tries = 0;
-        loop {
+        let end = loop {
             tries += 1;
             if tries > MAX_TRIES {
                 return Err(self.stalled());
             }
             self.work.take(cost).map_err(|error| error.at_time(self.now.time))?;
-            if let Some((_, errors)) = formula.step(&flow, &state, duration, &scales, tolerance) {
+            if let Some((end, errors)) = formula.step(&flow, &state, duration, &scales, tolerance) {
                 let error =
                     (0..3).map(|i| errors[i].abs() / (tolerance * scales[i])).fold(0.0, f64::max);
                 if error <= 1.0 {
                     self.next_step = duration * growth(error);
-                    break;
+                    break end;
                 }
                 duration *= growth(error).min(0.8);
             } else {
                 duration *= 0.25;
             }
-        }
-        let path = Path::Steps { formula, scales, tolerance };
+        };
+        let path = Path::Steps { formula, scales, tolerance, end: (duration, end) };
         Ok(Piece {
             time: self.now.time,
             duration,

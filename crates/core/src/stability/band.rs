@@ -127,12 +127,14 @@ pub fn bands(
             let from = uppers[i].map_or(1.0, |fold| fold.drive_speed * (1.0 + ABOVE));
             let near = if drag.closure().is_smooth() { HALVED_SMOOTH } else { HALVED };
             let start = if stalls { released(train, drag) } else { Start::REST };
-            let upper = match motions.smooth() {
+            let (upper, near) = match motions.smooth() {
                 Some(belt) => {
                     let range = [from * transition, drag.stick_speed(), FASTEST * transition];
                     belt.upper(range, near, &motions.together)?
                 }
-                None => upper_by_simulation(&motions, start, from * transition, near)?,
+                None => {
+                    (upper_by_simulation(&motions, start, from * transition, near)?, near)
+                }
             };
             (upper, near.max(PASSING * tolerance))
         };
@@ -203,7 +205,7 @@ impl<'a> Motions<'a> {
     fn smooth(&self) -> Option<SmoothBelt<'_>> {
         let (train, drag, tolerance) = (self.train, self.drag, self.tolerance);
         let known = drag.closure().is_smooth() && train.grip().is_infinite();
-        known.then_some(SmoothBelt { train, drag, tolerance })
+        known.then(|| SmoothBelt::new(train, drag, tolerance))
     }
 
     fn settle(&self, drive_speed: f64, start: Start) -> Result<StickSlipCycle, Error> {
@@ -473,11 +475,11 @@ fn upper_by_simulation(
 
 /// The lower edge where half laps do not give it, and its accuracy.
 fn lower_by_motions(motions: &Motions) -> Result<(f64, f64), Error> {
-    if let Some(belt) = motions.smooth()
-        && let Some(edge) =
-            belt.lower(motions.drag.rising_from(), &motions.together)?
-    {
-        return Ok((edge, FOUND_LOWER));
+    if let Some(belt) = motions.smooth() {
+        return Ok(match belt.lower(motions.drag.rising_from(), &motions.together)? {
+            Some(edge) => (edge, FOUND_LOWER),
+            None => (belt.lower_by_halving(HALVED_LOWER, &motions.together)?, HALVED_LOWER),
+        });
     }
     Ok((lower_by_simulation(motions)?, HALVED_LOWER))
 }

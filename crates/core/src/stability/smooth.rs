@@ -10,24 +10,32 @@
 use std::collections::VecDeque;
 
 use super::band::below_three;
-use crate::drag::Drag;
+use crate::drag::{Closure, Drag};
 use crate::error::Error;
 use crate::motion::{Drivetrain, Overtakings, Start, System};
 use crate::work::Work;
 
 /// Laps after which a motion that still sticks is taken to go on so.
 const MOST_LAPS: usize = 200;
-/// The same while the edge is narrowed, beyond those that the faster drive took to let the belt slide.
-const LAPS_BEYOND: usize = 24;
+/// The same while the edge is looked for; what lasts no longer is found beside it.
+const FEW_LAPS: usize = 24;
+/// Accuracy of an edge above which stick-slip takes more than those to end: chaotic laps have then no sharp end.
+const CHAOTIC: f64 = 1e-4;
 /// Change of the pull between laps, in tolerances, from which the motion repeats itself.
 const CLOSED: f64 = 100.0;
 /// Laps after which a motion with memory may repeat itself.
 const MAX_PERIOD: usize = 16;
 /// Laps in a row without sticking that bring less pull, from which the belt is known to slide: bristles may take one.
 const FALLING: usize = 2;
-/// Relative distance below the edge at which the motion is followed as long as any, and how often that may disagree.
+/// Rate at which bristles forget, per rate of the free oscillation, from which they keep up with the belt.
+const FORGOTTEN: f64 = 10.0;
+/// Relative distance below the edge at which the motion is followed as long as any, and by how much that widens each time
+/// it ends all the same.
 const BESIDE: f64 = 5e-5;
-const DISAGREEMENTS: usize = 8;
+const WIDER: f64 = 4.0;
+/// Tolerance of the motions, in that of the edge: their error is a hundredth of its accuracy.
+const LOOSER: f64 = 10.0;
+const LOOSEST: f64 = 1e-7;
 /// Share of the accuracy to which the edge is narrowed.
 const NARROWED: f64 = 0.2;
 /// Growth of the drive speed in search of one at which the belt slides.
@@ -43,13 +51,20 @@ enum Fate {
 
 /// A belt whose roll always grips.
 pub(super) struct SmoothBelt<'a> {
-    pub train: &'a Drivetrain,
-    pub drag: &'a Drag,
-    pub tolerance: f64,
+    train: &'a Drivetrain,
+    drag: &'a Drag,
+    tolerance: f64,
+}
+
+impl<'a> SmoothBelt<'a> {
+    pub(super) fn new(train: &'a Drivetrain, drag: &'a Drag, tolerance: f64) -> Self {
+        Self { train, drag, tolerance: (LOOSER * tolerance).min(LOOSEST.max(tolerance)) }
+    }
 }
 
 impl SmoothBelt<'_> {
-    /// Greatest drive speed at which a belt from rest goes on to stick, found between `least` and `most`; infinite if it does at `most`.
+    /// Greatest drive speed at which a belt from rest goes on to stick, and its accuracy: looked for up and down
+    /// from `from`, no further than `least` and `most`; infinite if it does so at `most`.
     ///
     /// # Errors
     /// If a motion cannot be followed, or `work` ends before.
@@ -58,69 +73,85 @@ impl SmoothBelt<'_> {
         [from, least, most]: [f64; 3],
         accuracy: f64,
         work: &Work,
-    ) -> Result<f64, Error> {
+    ) -> Result<(f64, f64), Error> {
         let fate = |drive_speed: f64, laps: usize| self.fate(drive_speed, laps, work);
         let (mut low, mut high) = (from, from);
         let mut ended = loop {
-            match fate(high, MOST_LAPS)? {
+            match fate(high, FEW_LAPS)? {
                 Fate::Ends(laps) => break laps,
-                Fate::Lasts if high > most => return Ok(f64::INFINITY),
+                Fate::Lasts if high > most => return Ok((f64::INFINITY, accuracy)),
                 Fate::Lasts => (low, high) = (high, GROWTH * high),
             }
         };
         if low == high {
-            while let Fate::Ends(laps) = fate(low, MOST_LAPS)? {
+            while let Fate::Ends(laps) = fate(low, FEW_LAPS)? {
                 (low, high, ended) = (low / GROWTH, low, laps);
                 if low < least {
-                    return Ok(low);
+                    return Ok((low, accuracy));
                 }
             }
         }
-        let mut disagreed = 0;
-        loop {
-            let mut lasting = low;
-            while high - lasting > NARROWED * accuracy * high {
-                let middle = 0.5 * (lasting + high);
-                let laps = if disagreed < DISAGREEMENTS { ended + LAPS_BEYOND } else { MOST_LAPS };
-                match fate(middle, laps)? {
-                    Fate::Lasts => lasting = middle,
-                    Fate::Ends(laps) => (high, ended) = (middle, laps),
-                }
-            }
-            let beside = (1.0 - BESIDE) * high;
-            if disagreed >= DISAGREEMENTS || beside <= low {
-                return Ok(0.5 * (lasting + high));
-            }
-            match fate(beside, MOST_LAPS)? {
-                Fate::Lasts => return Ok(0.5 * (lasting + high)),
-                Fate::Ends(laps) => (high, ended, disagreed) = (beside, laps, disagreed + 1),
+        let near = |ended| if ended > FEW_LAPS { CHAOTIC } else { accuracy };
+        while high - low > NARROWED * near(ended) * high {
+            let middle = 0.5 * (low + high);
+            match fate(middle, ended + FEW_LAPS)? {
+                Fate::Lasts => low = middle,
+                Fate::Ends(laps) => (high, ended) = (middle, laps),
             }
         }
+        let mut step = BESIDE;
+        low = loop {
+            let below = (1.0 - step) * high;
+            match fate(below, MOST_LAPS)? {
+                Fate::Lasts if step <= BESIDE => return Ok((0.5 * (low + high), near(ended))),
+                Fate::Lasts => break below,
+                Fate::Ends(_) if below < least => return Ok((below, accuracy)),
+                Fate::Ends(_) => (high, step) = (below, (WIDER * step).min(0.5)),
+            }
+        };
+        // chaotic laps that end late, if they do
+        while high - low > 2.0 * CHAOTIC * high {
+            let middle = 0.5 * (low + high);
+            match fate(middle, MOST_LAPS)? {
+                Fate::Lasts => low = middle,
+                Fate::Ends(_) => high = middle,
+            }
+        }
+        Ok((0.5 * (low + high), CHAOTIC))
     }
 
     /// What becomes of the stick-slip of a belt from rest, within so many laps.
     fn fate(&self, drive_speed: f64, most: usize, work: &Work) -> Result<Fate, Error> {
         let system = System::at_speed(*self.train, self.drag, drive_speed)?;
         let mut laps = Overtakings::from(&system, drive_speed, Start::REST, self.tolerance, work)?;
-        let period = if self.drag.closure().has_memory() { MAX_PERIOD } else { 1 };
+        let memory = self.drag.closure().has_memory();
+        let (period, enough) = if memory { (MAX_PERIOD, FALLING) } else { (1, 1) };
         let mut past = VecDeque::new();
         let (mut falling, mut sliding) = (0, 0);
         for lap in 1..=most {
             let Some(met) = laps.next()? else { return Ok(Fate::Ends(lap)) };
             sliding = if met.stuck { 0 } else { sliding + 1 };
-            let falls = past.front().is_some_and(|before| !met.stuck && met.pull < *before);
-            falling = if falls { falling + 1 } else { 0 };
-            if falling == FALLING {
+            let falls = past.front().is_some_and(|before| met.pull < *before);
+            falling = if falls && !met.stuck && self.forgets(met.slowest) { falling + 1 } else { 0 };
+            if falling == enough {
                 return Ok(Fate::Ends(lap));
             }
             let near = CLOSED * self.tolerance * met.pull.abs();
-            if past.iter().any(|before: &f64| (met.pull - before).abs() <= near) {
-                return Ok(if sliding > past.len() { Fate::Ends(lap) } else { Fate::Lasts });
+            let repeats = |before: &f64| (met.pull - before).abs() <= near;
+            if let Some(place) = past.iter().position(repeats) {
+                return Ok(if sliding > place { Fate::Ends(lap) } else { Fate::Lasts });
             }
             past.push_front(met.pull);
             past.truncate(period);
         }
-        Ok(if sliding > MAX_PERIOD { Fate::Ends(most) } else { Fate::Lasts })
+        Ok(if sliding > period { Fate::Ends(most) } else { Fate::Lasts })
+    }
+
+    /// Whether bristles, if there are any, keep up with a belt at this speed or faster.
+    fn forgets(&self, speed: f64) -> bool {
+        let Closure::LuGre { bristle_stiffness, .. } = self.drag.closure() else { return true };
+        let rate = speed * bristle_stiffness / self.drag.force(speed);
+        speed > 0.0 && rate * self.train.time_scale() >= FORGOTTEN
     }
 }
 
@@ -134,6 +165,12 @@ const FASTEST: f64 = 1.1;
 /// Relative accuracy of the drive speed of a swing, and laps at most on the way to it.
 const FOUND: f64 = 1e-8;
 const MOST_TRIES: usize = 60;
+/// Relative distances below and above the edge at which single motions are to agree with it: below it they pass slowly by
+/// the swing that has vanished.
+const BELOW: f64 = 1e-3;
+const ABOVE: f64 = 1e-4;
+/// Laps after which a swing that has not come to stick is taken not to do so.
+const MOST_SWINGS: usize = 1000;
 
 impl SmoothBelt<'_> {
     /// Least drive speed of any swing that never sticks, no more than `none`, below which drag falls; no number if it is
@@ -153,7 +190,52 @@ impl SmoothBelt<'_> {
             let place = seen.partition_point(|(s, _)| *s < size);
             seen.insert(place, (size, drive_speed));
         }
-        Ok(Some(seen.iter().fold(none, |least, (_, drive_speed)| least.min(*drive_speed))))
+        let edge = seen.iter().fold(none, |least, (_, drive_speed)| least.min(*drive_speed));
+        // where bristles make swings of several laps, these last below any that repeats itself at once
+        let meets = self.comes_to_stick((1.0 - BELOW) * edge, work)?
+            && !self.comes_to_stick((1.0 + ABOVE) * edge, work)?;
+        Ok(meets.then_some(edge))
+    }
+
+    /// The same by halving what a belt nudged from steady sliding comes to.
+    ///
+    /// # Errors
+    /// As for [`Self::upper`].
+    pub(super) fn lower_by_halving(&self, accuracy: f64, work: &Work) -> Result<f64, Error> {
+        let (mut low, mut high) = (self.drag.transition_speed(), self.drag.transition_speed());
+        while !self.comes_to_stick(low, work)? {
+            (low, high) = (SLOWEST * low, low);
+            if low < self.drag.stick_speed() {
+                return Ok(low);
+            }
+        }
+        while high - low > accuracy * high {
+            let middle = 0.5 * (low + high);
+            if self.comes_to_stick(middle, work)? { low = middle } else { high = middle }
+        }
+        Ok(0.5 * (low + high))
+    }
+
+    /// Whether a belt nudged from steady sliding comes to stick.
+    fn comes_to_stick(&self, drive_speed: f64, work: &Work) -> Result<bool, Error> {
+        let system = System::at_speed(*self.train, self.drag, drive_speed)?;
+        let start = Start::steady(self.train, self.drag, drive_speed)?.nudged();
+        let mut laps = Overtakings::from(&system, drive_speed, start, self.tolerance, work)?;
+        let mut past = VecDeque::new();
+        for _ in 0..MOST_SWINGS {
+            let Some(met) = laps.next()? else { return Ok(false) };
+            if met.stuck {
+                return Ok(true);
+            }
+            let swing = met.pull - self.drag.force(drive_speed);
+            let near = CLOSED * self.tolerance * swing.abs();
+            if past.iter().any(|before: &f64| (swing - before).abs() <= near) {
+                return Ok(false);
+            }
+            past.push_front(swing);
+            past.truncate(MAX_PERIOD);
+        }
+        Ok(false)
     }
 
     /// Drive speed at which a swing of this size neither grows nor falls; the fastest looked at if it is no slower.
@@ -211,4 +293,27 @@ impl SmoothBelt<'_> {
 enum Growth {
     Grows(Option<f64>),
     Falls(Option<f64>),
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::drag::Closure;
+
+    #[test]
+    fn timing() {
+        let train = Drivetrain::new(4000.0, 2.2).unwrap();
+        let closure = Closure::LuGre { bristle_stiffness: 8e4, bristle_damping: 839.0 };
+        let drag = Drag::new(30.0, 0.4, -0.7, -1.2, 0.008, closure).unwrap();
+        for tolerance in [1e-9, 1e-10, 1e-12] {
+            let belt = SmoothBelt::new(&train, &drag, tolerance);
+            let work = Work::unwatched(u64::MAX);
+            let now = std::time::Instant::now();
+            let lower = belt.lower(0.4, &work).unwrap();
+            println!("lower {lower:?} {:?} {}", now.elapsed(), work.done());
+            let now = std::time::Instant::now();
+            let upper = belt.upper([0.4, 0.008, 4000.0], 1e-6, &work).unwrap();
+            println!("upper {upper:?} {:?}", now.elapsed());
+        }
+    }
 }
