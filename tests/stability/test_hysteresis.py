@@ -153,6 +153,69 @@ def test_smooth_closures(closure: str) -> None:
         assert band.lower == pytest.approx(sharp, rel=1e-6)
 
 
+LIGHT = hersey.Drag(
+    30,
+    0.4,
+    ehl_exponent=-0.7,
+    mixed_exponent=-1.2,
+    stick_speed=0.008,
+    closure="lugre",
+    bristle_stiffness=8e4,
+    bristle_damping=839,
+)
+
+
+def test_bristles_on_an_ordinary_belt() -> None:
+    """Its stick-slip is chaotic and never repeats itself. Motions followed to their end took minutes."""
+    train = hersey.Drivetrain(4000, 2.2)
+    band = hersey.hysteresis(train, LIGHT)
+    # LSODA (SciPy, rtol 1e-10) of the same equations, halved by whether the first laps grow or fall:
+    # between 0.46484609 and 0.46484688
+    assert band.upper == pytest.approx(0.4648465, rel=2e-6)
+    assert band == hersey.hysteresis(train, LIGHT)
+    kinds = [hersey.stick_slip(train, LIGHT, drive_speed=band.upper * f).kind for f in (0.9999, 1.0001)]
+    assert kinds[0] in ("stick_slip", "unsettled")
+    assert kinds[1] == "steady_sliding"
+    above = hersey.stick_slip(train, LIGHT, drive_speed=band.lower * 1.0001, start="steady")
+    speed = 0.9997 * band.lower  # just below, a swing takes 300 laps to pass by the one that has vanished
+    nudged = (1.001 * speed, LIGHT.force(speed) / 4000)
+    below = hersey.simulate(train, LIGHT, drive_speed=speed, start=nudged, duration=60, samples=60_001)
+    assert above.kind == "oscillation"
+    assert above.speed_min > 0.3
+    assert float(below.belt_speed.min()) < LIGHT.stick_speed
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "mass", "law", "bristles"),
+    [
+        (1500, 1.0, (20, 0.3, -0.6, -1.3, 0.006), None),
+        (8000, 3.0, (60, 0.5, -0.75, -1.15, 0.01), None),
+        (6000, 2.0, (50, 0.3, -0.6, -1.3, 0.006), (1e5, 900)),
+        (3000, 1.0, (40, 0.6, -0.7, -1.2, 0.012), (2e5, 700)),
+    ],
+)
+def test_smooth_edges_are_where_single_motions_part(
+    stiffness: float, mass: float, law: tuple[float, ...], bristles: tuple[float, float] | None
+) -> None:
+    force, speed, ehl, mixed, stick = law
+    extra = {"bristle_stiffness": bristles[0], "bristle_damping": bristles[1]} if bristles else {}
+    drag = hersey.Drag(
+        force,
+        speed,
+        ehl_exponent=ehl,
+        mixed_exponent=mixed,
+        stick_speed=stick,
+        closure="lugre" if bristles else "stribeck",
+        **extra,
+    )
+    train = hersey.Drivetrain(stiffness, mass)
+    band = hersey.hysteresis(train, drag)
+    apart = max(1e-4, band.upper_accuracy)
+    for factor, lasts in ((1 - apart, True), (1 + apart, False)):
+        cycle = hersey.stick_slip(train, drag, drive_speed=factor * band.upper)
+        assert (cycle.kind in ("stick_slip", "unsettled")) == lasts, (factor, band, cycle)
+
+
 def test_a_table_of_the_same_drag_has_the_same_band() -> None:
     speeds = (0.01, 0.1, 1.0, 10.0)
     table = hersey.DragTable(speeds, tuple(DRAG.force(speeds).tolist()), stick_speed=0.01)

@@ -46,7 +46,12 @@ const MAX_HALVINGS: usize = 50;
 pub(super) enum Path {
     Series(Series),
     /// With the length of the step and the state at its end.
-    Steps { formula: Formula, scales: State, tolerance: f64, end: (f64, State) },
+    Steps {
+        formula: Formula,
+        scales: State,
+        tolerance: f64,
+        end: (f64, State),
+    },
 }
 
 /// A stretch of smooth motion from `time` on, `duration` long.

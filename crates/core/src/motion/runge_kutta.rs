@@ -290,9 +290,9 @@ fn radau_of<const M: usize>(
             z[stage][l] += c;
             size = size.max(c.abs() / scales[l]);
         };
-        for stage in 0..3 {
+        for (stage, pull) in pulls.iter().enumerate() {
             let speeds = weighted(stage, &correction[..3]);
-            correct(stage, 0, pulls[stage] - flow.stiffness * speeds);
+            correct(stage, 0, pull - flow.stiffness * speeds);
         }
         for (i, c) in correction.iter().enumerate() {
             correct(i % 3, 1 + i / 3, *c);

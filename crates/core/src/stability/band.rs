@@ -132,9 +132,7 @@ pub fn bands(
                     let range = [from * transition, drag.stick_speed(), FASTEST * transition];
                     belt.upper(range, near, &motions.together)?
                 }
-                None => {
-                    (upper_by_simulation(&motions, start, from * transition, near)?, near)
-                }
+                None => (upper_by_simulation(&motions, start, from * transition, near)?, near),
             };
             (upper, near.max(PASSING * tolerance))
         };
