@@ -19,7 +19,9 @@ use crate::work::Work;
 const MOST_LAPS: usize = 200;
 /// The same while the edge is looked for; what lasts no longer is found beside it.
 const FEW_LAPS: usize = 24;
-/// Accuracy of an edge above which stick-slip takes more than those to end: chaotic laps have then no sharp end, and
+/// Laps after which a belt that still sticks and then slides is chaotic: each lap multiplies errors.
+const ORDERLY: usize = 12;
+/// Accuracy of an edge above which that happens: chaotic laps have then no sharp end, and
 /// when they end depends on rounding.
 const CHAOTIC: f64 = 1e-3;
 /// Change of the pull between laps, in tolerances, from which the motion repeats itself.
@@ -46,8 +48,8 @@ const GROWTH: f64 = 1.25;
 #[derive(Clone, Copy, PartialEq)]
 enum Fate {
     Lasts,
-    /// It has ended for good after so many laps.
-    Ends(usize),
+    /// It has ended for good after so many laps, the belt having stuck last in that one.
+    Ends(usize, usize),
 }
 
 /// A belt whose roll always grips.
@@ -77,37 +79,37 @@ impl SmoothBelt<'_> {
     ) -> Result<(f64, f64), Error> {
         let fate = |drive_speed: f64, laps: usize| self.fate(drive_speed, laps, work);
         let (mut low, mut high) = (from, from);
-        let mut ended = loop {
+        let (mut ended, mut stuck) = loop {
             match fate(high, FEW_LAPS)? {
-                Fate::Ends(laps) => break laps,
+                Fate::Ends(laps, last) => break (laps, last),
                 Fate::Lasts if high > most => return Ok((f64::INFINITY, accuracy)),
                 Fate::Lasts => (low, high) = (high, GROWTH * high),
             }
         };
         if low >= high {
-            while let Fate::Ends(laps) = fate(low, FEW_LAPS)? {
-                (low, high, ended) = (low / GROWTH, low, laps);
+            while let Fate::Ends(laps, last) = fate(low, FEW_LAPS)? {
+                (low, high, ended, stuck) = (low / GROWTH, low, laps, last);
                 if low < least {
                     return Ok((low, accuracy));
                 }
             }
         }
-        let near = |ended| if ended > FEW_LAPS { CHAOTIC } else { accuracy };
-        while high - low > NARROWED * near(ended) * high {
+        let near = |stuck| if stuck > ORDERLY { CHAOTIC } else { accuracy };
+        while high - low > NARROWED * near(stuck) * high {
             let middle = 0.5 * (low + high);
             match fate(middle, ended + FEW_LAPS)? {
                 Fate::Lasts => low = middle,
-                Fate::Ends(laps) => (high, ended) = (middle, laps),
+                Fate::Ends(laps, last) => (high, ended, stuck) = (middle, laps, last),
             }
         }
         let mut step = BESIDE;
         low = loop {
             let below = (1.0 - step) * high;
             match fate(below, MOST_LAPS)? {
-                Fate::Lasts if step <= BESIDE => return Ok((0.5 * (low + high), near(ended))),
+                Fate::Lasts if step <= BESIDE => return Ok((0.5 * (low + high), near(stuck))),
                 Fate::Lasts => break below,
-                Fate::Ends(_) if below < least => return Ok((below, accuracy)),
-                Fate::Ends(_) => (high, step) = (below, (WIDER * step).min(0.5)),
+                Fate::Ends(..) if below < least => return Ok((below, accuracy)),
+                Fate::Ends(..) => (high, step) = (below, (WIDER * step).min(0.5)),
             }
         };
         // chaotic laps that end late, if they do
@@ -115,7 +117,7 @@ impl SmoothBelt<'_> {
             let middle = 0.5 * (low + high);
             match fate(middle, MOST_LAPS)? {
                 Fate::Lasts => low = middle,
-                Fate::Ends(_) => high = middle,
+                Fate::Ends(..) => high = middle,
             }
         }
         Ok((0.5 * (low + high), CHAOTIC))
@@ -128,25 +130,25 @@ impl SmoothBelt<'_> {
         let memory = self.drag.closure().has_memory();
         let (period, enough) = if memory { (MAX_PERIOD, FALLING) } else { (1, 1) };
         let mut past = VecDeque::new();
-        let (mut falling, mut sliding) = (0, 0);
+        let (mut falling, mut sliding, mut stuck) = (0, 0, 0);
         for lap in 1..=most {
-            let Some(met) = laps.next()? else { return Ok(Fate::Ends(lap)) };
-            sliding = if met.stuck { 0 } else { sliding + 1 };
+            let Some(met) = laps.next()? else { return Ok(Fate::Ends(lap, stuck)) };
+            (sliding, stuck) = if met.stuck { (0, lap) } else { (sliding + 1, stuck) };
             let falls = past.front().is_some_and(|before| met.pull < *before);
             falling =
                 if falls && !met.stuck && self.forgets(met.slowest) { falling + 1 } else { 0 };
             if falling == enough {
-                return Ok(Fate::Ends(lap));
+                return Ok(Fate::Ends(lap, stuck));
             }
             let near = CLOSED * self.tolerance * met.pull.abs();
             let repeats = |before: &f64| (met.pull - before).abs() <= near;
             if let Some(place) = past.iter().position(repeats) {
-                return Ok(if sliding > place { Fate::Ends(lap) } else { Fate::Lasts });
+                return Ok(if sliding > place { Fate::Ends(lap, stuck) } else { Fate::Lasts });
             }
             past.push_front(met.pull);
             past.truncate(period);
         }
-        Ok(if sliding > period { Fate::Ends(most) } else { Fate::Lasts })
+        Ok(if sliding > period { Fate::Ends(most, stuck) } else { Fate::Lasts })
     }
 
     /// Whether bristles, if there are any, keep up with a belt at this speed or faster.
