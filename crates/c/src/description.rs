@@ -5,6 +5,7 @@
 use crate::variables::{
     COUNT, Causality, DRIVE_SPEED, DRIVE_TORQUE, Port, ROLL_SPEED, TEMPERATURE, VARIABLES, place_of,
 };
+use hersey_core::lubrication::mixed::Sharing;
 use hersey_core::work::MOST_STEPS;
 
 /// The format that this library reads.
@@ -326,7 +327,7 @@ impl Description {
             values: values(&lines, choices)?,
             speeds: lines.list("speeds", table, None)?,
             forces: lines.list("forces", table, None)?,
-            numbers: lines.list("numbers", mixed, Some(8))?,
+            numbers: lines.list("numbers", mixed, Some(Sharing::NAMES.len()))?,
             viscosity_numbers: lines.list(
                 "viscosity_numbers",
                 coefficients.is_some(),

@@ -146,12 +146,25 @@ impl Making<'_> {
             ),
             (
                 Law::Mixed,
-                &[reference, film, load, stiffness, boundary, shear, rolling, exponent],
+                &[
+                    reference,
+                    film,
+                    load,
+                    edge,
+                    roundness,
+                    stiffness,
+                    boundary,
+                    shear,
+                    rolling,
+                    exponent,
+                ],
             ) => {
                 let sharing = Sharing {
                     reference,
                     film_exponent: film,
                     load_exponent: load,
+                    edge,
+                    roundness,
                     stiffness,
                     boundary,
                     shear,

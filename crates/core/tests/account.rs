@@ -20,7 +20,7 @@ use random::Random;
 #[path = "common/sharing.rs"]
 mod sharing;
 
-use sharing::SHARING;
+use sharing::{SHARING, SOFT};
 
 /// Temperature at which the laws are given, K.
 const REFERENCE: f64 = 373.0;
@@ -43,9 +43,10 @@ fn closure_of(random: &mut Random, stiffness: f64, mass: f64, smooth: bool) -> C
 fn drag_of(random: &mut Random, stiffness: f64, mass: f64, smooth: bool) -> Result<Drag, Error> {
     let closure = closure_of(random, stiffness, mass, smooth);
     let stick = random.decades(-3.0, -0.5);
-    let mixed = random.unit() < 0.3;
+    let kind = random.unit();
+    let mixed = kind < 0.3;
     let drag = if mixed {
-        let law = MixedLaw::new(SHARING)?;
+        let law = MixedLaw::new(if kind < 0.15 { SOFT } else { SHARING })?;
         let viscosity = random.decades(-2.0, -0.5);
         let transition = law.transition().unwrap().product / viscosity;
         Drag::mixed(law, viscosity, stick * transition, closure)?

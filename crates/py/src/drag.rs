@@ -106,7 +106,7 @@ impl Law {
     /// A contact whose load film and asperities share, from the numbers of `MixedLaw` and a viscosity.
     #[staticmethod]
     fn mixed(
-        numbers: [f64; 8],
+        numbers: [f64; 10],
         viscosity: f64,
         stick_speed: f64,
         closure: ClosureArguments<'_>,

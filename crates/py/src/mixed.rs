@@ -7,15 +7,18 @@ use pyo3::types::PyDict;
 
 use crate::lubrication::{Array, Columns, mapped};
 
-/// A contact whose load film and asperities share: lambda, share, forces (N) and slope of the force, N/(Pa m).
+/// A contact whose load film and asperities share: lambda, least film over roughness, share, forces (N), slope of
+/// the force, N/(Pa m), and its derivative by ln of `edge`, N.
 #[pyclass(frozen, get_all, module = "hersey._core")]
 pub struct Mixed {
     lambda_ratio: Array,
+    minimum: Array,
     share: Array,
     boundary: Array,
     shear: Array,
     rolling: Array,
     slope: Array,
+    by_edge: Array,
 }
 
 /// Where the force is least; not a number where it falls nowhere.
@@ -29,13 +32,15 @@ pub struct MixedTransition {
 
 /// The numbers of the law, in the order of `SHARING`.
 pub fn sharing_of(
-    [reference, film_exponent, load_exponent, stiffness, forces @ ..]: [f64; 8],
+    [reference, film_exponent, load_exponent, edge, roundness, stiffness, forces @ ..]: [f64; 10],
 ) -> Sharing {
     let [boundary, shear, rolling, rolling_exponent] = forces;
     Sharing {
         reference,
         film_exponent,
         load_exponent,
+        edge,
+        roundness,
         stiffness,
         boundary,
         shear,
@@ -56,8 +61,8 @@ pub fn asperity_integral(
 
 /// A mixed contact, from the product of viscosity and speed and the numbers of the law in the order of `SHARING`.
 #[pyfunction]
-pub fn mixed_contact(py: Python<'_>, columns: Columns<'_, 9>) -> PyResult<Mixed> {
-    let mut last: Option<([u64; 8], MixedLaw)> = None;
+pub fn mixed_contact(py: Python<'_>, columns: Columns<'_, 11>) -> PyResult<Mixed> {
+    let mut last: Option<([u64; 10], MixedLaw)> = None;
     let found = mapped(py, &columns, |[product, numbers @ ..]| {
         let bits = numbers.map(f64::to_bits);
         let same = last.filter(|(same, _)| *same == bits);
@@ -67,17 +72,19 @@ pub fn mixed_contact(py: Python<'_>, columns: Columns<'_, 9>) -> PyResult<Mixed>
     })?;
     Ok(Mixed {
         lambda_ratio: found.of(py, |state| state.lambda)?,
+        minimum: found.of(py, |state| state.minimum)?,
         share: found.of(py, |state| state.share)?,
         boundary: found.of(py, |state| state.boundary)?,
         shear: found.of(py, |state| state.shear)?,
         rolling: found.of(py, |state| state.rolling)?,
         slope: found.of(py, |state| state.slope)?,
+        by_edge: found.of(py, |state| state.by_edge)?,
     })
 }
 
 /// The transition of a mixed contact, from the numbers of the law in the order of `SHARING`.
 #[pyfunction]
-pub fn mixed_transition(py: Python<'_>, columns: Columns<'_, 8>) -> PyResult<MixedTransition> {
+pub fn mixed_transition(py: Python<'_>, columns: Columns<'_, 10>) -> PyResult<MixedTransition> {
     let found =
         mapped(py, &columns, |numbers| Ok(MixedLaw::new(sharing_of(numbers))?.transition()))?;
     let array = |of: fn(&mixed::Transition) -> f64| {

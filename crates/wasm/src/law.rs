@@ -88,12 +88,26 @@ impl<'a> AskedLaw<'a> {
             }
             (
                 2.0,
-                [viscosity, reference, film, load, stiffness, boundary, shear, rolling, exponent],
+                [
+                    viscosity,
+                    reference,
+                    film,
+                    load,
+                    edge,
+                    roundness,
+                    stiffness,
+                    boundary,
+                    shear,
+                    rolling,
+                    exponent,
+                ],
             ) => {
                 let sharing = Sharing {
                     reference: *reference,
                     film_exponent: *film,
                     load_exponent: *load,
+                    edge: *edge,
+                    roundness: *roundness,
                     stiffness: *stiffness,
                     boundary: *boundary,
                     shear: *shear,

@@ -8,6 +8,7 @@
 //! | `thermal`     | how the law of drag moves while the temperature does, as series           |
 //! | `heat`        | temperature as a state: two bodies, a heater and friction                 |
 //! | `sharing`     | series of the force of a contact whose load film and asperities share     |
+//! | `shared_by_inlet`, `shared_by_power` | the series of its film, by either law      |
 //! | `taylor`      | one slip step as a Taylor series with its own dense output                |
 //! | `runge_kutta` | steps for stiff motion (Radau IIA) and for the second opinion             |
 //! | `piece`       | a stretch of smooth motion: state, conditions and turning points along it |
@@ -46,6 +47,8 @@ mod polynomial;
 mod returning;
 mod runge_kutta;
 mod schedule;
+mod shared_by_inlet;
+mod shared_by_power;
 mod sharing;
 mod start_up;
 mod start_ups;

@@ -1,28 +1,48 @@
 //! Series of the force of a contact whose load film and asperities share (`lubrication::mixed`).
 //!
-//! Along the speed all of it obeys differential equations: with `X` the scaled product of viscosity and speed,
-//! `y` the share of the asperities, `c = 1 - y` that of the film and `w = dy/dlambda`,
-//! `lambda'/lambda = n c/(c - b w lambda) X'/X`, `y' = w lambda'` and `w' = (5/2 y - lambda w) lambda'`, the last from the
-//! equation of Greenwood and Tripp's integral. So a step costs the integral once.
+//! Along the speed all of it obeys differential equations: with `X` the scaled product of viscosity and speed and c the
+//! share of the film, `shared_by_inlet` and `shared_by_power` advance lambda and c, by the two laws of the film. So a
+//! step costs the integral of Greenwood and Tripp as often as one solution of the law.
 
 use super::polynomial::{INVERSE, ORDER, POWERS, Polynomial};
+use super::shared_by_inlet::InletSeries;
+use super::shared_by_power::PowerSeries;
 use super::taylor::product;
 use crate::drag::MixedContact;
-use crate::lubrication::mixed::{Sharing, asperity_integral};
+use crate::lubrication::mixed::{Inlet, Sharing};
 
 /// The contact at the start of a step.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SharingStart<'a> {
     contact: &'a MixedContact,
-    lambda: f64,
+    film: FilmStart,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum FilmStart {
+    Inlet { state: Inlet, weight: f64 },
+    Power { lambda: f64 },
 }
 
 impl<'a> SharingStart<'a> {
     /// The contact at a speed of the law.
     #[inline(never)]
     pub(super) fn at(contact: &'a MixedContact, speed: f64) -> Self {
-        Self { contact, lambda: contact.law.lambda(contact.viscosity * speed) }
+        let product = contact.viscosity * speed;
+        let film = if contact.law.sharing().is_soft() {
+            let (state, weight) = contact.law.inlet(product);
+            FilmStart::Inlet { state, weight }
+        } else {
+            FilmStart::Power { lambda: contact.law.lambda(product) }
+        };
+        Self { contact, film }
     }
+}
+
+#[allow(clippy::large_enum_variant)] // one of them lives on the stack of a step
+enum FilmSeries {
+    Inlet(InletSeries),
+    Power(PowerSeries),
 }
 
 /// The series, as far as they are known.
@@ -31,13 +51,10 @@ pub(super) struct SharingSeries {
     /// `X` per speed of the law.
     per_speed: f64,
     lambda: Polynomial,
-    share: Polynomial,
+    /// Share of the film.
     film: Polynomial,
-    /// Slope of the share in lambda.
-    slope: Polynomial,
-    /// Rate of lambda, and `slope lambda`.
-    rate: Polynomial,
-    steep: Polynomial,
+    by: FilmSeries,
+    share: Polynomial,
     /// Rate of the speed over the speed.
     growth: Polynomial,
     /// Speed over lambda, and the power of `X` of the rolling part.
@@ -45,33 +62,39 @@ pub(super) struct SharingSeries {
     rolled: Polynomial,
 }
 
+/// A series of which the first coefficient is known.
+pub(super) fn series_from(first: f64) -> Polynomial {
+    let mut c = [0.0; ORDER + 1];
+    c[0] = first;
+    c
+}
+
 impl SharingSeries {
     pub(super) fn starting(start: SharingStart, speed: f64) -> Self {
-        let SharingStart { contact, lambda } = start;
+        let SharingStart { contact, film } = start;
         let law = contact.law.sharing();
         let per_speed = contact.viscosity / law.reference;
-        let (integral, slope) = asperity_integral(lambda);
-        let of = |first: f64| {
-            let mut c = [0.0; ORDER + 1];
-            c[0] = first;
-            c
-        };
         let x = per_speed * speed;
-        // from the film's side, as 1 - share would lose its digits towards rest
-        let film = (x.powf(law.film_exponent) / lambda).powf(1.0 / law.load_exponent);
-        let zero = [0.0; ORDER + 1];
+        let (lambda, share, film, by) = match film {
+            FilmStart::Inlet { state, weight } => {
+                let by = InletSeries::starting(&law, &state, weight);
+                (state.lambda, state.share(&law), state.film(&law), FilmSeries::Inlet(by))
+            }
+            FilmStart::Power { lambda } => {
+                let (by, share, film) = PowerSeries::starting(&law, lambda, x);
+                (lambda, share, film, FilmSeries::Power(by))
+            }
+        };
         Self {
             law,
             per_speed,
-            lambda: of(lambda),
-            share: of(law.stiffness * integral),
-            film: of(film),
-            slope: of(law.stiffness * slope),
-            rate: zero,
-            steep: zero,
-            growth: zero,
-            thinness: of(speed / lambda),
-            rolled: of(x.powf(law.rolling_exponent)),
+            lambda: series_from(lambda),
+            film: series_from(film),
+            by,
+            share: series_from(share),
+            growth: [0.0; ORDER + 1],
+            thinness: series_from(speed / lambda),
+            rolled: series_from(x.powf(law.rolling_exponent)),
         }
     }
 
@@ -82,20 +105,12 @@ impl SharingSeries {
         let j = n - 1;
         let rest: f64 = (0..j).map(|i| self.growth[i] * q[j - i]).sum();
         self.growth[j] = (POWERS[n] * q[n] - rest) / q[0];
-        self.steep[j] = product(&self.slope, &self.lambda, j);
-        // (c - b w lambda) lambda' = n c lambda q'/q
-        let driven: f64 =
-            (0..=j).map(|i| product(&self.film, &self.lambda, i) * self.growth[j - i]).sum();
-        let resisting = |i: usize| self.film[i] - law.load_exponent * self.steep[i];
-        let known: f64 = (0..j).map(|i| self.rate[i] * resisting(j - i)).sum();
-        self.rate[j] = (law.film_exponent * driven - known) / resisting(0);
-        let curved = |i: usize| 2.5 * self.share[i] - self.steep[i];
-        let bent: f64 = (0..=j).map(|i| curved(i) * self.rate[j - i]).sum();
-        let per = INVERSE[n];
-        let share = product(&self.slope, &self.rate, j) * per;
-        self.lambda[n] = self.rate[j] * per;
-        self.slope[n] = bent * per;
-        (self.share[n], self.film[n]) = (share, -share);
+        let (lambda, film, growth) = (&mut self.lambda, &mut self.film, &self.growth);
+        match &mut self.by {
+            FilmSeries::Inlet(by) => by.advance(n, lambda, film, growth),
+            FilmSeries::Power(by) => by.advance(n, lambda, film, growth),
+        }
+        self.share[n] = -self.film[n];
         let thin: f64 = (0..n).map(|i| self.thinness[i] * self.lambda[n - i]).sum();
         self.thinness[n] = (q[n] - thin) / self.lambda[0];
         let shear = law.shear * self.per_speed * self.thinness[n];

@@ -15,7 +15,8 @@ async function physics(bytes) {
     walther: [4, "a", "b", "density"],
   };
   const SHARING = [
-    "reference", "film_exponent", "load_exponent", "stiffness", "boundary", "shear", "rolling", "rolling_exponent",
+    "reference", "film_exponent", "load_exponent", "edge", "roundness", "stiffness", "boundary", "shear", "rolling",
+    "rolling_exponent",
   ];
   const RULES = ["with transition", "fixed"];
   // those of hersey.simulate and hersey.hysteresis, where a question does not say

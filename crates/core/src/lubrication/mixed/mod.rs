@@ -1,33 +1,39 @@
 //! Mixed lubrication of a sliding line contact: the film and the asperities share the load.
 //!
-//! Everything hangs on `x = eta v`, the product of viscosity and speed, taken as `X = x/reference`, and on lambda,
-//! the film over the composite rms roughness:
+//! | module     | responsibility                                                            |
+//! |------------|---------------------------------------------------------------------------|
+//! | `integral` | Greenwood and Tripp's integral F                                          |
+//! | `inlet`    | soft contacts: the film is made where the dry pressure exceeds that of asperities |
+//! | `power`    | others: the film is made under the load that asperities leave             |
+//! | `carried`  | both laws alike: who carries what at a product or at a lambda             |
+//!
+//! Everything depends on `x = eta v`, the product of viscosity and speed, taken as `X = x/reference`, and on lambda,
+//! the central film over the composite rms roughness:
 //!
 //! - alone and flooded the film would be `lambda_free = X^n`;
-//! - asperities carry the share `s = stiffness F(lambda)` of the load, with the integral of J. A. Greenwood and
-//!   J. H. Tripp (Proc. Inst. Mech. Engrs 185 (1970) 625), `F(l) = int_l^inf (z-l)^(5/2) exp(-z^2/2) dz/sqrt(2 pi)`;
-//! - the film carries the rest and is thicker for it, `lambda = lambda_free (1 - s)^(-b)` (K. L. Johnson,
-//!   J. A. Greenwood and S. Y. Poon, Wear 19 (1972) 91; E. R. M. Gelinck and D. J. Schipper, Tribol. Int. 33
-//!   (2000) 175);
+//! - asperities press with `stiffness F(lambda)` times the mean pressure of the nip, which makes their share s of the
+//!   load;
+//! - the film is thicker for it, by the law of `inlet` where `edge` is above 0, else by that of `power`;
 //! - force `boundary s + shear X/lambda + rolling X^r (1 - s)`.
-//!
-//! With the share of the film `c = (lambda_free/lambda)^(1/b)` the first three lines are one,
-//! `stiffness F(lambda) + c(lambda) = 1`. Both terms fall with lambda and are convex, so Newton's method from
-//! below climbs to the one root without a bracket.
+
+mod carried;
+mod inlet;
+mod integral;
+mod power;
 
 use std::f64::consts::PI;
-use std::sync::LazyLock;
 
 use crate::error::{Error, above, at_least, at_most, finite};
 
-/// Square of the step, exact, and number of nodes of the trapezoid rule: the aliases of the integrand and its tail
-/// are below 1e-16 of the sum for lambda up to 25, below 1e-10 where the exponential underflows.
-const SQUARE: f64 = 1.0 / 128.0;
-const NODES: usize = 36;
-/// Nodes from one exponential to the next; those between follow by products, which would lose digits over more.
-const BLOCK: usize = 6;
-/// Lambda beyond which no asperity touches, to the last number that a float can hold.
-const FAR: f64 = 39.0;
+use carried::Carried;
+pub(crate) use inlet::{Inlet, OFFSET, SHARPNESS, peak};
+pub use integral::asperity_integral;
+pub(crate) use power::film as power_film;
+
+/// The smallest lambda at rest, where asperities only just carry the load.
+const THINNEST: f64 = 1e-9;
+/// The largest mean pressure over `K sqrt(l)`.
+const WIDEST: f64 = 1e6;
 /// The largest stiffness: asperities that carry the load at lambda = 11.
 const STIFFEST: f64 = 1e30;
 /// `X` beyond which the laws of the film have long ended, and its inverse, which is rest: every term stays finite.
@@ -38,42 +44,6 @@ const LARGEST: f64 = 1e100;
 /// beta/2, aside by any distance.
 pub const GREENWOOD_TRIPP: f64 = 16.0 * std::f64::consts::SQRT_2 * PI / 15.0;
 
-/// (t^2, weight) of each node but that at 0, where the integrand is nil.
-static RULE: LazyLock<[(f64, f64); NODES]> = LazyLock::new(|| {
-    let front = 2.0 * (SQUARE / (2.0 * PI)).sqrt();
-    let mut node = 0.0;
-    std::array::from_fn(|_| {
-        node += 1.0;
-        let square = SQUARE * node * node;
-        (square, front * square.powi(2) * (-0.5 * square.powi(2)).exp())
-    })
-});
-
-/// Greenwood and Tripp's integral F(lambda) and its derivative, lambda from 0 on.
-///
-/// With `z = lambda + t^2` it is `exp(-lambda^2/2)/sqrt(2 pi)` times the integral over all t of the even, entire
-/// `t^6 exp(-lambda t^2 - t^4/2)`, which the trapezoid rule takes to rounding; its derivative has `-5/2 t^4`.
-/// `F'' + lambda F' - 5/2 F = 0`.
-#[must_use]
-pub fn asperity_integral(lambda: f64) -> (f64, f64) {
-    let lambda = lambda.clamp(0.0, FAR);
-    let (mut fourth, mut sixth) = (0.0, 0.0);
-    // The ratio of exp(-lambda t^2) at a node to that before it falls by the same factor from node to node.
-    let factor = (-2.0 * SQUARE * lambda).exp();
-    for block in RULE.chunks_exact(BLOCK) {
-        let mut decay = (-lambda * block[0].0).exp();
-        let mut ratio = (-lambda * (block[1].0 - block[0].0)).exp();
-        for (square, weight) in block {
-            fourth += weight * decay;
-            sixth += weight * decay * square;
-            decay *= ratio;
-            ratio *= factor;
-        }
-    }
-    let front = (-0.5 * lambda * lambda).exp();
-    (front * sixth, -2.5 * front * fourth)
-}
-
 /// The numbers of a contact that shares its load.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sharing {
@@ -81,9 +51,16 @@ pub struct Sharing {
     pub reference: f64,
     /// n: exponent of film thickness in viscosity times speed.
     pub film_exponent: f64,
-    /// b: film thickness goes as load to the power -b.
+    /// b: film thickness goes as load to the power -b. Only where `edge` is 0.
     pub load_exponent: f64,
-    /// Share of the load that asperities carry, over F(lambda): their pressure over the mean pressure.
+    /// Mean pressure of the dry nip over `K sqrt(l)`: K is the slope of pressure at its edge, `p = K sqrt(d)`, and l the
+    /// length of the inlet at the reference, `(eta u E*^2/K^3)^0.4` with the mean speed u. 0: the film goes as a power
+    /// of its share of the load.
+    pub edge: f64,
+    /// k of the dry pressure, `K^2 a/(2 p_max^2)` with the half-width a: 1 for an ellipse, 0 for a parabola. Only where
+    /// `edge` is above 0.
+    pub roundness: f64,
+    /// Pressure of the asperities over the mean pressure of the nip and over F(lambda).
     pub stiffness: f64,
     /// Force where asperities carry all: boundary friction times load, N.
     pub boundary: f64,
@@ -97,10 +74,12 @@ pub struct Sharing {
 
 impl Sharing {
     /// The names of the numbers, in the order of the fields.
-    pub const NAMES: [&str; 8] = [
+    pub const NAMES: [&str; 10] = [
         "reference",
         "film_exponent",
         "load_exponent",
+        "edge",
+        "roundness",
         "stiffness",
         "boundary",
         "shear",
@@ -108,11 +87,13 @@ impl Sharing {
         "rolling_exponent",
     ];
 
-    fn each(&mut self) -> [&mut f64; 8] {
+    fn each(&mut self) -> [&mut f64; 10] {
         [
             &mut self.reference,
             &mut self.film_exponent,
             &mut self.load_exponent,
+            &mut self.edge,
+            &mut self.roundness,
             &mut self.stiffness,
             &mut self.boundary,
             &mut self.shear,
@@ -121,26 +102,39 @@ impl Sharing {
         ]
     }
 
-    fn asperities(&self, lambda: f64) -> (f64, f64) {
-        let (integral, slope) = asperity_integral(lambda);
-        (self.stiffness * integral, self.stiffness * slope)
+    /// Whether the law is that of a soft contact.
+    pub(crate) fn is_soft(&self) -> bool {
+        self.edge > 0.0
     }
 
-    /// `X` at a lambda, from the share of the asperities.
-    fn product(&self, lambda: f64, share: f64) -> f64 {
-        (lambda * (1.0 - share).powf(self.load_exponent)).powf(1.0 / self.film_exponent)
+    /// Pressure of the asperities over the mean pressure where they carry all.
+    fn most(&self) -> f64 {
+        if self.is_soft() { peak(self.roundness) } else { 1.0 }
     }
 
-    /// `d force/d ln X` at a lambda, which the transition nils.
-    fn rise(&self, lambda: f64) -> f64 {
-        let (share, slope) = self.asperities(lambda);
-        let film = 1.0 - share;
-        let steep = -slope * lambda;
-        let growth = self.film_exponent * film / (film + self.load_exponent * steep);
-        let product = self.product(lambda, share);
+    /// Lambda at rest, where asperities carry all.
+    fn dry(&self) -> f64 {
+        // ln(stiffness F) is concave and falls: Newton's method comes down to its root from beyond it.
+        let mut dry = 0.0;
+        for _ in 0..60 {
+            let (share, slope) = power::asperities(self, dry);
+            let next = (dry - share * (share / self.most()).ln() / slope).clamp(0.0, 30.0);
+            let done = (next - dry).abs() <= 2.0 * f64::EPSILON * next;
+            dry = next;
+            if done {
+                break;
+            }
+        }
+        dry.max(THINNEST)
+    }
+
+    /// `d force/d ln X`, which the transition nils.
+    fn rise(&self, at: &Carried) -> f64 {
+        let product = at.product(self);
         let rolled = self.rolling * product.powf(self.rolling_exponent);
-        self.shear * product / lambda * (1.0 - growth) - self.boundary * steep * growth
-            + rolled * (self.rolling_exponent * film + steep * growth)
+        let fall = at.fall * at.growth;
+        self.shear * product / at.lambda * (1.0 - at.growth) - self.boundary * fall
+            + rolled * (self.rolling_exponent * at.film + fall)
     }
 }
 
@@ -149,6 +143,8 @@ impl Sharing {
 pub struct Shared {
     /// Film over roughness.
     pub lambda: f64,
+    /// The least film, at the exit, over roughness; not a number where no law of it is known (`edge` 0).
+    pub minimum: f64,
     /// Share of the load that asperities carry.
     pub share: f64,
     /// Force of the asperities, N.
@@ -159,6 +155,8 @@ pub struct Shared {
     pub rolling: f64,
     /// Derivative of the force by the product of viscosity and speed, N/(Pa m).
     pub slope: f64,
+    /// Derivative of the force by the logarithm of `edge`, N.
+    pub by_edge: f64,
 }
 
 impl Shared {
@@ -179,7 +177,7 @@ pub struct Transition {
     /// The least force, N.
     pub force: f64,
     /// `d ln product/d ln` of each number of `Sharing`, in the order of its names.
-    pub sensitivity: [f64; 8],
+    pub sensitivity: [f64; 10],
 }
 
 /// The force of a mixed contact against viscosity times speed.
@@ -193,15 +191,18 @@ impl MixedLaw {
     /// The law of some numbers.
     ///
     /// # Errors
-    /// If a number is out of range: reference, boundary and shear above 0, `0.01 <= b <= n`, `0.1 <= n <= 1`, rolling not
-    /// negative, its exponent from 0 to 2, and a stiffness at which asperities carry the load before the mean
-    /// planes meet, `stiffness F(0) > 1`.
+    /// If a number is out of range: reference, boundary and shear above 0, `0.1 <= n <= 1`, `0.01 <= b <= n`, edge from 0
+    /// to 1e6, roundness from 0.01 to 1, rolling not negative, its exponent from 0 to 2, and a stiffness at which
+    /// asperities carry the load before the mean planes meet: `stiffness F(0)` above 1, with an edge above `p_max/p_mean`.
     pub fn new(sharing: Sharing) -> Result<Self, Error> {
         above("reference of the film", sharing.reference, 0.0)?;
         at_most("film exponent", at_least("film exponent", sharing.film_exponent, 0.1)?, 1.0)?;
         let load = at_least("load exponent", sharing.load_exponent, 0.01)?;
         at_most("load exponent", load, sharing.film_exponent)?;
-        above("stiffness of the asperities", sharing.stiffness, 1.0 / asperity_integral(0.0).0)?;
+        at_most("edge", at_least("edge", sharing.edge, 0.0)?, WIDEST)?;
+        at_most("roundness", at_least("roundness", sharing.roundness, 0.01)?, 1.0)?;
+        let least = sharing.most() / asperity_integral(0.0).0;
+        above("stiffness of the asperities", sharing.stiffness, least)?;
         at_most("stiffness of the asperities", sharing.stiffness, STIFFEST)?;
         above("boundary force", sharing.boundary, 0.0)?;
         above("shear force", sharing.shear, 0.0)?;
@@ -209,18 +210,7 @@ impl MixedLaw {
         at_least("rolling exponent", sharing.rolling_exponent, 0.0)?;
         at_most("rolling exponent", sharing.rolling_exponent, 2.0)?;
         finite("force", sharing.boundary + sharing.shear + sharing.rolling)?;
-        // ln(stiffness F) is concave and falls: Newton's method comes down to its root from beyond it.
-        let mut dry = 0.0;
-        for _ in 0..60 {
-            let (share, slope) = sharing.asperities(dry);
-            let next = (dry - share * share.ln() / slope).clamp(0.0, 30.0);
-            let done = (next - dry).abs() <= 2.0 * f64::EPSILON * next;
-            dry = next;
-            if done {
-                break;
-            }
-        }
-        Ok(Self { sharing, dry })
+        Ok(Self { sharing, dry: sharing.dry() })
     }
 
     /// The same law with forces `factor` times as large, and boundary friction `boundary` times more.
@@ -247,7 +237,7 @@ impl MixedLaw {
     /// Film over roughness at a product of viscosity and speed; anything below 0 counts as rest.
     #[must_use]
     pub fn lambda(&self, product: f64) -> f64 {
-        self.solved(self.scaled(product))
+        Carried::at_product(&self.sharing, self.dry, self.scaled(product)).lambda
     }
 
     /// Share of the load that asperities carry.
@@ -274,25 +264,28 @@ impl MixedLaw {
     pub fn at(&self, product: f64) -> Shared {
         let law = &self.sharing;
         let x = self.scaled(product);
-        let lambda = self.solved(x);
-        let (share, slope) = law.asperities(lambda);
-        // From the film's side, as 1 - share would lose its digits towards rest.
-        let per_load = 1.0 / law.load_exponent;
-        let film = (x.powf(law.film_exponent) / lambda).powf(per_load);
-        let steep = -slope * lambda;
-        // growth = d ln lambda/d ln X
-        let growth = law.film_exponent * film / (film + law.load_exponent * steep);
+        let at = Carried::at_product(law, self.dry, x);
         let rolled = law.rolling * x.powf(law.rolling_exponent);
-        let slope = law.shear / lambda * (1.0 - growth) - law.boundary * steep * growth / x
-            + rolled * (law.rolling_exponent * film + steep * growth) / x;
+        let fall = at.fall * at.growth;
+        let slope = law.shear / at.lambda * (1.0 - at.growth) - law.boundary * fall / x
+            + rolled * (law.rolling_exponent * at.film + fall) / x;
         Shared {
-            lambda,
-            share,
-            boundary: law.boundary * share,
-            shear: law.shear * x / lambda,
-            rolling: rolled * film,
+            lambda: at.lambda,
+            minimum: at.minimum,
+            share: at.share,
+            boundary: law.boundary * at.share,
+            shear: law.shear * x / at.lambda,
+            rolling: rolled * at.film,
             slope: slope / law.reference,
+            by_edge: at.by_edge * ((rolled - law.boundary) * at.fall - law.shear * x / at.lambda),
         }
+    }
+
+    /// The soft contact at a product of viscosity and speed, and the weight of asperities in its film.
+    pub(crate) fn inlet(&self, product: f64) -> (Inlet, f64) {
+        let free = inlet::alone(&self.sharing, self.scaled(product));
+        let state = Inlet::solved(&self.sharing, self.dry, free);
+        (state, state.weight(free).weight)
     }
 
     /// The transition, if the force falls anywhere: the last minimum of the force in speed.
@@ -314,7 +307,7 @@ impl MixedLaw {
 
     fn product(&self, lambda: f64) -> f64 {
         let law = &self.sharing;
-        law.reference * law.product(lambda, law.asperities(lambda).0)
+        law.reference * Carried::at_gap(law, self.dry, (lambda / self.dry - 1.0).ln()).product(law)
     }
 
     fn transition_lambda(&self) -> Option<f64> {
@@ -323,7 +316,8 @@ impl MixedLaw {
         const NARROW: f64 = 1e-6;
         const RATIO: f64 = 0.98;
         let law = &self.sharing;
-        let falls = |gap: f64| law.rise(self.dry + gap) < 0.0;
+        let falls =
+            |gap: f64| law.rise(&Carried::at_gap(law, self.dry, (gap / self.dry).ln())) < 0.0;
         let (mut high, mut low) = (WIDE, WIDE);
         while !falls(low) {
             if low < NARROW {
@@ -345,18 +339,27 @@ impl MixedLaw {
     }
 
     /// By the theorem of implicit functions: along `rise = 0`, each partial by a difference of an analytic function.
-    fn sensitivity(&self, lambda: f64) -> [f64; 8] {
+    fn sensitivity(&self, lambda: f64) -> [f64; 10] {
         // Differences of the fourth order.
         const SMALL: f64 = 2e-4;
         let partial = |of: &dyn Fn(f64) -> f64| {
             (8.0 * (of(SMALL) - of(-SMALL)) - (of(2.0 * SMALL) - of(-2.0 * SMALL))) / (12.0 * SMALL)
         };
         let law = self.sharing;
-        let log_product = |law: &Sharing, lambda: f64| {
-            law.reference.ln() + law.product(lambda, law.asperities(lambda).0).ln()
+        let same = |law: &Sharing| {
+            (law.stiffness, law.roundness) == (self.sharing.stiffness, self.sharing.roundness)
         };
-        let steep = partial(&|e| law.rise(lambda * (1.0 + e)));
-        let along = partial(&|e| log_product(&law, lambda * (1.0 + e)));
+        // Along ln(lambda/dry - 1), which no difference takes below the lambda at rest.
+        let gap = (lambda / self.dry - 1.0).ln();
+        let state = |law: &Sharing, gap: f64| {
+            let dry = if same(law) { self.dry } else { law.dry() };
+            Carried::at_gap(law, dry, gap)
+        };
+        let rise = |law: &Sharing, gap: f64| law.rise(&state(law, gap));
+        let log_product =
+            |law: &Sharing, gap: f64| law.reference.ln() + state(law, gap).free / law.film_exponent;
+        let steep = partial(&|e| rise(&law, gap + e));
+        let along = partial(&|e| log_product(&law, gap + e));
         std::array::from_fn(|i| {
             let changed = |e: f64| {
                 let mut other = law;
@@ -367,8 +370,8 @@ impl MixedLaw {
                 }
                 other
             };
-            let shift = -partial(&|e| changed(e).rise(lambda)) / steep;
-            partial(&|e| log_product(&changed(e), lambda)) + along * shift
+            let shift = -partial(&|e| rise(&changed(e), gap)) / steep;
+            partial(&|e| log_product(&changed(e), gap)) + along * shift
         })
     }
 
@@ -376,23 +379,5 @@ impl MixedLaw {
         // `max` takes what is not a number for rest, too.
         let scaled = (product / self.sharing.reference).max(1.0 / LARGEST);
         if scaled < LARGEST { scaled } else { LARGEST }
-    }
-
-    /// The lambda at which both shares make the whole load.
-    fn solved(&self, x: f64) -> f64 {
-        let law = &self.sharing;
-        let free = x.powf(law.film_exponent);
-        let mut lambda = free.max(self.dry);
-        for _ in 0..80 {
-            let (share, slope) = law.asperities(lambda);
-            let film = (free / lambda).powf(1.0 / law.load_exponent);
-            let excess = share + film - 1.0;
-            let step = excess / (film / (law.load_exponent * lambda) - slope);
-            lambda += step;
-            if step <= 2.0 * f64::EPSILON * lambda {
-                break;
-            }
-        }
-        lambda
     }
 }
