@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from scipy.integrate import quad
-from scipy.optimize import brentq
 
 import hersey
 from hersey import _core
 from hersey.errors import ParameterError
 from hersey.lubrication.mixed import Asperities, BoundaryFriction, MixedContact, mixed_contact, mixed_torque
+from hersey.machine.machine import read_machine
 from tests.lubrication.roll import OIL, ROLL, WARM
+from tests.lubrication.soft_law import solved
 
 
 def mixed(friction: Any = 0.1, **changed: Any) -> MixedContact:
@@ -55,23 +57,20 @@ def test_two_rough_faces_press_as_their_summits_do() -> None:
 @pytest.mark.parametrize("speed", [0.3, 0.6, 1.2, 2.5])
 def test_torque_by_an_independent_solution(speed: float) -> None:
     """From the law as it is written in ``docs/mixed.md``, with adaptive quadrature and a bracket."""
-
-    def integral(ratio: float) -> float:
-        def of(z: float) -> float:
-            return (z - ratio) ** 2.5 * np.exp(-z * z / 2) / np.sqrt(2 * np.pi)
-
-        return quad(of, ratio, ratio + 12, epsabs=0, epsrel=1e-11, limit=200)[0]
-
     film = hersey.film_thickness(ROLL, OIL, speed=speed, temperature=WARM)
+    nip, radius = film.nip, ROLL.reduced_radius
+    modulus = 0.6e6 / (1 - 0.48**2)
     pressure = 16 * np.sqrt(2) * np.pi / 15 * 0.05**2 * 0.1 * 50e9
-    stiffness = pressure / film.nip.pressure_mean
-    free = float(film.central) / 0.4e-6
-
-    def excess(ratio: float) -> float:
-        return stiffness * integral(ratio) + (free / ratio) ** 5 - 1
-
-    ratio = brentq(excess, free, 20.0, xtol=1e-14, rtol=1e-14)
-    share = stiffness * integral(ratio)
+    # Of a layer: the film falls with K as K^-0.8, and that of a half-space has K = E*/(2R) sqrt(2a)
+    half_space = np.sqrt(4 * (300 / 0.22) * radius / (np.pi * modulus))
+    slope = modulus / (2 * radius) * np.sqrt(2 * half_space) * nip.layer_factor**-1.25
+    inlet = (float(film.viscosity) * speed * 15e-3 / 2 * modulus**2 / slope**3) ** 0.4
+    ratio, share = solved(
+        float(film.central) / 0.4e-6,
+        nip.pressure_mean / (slope * np.sqrt(inlet)),
+        pressure / nip.pressure_mean,
+        slope**2 * nip.half_width / (2 * nip.pressure_max**2),
+    )
     sheared = float(film.viscosity) * speed * 15e-3 / (ratio * 0.4e-6) * film.nip.width * 0.22
     law = mixed()
     beyond = law.rolling * (float(film.viscosity) * speed * 15e-3 / law.reference) ** law.rolling_exponent
@@ -131,9 +130,66 @@ def test_the_result_answers() -> None:
     assert frame["transition speed (rad/s)"].to_list() == pytest.approx(film.transition.speed.tolist())
 
 
+#: A march of the full solution of the contact of examples/machine.toml down to thin films: eta U (Pa m), lambda,
+#: the least film over roughness and the share of the asperities, on 3292 nodes (benchmarks/MIXED.md).
+FULL = [
+    (8.200e-4, 3.225606, 2.576436, 0.000211),
+    (2.595e-4, 1.691735, 1.458735, 0.036900),
+    (8.209e-5, 1.144329, 1.034702, 0.154642),
+    (2.597e-5, 0.848632, 0.768245, 0.302707),
+]
+
+
+@pytest.mark.parametrize(("product", "ratio", "least", "share"), FULL)
+def test_the_full_solution_of_the_contact_agrees(
+    product: float, ratio: float, least: float, share: float
+) -> None:
+    """Lambda within 1 %, the least film within 3 %, the share within 0.005 of the load."""
+    machine = read_machine(Path(__file__).parents[2] / "examples/machine.toml")
+    assert machine.mixed is not None
+    kelvin = 453.15
+    viscosity = float(machine.mixed.lubricant.viscosity(kelvin))
+    film = machine.mixed.at(speed=product / viscosity / 15e-3, temperature=kelvin)
+    assert float(film.lambda_ratio) == pytest.approx(ratio, rel=0.01)
+    assert float(film.minimum_ratio) == pytest.approx(least, rel=0.03)
+    assert float(film.share) == pytest.approx(share, abs=0.005)
+    assert not film.beyond_checked_range
+
+
+def test_points_beyond_the_checked_range_are_marked() -> None:
+    film = mixed().at(speed=1.0, temperature=WARM)
+    assert film.beyond_checked_range  # summits of 50 GPa press with 400 times the pressure of the nip
+    soft = mixed_contact(ROLL, OIL, Asperities(modulus=2e9), 0.1, speed=4.0, temperature=WARM)
+    film = soft.at(speed=[0.001, 0.5, 5e3], temperature=WARM)
+    assert film.share[0] > 0.5
+    assert film.beyond_checked_range.tolist() == [True, False, True]  # most of the load; -; a long inlet
+    assert film.to_dict()["points"]["beyond_checked_range"] == [True, False, True]
+    assert "2 of 3 points" in film.summary()
+
+
+def test_roughness_moves_the_transition_as_said() -> None:
+    """By the whole law at other roughness, its summits of one shape."""
+    ends = [
+        mixed_contact(
+            replace(ROLL, roughness=0.4e-6 * factor),
+            OIL,
+            Asperities(modulus=5e9),
+            0.1,
+            speed=4,
+            temperature=WARM,
+        ).transition(WARM)
+        for factor in (0.999, 1.0, 1.001)
+    ]
+    power = np.log(ends[2].product / ends[0].product) / np.log(1.001 / 0.999)
+    assert float(power) == pytest.approx(float(ends[1].by_roughness), rel=1e-4)
+
+
 def test_hard_nips_take_the_law_of_the_hard_film() -> None:
     law = mixed(regime="piezoviscous-elastic")
-    assert (law.film_exponent, law.load_exponent) == (0.7, 0.13)
+    assert (law.film_exponent, law.load_exponent, law.edge) == (0.7, 0.13, 0.0)
+    film = law.at(speed=[0.01, 1e3], temperature=WARM)
+    assert film.beyond_checked_range.tolist() == [True, False]
+    assert film.to_dict()["points"]["minimum_ratio"] == [None, None]
 
 
 @pytest.mark.parametrize(

@@ -6,33 +6,20 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.integrate import quad, solve_ivp
+from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
-from scipy.optimize import brentq
 
 import hersey
 from tests.lubrication.roll import DRAG, MIXED, OIL
+from tests.lubrication.soft_law import solved
 
 _TRAIN = hersey.Drivetrain(11e3, 11.0)
-
-
-def _share(lam: float, stiffness: float) -> float:
-    def integrand(z: float) -> float:
-        return float((z - lam) ** 2.5 * np.exp(-0.5 * z * z) / np.sqrt(2 * np.pi))
-
-    return float(stiffness * quad(integrand, lam, lam + 12, epsabs=0, epsrel=1e-12, limit=200)[0])
 
 
 def _force(x: float) -> float:
     """Force at a product of viscosity and speed, from the equations of the law one by one."""
     law, free = MIXED, (x / MIXED.reference) ** MIXED.film_exponent
-
-    def excess(lam: float) -> float:
-        return float(lam * (1 - _share(lam, law.stiffness)) ** law.load_exponent - free)
-
-    dry = brentq(lambda lam: _share(lam, law.stiffness) - 1, 0.0, 8.0, xtol=1e-14)
-    lam = brentq(excess, dry * (1 + 1e-13), max(10.0, 20 * free), xtol=1e-15, rtol=1e-14)
-    share = _share(lam, law.stiffness)
+    lam, share = solved(free, law.edge * free ** (-1 / 3), law.stiffness, law.roundness)
     ratio = x / law.reference
     return float(
         0.1 * 300 * share + law.shear * ratio / lam + law.rolling * ratio**law.rolling_exponent * (1 - share)

@@ -13,7 +13,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from hersey import _core
 from hersey.arrays import FloatArray, pointwise
@@ -31,6 +31,13 @@ if TYPE_CHECKING:
 _LEAST_LOAD_EXPONENT = 0.01
 #: Index of the soft regime, whose drag has more than the shear of the nip.
 _SOFT = REGIMES.index("isoviscous-elastic")
+#: What the law of a soft film was checked for against the full numerical solution (docs/mixed.md): pressure of
+#: the asperities at F = 1 over that of the nip, half-width over thickness, inlet over half-width, share.
+_STIFFNESS, _WIDTH, _INLET, _SHARE = (2.0, 60.0), (0.6, 1.6), 0.05, 0.5
+#: Largest share at which the law of a hard film is supported.
+_HARD_SHARE = 0.1
+#: Least roundness of the dry pressure that the core takes.
+_FLATTEST = 0.01
 #: Films over roughness, if alone, between which inlet and pressure make a power of eta U; its local
 #: power falls slowly, and the drag of lambda 1 to 30 is met within 0.15 %, to 50 within 1 %.
 _BETWEEN = (5.0, 20.0)
@@ -140,7 +147,10 @@ class MixedContact:
     """A contact whose load film and asperities share; made by `mixed_contact`.
 
     ``regime`` is the law of the film, ``reference`` (Pa m) the product of viscosity and belt speed at which
-    the film alone is as thick as the roughness, ``stiffness`` the pressure of the asperities over F(lambda)
+    the film alone is as thick as the roughness. A soft film has an ``edge``, the mean pressure of the nip over
+    K sqrt(l) with the slope of pressure K at its edge and the length l of the inlet there, and the
+    ``roundness`` K^2 a/(2 p_max^2) of its pressure; others have edge 0 and go as their share of the load to
+    -``load_exponent``. ``stiffness`` is the pressure of the asperities over F(lambda)
     and over the mean pressure of the nip, ``shear`` (N) the force that shears a film of lambda = 1 there over
     the nip, ``rolling`` (N) what inlet and pressure add to it, as eta U to the ``rolling_exponent``.
     """
@@ -153,6 +163,8 @@ class MixedContact:
     reference: float
     film_exponent: float
     load_exponent: float
+    edge: float
+    roundness: float
     stiffness: float
     shear: float
     rolling: float
@@ -206,6 +218,7 @@ class MixedContact:
             temperature=kelvin,
             viscosity=viscosity,
             lambda_ratio=state.lambda_ratio,
+            minimum_ratio=state.minimum,
             share=state.share,
             boundary_torque=state.boundary * radius,
             shear_torque=state.shear * radius,
@@ -213,10 +226,25 @@ class MixedContact:
             mixed=self,
         )
 
+    def beyond_checked_range(self, share: FloatArray, product: FloatArray) -> NDArray[np.bool_]:
+        """Return where the law was not checked against the full numerical solution of a contact.
+
+        ``share`` is that of the asperities, ``product`` viscosity times belt speed (Pa m), of one shape.
+        """
+        if not self.edge:
+            return np.asarray(share > _HARD_SHARE)
+        nip = self.contact.nip
+        width = nip.half_width / self.contact.rubber_thickness
+        inlet = _inlet_length(self.contact, product) / nip.half_width
+        nip_known = _STIFFNESS[0] <= self.stiffness <= _STIFFNESS[1] and _WIDTH[0] <= width <= _WIDTH[1]
+        return np.asarray((share > _SHARE) | (inlet > _INLET) | (not nip_known))
+
     def _by_roughness(self, shift: Mapping[str, FloatArray]) -> FloatArray:
-        """The reference goes as roughness^(1/n); shear and rolling at one product stay those of the film."""
+        """The reference goes as roughness^(1/n); shear, rolling and inlet at one product stay those of the film."""
         rolled = self.rolling_exponent * shift["rolling"] if self.rolling else 0.0
         scaled = shift["reference"] + (1.0 - self.film_exponent) * shift["shear"] + rolled
+        if self.edge:  # over the square root of the inlet, which goes as the film to 2/3
+            scaled = scaled - self.film_exponent / 3.0 * shift["edge"]
         return np.asarray(scaled / self.film_exponent)
 
     @takes_si(temperature="temperature")
@@ -242,8 +270,9 @@ class MixedContact:
 class MixedFilm(Result):
     """Film and asperities at operating points; arrays of one shape.
 
-    ``speed`` of the roll (rad/s), ``temperature`` (K), ``viscosity`` (Pa s), ``lambda_ratio``, ``share`` of
-    the load that asperities carry, and the torques (N m) of the asperities, of the film sheared over the nip
+    ``speed`` of the roll (rad/s), ``temperature`` (K), ``viscosity`` (Pa s), ``lambda_ratio``,
+    ``minimum_ratio`` (the least film over the roughness; not a number where no law of it is known), ``share``
+    of the load that asperities carry, and the torques (N m) of the asperities, of the film sheared over the nip
     and of what its inlet and its pressure add (all that `Film` has beyond eta U/h_c).
     """
 
@@ -251,6 +280,7 @@ class MixedFilm(Result):
     temperature: FloatArray
     viscosity: FloatArray
     lambda_ratio: FloatArray
+    minimum_ratio: FloatArray
     share: FloatArray
     boundary_torque: FloatArray
     shear_torque: FloatArray
@@ -261,6 +291,12 @@ class MixedFilm(Result):
     def torque(self) -> FloatArray:
         """Torque on the roll, N m."""
         return np.asarray(self.boundary_torque + self.shear_torque + self.rolling_torque)
+
+    @property
+    def beyond_checked_range(self) -> NDArray[np.bool_]:
+        """Where the law was not checked against the full numerical solution of a contact."""
+        product = self.mixed.product(self.speed, self.temperature)
+        return self.mixed.beyond_checked_range(self.share, product)
 
     @cached_property
     def transition(self) -> MixedTransition:
@@ -280,8 +316,8 @@ class MixedFilm(Result):
         mixed, asperities = self.mixed, self.mixed.asperities
         lines = [
             self.headline(),
-            f"  film as that of {mixed.regime}: as speed to {mixed.film_exponent:g}, as load to "
-            f"-{mixed.load_exponent:g}; lambda = 1 at eta U = {mixed.reference:.3g} Pa m if alone",
+            f"  film as that of {mixed.regime}: as speed to {mixed.film_exponent:g}{_under(mixed)}; "
+            f"lambda = 1 at eta U = {mixed.reference:.3g} Pa m if alone",
             f"  asperities: sigma beta D = {asperities.sigma_beta_density:g}, sigma/beta = "
             f"{asperities.sigma_over_beta:g}, E* = {1e-9 * asperities.modulus:.3g} GPa",
             f"  {'point':16s} {'degC':>6s} {'rad/s':>9s} {'lambda':>7s} {'share %':>8s} {'torque N m':>11s} "
@@ -296,6 +332,11 @@ class MixedFilm(Result):
             lines.append(
                 f"  {name[:16]:16s} {celsius(kelvin):6.1f} {speed:9.3g} {ratio:7.3g} "
                 f"{100 * share:8.3g} {torque:11.3g} {turn:>15s}"
+            )
+        beyond = int(np.count_nonzero(self.beyond_checked_range))
+        if beyond:
+            lines.append(
+                f"  {beyond} of {self.share.size} points are beyond the range in which the law was checked"
             )
         return "\n".join(lines)
 
@@ -312,7 +353,11 @@ class MixedFilm(Result):
             {
                 "law": law
                 | {"asperities": vars(self.mixed.asperities), "friction": vars(self.mixed.friction)},
-                "points": points | {"torque": np.ravel(self.torque)},
+                "points": points
+                | {
+                    "torque": np.ravel(self.torque),
+                    "beyond_checked_range": np.ravel(self.beyond_checked_range),
+                },
                 "transition": {
                     "speed": np.ravel(turn.speed),
                     "belt_speed": np.ravel(turn.belt_speed),
@@ -334,14 +379,44 @@ class MixedFilm(Result):
             "temperature (K)": self.temperature,
             "viscosity (Pa s)": self.viscosity,
             "lambda (1)": self.lambda_ratio,
+            "least film over roughness (1)": self.minimum_ratio,
             "share of asperities (1)": self.share,
             "boundary torque (N m)": self.boundary_torque,
             "shear torque (N m)": self.shear_torque,
             "rolling torque (N m)": self.rolling_torque,
             "torque (N m)": self.torque,
             "transition speed (rad/s)": self.transition.speed,
+            "beyond checked range": self.beyond_checked_range,
         }
         return pl.DataFrame({name: np.ravel(values) for name, values in columns.items()})
+
+
+def _under(mixed: MixedContact) -> str:
+    """How asperities thicken the film, in words."""
+    if mixed.edge:
+        return " if alone, made where the dry pressure exceeds that of the asperities"
+    return f", as its load to -{mixed.load_exponent:g}"
+
+
+def _inlet_length(contact: Contact, product: ArrayLike) -> FloatArray:
+    """Length of the inlet of the film alone, m, at products of viscosity and belt speed, Pa m."""
+    nip = contact.nip
+    modulus = contact.effective_modulus
+    speed = 0.5 * np.asarray(product, dtype=float)
+    return pointwise(
+        _core.inlet_length, 1.0, speed, contact.reduced_radius, modulus, nip.edge, nip.half_width
+    )
+
+
+def _edge(contact: Contact, reference: float) -> tuple[float, float]:
+    """Mean pressure over K sqrt(l) at a reference, Pa m, and K^2 a/(2 p_max^2); p = K sqrt(d) at the edge."""
+    nip = contact.nip
+    half = nip.half_width
+    # K as of the core: edge E*/(2R) sqrt(2a), E* = E'/2
+    slope = nip.edge * 0.25 * contact.effective_modulus / contact.reduced_radius * (2.0 * half) ** 0.5
+    length = float(_inlet_length(contact, reference))
+    roundness = slope**2 * half / (2.0 * nip.pressure_max**2)
+    return nip.pressure_mean / (slope * length**0.5), float(np.clip(roundness, _FLATTEST, 1.0))
 
 
 @takes_si(speed="speed", temperature="temperature")
@@ -399,14 +474,18 @@ def mixed_contact(
     product = float(film.viscosity) * 2.0 * float(film.entrainment_speed)
     reference = product * (contact.roughness / central) ** (1.0 / exponent)
     most = asperities.pressure * float(_core.asperity_integral(np.zeros(())))
-    if most <= film.nip.pressure_mean:
+    soft = index == _SOFT
+    needed = film.nip.pressure_max if soft else film.nip.pressure_mean
+    if most <= needed:
         raise ParameterError(
             f"the asperities carry at most {1e-6 * most:.3g} MPa before the mean planes meet, and the nip "
-            f"presses with {1e-6 * film.nip.pressure_mean:.3g} MPa: state stiffer or denser summits, or a "
+            f"presses with {1e-6 * needed:.3g} MPa: state stiffer or denser summits, or a "
             "softer nip"
         )
     rolling, power = 0.0, exponent
-    if index == _SOFT:
+    edge, roundness = 0.0, 1.0
+    if soft:
+        edge, roundness = _edge(contact, reference)
         ends = np.array(_BETWEEN) ** (1.0 / exponent)
         low, high = soft_force_beyond(contact, reference * ends).tolist()
         power = float(np.log(high / low) / np.log(ends[1] / ends[0]))
@@ -420,6 +499,8 @@ def mixed_contact(
         reference=reference,
         film_exponent=exponent,
         load_exponent=max(_core.FILM_LOAD_EXPONENTS[index], _LEAST_LOAD_EXPONENT),
+        edge=edge,
+        roundness=roundness,
         stiffness=asperities.pressure / film.nip.pressure_mean,
         shear=reference / contact.roughness * film.nip.width * contact.length,
         rolling=rolling,

@@ -63,7 +63,9 @@ def state(law, x):
     film = (1 - pressure / most) ** most
     least = lam * (1 - mpf("0.21") / (1 + mpf("3.82") * pressure * n) ** mpf("0.58"))
     force = (
-        law["boundary"] * (1 - film) + law["shear"] * x / lam + law["rolling"] * x ** law["rolling_exponent"] * film
+        law["boundary"] * (1 - film)
+        + law["shear"] * x / lam
+        + law["rolling"] * x ** law["rolling_exponent"] * film
     )
     return lam, least, 1 - film, force
 
@@ -84,10 +86,14 @@ if __name__ == "__main__":
         found = state(SOFT, x)
         slope = diff(lambda each: state(SOFT, each)[3], x, h=x * mpf("1e-12")) / SOFT["reference"]
         print(*(mp.nstr(each, 17) for each in (x, *found, slope)))
-    best = min((state(SOFT, mpf(2) ** (mpf(i) / 4))[3], mpf(2) ** (mpf(i) / 4)) for i in range(0, 30))[1]
+    best = min((state(SOFT, mpf(2) ** (mpf(i) / 4))[3], mpf(2) ** (mpf(i) / 4)) for i in range(30))[1]
     law = SOFT | {"start": best}
     turn = transition(law)
-    print("transition", mp.nstr(law["reference"] * exp(turn), 17), *(mp.nstr(e, 17) for e in state(law, exp(turn))))
+    print(
+        "transition",
+        mp.nstr(law["reference"] * exp(turn), 17),
+        *(mp.nstr(e, 17) for e in state(law, exp(turn))),
+    )
     for name in SOFT:
         ends = []
         for sign in (-2, -1, 1, 2):

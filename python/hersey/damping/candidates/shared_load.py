@@ -5,7 +5,7 @@
 F is the force of the core's law of mixed lubrication for the contact of the machine's file; the parameters
 are logarithms of factors on what is stated. Other roughness moves the product of viscosity and speed at
 which film and roughness are alike, and leaves a film that carries all as it is; the shape of the summits is
-held. Viscosity varies with temperature as the lubricant's, at the temperature that is read.
+held. The inlet of a film as thick as the roughness is longer for it. Viscosity varies with temperature as the lubricant's, at the temperature that is read.
 """
 
 from __future__ import annotations
@@ -95,7 +95,8 @@ class SharedLoadLaw(Named):
         rise = parts["rise"]
         columns = {
             "viscosity": rise,
-            "roughness": (r * parts["rolling"] + (1.0 - n) * parts["shear"] - rise) / n,
+            "roughness": (r * parts["rolling"] + (1.0 - n) * parts["shear"] - rise) / n
+            - parts["by_edge"] / 3.0,
             "boundary": parts["boundary"],
             "rest": np.full_like(rise, self.torque),
         }
@@ -159,6 +160,7 @@ class SharedLoadLaw(Named):
             "shear": roughness * (1.0 - n) / n,
             "rolling": roughness * r / n,
             "boundary": friction,
+            "edge": -roughness / 3.0,  # over the square root of the inlet, which goes as the film to 2/3
         }
         numbers = [
             number * np.exp(factors.get(name, 0.0))
@@ -167,7 +169,7 @@ class SharedLoadLaw(Named):
         product = self._last.product * np.exp(viscosity)
         state = _core.mixed_contact([product, *numbers])
         lever = self.contact.lever
-        parts = {name: lever * getattr(state, name) for name in ("boundary", "shear", "rolling")}
+        parts = {name: lever * getattr(state, name) for name in ("boundary", "shear", "rolling", "by_edge")}
         contact = parts["boundary"] + parts["shear"] + parts["rolling"]
         torque = np.maximum(contact + self.torque * named["rest"], _LEAST * contact)
         return parts | {"torque": torque, "rise": lever * product * state.slope}

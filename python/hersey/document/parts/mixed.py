@@ -30,6 +30,8 @@ class MixedLawPart(Part):
     reference: float = Field(description="eta U at which the film alone is as thick as the roughness, Pa m")
     film_exponent: float
     load_exponent: float
+    edge: float = Field(description="mean pressure over K sqrt(l) of a soft nip at the reference; 0: none")
+    roundness: float = Field(description="K^2 a/(2 p_max^2) of the dry pressure of a soft nip")
     stiffness: float
     shear: float = Field(description="of a film of lambda = 1 over the nip, N")
     rolling: float = Field(description="what inlet and pressure add, at the reference, N")
@@ -45,11 +47,13 @@ class MixedPointsPart(Part):
     temperature: Numbers = Field(description="K")
     viscosity: Numbers = Field(description="Pa s")
     lambda_ratio: Numbers
+    minimum_ratio: Holed = Field(description="least film over roughness; null where no law of it is known")
     share: Numbers = Field(description="of the load that asperities carry")
     boundary_torque: Numbers = Field(description="N m")
     shear_torque: Numbers = Field(description="N m")
     rolling_torque: Numbers = Field(description="N m")
     torque: Numbers = Field(description="N m")
+    beyond_checked_range: list[bool] = Field(description="whether the law was not checked there")
 
 
 class MixedTransitionPart(Part):
