@@ -130,8 +130,8 @@ def test_the_result_answers() -> None:
     assert frame["transition speed (rad/s)"].to_list() == pytest.approx(film.transition.speed.tolist())
 
 
-#: A march of the full solution of the contact of examples/machine.toml down to thin films: eta U (Pa m), lambda,
-#: the least film over roughness and the share of the asperities, on 3292 nodes (benchmarks/MIXED.md).
+#: The full solution of the contact of examples/machine.toml: eta U (Pa m), lambda, the least film over
+#: roughness and the share of the asperities, on 3292 nodes (benchmarks/MIXED.md).
 FULL = [
     (8.200e-4, 3.225606, 2.576436, 0.000211),
     (2.595e-4, 1.691735, 1.458735, 0.036900),

@@ -31,8 +31,8 @@ if TYPE_CHECKING:
 _LEAST_LOAD_EXPONENT = 0.01
 #: Index of the soft regime, whose drag has more than the shear of the nip.
 _SOFT = REGIMES.index("isoviscous-elastic")
-#: What the law of a soft film was checked for against the full numerical solution (docs/mixed.md): pressure of
-#: the asperities at F = 1 over that of the nip, half-width over thickness, inlet over half-width, share.
+#: What the law of a soft film was checked for against the full numerical solution (docs/mixed.md): pressure
+#: of the asperities at F = 1 over that of the nip, half-width over thickness, inlet over half-width, share.
 _STIFFNESS, _WIDTH, _INLET, _SHARE = (2.0, 60.0), (0.6, 1.6), 0.05, 0.5
 #: Largest share at which the law of a hard film is supported.
 _HARD_SHARE = 0.1
@@ -147,8 +147,8 @@ class MixedContact:
     """A contact whose load film and asperities share; made by `mixed_contact`.
 
     ``regime`` is the law of the film, ``reference`` (Pa m) the product of viscosity and belt speed at which
-    the film alone is as thick as the roughness. A soft film has an ``edge``, the mean pressure of the nip over
-    K sqrt(l) with the slope of pressure K at its edge and the length l of the inlet there, and the
+    the film alone is as thick as the roughness. A soft film has an ``edge``, the mean pressure of the nip
+    over K sqrt(l) with the slope of pressure K at its edge and the length l of the inlet there, and the
     ``roundness`` K^2 a/(2 p_max^2) of its pressure; others have edge 0 and go as their share of the load to
     -``load_exponent``. ``stiffness`` is the pressure of the asperities over F(lambda)
     and over the mean pressure of the nip, ``shear`` (N) the force that shears a film of lambda = 1 there over
@@ -240,7 +240,7 @@ class MixedContact:
         return np.asarray((share > _SHARE) | (inlet > _INLET) | (not nip_known))
 
     def _by_roughness(self, shift: Mapping[str, FloatArray]) -> FloatArray:
-        """The reference goes as roughness^(1/n); shear, rolling and inlet at one product stay those of the film."""
+        """The reference goes as roughness^(1/n); at one product shear, rolling and inlet are the film's."""
         rolled = self.rolling_exponent * shift["rolling"] if self.rolling else 0.0
         scaled = shift["reference"] + (1.0 - self.film_exponent) * shift["shear"] + rolled
         if self.edge:  # over the square root of the inlet, which goes as the film to 2/3
@@ -272,8 +272,8 @@ class MixedFilm(Result):
 
     ``speed`` of the roll (rad/s), ``temperature`` (K), ``viscosity`` (Pa s), ``lambda_ratio``,
     ``minimum_ratio`` (the least film over the roughness; not a number where no law of it is known), ``share``
-    of the load that asperities carry, and the torques (N m) of the asperities, of the film sheared over the nip
-    and of what its inlet and its pressure add (all that `Film` has beyond eta U/h_c).
+    of the load that asperities carry, and the torques (N m) of the asperities, of the film sheared over the
+    nip and of what its inlet and its pressure add (all that `Film` has beyond eta U/h_c).
     """
 
     speed: FloatArray

@@ -1,18 +1,19 @@
 """The virtual test stand: synthetic logs whose truth is known.
 
-========  ===============================================================
-truth     the damping surface behind a log, and how it varies
-physical  the truth made of film, contact and the rest of the drive
-stand     the stand, its sensors and disturbances; the log it writes
-ageing    units whose oil goes and whose faces wear, with their truth
-campaign  the runs of such units at some ages, as files
-drive     the shipped example's drive, which ages if none is given
-========  ===============================================================
+============  ===============================================================
+truth         the damping surface behind a log, and how it varies
+physical      the truth made of film, contact and the rest of the drive
+stand         the stand, its sensors and disturbances; the log it writes
+full_contact  a full numerical solution of that contact, as a table
+ageing        units whose oil goes and whose faces wear, with their truth
+campaign      the runs of such units at some ages, as files
+drive         the shipped example's drive, which ages if none is given
+============  ===============================================================
 """
 
 from hersey.testbench.ageing import AgedTruth, Ageing, Unit, population
 from hersey.testbench.campaign import VirtualCampaign, ages_of
-from hersey.testbench.physical import PhysicalTruth
+from hersey.testbench.physical import FullTruth, PhysicalTruth
 from hersey.testbench.stand import COLUMNS, Stand, VirtualLog, long_log, run
 from hersey.testbench.truth import RPM, StribeckTruth, ThermalTruth, Truth
 
@@ -21,6 +22,7 @@ __all__ = [
     "RPM",
     "AgedTruth",
     "Ageing",
+    "FullTruth",
     "PhysicalTruth",
     "Stand",
     "StribeckTruth",

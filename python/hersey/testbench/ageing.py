@@ -118,7 +118,7 @@ class AgedTruth(PhysicalTruth):
         torque[moving] += np.sign(w[moving]) * self.contact_torque(np.abs(w[moving]), level[moving])
         return torque
 
-    def drag(self, temperature: float, roll_radius: float, stick_speed: float) -> MixedDrag | DragTable:  # type: ignore[override]
+    def drag(self, temperature: float, roll_radius: float, stick_speed: float) -> MixedDrag | DragTable:
         """Return the drag of the belt at a temperature in degC, radius in m and stick speed in m/s."""
         if self.supply is None and self.thickening == 1.0:
             return super().drag(temperature, roll_radius, stick_speed)
