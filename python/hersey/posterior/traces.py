@@ -30,6 +30,8 @@ STANDING, STOOD, RAMP = 0.01, 1.0, 3.0
 SWINGS = 0.06
 #: Share of a stretch, from its end, whose motion is judged.
 SETTLED = 0.6
+#: Relative error of the slope of the force of a held belt, however finely it is sampled.
+_SLOPE = 0.1
 #: A fall of less than this share of the mean force is no slip of the whole belt.
 SLIPS = 0.1
 #: Share of the first slips that the last must have in stick-slip that goes on.
@@ -217,14 +219,14 @@ def _figures(record: CycleRecord, run: Run, machine: Machine, drive_speed: float
     free = machine.train.free_period
     coarse = 0.1 * min(1.0, (PEAK_RESOLVED * run.sampling_interval / free) ** 2)
     noise = record.samples.noise
-    slope = (
-        record.loading_slope if np.isfinite(record.loading_slope) and record.kind == "stick_slip" else None
-    )
+    held = record.kind == "stick_slip" and record.stuck_fraction > 0.0 and np.isfinite(record.loading_slope)
+    # a row more or less at either end of the rise
+    row = run.sampling_interval / (record.stuck_fraction * period.median) if held else 0.0
     return CycleFigures(
         period=(period.median, _error(period, run.sampling_interval / np.sqrt(max(record.slips, 1)))),
         pull_max=(top.median, _error(top, 0.5 * rise + noise)),
         drop=(drop.median, float(np.hypot(_error(drop, rise + noise), coarse))),
-        slope=None if slope is None else (slope, 0.1),
+        slope=(record.loading_slope, float(np.hypot(_SLOPE, np.sqrt(2.0) * row))) if held else None,
     )
 
 

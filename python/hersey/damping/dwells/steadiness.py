@@ -21,8 +21,9 @@ MAX_TEMPERATURE_DRIFT, MAX_SPEED_DRIFT, MAX_TORQUE_DRIFT, MAX_DRIFT_TO_NOISE = 2
 MAX_TORQUE_SWING, MAX_SPEED_SWING = 0.35, 0.5
 #: Drift of torque, in steps of its sensor, that one reading next to another makes.
 MAX_STEP_DRIFT = 1.5
-#: Stick-slip: torque swings by more than this, and its changes are this skewed (slow rises, sudden drops).
-STICK_SLIP_SWING, STICK_SLIP_SKEWNESS = 0.05, -3.0
+#: Stick-slip: torque swings by more than this, and its changes are this skewed (slow rises, sudden drops). Of
+#: a cycle with few samples less skewness shows: it counts where changes go on, which those of noise do not.
+STICK_SLIP_SWING, STICK_SLIP_SKEWNESS, COARSE_SKEWNESS = 0.05, -3.0, -1.0
 #: Drift counts as real beyond this many standard errors.
 SIGNIFICANT = 3.0
 
@@ -50,7 +51,7 @@ def unsteady(
         share = float(np.std(speed) / abs(np.mean(speed)))
         return Reason("speed not held", share=share, slow=slow, fast=fast)
     swing = float(np.std(torque)) / abs(float(np.mean(torque)))
-    if swing > STICK_SLIP_SWING and _skewness_of_changes(torque) < STICK_SLIP_SKEWNESS:
+    if swing > STICK_SLIP_SWING and _rises_slowly_and_drops(torque):
         return Reason("stick-slip", share=swing)
     if swing > MAX_TORQUE_SWING:
         return Reason("swing", share=swing)
@@ -69,17 +70,21 @@ def unsteady(
     return None
 
 
-def _skewness_of_changes(torque: FloatArray) -> float:
-    """Least skewness of the changes of torque (taken positive) from block to block, over block lengths."""
+def _rises_slowly_and_drops(torque: FloatArray) -> bool:
+    """Whether the changes of torque (taken positive) from block to block say so, at some block length."""
     load = torque * np.sign(torque.mean())
-    least = 0.0
     for blocks in (100, 400, 1600):
         size = max(1, load.size // blocks)
         changes = np.diff(load[: load.size // size * size].reshape(-1, size).mean(axis=1))
-        deviation = float(np.std(changes))
-        if deviation > 0:
-            least = min(least, float(np.mean((changes - changes.mean()) ** 3)) / deviation**3)
-    return least
+        changes -= changes.mean()
+        variance = float(np.mean(changes**2))
+        if variance <= 0.0:
+            continue
+        skewness = float(np.mean(changes**3)) / variance**1.5
+        go_on = float(np.mean(changes[1:] * changes[:-1])) > 0.0
+        if skewness < (COARSE_SKEWNESS if go_on else STICK_SLIP_SKEWNESS):
+            return True
+    return False
 
 
 def drift_over(
