@@ -104,8 +104,8 @@ def test_drive_1_follows_the_law_of_mixed_lubrication(rotation: str, least: floa
 
     def law(logs: FloatArray, at: FloatArray = speed) -> FloatArray:
         reference, boundary, shear, rest = np.exp(logs)
-        forces = (boundary, shear, 0.0, 0.0)
-        state = pointwise(_core.mixed_contact, at, reference, 0.6, 0.2, 20.0, *forces)
+        forces = (boundary, shear, 0.0, 0.0)  # of a film under its share of the load
+        state = pointwise(_core.mixed_contact, at, reference, 0.6, 0.2, 0.0, 1.0, 20.0, *forces)
         return np.asarray(state.boundary + state.shear + rest)
 
     start = np.log([2.0, 1e-3, 0.7e-3, 1.5e-3])

@@ -260,6 +260,7 @@ class Unit:
             contact=contact,
             friction=friction,
             reference=new.reference * shift,
+            edge=new.edge * shift**-0.2,  # over the square root of the inlet, which goes as (eta u)^0.4
             shear=new.shear * shift / rough,
             rolling=new.rolling * shift**new.rolling_exponent,
         )
