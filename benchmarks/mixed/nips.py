@@ -164,9 +164,9 @@ constant exponent, lambda = lambda alone (1-s)^-b.
 |{"---|" * 9}
 {lines}
 
-Lambda is within 3 % at {100 * inside:.0f} % of the points. The film alone is that of the product's own law, and its
-error is part of these figures. The test stand uses the full solution itself: `python -m benchmarks.mixed.table`
-makes its table.
+Lambda is within 3 % at {100 * inside:.0f} % of the points. The film alone is that of the product's own law,
+and its error is part of these figures. The test stand uses the full solution itself: `python -m
+benchmarks.mixed.table` makes its table.
 """
     print(content)
     (Path(__file__).parents[1] / "MIXED.md").write_text(content)
