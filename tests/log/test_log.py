@@ -380,3 +380,14 @@ def test_a_set_point_is_not_taken_for_what_was_measured(setpoint: str, tmp_path:
     )
     log = hersey.read(path)
     assert log.runs[0].speed == pytest.approx(60 * np.pi / 30)
+
+
+def test_a_set_point_beside_another_column_of_its_unit_is_asked_about(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text(
+        "t [s],Torque Command [N*m],Speed [rpm],Temp [degC],Trq Fbk [N*m]\n"
+        + "".join(f"{i / 10},0.5,60,150,0.3\n" for i in range(30))
+    )
+    with pytest.raises(ChannelError, match=r"torque could be 'Torque Command \[N\*m\]' or 'Trq Fbk"):
+        hersey.read(path)
+    assert hersey.read(path, channels={"torque": "Trq Fbk"}).runs[0].torque == pytest.approx(0.3)

@@ -100,7 +100,10 @@ def find_channel(
     if choice.name:
         return _with_unit(role, _named(role, columns, choice.name, file), choice, file, columns)
     named = [c for c in columns if _is_named(_NAMES[role], c)]
-    measured = [c for c in named if not _SETPOINT.search(c.name)] or named
+    measured = [c for c in named if not _SETPOINT.search(c.name)]
+    if not measured:  # what was asked for is not what came, if another column may hold that
+        others = [c for c in columns if c not in named and c.unit and _could_be(role, c, surely=True)]
+        measured = named + (others if named and role != "time" else [])
     # a column of another kind of unit is out; one without a unit could still be it
     candidates = (
         _telling(role, [c for c in measured if _could_be(role, c)])

@@ -14,6 +14,9 @@ from hersey.log.recording import Recording, Signal, library
 
 MAGIC = b"\x89HDF\r\n\x1a\n"
 _UNITS = ("units", "unit", "Units", "Unit", "UNITS", "UNIT")
+#: Attributes of the CF conventions: numbers are packed as (number - offset)/factor; some stand for none.
+_PACKED = ("scale_factor", "add_offset")
+_MISSING = ("_FillValue", "missing_value")
 #: MATLAB keeps the contents of cells and objects here.
 _HIDDEN = ("#refs#", "#subsystem#")
 _WAY_OUT = "copy what it refers to into the file itself, such as by h5repack or by h5py"
@@ -66,7 +69,7 @@ def _data_set(path: str, item: Any) -> Iterator[Signal]:
             if item.dtype[field].kind in "iufb" and not item.dtype[field].shape:
                 yield from array_signals(field, shape, _column(item, field), group=path)
     elif item.dtype.kind in "iufb" and shape:
-        yield from array_signals(name, shape, lambda: item[()], unit, group)
+        yield from array_signals(name, shape, _numbers(path, item), unit, group)
 
 
 def _check_kind(h5py: Any, path: str, item: Any) -> None:
@@ -83,6 +86,33 @@ def _check_place(path: str, item: Any) -> None:
 
 def _column(item: Any, field: str) -> Callable[[], Any]:
     return lambda: item[field]
+
+
+def _numbers(path: str, item: Any) -> Callable[[], Any]:
+    """Read the numbers, unpacked and without those that stand for none, as the CF conventions have it."""
+    factor, offset = (_number(path, item, key, none) for key, none in zip(_PACKED, (1.0, 0.0), strict=True))
+    missing = [_number(path, item, key, np.nan) for key in _MISSING if key in item.attrs]
+    if not missing and (factor, offset) == (1.0, 0.0):
+        return lambda: item[()]
+
+    def unpacked() -> Any:
+        raw = np.asarray(item[()])
+        none = np.isin(raw, missing)
+        return np.where(none, np.nan, raw * factor + offset)
+
+    return unpacked
+
+
+def _number(path: str, item: Any, key: str, none: float) -> float:
+    """An attribute that is a number."""
+    if key not in item.attrs:
+        return none
+    value = np.asarray(item.attrs[key])
+    if value.size != 1 or value.dtype.kind not in "iuf" or not np.isfinite(value).all():
+        if key in _PACKED:
+            raise UnreadableLogError(f"data set '{path}': its attribute {key} is no number")
+        return np.nan
+    return float(value.reshape(-1)[0])
 
 
 def _text(value: Any) -> str:
