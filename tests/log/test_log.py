@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import hersey
-from hersey.errors import ChannelError, UnitError
+from hersey.errors import ChannelError, UnitError, UnreadableLogError
 from hersey.log.text import delimited
 
 ROWS = [(0.0, 0.5, 60.0, 150.0), (0.1, 0.625, 61.5, 151.25), (0.2, 0.75, 63.0, 149.5)]
@@ -380,6 +380,18 @@ def test_a_set_point_is_not_taken_for_what_was_measured(setpoint: str, tmp_path:
     )
     log = hersey.read(path)
     assert log.runs[0].speed == pytest.approx(60 * np.pi / 30)
+
+
+def test_a_header_and_a_row_of_units_that_differ_are_refused(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    rows = "".join(f"{i / 10},0.3,60,150\n" for i in range(30))
+    path.write_text("Time [s],Torque [N*m],Speed [rpm],Temp [degC]\ns,mN*m,rpm,degC\n" + rows)
+    with pytest.raises(
+        UnreadableLogError, match=r"line 1, column 2: the header says 'Torque \[N\*m\]' and .* mN\*m"
+    ):
+        hersey.read(path)
+    path.write_text("Time [s],Torque [N*m],Speed [rpm],Temp [degC]\ns,Nm,1/min,degC\n" + rows)
+    assert hersey.read(path).runs[0].torque == pytest.approx(0.3)
 
 
 def test_a_set_point_beside_another_column_of_its_unit_is_asked_about(tmp_path: Path) -> None:

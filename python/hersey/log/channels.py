@@ -55,7 +55,9 @@ _PART_OF_A_RUN = re.compile(r"step|segment|interval|cycle|lap", re.IGNORECASE)
 _LONGEST_NAME = 200
 #: Columns named in a message at the most.
 _SHOWN = 40
-_SETPOINT = re.compile(r"\b(set|cmd|command|commanded|target|demand|reference|soll|nominal)", re.IGNORECASE)
+_SETPOINT = re.compile(
+    r"\b(set|sp\b|cmd|command|commanded|target|demand|reference|soll|nominal)", re.IGNORECASE
+)
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ import numpy as np
 from hersey.errors import UnitError, UnreadableLogError, WrongKindError
 from hersey.log.text.numbers import NumberStyle, is_missing, looks_numeric, style_of
 from hersey.log.text.stamps import StampStyle, counted_since, is_stamp, stamp_style
+from hersey.log.text.unit_pairs import of_one_kind, same_unit
 from hersey.spelling import printable
 from hersey.units import KINDS, conversion
 
@@ -358,6 +359,12 @@ def _columns(table: _Table, numbered: list[tuple[int, str]], file: str) -> tuple
         refuse_long_name(f"{file}, line {line}", index + 1, name)
         unit = units[index].strip("[]() ") if index < len(units) else ""
         match = NAME_WITH_UNIT.fullmatch(name)
+        own = (match[2] if match[2] is not None else match[3]).strip() if match else ""
+        if own and of_one_kind(own, unit) and not same_unit(own, unit):
+            raise UnreadableLogError(
+                f"{file}, line {line}, column {index + 1}: the header says '{name}' and the row of units "
+                f"{unit}: mend the one that is wrong"
+            )
         if match and not unit:
             name, unit = match[1].rstrip() or f"#{index + 1}", match[2] if match[2] is not None else match[3]
         columns.append(Column(index, name, unit.strip()))

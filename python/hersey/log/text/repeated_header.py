@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
-
-from hersey.errors import UnitError, UnreadableLogError
+from hersey.errors import UnreadableLogError
 from hersey.log.text.layout import NAME_WITH_UNIT, Column
-from hersey.units import KINDS, conversion
+from hersey.log.text.unit_pairs import of_one_kind, same_unit
 
 
 def refuse_another_header(place: str, column: Column, cell: str, columns: tuple[Column, ...]) -> None:
@@ -29,9 +27,9 @@ def refuse_another_header(place: str, column: Column, cell: str, columns: tuple[
         )
     else:
         other = cell.strip("[]() ")
-        if not _same_kind(column.unit, other):
+        if not of_one_kind(column.unit, other):
             return
-    if other and not _same(column.unit, other):
+    if other and not same_unit(column.unit, other):
         raise UnreadableLogError(
             f"{place}, column '{column.name}': the unit is {other} from here on, and above it is "
             f"{column.unit or 'not given'}: cut the file above this header into two files, and give both"
@@ -48,28 +46,3 @@ def _header(cell: str) -> tuple[str, str]:
 
 def _is(name: str, column: Column) -> bool:
     return bool(name) and name.lower() == column.name.lower()
-
-
-@lru_cache(maxsize=1024)
-def _of_kind(kind: str, unit: str) -> tuple[float, float] | None:
-    """Scale and offset of a unit that is one of a kind, or None."""
-    if not unit:
-        return None
-    try:
-        line = conversion(kind, unit)
-    except UnitError:
-        return None
-    return line.scale, line.offset
-
-
-def _same_kind(one: str, other: str) -> bool:
-    """Whether both texts are units of one kind of quantity."""
-    return any(_of_kind(kind, one) and _of_kind(kind, other) for kind in KINDS)
-
-
-def _same(one: str, other: str) -> bool:
-    """Whether two units mean the same."""
-    if one == other:
-        return True
-    lines = [(_of_kind(kind, one), _of_kind(kind, other)) for kind in KINDS]
-    return any(a is not None and a == b for a, b in lines)
