@@ -6,13 +6,16 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.log.means import MeansTable
-from hersey.log.torque_log import TorqueLog
+from hersey.log.torque_log import Run, TorqueLog
 from hersey.units import celsius
 
 #: A log of a drive has rows more often than so, s, and no lubricant is hotter, degC.
 RARE, TOO_HOT = 10.0, 320.0
 #: Share of the temperatures that is looked at: a spike of the sensor is no unit.
 _MOST = 0.99
+#: A torque beyond this, N m, at no speed beyond that, rad/s, is of few drives; and nearly all of them hold
+#: their speed more closely than this share of what the torque does from row to row.
+_GREAT, _SLOW, _STEADIER = 10.0, 0.1, 1.0 / 3.0
 
 
 def doubtful_units(log: TorqueLog | MeansTable) -> list[str]:
@@ -30,7 +33,25 @@ def doubtful_units(log: TorqueLog | MeansTable) -> list[str]:
             f"Temperature reaches {hottest:.0f} degC, more than a lubricant stands: if the numbers are in K, "
             "say --temperature-unit K."
         )
+    if any(_look_exchanged(run) for run in log.runs):
+        out.append(
+            "Torque is great and steadier than the speed, which is next to nothing: look "
+            "whether the columns of torque and speed stand under each other's names."
+        )
     return out
+
+
+def _look_exchanged(run: Run) -> bool:
+    """Whether what is called a torque behaves as a speed does, and the other way round."""
+    torque, speed = np.abs(run.torque), np.abs(run.speed)
+    if torque.size < 3 or np.quantile(torque, _MOST) < _GREAT or np.quantile(speed, _MOST) > _SLOW:
+        return False
+    return _unrest(torque) < _STEADIER * _unrest(speed)
+
+
+def _unrest(values: FloatArray) -> float:
+    """Median change from row to row over the median."""
+    return float(np.median(np.abs(np.diff(values)))) / max(float(np.median(values)), 1e-300)
 
 
 def _temperatures(log: TorqueLog | MeansTable) -> list[FloatArray]:

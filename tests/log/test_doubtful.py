@@ -1,0 +1,37 @@
+"""Numbers that would be ordinary under another name or in another unit."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import hersey
+from hersey.log.doubtful import doubtful_units
+
+STEPS = np.repeat([20.0, 60.0, 180.0, 400.0], 100)
+NOISE = np.random.default_rng(3).standard_normal(STEPS.size)
+#: rpm held within 0.01 %, and N m with 1 % of noise.
+SPEED, TORQUE = STEPS * (1.0 + 1e-4 * NOISE), 0.02 * STEPS**0.3 * (1.0 + 0.01 * NOISE)
+
+
+@pytest.mark.parametrize(("torque", "speed", "said"), [(TORQUE, SPEED, 0), (SPEED, TORQUE, 1)])
+def test_columns_under_each_others_names(
+    torque: np.ndarray, speed: np.ndarray, said: int, tmp_path: Path
+) -> None:
+    rows = zip(torque.tolist(), speed.tolist(), strict=True)
+    body = "".join(f"{0.1 * i:.1f},{q:.6g},{w:.6g},90\n" for i, (q, w) in enumerate(rows))
+    path = tmp_path / "log.csv"
+    path.write_text("Time [s],Torque [N*m],Speed [rpm],Temperature [degC]\n" + body)
+    found = doubtful_units(hersey.read(path))
+    assert len(found) == said
+    assert all("under each other's names" in text for text in found)
+
+
+def test_a_slow_drive_of_great_torque_is_not_doubted(tmp_path: Path) -> None:
+    """A valve at 0.3 rpm: its speed is held more closely than its torque."""
+    body = "".join(f"{0.1 * i:.1f},{50 + n:.4f},{0.3 + 1e-5 * n:.6f},90\n" for i, n in enumerate(NOISE))
+    path = tmp_path / "log.csv"
+    path.write_text("Time [s],Torque [N*m],Speed [rpm],Temperature [degC]\n" + body)
+    assert doubtful_units(hersey.read(path)) == []
