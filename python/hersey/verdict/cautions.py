@@ -13,6 +13,7 @@ from hersey.damping.dwells.misleading import in_words, misleading
 from hersey.damping.surface import DampingSurface
 from hersey.log.doubtful import doubtful_units
 from hersey.units import celsius
+from hersey.verdict.held_values import held_values
 
 #: A difference between directions counts as one beyond this share and this many standard errors.
 NOTABLE_DIFFERENCE, SIGNIFICANT = 0.02, 3.0
@@ -41,6 +42,7 @@ def cautions(points: SteadyPoints, surface: DampingSurface | None) -> list[str]:
                 f"{file.name}: rows are missing at {run.gaps()} places ({max(share, 0):.1%} of the time)."
             )
     out += doubtful_units(log)
+    out += held_values(log)
     out += doubtful_tare(points)
     out += points.notes
     out += _rest_warnings(points)
