@@ -60,8 +60,9 @@ class Thermal:
         below = 1.0 + q * t * self.reference
         held = below < _NEAR_T0
         below = np.maximum(below, _NEAR_T0)
-        by_heat = np.where(held, -1.0 / (self.reference * below), -1.0 / (self.reference * below**2))
-        return -t / below, by_heat, np.where(held, 0.0, t**2 * self.reference / below**2)
+        by_heat = -1.0 / self.reference / below / np.where(held, 1.0, below)
+        by_q = np.where(held, 0.0, t / below) ** 2 * self.reference
+        return -t / below, by_heat, by_q
 
     def energy(self, kelvin: float, q: float = 0.0) -> float:
         """Return the apparent activation energy, J/mol, at a temperature (K) for e = 1."""
