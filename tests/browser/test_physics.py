@@ -153,7 +153,7 @@ def test_what_cannot_be_is_refused_in_the_words_of_the_core(page: Page) -> None:
     assert "duration is -1" in words[4]
     assert "drive_speed runs backwards" in words[5]
     assert words[6].startswith("after 30 steps, all that are allowed, the motion has reached time")
-    assert words[7].startswith("after 300 steps")
+    assert words[7].startswith("after 1800 steps")  # six motions of 300
     assert words[8].startswith("temperature is -73.1")
 
 

@@ -62,9 +62,9 @@ class Asking:
 
     def _line(self, what: str, words: str, proposed: str, needed: bool) -> str:
         default = f" [{proposed}]" if proposed else "" if needed else " [left out]"
-        sys.stderr.write(printable(f"{what}{f' ({words})' if words else ''}{default}: "))
-        sys.stderr.flush()
         try:
+            sys.stderr.write(printable(f"{what}{f' ({words})' if words else ''}{default}: "))
+            sys.stderr.flush()
             line = sys.stdin.readline()
         except KeyboardInterrupt:
             sys.stderr.write("\n")  # what is said of it begins a line of its own

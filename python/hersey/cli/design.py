@@ -42,7 +42,7 @@ def design(
 
     With --machine it ranks what would narrow V*: starts from rest, break-away, stick-slip, a slower dwell.
 
-    Example: [bold]hersey design examples/bench.csv --tare standing --quantity "Stribeck speed"[/bold]
+    Example: [bold]hersey design examples/bench.csv --tare standing --quantity "transition speed"[/bold]
     """
     if machine_file is not None:
         if quantity or speeds or temperatures:

@@ -147,7 +147,7 @@ class FittedLaw(Result):
         >>> import hersey
         >>> surface = hersey.fit(hersey.read("examples/bench.csv").steady(tare="standing"))
         >>> surface.predict("25 rpm", "150 degC").torque.round(3)
-        array([0.2])
+        array([0.201])
         """
         speeds = np.abs(np.asarray(speed, dtype=float))
         self._warn_outside("speed", speeds, self.speed_range)

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 #: Runs whose fold is sought at the most, those whose draws tell its error, and draws of each.
 MOST_FOLDS, DRAWN_RUNS, _DRAWS = 24, 3, 3
 #: Work and tolerance of a fold: of thousands, one that takes long is left out.
-_STEPS, _TOLERANCE = 5e4, 1e-8
+_STEPS, _TOLERANCE = 2e6, 1e-8
 #: Folds of draws that tell an error.
 _FEWEST = 5
 #: Standard deviations that enclose 95 % of a normal distribution on either side.
