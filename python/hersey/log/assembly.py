@@ -310,12 +310,12 @@ class Assembly:
         rows = 0
         for tick in dict.fromkeys(part.tick for part in self.parts.values()):
             parts = [part for part in self.parts.values() if part.tick == tick]
-            told = [(part, part.marked) for part in parts if part.marked is not None]
-            if not told:
+            judged = [(part, part.marked) for part in parts if part.marked is not None]
+            if not judged:
                 continue
             clock = self._clocks[tick][2]
-            marks = [("time", Column(-1, clock.name, clock.unit), clock.unit, told[0][1] == INVALID_TIME)]
-            marks += [(part.role, part.column, part.unit.unit, marked == INVALID) for part, marked in told]
+            marks = [("time", Column(-1, clock.name, clock.unit), clock.unit, judged[0][1] == INVALID_TIME)]
+            marks += [(part.role, part.column, part.unit.unit, marked == INVALID) for part, marked in judged]
             gone, here = marked_rows(marks, self.source.name, partial(self._where, parts[0]), allowed=allowed)
             for part in parts if gone.any() else ():
                 part.keep(~gone)
