@@ -77,7 +77,7 @@ def test_more_torque_is_later_and_a_colder_start_sooner(told: tuple[OtherUses, h
             ages = [at[limit, start, duty] for limit in uses.torque_limits]
             assert all(less <= more for less, more in pairwise(ages))
         for limit in uses.torque_limits:
-            assert at[limit, cold, duty] <= 1.01 * at[limit, warm, duty]  # each is fitted by itself
+            assert at[limit, cold, duty] <= 1.01 * at[limit, warm, duty]  # one fit for each
     assert at[1.0, cold, AS_STATED] < 0.9 * at[1.25, warm, AS_STATED]
 
 
