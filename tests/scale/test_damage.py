@@ -123,8 +123,10 @@ def test_a_flipped_bit_is_no_number(seed: int, out: Path) -> None:
 )
 def test_a_damaged_chunk_is_an_error_where_it_is_read(name: str, out: Path) -> None:
     opened = opened_dataset(out)
-    CHUNKS[name][0](out)
-    with pytest.raises(OutputError, match=r"a\.zarr: chunk 3 of '[a-z_]+' is damaged or missing"):
+    damage, numbers = CHUNKS[name]
+    damage(out)
+    one_of = "|".join(map(str, numbers))  # several are read at a time
+    with pytest.raises(OutputError, match=rf"a\.zarr: chunk ({one_of}) of '[a-z_]+' is damaged or missing"):
         opened.load()
 
 

@@ -360,7 +360,7 @@ def _columns(table: _Table, numbered: list[tuple[int, str]], file: str) -> tuple
         unit = units[index].strip("[]() ") if index < len(units) else ""
         match = NAME_WITH_UNIT.fullmatch(name)
         own = (match[2] if match[2] is not None else match[3]).strip() if match else ""
-        if own and of_one_kind(own, unit) and not same_unit(own, unit):
+        if own and unit and of_one_kind(own, unit) and not same_unit(own, unit):
             raise UnreadableLogError(
                 f"{file}, line {line}, column {index + 1}: the header says '{name}' and the row of units "
                 f"{unit}: mend the one that is wrong"
