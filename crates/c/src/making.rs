@@ -135,7 +135,7 @@ impl Making<'_> {
     fn shape(&self) -> Result<Drag, Error> {
         let (stick_speed, closure) = (self.value("stick_speed"), self.closure());
         let Description { choices, speeds, forces, numbers, .. } = self.description;
-        match (choices.law, &numbers[..]) {
+        match (choices.law, <[f64; 10]>::try_from(&numbers[..])) {
             (Law::Power, _) => Drag::new(
                 self.value("transition_force"),
                 self.value("transition_speed"),
@@ -144,34 +144,9 @@ impl Making<'_> {
                 stick_speed,
                 closure,
             ),
-            (
-                Law::Mixed,
-                &[
-                    reference,
-                    film,
-                    load,
-                    edge,
-                    roundness,
-                    stiffness,
-                    boundary,
-                    shear,
-                    rolling,
-                    exponent,
-                ],
-            ) => {
-                let sharing = Sharing {
-                    reference,
-                    film_exponent: film,
-                    load_exponent: load,
-                    edge,
-                    roundness,
-                    stiffness,
-                    boundary,
-                    shear,
-                    rolling,
-                    rolling_exponent: exponent,
-                };
-                Drag::mixed(MixedLaw::new(sharing)?, self.value("viscosity"), stick_speed, closure)
+            (Law::Mixed, Ok(numbers)) => {
+                let law = MixedLaw::new(Sharing::from_numbers(numbers))?;
+                Drag::mixed(law, self.value("viscosity"), stick_speed, closure)
             }
             _ => Drag::tabulated(speeds, forces, stick_speed, closure),
         }

@@ -2,14 +2,13 @@
 
 use hersey_core::Error;
 use hersey_core::drag::{Closure, Drag, Rest, SpeedLaw, Strengthening, TemperatureLaw};
-use hersey_core::lubrication::mixed::MixedLaw;
+use hersey_core::lubrication::mixed::{MixedLaw, Sharing};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 
 use crate::errors::{raised, refused};
 use crate::interrupt::{copied, interruptible};
 use crate::lubrication::ViscosityLaw;
-use crate::mixed::sharing_of;
 
 /// A drag law.
 #[pyclass(frozen, module = "hersey._core")]
@@ -111,7 +110,7 @@ impl Law {
         stick_speed: f64,
         closure: ClosureArguments<'_>,
     ) -> PyResult<Self> {
-        let law = MixedLaw::new(sharing_of(numbers));
+        let law = MixedLaw::new(Sharing::from_numbers(numbers));
         let closure = closure_from(closure)?;
         law.and_then(|law| Drag::mixed(law, viscosity, stick_speed, closure))
             .map(Self)

@@ -30,25 +30,6 @@ pub struct MixedTransition {
     sensitivity: Py<PyDict>,
 }
 
-/// The numbers of the law, in the order of `SHARING`.
-pub fn sharing_of(
-    [reference, film_exponent, load_exponent, edge, roundness, stiffness, forces @ ..]: [f64; 10],
-) -> Sharing {
-    let [boundary, shear, rolling, rolling_exponent] = forces;
-    Sharing {
-        reference,
-        film_exponent,
-        load_exponent,
-        edge,
-        roundness,
-        stiffness,
-        boundary,
-        shear,
-        rolling,
-        rolling_exponent,
-    }
-}
-
 /// Greenwood and Tripp's integral.
 #[pyfunction]
 pub fn asperity_integral(
@@ -66,7 +47,8 @@ pub fn mixed_contact(py: Python<'_>, columns: Columns<'_, 11>) -> PyResult<Mixed
     let found = mapped(py, &columns, |[product, numbers @ ..]| {
         let bits = numbers.map(f64::to_bits);
         let same = last.filter(|(same, _)| *same == bits);
-        let law = same.map_or_else(|| MixedLaw::new(sharing_of(numbers)), |(_, law)| Ok(law))?;
+        let law =
+            same.map_or_else(|| MixedLaw::new(Sharing::from_numbers(numbers)), |(_, law)| Ok(law))?;
         last = Some((bits, law));
         Ok(law.at(product))
     })?;
@@ -85,8 +67,9 @@ pub fn mixed_contact(py: Python<'_>, columns: Columns<'_, 11>) -> PyResult<Mixed
 /// The transition of a mixed contact, from the numbers of the law in the order of `SHARING`.
 #[pyfunction]
 pub fn mixed_transition(py: Python<'_>, columns: Columns<'_, 10>) -> PyResult<MixedTransition> {
-    let found =
-        mapped(py, &columns, |numbers| Ok(MixedLaw::new(sharing_of(numbers))?.transition()))?;
+    let found = mapped(py, &columns, |numbers| {
+        Ok(MixedLaw::new(Sharing::from_numbers(numbers))?.transition())
+    })?;
     let array = |of: fn(&mixed::Transition) -> f64| {
         found.of(py, |transition| transition.as_ref().map_or(f64::NAN, of))
     };

@@ -86,35 +86,11 @@ impl<'a> AskedLaw<'a> {
                 let (speeds, forces) = points.split_at(points.len() / 2);
                 Drag::tabulated(speeds, forces, stick_speed, self.closure)?
             }
-            (
-                2.0,
-                [
-                    viscosity,
-                    reference,
-                    film,
-                    load,
-                    edge,
-                    roundness,
-                    stiffness,
-                    boundary,
-                    shear,
-                    rolling,
-                    exponent,
-                ],
-            ) => {
-                let sharing = Sharing {
-                    reference: *reference,
-                    film_exponent: *film,
-                    load_exponent: *load,
-                    edge: *edge,
-                    roundness: *roundness,
-                    stiffness: *stiffness,
-                    boundary: *boundary,
-                    shear: *shear,
-                    rolling: *rolling,
-                    rolling_exponent: *exponent,
-                };
-                Drag::mixed(MixedLaw::new(sharing)?, *viscosity, stick_speed, self.closure)?
+            (2.0, [viscosity, sharing @ ..]) => {
+                let numbers = <[f64; 10]>::try_from(sharing)
+                    .map_err(|_| Refusal::Malformed("a mixed law of other than ten numbers"))?;
+                let law = MixedLaw::new(Sharing::from_numbers(numbers))?;
+                Drag::mixed(law, *viscosity, stick_speed, self.closure)?
             }
             _ => return Err(Refusal::Malformed("a law of no known shape")),
         };

@@ -87,6 +87,26 @@ impl Sharing {
         "rolling_exponent",
     ];
 
+    /// From the numbers in the order of `NAMES`.
+    #[must_use]
+    pub fn from_numbers(numbers: [f64; 10]) -> Self {
+        let [reference, film_exponent, load_exponent, edge, roundness, stiffness, forces @ ..] =
+            numbers;
+        let [boundary, shear, rolling, rolling_exponent] = forces;
+        Self {
+            reference,
+            film_exponent,
+            load_exponent,
+            edge,
+            roundness,
+            stiffness,
+            boundary,
+            shear,
+            rolling,
+            rolling_exponent,
+        }
+    }
+
     fn each(&mut self) -> [&mut f64; 10] {
         [
             &mut self.reference,
