@@ -171,7 +171,8 @@ def test_a_product_is_that_of_pint(theirs: Any, text: str) -> None:
 
 FIELD = {
     "time": "s ms us min h sec",
-    "torque": "N*m mN*m Nm mNm N.m kN*m cN*m uN*m N*mm ozf*in oz.in lbf*in lbf*ft lbf.in kgf*m gf*cm",
+    "torque": "N*m mN*m Nm mNm N.m kN*m cN*m uN*m N*mm ozf*in oz.in lbf*in lbf*ft lbf.in in-lbs ft-lb "
+    "kgf*m gf*cm",
     "speed": "rad/s rpm RPM rev/s rev/min deg/s mrad/s 1/min U/min",
     "temperature": "degC degF K °C °F",
     "stiffness": "N/m N/mm kN/m lbf/in N/um",
@@ -222,6 +223,28 @@ def test_units_of_drives_need_no_registry(kind: str, unit: str, theirs: Any) -> 
 def test_any_other_unit_is_read_by_pint(kind: str, unit: str, one: float) -> None:
     assert units._from_table(unit) is None
     assert conversion(kind, unit).scale == pytest.approx(one, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("kind", "unit", "one", "other"),
+    [
+        ("speed", "x1000 rpm", "1000 rpm", "rpm / 1000"),
+        ("speed", "rpm x1000", "1000 rpm", "rpm / 1000"),
+        ("torque", "N·m \u00d710^-3", "1e-3 N·m", "N·m / 1e-3"),
+    ],
+)
+def test_a_factor_of_two_meanings_is_refused(kind: str, unit: str, one: str, other: str) -> None:
+    with pytest.raises(UnitError) as refused:
+        conversion(kind, unit)
+    assert f"write '{one}' if" in str(refused.value)
+    assert f"'{other}' if" in str(refused.value)
+    number, plain = one.split()
+    assert conversion(kind, one).scale / conversion(kind, plain).scale == pytest.approx(
+        float(number), rel=1e-12
+    )
+    assert conversion(kind, plain).scale / conversion(kind, other).scale == pytest.approx(
+        float(number), rel=1e-12
+    )
 
 
 @pytest.mark.parametrize(("kind", "unit"), [("torque", "W*s"), ("torque", "mW*s"), ("speed", "1/s")])

@@ -194,9 +194,9 @@ _SPELLINGS = (
     (r"(?i:(°|º|deg(\.|rees?)?)\s*C|℃|celsius)|C", "degC"),
     (r"(?i:(°|º|deg(\.|rees?)?)\s*F|℉|fahrenheit)|F", "degF"),
     (r"°\s*K|deg\s*K", "K"),
-    (r"(?i:ozf?[\s.*·-]?in|in[\s.*·-]?ozf?)", "ozf*in"),
-    (r"(?i:lbf?[\s.*·-]?in|in[\s.*·-]?lbf?)", "lbf*in"),
-    (r"(?i:lbf?[\s.*·-]?ft|ft[\s.*·-]?lbf?)", "lbf*ft"),
+    (r"(?i:ozf?s?[\s.*·-]?in|in[\s.*·-]?ozf?s?)", "ozf*in"),
+    (r"(?i:lbf?s?[\s.*·-]?in|in[\s.*·-]?lbf?s?)", "lbf*in"),
+    (r"(?i:lbf?s?[\s.*·-]?ft|ft[\s.*·-]?lbf?s?)", "lbf*ft"),
     (r"(?i:rpm|(U|r|rev|1)?\s*/\s*min|min(\^|\*\*)?\(?-1\)?|min⁻¹)", "rpm"),
     (r"U/s|r/s", "rev/s"),
     (r"rad\s+s(\^|\*\*)?-1|rad\s+s⁻¹", "rad/s"),
@@ -209,6 +209,9 @@ _ALPHABET = re.compile(r"[A-Za-z0-9_°ºµμΩ%℃℉\s.·*/^()⁻¹²³-]{0,60}
 _LONGEST_UNIT, _LONGEST_QUANTITY = 100, 160
 _NUMBER = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
 _FACTORED = re.compile(rf"\s*({_NUMBER})?\s*\*?\s*([A-Za-z°ºµμ%℃℉/(1].*?)\s*(?:/\s*({_NUMBER}))?\s*")
+#: A factor of which a reader cannot tell whether it multiplies the unit or has multiplied the numbers.
+_COUNT = rf"10\^[-+]?[0-9]{{1,2}}|{_NUMBER}"
+_TIMES = re.compile(rf"[x\u00d7]\s*({_COUNT})\s*([A-Za-z°%].*)|([A-Za-z°%].*?)\s*[x\u00d7]\s*({_COUNT})")
 _POWER = re.compile(r"(?<=[A-Za-z)])(\*\*|\^)-?[1-4](?![\d.^]|\*\*)")
 _TERM = re.compile(r"([*/]?)([A-Za-zµμ]+|1)(?:(?:\*\*|\^)(-?[1-4]))?")
 _ANGLES = re.compile(r"radian|degree|rev|turn|cycle|arc")
@@ -339,6 +342,13 @@ def _folded(unit: str) -> str:
 
 def _split_factor(text: str, unit: str, kind: str) -> tuple[float, str]:
     """Factor and plain unit; what is left holds no digits but small powers, so it cannot run for ever."""
+    if times := _TIMES.fullmatch(text):
+        number, plain = (times[1], times[2]) if times[1] else (times[4], times[3])
+        number = number.replace("10^", "1e")
+        raise UnitError(
+            f"unit '{unit}' has two meanings: write '{number} {plain}' if 1 in the file stands for "
+            f"{number} {plain}, '{plain} / {number}' if the numbers are {number} times too large"
+        )
     match = _FACTORED.fullmatch(text)
     if match is None or _ALPHABET.fullmatch(re.sub(_NUMBER, "", text)) is None:
         if not text:

@@ -78,6 +78,11 @@ def test_a_block_of_missing_stamps_changes_nothing() -> None:
             [0.0, 86401.0],
             "a German date: read in s since 2026-03-01 12:00:00",
         ),
+        (
+            ("1-Mar-2026 12:00:00", "02 march 2026 12:00:01", "03-MAR-2026 12:00:01.5"),
+            [0.0, 86401.0, 172801.5],
+            "a date with the month's name: read in s since 2026-03-01 12:00:00",
+        ),
     ],
 )
 def test_dates(cells: tuple[str, ...], times: list[float], note: str) -> None:

@@ -329,4 +329,4 @@ def _right_unit(role: str, column: Column, unit: str, columns: tuple[Column, ...
     if role == "torque" and unit in _AMPERES:
         return f"; if it is the motor's current, say the torque of 1 {unit} as {flag} '{_AMPERES[unit]}'"
     near = nearest_unit(ROLE_KINDS[role][0], unit)
-    return f" Say {flag} '{near or KINDS[ROLE_KINDS[role][0]][1]}'" if near or not elsewhere else ""
+    return f" Say {flag} '{near}'" if near else "" if elsewhere else f" (with {flag})"

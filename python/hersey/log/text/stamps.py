@@ -45,6 +45,8 @@ class StampStyle:
                 .str.replace_all("/", "-", literal=True)
                 .str.replace("T", " ", literal=True)
             )
+        if "%b" in self.format:
+            text = text.str.replace(r"^([0-9]{1,2})[- ]([A-Za-z]{3})[a-z]*[- ]", "$1-$2-")
         if self.is_time_of_day:
             text = "2000-01-01 " + text
         if self.format.endswith("%z"):
@@ -55,7 +57,13 @@ class StampStyle:
 
 _ISO = r"[0-9]{4}[-/][0-9]{1,2}[-/][0-9]{1,2}[T ]"
 _AMERICAN = r"[0-9]{1,2}/[0-9]{1,2}/[0-9]{4},? "
+_MONTH = (
+    "(?i:jan(uary)?|feb(ruary)?|mar(ch)?|apr(il)?|may|june?|july?|aug(ust)?|sep(tember)?|oct(ober)?"
+    "|nov(ember)?|dec(ember)?)"
+)
+_NAMED = rf"[0-9]{{1,2}}[- ]{_MONTH}[- ][0-9]{{4}} "
 _STYLES = (
+    StampStyle("a date with the month's name", _NAMED + _CLOCK, "%d-%b-%Y %H:%M:%S%.f"),
     StampStyle("an ISO date", _ISO + _CLOCK, "%Y-%m-%d %H:%M:%S%.f"),
     StampStyle("an ISO date", _ISO + _CLOCK + r"( ?Z| ?[+-][0-9]{2}:?[0-9]{2})", "%Y-%m-%d %H:%M:%S%.f%z"),
     StampStyle("a German date", r"[0-9]{1,2}\.[0-9]{1,2}\.[0-9]{4} " + _CLOCK, "%d.%m.%Y %H:%M:%S%.f"),
