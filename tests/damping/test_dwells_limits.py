@@ -154,6 +154,18 @@ def test_stick_slip_rises_slowly_and_drops_fast() -> None:
     assert whole(point(saw(9, 0.06)))  # a ninth of the time is not at once
 
 
+def test_stick_slip_of_few_rows_shows_where_changes_go_on() -> None:
+    """Seven changes rise and two drop: less skewed than sudden drops, but changes resemble the last."""
+    cycle = np.array([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 3.5])
+    torque = np.resize(cycle, 500)
+    torque = 1.0 + 0.06 * (torque - torque.mean()) / np.std(torque)
+    changes = np.diff(torque)
+    assert -3.0 < float(np.mean(changes**3)) / float(np.mean(changes**2)) ** 1.5 < -1.0
+    assert float(np.mean(changes[1:] * changes[:-1])) > 0.0
+    assert refused(point(torque), "stick-slip: torque swings by 6% (standard deviation)")
+    assert whole(point(2.0 - torque))  # the other way round
+
+
 def test_stick_slip_is_seen_in_reverse() -> None:
     found = point(-saw(20, 0.06), speed=np.full(500, -30 * RPM))
     assert refused(found, "stick-slip")

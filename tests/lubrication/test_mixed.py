@@ -192,6 +192,12 @@ def test_hard_nips_take_the_law_of_the_hard_film() -> None:
     assert film.to_dict()["points"]["minimum_ratio"] == [None, None]
 
 
+def test_the_law_of_hard_nips_is_checked_up_to_a_tenth_of_the_load() -> None:
+    law = mixed(regime="piezoviscous-elastic")
+    shares = np.array([0.099, 0.101, 0.4])
+    assert law.beyond_checked_range(shares, np.full(3, 1.0)).tolist() == [False, True, True]
+
+
 @pytest.mark.parametrize(
     ("make", "words"),
     [
