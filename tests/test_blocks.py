@@ -28,7 +28,6 @@ def blocks() -> dict[str, tuple[str, str]]:
 BLOCKS = blocks()
 #: What takes more than about two seconds, by the call that does.
 LONG = (
-    "all_figures(",
     "compare_models(",
     "film_life(",
     "follow(",

@@ -48,7 +48,6 @@ ROOMS = (
     "document",
     "charts",
     "report",
-    "paper_figures",
     "testbench",
     "app",
     "cli",

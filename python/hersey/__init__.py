@@ -27,7 +27,6 @@ exchange        the drive as a unit that other tools of simulation run
 document        the analysis document: the contract with the page
 charts          one chart per result
 report          the page
-paper_figures   the paper's figures anew, each claim judged
 testbench       the virtual test stand
 app             the local app: from dropped logs to the report
 cli             one file per verb

@@ -13,7 +13,6 @@ import pytest
 
 from hersey.cli.application import VERBS
 from tests.cli.command import run, start
-from tests.cli.test_json import figure
 from tests.conftest import ROOT
 from tests.life import shipped
 
@@ -30,11 +29,7 @@ def example(*command: str) -> str:
 
 
 @pytest.mark.parametrize("command", [(), *[(c,) for c in VERBS if c not in LASTING]])
-def test_the_example_in_the_help_works_as_typed(
-    command: tuple[str, ...], examples_here: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """All but the simulations of the paper's figures, which have tests of their own."""
-    monkeypatch.setattr("hersey.paper_figures.all_figures", lambda: [figure()])
+def test_the_example_in_the_help_works_as_typed(command: tuple[str, ...], examples_here: Path) -> None:
     if command == ("life",):
         shipped.write(examples_here / "life.hersey", 1)
     if command == ("export",):

@@ -71,7 +71,6 @@ def test_a_map_and_a_plan_never_replace_what_they_read(bench_csv: Path, tmp_path
         "simulate --mass -1 --figure kept.svg",
         "warmup none.toml none.csv --target 1 --out kept.csv",
         "warmup none.toml none.csv --target 1 --figure kept.svg",
-        "figures --out kept",
         "testbench --size none --out kept.csv",
         "testbench --size none --out new.csv --truth kept.json",
     ],

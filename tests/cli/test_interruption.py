@@ -47,7 +47,6 @@ TYPED: dict[str, tuple[list[str], float]] = {
     "sweep": ([str(EXAMPLES / "scenario.toml"), "--out", "s.parquet"], 0.8),
     "hysteresis": (["--closure", "lugre", "--bristle-stiffness", "1e5", "--bristle-damping", "100"], 2.0),
     "export": (["fmu", "fit.json", MACHINE, "--temperature", "150 degC", "--out", "d.fmu", "--check"], 2.0),
-    "figures": (["--out", "figures"], 9.0),
     "testbench": (["--size", "60 MB", "--out", "log.csv"], 3.0),
 }
 #: Says when the program can be interrupted: what Python does before is not ours.

@@ -8,16 +8,13 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-import altair as alt
 import jsonschema
-import polars as pl
 import pytest
 
 import hersey
 from hersey.cli.application import VERBS, load
 from hersey.document.parts import PRINTED, SCHEMA_VERSION, Analysis, Part
 from hersey.document.saved_fit import read_fit
-from hersey.paper_figures.figure import Claim, OwnFigure, Verdict
 from tests.cli.command import run
 from tests.conftest import ROOT
 from tests.life import shipped
@@ -44,7 +41,6 @@ ARGUMENTS: dict[str, list[str]] = {
     "hysteresis": ["--drive-speed", "1.2", "--from-speed", "2.5", "--to-speed", "1.2"],
     "map": [MACHINE, "--fit", "FIT"],
     "export": ["fmu", "FIT", MACHINE, "--temperature", "150 degC", "--out", "UNIT", "--check"],
-    "figures": ["--out", "FIGURES"],
     "posterior": [BENCH, *TARE, "--machine", MACHINE, "--draws", "200"],
     "plan": ["STRONG", "--fit", "FIT", "--target", "60 mm/s", "--at", "150 degC", "--confidence", "0.5"],
     "warmup": [MACHINE, "--fit", "FIT", "--target", "60 mm/s", "--from", "20 degC"],
@@ -72,13 +68,6 @@ def printed(arguments: Sequence[str]) -> Any:
     return json.loads(done.stdout)
 
 
-def figure() -> OwnFigure:
-    """A figure of one point, for those that take long to simulate."""
-    point = alt.Chart(pl.DataFrame({"x": [1.0]})).mark_point().encode(x="x")
-    claim = Claim("Fig. 9", "it holds", "by eye", Verdict.HOLDS, "seen", {"far": float("inf")})
-    return OwnFigure("point", "A point", point, (claim,), {"x": (1.0, float("nan"))})
-
-
 @pytest.fixture(scope="module")
 def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
     """A finished fit and a scenario."""
@@ -93,7 +82,6 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
     own = {
         "CAMPAIGN": str(folder / "life.hersey"),
         "LIFE": str(shipped.write(folder / "units.hersey")),
-        "FIGURES": str(folder / "figures"),
         "UNIT": str(folder / "drive.fmu"),
         "STRONG": str(folder / "strong.toml"),
     }
@@ -106,8 +94,6 @@ def test_a_command_prints_its_part(
 ) -> None:
     """The whole document is one that is made once for all tests; `test_cli` has the command make its own."""
     monkeypatch.setattr("hersey.document.assembly.analyse", lambda *_, **__: document)
-    monkeypatch.setattr("hersey.paper_figures.all_figures", lambda: [figure()])
-    monkeypatch.setattr("hersey.paper_figures.drive_figures", lambda *_: ((), ()))
     told = printed([name, *(files.get(argument, argument) for argument in ARGUMENTS[name])])
     assert told["schema_version"] == SCHEMA_VERSION
     assert told["hersey_version"] == hersey.__version__

@@ -94,7 +94,6 @@ TYPED: dict[str, list[list[str]]] = {
         ["fmu", LOG, BROKEN, "--out", f"{IN_FILE}.fmu"],
         ["fmu", LOG, MACHINE, "--out", "x.fmu", "--library", HOSTILE],
     ],
-    "figures": [["--out", f"{IN_FILE}.csv"]],
     "testbench": [["--out", f"{IN_FILE}-made.csv", "--force"], ["--out", f"{IN_FILE}/x.csv"]],
 }
 
@@ -111,7 +110,6 @@ REFUSED = {
     "simulate",
     "sweep",
     "hysteresis",
-    "figures",
     "export",
 }
 

@@ -57,10 +57,6 @@ VERBS = {
     "sweep": "Find what every combination of parameters settles to, and count the outcomes.",
     "hysteresis": "Find the drive speeds between which the past decides whether the belt sticks.",
     "export": "Write the fitted drive for other tools: a unit that Simulink, Amesim or Modelica run.",
-    "figures": (
-        "Draw the paper's Figs. 1-14 anew and two of our own; say of each claim whether it holds "
-        "and how well."
-    ),
     "testbench": (
         "Write a log of the virtual test stand: synthetic, with a known truth, for tests and for learning."
     ),

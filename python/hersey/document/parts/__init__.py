@@ -22,7 +22,6 @@ inspection  what a log holds
 campaign    runs of many units at many ages
 cycles      cycles of a trace and the drive behind them
 exchange    a unit for other tools
-figures     the paper's figures, drawn anew
 decision    what to do, first of all
 posterior   what dwells, starts and stick-slip say together
 analysis    the whole document
@@ -38,7 +37,6 @@ from hersey.document.parts.decision import DecisionPart, FlagPart, MissingPart, 
 from hersey.document.parts.drift import DriftPart
 from hersey.document.parts.ending import AgesPart, EndingsPart, GrowthPart
 from hersey.document.parts.exchange import TrialPart, UnitPart, UnitVariablePart
-from hersey.document.parts.figures import FiguresPart
 from hersey.document.parts.film import (
     FilmPart,
     FilmPoint,
@@ -112,7 +110,6 @@ PRINTED: dict[str, type[Part]] = {
     "plan": PlanPart,
     "warmup": WarmUpPart,
     "export": UnitPart,
-    "figures": FiguresPart,
 }
 
 __all__ = [

@@ -14,7 +14,6 @@ from hersey.document.parts.carried import CarriedPart
 from hersey.document.parts.cycles import CyclesPart
 from hersey.document.parts.decision import DecisionPart
 from hersey.document.parts.exchange import UnitPart
-from hersey.document.parts.figures import FiguresPart
 from hersey.document.parts.film import FilmPart
 from hersey.document.parts.fit import FitPart, RegimePart
 from hersey.document.parts.inspection import InspectionPart
@@ -76,4 +75,3 @@ class Analysis(Part):
     plan: PlanPart | None = None
     warm_up: WarmUpPart | None = None
     unit: UnitPart | None = None
-    figures: FiguresPart | None = None

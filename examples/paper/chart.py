@@ -18,10 +18,10 @@ from hersey.charts.style import INK, WIDTH, Chart, Row, plot, ramp
 from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import Drag
 from hersey.motion.sweep import sweep
-from hersey.paper_figures.figure import Claim, OwnFigure, Verdict
-from hersey.paper_figures.sweep import Case
 from hersey.stability.hysteresis import cycles_without_sticking, hysteresis
 from hersey.stability.hysteresis_sweep import hysteresis_sweep
+from paper.figure import Claim, OwnFigure, Verdict
+from paper.sweep import Case
 
 #: Damping numbers: few where the curves are nearly straight and dear to compute.
 DAMPING = np.r_[np.geomspace(1e-3, 0.1, 24, endpoint=False), np.geomspace(0.1, 30.0, 60)]

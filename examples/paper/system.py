@@ -10,9 +10,9 @@ import numpy as np
 
 from hersey.charts.style import INK, WIDTH, Chart, Row, plot
 from hersey.machine.machine import Machine
-from hersey.paper_figures.drawing import CORE, HEATER, Drawing
-from hersey.paper_figures.figure import Claim, PaperFigure, Verdict
-from hersey.paper_figures.measured import Measured
+from paper.drawing import CORE, HEATER, Drawing
+from paper.figure import Claim, PaperFigure, Verdict
+from paper.measured import Measured
 
 #: Size of the diagram, pixels, and height of a bar.
 _ACROSS, _UP, _BAR = WIDTH, 170, 24

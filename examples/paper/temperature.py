@@ -21,10 +21,10 @@ from hersey.charts.style import (
 )
 from hersey.errors import InsufficientDataError
 from hersey.machine.machine import Machine
-from hersey.paper_figures.dwells import SPEED, table, unit_of
-from hersey.paper_figures.figure import ABOUT, Claim, PaperFigure, Verdict
-from hersey.paper_figures.measured import Measured
 from hersey.units import celsius, rpm
+from paper.dwells import SPEED, table, unit_of
+from paper.figure import ABOUT, Claim, PaperFigure, Verdict
+from paper.measured import Measured
 
 #: Cells of the surface across and up.
 _CELLS = (60, 40)

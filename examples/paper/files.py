@@ -10,8 +10,8 @@ from hersey.charts import FIGURES
 from hersey.charts.render import picture
 from hersey.errors import OutputError
 from hersey.files.writing import write_all
-from hersey.paper_figures.figure import ABOUT, Figure
 from hersey.result import json_value
+from paper.figure import ABOUT, Figure
 
 _HEAD = f"""# Figures of the paper, drawn anew, and figures beyond it
 
@@ -35,7 +35,7 @@ def write(figures: Sequence[Figure], folder: Path, *, overwrite: bool = False) -
     paths = [folder / name for name in [*names, "figures.md", "figures.json"]]
     there = [path for path in paths if path.exists()]
     if there and not overwrite:
-        raise OutputError(f"{there[0]} exists: say --force to replace it, or name another directory")
+        raise OutputError(f"{there[0]} exists: set overwrite=True to replace it, or name another folder")
     contents = {
         f"{figure.name}{suffix}": picture(figure.chart, suffix) for figure in figures for suffix in FIGURES
     }

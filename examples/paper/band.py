@@ -12,14 +12,14 @@ from hersey.arrays import FloatArray
 from hersey.charts.style import BLUE, INK, Chart, Row, plot
 from hersey.motion.simulation import steady_start, stick_slip
 from hersey.motion.sweep import sweep
-from hersey.paper_figures.figure import Claim, OwnFigure, Verdict, shown
-from hersey.paper_figures.sweep import Case
 from hersey.stability.hysteresis import (
     CyclesWithoutSticking,
     HysteresisBand,
     cycles_without_sticking,
     hysteresis,
 )
+from paper.figure import Claim, OwnFigure, Verdict, shown
+from paper.sweep import Case
 
 #: Drive speeds shown (in/s), and those of the panel that shows the lower edge enlarged, with its belt speeds.
 SHOWN, ENLARGED, ENLARGED_BELT = (0.9, 2.4), (0.979, 1.003), (0.5, 1.5)

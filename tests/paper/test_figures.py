@@ -14,7 +14,7 @@ import pytest
 from hersey import Drag, Drivetrain, StickSlipCycle, stick_slip
 from hersey.charts.render import specification_of
 from hersey.errors import OutputError
-from hersey.paper_figures import (
+from paper import (
     Claim,
     PaperFigure,
     Verdict,
@@ -30,11 +30,11 @@ from hersey.paper_figures import (
     sweep,
     write,
 )
-from hersey.paper_figures.baseline import given_a, keeps_speed, releases, sticks
-from hersey.paper_figures.figure import shown
-from hersey.paper_figures.panels import _ticks
-from hersey.paper_figures.sweep import DAMPING, STIFFNESS, Case, Parameter, sweep_over, trend_of
-from hersey.paper_figures.trends import _settled
+from paper.baseline import given_a, keeps_speed, releases, sticks
+from paper.figure import shown
+from paper.panels import _ticks
+from paper.sweep import DAMPING, STIFFNESS, Case, Parameter, sweep_over, trend_of
+from paper.trends import _settled
 from tests.charts.test_charts import titles
 
 #: Settled motion of the exact hybrid solution: change to the baseline, frequency, greatest speed.
@@ -233,7 +233,7 @@ def test_values_without_stick_slip_are_counted(monkeypatch: pytest.MonkeyPatch) 
 
 
 def test_no_stick_slip_bears_out_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
-    from hersey.paper_figures import judges, trends
+    from paper import judges, trends
 
     monkeypatch.setattr(sweep, "stick_slip", fake(lambda _, c: replace(c, kind="steady_sliding")))
     empty = sweep_over(DAMPING)
@@ -255,7 +255,7 @@ def test_no_stick_slip_bears_out_nothing(monkeypatch: pytest.MonkeyPatch) -> Non
 
 
 def test_small_or_opposite_changes_are_judged() -> None:
-    from hersey.paper_figures import judges
+    from paper import judges
 
     quantity = judges.FREQUENCY
     real = sweep_over(STIFFNESS)

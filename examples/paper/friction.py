@@ -12,11 +12,11 @@ from hersey.charts.friction import along, friction_chart
 from hersey.errors import ParameterError
 from hersey.lubrication.mixed import MixedContact
 from hersey.machine.machine import Machine
-from hersey.paper_figures.cross_section import contact_of
-from hersey.paper_figures.figure import ABOUT, Claim, PaperFigure, Verdict
-from hersey.paper_figures.measured import Measured
-from hersey.paper_figures.system import motor_left
 from hersey.verdict.evidence import MeasuredFilm, measured_film
+from paper.cross_section import contact_of
+from paper.figure import ABOUT, Claim, PaperFigure, Verdict
+from paper.measured import Measured
+from paper.system import motor_left
 
 #: Share of the dwells, at either end of the Hersey number, over which a slope is taken; fewest dwells of it.
 _END, _FEWEST = 0.25, 4

@@ -11,11 +11,11 @@ import numpy as np
 from hersey.charts.style import WIDTH, Chart
 from hersey.motion.schedule import Schedule
 from hersey.motion.simulation import StickSlipCycle, Trajectory, simulate, stick_slip
-from hersey.paper_figures.figure import Claim, PaperFigure, Verdict, shown
-from hersey.paper_figures.panels import driven
-from hersey.paper_figures.sweep import Case
 from hersey.stability.hysteresis import HysteresisBand, hysteresis
 from hersey.stability.hysteresis_sweep import hysteresis_sweep
+from paper.figure import Claim, PaperFigure, Verdict, shown
+from paper.panels import driven
+from paper.sweep import Case
 
 #: Drive speeds that the paper names (in/s): approached from below, overshoot, approached from above.
 BELOW, OVERSHOOT, ABOVE = 1.9, 2.5, 1.0

@@ -9,10 +9,10 @@ from hersey.arrays import FloatArray
 from hersey.charts.labels import apart
 from hersey.charts.style import HEIGHT, INK, WIDTH, Chart, Row, levels, logarithmic, plot
 from hersey.damping.dwells.groups import SAME_SPEED
-from hersey.paper_figures.dwells import dots, lines, marks, span, speed_axis, table, unit_of
-from hersey.paper_figures.figure import ABOUT, Claim, PaperFigure, Verdict
-from hersey.paper_figures.measured import Branch, Measured
 from hersey.units import rpm
+from paper.dwells import dots, lines, marks, span, speed_axis, table, unit_of
+from paper.figure import ABOUT, Claim, PaperFigure, Verdict
+from paper.measured import Branch, Measured
 
 #: Exponents of damping that the paper measured, and that of Eq. 10.
 _MEASURED, _THEORY = (-0.8, -0.6), -0.7

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.paper_figures.figure import ABOUT, Claim, Verdict, shown
-from hersey.paper_figures.sweep import Sweep, Trend
+from paper.figure import ABOUT, Claim, Verdict, shown
+from paper.sweep import Sweep, Trend
 
 
 @dataclass(frozen=True)

@@ -10,9 +10,9 @@ import altair as alt
 from hersey.charts.motion import mode_strip
 from hersey.charts.style import WIDTH, Chart, level
 from hersey.motion.simulation import StickSlipCycle, Trajectory
-from hersey.paper_figures.figure import ABOUT, ROUNDING, Claim, PaperFigure, Verdict, shown
-from hersey.paper_figures.panels import trace
-from hersey.paper_figures.sweep import DAMPING, DRIVE_SPEED, STIFFNESS, Case
+from paper.figure import ABOUT, ROUNDING, Claim, PaperFigure, Verdict, shown
+from paper.panels import trace
+from paper.sweep import DAMPING, DRIVE_SPEED, STIFFNESS, Case
 
 #: The sticking friction that the paper gives for its baseline (Eq. 29), and half of its last digit.
 GIVEN_A, GIVEN_A_ROUNDING = 341.4, 0.05

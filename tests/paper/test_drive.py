@@ -5,7 +5,8 @@ from __future__ import annotations
 import itertools
 import json
 import math
-import shutil
+import runpy
+import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -14,7 +15,7 @@ import numpy as np
 import polars as pl
 import pytest
 
-from hersey import SteadyPoints, paper_figures
+from hersey import SteadyPoints
 from hersey.charts.friction import along, friction_chart
 from hersey.charts.render import specification_of
 from hersey.errors import ParameterError
@@ -22,22 +23,21 @@ from hersey.lubrication.lubricant import Lubricant
 from hersey.lubrication.mixed import Asperities, BoundaryFriction
 from hersey.machine.limits import OperatingPoint
 from hersey.machine.machine import Machine, read_machine
-from hersey.paper_figures import Measured, PaperFigure, Verdict, as_json, drive_figures, markdown, nip
-from hersey.paper_figures import friction as fig8
-from hersey.paper_figures.cross_section import _roll, contact_of, film_at, has_nip
-from hersey.paper_figures.damping import crosses, crosses_hotter, in_range, is_power_law, local_exponents
-from hersey.paper_figures.drawing import Drawing, arc, round_number
-from hersey.paper_figures.system import forces_of, holds_on, motor_left
-from hersey.paper_figures.temperature import is_energy, is_straight
-from hersey.paper_figures.torque import agrees, bends, rises_as
 from hersey.units import ZERO_CELSIUS
 from hersey.verdict.evidence import measured_film
+from paper import Measured, PaperFigure, Verdict, as_json, drive_figures, markdown, nip
+from paper import friction as fig8
+from paper.cross_section import _roll, contact_of, film_at, has_nip
+from paper.damping import crosses, crosses_hotter, in_range, is_power_law, local_exponents
+from paper.drawing import Drawing, arc, round_number
+from paper.system import forces_of, holds_on, motor_left
+from paper.temperature import is_energy, is_straight
+from paper.torque import agrees, bends, rises_as
 from tests.charts.test_charts import titles
-from tests.cli.command import run
 from tests.conftest import ROOT
 
 HOLDS, IN_DIRECTION, FAILS = Verdict.HOLDS, Verdict.IN_DIRECTION, Verdict.FAILS
-MACHINE = ROOT / "tests" / "paper_figures" / "machine.toml"
+MACHINE = ROOT / "tests" / "paper" / "machine.toml"
 #: Activation energy of torque in the synthetic dwells, J/mol.
 ENERGY, GAS = 9460.77 * 4.184, 8.314462618
 
@@ -123,28 +123,16 @@ def test_a_log_without_temperatures_has_no_fig_4(machine: Machine) -> None:
     assert "no temperatures" in left_out[0]
 
 
-def test_the_example_can_be_read_where_it_is_packed(tmp_path: Path) -> None:
-    """All that the machine's file names beside it lies in the package too, and is the example's."""
-    for file in Path(paper_figures.__file__).parent.iterdir():
-        if file.suffix in {".toml", ".csv"}:
-            shutil.copy(file, tmp_path)
-            assert file.read_bytes() == (ROOT / "examples" / file.name).read_bytes()
-    assert read_machine(tmp_path / "machine.toml").contact is not None
-    assert (tmp_path / "bench.csv").exists()
-
-
-def test_the_command_draws_what_it_is_given(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("hersey.paper_figures.all_figures", list)
-    monkeypatch.setattr("hersey.paper_figures.files.picture", lambda _, suffix: suffix.encode())
-    done = run("figures", "--machine", MACHINE, "--out", tmp_path / "f", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    assert "Figs. 2, 3, 4 and 7 are left out: they need a log, --log" in done.stderr
-    assert sorted(path.name for path in (tmp_path / "f").glob("*.svg")) == [
-        f"figure-0{n}.svg" for n in (1, 5, 6, 8)
-    ]
-    done = run("figures", "--tare", "standing", "--out", tmp_path / "g", cwd=tmp_path)
-    assert (done.returncode, done.stdout) == (2, "")
-    assert "need --log" in done.stderr
+def test_the_example_draws_what_it_is_given(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("paper.all_figures", list)
+    monkeypatch.setattr("paper.files.picture", lambda _, suffix: suffix.encode())
+    script = ROOT / "examples" / "08_paper_figures.py"
+    monkeypatch.setattr(sys, "argv", [str(script), str(tmp_path), "--machine", str(MACHINE)])
+    runpy.run_path(str(script), run_name="__main__")
+    assert "Figs. 2, 3, 4 and 7 are left out: they need a log, --log" in capsys.readouterr().out
+    assert sorted(path.name for path in tmp_path.glob("*.svg")) == [f"figure-0{n}.svg" for n in (1, 5, 6, 8)]
 
 
 # Figs. 2, 3, 4 and 7: the log

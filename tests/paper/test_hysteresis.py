@@ -21,7 +21,7 @@ from hersey import (
 from hersey.charts.render import specification_of
 from hersey.errors import ParameterError, UnitError
 from hersey.motion.schedule import Schedule
-from hersey.paper_figures import (
+from paper import (
     Claim,
     Figure,
     OwnFigure,
@@ -36,8 +36,8 @@ from hersey.paper_figures import (
     figure_14,
     markdown,
 )
-from hersey.paper_figures import hysteresis as approach
-from hersey.paper_figures.sweep import Case
+from paper import hysteresis as approach
+from paper.sweep import Case
 from tests.charts.test_charts import titles
 
 TRAIN = Drivetrain(1000.0, 1.0)

@@ -16,9 +16,9 @@ from hersey.lubrication.contact import Contact
 from hersey.lubrication.film import Film, film_thickness
 from hersey.lubrication.reynolds import LineContactSolution, solve_line_contact
 from hersey.machine.machine import Machine
-from hersey.paper_figures.cross_section import contact_of, film_at, told
-from hersey.paper_figures.drawing import HEATER, RUBBER
-from hersey.paper_figures.figure import ABOUT, Claim, PaperFigure, Verdict
+from paper.cross_section import contact_of, film_at, told
+from paper.drawing import HEATER, RUBBER
+from paper.figure import ABOUT, Claim, PaperFigure, Verdict
 
 #: Heights of the panels, pixels; half widths of the nip shown to either side of its axis.
 _HEIGHTS, _SHOWN = (170, 240), 1.35

@@ -9,11 +9,11 @@ import altair as alt
 
 from hersey.arrays import FloatArray
 from hersey.charts.style import WIDTH
-from hersey.paper_figures import judges
-from hersey.paper_figures.figure import ABOUT, Claim, PaperFigure, Verdict, shown
-from hersey.paper_figures.judges import FREQUENCY, SLIP_SPEED, Quantity
-from hersey.paper_figures.panels import COLORS, trace, trend_panel
-from hersey.paper_figures.sweep import DAMPING, DRIVE_SPEED, STIFFNESS, Case, Sweep, sweep_over
+from paper import judges
+from paper.figure import ABOUT, Claim, PaperFigure, Verdict, shown
+from paper.judges import FREQUENCY, SLIP_SPEED, Quantity
+from paper.panels import COLORS, trace, trend_panel
+from paper.sweep import DAMPING, DRIVE_SPEED, STIFFNESS, Case, Sweep, sweep_over
 
 #: Time simulated from rest, long after the motion has settled, and time shown of that (s).
 _SIMULATED, _SHOWN = 5.0, 1.2

@@ -1,4 +1,4 @@
-"""Figs. 1 to 8 of a user's own machine and log, or of those that ship with the package."""
+"""Figs. 1 to 8 of a user's own machine and log, or of those of the example."""
 
 from __future__ import annotations
 
@@ -9,18 +9,17 @@ from hersey.charts.style import unchecked
 from hersey.errors import HerseyError
 from hersey.log.reading import read
 from hersey.machine.machine import Machine, read_machine
-from hersey.paper_figures.cross_section import figure_1
-from hersey.paper_figures.damping import figure_3, figure_7
-from hersey.paper_figures.figure import PaperFigure
-from hersey.paper_figures.friction import figure_8
-from hersey.paper_figures.measured import Measured
-from hersey.paper_figures.nip import figure_5
-from hersey.paper_figures.system import figure_6
-from hersey.paper_figures.temperature import figure_4
-from hersey.paper_figures.torque import figure_2
+from paper.cross_section import figure_1
+from paper.damping import figure_3, figure_7
+from paper.figure import PaperFigure
+from paper.friction import figure_8
+from paper.measured import Measured
+from paper.nip import figure_5
+from paper.system import figure_6
+from paper.temperature import figure_4
+from paper.torque import figure_2
 
-#: The example's files lie here as links to ``examples``: a package that is built holds the files themselves.
-_SHIPPED = Path(__file__).parent
+_EXAMPLES = Path(__file__).parent.parent
 
 
 def drive_figures(
@@ -57,7 +56,7 @@ def drive_figures(
 
 
 def shipped() -> tuple[Measured, Machine]:
-    """Return the log of the virtual test stand and the machine's file that ship as examples."""
-    machine = read_machine(_SHIPPED / "machine.toml")
-    points = read(_SHIPPED / "bench.csv").steady(tare="standing")
+    """Return the log of the virtual test stand and the machine's file of the example."""
+    machine = read_machine(_EXAMPLES / "machine.toml")
+    points = read(_EXAMPLES / "bench.csv").steady(tare="standing")
     return Measured.of(points if machine.rest is None else points.without(machine.rest)), machine

@@ -35,15 +35,15 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from hersey.charts.style import unchecked
-from hersey.paper_figures.band import band_figure
-from hersey.paper_figures.baseline import figure_9
-from hersey.paper_figures.chart import chart_figure
-from hersey.paper_figures.drive import drive_figures, shipped
-from hersey.paper_figures.figure import Claim, Figure, OwnFigure, PaperFigure, Verdict
-from hersey.paper_figures.files import as_json, markdown, write
-from hersey.paper_figures.hysteresis import figure_13, figure_14
-from hersey.paper_figures.measured import Measured
-from hersey.paper_figures.trends import figure_10, figure_11, figure_12
+from paper.band import band_figure
+from paper.baseline import figure_9
+from paper.chart import chart_figure
+from paper.drive import drive_figures, shipped
+from paper.figure import Claim, Figure, OwnFigure, PaperFigure, Verdict
+from paper.files import as_json, markdown, write
+from paper.hysteresis import figure_13, figure_14
+from paper.measured import Measured
+from paper.trends import figure_10, figure_11, figure_12
 
 __all__ = [
     "Claim",

@@ -9,10 +9,10 @@ from hersey.arrays import FloatArray
 from hersey.charts.style import HEIGHT, WIDTH
 from hersey.lubrication import paper
 from hersey.machine.machine import Machine
-from hersey.paper_figures.dwells import SPEED, lines, marks, span, table, unit_of
-from hersey.paper_figures.figure import ABOUT, Claim, PaperFigure, Verdict, shown
-from hersey.paper_figures.measured import Branch, Measured
 from hersey.units import rpm
+from paper.dwells import SPEED, lines, marks, span, table, unit_of
+from paper.figure import ABOUT, Claim, PaperFigure, Verdict, shown
+from paper.measured import Branch, Measured
 
 #: Exponent of speed in the torque of Eq. 9.
 EXPONENT = 0.3

@@ -12,8 +12,8 @@ from hersey.arrays import FloatArray
 from hersey.charts.style import BLUE, INK, Chart, Row, plot, ramp, rows_of
 from hersey.motion.schedule import Schedule
 from hersey.motion.simulation import Trajectory
-from hersey.paper_figures.judges import Quantity
-from hersey.paper_figures.sweep import Sweep
+from paper.judges import Quantity
+from paper.sweep import Sweep
 
 #: Colour and shape of the three values traced: each alone tells them apart, also in greyscale.
 COLORS, SHAPES = ramp(3), ("circle", "square", "triangle-up")

@@ -10,8 +10,8 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.charts.style import Row, plot, rows_of, temperature_channels, temperature_name, torque_unit
-from hersey.paper_figures.measured import Branch, Measured
 from hersey.units import rpm
+from paper.measured import Branch, Measured
 
 SPEED = "Drive speed (rpm)"
 #: Points of a line.

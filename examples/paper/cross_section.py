@@ -14,7 +14,8 @@ from hersey.lubrication.film import Film, film_thickness
 from hersey.lubrication.film_temperature import film_temperature
 from hersey.machine.limits import OperatingPoint
 from hersey.machine.machine import Machine
-from hersey.paper_figures.drawing import (
+from hersey.units import celsius
+from paper.drawing import (
     CORE,
     FILM,
     HEATER,
@@ -25,8 +26,7 @@ from hersey.paper_figures.drawing import (
     arc,
     round_number,
 )
-from hersey.paper_figures.figure import ABOUT, Claim, PaperFigure, Verdict
-from hersey.units import celsius
+from paper.figure import ABOUT, Claim, PaperFigure, Verdict
 
 #: Height of the sheet of the whole machine, pixels.
 _HEIGHT = 470
