@@ -44,11 +44,27 @@ class UnreadableLogError(HerseyError, ValueError):
 
 
 class ChannelError(HerseyError, LookupError):
-    """A channel that cannot be found, or could be several."""
+    """A channel that cannot be found, or could be several.
+
+    ``columns`` are the indices of those that it could be, where they are known.
+    """
+
+    def __init__(self, *message: object, columns: tuple[int, ...] = ()) -> None:
+        """Take the message, and the columns."""
+        super().__init__(*message)
+        self.columns = columns
 
 
 class UnitError(HerseyError, ValueError):
-    """A unit that is missing, unknown or of the wrong dimension."""
+    """A unit that is missing, unknown or of the wrong dimension.
+
+    ``columns`` holds the index of the column of a log that has it, where there is one.
+    """
+
+    def __init__(self, *message: object, columns: tuple[int, ...] = ()) -> None:
+        """Take the message, and the column."""
+        super().__init__(*message)
+        self.columns = columns
 
 
 class UnstatedRoleError(UnitError):
@@ -57,9 +73,15 @@ class UnstatedRoleError(UnitError):
     ``role`` is ``radius`` or ``load``, ``proposed`` the columns that are called so.
     """
 
-    def __init__(self, *message: object, role: str = "", proposed: tuple[str, ...] = ()) -> None:
-        """Take the message, and what is needed."""
-        super().__init__(*message)
+    def __init__(
+        self,
+        *message: object,
+        role: str = "",
+        proposed: tuple[str, ...] = (),
+        columns: tuple[int, ...] = (),
+    ) -> None:
+        """Take the message, what is needed, and the column that needs it."""
+        super().__init__(*message, columns=columns)
         self.role, self.proposed = role, proposed
 
 

@@ -313,11 +313,11 @@ def test_the_contents_lead_to_their_headings(demo: Opened) -> None:
         link.click()
         name = link.get_attribute("href")
         page.wait_for_function(
-            """(name) => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => {
+            """(name) => {
                  const top = document.querySelector(`${name} h2`).getBoundingClientRect().top;
                  const end = scrollY + innerHeight >= document.documentElement.scrollHeight - 2;
-                 done(Math.abs(top - 12) < 8 || (end && top > 0 && top < innerHeight));
-               })))""",
+                 return Math.abs(top - 12) < 8 || (end && top > 0 && top < innerHeight);
+               }""",
             arg=name,
             timeout=5000,
         )

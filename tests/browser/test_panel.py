@@ -112,10 +112,12 @@ def quiet(opened: Opened) -> None:
 
 
 def rested(page: Page) -> None:
-    """Wait until nothing of the picture lags."""
-    page.wait_for_function(
-        "() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() =>"
-        " done(!document.querySelector('#map .lags:not(.interval):not(.fold-interval), #panel .lags')))))"
+    """Wait until nothing of the picture lags, three frames long: a move of the mouse comes with the next frame."""
+    page.evaluate(
+        "() => new Promise((done) => { let calm = 0; const frame = () => {"
+        " const lags = document.querySelector('#map .lags:not(.interval):not(.fold-interval), #panel .lags');"
+        " calm = lags ? 0 : calm + 1; if (calm === 3) done(); else requestAnimationFrame(frame); };"
+        " requestAnimationFrame(frame); })"
     )
 
 

@@ -425,16 +425,16 @@ def test_what_does_not_fit_is_ranked(machine: Machine, measured: MeasuredFilm) -
 def test_an_exponent_is_off_by_its_interval(machine: Machine, measured: MeasuredFilm) -> None:
     c, thermal = Estimate(-0.9, 0.02, -0.94, -0.86), Estimate(-5.0, 0.25, -5.5, -4.5, None, 0.1)
 
-    def off(text: str, expected: float, solved: float | None, heat: float) -> list[Misfit]:
-        says = Verdict(c, expected, solved, (), thermal, heat, None, 1.0, text)
+    def off(contradicted: bool, expected: float, solved: float | None, heat: float) -> list[Misfit]:
+        says = Verdict(c, expected, solved, (), thermal, heat, None, 1.0, contradicted, "any words")
         found = misfits(machine, measured.predicted, None, says)
         return [each for each in found if "to the power" in each.text]
 
-    [one] = off("Log and film theory contradict each other: x", -0.6, -0.58, -5.6)
+    [one] = off(True, -0.6, -0.58, -5.6)
     assert "the film of this nip gives -0.58" in one.text
     assert one.size == pytest.approx(0.32 / 0.04)
-    assert off("The log names no regime.", -0.6, None, -4.4) == []
-    [other] = off("", -0.6, None, -3.5)
+    assert off(False, -0.6, None, -4.4) == []
+    [other] = off(False, -0.6, None, -3.5)
     assert other.size == pytest.approx(1.5 / 0.5)
     assert "predicts -3.50" in other.text
 

@@ -12,7 +12,7 @@ import numpy as np
 from hersey.arrays import FloatArray
 from hersey.errors import HerseyError, UnreadableLogError
 from hersey.inspection.inspecting import ChannelReport, file_report
-from hersey.inspection.raw import RawLog, raw_channels
+from hersey.inspection.raw import Lacking, RawLog, raw_channels
 from hersey.log.channels import OTHER_ROLES, ROLES, ChannelChoice, Stated, find_channel, is_called, is_dead
 from hersey.log.mapping import LogMapping, read_with_mapping
 from hersey.log.means import is_means_table
@@ -56,7 +56,7 @@ def look(path: Path) -> dict[str, Any]:
             )
             for i in range(len(names))
         ],
-        "without": without,
+        "without": {role: str(why) for role, why in without.items()},
         "claims": {role: _claims(role, log, names, why) for role, why in without.items()},
         "problem": "" if without or means else _problem(path),
         "found": found,
@@ -91,12 +91,12 @@ def _units(log: RawLog) -> dict[str, str]:
     return units
 
 
-def _claims(role: str, log: RawLog, names: list[str], why: str) -> list[str]:
-    """The channels between which a message does not choose; one that it proposes as a radius is none."""
+def _claims(role: str, log: RawLog, names: list[str], why: Lacking) -> list[str]:
+    """The channels that come near a role; one that is called a radius or a load does not."""
     return [
         name
         for channel, name in zip(log.channels, names, strict=True)
-        if (f"'{channel.column}'" in why or f"'{name}'" in why) and not _is_other(role, channel.column)
+        if channel.column.index in why.columns and not _is_other(role, channel.column)
     ]
 
 

@@ -15,7 +15,7 @@ from hersey.lubrication.film_temperature import film_temperature
 from hersey.lubrication.mixed import MixedFilm
 from hersey.machine.machine import Machine
 from hersey.verdict.checks import Misfit, misfits, remarks
-from hersey.verdict.evidence import CONTRADICTION, MeasuredFilm, Verdict, measured_film, verdict
+from hersey.verdict.evidence import MeasuredFilm, Verdict, measured_film, verdict
 from hersey.verdict.regime import Regime
 from hersey.verdict.transition import ContactTransition, contact_transition
 
@@ -106,7 +106,7 @@ def film_document(
             "measured": None if measured is None else measured.to_dict(),
             "exponents": None if says is None else says.to_dict(),
             "verdict": "" if says is None else says.text,
-            "contradicted": says is not None and says.text.startswith(CONTRADICTION),
+            "contradicted": says is not None and says.contradicted,
             "mixed": None if shared is None else shared.film.to_dict(),
             "transition": None if shared is None else shared.transition.to_dict(),
             "misfits": [

@@ -18,7 +18,7 @@ from hersey.damping.dwells.misleading import in_words, misleading
 from hersey.errors import HerseyError, InsufficientDataError
 from hersey.inspection.clock import Clock, clock_of
 from hersey.inspection.faults import DITHER, Fault, Traits, traits
-from hersey.inspection.raw import RawChannel, RawLog, raw_channels, roles_of
+from hersey.inspection.raw import Lacking, RawChannel, RawLog, raw_channels, roles_of
 from hersey.inspection.support import Support, support_of_points
 from hersey.log.channels import OTHER_ROLES, ROLES, ChannelChoice, Stated
 from hersey.log.corrections import Corrected
@@ -66,7 +66,7 @@ class FileReport:
     rows: int
     clocks: tuple[Clock, ...]
     channels: tuple[ChannelReport, ...]
-    without: Mapping[str, str]
+    without: Mapping[str, Lacking]
     notes: tuple[str, ...]
     cut_off: bool
 
@@ -105,6 +105,7 @@ class Inspection(Result):
         """Return everything; traits of a channel in its own unit, all else in SI."""
         document = json_record(vars(self))
         for file, report in zip(document["files"], self.files, strict=True):
+            file["without"] = {role: str(why) for role, why in report.without.items()}
             for clock, of in zip(file["clocks"], report.clocks, strict=True):
                 clock["findings"] = of.findings()
         return document
@@ -163,7 +164,7 @@ class Inspection(Result):
         bare = [
             file.name
             for file in self.files
-            if file.channels and file.without.get("torque") == "there is no torque channel"
+            if file.channels and "torque" in file.without and file.without["torque"].absent
         ]
         if not bare:
             return self.problem
@@ -281,7 +282,7 @@ def _supported(reduce: Callable[[], SteadyPoints], temperature_scale: str) -> tu
         return Support(0, 0, None, (), {}, (), (str(error),)), ()
     notes = () if isinstance(points.log, MeansTable) else points.notes  # what a table lacks, support says
     structures = [in_words(found, points) for found in misleading(points)]
-    doubts = (*doubtful_tare(points), *notes, *doubtful_order(points), *structures)
+    doubts = (*doubtful_tare(points), *notes, *(str(each) for each in doubtful_order(points)), *structures)
     return support_of_points(points, temperature_scale=temperature_scale), doubts
 
 

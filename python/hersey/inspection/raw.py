@@ -9,7 +9,7 @@ import numpy as np
 import polars as pl
 
 from hersey.arrays import FloatArray
-from hersey.errors import HerseyError
+from hersey.errors import ChannelError, HerseyError, UnitError
 from hersey.log.channels import ROLES, ChannelChoice, Stated, find_channel, is_dead
 from hersey.log.formats import format_of, opened
 from hersey.log.friction import Chosen, beside
@@ -85,14 +85,27 @@ def raw_channels(path: str | Path) -> RawLog:
     return RawLog(printable(path.name), kind, tuple(channels), comments, tuple(notes), cut_off)
 
 
+@dataclass(frozen=True)
+class Lacking:
+    """Why no column plays a role; ``columns`` are the indices of those that come near, none if none does."""
+
+    text: str
+    columns: tuple[int, ...] = ()
+    absent: bool = False  #: whether no column of the file comes near
+
+    def __str__(self) -> str:
+        """Return why."""
+        return self.text
+
+
 def roles_of(
     log: RawLog, choices: dict[str, ChannelChoice], stated: Stated
-) -> tuple[dict[str, Column], dict[str, str]]:
-    """Return the column that plays each role, and for each role without one the reason in words."""
+) -> tuple[dict[str, Column], dict[str, Lacking]]:
+    """Return the column that plays each role, and why each of the others has none."""
     columns = tuple(channel.column for channel in log.channels)
     values = {channel.column: channel.values for channel in log.channels}
     chosen: Chosen = {}
-    without: dict[str, str] = {}
+    without: dict[str, Lacking] = {}
 
     def dead(column: Column) -> bool:
         return is_dead(values[column])
@@ -103,17 +116,22 @@ def roles_of(
         try:
             channel = find_channel(role, columns, choices[role], log.name, dead)
         except HerseyError as error:
-            without[role] = str(error).removeprefix(f"{log.name}: ")
+            without[role] = _lacking(error, log)
             continue
         if channel is None:
-            without[role] = f"there is no {role} channel"
+            without[role] = Lacking(f"there is no {role} channel", absent=True)
         else:
             chosen[role] = channel
     try:
         chosen |= beside(columns, choices, stated, chosen, log.name)
     except HerseyError as error:
-        without.setdefault("torque", str(error).removeprefix(f"{log.name}: "))
+        without.setdefault("torque", _lacking(error, log))
     return {role: column for role, (column, _) in chosen.items()}, without
+
+
+def _lacking(error: HerseyError, log: RawLog) -> Lacking:
+    columns = error.columns if isinstance(error, ChannelError | UnitError) else ()
+    return Lacking(str(error).removeprefix(f"{log.name}: "), columns)
 
 
 def _of_text(path: Path) -> RawLog:

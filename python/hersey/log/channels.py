@@ -125,7 +125,10 @@ def find_channel(
         listed = _either([str(c) for c in candidates])
         if len({c.path for c in candidates}) == 1:
             raise _repeated(role, candidates, file)
-        raise ChannelError(f"{file}: {role} could be {listed}: choose with --{role} '{candidates[0].path}'")
+        raise ChannelError(
+            f"{file}: {role} could be {listed}: choose with --{role} '{candidates[0].path}'",
+            columns=tuple(c.index for c in candidates),
+        )
     return _with_unit(role, candidates[0], choice, file, columns)
 
 
@@ -227,7 +230,10 @@ def _named(role: str, columns: tuple[Column, ...], name: str, file: str) -> Colu
 def _repeated(role: str, columns: list[Column], file: str) -> ChannelError:
     path = columns[0].path
     listed = _either([f"{path}#{i + 1}" for i in range(len(columns))])
-    return ChannelError(f"{file}: {len(columns)} columns are called '{path}': choose with --{role} {listed}")
+    return ChannelError(
+        f"{file}: {len(columns)} columns are called '{path}': choose with --{role} {listed}",
+        columns=tuple(c.index for c in columns),
+    )
 
 
 def _either(names: list[str]) -> str:
@@ -306,13 +312,15 @@ def _with_unit(
         example = KINDS[kind][1]
         raise UnitError(
             f"{file}: column '{column.path}' has no unit: write '{column.name} [{example}]' in the header, "
-            f"add a row of units, or say --{role}-unit '{example}'"
+            f"add a row of units, or say --{role}-unit '{example}'",
+            columns=(column.index,),
         )
     try:
         return column, role_conversion(role, unit)[1]
     except UnitError as error:
         way_out = _right_unit(role, column, unit, columns)
-        raise UnitError(f"{file}: column '{column.path}': {error}{way_out}") from None
+        told = f"{file}: column '{column.path}': {error}{way_out}"
+        raise UnitError(told, columns=(column.index,)) from None
 
 
 def _right_unit(role: str, column: Column, unit: str, columns: tuple[Column, ...]) -> str:

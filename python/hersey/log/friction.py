@@ -49,7 +49,8 @@ def beside(
         elif role != "run" and getattr(stated, role) is None:
             why = _needing(role, chosen) or (choice.unit and f"the unit of the {role} is stated without it")
             if why:
-                raise unstated(file, role, why, left)
+                of = _in_need(role, chosen)
+                raise unstated(file, role, why, left, chosen[of][0] if of else None)
     return others
 
 
@@ -147,16 +148,25 @@ def _said(value: float | tuple[float, ...], unit: str) -> str:
     return f"one of {len(value)} for each run" if isinstance(value, tuple) else f"{value:g} {unit}"
 
 
+def _in_need(role: str, chosen: Chosen) -> str:
+    """Which of torque and speed is known only with a load or a radius, or nothing."""
+    for of in ("torque", "speed"):
+        if of in chosen:
+            kind = role_conversion(of, chosen[of][1].unit)[0]
+            if (role == "radius" and kind != of) or (role == "load" and kind == "friction coefficient"):
+                return of
+    return ""
+
+
 def _needing(role: str, chosen: Chosen) -> str:
     """Why a load or a radius is needed, or nothing."""
-    for of, example in (("torque", "a torque"), ("speed", "a speed of rotation")):
-        if of not in chosen:
-            continue
-        column, unit = chosen[of]
-        kind = role_conversion(of, unit.unit)[0]
-        if role == "radius" and kind != of:
-            what = "sliding speed" if kind == "belt speed" else kind
-            return f"'{column}' is a {what}, which is {example} only with the radius"
-        if role == "load" and kind == "friction coefficient":
-            return f"'{column}' is a {kind}, which is a force only with the normal load"
-    return ""
+    of = _in_need(role, chosen)
+    if not of:
+        return ""
+    column, unit = chosen[of]
+    kind = role_conversion(of, unit.unit)[0]
+    if role == "load":
+        return f"'{column}' is a {kind}, which is a force only with the normal load"
+    what = "sliding speed" if kind == "belt speed" else kind
+    example = {"torque": "a torque", "speed": "a speed of rotation"}[of]
+    return f"'{column}' is a {what}, which is {example} only with the radius"

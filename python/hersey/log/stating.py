@@ -43,8 +43,10 @@ def by_amount(role: str) -> str:
     return f"--{role} '{amount}'" if way_in() == "terminal" else f"{role}='{amount}'"
 
 
-def unstated(file: str, role: str, why: str, columns: tuple[Column, ...]) -> UnstatedRoleError:
-    """Return the error for a radius or a load that is needed and that nobody stated."""
+def unstated(
+    file: str, role: str, why: str, columns: tuple[Column, ...], of: Column | None = None
+) -> UnstatedRoleError:
+    """Return the error for a radius or a load that the column ``of`` needs and nobody stated."""
     named = proposed(role, columns)
     word = _ROLES[role][0]
     maybe = "".join(f"; column '{column}' may be the {word}: {by_name(role, column)}" for column in named[:3])
@@ -53,6 +55,7 @@ def unstated(file: str, role: str, why: str, columns: tuple[Column, ...]) -> Uns
         f"{file}: {why}: state it, e.g. {by_amount(role)}{other}",
         role=role,
         proposed=tuple(column.path for column in named),
+        columns=() if of is None else (of.index,),
     )
 
 

@@ -44,20 +44,13 @@ def render_life(answer: LifeTest, runs: pl.DataFrame, command: str) -> str:
         "hersey_version": _core.VERSION,
         "title": f"{answer.name}: {len(found.units)} units, {runs.height} runs, up to {last}",
         "verdict": _verdict(found),
-        "warnings": [*_of_all(found), *answer.unsaid],
+        "warnings": [*found.general_notes, *answer.unsaid],
         "sections": [each for each in _sections(answer, list(charts)) if each["text"] or each["charts"]],
         "uses": None if answer.uses is None else answer.uses.to_dict(),
         "runs": runs.select("sha256", "log").to_dicts(),
         "command": command,
     }
     return drawn(("life.css", "uses.js", "life.js"), "hersey life", document, charts)
-
-
-def _of_all(found: Endings) -> list[str]:
-    """Notes that are not those of one way to fail."""
-    return [
-        note for note in found.notes if not any(note.startswith(f"{mode.name}: ") for mode in found.modes)
-    ]
 
 
 def _verdict(found: Endings) -> list[str]:

@@ -60,7 +60,7 @@ def cautions(points: SteadyPoints, surface: DampingSurface | None) -> list[str]:
         )
     if surface is not None:
         out += _direction_warnings(points, surface)
-    out += doubtful_order(points)
+    out += [str(each) for each in doubtful_order(points)]
     out += [in_words(found, points) for found in misleading(points)]
     if surface is not None:
         out += _fit_warnings(surface)

@@ -13,7 +13,7 @@ from hersey.lubrication.film import REGIMES, Film, shear_heating
 from hersey.lubrication.lubricant import Lubricant
 from hersey.machine.machine import Machine
 from hersey.units import celsius, rpm
-from hersey.verdict.evidence import CONTRADICTION, MeasuredFilm, Verdict, agrees
+from hersey.verdict.evidence import MeasuredFilm, Verdict, agrees
 from hersey.verdict.transition import ContactTransition
 
 #: Friction above this is no fluid film between smooth surfaces.
@@ -226,7 +226,7 @@ def _check_exponents(says: Verdict) -> list[Misfit]:
     found = []
     theory = says.expected if says.solved is None else says.solved
     c, thermal = says.exponent, says.thermal
-    if says.text.startswith(CONTRADICTION):
+    if says.contradicted:
         text = f"damping goes as speed to the power {c}; the film of this nip gives {theory:.2f}"
         found.append(Misfit(text, _reaches(c.value, theory, c.low, c.high), grave=True))
     if thermal is not None and thermal.told and not agrees(thermal, says.thermal_expected):

@@ -41,10 +41,6 @@ if TYPE_CHECKING:
     import polars as pl
 
 
-#: With which a verdict begins where log and theory contradict each other.
-CONTRADICTION = "Log and film theory contradict each other"
-
-
 @dataclass(frozen=True, repr=False)
 class MeasuredFilm(Result):
     """What each dwell says of the film; arrays of shape (points,), SI.
@@ -212,6 +208,7 @@ class Verdict(Result):
     thermal_expected: float  #: the same by the governing law and the lubricant
     activation_energy: float | None  #: apparent, of torque, J/mol
     viscosity_activation_energy: float  #: of the lubricant there, J/mol
+    contradicted: bool  #: whether the log excludes every film that theory allows this contact
     text: str
 
     def summary(self) -> str:
@@ -220,7 +217,8 @@ class Verdict(Result):
 
     def to_dict(self) -> dict[str, Any]:
         """Return exponents, predictions and text; energies in J/mol."""
-        return json_record({**vars(self), "predictions": [h.to_dict() for h in self.predictions]})
+        known = {name: value for name, value in vars(self).items() if name != "contradicted"}
+        return json_record({**known, "predictions": [h.to_dict() for h in self.predictions]})
 
     def to_frame(self) -> pl.DataFrame:
         """Return measured and expected exponents and energies."""
@@ -264,9 +262,21 @@ def verdict(
     thermal = _thermal(surface, kelvin)
     energy = None if thermal is None else -_core.GAS_CONSTANT * kelvin * thermal.value
     lubricant_energy = float(lubricant.activation_energy(kelvin))
-    text = _text(seen, surface.c, expected, solved, predictions, held, thermal, thermal_expected)
+    ours = [p.name for p in predictions if p.holds_here]
+    live = any(e.key.startswith(name) for e in seen.explanations for name in ours)
+    excluded = ours if seen.lack_of_fit is not None and not live else None
+    text = _text(seen, surface.c, expected, solved, excluded, held, thermal, thermal_expected)
     return Verdict(
-        surface.c, expected, solved, predictions, thermal, thermal_expected, energy, lubricant_energy, text
+        exponent=surface.c,
+        expected=expected,
+        solved=solved,
+        predictions=predictions,
+        thermal=thermal,
+        thermal_expected=thermal_expected,
+        activation_energy=energy,
+        viscosity_activation_energy=lubricant_energy,
+        contradicted=excluded is not None,
+        text=text,
     )
 
 
@@ -314,18 +324,17 @@ def _text(
     c: Estimate,
     expected: float,
     solved: float | None,
-    predictions: tuple[Hypothesis, ...],
+    excluded: list[str] | None,
     held: str,
     thermal: Estimate | None,
     thermal_expected: float,
 ) -> str:
-    ours = [p.name for p in predictions if p.holds_here]
-    live = any(e.key.startswith(name) for e in seen.explanations for name in ours)
-    contradicted = seen.lack_of_fit is not None and not live
+    """The verdict in words; ``excluded`` are films of theory that the log excludes, None if none."""
     lines = []
-    if contradicted:
-        excluded = f"{listed(ours)}, alone or beside a constant torque" if ours else "every film of theory"
-        lines.append(f"{CONTRADICTION}: the log excludes {excluded}.")
+    if excluded is not None:
+        ours = f"{listed(excluded)}, alone or beside a constant torque"
+        films = ours if excluded else "every film of theory"
+        lines.append(f"Log and film theory contradict each other: the log excludes {films}.")
     lines += [
         f"The regime chart puts this contact in the {held} regime, where damping goes as speed to the power "
         f"{expected:.2f}; measured {c}."
@@ -334,7 +343,7 @@ def _text(
         lines.append(f"Solved numerically for this roll, the film gives the power {solved:.2f}.")
     if seen.named is None:
         lines.append("The log alone names no regime.")
-    elif not contradicted:
+    elif excluded is None:
         lines.append("The measured exponent is the one of that regime.")
     if held != "piezoviscous-elastic":
         lines.append(

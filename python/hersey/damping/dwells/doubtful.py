@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from hersey.arrays import FloatArray
@@ -35,8 +37,33 @@ def doubtful_tare(points: SteadyPoints) -> list[str]:
     ]
 
 
-def doubtful_order(points: SteadyPoints) -> list[str]:
-    """Return in sentences what goes together with time, and so cannot be told from a drift of the drive."""
+@dataclass(frozen=True)
+class Ordered:
+    """A quantity that rose or fell with time, so that a drift of the drive would pass for its effect."""
+
+    quantity: str  #: ``speed`` or ``temperature``
+    exponent: str  #: the one that a drift would change
+
+    @property
+    def title(self) -> str:
+        """What is doubtful."""
+        return f"{self.quantity.capitalize()} and time go together"
+
+    @property
+    def advice(self) -> str:
+        """What it may do, and the remedy."""
+        return (
+            f"wear-in or any other drift would pass for {self.quantity} in exponent {self.exponent}. "
+            f"Go back to the first {self.quantity} at the end."
+        )
+
+    def __str__(self) -> str:
+        """Return both in a sentence."""
+        return f"{self.title}: {self.advice}"
+
+
+def doubtful_order(points: SteadyPoints) -> list[Ordered]:
+    """Return what rose or fell with time, so that its effect cannot be separated from a drift."""
     if len(points) < FEWEST_IN_ORDER or len(points.log.runs) != 1:
         return []
     named = {"speed": ("c", np.log(np.abs(points.column("speed"))))}
@@ -45,8 +72,7 @@ def doubtful_order(points: SteadyPoints) -> list[str]:
     named = {what: each for what, each in named.items() if np.ptp(each[1]) > 0}
     order = np.arange(len(points))
     return [
-        f"{what.capitalize()} and time go together: wear-in or any other drift would pass for {what} in "
-        f"exponent {exponent}. Go back to the first {what} at the end."
+        Ordered(what, exponent)
         for what, (exponent, values) in named.items()
         if abs(float(np.corrcoef(order, _ranks(values))[0, 1])) > IN_ORDER
     ]

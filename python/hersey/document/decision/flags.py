@@ -218,9 +218,9 @@ def _below(points: SteadyPoints, surface: DampingSurface) -> int:
 
 def _left_open(points: SteadyPoints, seen: RegimePart, scatter: float) -> list[FlagPart]:
     out = []
-    for text in doubtful_order(points)[:1]:
-        title, rest = text.split(": ", 1)
-        out.append(FlagPart(signal="watch", title=f"{title}.", text=_sentence(rest), section="data"))
+    for each in doubtful_order(points)[:1]:
+        text = _sentence(each.advice)
+        out.append(FlagPart(signal="watch", title=f"{each.title}.", text=text, section="data"))
     if seen.named is None:
         why = seen.why_unnamed or "several explain the dwells"
         text = f"{_sentence(why)}."

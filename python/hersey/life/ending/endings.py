@@ -75,9 +75,15 @@ class Endings(Result):
     curve: ShareEnded
     next_runs: tuple[NextRun, ...]  #: what narrows most first
     together: tuple[str, ...]  #: ways whose runs scatter together
-    notes: tuple[str, ...]  #: what cannot be told, and what rests on priors
+    general_notes: tuple[str, ...]  #: what cannot be told, and what rests on priors
+    mode_notes: tuple[tuple[str, str], ...]  #: name and note, of modes that may come first
     unsaid: tuple[str, ...]  #: ways that are not judged, and why
     seed: int = 0
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """All notes, those of one mode led by its name."""
+        return (*self.general_notes, *(f"{name}: {note}" for name, note in self.mode_notes))
 
     @property
     def ending(self) -> tuple[Mode, ...]:
@@ -233,7 +239,8 @@ def endings(
         curve=_curve(first, greatest),
         next_runs=tuple(sorted(runs, key=lambda each: -each.narrowing)),
         together=_together(ending, of_runs),
-        notes=_notes(fitted, units, of_runs),
+        general_notes=_notes(ending, units, of_runs),
+        mode_notes=_mode_notes(ending, units),
         unsaid=tuple(unsaid),
         seed=seed,
     )
@@ -305,10 +312,9 @@ def _together(ending: Sequence[FittedWay], of_runs: FloatArray) -> tuple[str, ..
     )
 
 
-def _notes(fitted: Sequence[FittedWay], units: Sequence[UnitEnd], of_runs: FloatArray) -> tuple[str, ...]:
+def _notes(ending: Sequence[FittedWay], units: Sequence[UnitEnd], of_runs: FloatArray) -> tuple[str, ...]:
     """What cannot be told, and what rests on priors."""
     notes = []
-    ending = [each for each in fitted if not each.mode.sign]
     named = {name for each in units for name in each.named}
     unnamed = [e.mode.name for e in ending if e.mode.growth.law is None and e.mode.name in named]
     if unnamed:
@@ -341,7 +347,11 @@ def _notes(fitted: Sequence[FittedWay], units: Sequence[UnitEnd], of_runs: Float
     together = _together(ending, of_runs)
     if together:
         notes.append(f"runs scatter together, so draws move together: {', '.join(together)}")
-    notes += [
-        f"{each.mode.name}: {note}" for each in ending for note in each.mode.notes if each.mode.name in named
-    ]
     return tuple(notes)
+
+
+def _mode_notes(ending: Sequence[FittedWay], units: Sequence[UnitEnd]) -> tuple[tuple[str, str], ...]:
+    """The notes of the modes that come first for a unit."""
+    named = {name for each in units for name in each.named}
+    modes = [each.mode for each in ending if each.mode.name in named]
+    return tuple((mode.name, note) for mode in modes for note in mode.notes)

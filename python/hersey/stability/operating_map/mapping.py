@@ -323,14 +323,17 @@ def _remarks(map_: OperatingMap, points: Sequence[PlacedPoint]) -> list[str]:
 def _started(map_: OperatingMap) -> str:
     """Where the drive does not start a belt at rest, if anywhere."""
     doubtful, never = map_.doubtful, ~map_.starts & ~map_.doubtful
-    said = [_stands(map_, never, "it is not started"), _stands(map_, doubtful, "it may not start")]
+    said = [
+        _stands(map_, never, "it is not started", everywhere="it is not started at all"),
+        _stands(map_, doubtful, "it may not start", everywhere="it may not start"),
+    ]
     return "".join(f", so {words}" for words in said if words)
 
 
-def _stands(map_: OperatingMap, where: NDArray[np.bool_], words: str) -> str:
+def _stands(map_: OperatingMap, where: NDArray[np.bool_], words: str, *, everywhere: str) -> str:
     """The words with the temperatures of which they are said, nothing if of none."""
     if where.all() or not where.any():
-        return (words if "may" in words else f"{words} at all") if where.any() else ""
+        return everywhere if where.any() else ""
     assert map_.temperature is not None  # one column starts or does not
     ends = [f"{convert(t, 'K', 'degC'):.0f}" for t in map_.temperature[where][[0, -1]]]
     return f"{words} from {ends[0]} to {ends[1]} degC" if ends[0] != ends[1] else f"{words} at {ends[0]} degC"
