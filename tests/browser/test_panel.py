@@ -112,7 +112,7 @@ def quiet(opened: Opened) -> None:
 
 
 def rested(page: Page) -> None:
-    """Wait until nothing of the picture lags, three frames long: a move of the mouse comes with the next frame."""
+    """Wait until nothing of the picture lags, three frames long: a mouse move comes with the next frame."""
     page.evaluate(
         "() => new Promise((done) => { let calm = 0; const frame = () => {"
         " const lags = document.querySelector('#map .lags:not(.interval):not(.fold-interval), #panel .lags');"
