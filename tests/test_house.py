@@ -190,6 +190,25 @@ def commands() -> dict[str, Any]:
     return {name: load(name) for name in VERBS}
 
 
+def test_no_message_outside_the_command_line_names_a_flag() -> None:
+    """What to do is said in the words of the way in (`hersey.errors.Setting`): a notebook has no flags."""
+    found = []
+    for path in sorted((ROOT / "python" / "hersey").rglob("*.py")):
+        if "cli" in path.parts:
+            continue
+        tree = ast.parse(path.read_text())
+        for node in ast.walk(tree):  # docstrings, and what is said in a terminal alone
+            if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
+                node.value.value = ""
+            elif isinstance(node, ast.IfExp) and "way_in" in ast.unparse(node.test):
+                node.body = ast.Constant("")
+        for node in ast.walk(tree):
+            text = node.value if isinstance(node, ast.Constant) and isinstance(node.value, str) else ""
+            if re.search(r"(^|[\s'\"`(])--([a-z]|$)", text) and not re.fullmatch(r"--[a-z-]*", text):
+                found.append(f"{path.relative_to(ROOT)}:{node.lineno}: {text}")  # type: ignore[attr-defined]
+    assert found == []
+
+
 def test_every_flag_is_in_the_docs() -> None:
     sections = (ROOT / "docs" / "commands.md").read_text().split("\n## hersey ")
     documented = {section.split(maxsplit=1)[0]: section for section in sections[1:]}

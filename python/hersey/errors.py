@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Literal, Self
+import shlex
+from dataclasses import dataclass
+from typing import Any, Literal, Self
 
 from hersey.spelling import printable
 
@@ -21,16 +23,92 @@ def way_in() -> Way:
     return _way[0]
 
 
+@dataclass(frozen=True)
+class Setting:
+    """What a person sets to correct a mistake: an argument in Python, a flag in the terminal, a control.
+
+    ``name`` is that of the argument, or the role of a ``channel`` or of its ``unit``; a ``switch`` is set
+    or not. ``flag`` and ``argument`` are its names on the command line and in Python, where they differ.
+    """
+
+    name: str
+    kind: Literal["option", "switch", "channel", "unit"] = "option"
+    flag: str = ""
+    argument: str = ""
+
+    def to(self, value: str = "", *, python: str = "") -> str:
+        """Return what to write for a value, or the name alone, in the words of the way in.
+
+        ``python`` is the value as an expression, where it is not the text itself.
+        """
+        if way_in() == "terminal":
+            flag = self.flag or f"--{self.name.replace('_', '-')}{'-unit' if self.kind == 'unit' else ''}"
+            typed = shlex.quote(value) if self.kind == "option" else f"'{value}'"
+            return f"{flag} {typed}" if value else flag
+        if way_in() == "page":
+            what = {"option": self.name.replace("_", " "), "channel": f"role {self.name}"}
+            return f"{what.get(self.kind, f'unit of {self.name}')}" + (f" '{value}'" if value else "")
+        held = python or (repr(value) if value else "True" if self.kind == "switch" else "...")
+        by_role = {"channel": "channels", "unit": "units"}.get(self.kind, "")
+        if by_role:
+            return f"{by_role}={{'{self.name}': {held}}}"
+        name = self.argument or self.name
+        return f"{name}={held}" if held != "..." else name
+
+
+#: Settings that more than one message names.
+ISOTHERMAL = Setting("isothermal", "switch")
+DROP_MISSING = Setting("drop_missing", "switch")
+OVERWRITE = Setting("overwrite", "switch", "--force")
+FORCE = Setting("force", "switch")
+TARE = Setting("tare")
+MAPPING = Setting("mapping")
+ROTATION = Setting("rotation")
+
+
+def turned(role: str) -> str:
+    """How the sign of torque or speed is turned."""
+    return Setting(f"{role}_sign", argument="signs").to("-1", python=f"{{'{role}': -1}}")
+
+
 class HerseyError(Exception):
-    """A mistake that the user can mend; the message says what is wrong and the way out."""
+    """A mistake that the user can correct: what is wrong, where, and what to do.
+
+    ``remedy`` says what to do where that is known apart from what is wrong; ``setting`` is what to set.
+    """
+
+    def __init__(self, *message: object, remedy: str = "", setting: Setting | None = None) -> None:
+        """Take what is wrong, and what to do about it."""
+        super().__init__(*message)
+        self.remedy, self.setting = remedy, setting
+
+    @property
+    def reason(self) -> str:
+        """What is wrong on one line, whatever names and cells of a file it quotes."""
+        return printable(" ".join(str(part) for part in self.args))
 
     def __str__(self) -> str:
-        """Return the message on one line, whatever names and cells of a file it quotes."""
-        return printable(" ".join(str(part) for part in self.args))
+        """Return what is wrong and what to do."""
+        if not self.remedy:
+            return self.reason
+        if self.reason[-1:] in (".", "?"):
+            return f"{self.reason} {printable(self.remedy[:1].upper() + self.remedy[1:])}"
+        return f"{self.reason}: {printable(self.remedy)}"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return it as JSON: the error, reason, remedy, and name and kind of the setting or empty texts."""
+        setting = self.setting or Setting("")
+        return {
+            "error": type(self).__name__,
+            "reason": self.reason,
+            "remedy": self.remedy,
+            "setting": setting.name,
+            "of": setting.kind,
+        }
 
     def within(self, place: str) -> Self:
         """Return the same error, its message led by where it happened."""
-        again = type(self)(f"{place}: {self}")
+        again = type(self)(f"{place}: {self.reason}")
         again.__dict__.update(self.__dict__)
         return again
 
@@ -49,9 +127,9 @@ class ChannelError(HerseyError, LookupError):
     ``columns`` are the indices of those that it could be, where they are known.
     """
 
-    def __init__(self, *message: object, columns: tuple[int, ...] = ()) -> None:
-        """Take the message, and the columns."""
-        super().__init__(*message)
+    def __init__(self, *message: object, columns: tuple[int, ...] = (), **remedy: Any) -> None:
+        """Take the message, the columns, and ``remedy`` and ``setting``."""
+        super().__init__(*message, **remedy)
         self.columns = columns
 
 
@@ -61,9 +139,9 @@ class UnitError(HerseyError, ValueError):
     ``columns`` holds the index of the column of a log that has it, where there is one.
     """
 
-    def __init__(self, *message: object, columns: tuple[int, ...] = ()) -> None:
-        """Take the message, and the column."""
-        super().__init__(*message)
+    def __init__(self, *message: object, columns: tuple[int, ...] = (), **remedy: Any) -> None:
+        """Take the message, the column, and ``remedy`` and ``setting``."""
+        super().__init__(*message, **remedy)
         self.columns = columns
 
 
@@ -79,9 +157,10 @@ class UnstatedRoleError(UnitError):
         role: str = "",
         proposed: tuple[str, ...] = (),
         columns: tuple[int, ...] = (),
+        **remedy: Any,
     ) -> None:
-        """Take the message, what is needed, and the column that needs it."""
-        super().__init__(*message, columns=columns)
+        """Take the message, what is needed, the column that needs it, and ``remedy`` and ``setting``."""
+        super().__init__(*message, columns=columns, **remedy)
         self.role, self.proposed = role, proposed
 
 

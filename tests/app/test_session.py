@@ -15,6 +15,7 @@ from hersey.app.analysis import Analysis
 from hersey.app.looking import look
 from hersey.app.session import NotNowError, Session
 from hersey.app.workers import EndedError, Refused
+from hersey.errors import HerseyError
 from tests.app.asking import run
 from tests.app.test_mistakes import log
 
@@ -108,7 +109,10 @@ def test_a_cancelled_run_is_not_done_and_leaves_nothing(
 
 @pytest.mark.parametrize(
     ("error", "reason"),
-    [(Refused("too few dwells"), "too few dwells"), (EndedError("x"), "is there memory left?")],
+    [
+        (Refused("too few dwells", HerseyError("too few dwells").to_dict()), "too few dwells"),
+        (EndedError("x"), "is there memory left?"),
+    ],
 )
 def test_a_run_that_fails_says_why_and_is_not_done(
     error: Exception, reason: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

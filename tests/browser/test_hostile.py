@@ -68,7 +68,7 @@ def hostile_document(document: Analysis) -> Analysis:
         }
     )
     rejected = [
-        stretch.model_copy(update={"reason": name})
+        stretch.model_copy(update={"label": name, "reason": name})
         for stretch, name in zip(document.quality.rejected * 60, NAMES, strict=False)
     ]
     film, simulation = document.film, document.simulation

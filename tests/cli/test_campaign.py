@@ -92,7 +92,7 @@ def test_what_is_read_beside_the_log_is_kept(folder: Path) -> None:
         assert len(campaign.settings(1)["files"]["mapping"]["sha256"]) == 64
     (folder / "hersey.toml").write_text('# other\n[torque]\nunit = "mN*m"\n')
     done = typed(folder, "add", "life.hersey", "0.csv", *F12)
-    assert (done.returncode, "read in another way: say --force" in done.stderr) == (2, True)
+    assert (done.returncode, "read in another way: use --force" in done.stderr) == (2, True)
 
 
 @pytest.mark.parametrize(

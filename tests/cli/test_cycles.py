@@ -186,7 +186,7 @@ def test_units_and_names_of_a_csv_file(tmp_path: Path) -> None:
     pull = read_trace(path, value="pull", unit="lbf")
     assert pull.value[0] == pytest.approx(4.4482216)
     assert np.isnan(pull.value[1:]).all()
-    with pytest.raises(UnitError, match=r"pull has no unit: give --unit N"):
+    with pytest.raises(UnitError, match=r"pull has no unit: give unit='N'"):
         read_trace(path, value="pull")
     path.write_text("time [s],force [N]\n0,1\n1,l0\n")
     with pytest.raises(UnreadableLogError, match=r"line 3, column 'force': 'l0' is not a number"):
@@ -203,7 +203,7 @@ def test_mat_files(tmp_path: Path) -> None:
     savemat(path, {"t": np.arange(5.0), "force": np.arange(5.0), "long": np.arange(9.0), "note": "x"})
     found = read_trace(path, time_unit="ms", unit="N")
     np.testing.assert_allclose(found.time, np.arange(5) * 1e-3)
-    with pytest.raises(UnitError, match="t has no unit: give --time-unit s"):
+    with pytest.raises(UnitError, match="t has no unit: give time_unit='s'"):
         read_trace(path, unit="N")
     with pytest.raises(UnreadableLogError, match="t has 5 numbers, long 9"):
         read_trace(path, value="long", time_unit="s", unit="N")

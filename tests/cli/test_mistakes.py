@@ -203,7 +203,7 @@ def named_once(it: Refused) -> list[str]:
 
 def given_as(it: Refused) -> list[str]:
     """Give a file by the option that the message names, in place of the one it was given by."""
-    match = re.search(r"hersey: (\S+) is .* give it as (--\w+) '([^']*)'$", it.message)
+    match = re.search(r"hersey: (\S+) is .* give it as (--\w+) '?([^']*)'?$", it.message)
     assert match
     at = it.arguments.index(match[1])
     return [*it.arguments[: at - 1], match[2], match[3], *it.arguments[at + 1 :]]

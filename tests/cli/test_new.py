@@ -76,7 +76,7 @@ def test_a_dash_leaves_out_and_the_end_leaves_out_the_rest(folder: Path) -> None
     ("answers", "said"),
     [
         ([], "hersey new asks questions: type it in a terminal, or pipe the answers"),
-        (["Moment"], "answer 1, channel of the torque: log.csv: --torque: there is no column 'Moment'"),
+        (["Moment"], "answer 1, channel of the torque: log.csv: torque: there is no column 'Moment'"),
         (["", "rpm"], "answer 2, unit of the torque: unit 'rpm' is not a unit of torque"),
         ([*CHANNELS, "11"], "answer 9, k stiffness: '11' has no unit: write one, as in '11 N/mm'"),
         ([*CHANNELS, "11 N/mm", ""], "answer 10, m mass: this is needed: nothing is written"),

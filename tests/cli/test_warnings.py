@@ -89,7 +89,7 @@ def test_what_the_two_directions_differ_by_is_warned_of_until_one_is_taken(folde
 
 def test_an_offset_is_warned_of_until_it_is_subtracted(folder: Path) -> None:
     for verb in ("fit", "report"):
-        assert any("say --tare standing" in each for each in told(folder, verb, "falling.csv")["warnings"])
+        assert any("use --tare standing" in each for each in told(folder, verb, "falling.csv")["warnings"])
         tared = told(folder, verb, "falling.csv", "--tare", "standing")["warnings"]
         assert not any("--tare standing" in each for each in tared)
 

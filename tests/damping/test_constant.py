@@ -110,7 +110,7 @@ def test_a_speed_that_does_not_vary_is_refused(speed: Array) -> None:
 def test_a_temperature_that_does_not_vary_is_allowed() -> None:
     torque = 500.0 * (SPEED / 30.0) ** 0.4 * (1.0 + 0.01 * WHITE)
     cold = frame(torque, temperature=np.full(COUNT, 100.0))
-    with pytest.raises(InsufficientDataError, match=r"no exponent b can be claimed.*--isothermal"):
+    with pytest.raises(InsufficientDataError, match=r"no exponent b can be claimed.*isothermal=True"):
         hersey.fit(hersey.read(cold).steady())
     surface = hersey.fit(hersey.read(cold, isothermal=True).steady())
     assert surface.b is None

@@ -337,7 +337,7 @@ def test_only_the_rotation_asked_for_is_used() -> None:
 
 def test_torque_against_the_rotation_is_refused() -> None:
     found = point(-np.ones(500))
-    assert refused(found, "torque and speed have opposite signs: turn one with --torque-sign -1")
+    assert refused(found, "torque and speed have opposite signs: turn one with signs={'torque': -1}")
 
 
 def test_a_sensor_that_shows_nothing_is_named() -> None:

@@ -129,7 +129,7 @@ def test_what_one_speed_or_one_temperature_does_not_tell_is_said() -> None:
 def test_no_load_logs_that_tell_nothing_are_refused() -> None:
     with pytest.raises(InsufficientDataError, match="run: 3 steady points cannot tell the rest"):
         hersey.rest_of_drive(points_of(SPEEDS[:3], 0.02 + 0.001 * SPEEDS[:3]))
-    with pytest.raises(InsufficientDataError, match=r"fitted as -35 mN m at its least.*--torque-sign -1"):
+    with pytest.raises(InsufficientDataError, match=r"fitted as -35 mN m at its least.*signs={'torque': -1}"):
         hersey.rest_of_drive(points_of(SPEEDS, -0.02 - 0.001 * SPEEDS))
     points = no_load()
     twice = replace(points.log, corrections=(Correction("no-load torque", (), ()),))

@@ -177,7 +177,7 @@ def test_what_cannot_be_known_is_refused() -> None:
     with pytest.raises(InsufficientDataError, match="three speeds"):
         hersey.fit(points_of(w, w**0.3, t))
     w, t = grid(SPEEDS, np.array([-20.0, 20.0]))
-    with pytest.raises(InsufficientDataError, match="--temperature-scale K"):
+    with pytest.raises(InsufficientDataError, match="temperature_scale='K'"):
         hersey.fit(points_of(w, w**0.3, t))
     with pytest.raises(ParameterError, match="temperature scale"):
         hersey.fit(points_of(w, w**0.3, t + 100), temperature_scale="degF")

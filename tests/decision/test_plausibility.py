@@ -52,7 +52,7 @@ def test_a_torque_in_the_wrong_unit_is_asked_about(
     assert found.times == pytest.approx(1e3 * median / 8.0)
     text, remedy = in_words(replace(found, value=840.0 * 8.0))
     assert text == "Is torque in mN·m? It is 840 times your motor's limit"
-    assert remedy == "Give the unit with --torque-unit."
+    assert remedy == "Give the unit with units={'torque': ...}."
 
 
 def test_a_radius_in_metres_is_asked_about(points: hersey.SteadyPoints, machine: hersey.Machine) -> None:

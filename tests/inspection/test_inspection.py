@@ -225,10 +225,10 @@ def test_missing_numbers_and_temperature_say_which_flag_helps(tmp_path: Path) ->
     path = tmp_path / "holes.csv"
     holes.drop(TEMPERATURE).write_csv(path)
     found = inspect(path)
-    assert found.needed == ("--isothermal", "--drop-missing")
+    assert found.needed == ("isothermal", "drop_missing")
     assert found.dropped == {"holes.csv": 160}
     assert f"{path.name}: Drive torque: 160 rows lack a number" in found.findings
-    assert "readable as a log of torque with --isothermal --drop-missing" in found.summary()
+    assert "readable as a log of torque with isothermal=True and drop_missing=True" in found.summary()
 
 
 def test_a_log_whose_time_steps_back_is_shown_all_the_same(tmp_path: Path) -> None:
@@ -297,7 +297,7 @@ def test_other_formats_are_shown_channel_by_channel() -> None:
 def test_wear_tests_and_a_dynamometer() -> None:
     for path in sorted(shared("data/friction/te67_pin_on_disc").glob("*.tsv")):
         found = inspect(path)
-        assert "choose with --torque 'Friction Force#1' or 'Friction Force#2'" in found.summary()
+        assert "told apart as 'Friction Force#1' or 'Friction Force#2'" in found.summary()
         assert found.files[0].clocks[0].interval == 1.0
         flagged = {c.name for c in found.files[0].channels for f in c.traits.faults if f.kind == "stuck"}
         assert flagged == set()
@@ -309,7 +309,7 @@ def test_wear_tests_and_a_dynamometer() -> None:
 def test_screw_drives_together_can_tell_what_each_alone_cannot() -> None:
     paths = sorted(shared("data/friction/tro2021_screw_drives/driveNo1/steady_state").glob("*.csv"))
     found = inspect(paths, units={"torque": "9.84 mN*m / 100"}, rotation="reverse")  # signs are opposite
-    assert found.needed == ("--isothermal",)
+    assert found.needed == ("isothermal",)
     assert found.support is not None
     assert found.support.speeds == 15
     assert any("torque falls, then rises, beyond doubt" in said for said in found.support.can)

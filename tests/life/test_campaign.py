@@ -122,7 +122,7 @@ def test_a_changed_log_is_told_and_replaced_when_forced(campaign: Campaign, run_
     add(campaign, run_csv)
     means(run_csv, level=6.0)
     with pytest.raises(
-        ParameterError, match=r"run\.csv has changed .* run 1 of F12 at 1000 pages: say --force"
+        ParameterError, match=r"run\.csv has changed .* run 1 of F12 at 1000 pages: use force=True"
     ):
         add(campaign, run_csv)
     assert add(campaign, run_csv, force=True) == "replaced"
@@ -141,7 +141,7 @@ def test_the_same_content_elsewhere_is_told(campaign: Campaign, run_csv: Path) -
     assert add(campaign, copy) == "already there"
     with pytest.raises(ParameterError, match="same content as run 1 of F12 at 1000 pages"):
         add(campaign, copy, unit="F13")
-    with pytest.raises(ParameterError, match="say --force to have it as F12 at 2000 pages"):
+    with pytest.raises(ParameterError, match="use force=True for F12 at 2000 pages"):
         add(campaign, run_csv, age="2000 pages")
     assert add(campaign, run_csv, age="2000 pages", force=True) == "replaced"
     assert campaign.runs()["age"].to_list() == [2000.0]

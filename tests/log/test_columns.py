@@ -174,7 +174,7 @@ def test_stamps_and_missing_numbers(tmp_path: Path) -> None:
         UnreadableLogError, match=r"table\.csv, line 4, column 'temperature': '-' stands"
     ) as told:
         read_temperature_profile(path)
-    assert "--drop-missing" not in str(told.value)
+    assert "drop_missing" not in str(told.value)
     pl.DataFrame({"time [s]": [0.0, 1.0], "temperature [K]": [300.0, None]}).write_parquet(
         tmp_path / "a.parquet"
     )
@@ -188,12 +188,10 @@ def test_names_of_a_trace(tmp_path: Path) -> None:
     assert read_trace(path).value[0] == 2.0
     assert read_trace(path, value="pull#2").value[0] == 3.0
     assert read_trace(path, value="force (N)").value[0] == 2.0
-    with pytest.raises(
-        ChannelError, match=r"pull \[N\], pull \[N\] could be the force: name it with --value"
-    ):
+    with pytest.raises(ChannelError, match=r"pull \[N\], pull \[N\] could be the force: name it with value"):
         read_trace(path, value="pull")
     path.write_text("0,1\n1,2\n2,3\n")
-    with pytest.raises(UnreadableLogError, match=r"line 1: no header stands above .* such as --value '#2'"):
+    with pytest.raises(UnreadableLogError, match=r"line 1: no header stands above .* such as value='#2'"):
         read_trace(path)
     assert read_trace(path, time="#1", value="#2", time_unit="ms", unit="N").time[2] == pytest.approx(2e-3)
     savemat(tmp_path / "a.mat", {"t": TIME, "force_N": FORCE})

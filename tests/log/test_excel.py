@@ -60,7 +60,7 @@ def test_the_sheet_with_torque_and_speed_is_taken_or_asked_for(tmp_path: Path) -
     path = workbook(tmp_path / "two.xlsx", Calibration=calibration, Run=[HEAD, *rows()])
     assert_same(hersey.read(path))
     path = workbook(tmp_path / "three.xlsx", First=[HEAD, *rows()[:50]], Second=[HEAD, *rows()])
-    with pytest.raises(ChannelError, match=r"'First/Torque .* or 'Second/Torque .*: choose with --torque"):
+    with pytest.raises(ChannelError, match=r"'First/Torque .* or 'Second/Torque .*: choose with channels="):
         hersey.read(path)
     assert_same(hersey.read(path, channels={"torque": "Second/Torque"}))
 

@@ -110,7 +110,7 @@ def test_any_numbers_survive(
 def test_a_channel_is_named_when_two_could_be_it(tmp_path: Path) -> None:
     path = tmp_path / "log.csv"
     path.write_text("t [s],Tq (ozf.in),Torque 2 [N*m],Speed [rpm],Temp [degC]\n0,1,2,3,4\n1,1,2,3,4\n")
-    with pytest.raises(ChannelError, match="--torque 'Tq'"):
+    with pytest.raises(ChannelError, match=r"channels=\{'torque': 'Tq'\}"):
         hersey.read(path)
     chosen = hersey.read(path, channels={"torque": "Tq (ozf.in)"})
     assert chosen.runs[0].torque[0] == pytest.approx(0.00706155, rel=1e-5)

@@ -96,7 +96,7 @@ def test_a_channel_that_is_invalid_throughout_is_refused(name: str, tmp_path: Pa
 
 def test_a_third_is_refused_unless_asked_for(tmp_path: Path) -> None:
     path = write(tmp_path / "log.mf4", {"torque": slice(0, 133)})
-    with pytest.raises(UnreadableLogError, match=r"33% of the channel .*--drop-missing"):
+    with pytest.raises(UnreadableLogError, match=r"33% of the channel .*drop_missing=True"):
         hersey.read(path)
     assert hersey.read(path, drop_missing=True).rows == ROWS - 133
 

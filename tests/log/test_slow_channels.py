@@ -76,7 +76,7 @@ def test_a_long_gap_is_not_bridged(tmp_path: Path) -> None:
 def test_torque_and_speed_are_never_interpolated(role: str, tmp_path: Path) -> None:
     for source in sources(table(**{role: sparse(TORQUE), "Temp [degC]": HEAT}), tmp_path):
         for drop in (False, True):
-            with pytest.raises(UnreadableLogError, match=r"2940 such rows of 3000\); too few rows are left"):
+            with pytest.raises(UnreadableLogError, match=r"2940 such rows of 3000\): too few rows are left"):
                 hersey.read(source, drop_missing=drop)
 
 
@@ -118,5 +118,5 @@ def test_values_few_and_far_between_tell_nothing_of_what_lies_between(every: int
     long = pl.concat([table(), *(table(**{"Time [s]": TIME + 60.0 * i}) for i in range(1, 4))])
     heat = pl.Series("Temp [degC]", sparse(np.tile(HEAT, 4), every))
     for source in sources(long.with_columns(heat), tmp_path):
-        with pytest.raises(UnreadableLogError, match=r"such rows of 12000.*; too few rows are left"):
+        with pytest.raises(UnreadableLogError, match=r"such rows of 12000.*: too few rows are left"):
             hersey.read(source, drop_missing=True)

@@ -126,7 +126,7 @@ def test_an_isothermal_log_needs_its_temperature(
     points: hersey.SteadyPoints, surface: DampingSurface, contact: Contact, oil: Lubricant
 ) -> None:
     cold = replace(points, table=points.table.with_columns(temperature=np.full(len(points), np.nan)))
-    with pytest.raises(InsufficientDataError, match=r"state that of the film, --at '180 degC'"):
+    with pytest.raises(InsufficientDataError, match=r"give that of the film, temperature=453.15"):
         measured_film(cold, surface, contact, oil)
     stated = measured_film(cold, surface, contact, oil, temperature=430.0)
     assert set(stated.temperature) == {430.0}

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from hersey.errors import UnitError
+from hersey.errors import UnitError, UnreadableLogError
 from hersey.log.channels import ROLES, role_conversion
 from hersey.log.doubtful import RARE, TOO_HOT
 from hersey.log.slow_channels import is_slow
@@ -27,7 +27,6 @@ UNITS = {
 #: No belt is colder, K; so large a share of the rows may be left out without a question.
 _TOO_COLD, _FEW = 220.0, 0.02
 _SETPOINT = re.compile(r"\b(set|cmd|command|target|demand|reference|soll|nominal)", re.IGNORECASE)
-_FLAG = re.compile(r"--(time|torque|speed|temperature)(-unit)?\b")
 
 
 @dataclass(frozen=True)
@@ -99,16 +98,17 @@ def _as_proposed(look: Mapping[str, Any], choices: Mapping[str, Mapping[str, str
     )
 
 
-def of_problem(problem: str, look: Mapping[str, Any], choices: Mapping[str, Mapping[str, str]]) -> Fault:
-    """Return the fault of what a reader said, at the channel it speaks of."""
-    text = problem.removeprefix(f"{look['name']}: ").removeprefix(f"{look['name']}, ")
-    flag = _FLAG.search(text)
-    role = flag[1] if flag else "time" if re.search(r"\btime\b|clock", text) else ""
+def of_problem(
+    problem: Mapping[str, Any], look: Mapping[str, Any], choices: Mapping[str, Mapping[str, str]]
+) -> Fault:
+    """Return the fault of what a reader refused (`HerseyError.to_dict`), at the channel that it is about."""
+    said = problem["reason"].removeprefix(f"{look['name']}: ").removeprefix(f"{look['name']}, ")
+    role = problem["setting"] if problem["setting"] in ROLES else ""
     name = next((name for name, choice in choices.items() if role and choice["role"] == role), "")
-    kind = "unit" if flag and flag[2] else "role"
+    kind = "unit" if problem["of"] == "unit" else "role"
     at = f"{kind}:{name}" if name else "file:"
-    title = "Time is out of order." if role == "time" and not flag else "It cannot be read so."
-    said = re.sub(r"[,;:]?\s*(say|or say|name it with|choose with)\s+--.*", "", text)
+    rows = role == "time" and problem["error"] == UnreadableLogError.__name__
+    title = "Time is out of order." if rows else "It cannot be read so."
     return Fault(at, title, said[:1].upper() + said[1:], f"{role or 'the log'}: {title.lower().rstrip('.')}")
 
 

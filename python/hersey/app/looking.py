@@ -58,7 +58,7 @@ def look(path: Path) -> dict[str, Any]:
         ],
         "without": {role: str(why) for role, why in without.items()},
         "claims": {role: _claims(role, log, names, why) for role, why in without.items()},
-        "problem": "" if without or means else _problem(path),
+        "problem": {} if without or means else _problem(path),
         "found": found,
     }
 
@@ -163,10 +163,10 @@ def _finite(value: float) -> float | None:
     return float(value) if np.isfinite(value) else None
 
 
-def _problem(path: Path) -> str:
-    """Why the file cannot be read as a log of torque as it is, or nothing."""
+def _problem(path: Path) -> dict[str, Any]:
+    """Why the file cannot be read as a log of torque as it is, as data, or nothing."""
     try:
         read_with_mapping([path], mapping=LogMapping())
     except HerseyError as error:
-        return str(error)
-    return ""
+        return error.to_dict()
+    return {}

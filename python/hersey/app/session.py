@@ -174,12 +174,13 @@ class Session:
                 )
             async with one.lock:
                 if any(_same(other.look, look) for other in one.files.values()):
-                    raise Refused("the same log is here already")
-                file.look, file.state = look, "ready"
-                one.propose(file)
+                    file.state, file.fault = "fault", "the same log is here already"
+                else:
+                    file.look, file.state = look, "ready"
+                    one.propose(file)
         except Refused as error:
             said = str(error).removeprefix(f"{file.name}: ").removeprefix(f"{file.name} ")
-            file.state, file.fault = "fault", said if "is here already" in said else f"not a log: {said}"
+            file.state, file.fault = "fault", f"not a log: {said}"
         except EndedError:
             file.state = "fault"
             file.fault = "not a log that can be read here: what read it ended (is it damaged, or too large?)"
@@ -292,7 +293,7 @@ class Session:
             one.state, one.reason = "stopped", str(error)
             logs = one.logs
             if logs:
-                one.faults = [of_problem(one.reason, logs[0].look, one.choices)]
+                one.faults = [of_problem(error.problem, logs[0].look, one.choices)]
         except (EndedError, OutputError) as error:
             one.state = "stopped"
             one.reason = (

@@ -19,7 +19,7 @@ from hersey.app.door import Door
 from hersey.app.server import application, new_token
 from hersey.app.session import Session
 from hersey.app.uploads import Bounds
-from hersey.errors import OutputError
+from hersey.errors import OutputError, Setting
 
 _PREFIX, _LOCK = "hersey-app-", "lock"
 #: Opens the app: the token is in no list of processes, as the argument of a browser would be.
@@ -96,7 +96,9 @@ def _socket(port: int) -> socket.socket:
     except (OSError, OverflowError) as error:
         listening.close()
         told = getattr(error, "strerror", None) or "there is no such port"
-        raise OutputError(f"--port {port}: {told}: leave it out for one that is free") from None
+        raise OutputError(
+            f"{Setting('port').to(str(port))}: {told}: leave it out for one that is free"
+        ) from None
     listening.listen(64)
     return listening
 

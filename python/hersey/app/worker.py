@@ -29,9 +29,10 @@ def main() -> None:
         write_atomically(Path(request["result"]), json.dumps(answer), overwrite=True)
         tell(done=True)
     except HerseyError as error:
-        tell(refused=str(error))
+        tell(refused=str(error), problem=error.to_dict())
     except MemoryError:
-        tell(refused="it does not fit into the memory of this computer: thin the log, or cut it")
+        full = HerseyError("it does not fit into the memory of this computer: thin the log, or cut it")
+        tell(refused=str(full), problem=full.to_dict())
 
 
 def tell(**words: Any) -> None:

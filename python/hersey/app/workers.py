@@ -6,7 +6,7 @@ import asyncio
 import json
 import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -21,7 +21,12 @@ class EndedError(Exception):
 
 
 class Refused(Exception):  # noqa: N818 - no fault of the program: what was asked cannot be done
-    """What was asked cannot be done, in words for the user."""
+    """What was asked cannot be done, in words for the user; ``problem`` is the error as data."""
+
+    def __init__(self, words: str, problem: Mapping[str, Any]) -> None:
+        """Take the words, and what `HerseyError.to_dict` gives."""
+        super().__init__(words)
+        self.problem = problem
 
 
 async def ask(
@@ -61,21 +66,22 @@ async def ask(
     )
     assert process.stdin is not None
     assert process.stdout is not None
-    refused, ended = None, False
+    refused: Refused | None = None
+    ended = False
     try:
         process.stdin.write(json.dumps(request | {"result": str(result)}).encode() + b"\n")
         await process.stdin.drain()
         async for line in process.stdout:
             word = json.loads(line)
             if "refused" in word:
-                refused = word["refused"]
+                refused = Refused(word["refused"], word["problem"])
             elif "step" in word:
                 said(word["step"], word["share"])
             elif word.get("done"):
                 ended = True
                 return dict(json.loads(await asyncio.to_thread(result.read_text)))
         ended = True
-        raise Refused(refused) if refused is not None else EndedError("it ended without a result")
+        raise refused or EndedError("it ended without a result")
     except (ConnectionError, ValueError) as error:
         raise EndedError(str(error)) from None
     finally:

@@ -26,7 +26,7 @@ from hersey.damping.candidates.observations import Inputs, Observations
 from hersey.damping.distributions import ratio_quantile, student_above, student_quantile
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.estimate import CONFIDENCE, Estimate
-from hersey.errors import HerseyError, InsufficientDataError
+from hersey.errors import ISOTHERMAL, HerseyError, InsufficientDataError
 from hersey.result import Result, json_record
 from hersey.units import convert, rpm
 
@@ -235,8 +235,8 @@ def _shared(a: Observations, b: Observations, names: tuple[str, str]) -> tuple[F
         if (a.inputs.kelvin is None) != (b.inputs.kelvin is None):
             bare = names[0] if a.inputs.kelvin is None else names[1]
             raise InsufficientDataError(
-                f"only one of the logs has a temperature, {bare} has none: compare both with --isothermal, "
-                "at one temperature"
+                f"only one of the logs has a temperature, {bare} has none: compare both at one "
+                f"temperature with {ISOTHERMAL.to()}"
             )
         return speeds, np.empty(0)
     cold = max(float(a.inputs.kelvin.min()), float(b.inputs.kelvin.min()))

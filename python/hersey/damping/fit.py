@@ -22,7 +22,7 @@ from hersey.damping.scaled import law_of
 from hersey.damping.shown import why_not_shown
 from hersey.damping.surface import DampingSurface
 from hersey.damping.systematic import sensor_shifts
-from hersey.errors import InsufficientDataError, ParameterError
+from hersey.errors import ISOTHERMAL, InsufficientDataError, ParameterError, Setting
 from hersey.units import celsius
 
 #: Temperature below which no lubricant flows, K: what reads less is in another unit.
@@ -73,7 +73,7 @@ def _require_temperatures(data: Observations, scale: str) -> None:
         low, high = celsius(float(kelvin.min())), celsius(float(kelvin.max()))
         raise InsufficientDataError(
             f"all steady points are at one temperature ({low:.1f} to {high:.1f} degC): no exponent b can be "
-            "claimed; record other temperatures, or say --isothermal to fit B = a w^c at this one"
+            f"claimed; record other temperatures, or use {ISOTHERMAL.to()} to fit B = a w^c at this one"
         )
     if np.any(scaled_temperature(kelvin, scale) <= 0):
         raise InsufficientDataError(
@@ -85,8 +85,9 @@ def _lowest(kelvin: FloatArray) -> str:
     """The lowest temperature, and what to do about it: no oil flows so far below."""
     low = float(kelvin.min())
     if low < NO_OIL_FLOWS:
-        return f"{celsius(low):.0f} degC: if the numbers are degC and no K, say --temperature-unit degC"
-    return f"{celsius(low):.3g} degC: fit with --temperature-scale K"
+        how = Setting("temperature", "unit").to("degC")
+        return f"{celsius(low):.0f} degC: if the numbers are degC and no K, use {how}"
+    return f"{celsius(low):.3g} degC: fit with {Setting('temperature_scale').to('K')}"
 
 
 def _require_dwells(data: Observations) -> None:

@@ -16,7 +16,7 @@ from hersey.damping.candidates.observations import Observations
 from hersey.damping.candidates.rest_law import KELVIN, RestLaw
 from hersey.damping.dwells import SteadyPoints, distinct_speeds
 from hersey.damping.rest import RestOfDrive, estimates_of
-from hersey.errors import InsufficientDataError, ParameterError
+from hersey.errors import TARE, InsufficientDataError, ParameterError, turned
 from hersey.log.sensors import SHARE_OF_LARGEST, Sensors
 from hersey.units import celsius, rpm
 
@@ -67,8 +67,8 @@ def rest_of_drive(points: SteadyPoints) -> RestOfDrive:
     if not least > 0:
         raise InsufficientDataError(
             f"{name}: without the film torque is fitted as {1e3 * least:.3g} mN m at its least, and what a "
-            "drive takes is greater than nothing: subtract the zero of the sensor (--tare standing), or turn "
-            "a sign with --torque-sign -1"
+            f"drive takes is greater than nothing: subtract the zero of the sensor ({TARE.to('standing')}), "
+            f"or turn a sign with {turned('torque')}"
         )
     units = {"constant": scale, "per_speed": scale / data.reference_speed, "temperature_slope": 1.0 / KELVIN}
     by = np.array([[units[n] if n == fitted else 0.0 for fitted in law.names] for n in units])

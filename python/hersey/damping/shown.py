@@ -14,6 +14,7 @@ from hersey.damping.candidates.observations import Observations
 from hersey.damping.dwells import SAME_SPEED, SteadyPoints, distinct_speeds
 from hersey.damping.estimate import quantile
 from hersey.damping.scaled import scaled_speed, scaled_torque
+from hersey.errors import ROTATION
 from hersey.units import rpm
 
 #: Speeds on either side whose torque must exceed the least.
@@ -81,7 +82,7 @@ def _directions(points: SteadyPoints) -> list[tuple[list[tuple[str, BoolArray]],
     out = [
         (
             [("of forward rotation", forward), ("of reverse rotation", ~forward)],
-            ": fit each alone with --rotation",
+            f": fit each alone with {ROTATION.to()}",
         )
     ]
     if "approach" in points.table.columns:

@@ -241,7 +241,15 @@ def _quality(log: TorqueLog | MeansTable, points: SteadyPoints) -> Quality:
         standing_torque=points.standing_torque,
         tare=points.tare,
         rejected=[
-            RejectedStretch(run=r.run, start=r.start, end=r.end, rows=r.rows, reason=r.reason)
+            RejectedStretch(
+                run=r.run,
+                start=r.start,
+                end=r.end,
+                rows=r.rows,
+                kind=r.why.kind,
+                label=r.why.label,
+                reason=r.reason,
+            )
             for r in points.rejected
         ],
     )

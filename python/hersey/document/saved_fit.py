@@ -18,7 +18,7 @@ from hersey.damping.soundness import LARGEST
 from hersey.damping.surface import DampingSurface
 from hersey.document.consistency import faults_of_fit
 from hersey.document.parts import ClosurePart, FitPart, InputFile, Interval, Point, RestPart, TransitionPart
-from hersey.errors import ParameterError
+from hersey.errors import ParameterError, way_in
 from hersey.files.text import read_text
 
 #: How far a number may be from the one it follows from, relative: JSON keeps all digits.
@@ -67,9 +67,8 @@ def read_fit(path: str | Path) -> DampingSurface:
 
 
 def _broken(path: Path, field: str, reason: str) -> ParameterError:
-    return ParameterError(
-        f"{path.name}: {field}: {reason}; write it anew: hersey fit LOG --json > {path.name}"
-    )
+    how = f": hersey fit LOG --json > {path.name}" if way_in() == "terminal" else ""
+    return ParameterError(f"{path.name}: {field}: {reason}; save the fit again{how}")
 
 
 def _check(path: Path, document: _FitFile) -> None:

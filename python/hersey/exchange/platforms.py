@@ -8,7 +8,7 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-from hersey.errors import MissingFileError, ParameterError
+from hersey.errors import MissingFileError, ParameterError, Setting
 
 #: Name of the library in a unit, and of the file that this package brings.
 LIBRARY = "hersey"
@@ -32,7 +32,9 @@ class Platform:
         """
         folder = self.name if fmi == "3.0" else self.folder_2
         if not folder:
-            raise ParameterError(f"FMI {fmi} has no folder for {self.name}: leave it out, or use --fmi 3.0")
+            raise ParameterError(
+                f"FMI {fmi} has no folder for {self.name}: leave it out, or use {Setting('fmi').to('3.0')}"
+            )
         return f"binaries/{folder}/{LIBRARY}{self.ending}"
 
 

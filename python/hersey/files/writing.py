@@ -13,7 +13,7 @@ from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import BinaryIO
 
-from hersey.errors import ExistingFileError, OutputError
+from hersey.errors import OVERWRITE, ExistingFileError, OutputError
 
 #: End of the name of a file that is not whole yet.
 SUFFIX = ".part"
@@ -115,7 +115,7 @@ def _place(part: Path, path: Path, overwrite: bool) -> None:
 
 
 def _exists(path: Path) -> ExistingFileError:
-    return ExistingFileError(f"{path} exists: say --force to replace it, or name another file")
+    return ExistingFileError(f"{path} exists: use {OVERWRITE.to()} to replace it, or name another file")
 
 
 @contextmanager

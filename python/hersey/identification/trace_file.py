@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from hersey.arrays import FloatArray
-from hersey.errors import ChannelError, ParameterError, UnitError, UnreadableLogError
+from hersey.errors import ChannelError, ParameterError, Setting, UnitError, UnreadableLogError
 from hersey.log.channels import called
 from hersey.log.columns import OpenColumns, open_columns
 from hersey.log.rows import LeftOut, runs_of
@@ -95,14 +95,16 @@ def read_trace_runs(
         raise ParameterError(f"quantity '{quantity}' is not known: {', '.join(QUANTITIES)}")
     with open_columns(path) as opened:
         if opened.headless and not (time and value):
-            raise UnreadableLogError(opened.headless.replace("--torque", "--value"))
+            raise UnreadableLogError(
+                f"{opened.headless}; name the columns by number, such as {Setting('value').to('#2')}"
+            )
         quantity = quantity or _quantity(opened, value)
         chosen = _chosen(opened, opened.columns, value, QUANTITIES[quantity][1], quantity)
         times, values = _with_time(opened, chosen, time, time_unit)
     used, si = unit or chosen.unit, RELATIVE
     if used != RELATIVE or quantity != "force":
         kind = _kind(quantity, used)
-        values, si = _si(opened.file, kind, values, used, chosen, "--unit"), KINDS[kind][0]
+        values, si = _si(opened.file, kind, values, used, chosen, Setting("unit")), KINDS[kind][0]
     return _runs(TraceFile(times, values, quantity, si, str(chosen)), opened.file)
 
 
@@ -136,7 +138,7 @@ def _with_time(opened: OpenColumns, chosen: Column, time: str, unit: str) -> tup
         raise UnreadableLogError(
             f"{opened.file}: {column} has {times.size} numbers, {chosen} {values.size}: they must agree"
         )
-    return _si(opened.file, "time", times, unit or column.unit, column, "--time-unit"), values
+    return _si(opened.file, "time", times, unit or column.unit, column, Setting("time_unit")), values
 
 
 def _kind(quantity: str, unit: str) -> str:
@@ -150,9 +152,9 @@ def _kind(quantity: str, unit: str) -> str:
     return kind
 
 
-def _si(file: str, kind: str, values: FloatArray, unit: str, column: Column, flag: str) -> FloatArray:
+def _si(file: str, kind: str, values: FloatArray, unit: str, column: Column, named: Setting) -> FloatArray:
     if not unit:
-        raise UnitError(f"{file}: {column} has no unit: give {flag} {KINDS[kind][1]}")
+        raise UnitError(f"{file}: {column} has no unit: give {named.to(KINDS[kind][1])}")
     try:
         line = conversion(kind, unit)
     except UnitError as error:
@@ -173,7 +175,7 @@ def _chosen(
     if wanted and not candidates:
         raise ChannelError(f"{opened.file}: there is no column '{wanted}': it has {known}")
     if len(candidates) != 1:
-        flag = "--time" if role == "time" else "--value"
+        flag = Setting("time" if role == "time" else "value").to()
         what = f"{', '.join(map(str, candidates))} could be" if candidates else "no column is"
         raise ChannelError(f"{opened.file}: {what} the {role}: name it with {flag}; it has {known}")
     return candidates[0]
@@ -191,7 +193,7 @@ def _quantity(opened: OpenColumns, value: str) -> str:
     what = " and ".join(known) or "no force, torque or speed"
     usual = {name for quantity in known for name in QUANTITIES[quantity][1]}
     first = next((c for c in opened.columns if _plain(c.name) in usual), None)
-    named = f"--value '{first.path}'" if first and not value else "--value"
+    named = Setting("value").to(first.path if first and not value else "")
     raise ChannelError(f"{opened.file} holds {what}: name the column with {named}; it has {_listed(opened)}")
 
 

@@ -15,7 +15,8 @@ from hersey.arrays import FloatArray
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.dwells.doubtful import doubtful_order, doubtful_tare
 from hersey.damping.dwells.misleading import in_words, misleading
-from hersey.errors import HerseyError, InsufficientDataError
+from hersey.damping.dwells.reasons import LABELS
+from hersey.errors import DROP_MISSING, ISOTHERMAL, HerseyError, InsufficientDataError, Setting, way_in
 from hersey.inspection.clock import Clock, clock_of
 from hersey.inspection.faults import DITHER, Fault, Traits, traits
 from hersey.inspection.raw import Lacking, RawChannel, RawLog, raw_channels, roles_of
@@ -82,7 +83,7 @@ class Inspection(Result):
     problem
         Why they cannot be read as a log of torque, or empty.
     needed
-        Flags without which they could not.
+        Names of switches without which they could not: ``isothermal``, ``drop_missing``.
     dropped
         Rows left out because a number is missing or cannot be right, by file.
     corrections
@@ -149,12 +150,12 @@ class Inspection(Result):
             for name, rows in self.dropped.items()
         ]
         if self.needed:
-            lines.append(f"readable as a log of torque with {' '.join(self.needed)}")
+            lines.append(f"readable as a log of torque with {_switches(self.needed)}")
         lines += [f"! {caution}" for caution in self.cautions]
         if self.support is None:
             return "\n".join([*lines, f"No fit is possible: {self._hindrance()}"])
         lines.append(f"{self.support.dwells} dwells")
-        lines += [f"  not used: {rows} rows, {why}" for why, rows in self.support.rejected.items()]
+        lines += [f"  not used: {rows} rows, {LABELS[kind]}" for kind, rows in self.support.rejected.items()]
         lines += [f"  can tell    {said}" for said in self.support.can]
         lines += [f"  cannot tell {said}" for said in self.support.cannot]
         return "\n".join(lines)
@@ -170,8 +171,9 @@ class Inspection(Result):
             return self.problem
         names = bare[0] if len(bare) == 1 else f"{bare[0]} and {len(bare) - 1} more"
         return (
-            f"there is no torque channel in {names}. If a channel is torque, name it with --torque; if one "
-            "is the motor's current, give its motor_constant in a mapping (--save-mapping)"
+            f"there is no torque channel in {names}. If a channel is torque, name it with "
+            f"{Setting('torque', 'channel').to()}; if one is the motor's current, give its motor_constant in "
+            "a mapping"
         )
 
     @property
@@ -342,7 +344,7 @@ def _read(
     drop_missing: Sequence[bool],
     stated: Stated,
 ) -> tuple[Corrected | None, tuple[str, ...], str]:
-    """The log, the flags that it needed beside those given (first in each list), or why it cannot be read."""
+    """The log, the switches it needed beside those given (first in each list), or why it cannot be read."""
     problem = ""
     for cold, drop in itertools.product(isothermal, drop_missing):
         try:
@@ -358,9 +360,15 @@ def _read(
         except HerseyError as error:
             problem = problem or str(error)
             continue
-        flags = {"--isothermal": cold != isothermal[0], "--drop-missing": drop != drop_missing[0]}
-        return log, tuple(flag for flag, used in flags.items() if used), ""
+        switches = {ISOTHERMAL.name: cold != isothermal[0], DROP_MISSING.name: drop != drop_missing[0]}
+        return log, tuple(name for name, used in switches.items() if used), ""
     return None, (), problem
+
+
+def _switches(names: tuple[str, ...]) -> str:
+    """Switches as they are set."""
+    joint = " " if way_in() == "terminal" else " and "
+    return joint.join(Setting(name, "switch").to() for name in names)
 
 
 def _tries(given: bool, helps: bool) -> tuple[bool, ...]:
@@ -496,12 +504,15 @@ def _file_lines(file: FileReport, *, table: bool) -> list[str]:
         )
         lines += [f"  ! {finding}" for finding in clock.findings()]
     if not file.clocks and MEANS not in file.format:
-        lines.append("  ! no channel is a clock: rates and gaps cannot be told; name it with --time")
+        named = Setting("time", "channel").to()
+        lines.append(f"  ! no channel is a clock: rates and gaps are not known; name it with {named}")
     lines += _table(file) if table else []
     findings = [(c, finding) for c in file.channels for finding in c.findings]
     findings.sort(key=lambda pair: not pair[0].role)
     lines += [f"  {'!' if c.role else '-'} {c.name}: {finding}" for c, finding in findings[:_SHOWN]]
-    lines += [f"  - and {len(findings) - _SHOWN} more (--json has them)"] if len(findings) > _SHOWN else []
+    if len(findings) > _SHOWN:
+        has_them = "--json has them" if way_in() == "terminal" else "files has them"
+        lines.append(f"  - and {len(findings) - _SHOWN} more ({has_them})")
     lines += [f"  ! {role}: {why}" for role, why in file.without.items()]
     lines += [f"  - {note}" for note in file.notes]
     return lines

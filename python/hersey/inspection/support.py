@@ -13,11 +13,12 @@ from numpy.typing import NDArray
 from hersey.arrays import FloatArray
 from hersey.damping.dwells import SteadyPoints, distinct_speeds, groups_of_temperature
 from hersey.damping.dwells.constant import constant_torque
+from hersey.damping.dwells.reasons import Kind
 from hersey.damping.estimate import Estimate
 from hersey.damping.fit import fit
 from hersey.damping.rising import Rising, rising
 from hersey.damping.surface import DampingSurface
-from hersey.errors import InsufficientDataError
+from hersey.errors import InsufficientDataError, Setting
 from hersey.log.means import MeansTable
 from hersey.units import convert, rpm
 
@@ -43,7 +44,7 @@ class Support:
     temperatures
         Mean of each group of temperatures, K, coldest first.
     rejected
-        Rows of every other stretch by its reason.
+        Rows of every other stretch by the kind of its reason.
     can, cannot
         In words; what cannot be told names what is missing.
     """
@@ -52,7 +53,7 @@ class Support:
     speeds: int
     speed_range: tuple[float, float] | None
     temperatures: tuple[float, ...]
-    rejected: dict[str, int]
+    rejected: dict[Kind, int]
     can: tuple[str, ...]
     cannot: tuple[str, ...]
 
@@ -83,9 +84,9 @@ def support_of_points(points: SteadyPoints, *, temperature_scale: str = "degC") 
         can += says[0]
         cannot += says[1]
     cannot += [note for note in points.notes if isinstance(log, MeansTable)]
-    rejected: Counter[str] = Counter()
+    rejected: Counter[Kind] = Counter()
     for stretch in points.rejected:
-        rejected[stretch.why.label] += stretch.rows
+        rejected[stretch.why.kind] += stretch.rows
     limits = (float(speed.min()), float(speed.max()))
     return Support(
         len(points), distinct_speeds(speed), limits, levels, dict(rejected), tuple(can), tuple(cannot)
@@ -107,7 +108,7 @@ def _nothing(torque: float) -> Said:
     """What a torque that stands still tells."""
     return [], [
         f"any exponent: torque does not vary from {1e3 * torque:.4g} mN m; check the sensor and its cable, "
-        "or name another column with --torque"
+        f"or name another column with {Setting('torque', 'channel').to()}"
     ]
 
 

@@ -8,9 +8,10 @@ from functools import partial
 import numpy as np
 
 from hersey.arrays import BoolArray, FloatArray, IntArray
-from hersey.errors import ChannelError, HerseyError, UnreadableLogError
+from hersey.errors import ChannelError, HerseyError, Setting, UnreadableLogError
 from hersey.log.believed import in_si
 from hersey.log.channels import (
+    EVERY,
     OTHER_ROLES,
     ROLES,
     ChannelChoice,
@@ -19,6 +20,7 @@ from hersey.log.channels import (
     is_dead,
     no_channel,
     refuse_two_clocks,
+    refuse_two_temperatures,
     role_conversion,
 )
 from hersey.log.friction import beside, in_rotation, notes_on, slow_roles, unused
@@ -72,8 +74,7 @@ class Assembly:
     ) -> None:
         self.recording, self.source, self.stated = recording, recording.source, stated
         refuse_two_clocks(choices, stated)
-        if isothermal and choices["temperature"] != ChannelChoice():
-            raise ChannelError("--isothermal leaves temperature out: give no --temperature beside it")
+        refuse_two_temperatures(choices, isothermal)
         if not recording.signals:
             raise nothing_to_read(recording)
         self.columns = columns(recording)
@@ -180,10 +181,7 @@ class Assembly:
             among = self._beside_a_speed(role, choices)
             channel = find_channel(role, among, choices[role], file, dead)
         if channel is None:
-            error = no_channel(role, self.columns, file)
-            if role == "temperature":
-                error.args = (*error.args, "or say --isothermal to leave temperature out")
-            raise error
+            raise no_channel(role, self.columns, file)
         for other, (column, _) in getattr(self, "chosen", {}).items():
             if channel[0] == column:
                 raise ChannelError(f"{file}: column '{column}' cannot be both {other} and {role}")
@@ -247,8 +245,10 @@ class Assembly:
         if clock is None:
             raise ChannelError(
                 f"{file}: no time channel with {signal.rows} samples stands beside '{column}' among "
-                f"{', '.join(repr(str(c)) for c in self.columns[:40])}: name it with --time, or say the time "
-                "between rows with --every '2 ms'"
+                f"{', '.join(repr(str(c)) for c in self.columns[:40])}",
+                remedy=f"name it with {Setting('time', 'channel').to()}, or give the time between rows: "
+                f"{EVERY.to('2 ms', python='0.002')}",
+                setting=Setting("time", "channel"),
             )
         chosen, unit = clock
         tick = f"column {chosen.index}"

@@ -5,11 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from hersey.arrays import FloatArray
-from hersey.errors import ChannelError, ParameterError, UnitError, WrongKindError
+from hersey.errors import ISOTHERMAL, ChannelError, ParameterError, Setting, UnitError, WrongKindError
 from hersey.log.text.layout import Column
 from hersey.spelling import meant, printable
 from hersey.units import KINDS, Conversion, conversion, nearest_unit
@@ -19,6 +20,8 @@ ROLES = ("time", "torque", "speed", "temperature")
 #: Roles of columns that a log may have beside them: normal load, radius at which a friction force acts, and
 #: the number of a run.
 OTHER_ROLES = ("load", "radius", "run")
+#: What a person sets beside the channels.
+EVERY = Setting("every")
 #: What a column of a role may hold, kinds of units: the first where there is a choice.
 ROLE_KINDS: dict[str, tuple[str, ...]] = {
     "time": ("time",),
@@ -126,10 +129,17 @@ def find_channel(
         if len({c.path for c in candidates}) == 1:
             raise _repeated(role, candidates, file)
         raise ChannelError(
-            f"{file}: {role} could be {listed}: choose with --{role} '{candidates[0].path}'",
+            f"{file}: {role} could be {listed}",
             columns=tuple(c.index for c in candidates),
+            **_choose(role, candidates[0].path),
         )
     return _with_unit(role, candidates[0], choice, file, columns)
+
+
+def _choose(role: str, path: str) -> dict[str, Any]:
+    """The remedy where several columns could play a role."""
+    channel = Setting(role, "channel")
+    return {"remedy": f"choose with {channel.to(path)}", "setting": channel}
 
 
 def _is_named(pattern: str, column: Column) -> bool:
@@ -157,7 +167,20 @@ def refuse_two_clocks(choices: dict[str, ChannelChoice], stated: Stated) -> None
         It names both.
     """
     if stated.every is not None and choices["time"] != ChannelChoice():
-        raise ParameterError("--every says the time between rows: give no --time beside it")
+        raise ParameterError(f"{EVERY.to()} is the time between rows: name no column of the time beside it")
+
+
+def refuse_two_temperatures(choices: dict[str, ChannelChoice], isothermal: bool) -> None:
+    """Raise if temperature is excluded and its column named.
+
+    Raises
+    ------
+    ChannelError
+        It names both.
+    """
+    if isothermal and choices["temperature"] != ChannelChoice():
+        said = f"{ISOTHERMAL.to()} excludes temperature"
+        raise ChannelError(said, remedy="name no column of the temperature beside it")
 
 
 def role_conversion(role: str, unit: str) -> tuple[str, Conversion]:
@@ -181,17 +204,21 @@ def role_conversion(role: str, unit: str) -> tuple[str, Conversion]:
 
 def no_channel(role: str, columns: tuple[Column, ...], file: str) -> ChannelError:
     """Return the error for a role that no column plays."""
-    way_out = f"name it with --{role}"
+    channel = Setting(role, "channel")
+    way_out = f"name it with {channel.to()}"
     if role == "torque" and any(is_of_kind("force", c.unit) for c in columns):
-        way_out += " (a friction force too, with the --radius at which it acts)"
+        way_out += f" (a friction force too, with the {Setting('radius').to()} at which it acts)"
     elif role == "torque" and (current := next((c for c in columns if c.unit in _AMPERES), None)):
         way_out = (
-            f"if '{current.path}' is the motor's current, say --torque '{current.path}' and the torque of "
-            f"1 {current.unit} as --torque-unit '{_AMPERES[current.unit]}'"
+            f"if '{current.path}' is the motor's current, use {channel.to(current.path)} and the torque of "
+            f"1 {current.unit} as {Setting(role, 'unit').to(_AMPERES[current.unit])}"
         )
     elif role == "time":
-        way_out += ", or say the time between rows with --every '2 ms'"
-    return ChannelError(f"{file}: no {role} column among {_listed(columns)}: {way_out}")
+        way_out += f", or give the time between rows: {EVERY.to('2 ms', python='0.002')}"
+    if role == "temperature":
+        way_out += f", or use {ISOTHERMAL.to()} to exclude temperature"
+    said = f"{file}: no {role} column among {_listed(columns)}"
+    return ChannelError(said, remedy=way_out, setting=channel)
 
 
 def called(name: str, columns: tuple[Column, ...]) -> list[Column]:
@@ -215,15 +242,17 @@ def _named(role: str, columns: tuple[Column, ...], name: str, file: str) -> Colu
     same = called(name, columns)
     if not same:
         near = meant(name, [*(c.path for c in columns), *(str(c) for c in columns)])
-        way_out = f": did you mean --{role} '{near}'?" if near else ""
+        channel = Setting(role, "channel")
         raise ChannelError(
-            f"{file}: --{role}: there is no column '{name}'; the file has {_listed(columns)}{way_out}"
+            f"{file}: {role}: there is no column '{name}'; the file has {_listed(columns)}",
+            remedy=f"did you mean {channel.to(near)}?" if near else "",
+            setting=channel,
         )
     if len(same) > 1 and len({c.path for c in same}) == 1:
         raise _repeated(role, same, file)
     if len(same) > 1:
         listed = _either([str(c) for c in same])
-        raise ChannelError(f"{file}: --{role}: '{name}' could be {listed}: say --{role} '{same[0].path}'")
+        raise ChannelError(f"{file}: {role}: '{name}' could be {listed}", **_choose(role, same[0].path))
     return same[0]
 
 
@@ -231,8 +260,9 @@ def _repeated(role: str, columns: list[Column], file: str) -> ChannelError:
     path = columns[0].path
     listed = _either([f"{path}#{i + 1}" for i in range(len(columns))])
     return ChannelError(
-        f"{file}: {len(columns)} columns are called '{path}': choose with --{role} {listed}",
+        f"{file}: {len(columns)} columns are called '{path}', told apart as {listed}",
         columns=tuple(c.index for c in columns),
+        **_choose(role, f"{path}#1"),
     )
 
 
@@ -311,30 +341,43 @@ def _with_unit(
         kind = "force" if of_a_force else "belt speed" if of_sliding else ROLE_KINDS[role][0]
         example = KINDS[kind][1]
         raise UnitError(
-            f"{file}: column '{column.path}' has no unit: write '{column.name} [{example}]' in the header, "
-            f"add a row of units, or say --{role}-unit '{example}'",
+            f"{file}: column '{column.path}' has no unit",
             columns=(column.index,),
+            remedy=f"write '{column.name} [{example}]' in the header, add a row of units, or use "
+            f"{Setting(role, 'unit').to(example)}",
+            setting=Setting(role, "unit"),
         )
     try:
         return column, role_conversion(role, unit)[1]
     except UnitError as error:
-        way_out = _right_unit(role, column, unit, columns)
-        told = f"{file}: column '{column.path}': {error}{way_out}"
-        raise UnitError(told, columns=(column.index,)) from None
+        swapped = _swapped(role, column, unit, columns)
+        raise UnitError(
+            f"{file}: column '{column.path}': {error.reason}{swapped[0]}",
+            columns=(column.index,),
+            remedy=swapped[1] or _right_unit(role, unit),
+            setting=Setting(role, "unit"),
+        ) from None
 
 
-def _right_unit(role: str, column: Column, unit: str, columns: tuple[Column, ...]) -> str:
-    """What to type where a column has a unit that its role cannot have; empty if nothing helps."""
-    flag = f"--{role}-unit"
-    if role == "torque" and unit.strip() in ("%", "percent"):
-        return f": say {flag} '9.84 mN*m / 100' with yours"
-    if role == "speed" and unit.strip() in ("Hz", "1/s"):
-        return f", that is {flag} 'rev/s'"
+def _swapped(role: str, column: Column, unit: str, columns: tuple[Column, ...]) -> tuple[str, str]:
+    """What else a column of a unit that the role cannot have may be, and the remedy; or nothing."""
     others = [c for c in columns if c != column and c.unit and _could_be(role, c, surely=True)]
     elsewhere = [r for r in ROLES if r != role and _could_be(r, column, surely=True)]
     if others and elsewhere and unit == column.unit:
-        return f"; it is one of {elsewhere[0]}: are the columns swapped? Say --{role} '{others[0].path}'"
+        remedy = f"use {Setting(role, 'channel').to(others[0].path)}"
+        return f"; it is one of {elsewhere[0]}: are the columns swapped?", remedy
+    return "", ""
+
+
+def _right_unit(role: str, unit: str) -> str:
+    """What to do where a column has a unit that its role cannot have."""
+    setting = Setting(role, "unit")
+    if role == "torque" and unit.strip() in ("%", "percent"):
+        return f"use {setting.to('9.84 mN*m / 100')} with yours"
+    if role == "speed" and unit.strip() in ("Hz", "1/s"):
+        return f"if it counts revolutions, use {setting.to('rev/s')}"
     if role == "torque" and unit in _AMPERES:
-        return f"; if it is the motor's current, say the torque of 1 {unit} as {flag} '{_AMPERES[unit]}'"
-    near = nearest_unit(ROLE_KINDS[role][0], unit)
-    return f" Say {flag} '{near}'" if near else "" if elsewhere else f" (with {flag})"
+        example = setting.to(_AMPERES[unit])
+        return f"if it is the motor's current, use the torque of 1 {unit}, e.g. {example}"
+    kind = ROLE_KINDS[role][0]
+    return f"use {setting.to(nearest_unit(kind, unit) or KINDS[kind][1])}"

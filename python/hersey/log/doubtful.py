@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from hersey.arrays import FloatArray
+from hersey.errors import Setting
 from hersey.log.means import MeansTable
 from hersey.log.torque_log import Run, TorqueLog
 from hersey.units import celsius
@@ -24,14 +25,14 @@ def doubtful_units(log: TorqueLog | MeansTable) -> list[str]:
     steps = [run.sampling_interval for run in log.runs]
     if steps and min(steps) >= RARE:
         out.append(
-            f"Rows come every {min(steps):.4g} s, as the clock is read: if it counts milliseconds, say "
-            "--time-unit ms."
+            f"Rows come every {min(steps):.4g} s, as the clock is read: if it counts milliseconds, use "
+            f"{Setting('time', 'unit').to('ms')}."
         )
     hottest = max((celsius(float(np.quantile(each, _MOST))) for each in _temperatures(log)), default=0.0)
     if hottest > TOO_HOT:
         out.append(
             f"Temperature reaches {hottest:.0f} degC, more than a lubricant stands: if the numbers are in K, "
-            "say --temperature-unit K."
+            f"use {Setting('temperature', 'unit').to('K')}."
         )
     if any(_look_exchanged(run) for run in log.runs):
         out.append(

@@ -15,7 +15,7 @@ from enum import StrEnum
 import numpy as np
 
 from hersey.arrays import BoolArray, FloatArray, IntArray
-from hersey.errors import UnreadableLogError
+from hersey.errors import DROP_MISSING, ISOTHERMAL, Setting, UnreadableLogError
 from hersey.log.believed import BELIEVED, Believed, as_written, is_code, is_wrapped
 from hersey.log.channels import role_conversion
 from hersey.log.stray_times import stray_times
@@ -211,15 +211,17 @@ def marked_rows(
         found.append(Impossible(role, column.path, unit, Reason.MARKED, rows, (), None, None, first))
         if rows > max(1.0, (MOST_ALLOWED if allowed else MOST) * mask.size):
             share = f"{rows / mask.size:.0%} of the channel ({rows} of {mask.size} samples)"
-            leave = ", or say --isothermal to leave temperature out" if role == "temperature" else ""
-            raise UnreadableLogError(f"{file}, {found[-1]}; {share}; {_way_out(rows, mask.size)}{leave}")
+            leave = f", or use {ISOTHERMAL.to()} to exclude temperature" if role == "temperature" else ""
+            raise UnreadableLogError(
+                f"{file}, {found[-1]}; {share}", remedy=f"{_way_out(rows, mask.size)}{leave}"
+            )
         gone |= mask
     return gone, tuple(found)
 
 
 def _way_out(bad: int, rows: int) -> str:
     """What to do about so many rows that cannot be used."""
-    drop = ", or say --drop-missing to leave such rows out" if bad <= MOST_ALLOWED * rows else ""
+    drop = f", or use {DROP_MISSING.to()} to drop such rows" if bad <= MOST_ALLOWED * rows else ""
     return f"name another column, or mend the file{drop}"
 
 
@@ -428,8 +430,10 @@ def _refuse_many(
         f"{bad / rows:.0%} of {reading.role} '{reading.column.path}' cannot be right ({bad} of {rows} rows)"
     )
     meant = _meant_unit(reading) if kind == "temperature" else ""
-    unit = f"if its unit is another, say --{reading.role}-unit '{meant or '...'}'"
-    raise UnreadableLogError(f"{file}, {found[0]}; {share}; {unit}; otherwise {_way_out(bad, rows)}")
+    unit = f"if its unit is another, use {Setting(reading.role, 'unit').to(meant)}"
+    raise UnreadableLogError(
+        f"{file}, {found[0]}; {share}", remedy=f"{unit}; otherwise {_way_out(bad, rows)}"
+    )
 
 
 def _meant_unit(reading: Reading) -> str:

@@ -18,7 +18,7 @@ import numpy as np
 from pydantic import BeforeValidator, ValidationInfo
 from pydantic.dataclasses import dataclass
 
-from hersey.errors import ChannelError, HerseyError, ParameterError, UnitError
+from hersey.errors import MAPPING, ChannelError, HerseyError, ParameterError, Setting, UnitError, turned
 from hersey.files.toml import Quantity, Table, Text, naming, quoted, read_tables, read_toml
 from hersey.log import corrections
 from hersey.log.channels import (
@@ -209,9 +209,7 @@ class LogMapping(_Roles):
         """
         for role, value in signs.items():
             if value not in (1, -1):
-                raise ParameterError(
-                    f"the sign of {role} is {value}: write --{role}-sign -1, or leave it out"
-                )
+                raise ParameterError(f"the sign of {role} is {value}: use {turned(role)}, or leave it out")
         torque, speed = (signs.get(role, 1) for role in ("torque", "speed"))
         return replace(
             self,
@@ -273,7 +271,7 @@ def read_mapping(path: str | Path) -> LogMapping:
     if "drivetrain" in read_toml(path):
         raise ParameterError(
             f"{path.name} is a machine's file, with [drivetrain], and no mapping of a log: "
-            f"give it as --machine '{printable(str(path))}'"
+            f"give it as {Setting('machine').to(printable(str(path)))}"
         )
     mapping = LogMapping(**vars(read_tables(path, _Roles)), source=path)
     for role in ROLE_KINDS:
@@ -488,7 +486,7 @@ def mapping_of(files: Sequence[str | Path], stated: str | Path | None = None) ->
     beside = {find_mapping(file) for file in files}
     if len(beside) > 1:
         names = ", ".join(sorted(f"'{path.name}'" if path else "none" for path in beside))
-        raise ParameterError(f"the logs have different mappings ({names}): name one with --mapping")
+        raise ParameterError(f"the logs have different mappings ({names}): name one with {MAPPING.to()}")
     only = next(iter(beside), None)
     return LogMapping() if only is None else read_mapping(only)
 

@@ -501,5 +501,5 @@ def refuse_corrections(stated: bool, name: str) -> None:
     if stated:
         raise ParameterError(
             f"{name} states corrections (signs, tare, gears, lag): they are made on a trace, and a table of "
-            "means has none; correct the table, and name its columns with --torque, --speed and --temperature"
+            "means has none; correct the table, and name its columns of torque, speed and temperature"
         )

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from hersey.arrays import BoolArray, FloatArray, IntArray
-from hersey.errors import UnreadableLogError
+from hersey.errors import DROP_MISSING, Setting, UnreadableLogError
 from hersey.log.slow_channels import LONGEST_INTERVAL, SlowChannel, is_slow
 from hersey.log.torque_log import LogFile, Run
 
@@ -24,7 +24,6 @@ _TOLD = 10
 _START = 0.1
 #: Runs in a file at the most.
 _MOST_RUNS = 10_000
-_WAY_OUT = "mend the file, or say --drop-missing to leave such rows out (they will be counted)"
 
 
 @dataclass
@@ -33,10 +32,12 @@ class LeftOut:
 
     rows: int = 0
     words: list[str] = field(default_factory=list)  #: for the first of them: place, and what is wrong there
+    out_of_order: int = 0  #: those among them whose time is
 
-    def add(self, rows: int, words: Iterable[str]) -> None:
-        """Count rows; of ``words``, one for each of them, no more are taken than are told."""
+    def add(self, rows: int, words: Iterable[str], *, out_of_order: bool = False) -> None:
+        """Count rows; of ``words``, one for each of them, no more are taken than are shown."""
         self.rows += rows
+        self.out_of_order += rows if out_of_order else 0
         self.words += itertools.islice(words, max(0, _TOLD - len(self.words)))
 
     def refuse_many(self, file: str, rows: int, *, allowed: bool) -> None:
@@ -51,8 +52,12 @@ class LeftOut:
         if not self.rows or (allowed and not most) or self.rows <= max(1.0, FEW * rows):
             return
         how_many = f" (the first of {self.rows} such rows of {rows})" if self.rows > 1 else ""
-        way_out = "too few rows are left: name another column, or mend the file" if most else _WAY_OUT
-        raise UnreadableLogError(f"{file}, {self.words[0]}{how_many}; {way_out}")
+        way_out = "too few rows are left: name another column, or mend the file" if most else _way_out()
+        raise UnreadableLogError(
+            f"{file}, {self.words[0]}{how_many}",
+            remedy=way_out,
+            setting=Setting("time", "channel") if self.out_of_order == self.rows else None,
+        )
 
     def notes(self) -> list[str]:
         """Return what was left out, in words."""
@@ -60,6 +65,10 @@ class LeftOut:
             return []
         more = f"; and {self.rows - len(self.words)} more" if self.rows > len(self.words) else ""
         return [f"{self.rows} row(s) were left out: {'; '.join(self.words)}{more}"]
+
+
+def _way_out() -> str:
+    return f"correct the file, or use {DROP_MISSING.to()} to drop such rows (they will be counted)"
 
 
 def runs_of(
@@ -95,21 +104,28 @@ def runs_of(
             continue
         elif row + 1 < time.size and time[row + 1] >= time[last] and not change[row + 1]:
             kept[row] = False
+            by = time[last] - time[row]
             left_out.add(
-                1, [f"{place(row)}: time runs backwards by {time[last] - time[row]:.6g} s in this row"]
+                1, [f"{place(row)}: time runs backwards by {by:.6g} s in this row"], out_of_order=True
             )
         elif last > starts[-1] and time[row] >= time[_last_kept(kept, last, starts[-1])]:
             kept[last] = False
-            left_out.add(1, [f"{place(last)}: time runs ahead by {time[last] - time[row]:.6g} s in this row"])
+            by = time[last] - time[row]
+            left_out.add(1, [f"{place(last)}: time runs ahead by {by:.6g} s in this row"], out_of_order=True)
         elif time[row] <= time[starts[-1]] + _START * (time[last] - time[starts[-1]]):
             starts.append(row)
         else:
             raise UnreadableLogError(
-                f"{file}, {place(row)}: time runs backwards by {time[last] - time[row]:.6g} s; "
-                "split the file there, sort its rows, or name the column that numbers its runs with --run"
+                f"{file}, {place(row)}: time runs backwards by {time[last] - time[row]:.6g} s",
+                remedy="split the file there, sort its rows, or name the column that numbers its runs with "
+                f"{Setting('run', 'channel').to()}",
+                setting=Setting("time", "channel"),
             )
         if len(starts) > _MOST_RUNS:
-            raise UnreadableLogError(f"{file}: its clock starts anew over {_MOST_RUNS} times: it is no clock")
+            raise UnreadableLogError(
+                f"{file}: its clock starts anew over {_MOST_RUNS} times: it is no clock",
+                setting=Setting("time", "channel"),
+            )
     return [_rows(kept, start, end) for start, end in itertools.pairwise([*starts, kept.size])]
 
 

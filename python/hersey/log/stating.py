@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from hersey.errors import UnstatedRoleError, way_in
+from hersey.errors import Setting, UnstatedRoleError, way_in
 from hersey.log.channels import is_called, is_of_kind
 from hersey.log.text.layout import Column
 
@@ -29,10 +29,9 @@ def by_name(role: str, column: Column) -> str:
     unit = {"radius": "mm", "load": "N"}[role]
     if way_in() == "page":
         return f"choose the role {role} for '{column.path}'" + ("" if column.unit else f" and a unit, {unit}")
-    if way_in() == "terminal":
-        return f"--{role} '{column.path}'" + ("" if column.unit else f" --{role}-unit {unit}")
-    units = "" if column.unit else f", units={{'{role}': '{unit}'}}"
-    return f"channels={{'{role}': {column.path!r}}}{units}"
+    joint = " " if way_in() == "terminal" else ", "
+    units = "" if column.unit else joint + Setting(role, "unit").to(unit)
+    return Setting(role, "channel").to(column.path) + units
 
 
 def by_amount(role: str) -> str:
@@ -40,7 +39,7 @@ def by_amount(role: str) -> str:
     amount = _ROLES[role][1]
     if way_in() == "page":
         return f"write the {role}, e.g. {amount}, below the table"
-    return f"--{role} '{amount}'" if way_in() == "terminal" else f"{role}='{amount}'"
+    return Setting(role).to(amount)
 
 
 def unstated(

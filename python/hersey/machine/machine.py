@@ -14,7 +14,7 @@ from pydantic.dataclasses import dataclass
 
 from hersey.damping.rest import RestOfDrive, with_rest
 from hersey.damping.surface import WITH_TRANSITION
-from hersey.errors import ParameterError
+from hersey.errors import MAPPING, ParameterError
 from hersey.files.toml import Quantity, Table, naming, read_tables, read_toml
 from hersey.log.sensor_tables import SensorTables, sensors_of
 from hersey.log.sensors import Sensors
@@ -210,7 +210,7 @@ def read_machine(path: str | Path) -> Machine:
     if "drivetrain" not in document and {"torque", "speed"} & set(document):
         raise ParameterError(
             f"{path.name} is a mapping of a log, with [{min({'torque', 'speed'} & set(document))}], and no "
-            f"machine's file: give it as --mapping '{printable(str(path))}'"
+            f"machine's file: give it as {MAPPING.to(printable(str(path)))}"
         )
     tables = read_tables(path, _MachineFile)
     uncertainty, contact, lubricant, rest, heat = {}, None, None, None, None

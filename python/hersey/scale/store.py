@@ -20,7 +20,7 @@ from typing import Any, BinaryIO, Protocol
 
 from numpy.typing import NDArray
 
-from hersey.errors import OutputError
+from hersey.errors import OVERWRITE, OutputError, Setting, way_in
 from hersey.files.writing import SUFFIX
 from hersey.scale.cutting import Cut
 
@@ -30,6 +30,7 @@ Columns = Mapping[str, NDArray[Any]]
 Note = dict[str, Any]
 #: What decides the values, as JSON takes it; `refused` names what differs.
 Scenario = dict[str, Any]
+_NO_RESUME = Setting("resume", flag="--no-resume")
 
 
 @dataclass(frozen=True)
@@ -159,7 +160,7 @@ def opened(
                 if asked is not None and asked != cut:
                     raise OutputError(
                         f"{path} is cut into chunks of {prod(cut.chunk)} sets, and {prod(asked.chunk)} are "
-                        f"asked for: leave the chunk out to go on, or start anew with --no-resume --force"
+                        f"asked for: leave the chunk out to go on, or start anew with {_anew()}"
                     )
                 mended: tuple[str, ...] = ()
                 if begun is not None:
@@ -177,7 +178,7 @@ def _refuse_older(path: Path, kind: Kind, manifest: Scenario) -> None:
     if type(found) is int and 0 < found < kind.format:
         raise OutputError(
             f"{path} was begun by an older hersey, without checksums that tell damaged chunks: xarray still "
-            f"reads it, but it cannot go on: name another folder, or start anew with --no-resume --force"
+            f"reads it, but it cannot go on: name another folder, or start anew with {_anew()}"
         )
 
 
@@ -202,10 +203,16 @@ def _cut_of(path: Path, manifest: Scenario, shape: tuple[int, ...]) -> Cut:
     return cut
 
 
+def _anew() -> str:
+    """How a sweep starts anew in a folder that holds one."""
+    joint = " " if way_in() == "terminal" else " and "
+    return f"{_NO_RESUME.to(python='False')}{joint}{OVERWRITE.to()}"
+
+
 def _damaged(path: Path) -> OutputError:
     return OutputError(
         f"{path}: what it says of itself is damaged, or of another hersey: name another folder, or start "
-        f"anew with --no-resume --force"
+        f"anew with {_anew()}"
     )
 
 
@@ -235,7 +242,8 @@ def _taken(
         return
     if not overwrite:
         raise OutputError(
-            f"{path} exists: say --force to replace it, or leave --no-resume out to go on with it"
+            f"{path} exists: use {OVERWRITE.to()} to replace it, or leave out "
+            f"{_NO_RESUME.to(python='False')} to go on with it"
         )
     with _locked(path / kind.lock, path):
         gone = path.with_name(f".{path.name[:200]}.{secrets.token_hex(8)}{SUFFIX}")
@@ -295,8 +303,7 @@ def refuse_another(path: Path, manifest: Scenario, scenario: Scenario) -> None:
     except (AttributeError, KeyError, TypeError, ValueError):
         raise _damaged(path) from None
     raise OutputError(
-        f"{path} is of another scenario: {differs}; name another folder, or start anew "
-        f"with --no-resume --force"
+        f"{path} is of another scenario: {differs}; name another folder, or start anew with {_anew()}"
     )
 
 

@@ -171,8 +171,8 @@ class ZarrFolder:
         except (OSError, ValueError, TypeError, KeyError, RecursionError):
             pass
         raise OutputError(
-            f"{self.path}: chunk {number} of '{name}' is damaged or missing: repeat the sweep with the same "
-            f"--out, which does damaged chunks again"
+            f"{self.path}: chunk {number} of '{name}' is damaged or missing: repeat the sweep into the "
+            f"same folder, which computes damaged chunks again"
         )
 
     def _told(self, number: int) -> dict[str, Any]:

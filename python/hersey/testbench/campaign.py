@@ -233,7 +233,7 @@ def ages_of(text: str) -> tuple[float, ...]:
         unit = (part[2] or last) if part else ""
         if part is None or unit not in _PAGES:
             raise ParameterError(
-                f"'{printable(typed.strip())}' of --ages is no number of pages: write '0, 50, 100 kpages' "
+                f"'{printable(typed.strip())}' is no number of pages: write '0, 50, 100 kpages' "
                 f"({', '.join(_PAGES)})"
             )
         ages.append(round(float(part[1]) * _PAGES[unit], 6))

@@ -11,6 +11,7 @@ from hersey.damping.dwells import SteadyPoints
 from hersey.damping.dwells.doubtful import doubtful_order, doubtful_tare
 from hersey.damping.dwells.misleading import in_words, misleading
 from hersey.damping.surface import DampingSurface
+from hersey.errors import ROTATION
 from hersey.log.doubtful import doubtful_units
 from hersey.units import celsius
 from hersey.verdict.held_values import held_values
@@ -107,7 +108,7 @@ def _direction_warnings(points: SteadyPoints, surface: DampingSurface) -> list[s
             difference = float(first.mean() - second.mean())
             error = float(np.hypot(first.std() / first.size**0.5, second.std() / second.size**0.5))
             if abs(difference) > max(NOTABLE_DIFFERENCE, SIGNIFICANT * error):
-                advice = "; fit one alone with --rotation" if name == "forward" else ""
+                advice = f"; fit one alone with {ROTATION.to()}" if name == "forward" else ""
                 out.append(
                     f"Torque differs by {np.expm1(difference):+.1%} between {name} and {other}: "
                     f"one surface does not describe both{advice}."

@@ -20,7 +20,7 @@ from hersey.damping.candidates.shared_errors import shared_variance
 from hersey.damping.dwells import SteadyPoints, groups_of_temperature
 from hersey.damping.estimate import Estimate, quantile
 from hersey.damping.surface import DampingSurface
-from hersey.errors import InsufficientDataError, ParameterError, UnfinishedError
+from hersey.errors import InsufficientDataError, ParameterError, Setting, UnfinishedError, way_in
 from hersey.lubrication.contact import Contact, nip_width
 from hersey.lubrication.film import REGIMES, Film, film_thickness
 from hersey.lubrication.film_temperature import film_temperature
@@ -136,7 +136,8 @@ def measured_film(
     if surface.b is None or not np.isfinite(kelvin).all():
         if temperature is None:
             raise InsufficientDataError(
-                "the log holds no temperatures: state that of the film, --at '180 degC'"
+                "the log holds no temperatures: give that of the film, "
+                f"{Setting('temperature', flag='--at').to('180 degC', python='453.15')}"
             )
         kelvin = np.full(speed.size, temperature)
     inside = film_temperature(contact, lubricant, speed=speed, temperature=kelvin)
@@ -385,7 +386,7 @@ def _dwell_lines(measured: MeasuredFilm) -> list[str]:
             f"{1e6 * measured.hersey_number[i]:11.3g} {measured.sommerfeld_number[i]:10.3g}"
         )
     lines.append("  measured film eta A/B, A the nip, rolling as predicted; U sliding speed, p mean pressure")
-    lines.append("  of the nip; all dwells: --json")
+    lines.append("  of the nip; all dwells: --json" if way_in() == "terminal" else "  of the nip")
     return lines
 
 

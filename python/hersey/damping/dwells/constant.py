@@ -6,7 +6,7 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.damping.dwells.points import SteadyPoints
-from hersey.errors import InsufficientDataError
+from hersey.errors import InsufficientDataError, Setting
 
 #: Differences below this share of a reading are rounding of the arithmetic.
 ROUNDING = 1e-9
@@ -42,7 +42,8 @@ def refuse_constant_torque(points: SteadyPoints) -> None:
         raise InsufficientDataError(
             f"{points.log.files[0].name}: torque ({_name(points)}) does not vary: it reads "
             f"{1e3 * torque:.4g} mN m at all speeds, to one step of its resolution, so it measures no "
-            "friction; check the sensor and its cable, or name another column with --torque"
+            "friction; check the sensor and its cable, or name another column with "
+            f"{Setting('torque', 'channel').to()}"
         )
 
 

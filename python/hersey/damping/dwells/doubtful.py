@@ -9,6 +9,7 @@ import numpy as np
 from hersey.arrays import FloatArray
 from hersey.damping.dwells.groups import groups_of_temperature
 from hersey.damping.dwells.points import SteadyPoints
+from hersey.errors import TARE
 
 #: A tare beyond this share of the least torque is asked about.
 LARGE_TARE = 0.1
@@ -33,7 +34,7 @@ def doubtful_tare(points: SteadyPoints) -> list[str]:
         return []
     return [
         f"While the drive stood, torque read {standing * 1e3:.3g} mN m, {abs(standing) / least:.1%} of the "
-        "least dwell. It is not subtracted; if it is the sensor's offset, say --tare standing."
+        f"least dwell. It is not subtracted; if it is the sensor's offset, use {TARE.to('standing')}."
     ]
 
 

@@ -11,6 +11,8 @@ from hersey.damping.dwells.groups import MIN_SAMPLES, distinct_speeds
 from hersey.damping.dwells.judging import Asked
 from hersey.damping.dwells.points import Rejection
 from hersey.damping.dwells.reasons import CAUSES, Reason, cause
+from hersey.errors import ROTATION, Setting
+from hersey.log.channels import EVERY
 from hersey.log.torque_log import NO_CLOCK, Run, TorqueLog
 from hersey.units import rpm
 
@@ -59,7 +61,7 @@ def _way_out(
         return f"{held}, and the whole log lasts {lasted:.3g} s: {_other_clock(log)}"
     if any(r.why.kind == "other rotation" for r in rejected):
         other = "reverse" if asked.rotation == "forward" else "forward"
-        return f"the drive turns {other}: say --rotation {other}"
+        return f"the drive turns {other}: use {ROTATION.to(other)}"
     short = [(r.why.lasts, r.why.rows) for r in rejected if r.why.kind == "too short"]
     if _runs_up_and_down(log, rejected):
         slow, fast = (rpm(float(f([f(np.abs(run.speed)) for run in log.runs]))) for f in (np.min, np.max))
@@ -70,11 +72,12 @@ def _way_out(
     enough = sorted({math.floor(10 * s - 0.5) / 10 for s, rows in short if rows >= MIN_SAMPLES and s > 0.2})
     for shorter in enough:
         if (count := dwells_with(shorter)) >= WORTH_IT:
-            return f"{held}: {count} dwells are there with --min-dwell '{shorter:g} s'"
+            how = Setting("min_dwell").to(f"{shorter:g} s", python=f"{shorter:g}")
+            return f"{held}: {count} dwells are there with {how}"
     if (speed := _only_speed(rejected)) is not None:
         return (
             f"the speed is {rpm(speed):.3g} rpm throughout, so no law of speed can be fitted: record dwells "
-            "at three speeds or more, or name another column with --speed"
+            f"at three speeds or more, or name another column with {Setting('speed', 'channel').to()}"
         )
     return held
 
@@ -93,8 +96,9 @@ def _other_clock(log: TorqueLog) -> str:
     """What to say of the clock of a log that is over before a dwell."""
     if any(c.name == NO_CLOCK for file in log.files for c in file.channels):
         rarer = _RARER * log.runs[0].sampling_interval
-        return f"if rows come less often, say so, as with --every '{rarer:.3g} s'"
-    return "if its clock counts seconds, say --time-unit s"
+        how = EVERY.to(f"{rarer:.3g} s", python=f"{rarer:.3g}")
+        return f"if rows come less often, give the time between them, e.g. {how}"
+    return f"if its clock counts seconds, use {Setting('time', 'unit').to('s')}"
 
 
 def _runs_up_and_down(log: TorqueLog, rejected: tuple[Rejection, ...]) -> bool:

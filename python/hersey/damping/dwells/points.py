@@ -303,8 +303,10 @@ class SteadyPoints(Result):
 
 
 def _record(rejection: Rejection) -> dict[str, Any]:
-    """A rejection with its reason in words."""
-    return {**{k: v for k, v in vars(rejection).items() if k != "why"}, "reason": rejection.reason}
+    """A rejection with its kind, and its reason in words."""
+    plain = {name: value for name, value in vars(rejection).items() if name != "why"}
+    why = rejection.why
+    return {**plain, "kind": why.kind, "label": why.label, "reason": rejection.reason}
 
 
 def _stated(table: MeansTable, rotation: str) -> tuple[list[dict[str, object]], list[Rejection]]:

@@ -7,6 +7,7 @@ from statistics import median
 from typing import Literal
 
 from hersey.damping.dwells.groups import MIN_SAMPLES
+from hersey.errors import turned
 
 Kind = Literal[
     "changing", "standing", "other rotation", "too short", "zero torque", "speed not held", "stick-slip",
@@ -26,7 +27,7 @@ CAUSES: tuple[Kind, ...] = ("spikes", "ripple")
 _SPIKES = "check the cable of the sensor, and remove these rows"
 _OWN = "look for an oscillation of the drive, a controller or the mains"
 #: What each kind is called, where the words do not depend on a number.
-_LABELS: dict[Kind, str] = {
+LABELS: dict[Kind, str] = {
     "changing": "speed changing",
     "standing": "drive standing",
     "other rotation": "rotation not as asked",
@@ -95,7 +96,7 @@ class Reason:
         """Return what is wrong, without numbers."""
         if self.kind == "other rotation":
             return f"rotation not {self.asked}, as asked"
-        return _LABELS[self.kind] + (self._few() if self.kind == "changing" else "")
+        return LABELS[self.kind] + (self._few() if self.kind == "changing" else "")
 
     def _few(self) -> str:
         return f", or held for fewer than {MIN_SAMPLES} rows" if 0 < self.rows < MIN_SAMPLES else ""
@@ -122,7 +123,7 @@ class Reason:
             case "temperature drift":
                 how = f" by {self.kelvin or 0.0:+.1f} K over the dwell"
             case "opposite signs":
-                how = ": turn one with --torque-sign -1"
+                how = f": turn one with {turned('torque')}"
             case "spikes":
                 how = f": {self.count} samples lie {_times(share)} the mean apart from their neighbours, "
                 how += f"and without them the dwell is steady; {_SPIKES}"

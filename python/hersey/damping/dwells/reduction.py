@@ -19,7 +19,7 @@ from hersey.damping.dwells.settling import common_settling
 from hersey.damping.dwells.shared_noise import Powers, SharedNoise, shared_noise
 from hersey.damping.dwells.steadiness import MAX_TEMPERATURE_DRIFT, drift_over, straightened
 from hersey.damping.dwells.zero import Zero, standing_stretches, starts_of
-from hersey.errors import InsufficientDataError, ParameterError
+from hersey.errors import TARE, InsufficientDataError, ParameterError
 from hersey.log.torque_log import Run, TorqueLog
 
 #: Rounds in which dwells are judged again by the noise of those kept, at the most.
@@ -79,8 +79,9 @@ class _Reduction:
         self.zero = self._zero(None)
         if subtracted and self.zero is None:
             raise InsufficientDataError(
-                "the drive never stands still for 2 s: there is no torque to tare with; leave out --tare, or "
-                'write the zero into hersey.toml beside the log, under [torque], as tare = "4 mN*m"'
+                "the drive never stands still for 2 s: there is no torque to tare with; leave out "
+                f"{TARE.to()}, or write the zero into hersey.toml beside the log, under [torque], as "
+                'tare = "4 mN*m"'
             )
 
     def points(self) -> SteadyPoints:

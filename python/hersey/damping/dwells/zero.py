@@ -21,6 +21,7 @@ from hersey.damping.dwells.noise import mean_and_error
 from hersey.damping.dwells.resolution import rounding_error
 from hersey.damping.dwells.segments import Segment
 from hersey.damping.dwells.shared_noise import Powers, SharedNoise
+from hersey.errors import TARE
 from hersey.log.torque_log import Run
 
 #: Sizes of line and walk over the log that are weighed, as shares of what the stretches differ by.
@@ -206,7 +207,7 @@ class Zero:
                 (
                     f"While the drive stands, torque differs by {rise:.3g} N m from stretch to stretch "
                     f"({_chance(p)}): the zero drifts. It is not subtracted; if the drive stands free, "
-                    "say --tare standing.",
+                    f"use {TARE.to('standing')}.",
                 )
                 if drifts
                 else ()

@@ -67,7 +67,7 @@ def _temperature() -> MissingPart:
         file=_MAPPING,
         lines=(
             "[temperature]\n"
-            'channel = "Heater"   # put yours: the column of the log; then leave out --isothermal\n'
+            'channel = "Heater"   # put yours: the column of the log, which is then no longer isothermal\n'
             'unit = "degC"\n'
         ),
     )

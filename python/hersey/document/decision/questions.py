@@ -8,6 +8,7 @@ from hersey.decision.plausibility import Question
 from hersey.document.decision.missing import missing
 from hersey.document.decision.words import figures, mm
 from hersey.document.parts.decision import DecisionPart, PointDecisionPart
+from hersey.errors import Setting
 from hersey.machine.machine import Machine
 
 
@@ -50,9 +51,10 @@ def in_words(question: Question) -> tuple[str, str]:
         "usual": "what such machines have",
     }[question.of]
     if question.kind == "swapped":
+        torque, speed = Setting("torque", "channel"), Setting("speed", "channel")
         return (
             f"Are the torque and speed columns swapped? Torque is {times} times {of}",
-            "Name the columns with --torque and --speed.",
+            f"Name the columns with {torque.to()} and {speed.to()}.",
         )
     if question.kind == "radius unit":
         return (
@@ -61,6 +63,9 @@ def in_words(question: Question) -> tuple[str, str]:
         )
     if question.kind == "torque unit":
         unit = "Is torque in mN·m?" if question.thousandfold else "Is the unit of torque right?"
-        return f"{unit} It is {times} times {of}", "Give the unit with --torque-unit."
-    speed = f"The belt would run at {mm(question.value)} mm/s, {times} times {of}"
-    return f"Is the unit of speed right? {speed}", "Give the unit with --speed-unit, or correct roll_radius."
+        return f"{unit} It is {times} times {of}", f"Give the unit with {Setting('torque', 'unit').to()}."
+    faster = f"The belt would run at {mm(question.value)} mm/s, {times} times {of}"
+    return (
+        f"Is the unit of speed right? {faster}",
+        f"Give the unit with {Setting('speed', 'unit').to()}, or correct roll_radius.",
+    )

@@ -76,6 +76,8 @@ class RejectedStretch(Part):
     start: float
     end: float
     rows: int
+    kind: str = Field(description="what is wrong")
+    label: str = Field(description="the same in words, without numbers")
     reason: str
     speed: float | None = Field(default=None, description="rad/s, mean")
 

@@ -11,7 +11,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from hersey.errors import ParameterError
+from hersey.errors import FORCE, ParameterError
 from hersey.life.age import Age
 from hersey.life.campaign.entry import COLUMNS, Entry
 from hersey.spelling import printable
@@ -104,9 +104,9 @@ def add_entry(
         if not force:
             was = f"{of} at {Age(at, age.unit)}"
             what = (
-                f"is there already as run {run}, read in another way: say --force to keep this reading"
+                f"is there already as run {run}, read in another way: use {FORCE.to()} to keep this reading"
                 if same
-                else f"has the same content as run {run} of {was}: say --force to have it as {unit} at {age}"
+                else f"has the same content as run {run} of {was}: use {FORCE.to()} for {unit} at {age}"
             )
             raise ParameterError(f"{name} {what}")
         outcome = REPLACED
@@ -117,7 +117,7 @@ def add_entry(
         if not force:
             way = "replace it" if same else "add it beside that one, whose log is gone"
             was = f"run {run} of {of} at {Age(at, age.unit)}"
-            raise ParameterError(f"{name} has changed since it was added as {was}: say --force to {way}")
+            raise ParameterError(f"{name} has changed since it was added as {was}: use {FORCE.to()} to {way}")
         if same:
             outcome = REPLACED
             database.execute("DELETE FROM runs WHERE id = ?", (run,))
@@ -160,14 +160,14 @@ def _unit(database: sqlite3.Connection, unit: str, force: bool) -> str:
     unit = " ".join(unit.split())
     if not unit or len(unit) > _LONGEST_UNIT or printable(unit) != unit:
         raise ParameterError(
-            f"unit '{unit[:_LONGEST_UNIT]}' is no name: give 1 to {_LONGEST_UNIT} characters, as --unit F12"
+            f"unit '{unit[:_LONGEST_UNIT]}' is no name: give 1 to {_LONGEST_UNIT} characters, such as F12"
         )
     known = [row[0] for row in database.execute("SELECT DISTINCT unit FROM runs")]
     alike = [other for other in known if _folded(other) == _folded(unit)]
     if unit in known or not alike or force:
         return unit
     raise ParameterError(
-        f"unit '{unit}' is called '{alike[0]}' so far: write it so, or say --force if it is another"
+        f"unit '{unit}' is called '{alike[0]}' so far: write it so, or use {FORCE.to()} if it is another"
     )
 
 

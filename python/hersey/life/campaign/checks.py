@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from hersey.errors import MissingFileError
+from hersey.errors import FORCE, MissingFileError
 from hersey.files.reading import hash_of
 from hersey.life.age import Age
 from hersey.life.campaign.adding import age_unit, lies_at
@@ -105,5 +105,8 @@ def _lost(path: Path, sha256: str) -> tuple[str, str] | None:
     except MissingFileError:
         return "log missing", f"is no longer at {path}: put it back; its dwells stay"
     if now != sha256:
-        return "log changed", "has changed since it was added: add it again with --force, or put it back"
+        return (
+            "log changed",
+            f"has changed since it was added: add it again with {FORCE.to()}, or put it back",
+        )
     return None

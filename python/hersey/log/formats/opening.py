@@ -22,7 +22,7 @@ import numpy as np
 
 from hersey import errors
 from hersey.arrays import FloatArray
-from hersey.errors import HerseyError, ParameterError, SandboxWarning, UnreadableLogError
+from hersey.errors import HerseyError, ParameterError, SandboxWarning, Setting, UnreadableLogError, way_in
 from hersey.files.reading import OpenFile, open_file, unchanged
 from hersey.log.formats.hdf5 import MAGIC as HDF5
 from hersey.log.recording import LONGEST_CELL, Cells, Recording, Signal, Source
@@ -369,10 +369,10 @@ class _Reader:
         if error.code == -getattr(signal, "SIGXCPU", 0):
             return UnreadableLogError(
                 f"{name} takes more processor time than a sound file of its size: it is damaged, or made to; "
-                "a higher --max-memory gives it more time, too"
+                f"a higher {_allowed()} gives it more time, too"
             )
         return UnreadableLogError(
-            f"{name} is damaged, or takes more than {self.limit / 1e9:g} GB of memory (--max-memory): the "
+            f"{name} is damaged, or takes more than {self.limit / 1e9:g} GB of memory ({_allowed()}): the "
             "library that reads it broke down"
         )
 
@@ -385,8 +385,15 @@ class _Reader:
     def _too_large(self) -> UnreadableLogError:
         return UnreadableLogError(
             f"{self.file.path.name} takes more than {self.limit / 1e9:g} GB of memory: if it may, raise the "
-            "limit with --max-memory '8 GB' (hersey.memory_limit in Python)"
+            f"limit with {_allowed('8 GB')}"
         )
+
+
+def _allowed(limit: str = "") -> str:
+    """How the limit of memory is set."""
+    if way_in() == "python":
+        return f"hersey.memory_limit({limit!r})" if limit else "hersey.memory_limit"
+    return Setting("max_memory").to(limit)
 
 
 def _called(kind: str) -> str:

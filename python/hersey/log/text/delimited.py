@@ -19,7 +19,7 @@ import numpy as np
 import polars as pl
 
 from hersey.arrays import BoolArray, FloatArray, IntArray
-from hersey.errors import ChannelError, UnreadableLogError
+from hersey.errors import ChannelError, Setting, UnreadableLogError
 from hersey.files.reading import OpenFile, appended
 from hersey.log.believed import in_si
 from hersey.log.channels import (
@@ -30,6 +30,7 @@ from hersey.log.channels import (
     is_dead,
     no_channel,
     refuse_two_clocks,
+    refuse_two_temperatures,
 )
 from hersey.log.friction import beside, in_rotation, notes_on, slow_roles, unused
 from hersey.log.impossible import Impossible, Reading, impossible_rows
@@ -191,11 +192,13 @@ class _Dead:
 def _by_number(layout: Layout, lacking: list[str], used: list[str]) -> str:
     """Why columns must be named, and the options that name those that are not, as an example."""
     if len(layout.columns) < len(used):
-        why, _, _ = layout.headless.partition(";")
         needed = f"{', '.join(used[:-1])} and {used[-1]}"
-        return f"{why}, and there are {len(layout.columns)} columns, where a log has {needed}"
-    named = " ".join(f"--{role} '#{used.index(role) + 1}'" for role in lacking)
-    return layout.headless.replace("--torque '#2'", named)
+        return f"{layout.headless}, and there are {len(layout.columns)} columns, where a log has {needed}"
+    named = " ".join(Setting(role, "channel").to(f"#{used.index(role) + 1}") for role in lacking)
+    return (
+        f"{layout.headless}; put a line with name and unit of each column there, such as 'Torque [N*m]' "
+        f"(and without '{layout.comment}' before it), or name the columns by number, such as {named}"
+    )
 
 
 def _channels(
@@ -206,8 +209,7 @@ def _channels(
     stated: Stated,
     dead: Callable[[Column], bool],
 ) -> dict[str, tuple[Column, Conversion]]:
-    if isothermal and choices["temperature"] != ChannelChoice():
-        raise ChannelError("--isothermal leaves temperature out: give no --temperature beside it")
+    refuse_two_temperatures(choices, isothermal)
     refuse_two_clocks(choices, stated)
     left = {"temperature"} if isothermal else set()
     used = [role for role in ROLES if role not in (left | {"time"} if stated.every is not None else left)]
@@ -217,10 +219,7 @@ def _channels(
     for role in sorted(used, key=lambda r: r != "torque"):  # without it the rest is of no use
         channel = find_channel(role, layout.named, choices[role], name, dead)
         if channel is None:
-            error = no_channel(role, layout.named, name)
-            if role == "temperature":
-                error.args = (*error.args, "or say --isothermal to leave temperature out")
-            raise error
+            raise no_channel(role, layout.named, name)
         other = next((r for r, (column, _) in chosen.items() if column == channel[0]), None)
         if other:
             raise ChannelError(f"{name}: column '{channel[0]}' cannot be both {other} and {role}")

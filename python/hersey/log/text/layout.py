@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hersey.errors import UnitError, UnreadableLogError, WrongKindError
+from hersey.errors import MAPPING, Setting, UnitError, UnreadableLogError, WrongKindError
 from hersey.log.text.numbers import NumberStyle, is_missing, looks_numeric, style_of
 from hersey.log.text.stamps import StampStyle, counted_since, is_stamp, stamp_style
 from hersey.log.text.unit_pairs import of_one_kind, same_unit
@@ -130,7 +130,7 @@ def find_layout(start: bytes, name: str, *, separators: str = SEPARATORS) -> Lay
         )
     rows = [split(line, table.separator) for _, line in numbered[table.first :]]
     rows = [row for row in rows if len(row) == table.width]
-    headless = _headless(table, numbered, name, comment)
+    headless = _headless(table, numbered, name)
     columns = _columns(table, numbered, name) if not headless else _numbered_columns(table.width)
     columns, stamps = _with_stamps(columns, rows)
     style = style_of([cell for row in rows for cell in row])
@@ -296,18 +296,14 @@ def _looks_like_header(line: str) -> bool:
     return any(len(split(line, separator)) > 1 for separator in ";\t,|")
 
 
-def _headless(table: _Table, numbered: list[tuple[int, str]], file: str, comment: str) -> str:
+def _headless(table: _Table, numbered: list[tuple[int, str]], file: str) -> str:
     """Why the columns have no names, or nothing if a header stands above the rows."""
     above = numbered[table.first - 1][1] if table.first else ""
     if table.first and not all(
         looks_numeric(cell) or is_missing(cell) for cell in re.split(r"[;,|\s]+", above)
     ):
         return ""
-    return (
-        f"{file}, line {numbered[table.first][0]}: no header stands above the numbers; "
-        "put a line with name and unit of each column there, such as 'Torque [N*m]' "
-        f"(and without '{comment}' before it), or name the columns by number, such as --torque '#2'"
-    )
+    return f"{file}, line {numbered[table.first][0]}: no header stands above the numbers"
 
 
 def _numbered_columns(width: int) -> tuple[Column, ...]:
@@ -382,8 +378,9 @@ def _names(line: str, table: _Table) -> list[str]:
 def _of_another_kind(name: str) -> str:
     """What a file is that was given in the place of a log, by the ending of its name; or nothing."""
     if name.endswith(".toml"):
-        return ": a machine's file is given as --machine, a mapping of the channels as --mapping"
-    return ": what 'hersey fit --json' printed is given as --fit" if name.endswith(".json") else ""
+        machine, mapping = Setting("machine").to(), MAPPING.to()
+        return f": a machine's file is given as {machine}, a mapping of the channels as {mapping}"
+    return f": a fit that was saved is given as {Setting('fit').to()}" if name.endswith(".json") else ""
 
 
 def _require_width(

@@ -46,7 +46,7 @@ function bandFinding(bears, steps) {
     const at = temperature ? ` at ${degrees(temperature[i])}` : "";
     parts.push(transition[i] === null ? "Nothing sticks within the speeds looked at" : `Smooth above ${perSecond(upper[i] ?? transition[i])} mm/s${at}; below ${perSecond(transition[i])} it sticks`);
   }
-  if (!parts.length && data.band) return data.band.verdict.split(". ")[0];
+  if (!parts.length && data.band) return data.band.verdict;
   return parts.length ? `${capital(parts.join("; "))}.` : "";
 }
 // The edges at a few temperatures of the map.

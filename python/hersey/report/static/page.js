@@ -6,22 +6,21 @@
 async function comparison(parent) {
   const { compare } = data;
   if (!compare) return;
-  const part = section(parent, "compare", "Comparison", compare.verdict.split(". ")[0].replace(/\.?$/, "."));
+  const part = section(parent, "compare", "Comparison", compare.verdict);
   await chart(part, "compare", { says: compare.verdict, note: `A: ${compare.a}, B: ${compare.b}; bars: simultaneous 95 % limits, temperatures beside each other.` });
   // What is compared as a ratio is a speed of the roll.
   const of = (c) => c.is_ratio ? [`${c.name}, rpm`, digits(c.of_a * TO_RPM), digits(c.of_b * TO_RPM)] : [c.name, digits(c.of_a), digits(c.of_b)];
   table(part, ["Number", compare.a, compare.b, "Change", "95 % interval", "p-value", "Real"], compare.changes.map((c) => [
     ...of(c), `${c.is_ratio ? "× " : ""}${digits(c.change.value)}`, bounds(c.change), c.p_value === null ? "–" : digits(c.p_value, 2),
     c.real ? judged("watch", "yes") : "no"]), [1, 2, 3, 4, 5], { name: "comparison", label: "What changed" });
-  const all = fold(part, "In full");
-  add(all, "p", pretty(compare.verdict), "text");
+  const all = compare.notes.length ? fold(part, "Notes") : part;
   compare.notes.forEach((text) => add(all, "p", pretty(text), "note"));
 }
 async function warmUp(parent) {
   if (!data.warm_up) return;
-  const part = section(parent, "warm-up", "Warm-up", data.warm_up.verdict.split(". ")[0].replace(/\.?$/, "."));
+  const part = section(parent, "warm-up", "Warm-up", data.warm_up.verdict);
   await chart(part, "warm_up");
-  [data.warm_up.verdict, ...data.warm_up.beside].forEach((text) => add(part, "p", pretty(text), "text"));
+  data.warm_up.beside.forEach((text) => add(part, "p", pretty(text), "text"));
   checks(part, data.warm_up.warnings.map((text) => ["watch", pretty(text)]));
 }
 const SHOWN = new Set(["schema_version", "hersey_version", "title", "command", "made", "machine", "synthetic", "decision", "verdict", "warnings", "files", "quality", "points", "fit",

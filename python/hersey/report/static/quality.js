@@ -2,7 +2,7 @@
 
 function dataSection(parent) {
   const q = data.quality;
-  const sticks = q.rejected.filter((r) => /stick-slip/.test(r.reason)).length;
+  const sticks = q.rejected.filter((r) => r.kind === "stick-slip").length;
   const others = q.rejected.length - sticks;
   const left = [sticks ? `${plural(sticks, "stretch", "stretches")} of stick-slip` : "", others ? plural(others, sticks ? "other" : "stretch", sticks ? "others" : "stretches") : ""].filter(Boolean).join(" and ");
   const count = sticks + others;
@@ -21,11 +21,10 @@ function dataSection(parent) {
     const all = fold(part, `Every stretch that is not used, and why (${q.rejected.length})`);
     const reasons = new Map();
     for (const r of q.rejected) {
-      const kind = r.reason.split(/ by |: /)[0];
-      const known = reasons.get(kind) ?? [0, 0];
-      reasons.set(kind, [known[0] + 1, known[1] + r.rows]);
+      const known = reasons.get(r.label) ?? [0, 0];
+      reasons.set(r.label, [known[0] + 1, known[1] + r.rows]);
     }
-    table(all, ["Reason", "Stretches", "Rows"], [...reasons].map(([kind, [stretches, rows]]) => [kind, String(stretches), counted(rows)]), [1, 2], { label: "Reasons" });
+    table(all, ["Reason", "Stretches", "Rows"], [...reasons].map(([label, [stretches, rows]]) => [label, String(stretches), counted(rows)]), [1, 2], { label: "Reasons" });
     table(all, ["File", "From, s", "To, s", "Rows", "Reason"], q.rejected.map((r) => [
       data.files[r.run].name, r.start.toFixed(2), r.end.toFixed(2), String(r.rows), pretty(r.reason)]), [1, 2, 3], { name: "not-used", label: "Stretches not used" });
   }

@@ -130,7 +130,7 @@ function strip(root, x, left, right) {
   }
   let named = false;
   for (const each of data.quality.rejected) {
-    if (!/stick-slip/.test(each.reason)) continue;
+    if (each.kind !== "stick-slip") continue;
     const [from, to] = [x(starts[each.run] + each.start), x(starts[each.run] + each.end)];
     svg("rect", { x: from, y: 15, width: Math.max(2, to - from), height: 10, class: "stuck" }, root);
     if (!named) {

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from hersey.arrays import FloatArray
 from hersey.damping.surface import DampingSurface
-from hersey.errors import ParameterError
+from hersey.errors import ParameterError, Setting, way_in
 from hersey.machine.machine import Machine
 from hersey.machine.uncertainty import Uncertainty
 from hersey.motion.drag import Drag
@@ -21,6 +21,7 @@ from hersey.units import takes_si
 _CREEPS = "this is of a belt that creeps to rest (retained): one that stops dead (stiction) may stick on"
 #: Draws of the fit from which those of the plan are taken.
 _DRAWS = 4000
+_HEAT = Setting("heat")
 
 
 @takes_si(target_speed="belt speed", temperature="temperature")
@@ -109,7 +110,14 @@ def check_temperature(surface: DampingSurface, kelvin: float | None, *, varies: 
     """Refuse a temperature (K) that the fit needs and lacks, or does not have."""
     if surface.b is not None and kelvin is None and not varies:
         raise ParameterError(
-            "the drag varies with temperature: give --at '150 degC', --temperature-profile or --heat"
+            f"the drag varies with temperature: give {_temperature('150 degC')} or {_HEAT.to()}"
         )
     if surface.b is None and (kelvin is not None or varies):
-        raise ParameterError("the log is isothermal: leave out --at, --temperature-profile and --heat")
+        raise ParameterError(f"the log is isothermal: leave out {_temperature()} and {_HEAT.to()}")
+
+
+def _temperature(at: str = "") -> str:
+    """How a temperature, or its course, is given."""
+    if way_in() == "terminal":
+        return f"{Setting('at').to(at)}, {Setting('temperature_profile').to()}"
+    return Setting("temperature").to(at, python="423.15" if at else "")
