@@ -51,6 +51,7 @@ if TYPE_CHECKING:
     from hersey.damping.estimate import Estimate
     from hersey.damping.fit import fit
     from hersey.damping.no_load import rest_of_drive
+    from hersey.damping.recipe import Recipe
     from hersey.damping.rest import RestOfDrive
     from hersey.damping.surface import DampingSurface
     from hersey.errors import HerseyError
@@ -143,6 +144,7 @@ _HOMES = {
     "damping.branches": "Transition",
     "damping.fit": "fit",
     "damping.surface": "DampingSurface",
+    "damping.recipe": "Recipe",
     "damping.rest": "RestOfDrive",
     "damping.no_load": "rest_of_drive",
     "damping.candidates": "ModelComparison compare_models hersey_collapse viscosity_laws",
@@ -236,6 +238,7 @@ __all__ = [
     "Population",
     "Posterior",
     "RainflowCycles",
+    "Recipe",
     "Regime",
     "RestOfDrive",
     "Runs",

@@ -82,7 +82,7 @@ def test_a_table_of_runs_leaves_out_what_fails_and_tells_it(folder: Path) -> Non
     assert again.stdout == "life.hersey: 3 already there, 2 failed\n"
     with hersey.Campaign.open(folder / "life.hersey") as campaign:
         assert campaign.runs()["age"].to_list() == [0.0, 1000.0, 2000.0]
-        assert campaign.settings(1)["reading"] == {"isothermal": True}
+        assert campaign.settings(1)["recipe"] == {"isothermal": True}
 
 
 def test_what_is_read_beside_the_log_is_kept(folder: Path) -> None:

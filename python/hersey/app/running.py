@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
 from hersey.damping.dwells import SteadyPoints
+from hersey.damping.recipe import Recipe
 from hersey.document.assembly import analyse
-from hersey.errors import ParameterError
 from hersey.files.writing import write_atomically
-from hersey.log import TorqueLog
-from hersey.log.mapping import read_mapping, read_with_mapping
-from hersey.log.means import MeansTable, is_means_table, read_means, refuse_corrections
 from hersey.machine.machine import Machine, read_machine
 from hersey.report.page import render
 
@@ -82,40 +78,18 @@ def _shared(step: Step, points: int) -> Callable[[str], None]:
 
 
 def _points(request: Mapping[str, Any], machine: Machine | None, step: Step) -> SteadyPoints:
-    step("reading", _READING)
-    paths = [Path(path) for path in request["logs"]]
-    log = _log(request, paths, step)
-    if machine is not None:
-        log = replace(log, sensors=log.sensors.or_else(machine.sensors))
-    step("finding dwells", _DWELLS)
-    if isinstance(log, MeansTable):
-        if request["tare"] != "none":
-            raise ParameterError(
-                "a table of means has no stretch in which the drive stands: take off no zero"
-            )
-        points = SteadyPoints.from_table(log)
-    else:
-        points = log.steady(tare=request["tare"])
-    return points if machine is None or machine.rest is None else points.without(machine.rest)
-
-
-def _log(request: Mapping[str, Any], paths: list[Path], step: Step) -> TorqueLog | MeansTable:
-    mapping = read_mapping(request["mapping"])
-    units = {role: unit for role, unit in mapping.units.items() if role != "time"}
-    channels = {role: name for role, name in mapping.channels.items() if role != "time"}
-    if mapping.time.every is None and all(is_means_table(path, channels, units) for path in paths):
-        refuse_corrections(mapping.corrects, "hersey.toml")
-        table = read_means(paths, channels=channels, units=units, isothermal=request["isothermal"])
-        return replace(table, sensors=mapping.sensors)
+    recipe = Recipe(
+        logs=tuple(request["logs"]),
+        mapping=request["mapping"],
+        isothermal=request["isothermal"],
+        drop_missing=request["drop_missing"],
+        tare=request["tare"],
+    )
 
     def progress(done: int, total: int) -> None:
         step("reading", _READING + (_DWELLS - _READING) * done / max(total, 1))
 
-    done = read_with_mapping(
-        paths,
-        mapping=mapping,
-        isothermal=request["isothermal"],
-        drop_missing=request["drop_missing"],
-        progress=progress,
-    )
-    return replace(done.log, corrections=done.corrections)
+    step("reading", _READING)
+    log = recipe.log(machine, progress=progress)
+    step("finding dwells", _DWELLS)
+    return recipe.dwells(log, machine)

@@ -9,7 +9,7 @@ import json
 from collections import deque
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import asdict, fields
+from dataclasses import asdict, replace
 from functools import partial
 from pathlib import Path
 from queue import SimpleQueue
@@ -33,18 +33,12 @@ _PROCESSES, _AHEAD, _FEW = 2, 6, 8
 
 
 def settings_of(reading: Reading, log: Path, machine: Path | None) -> str:
-    """Return how a log is read, as it is kept: what is no default, and hashes of files beside the log."""
-    from hersey.log.mapping import mapping_of
-
-    said: dict[str, Any] = {
-        each.name: value for each in fields(reading) if (value := getattr(reading, each.name)) != each.default
-    }
-    mapping = mapping_of([log], reading.mapping or None).source
-    beside = {"mapping": mapping, "no_load": reading.no_load or None, "machine": machine}
-    files = {
-        name: {"path": str(path), "sha256": hash_of(Path(path))} for name, path in beside.items() if path
-    }
-    return json.dumps({"reading": said, "files": files}, sort_keys=True)
+    """Return how a log is read, as it is kept: the recipe, and hashes of files beside the log."""
+    recipe = reading.recipe([log])
+    beside = {"mapping": recipe.chosen.source, "no_load": recipe.no_load, "machine": machine}
+    files = {name: {"path": str(path), "sha256": hash_of(path)} for name, path in beside.items() if path}
+    kept = replace(recipe, logs=(), mapping=None, no_load=None).to_dict()
+    return json.dumps({"recipe": kept, "files": files}, sort_keys=True)
 
 
 def entry(reading: Reading, log: Path, machine_file: Path | None, settings: str) -> Entry:

@@ -53,22 +53,14 @@ def inspect(
     from hersey.inspection import inspect as inspected
     from hersey.log import memory_limit
     from hersey.log.mapping import propose_mapping
-    from hersey.units import parse
 
-    given = reading.given()
+    recipe = reading.recipe(logs)
     with working("looking at the channels"), memory_limit(reading.max_memory):
-        inspection = inspected(
-            logs,
-            **given,
-            min_dwell=parse("time", reading.min_dwell),
-            tare=reading.tare,
-            rotation=reading.rotation,
-            temperature_scale=reading.temperature_scale,
-            means=reading.are_means(logs),
-        )
+        given = {name: value for name, value in vars(recipe).items() if name not in ("logs", "no_load")}
+        inspection = inspected(logs, **(given | {"means": recipe.are_means}))
     if kept is not None:
         with memory_limit(reading.max_memory):
-            proposal = propose_mapping(logs[0], channels=given["channels"], units=given["units"])
+            proposal = propose_mapping(logs[0], channels=recipe.channels, units=recipe.units)
         write_atomically(kept, proposal, overwrite=replace_mapping)
     if figure is not None:
         from hersey.charts import chart_of

@@ -7,7 +7,7 @@ import inspect
 import os
 import re
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
@@ -17,10 +17,11 @@ import typer
 from hersey.cli.progress import bar, working
 from hersey.cli.terminal import say
 from hersey.files.patterns import files_of
+from hersey.units import parse
 
 if TYPE_CHECKING:
     from hersey.damping.dwells import SteadyPoints
-    from hersey.damping.rest import RestOfDrive
+    from hersey.damping.recipe import Recipe
     from hersey.damping.surface import DampingSurface
     from hersey.log import TorqueLog
     from hersey.log.means import MeansTable
@@ -140,6 +141,32 @@ class Reading:
         whole: dict[str, Any] = {name: str(Path(path).absolute()) for name, path in given.items() if path}
         return replace(self, **whole)
 
+    def recipe(self, logs: Sequence[Path] = ()) -> Recipe:
+        """Return how these logs become dwells."""
+        from hersey.damping.recipe import Recipe
+
+        amounts = {role: _amounts(getattr(self, role)) for role in ("load", "radius")}
+        named = {role: name for role in _ROLES if (name := getattr(self, role)) and not amounts.get(role)}
+        return Recipe(
+            logs=tuple(logs),
+            mapping=Path(self.mapping) if self.mapping else None,
+            channels=named,
+            units={role: unit for role in _ROLES if (unit := getattr(self, f"{role}_unit", ""))},
+            signs={
+                role: sign for role in ("torque", "speed") if (sign := getattr(self, f"{role}_sign")) != 1
+            },
+            every=self.every or None,  # type: ignore[arg-type]
+            **amounts,  # type: ignore[arg-type]
+            isothermal=self.isothermal,
+            drop_missing=self.drop_missing,
+            means=self.means,
+            min_dwell=parse("time", self.min_dwell),
+            tare=self.tare,
+            rotation=self.rotation,
+            temperature_scale=self.temperature_scale,
+            no_load=Path(self.no_load) if self.no_load else None,
+        )
+
     def inputs(self, *given: Path | list[Path] | None) -> list[Path]:
         """Return the files that a command reads: those given, and the mapping; none may be an output."""
         named = [Path(path) for path in (self.mapping, self.no_load) if path]
@@ -148,94 +175,23 @@ class Reading:
         return named
 
     def log(self, paths: list[Path], machine: Machine | None = None) -> TorqueLog | MeansTable:
-        """Read the files as one log, or as tables of means, with a progress bar.
+        """Read the files as one log, or as tables of means, with a progress bar; say what is left out."""
+        from hersey.log import memory_limit
 
-        Errors of a sensor of which the mapping states none are those of the machine.
-        """
-        log = self._read(paths)
-        if machine is None:
-            return log
-        for role in sorted(set(log.sensors.stated) & set(machine.sensors.stated)):
+        recipe = self.recipe(paths)
+        with bar("reading") as progress, memory_limit(self.max_memory):
+            log: TorqueLog | MeansTable = recipe.log(machine, progress=progress)
+        for file in log.files:
+            if file.missing_rows:
+                say(*(f"{file.name}: {note}" for note in file.notes if "left out" in note), file=sys.stderr)
+        stated = set() if machine is None else set(machine.sensors.stated)
+        for role in sorted(stated and stated & set(recipe.chosen.sensors.stated)):
             say(
                 f"errors of the sensor of {role}: those of the mapping are used, not those of the "
                 "machine's file",
                 file=sys.stderr,
             )
-        return replace(log, sensors=log.sensors.or_else(machine.sensors))
-
-    def _read(self, paths: list[Path]) -> TorqueLog | MeansTable:
-        from hersey.log import memory_limit
-        from hersey.log.mapping import read_with_mapping
-
-        with memory_limit(self.max_memory):
-            table = self.means_table(paths)
-        if table is not None:
-            return table
-        with bar("reading") as progress, memory_limit(self.max_memory):
-            done = read_with_mapping(paths, **self.given(), progress=progress)
-        for file in done.log.files:
-            if file.missing_rows:
-                say(*(f"{file.name}: {note}" for note in file.notes if "left out" in note), file=sys.stderr)
-        return replace(done.log, corrections=done.corrections)
-
-    def means_table(self, paths: list[Path]) -> MeansTable | None:
-        """Read the files as tables of means if they are called so or are plainly such."""
-        from hersey.log.mapping import mapping_of
-        from hersey.log.means import read_means, refuse_corrections
-
-        if not self.are_means(paths):
-            return None
-        mapping = mapping_of(paths, self.mapping or None)
-        refuse_corrections(mapping.corrects, str(mapping.source and mapping.source.name))
-        given = self.given()
-        channels, units = given["channels"], given["units"]
-        stated = {
-            role: given.get(role, None if role in channels else getattr(mapping.stated, role))
-            for role in ("radius", "load")
-        }
-        table = read_means(
-            paths,
-            channels={r: name for r, name in (mapping.channels | channels).items() if r != "time"},
-            units={r: unit for r, unit in (mapping.units | units).items() if r != "time"},
-            isothermal=self.isothermal,
-            **stated,
-            signs=given["signs"],
-        )
-        return replace(table, sensors=mapping.sensors)
-
-    def are_means(self, paths: list[Path]) -> bool:
-        """Return whether the files are called tables of means, or are plainly such."""
-        from hersey.log.mapping import mapping_of
-        from hersey.log.means import is_means_table
-
-        if self.means or self.time or self.every or self.run:
-            return self.means
-        given = self.given()
-        channels, units = given["channels"], given["units"]
-        mapping = mapping_of(paths, self.mapping or None)
-        if mapping.time.every is not None:
-            return False
-        return all(
-            is_means_table(Path(path), mapping.channels | channels, mapping.units | units) for path in paths
-        )
-
-    def given(self) -> dict[str, Any]:
-        """Return what is said of the channels and their units, as `hersey.read_with_mapping` takes it."""
-        roles = ("time", "torque", "speed", "temperature", "load", "radius", "run")
-        stated: dict[str, Any] = {"every": self.every} | {
-            role: amounts for role in ("load", "radius") if (amounts := _amounts(getattr(self, role)))
-        }
-        channels = {role: name for role in roles if (name := getattr(self, role)) and role not in stated}
-        units = {role: unit for role in roles if (unit := getattr(self, f"{role}_unit", ""))}
-        return {
-            "mapping": self.mapping or None,
-            "channels": channels,
-            "units": units,
-            "signs": {"torque": self.torque_sign, "speed": self.speed_sign},
-            "isothermal": self.isothermal,
-            "drop_missing": self.drop_missing,
-            **{name: amount for name, amount in stated.items() if amount},
-        }
+        return log
 
     def trace(self, path: Path, machine: Machine | None = None) -> TorqueLog:
         """Read a recording of the machine itself: starts from rest, or stick-slip."""
@@ -250,56 +206,18 @@ class Reading:
         return read
 
     def points(self, log: TorqueLog | MeansTable, machine: Machine | None = None) -> SteadyPoints:
-        """Reduce the log to dwells, or take those that a table of means states; torque is that of the film.
-
-        What the drive takes besides is that of ``--no-load``, or that of the machine.
-        """
-        rest = None if machine is None else machine.rest
-        if self.no_load:
-            rest = self._rest(rest)
-        points = self._dwells(log)
-        return points if rest is None else points.without(rest)
+        """Reduce the log to dwells; say what a log of the drive without the film shows."""
+        points = self.recipe().dwells(log, machine)
+        if self.no_load and points.rest is not None:
+            say(f"{points.rest.headline()}", *(f"- {note}" for note in points.rest.notes), file=sys.stderr)
+        return points
 
     def points_of(self, paths: list[Path], machine: Machine | None = None) -> SteadyPoints:
         """Read one of several logs and reduce it; what is wrong with it begins with its name."""
-        from hersey.errors import HerseyError
+        from hersey.damping.recipe import naming_logs
 
-        try:
+        with naming_logs(paths):
             return self.points(self.log(paths, machine), machine)
-        except HerseyError as error:
-            if any(path.name in str(error) for path in paths):
-                raise
-            raise error.within(str(paths[0])) from None
-
-    def _rest(self, stated: RestOfDrive | None) -> RestOfDrive:
-        """What the log without the film says."""
-        from hersey.damping.no_load import rest_of_drive
-        from hersey.errors import ParameterError
-
-        if stated is not None:
-            raise ParameterError(
-                f"--no-load and {stated.source} both say what the drive takes without the film: leave one out"
-            )
-        alone = replace(self, no_load="", load="", load_unit="")
-        rest = rest_of_drive(alone._dwells(alone._read([Path(self.no_load)])))
-        say(f"{rest.headline()}", *(f"- {note}" for note in rest.notes), file=sys.stderr)
-        return rest
-
-    def _dwells(self, log: TorqueLog | MeansTable) -> SteadyPoints:
-        from hersey.damping.dwells import SteadyPoints
-        from hersey.errors import ParameterError
-        from hersey.log.means import MeansTable
-        from hersey.units import parse
-
-        if isinstance(log, MeansTable):
-            if self.tare != "none":
-                raise ParameterError(
-                    "a table of means has no stretch in which the drive stands: leave out --tare, and "
-                    "subtract the zero in the table if it has one"
-                )
-            return SteadyPoints.from_table(log, rotation=self.rotation)
-
-        return log.steady(min_dwell=parse("time", self.min_dwell), tare=self.tare, rotation=self.rotation)
 
     def surface_and_posterior(
         self,
@@ -367,8 +285,11 @@ class Reading:
             return fit(self.points(log, machine), temperature_scale=self.temperature_scale)
 
 
+_ROLES = ("time", "torque", "speed", "temperature", "load", "radius", "run")
+
+
 def _amounts(text: str) -> str | list[str] | None:
-    """A text that begins like an amount, several between commas, or None for the name of a column."""
+    """A text that begins like an amount, several between commas, or None for none or a column's name."""
     parts = text.split(",")
     if not all(re.match(r"\s*[-+]?\.?[0-9]", part) for part in parts):
         return None
@@ -378,7 +299,6 @@ def _amounts(text: str) -> str | list[str] | None:
 def temperature_of(text: str, flag: str = "--at") -> float | None:
     """Return the temperature that ``--at``, or another flag, names, K; None if it is not given."""
     from hersey.errors import ParameterError
-    from hersey.units import parse
 
     if not text:
         return None
@@ -391,7 +311,6 @@ def temperature_of(text: str, flag: str = "--at") -> float | None:
 def target_of(text: str, machine: Machine, flag: str = "--target") -> float:
     """Return the speed that ``--target``, or another flag, names, of belt or roll, m/s at the belt."""
     from hersey.errors import ParameterError, WrongKindError
-    from hersey.units import parse
 
     if not text:
         raise ParameterError("give the target: --target '60 mm/s'")

@@ -9,14 +9,12 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, ValidationInfo
 from pydantic.dataclasses import dataclass
 
-from hersey.damping.dwells import SteadyPoints
 from hersey.damping.no_load import rest_of_drive
+from hersey.damping.recipe import Recipe
 from hersey.damping.rest import RestOfDrive
 from hersey.errors import MissingFileError, ParameterError
 from hersey.files.text import shown
 from hersey.files.toml import Quantity, Share, Table, Text
-from hersey.log.mapping import read_with_mapping
-from hersey.log.means import is_means_table
 
 _SLOPE = re.compile(r"([-+]?[0-9]+(?:\.[0-9]*)?)\s*%\s*/\s*(?:K|kelvin|degC|°C)")
 #: No drive changes so much in a kelvin.
@@ -84,6 +82,4 @@ class RestTable(Table):
             raise MissingFileError(
                 f"{path.name}: [rest] names the log {self.log}, and there is no such file beside it"
             )
-        if is_means_table(named, {}, {}):
-            return rest_of_drive(SteadyPoints.from_table(named))
-        return rest_of_drive(read_with_mapping([named]).log.steady(tare=self.tare or "none"))
+        return rest_of_drive(Recipe(logs=(named,), tare=self.tare or "none").points())

@@ -1,0 +1,342 @@
+"""How logs become dwells: files, channels, corrections and the search for dwells in one record.
+
+Command line, app, campaign and machine file all read logs by it. It comes before the machine, whose file may
+name a log of the drive without the film.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Annotated, Any, Protocol
+
+import pydantic.dataclasses
+from pydantic import ValidationInfo
+
+from hersey.damping.dwells import SteadyPoints
+from hersey.damping.no_load import rest_of_drive
+from hersey.damping.rest import RestOfDrive
+from hersey.errors import TARE, HerseyError, ParameterError, Setting
+from hersey.files.toml import Quantity, Table, quoted, read_tables
+from hersey.log import TorqueLog
+from hersey.log.mapping import LogMapping, mapping_of, read_with_mapping
+from hersey.log.means import MeansTable, is_means_table, read_means, refuse_corrections
+from hersey.log.sensors import Sensors
+from hersey.log.text.delimited import Progress
+from hersey.result import json_record
+from hersey.units import argument
+
+Amount = float | tuple[float, ...] | None
+
+
+class KnownDrive(Protocol):
+    """What is known of the drive before its log is read: `hersey.Machine` is one."""
+
+    @property
+    def sensors(self) -> Sensors:
+        """Errors of its sensors."""
+
+    @property
+    def rest(self) -> RestOfDrive | None:
+        """What it takes without the film."""
+
+
+class _OneOrMore(Quantity):
+    """A quantity, or one for each run."""
+
+    def checked(self, given: Any, info: ValidationInfo[Any]) -> Any:
+        """Return the value, or a tuple of them, in SI."""
+        if given is None:
+            return None
+        if isinstance(given, list | tuple):
+            return tuple(self.checked(each, info) for each in given)
+        return super().checked(given, info)
+
+
+class _Path(Quantity):
+    """A file, beside the one that names it unless its path is absolute."""
+
+    def checked(self, given: Any, info: ValidationInfo[Any]) -> Any:
+        """Return the path."""
+        if isinstance(given, list | tuple):
+            return tuple(self.checked(each, info) for each in given)
+        if not isinstance(given, str) or not given.strip():
+            raise ParameterError(f"is {given!r}: write the name of a file")
+        return info.context.path.parent / given
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """How logs are read and reduced to dwells: the same recipe on the same files gives the same dwells.
+
+    Attributes
+    ----------
+    logs
+        Files of one log.
+    mapping
+        File with roles, units and corrections of the channels; None for `hersey.toml` beside the logs.
+    channels, units
+        Names of columns and their units by role; they outrank those of the mapping.
+    signs
+        -1 by role, ``torque`` or ``speed``, turns the sign.
+    every, radius, load
+        Time between rows, s; radius of a friction force, m, and normal load, N, one or one for each run.
+    isothermal, drop_missing
+        As for `hersey.read`.
+    means
+        Whether the files are tables of means. Those that plainly are need not be called so.
+    min_dwell, tare, rotation
+        As for `TorqueLog.steady`; ``min_dwell`` in s.
+    temperature_scale
+        Of the fit: ``degC`` or ``K``.
+    no_load
+        Log of the drive without the film, read in the same way: its torque is subtracted.
+    """
+
+    logs: Annotated[tuple[Path, ...], _Path(None)] = ()
+    mapping: Annotated[Path | None, _Path(None)] = None
+    channels: dict[str, str] = field(default_factory=dict)
+    units: dict[str, str] = field(default_factory=dict)
+    signs: dict[str, int] = field(default_factory=dict)
+    every: Annotated[float | None, _OneOrMore("time", 1e-9, 1e6, "2 ms")] = None
+    radius: Annotated[Amount, _OneOrMore("length", 1e-6, 1e3, "25 mm")] = None
+    load: Annotated[Amount, _OneOrMore("force", 1e-9, 1e9, "50 N")] = None
+    isothermal: bool = False
+    drop_missing: bool = False
+    means: bool = False
+    min_dwell: Annotated[float, Quantity("time", 0.0, 1e9, "2 s")] = 2.0
+    tare: str = "none"
+    rotation: str = "both"
+    temperature_scale: str = "degC"
+    no_load: Annotated[Path | None, _Path(None)] = None
+
+    def __post_init__(self) -> None:
+        """Bring amounts to SI and names of files to paths."""
+        logs = (self.logs,) if isinstance(self.logs, str | Path) else self.logs
+        given: dict[str, Any] = {"logs": tuple(Path(path) for path in logs)}
+        for name in ("mapping", "no_load"):
+            path = getattr(self, name)
+            given[name] = None if path is None else Path(path)
+        for name, kind in _KINDS.items():
+            amount = getattr(self, name)
+            if isinstance(amount, tuple | list):
+                given[name] = tuple(argument(name, kind, each) for each in amount)
+            elif amount is not None:
+                given[name] = argument(name, kind, amount)
+        for name, value in given.items():
+            object.__setattr__(self, name, value)
+
+    def log(self, drive: KnownDrive | None = None, *, progress: Progress | None = None) -> Any:
+        """Read the logs as one.
+
+        Errors of a sensor of which the mapping states none are those of the drive.
+
+        Returns
+        -------
+        `hersey.TorqueLog`, or a table of means.
+
+        Raises
+        ------
+        HerseyError
+            As `hersey.read` does, and if a mapping states corrections for a table of means.
+        """
+        log = self._means() if self.are_means else self._trace(progress)
+        return log if drive is None else replace(log, sensors=log.sensors.or_else(drive.sensors))
+
+    def dwells(self, log: TorqueLog | MeansTable, drive: KnownDrive | None = None) -> SteadyPoints:
+        """Reduce a log to dwells, or take those that a table of means states; torque is that of the film.
+
+        What the drive takes besides is that of ``no_load``, or that of the drive.
+
+        Raises
+        ------
+        InsufficientDataError, ParameterError
+            If there is no dwell, or a setting is wrong or given twice.
+        """
+        rest = self.rest(None if drive is None else drive.rest)
+        points = self._dwells(log)
+        return points if rest is None else points.without(rest)
+
+    def points(self, drive: KnownDrive | None = None, *, progress: Progress | None = None) -> SteadyPoints:
+        """Read the logs and reduce them to dwells; what is wrong begins with the name of the log.
+
+        Raises
+        ------
+        HerseyError
+            As `log` and `dwells` do.
+        """
+        with naming_logs(self.logs):
+            return self.dwells(self.log(drive, progress=progress), drive)
+
+    def rest(self, stated: RestOfDrive | None = None) -> RestOfDrive | None:
+        """Return what the log without the film shows, or what is ``stated`` where there is none.
+
+        Raises
+        ------
+        ParameterError
+            If both are given.
+        """
+        if self.no_load is None:
+            return stated
+        if stated is not None:
+            how = Setting("no_load").to()
+            raise ParameterError(
+                f"{how} and {stated.source} both say what the drive takes without the film: leave one out"
+            )
+        channels, units = _without("load", self.channels), _without("load", self.units)
+        alone = replace(self, logs=(self.no_load,), no_load=None, load=None, channels=channels, units=units)
+        return rest_of_drive(alone._dwells(alone.log()))
+
+    @property
+    def chosen(self) -> LogMapping:
+        """The mapping by which the logs are read."""
+        return mapping_of(self.logs, self.mapping)
+
+    @property
+    def are_means(self) -> bool:
+        """Whether the logs are called tables of means, or plainly are."""
+        if self.means or self.every is not None or {"time", "run"} & self.channels.keys():
+            return self.means
+        mapping = self.chosen
+        if mapping.time.every is not None:
+            return False
+        channels, units = mapping.channels | self.channels, mapping.units | self.units
+        return all(is_means_table(path, channels, units) for path in self.logs)
+
+    def save(self, path: str | Path, *, overwrite: bool = False) -> None:
+        """Write the recipe as TOML, each amount with its unit and each file as it lies from there.
+
+        Raises
+        ------
+        OutputError
+            If the file exists and ``overwrite`` is false, or cannot be written.
+        """
+        from hersey.files.writing import write_atomically
+
+        write_atomically(Path(path), self.toml(Path(path).parent), overwrite=overwrite)
+
+    @classmethod
+    def from_file(cls, path: str | Path) -> Recipe:
+        """Read a recipe that was saved.
+
+        Raises
+        ------
+        MissingFileError, ParameterError, UnitError
+            Each names the file and the key.
+        """
+        return cls(**vars(read_tables(path, _RecipeFile)))
+
+    def toml(self, folder: Path) -> str:
+        """Return the recipe as TOML; files are named as they lie from ``folder``."""
+        plain, tables = [], []
+        for name, value in self.stated().items():
+            if isinstance(value, dict):
+                rows = [f"{key} = {_written(each)}" for key, each in value.items()]
+                tables.append("\n".join([f"\n[{name}]", *rows]))
+            else:
+                plain.append(f"{name} = {_written(value, _KINDS.get(name, ''), folder)}")
+        return "\n".join([*plain, *tables, ""])
+
+    def stated(self) -> dict[str, Any]:
+        """Return what is no default, by name."""
+        usual = vars(Recipe())
+        return {name: value for name, value in vars(self).items() if value != usual[name]}
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return what is no default as JSON, in SI."""
+        return json_record({name: _plain(value) for name, value in self.stated().items()})
+
+    def anywhere(self) -> Recipe:
+        """Return the same with whole paths: a worker may have been started in another folder."""
+        given = {name: getattr(self, name) for name in ("mapping", "no_load")}
+        whole: dict[str, Any] = {name: path.absolute() for name, path in given.items() if path is not None}
+        return replace(self, logs=tuple(path.absolute() for path in self.logs), **whole)
+
+    def _trace(self, progress: Progress | None) -> TorqueLog:
+        done = read_with_mapping(
+            self.logs,
+            mapping=self.mapping,
+            channels=self.channels,
+            units=self.units,
+            signs=self.signs,
+            isothermal=self.isothermal,
+            drop_missing=self.drop_missing,
+            **{name: given for name in _KINDS if name != "min_dwell" and (given := getattr(self, name))},
+            progress=progress,
+        )
+        return replace(done.log, corrections=done.corrections)
+
+    def _means(self) -> MeansTable:
+        mapping = self.chosen
+        refuse_corrections(mapping.corrects, str(mapping.source and mapping.source.name))
+        stated = {
+            role: getattr(self, role) or (None if role in self.channels else getattr(mapping.stated, role))
+            for role in ("radius", "load")
+        }
+        table = read_means(
+            self.logs,
+            channels=_without("time", mapping.channels | self.channels),
+            units=_without("time", mapping.units | self.units),
+            isothermal=self.isothermal,
+            signs=self.signs,
+            **stated,
+        )
+        return replace(table, sensors=mapping.sensors)
+
+    def _dwells(self, log: TorqueLog | MeansTable) -> SteadyPoints:
+        if isinstance(log, MeansTable):
+            if self.tare != "none":
+                raise ParameterError(
+                    f"a table of means has no stretch in which the drive stands: leave out {TARE.to()}, and "
+                    "subtract the zero in the table if it has one"
+                )
+            return SteadyPoints.from_table(log, rotation=self.rotation)
+        return log.steady(min_dwell=self.min_dwell, tare=self.tare, rotation=self.rotation)
+
+
+@contextmanager
+def naming_logs(paths: Sequence[Path]) -> Iterator[None]:
+    """Let what is wrong with a log begin with its name, where several are read."""
+    try:
+        yield
+    except HerseyError as error:
+        if not paths or any(path.name in error.reason for path in paths):
+            raise
+        raise error.within(str(paths[0])) from None
+
+
+@pydantic.dataclasses.dataclass(frozen=True)
+class _RecipeFile(Table, Recipe):
+    """A recipe as its file holds it."""
+
+
+#: Kind of unit of each amount.
+_KINDS = {"every": "time", "radius": "length", "load": "force", "min_dwell": "time"}
+#: Unit in which an amount is written.
+_UNITS = {"time": "s", "length": "m", "force": "N"}
+
+
+def _without(role: str, by_role: Mapping[str, str]) -> dict[str, str]:
+    return {other: value for other, value in by_role.items() if other != role}
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, tuple):
+        return [_plain(each) for each in value]
+    return str(value) if isinstance(value, Path) else value
+
+
+def _written(value: Any, kind: str = "", folder: Path = Path()) -> str:
+    """A value as TOML."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, Path):
+        return quoted(os.path.relpath(value, folder))
+    if isinstance(value, Sequence) and not isinstance(value, str):
+        return f"[{', '.join(_written(each, kind, folder) for each in value)}]"
+    if kind:
+        return quoted(f"{value!r} {_UNITS[kind]}")
+    return quoted(value) if isinstance(value, str) else repr(value)

@@ -1,0 +1,140 @@
+"""A recipe is how logs become dwells: one for command line, app, campaign and machine file."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import hersey
+from hersey.app.running import _points
+from hersey.damping.recipe import Recipe
+from hersey.errors import ParameterError, UnitError, WrongKindError
+from hersey.log.sensors import Sensors
+from hersey.machine.machine import read_machine
+
+SPEEDS, KELVIN = (5.0, 10.0, 20.0, 40.0, 80.0), (353.15, 393.15, 433.15)
+AMOUNT = st.floats(1e-6, 1e2)
+TEXT = st.text(st.characters(codec="utf-8", categories=("L", "N", "P", "S", "Zs")), min_size=1, max_size=12)
+
+
+def friction(folder: Path) -> Path:
+    """A table of means of a friction force, whose radius the mapping beside it states."""
+    rows = ["Friction force [N],Sliding speed [mm/s],Temp [K]"]
+    rows += [f"{20.0 * v**0.3 * (t / 353.15) ** -3},{v},{t}" for t in KELVIN for v in SPEEDS]
+    (folder / "means.csv").write_text("\n".join(rows))
+    (folder / "hersey.toml").write_text('[radius]\nvalue = "25 mm"\n')
+    return folder / "means.csv"
+
+
+def asked(log: Path, **more: Any) -> dict[str, Any]:
+    """What the app asks its worker."""
+    request = {"logs": [str(log)], "mapping": str(log.parent / "hersey.toml"), "tare": "none"}
+    return request | {"isothermal": False, "drop_missing": False} | more
+
+
+def test_command_line_app_machine_file_and_python_read_alike(tmp_path: Path) -> None:
+    """The app refused a table of means whose mapping states a radius, which the command line reads."""
+    log = friction(tmp_path)
+    points = Recipe(logs=(log,)).points()
+    torque = [20.0 * 0.025 * v**0.3 * (t / 353.15) ** -3 for t in KELVIN for v in SPEEDS]
+    np.testing.assert_allclose(points.column("torque"), torque, rtol=1e-12)
+    of_app = _points(asked(log), None, lambda _step, _share: None)
+    np.testing.assert_array_equal(of_app.column("torque"), points.column("torque"))
+    command = [sys.executable, "-m", "hersey.cli", "fit", str(log), "--json"]
+    done = subprocess.run(command, capture_output=True, text=True, check=True, timeout=300)
+    printed = [point["torque"] for point in json.loads(done.stdout)["points"]]
+    np.testing.assert_array_equal(printed, points.column("torque"))
+    (tmp_path / "machine.toml").write_text(
+        '[drivetrain]\nstiffness = "11 N/mm"\nmass = "11 kg"\nroll_radius = "25 mm"\nstick_speed = "1 mm/s"\n'
+        '[rest]\nlog = "means.csv"\n'
+    )
+    rest = read_machine(tmp_path / "machine.toml").rest
+    assert rest is not None
+    assert rest.speed_range == pytest.approx((SPEEDS[0] / 25.0, SPEEDS[-1] / 25.0), rel=1e-12)
+
+
+@given(
+    names=st.dictionaries(st.sampled_from(["torque", "speed", "temperature"]), TEXT, max_size=3),
+    every=st.none() | AMOUNT,
+    load=st.none() | AMOUNT | st.lists(AMOUNT, min_size=2, max_size=4).map(tuple),
+    min_dwell=AMOUNT,
+    switches=st.tuples(st.booleans(), st.booleans(), st.booleans()),
+    sign=st.sampled_from([-1, 1]),
+)
+def test_a_saved_recipe_is_the_same(
+    tmp_path_factory: pytest.TempPathFactory,
+    names: dict[str, str],
+    every: float | None,
+    load: Any,
+    min_dwell: float,
+    switches: tuple[bool, bool, bool],
+    sign: int,
+) -> None:
+    folder = tmp_path_factory.getbasetemp()
+    recipe = Recipe(
+        logs=(folder / "logs" / "a.csv", folder / "b.csv"),
+        channels={role: name for role, name in names.items() if name.strip()},
+        signs={"torque": sign},
+        every=every,
+        load=load,
+        min_dwell=min_dwell,
+        isothermal=switches[0],
+        drop_missing=switches[1],
+        means=switches[2],
+        no_load=folder / "free.csv",
+    )
+    recipe.save(folder / "recipe.toml", overwrite=True)
+    assert Recipe.from_file(folder / "recipe.toml") == recipe
+
+
+def test_amounts_of_a_recipe_take_units() -> None:
+    recipe = Recipe(logs="a.csv", every="2 ms", load=("10 N", 20.0), min_dwell="0.1 min")  # type: ignore[arg-type]
+    assert recipe.logs == (Path("a.csv"),)
+    assert (recipe.every, recipe.load, recipe.min_dwell) == (0.002, (10.0, 20.0), pytest.approx(6.0))
+    assert recipe.to_dict() == {
+        "logs": ["a.csv"],
+        "every": 0.002,
+        "load": [10.0, 20.0],
+        "min_dwell": pytest.approx(6.0),
+    }
+    with pytest.raises(WrongKindError, match="every: unit 'kg' is not a unit of time"):
+        Recipe(every="2 kg")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("text", "error", "says"),
+    [
+        ("tarre = 'standing'", ParameterError, r"recipe\.toml: .*'tarre'.* did you mean .*tare"),
+        ("every = 3", UnitError, "recipe.toml: every is 3: write a string with its unit"),
+        ("load = ['2 N', '3 m']", UnitError, "recipe.toml: load: unit 'm' is not a unit of force"),
+        ("signs = {torque = 'x'}", ParameterError, r"recipe\.toml: signs\.torque is 'x'"),
+        ("logs = [3]", ParameterError, "recipe.toml: logs is 3: write the name of a file"),
+        ("mapping = ''", ParameterError, "recipe.toml: mapping is '': write the name of a file"),
+    ],
+)
+def test_a_mistake_in_a_saved_recipe_is_named(
+    tmp_path: Path, text: str, error: type[Exception], says: str
+) -> None:
+    (tmp_path / "recipe.toml").write_text(text + "\n")
+    with pytest.raises(error, match=says):
+        Recipe.from_file(tmp_path / "recipe.toml")
+
+
+def test_no_load_is_said_once(tmp_path: Path) -> None:
+    log = friction(tmp_path)
+    rest = hersey.RestOfDrive.stated(constant=0.01, source="[rest] of machine.toml")
+    drive: Any = SimpleNamespace(sensors=Sensors(), rest=rest)
+    with pytest.raises(ParameterError, match=r"^.*no_load and \[rest\] of machine.toml both say"):
+        Recipe(logs=(log,), no_load=log).points(drive)
+    without = Recipe(logs=(log,)).points(drive)
+    whole = Recipe(logs=(log,)).points()
+    np.testing.assert_allclose(without.column("torque"), whole.column("torque") - 0.01, rtol=1e-12)
