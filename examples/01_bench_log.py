@@ -11,7 +11,8 @@ from pathlib import Path
 
 import hersey
 from hersey.charts.analysis import charts
-from hersey.document.assembly import analyse
+from hersey.document.assembly import document_of
+from hersey.study import study
 
 HERE = Path(__file__).parent
 FOLDER = Path(sys.argv[1] if len(sys.argv) > 1 else "build/examples")
@@ -19,7 +20,7 @@ FOLDER = Path(sys.argv[1] if len(sys.argv) > 1 else "build/examples")
 machine = hersey.read_machine(HERE / "machine.toml")
 log = hersey.read(HERE / "bench.csv")
 points = log.steady(tare="standing").without(machine.rest)
-document = analyse(log, points, machine=machine)
+document = document_of(study(points, machine))
 told = json.loads((HERE / "bench-truth.json").read_text())
 
 print(*document.verdict, sep="\n")

@@ -19,9 +19,10 @@ from pathlib import Path
 
 import hersey
 from hersey.charts.analysis import charts
-from hersey.document.assembly import analyse
+from hersey.document.assembly import document_of
 from hersey.files.writing import write_atomically
 from hersey.report.page import render
+from hersey.study import study
 
 DATA = Path(__file__).parents[2] / "shared" / "data" / "friction" / "tro2021_screw_drives"
 FOLDER = Path(sys.argv[1] if len(sys.argv) > 1 else "build/examples")
@@ -34,7 +35,7 @@ for drive in (1, 2):
     files = sorted((DATA / f"driveNo{drive}" / "steady_state").glob("*.csv"))
     log = hersey.read(files, units=UNITS, isothermal=True)
     points = log.steady(rotation="forward")
-    document = analyse(log, points, command="python examples/02_screw_drives.py")
+    document = document_of(study(points), command="python examples/02_screw_drives.py")
     print(f"drive {drive}: {document.regime.verdict}")
     if document.fit.no_transition:
         print(f"  no falling branch: {document.fit.no_transition}")

@@ -8,9 +8,10 @@ import pytest
 
 import hersey
 from hersey import testbench
-from hersey.document.assembly import analyse
-from hersey.document.parts import Analysis
+from hersey.document.analysis import Analysis
+from hersey.document.assembly import document_of
 from hersey.machine.machine import read_machine
+from hersey.study import study
 
 ROOT = Path(__file__).parents[1]
 SHARED = ROOT.parent / "shared"
@@ -64,9 +65,9 @@ def surface(points: hersey.SteadyPoints) -> hersey.DampingSurface:
 
 
 @pytest.fixture(scope="session")
-def document(log: hersey.TorqueLog, points: hersey.SteadyPoints) -> Analysis:
+def document(points: hersey.SteadyPoints) -> Analysis:
     machine = read_machine(ROOT / "tests" / "stand" / "machine.toml")
-    return analyse(log, points, command="hersey report bench.csv", machine=machine)
+    return document_of(study(points, machine), command="hersey report bench.csv")
 
 
 @pytest.fixture

@@ -33,7 +33,7 @@ TRAIN, DRAG = Drivetrain(1000, 1), Drag(50, 1, **PAPER)
 BRISTLES = Drag(50, 1, **PAPER, closure="lugre", bristle_stiffness=1e5, bristle_damping=100.0)
 import hersey
 from hersey import Limits, plan_profile
-from hersey.document.assembly import analyse
+from hersey.study import study
 from hersey.identification.trace_file import read_trace
 BENCH, PLANNED = "examples/bench.csv", Limits(speed=4, acceleration=10)
 NIP = {"effective_modulus": 2.63e6, "thickness": 3.5e-3, "poisson": 0.49}
@@ -45,7 +45,7 @@ except KeyboardInterrupt:
     print("interrupted", flush=True)
 """
 #: What some calls are given, made only for them: it takes longer than all else.
-_POINTS = 'LOG = hersey.read(BENCH); POINTS = LOG.steady(tare="standing")'
+_POINTS = 'POINTS = hersey.read(BENCH).steady(tare="standing")'
 MADE = {
     "RECORD": (
         'TRACE = read_trace("examples/stick-slip.csv")\n'
@@ -74,7 +74,7 @@ CALLS = {
     "read": "[hersey.read(BENCH) for _ in range(9999)]",
     "models": "[hersey.compare_models(POINTS) for _ in range(9999)]",
     "identify": "[hersey.identify(RECORD) for _ in range(99)]",
-    "analyse": "[analyse(LOG, POINTS) for _ in range(999)]",
+    "study": "[study(POINTS) for _ in range(999)]",
     "map": (
         "[hersey.operating_map(SURFACE, MACHINE.train, roll_radius=MACHINE.roll_radius, "
         "limits=MACHINE.limits, stick_speed=MACHINE.stick_speed) for _ in range(999)]"

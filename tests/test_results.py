@@ -16,7 +16,7 @@ from benchmarks.drift import other, table
 
 import hersey
 from hersey import testbench
-from hersey.document.parts import (
+from hersey.parts import (
     AgeingMapsPart,
     AgesPart,
     BandPart,

@@ -8,6 +8,7 @@ errors          the closed table of what can go wrong
 units           the one door for units
 arrays          numbers or arrays as arguments
 result          what every result can do
+parts           what the document and every ``--json`` hold, one part per result
 files           text, TOML with units, writing whole or not at all
 processes       processes of our own for libraries that may break down
 scale           work cut into tasks: for threads, or for the workers of a cluster
@@ -22,6 +23,7 @@ identification  the cycles of a trace, and the drive behind them
 stability       hysteresis, disturbances, the operating map, drive profiles, warm-ups
 posterior       dwells, starts and stick-slip in one likelihood: draws of curve, closure and drive
 decision        what to do: the verdict on a speed, the next measurement, the start-up
+study           everything for one log and one machine, computed once; the decision in words
 life            runs of many units at many ages, fatigue, populations: what ends a drive, and when
 exchange        the drive as a unit that other tools of simulation run
 document        the analysis document: the contract with the page
@@ -113,6 +115,7 @@ if TYPE_CHECKING:
     from hersey.posterior.evidence import BreakAway, Start, StickSlip
     from hersey.posterior.result import Posterior
     from hersey.posterior.sampling import posterior
+    from hersey.report.page import report
     from hersey.stability.disturbance import Disturbance, SafeStep, disturbance, safe_step
     from hersey.stability.hysteresis import (
         CyclesWithoutSticking,
@@ -124,6 +127,7 @@ if TYPE_CHECKING:
     from hersey.stability.operating_map import OperatingMap, operating_map
     from hersey.stability.plan import Plan, plan_profile
     from hersey.stability.warm_up import WarmUp, warm_up
+    from hersey.study.log_and_machine import Study, study
     from hersey.verdict.evidence import MeasuredFilm, measured_film
     from hersey.verdict.regime import Regime, regime
 
@@ -170,6 +174,8 @@ _HOMES = {
     "stability.operating_map": "OperatingMap operating_map",
     "stability.plan": "Plan plan_profile",
     "stability.warm_up": "WarmUp warm_up",
+    "study.log_and_machine": "Study study",
+    "report.page": "report",
     "life.fatigue": (
         "RainflowCycles SNCurve damage_rate life_of miner_damage rainflow_cycles stick_slip_damage_rate"
     ),
@@ -251,6 +257,7 @@ __all__ = [
     "Stepper",
     "StickSlip",
     "StickSlipCycle",
+    "Study",
     "TestDesign",
     "TorqueLog",
     "Trajectory",
@@ -298,12 +305,14 @@ __all__ = [
     "read_temperature_profile",
     "read_with_mapping",
     "regime",
+    "report",
     "rest_of_drive",
     "safe_step",
     "simulate",
     "solve_line_contact",
     "stick_slip",
     "stick_slip_damage_rate",
+    "study",
     "sweep",
     "viscosity_laws",
     "warm_up",

@@ -23,11 +23,11 @@ def test_an_earlier_log_is_read_as_the_other_and_handed_on(tmp_path: Path, monke
     class SeenError(Exception):
         pass
 
-    def analyse(_log: object, points: SteadyPoints, *, against: SteadyPoints, **_others: object) -> None:
+    def study(points: SteadyPoints, *_: object, against: SteadyPoints, **_others: object) -> None:
         taken.update(new=points, old=against)
         raise SeenError
 
-    monkeypatch.setattr(running, "analyse", analyse)
+    monkeypatch.setattr(running, "study", study)
     request = {
         "logs": [str(tmp_path / "new.csv")], "against": str(tmp_path / "old.csv"), "machine": None,
         "mapping": str(tmp_path / "hersey.toml"), "isothermal": False, "drop_missing": False,

@@ -10,10 +10,11 @@ import pytest
 from playwright.sync_api import Browser, sync_playwright
 
 import hersey
-from hersey.document.assembly import analyse
-from hersey.document.parts import Analysis
+from hersey.document.analysis import Analysis
+from hersey.document.assembly import document_of
 from hersey.machine.machine import read_machine
 from hersey.report.page import render
+from hersey.study import study
 from tests.conftest import ROOT, shared
 
 ARGUMENTS = ["--no-sandbox", "--disable-gpu", "--disable-background-networking", "--disable-component-update"]
@@ -40,20 +41,22 @@ def _demo() -> Analysis:
     points = log.steady(tare="standing")
     points = points if machine.rest is None else points.without(machine.rest)
     command = "hersey report examples/bench.csv --machine examples/machine.toml --tare standing"
-    return analyse(log, points, command=command, machine=machine, machine_file=path)
+    return document_of(study(points, machine, machine_file=path), command=command)
 
 
 def _screw() -> Analysis:
     """Measured by others: one file per speed, no machine, no temperature."""
     files = sorted(shared(_SCREW).glob("*.csv"))
     log = hersey.read(files, units={"torque": "-9.84 mN*m / 100", "speed": "-1 rpm"}, isothermal=True)
-    return analyse(log, log.steady(rotation="forward"), command="hersey report FOLDER/*.csv --isothermal")
+    return document_of(
+        study(log.steady(rotation="forward")), command="hersey report FOLDER/*.csv --isothermal"
+    )
 
 
 def _plain() -> Analysis:
     """The example without machine and temperature."""
     log = hersey.read(ROOT / "examples" / "bench.csv", isothermal=True)
-    return analyse(log, log.steady(), command="hersey report examples/bench.csv --isothermal")
+    return document_of(study(log.steady()), command="hersey report examples/bench.csv --isothermal")
 
 
 @pytest.fixture(scope="package")

@@ -14,13 +14,14 @@ import pytest
 from playwright.sync_api import Browser, Locator, Page, expect
 
 import hersey
-from hersey.document.assembly import analyse
-from hersey.document.parts import Analysis
+from hersey.document.analysis import Analysis
+from hersey.document.assembly import document_of
 from hersey.log.means import read_means
 from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.machine import Machine, read_machine
 from hersey.posterior.sampling import posterior
 from hersey.report.page import render
+from hersey.study import study
 from tests.browser.opening import Opened
 from tests.conftest import ROOT
 
@@ -80,7 +81,7 @@ def judged(
 ) -> tuple[Analysis, hersey.SteadyPoints, Machine]:
     machine = MACHINES[request.param]
     dwells = _rising(tmp_path_factory.mktemp("rising")) if request.param == "only rising" else points
-    return analyse(dwells.log, dwells, machine=machine), dwells, machine
+    return document_of(study(dwells, machine)), dwells, machine
 
 
 def _verdict(found: hersey.Posterior, machine: Machine, kelvin: float | None, speed: float) -> str:

@@ -14,7 +14,7 @@ from playwright.sync_api import Browser
 import hersey
 from hersey.charts.inspection import inspection_chart
 from hersey.charts.render import picture
-from hersey.document.parts import Analysis
+from hersey.document.analysis import Analysis
 from hersey.machine.machine import read_machine
 from hersey.report.page import render
 from hersey.stability.operating_map import OperatingMap, operating_map

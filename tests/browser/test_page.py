@@ -15,8 +15,8 @@ import pytest
 from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Browser, Page
 
+from hersey.document.analysis import Analysis
 from hersey.document.assembly import load
-from hersey.document.parts import Analysis
 from tests.browser.conftest import SCREENS
 from tests.browser.opening import Opened
 from tests.conftest import ROOT

@@ -16,12 +16,12 @@ import polars as pl
 import pytest
 from playwright.sync_api import Browser, Page
 
-from hersey.document.parts import Analysis
-from hersey.document.parts.motion import DragTablePart, TrainPart
-from hersey.document.parts.stability import MapPart
+from hersey.document.analysis import Analysis
 from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import DragTable
 from hersey.motion.simulation import StickSlipCycle, stick_slip
+from hersey.parts.motion import DragTablePart, TrainPart
+from hersey.parts.stability import MapPart
 from hersey.report.page import render
 from hersey.stability.disturbance import disturbance
 from hersey.stability.hysteresis import hysteresis

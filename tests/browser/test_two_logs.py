@@ -6,8 +6,9 @@ from pathlib import Path
 
 from playwright.sync_api import Browser
 
-from hersey.document.assembly import analyse
+from hersey.document.assembly import document_of
 from hersey.report.page import render
+from hersey.study import study
 from tests.browser.opening import Opened
 from tests.browser.test_page import DESK, picture
 from tests.document.test_against import dwells, written
@@ -15,7 +16,7 @@ from tests.document.test_against import dwells, written
 
 def test_two_logs_are_compared_on_the_page(browser: Browser, tmp_path: Path) -> None:
     now, earlier = dwells(written(tmp_path, "new.csv")), dwells(written(tmp_path, "more.csv"))
-    document = analyse(now.log, now, against=earlier)
+    document = document_of(study(now, against=earlier))
     assert document.compare is not None
     path = tmp_path / "page.html"
     path.write_text(render(document), encoding="utf-8")

@@ -12,7 +12,7 @@ import pytest
 from hersey.charts.analysis import charts, write_figures
 from hersey.charts.render import specification_of
 from hersey.charts.style import ramp
-from hersey.document.parts import Analysis
+from hersey.document.analysis import Analysis
 
 
 def test_every_result_has_its_chart(document: Analysis) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from hersey.charts.labels import Labels, apart
-from hersey.document.thinning import kept
+from hersey.study.thinning import kept
 
 
 def test_names_stay_near_and_apart() -> None:

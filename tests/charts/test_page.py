@@ -12,7 +12,7 @@ import hersey
 from hersey.charts import page as module
 from hersey.charts.page import embedded, page
 from hersey.charts.render import picture
-from hersey.document.parts import Analysis
+from hersey.document.analysis import Analysis
 from hersey.report.page import render
 
 

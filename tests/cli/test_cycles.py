@@ -65,7 +65,7 @@ def test_summary_figure_and_known_values(tmp_path: Path) -> None:
     assert "0.5 kg (given)" in text
     assert figure.read_bytes().startswith(b"\x89PNG")
     refused = run("cycles", CSV, "--figure", figure, cwd=tmp_path)
-    assert (refused.returncode, "say --force" in refused.stderr) == (2, True)
+    assert (refused.returncode, "use --force" in refused.stderr) == (2, True)
 
 
 def test_the_uncertainty_of_the_drive_speed_and_falls_that_are_not_counted(tmp_path: Path) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -12,9 +13,12 @@ import jsonschema
 import pytest
 
 import hersey
+import hersey.study
 from hersey.cli.application import VERBS, load
-from hersey.document.parts import PRINTED, SCHEMA_VERSION, Analysis, Part
+from hersey.document.analysis import Analysis
+from hersey.document.printed import PRINTED
 from hersey.document.saved_fit import read_fit
+from hersey.parts import SCHEMA_VERSION, Part
 from tests.cli.command import run
 from tests.conftest import ROOT
 from tests.life import shipped
@@ -93,7 +97,8 @@ def test_a_command_prints_its_part(
     name: str, files: dict[str, str], document: Analysis, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The whole document is one that is made once for all tests; `test_cli` has the command make its own."""
-    monkeypatch.setattr("hersey.document.assembly.analyse", lambda *_, **__: document)
+    monkeypatch.setattr(sys.modules["hersey.study"], "study", lambda *_, **__: None)
+    monkeypatch.setattr("hersey.document.assembly.document_of", lambda *_, **__: document)
     told = printed([name, *(files.get(argument, argument) for argument in ARGUMENTS[name])])
     assert told["schema_version"] == SCHEMA_VERSION
     assert told["hersey_version"] == hersey.__version__
@@ -172,13 +177,13 @@ def parts_in(annotation: Any) -> list[type[Part]]:
 
 
 def test_fit_builds_no_simulation(files: dict[str, str], monkeypatch: pytest.MonkeyPatch) -> None:
-    import hersey.document.assembly as assembly
+    import hersey.study.simulation as simulation
 
     def refuse(*_: object, **__: object) -> None:
         raise AssertionError("a fit needs no simulation")
 
-    monkeypatch.setattr(assembly, "stick_slip", refuse)
-    monkeypatch.setattr(assembly, "simulate", refuse)
+    monkeypatch.setattr(simulation, "stick_slip", refuse)
+    monkeypatch.setattr(simulation, "simulate", refuse)
     assert Path(files["FIT"]).exists()
     assert set(printed(["fit", BENCH, *TARE])) == HEADER | {"warnings", "files", "points", "fit", "regime"}
 

@@ -102,7 +102,7 @@ def test_files_that_are_there_are_not_replaced_unasked(folder: Path) -> None:
     (folder / "machine.toml").write_text("mine")
     done = run("new", "log.csv", cwd=folder, answers=lines(*CHANNELS, *MACHINE))
     assert done.returncode == 2
-    assert "say --force to replace it" in done.stderr
+    assert "use --force to replace it" in done.stderr
     assert (folder / "machine.toml").read_text() == "mine"
     assert run("new", "--force", cwd=folder, answers=lines(*MACHINE)).returncode == 0
     assert read_machine(folder / "machine.toml").mass == 11.0

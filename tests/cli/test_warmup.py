@@ -45,7 +45,7 @@ def test_the_course_is_written_and_serves_a_plan(folder: Path) -> None:
     assert "extrapolated" in done.stdout
     course = read_temperature_profile(folder / "course.csv")
     assert course.first == pytest.approx(293.15)
-    assert "exists: say --force" in run(*TYPED, "--out", "course.csv", cwd=folder).stderr
+    assert "exists: use --force" in run(*TYPED, "--out", "course.csv", cwd=folder).stderr
 
 
 def test_where_full_speed_is_not_reached_nothing_is_written(folder: Path) -> None:

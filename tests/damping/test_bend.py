@@ -15,7 +15,7 @@ import hersey
 from hersey.damping.smoothing import Curve, parabola
 from hersey.damping.surface import DampingSurface
 from hersey.document.assembly import fit_document
-from hersey.document.parts import PRINTED
+from hersey.document.printed import PRINTED
 from hersey.document.saved_fit import read_fit
 from hersey.errors import ParameterError
 from tests.damping.test_surface import points_of

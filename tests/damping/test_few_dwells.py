@@ -20,7 +20,7 @@ from hersey.damping.gradual import _by_power
 from hersey.damping.scaled import move_of, scaled_speed, scaled_torque
 from hersey.damping.surface import DampingSurface
 from hersey.document.assembly import fit_document
-from hersey.document.parts import PRINTED
+from hersey.document.printed import PRINTED
 from hersey.document.saved_fit import read_fit
 from tests.damping.test_surface import points_of
 

@@ -12,10 +12,10 @@ from hersey.decision import judge, next_measurement
 from hersey.decision.judge import drive_limit
 from hersey.decision.measurement import measurements
 from hersey.decision.start_up import plan_start_up
-from hersey.document.decision.advice import design_part, ranking
 from hersey.machine.limits import Limits
 from hersey.posterior import Posterior
 from hersey.posterior.sampling import posterior
+from hersey.study.first_screen.advice import design_part, ranking
 from tests.conftest import ROOT
 
 HOT = 453.15

@@ -10,9 +10,10 @@ import pytest
 
 import hersey
 from hersey.decision.plausibility import Question, asked
-from hersey.document.assembly import analyse
-from hersey.document.decision.questions import in_words
+from hersey.document.assembly import document_of
 from hersey.machine.limits import Limits, OperatingPoint
+from hersey.study import study
+from hersey.study.first_screen.questions import in_words
 from tests.conftest import ROOT
 
 
@@ -77,7 +78,7 @@ def test_the_first_screen_asks_and_concludes_nothing(bench_csv: Path, machine: h
     path = bench_csv.parent / "thousandfold.csv"
     path.write_text(text)
     log = hersey.read(path)
-    document = analyse(log, log.steady(tare="standing"), machine=machine)
+    document = document_of(study(log.steady(tare="standing"), machine))
     said = document.decision
     assert said is not None
     assert said.instruction.startswith("Is torque in mN·m? It is ")

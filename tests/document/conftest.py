@@ -13,11 +13,11 @@ from hersey.damping.rest import RestOfDrive
 from hersey.damping.surface import DampingSurface
 from hersey.decision.behaviour import Behaviour, Working
 from hersey.decision.judge import judge
-from hersey.document.decision import decision
-from hersey.document.parts import CarriedPart, DecisionPart, FilmPart, RegimePart
 from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.machine import Machine, read_machine
+from hersey.parts import CarriedPart, DecisionPart, FilmPart, RegimePart
 from hersey.stability.operating_map import OperatingMap
+from hersey.study.first_screen import decision
 from hersey.verdict.regime import regime
 from tests.conftest import ROOT
 

@@ -11,11 +11,13 @@ import pytest
 
 import hersey
 from hersey.damping.compare import compare
-from hersey.document.assembly import analyse, load
-from hersey.document.decision.flags import MOST, flags
-from hersey.document.parts import Analysis, ComparisonPart, RegimePart
+from hersey.document.analysis import Analysis
+from hersey.document.assembly import document_of, load
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.log.means import read_means
+from hersey.parts import ComparisonPart, RegimePart
+from hersey.study import study
+from hersey.study.first_screen.flags import MOST, flags
 from hersey.verdict.regime import regime
 from tests.cli.command import run
 
@@ -52,7 +54,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def less(folder: Path) -> Analysis:
     """A log that takes less than an earlier one."""
     now, earlier = dwells(written(folder, "new.csv")), dwells(written(folder, "more.csv"))
-    return analyse(now.log, now, against=earlier)
+    return document_of(study(now, against=earlier))
 
 
 def test_it_is_the_comparison_of_the_two_logs_the_earlier_one_first(less: Analysis, folder: Path) -> None:
@@ -94,14 +96,14 @@ def test_what_did_not_change_has_its_place_too(folder: Path) -> None:
 
 def test_logs_of_one_name_are_told_apart_and_one_file_is_refused(folder: Path) -> None:
     now, earlier = dwells(written(folder, "new.csv")), dwells(written(folder, "old/new.csv", of="again.csv"))
-    document = analyse(now.log, now, against=earlier)
+    document = document_of(study(now, against=earlier))
     assert document.compare is not None
     assert (document.compare.a, document.compare.b) == ("new.csv (earlier)", "new.csv")
     with pytest.raises(ParameterError, match=r"^new\.csv is in both logs: name another"):
-        analyse(now.log, now, against=dwells(folder / "new.csv"))
+        document_of(study(now, against=dwells(folder / "new.csv")))
     faster = dwells(written(folder, "fast.csv", of="again.csv", times=1e3))
     with pytest.raises(InsufficientDataError, match=r"no range of speed: fast\.csv has .* rpm, new\.csv "):
-        analyse(now.log, now, against=faster)
+        document_of(study(now, against=faster))
 
 
 def test_typed(folder: Path, less: Analysis) -> None:

@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 
 import hersey
-from hersey.document.assembly import analyse, load
-from hersey.document.parts import Analysis
+from hersey.document.analysis import Analysis
+from hersey.document.assembly import document_of, load
 from hersey.errors import ParameterError
+from hersey.study import study
 from hersey.testbench.truth import Truth
 
 
@@ -35,11 +36,11 @@ def test_rows_add_up(document: Analysis) -> None:
 
 
 def test_same_input_same_bits(log: hersey.TorqueLog, document: Analysis) -> None:
-    again = analyse(log, log.steady(tare="standing"), command=document.command)
+    again = document_of(study(log.steady(tare="standing")), command=document.command)
     assert again.fit == document.fit
     assert (
         again.model_dump_json()
-        == analyse(log, log.steady(tare="standing"), command=document.command).model_dump_json()
+        == document_of(study(log.steady(tare="standing")), command=document.command).model_dump_json()
     )
 
 
@@ -69,8 +70,8 @@ def test_warnings_name_what_matters(document: Analysis, log: hersey.TorqueLog) -
     text = " ".join(document.warnings)
     assert "synthetic" in text
     assert "Stick-slip was recorded" in text
-    untared = analyse(log, log.steady())
-    assert any("--tare standing" in w for w in untared.warnings)
+    untared = document_of(study(log.steady()))
+    assert any("tare='standing'" in w for w in untared.warnings)
     assert not any("paper's baseline" in w for w in untared.warnings)
 
 
@@ -84,7 +85,7 @@ def test_the_simulation_is_of_this_machine(document: Analysis) -> None:
 
 def test_without_a_machine_nothing_is_simulated(log: hersey.TorqueLog) -> None:
     """No machine of the paper's stands in the place of the user's."""
-    assert analyse(log, log.steady()).simulation is None
+    assert document_of(study(log.steady())).simulation is None
 
 
 def test_foreign_documents_are_refused(document: Analysis) -> None:

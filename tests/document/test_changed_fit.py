@@ -16,7 +16,7 @@ import pytest
 import hersey
 from hersey import _core
 from hersey.document.assembly import fit_document
-from hersey.document.parts import PRINTED
+from hersey.document.printed import PRINTED
 from hersey.document.saved_fit import read_fit
 from hersey.errors import ParameterError
 

@@ -19,16 +19,18 @@ from hersey.decision import behaviour
 from hersey.decision.behaviour import Behaviour, PointBehaviour, Working, ranges
 from hersey.decision.judge import judge
 from hersey.decision.start_up import plan_start_up
-from hersey.document.assembly import analyse, load
-from hersey.document.decision.reasons import in_words
-from hersey.document.decision.words import figures, within
-from hersey.document.display_units import display_units
-from hersey.document.parts import Analysis, MisfitPart
+from hersey.document.analysis import Analysis
+from hersey.document.assembly import document_of, load
 from hersey.errors import HerseyError, ParameterError, UnfinishedError
 from hersey.log.means import read_means
 from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.machine import Machine, read_machine
+from hersey.parts import MisfitPart
 from hersey.stability.operating_map import OperatingMap
+from hersey.study import study
+from hersey.study.display_units import display_units
+from hersey.study.first_screen.reasons import in_words
+from hersey.study.first_screen.words import figures, within
 from tests.conftest import ROOT
 from tests.document.conftest import BETWEEN, HOT, POINTS, ROOMY, Decide, with_draws
 
@@ -183,7 +185,7 @@ def test_a_motor_that_is_too_weak_is_named(decide: Decide, found: Behaviour) -> 
 
 def test_without_a_machine_it_speaks_of_the_roll(log: hersey.TorqueLog, tmp_path: Path) -> None:
     points = log.steady(tare="standing")
-    document = analyse(log, points)
+    document = document_of(study(points))
     said = document.decision
     assert said is not None
     assert document.simulation is document.map is None
@@ -308,7 +310,7 @@ def _table(speeds: np.ndarray, torques: np.ndarray, machine: Machine | None = No
         path.write_text("\n".join(["Speed [rad/s],Torque [N*m]", *rows]) + "\n")
         table = read_means([path], isothermal=True)
         points = hersey.SteadyPoints.from_table(table)
-        document = analyse(table, points, machine=machine)
+        document = document_of(study(points, machine))
     assert load(document.model_dump_json()) == document
     return document
 
@@ -318,7 +320,7 @@ def test_a_stick_speed_above_the_transition_does_not_end_the_report(
 ) -> None:
     """Faster than all but a few dwells: drag rises from it on, or falls only a little."""
     points = log.steady(tare="standing")
-    document = analyse(log, points, machine=replace(machine, stick_speed=0.04, uncertainty={}))
+    document = document_of(study(points, replace(machine, stick_speed=0.04, uncertainty={})))
     assert document.decision is not None
     assert document.map is not None
     assert document.decision.fold is not None

@@ -16,13 +16,13 @@ from hersey.damping.trend import Trend
 from hersey.decision.behaviour import Behaviour, PointBehaviour, Working
 from hersey.decision.edges import Edge, Edges, edges_of
 from hersey.decision.judge import judge
-from hersey.document.decision.flags import flags
-from hersey.document.decision.instruction import of_log
-from hersey.document.decision.points import points_of_log
-from hersey.document.parts import CarriedPart, RegimePart
 from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.machine import Machine
+from hersey.parts import CarriedPart, RegimePart
 from hersey.stability.operating_map import OperatingMap
+from hersey.study.first_screen.flags import flags
+from hersey.study.first_screen.instruction import of_log
+from hersey.study.first_screen.points import points_of_log
 from tests.document.conftest import HOT, Decide
 
 

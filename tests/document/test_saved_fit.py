@@ -12,7 +12,7 @@ import pytest
 import hersey
 from hersey import _core
 from hersey.document.assembly import fit_document
-from hersey.document.parts import PRINTED
+from hersey.document.printed import PRINTED
 from hersey.document.saved_fit import read_fit
 from hersey.errors import ParameterError
 from hersey.log.sensors import Sensors
@@ -59,7 +59,7 @@ def test_a_number_that_no_fit_can_have(
 )
 def test_no_document(text: str, tmp_path: Path) -> None:
     (tmp_path / "fit.json").write_text(text, encoding="utf-8")
-    with pytest.raises(ParameterError, match=r"fit.json: .*write it anew"):
+    with pytest.raises(ParameterError, match=r"fit.json: .*save the fit again"):
         read_fit(tmp_path / "fit.json")
 
 

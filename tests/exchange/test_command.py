@@ -188,7 +188,11 @@ def test_a_stick_speed_that_is_fixed_holds_at_one_temperature(typed: Typed) -> N
         ([*HOT, "--out", "drive.zip"], {}, "--out drive.zip: name a file that ends in .fmu"),
         ([*HOT, "--out", "none/drive.fmu"], {}, "there is no directory none"),
         (HOT, {"fit": "short.json"}, "short.json: document: not valid JSON"),
-        (HOT, {"fit": "cycle.json"}, "cycle.json: fit: Field required; write it anew: hersey fit LOG --json"),
+        (
+            HOT,
+            {"fit": "cycle.json"},
+            "cycle.json: fit: Field required; save the fit again: hersey fit LOG",
+        ),
         (HOT, {"fit": "none.json"}, "none.json"),
         (
             HOT,
@@ -213,7 +217,7 @@ def test_what_is_wrong_is_said_in_a_line(
 
 def test_nothing_is_replaced_unasked(typed: Typed, tmp_path: Path) -> None:
     (tmp_path / "drive.fmu").write_text("kept")
-    assert "exists: say --force to replace it" in typed(*HOT).stderr
+    assert "exists: use --force to replace it" in typed(*HOT).stderr
     assert (tmp_path / "drive.fmu").read_text() == "kept"
     assert typed(*HOT, "--force").returncode == 0
     assert [file.name for file in tmp_path.iterdir()] == ["drive.fmu"]

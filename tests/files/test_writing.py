@@ -198,7 +198,7 @@ def test_no_long_verb_replaces_what_appears_while_it_works(
 def refused_at_the_end(typed: str, name: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(writing, "_place", appearing(Path(name), writing._place))
     done = run(*shlex.split(typed), cwd=folder, answers="\n" * 8)
-    assert (done.returncode, done.stderr.count("exists: say --force")) == (2, 1), done.stderr
+    assert (done.returncode, done.stderr.count("exists: use --force")) == (2, 1), done.stderr
     assert (folder / name).read_text() == "theirs"
     assert not list(folder.glob(".*.part"))
 
@@ -239,6 +239,6 @@ def test_of_two_commands_that_write_one_file_one_wins(tmp_path: Path) -> None:
         ends.append((process, *process.communicate("go\n")))
     codes = [process.returncode for process, _, _ in ends]
     assert codes == [0, 2]
-    assert ends[1][2] == "hersey: log.csv exists: say --force to replace it, or name another file\n"
+    assert ends[1][2] == "hersey: log.csv exists: use --force to replace it, or name another file\n"
     assert "seed 1" in (tmp_path / "log.csv").read_text().splitlines()[0]
     assert [path.name for path in tmp_path.iterdir()] == ["log.csv"]

@@ -326,7 +326,7 @@ def test_the_command(examples_here: Path) -> None:
     assert (examples_here / "channels.svg").read_text().startswith("<svg")
     again = run("inspect", "examples/bench.csv", "--figure", "channels.svg", cwd=examples_here)
     assert again.returncode == 2
-    assert "exists: say --force" in again.stderr
+    assert "exists: use --force" in again.stderr
     document = json.loads(run("inspect", "examples/bench.csv", "--json", cwd=examples_here).stdout)
     assert document["support"]["dwells"] == 73
     assert document["files"][0]["clocks"][0]["findings"]
@@ -343,7 +343,7 @@ def test_the_mapping_is_proposed_once_and_never_replaced(bench_csv: Path, tmp_pa
     kept.write_text('[torque]\ntare = "3 mN*m"\n')
     second = run("inspect", "log.csv", "--save-mapping", cwd=tmp_path)
     assert second.returncode == 2
-    assert "exists: say --force" in second.stderr
+    assert "exists: use --force" in second.stderr
     assert kept.read_text() == '[torque]\ntare = "3 mN*m"\n'
     assert "corrected: tare (torque 0.003 N m)" in run("inspect", "log.csv", cwd=tmp_path).stdout
     kept.write_text("[torque]\ntar = 1\n")

@@ -8,7 +8,7 @@ from typing import BinaryIO
 
 import pytest
 
-from hersey.document.parts import Analysis
+from hersey.document.analysis import Analysis
 from hersey.errors import OutputError
 from hersey.files.writing import write_atomically
 from hersey.report.page import render

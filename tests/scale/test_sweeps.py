@@ -206,7 +206,7 @@ def test_what_is_counted_is_what_is_counted_in_memory(tmp_path: Path) -> None:
         ({"most_steps": 1e6}, "most steps is 5000000 there and 1000000 here"),
         ({"duration": 3.0}, "duration is None there and 3.0 here"),
         ({"chunk": 4}, "is cut into chunks of 7 sets, and 4 are asked for"),
-        ({"resume": False}, "say --force to replace it"),
+        ({"resume": False}, "use overwrite=True to replace it"),
     ],
 )
 def test_another_sweep_is_refused(change: dict[str, Any], says: str, shared: Path) -> None:

@@ -257,7 +257,7 @@ def test_the_command_writes_a_campaign(tmp_path: Path) -> None:
     assert json.loads((folder / "truth.json").read_text())["synthetic"] is True
     again = run(*typed, cwd=tmp_path)
     assert (again.returncode, again.stdout) == (2, "")
-    assert "campaign is not empty: say --force to write into it" in again.stderr
+    assert "campaign is not empty: use --force to write into it" in again.stderr
 
 
 @pytest.mark.parametrize(

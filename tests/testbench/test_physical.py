@@ -14,11 +14,12 @@ import pytest
 import hersey
 from hersey import testbench
 from hersey.damping.rest import RestOfDrive
-from hersey.document.assembly import analyse
-from hersey.document.carried_part import carried_part
-from hersey.document.parts import Analysis
+from hersey.document.analysis import Analysis
+from hersey.document.assembly import document_of
 from hersey.errors import ParameterError
 from hersey.machine.machine import Machine, read_machine
+from hersey.study import study
+from hersey.study.torque_budget import torque_budget
 from hersey.testbench import RPM, FullTruth, PhysicalTruth
 from hersey.units import ZERO_CELSIUS
 from tests.conftest import ROOT
@@ -45,7 +46,7 @@ def shipped() -> dict[str, object]:
 def page(machine: Machine) -> Analysis:
     log = hersey.read(EXAMPLES / "bench.csv")
     assert machine.rest is not None
-    return analyse(log, log.steady(tare="standing").without(machine.rest), machine=machine)
+    return document_of(study(log.steady(tare="standing").without(machine.rest), machine))
 
 
 def test_torque_is_that_of_contact_and_rest(machine: Machine) -> None:
@@ -142,8 +143,8 @@ def test_without_asperities_nothing_is_said_of_who_carries(machine: Machine) -> 
     log = hersey.read(EXAMPLES / "bench.csv")
     points = log.steady(tare="standing")
     surface = hersey.fit(points)
-    assert carried_part(points, surface, None) is None
-    assert carried_part(points, surface, replace(machine, asperities=None, boundary=None)) is None
-    whole = carried_part(points, surface, machine)  # the rest not taken off: far more than the film makes
+    assert torque_budget(points, surface, None) is None
+    assert torque_budget(points, surface, replace(machine, asperities=None, boundary=None)) is None
+    whole = torque_budget(points, surface, machine)  # the rest not taken off: far more than the film makes
     assert whole is not None
     assert "what the file states does not make this log" in whole.text[1]

@@ -12,9 +12,9 @@ import pytest
 import hersey
 from hersey.charts import chart_of
 from hersey.charts.transition import transition_chart
-from hersey.document.film_part import film_document, shared_load
 from hersey.errors import InsufficientDataError
 from hersey.lubrication.film_temperature import film_temperature
+from hersey.study.nip import film_document, shared_load
 from hersey.units import rpm
 from hersey.verdict.transition import contact_transition
 from tests.conftest import ROOT

@@ -9,10 +9,11 @@ from typing import Any
 
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.recipe import Recipe
-from hersey.document.assembly import analyse
+from hersey.document.assembly import document_of
 from hersey.files.writing import write_atomically
 from hersey.machine.machine import Machine, read_machine
 from hersey.report.page import render
+from hersey.study import study
 
 Step = Callable[[str, float | None], None]
 #: Share of the whole at which each step begins, as measured on the shipped log with a machine and two points.
@@ -41,24 +42,22 @@ def run(request: Mapping[str, Any], step: Step) -> dict[str, Any]:
     if request["against"] is not None:
         step("reading the earlier log", _EARLIER)
         earlier = _points({**request, "logs": [request["against"]]}, machine, lambda _name, _share: None)
-    document = analyse(
-        points.log,
+    found = study(
         points,
-        command=request["command"],
-        machine=machine,
-        machine_file=None if machine is None else Path(request["machine"]),
-        made=datetime.now(UTC).isoformat(timespec="seconds"),
+        request["machine"],
         against=earlier,
         step=_shared(step, 0 if machine is None else len(machine.points)),
     )
+    document = document_of(
+        found, command=request["command"], made=datetime.now(UTC).isoformat(timespec="seconds")
+    )
     step("drawing the page", _DRAWING)
     write_atomically(Path(request["report"]), render(document), overwrite=True)
-    decision = document.decision
-    headline = document.verdict[0] if document.verdict else ""
+    decision = found.decision
     return {
-        "signal": "" if decision is None else decision.signal,
-        "words": headline if decision is None else decision.instruction,
-        "warnings": len(document.warnings),
+        "signal": decision.signal,
+        "words": decision.instruction,
+        "warnings": len(found.warnings),
     }
 
 

@@ -42,8 +42,9 @@ from hersey.charts.style import (
     zoom,
 )
 from hersey.charts.transition import transition_chart
-from hersey.document.parts import Analysis, PlanPart, Point, Series
-from hersey.document.parts.decision import StartPart
+from hersey.document.analysis import Analysis
+from hersey.parts import PlanPart, Point, Series
+from hersey.parts.decision import StartPart
 from hersey.units import celsius, rpm
 
 #: Cells of a surface overlap a little: seams would shine through otherwise.

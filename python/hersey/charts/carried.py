@@ -16,7 +16,7 @@ from hersey.charts.style import (
     tip,
     torque_unit,
 )
-from hersey.document.parts import CarriedPart
+from hersey.parts import CarriedPart
 from hersey.units import celsius, rpm
 
 #: Parts from below, with their names and shades that stay apart in grey.

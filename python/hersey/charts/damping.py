@@ -32,7 +32,7 @@ from hersey.damping.design import TestDesign
 from hersey.damping.dwells import SteadyPoints, groups_of_temperature
 from hersey.damping.rest import RestOfDrive
 from hersey.damping.surface import DampingSurface
-from hersey.document.parts import ComparisonPart
+from hersey.parts import ComparisonPart
 from hersey.units import celsius, rpm
 
 #: Speeds at which a law is drawn, temperatures at which a surface is, and candidates that are listed.

@@ -13,10 +13,10 @@ from hersey.charts.friction import friction_chart
 from hersey.charts.labels import Labels
 from hersey.charts.style import BLUE, INK, RIM, WIDTH, Chart, Row, logarithmic_axis, plot
 from hersey.charts.transition import transition_chart
-from hersey.document.film_part import film_points
-from hersey.document.parts import FilmPoint
 from hersey.lubrication.film import REGIMES, Film
 from hersey.lubrication.mixed import MixedContact
+from hersey.parts import FilmPoint
+from hersey.study.nip import film_points
 from hersey.units import celsius, rpm
 from hersey.verdict.evidence import MeasuredFilm
 from hersey.verdict.transition import ContactTransition

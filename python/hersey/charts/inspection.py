@@ -10,10 +10,10 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.charts.style import BLUE, INK, ORANGE, WIDTH, Chart, Row, plot
-from hersey.document.thinning import kept
 from hersey.errors import InsufficientDataError
 from hersey.inspection.inspecting import ChannelReport, FileReport, Inspection
 from hersey.inspection.raw import raw_channels
+from hersey.study.thinning import kept
 
 #: Points drawn of a channel; panels of a file, those with a role first.
 _POINTS, _PANELS = 2000, 12

@@ -7,8 +7,8 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.charts.style import BLUE, INK, WIDTH, Chart, Row, plot, rows_of, tip, torque_unit
-from hersey.document.thinning import kept
 from hersey.log.torque_log import TorqueLog
+from hersey.study.thinning import kept
 from hersey.units import celsius, rpm
 
 #: Points drawn of a log, shared out among its runs, and least of one run.

@@ -6,10 +6,10 @@ import altair as alt
 import numpy as np
 
 from hersey.charts.style import BLUE, EDGE, INK, ORANGE, RIM, WIDTH, Chart, Row, level, levels, plot, tip
-from hersey.document.parts import PlanPart
-from hersey.document.parts.decision import StartPart
 from hersey.errors import InsufficientDataError
 from hersey.motion.schedule import Schedule
+from hersey.parts import PlanPart
+from hersey.parts.decision import StartPart
 from hersey.stability.plan.result import Plan
 from hersey.units import celsius
 

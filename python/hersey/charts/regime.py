@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import altair as alt
 
 from hersey.charts.style import BLUE, INK, RED, RIM, SECONDARY, SHADE, WIDTH, Chart, Row, plot, tip
-from hersey.document.parts import BranchPart
+from hersey.parts import BranchPart
 from hersey.units import celsius, rpm
 from hersey.verdict.regime import BranchExponent, Regime
 

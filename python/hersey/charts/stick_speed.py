@@ -6,8 +6,8 @@ import altair as alt
 import numpy as np
 
 from hersey.charts.style import INK, RIM, WIDTH, Chart, Row, logarithmic_axis, plot, rows_of, tip
-from hersey.document.parts import Analysis
-from hersey.document.parts.stability import StickSpeedPart
+from hersey.document.analysis import Analysis
+from hersey.parts.stability import StickSpeedPart
 from hersey.units import celsius
 
 _HEIGHT = 260

@@ -83,8 +83,8 @@ def _for_the_machine(
 ) -> None:
     """Rank the measurements that would narrow V*."""
     from hersey.decision.measurement import measurements
-    from hersey.document.decision.advice import design_part, ranking
     from hersey.machine.machine import read_machine
+    from hersey.study.first_screen.advice import design_part, ranking
 
     machine = read_machine(machine_file)
     _, drawn = reading.surface_and_posterior(logs, None, machine, trace, seed=seed)

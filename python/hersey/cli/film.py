@@ -20,9 +20,9 @@ from hersey.cli.terminal import say
 from hersey.errors import ParameterError
 
 if TYPE_CHECKING:
-    from hersey.document.film_part import SharedLoad
     from hersey.lubrication.film import Film
     from hersey.machine.machine import Machine
+    from hersey.study.nip import SharedLoad
     from hersey.verdict.evidence import MeasuredFilm, Verdict
 
 
@@ -68,9 +68,9 @@ def film(
     """
     overwrite = figure is not None and may_draw(figure, force, inputs=reading.inputs(machine_file, log))
 
-    from hersey.document.film_part import film_document, shared_load
     from hersey.files.writing import write_atomically
     from hersey.machine.machine import read_machine
+    from hersey.study.nip import film_document, shared_load
     from hersey.verdict.cautions import cautions
     from hersey.verdict.checks import misfits, remarks
     from hersey.verdict.evidence import measured_film, verdict

@@ -17,7 +17,6 @@ import typer
 from hersey.cli.progress import bar, working
 from hersey.cli.terminal import say
 from hersey.files.patterns import files_of
-from hersey.units import parse
 
 if TYPE_CHECKING:
     from hersey.damping.dwells import SteadyPoints
@@ -144,6 +143,7 @@ class Reading:
     def recipe(self, logs: Sequence[Path] = ()) -> Recipe:
         """Return how these logs become dwells."""
         from hersey.damping.recipe import Recipe
+        from hersey.units import parse
 
         amounts = {role: _amounts(getattr(self, role)) for role in ("load", "radius")}
         named = {role: name for role in _ROLES if (name := getattr(self, role)) and not amounts.get(role)}
@@ -299,6 +299,7 @@ def _amounts(text: str) -> str | list[str] | None:
 def temperature_of(text: str, flag: str = "--at") -> float | None:
     """Return the temperature that ``--at``, or another flag, names, K; None if it is not given."""
     from hersey.errors import ParameterError
+    from hersey.units import parse
 
     if not text:
         return None
@@ -311,6 +312,7 @@ def temperature_of(text: str, flag: str = "--at") -> float | None:
 def target_of(text: str, machine: Machine, flag: str = "--target") -> float:
     """Return the speed that ``--target``, or another flag, names, of belt or roll, m/s at the belt."""
     from hersey.errors import ParameterError, WrongKindError
+    from hersey.units import parse
 
     if not text:
         raise ParameterError("give the target: --target '60 mm/s'")

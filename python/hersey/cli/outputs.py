@@ -38,7 +38,8 @@ def command() -> str:
 def print_json(name: str, result: object) -> None:
     """Print what a command of that name found: its part of the document, with versions and command."""
     from hersey import _core
-    from hersey.document.parts import PRINTED, SCHEMA_VERSION
+    from hersey.document.printed import PRINTED
+    from hersey.parts import SCHEMA_VERSION
 
     part = PRINTED[name].model_validate(result)
     header = {"schema_version": SCHEMA_VERSION, "hersey_version": _core.VERSION, "command": command()}
@@ -77,7 +78,7 @@ def may_write(
     if exists and not force:
         asked = sys.stdin.isatty() and typer.confirm(printable(f"{path} exists. Replace it?"), err=True)
         if not asked:
-            raise ExistingFileError(f"{path} exists: say --force to replace it, or name another file")
+            raise ExistingFileError(f"{path} exists: use --force to replace it, or name another file")
     return force or exists
 
 
@@ -92,7 +93,7 @@ def may_write_folder(folder: Path, force: bool, flag: str = "--figures") -> None
         if folder.exists() and not folder.is_dir():
             raise OutputError(f"{folder} is a file: {flag} needs a directory")
         if folder.is_dir() and any(map(_counts, folder.iterdir())) and not force:
-            raise OutputError(f"{folder} is not empty: say --force to write into it")
+            raise OutputError(f"{folder} is not empty: use --force to write into it")
         if not folder.parent.is_dir():
             raise OutputError(f"{folder}: there is no directory {folder.parent}")
     except OSError as error:

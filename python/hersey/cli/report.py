@@ -62,10 +62,11 @@ def report(
         may_write_folder(figures, force)
 
     with loading():
-        from hersey.document.assembly import analyse
+        from hersey.document.assembly import document_of
         from hersey.files.writing import write_atomically
         from hersey.machine.machine import read_machine
         from hersey.report.page import render
+        from hersey.study import study
 
     machine = None if machine_file is None else read_machine(machine_file)
     log = reading.log(logs, machine)
@@ -74,18 +75,16 @@ def report(
     with steps() as step:
         step("finding the dwells")
         points = reading.points(log, machine)
-        document = analyse(
-            log,
+        found = study(
             points,
-            command=command(),
-            temperature_scale=reading.temperature_scale,
-            machine=machine,
-            machine_file=machine_file,
+            machine,
             against=other,
             traces=traces,
-            made=datetime.now(UTC).isoformat(timespec="seconds"),
+            temperature_scale=reading.temperature_scale,
+            machine_file=machine_file,
             step=step,
         )
+    document = document_of(found, command=command(), made=datetime.now(UTC).isoformat(timespec="seconds"))
     if page is not None:
         with working("drawing the page"):
             write_atomically(page, render(document), overwrite=overwrite)
@@ -97,18 +96,5 @@ def report(
     if as_json:
         print_document(document)
         return
-    if document.decision is not None:
-        told = document.decision
-        say(f"{told.instruction}{f' ({told.interval})' if told.interval else ''}. {told.otherwise}")
-        if told.measurement is not None:
-            say(f"{told.measurement.text}.")
-        for point in told.points:
-            say(f"{point.name}: {point.words}")
-    if document.compare is not None:
-        say(f"Against {document.compare.a}: {document.compare.verdict}")
-    for paragraph in document.verdict:
-        say(paragraph)
-    for warning in document.warnings:
-        say(f"- {warning}")
-    say(document.fit.summary)
+    say(*found.summary().splitlines())
     say(f"report: {page}")

@@ -24,7 +24,7 @@ from hersey.damping.soundness import (
     faults_of_rest,
 )
 from hersey.damping.surface import DampingSurface
-from hersey.document.parts import FitPart, Point
+from hersey.parts import FitPart, Point
 
 #: No relative scatter or error of a dwell is greater.
 _MOST_SCATTER = 10.0

@@ -17,9 +17,9 @@ from hersey.damping.rest import RestOfDrive
 from hersey.damping.soundness import LARGEST
 from hersey.damping.surface import DampingSurface
 from hersey.document.consistency import faults_of_fit
-from hersey.document.parts import ClosurePart, FitPart, InputFile, Interval, Point, RestPart, TransitionPart
 from hersey.errors import ParameterError, way_in
 from hersey.files.text import read_text
+from hersey.parts import ClosurePart, FitPart, InputFile, Interval, Point, RestPart, TransitionPart
 
 #: How far a number may be from the one it follows from, relative: JSON keeps all digits.
 _ROUNDING = 1e-9

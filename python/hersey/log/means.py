@@ -106,6 +106,12 @@ class MeansTable(Result):
         return len(self.means)
 
     @property
+    def title(self) -> str:
+        """Name of the first file, and how many more there are."""
+        first = self.files[0].name
+        return first if len(self.files) == 1 else f"{first} and {len(self.files) - 1} more"
+
+    @property
     def has_temperature(self) -> bool:
         """Whether every row has a temperature."""
         return all(row.temperature is not None for row in self.means)

@@ -131,6 +131,12 @@ class TorqueLog(Result):
         return sum(run.time.size for run in self.runs)
 
     @property
+    def title(self) -> str:
+        """Name of the first file, and how many more there are."""
+        first = self.files[0].name
+        return first if len(self.files) == 1 else f"{first} and {len(self.files) - 1} more"
+
+    @property
     def has_temperature(self) -> bool:
         """Whether every run carries a temperature."""
         return all(run.temperature is not None for run in self.runs)

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from hersey import _core
 from hersey.charts.life import life_charts
-from hersey.document.parts.part import SCHEMA_VERSION
 from hersey.life.age import Age
+from hersey.parts.part import SCHEMA_VERSION
 from hersey.report.page import drawn
 
 if TYPE_CHECKING:

@@ -8,14 +8,19 @@ from __future__ import annotations
 
 import base64
 from collections.abc import Mapping
+from datetime import UTC, datetime
 from importlib import resources
+from pathlib import Path
 from typing import Any
 
 from hersey.charts.analysis import charts
 from hersey.charts.page import page
 from hersey.charts.render import specification_of
 from hersey.charts.style import Chart
-from hersey.document.parts import Analysis
+from hersey.document.analysis import Analysis
+from hersey.document.assembly import document_of
+from hersey.files.writing import write_atomically
+from hersey.study.log_and_machine import Study
 
 #: Styles of all pages, and the pieces of their scripts, in the order in which they are one module.
 _STYLES = ("tokens.css", "page.css")
@@ -42,6 +47,26 @@ _REPORT = ("panel.css", "timeline.js", *_LIVE, "first.js", *_SECTIONS, "page.js"
 _OTHERWISE = ("timeline_", "simulation_")
 #: Samples that only charts need.
 _DRAWN: Any = {"fit": {"cells"}, "simulation": True}
+
+
+def report(study: Study, path: str | Path, *, command: str = "", overwrite: bool = False) -> None:
+    """Write the page of a study, one HTML file.
+
+    Parameters
+    ----------
+    command
+        What was typed, as the page shall say.
+    overwrite
+        Whether a file that is there may be replaced.
+
+    Raises
+    ------
+    OutputError
+        If the file is there and may not be replaced, or cannot be written.
+    """
+    made = datetime.now(UTC).isoformat(timespec="seconds")
+    document = document_of(study, command=command, made=made)
+    write_atomically(Path(path), render(document), overwrite=overwrite)
 
 
 def render(document: Analysis) -> str:

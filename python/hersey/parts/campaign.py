@@ -1,0 +1,41 @@
+"""The runs of a campaign in the document."""
+
+from __future__ import annotations
+
+from pydantic import Field
+
+from hersey.parts.part import Part
+
+
+class CampaignRun(Part):
+    """One run: its unit, its age in ``age_unit`` of the campaign, its log, and its fit in short."""
+
+    run: int
+    unit: str
+    age: float
+    log: str
+    sha256: str
+    dwells: int
+    exponent: float | None = Field(description="c of the damping surface; null without a fit")
+    transition_speed: float | None = Field(description="rad/s; null where none is seen")
+    no_fit: str = Field(description="why there is no fit, or empty")
+    version: str = Field(description="of hersey that read the log")
+    added: str = Field(description="UTC")
+
+
+class CampaignFinding(Part):
+    """Something that is not as it should be, of a run and its unit, or (null) of the file."""
+
+    kind: str
+    text: str
+    run: int | None
+    unit: str | None
+
+
+class CampaignPart(Part):
+    """Runs of many units at many ages; null findings where none were looked for."""
+
+    file: str
+    age_unit: str
+    runs: list[CampaignRun]
+    findings: list[CampaignFinding] | None = None

@@ -1,0 +1,101 @@
+"""What to do, in the document: the instruction, its signal, and what stands against it."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from hersey.parts.part import Numbers, Part
+from hersey.parts.stability import DisturbancePart, PlanPart, StepPart
+
+#: Good: nothing to do. Watch: it depends, or a number is not sure. Act: something does not work as it is.
+Signal = Literal["good", "watch", "act"]
+
+
+class StartPart(Part):
+    """A start as the plan has it, and straight up beside it: times in s, speeds in m/s, shape (samples,)."""
+
+    time: Numbers
+    drive_speed: Numbers
+    belt_speed: Numbers
+    straight: Numbers = Field(description="belt speed where the drive comes straight up to the point")
+
+
+class PointDecisionPart(Part):
+    """An operating point of the machine's file: speed in m/s, temperature in K."""
+
+    name: str
+    speed: float
+    temperature: float
+    signal: Signal
+    words: str = Field(description="such as 'smooth from any start, 99 %'")
+    verdict: Literal["smooth", "depends", "sticks", "not started", "stalls", "too fast", "unknown"] = Field(
+        default="unknown", description="'smooth' is from any start; 'depends' on how the speed is reached"
+    )
+    smooth: float | None = Field(default=None, description="probability: smooth from any start")
+    from_above: float | None = Field(
+        default=None, description="probability: smooth only if it slides already, or starts by the profile"
+    )
+    sticks: float | None = Field(default=None, description="probability: sticks from any start")
+    disturbance: DisturbancePart | None = Field(default=None, description="what sliding there bears")
+    steps: list[StepPart] = Field(default=[], description="from the other points to this one")
+    plan: PlanPart | None = Field(default=None, description="where the belt does not slide from every start")
+    motion: StartPart | None = Field(default=None, description="the plan's motion at the nominal parameters")
+    reason: str = Field(default="", description="why there is no plan, or no figure, where one is wanted")
+
+
+class FlagPart(Part):
+    """A warning of the first screen, and the section that holds its evidence."""
+
+    signal: Signal
+    title: str
+    text: str
+    section: str = Field(description="name of a section of the page")
+
+
+class MissingPart(Part):
+    """What would let the report say more: lines to add to a file."""
+
+    purpose: str = Field(description="what the report would then say")
+    file: str
+    lines: str = Field(description="TOML, to be copied; values of the user's are named in comments")
+
+
+class SpeedPart(Part):
+    """A speed (m/s) with its 95 % interval."""
+
+    value: float
+    low: float
+    high: float
+
+
+class MeasurementPart(Part):
+    """The measurement that would narrow V* most."""
+
+    kind: Literal["starts", "break-away", "stick-slip", "dwell"]
+    text: str = Field(description="what to do, in one sentence, and what it would bring")
+    temperature: float | None = Field(description="K")
+    speeds: Numbers = Field(description="m/s, of starts, of a dwell or of a stretch of stick-slip")
+    left: float = Field(description="expected width of the interval of V* over that of today, in logarithms")
+
+
+class DecisionPart(Part):
+    """The first screen of the report."""
+
+    signal: Signal
+    instruction: str = Field(description="one sentence in the imperative, on the safe side")
+    interval: str = Field(
+        description="the estimate and its 95 % interval behind the instruction; may be empty"
+    )
+    otherwise: str = Field(description="what happens otherwise")
+    temperature: float | None = Field(default=None, description="K, at which safe speed and V* hold")
+    safe_speed: float | None = Field(
+        default=None, description="m/s, above which the belt is smooth from any start with 97.5 % probability"
+    )
+    fold: SpeedPart | None = Field(default=None, description="V*")
+    closures: dict[str, float] = Field(default={}, description="probability of each closure")
+    measurement: MeasurementPart | None = None
+    points: list[PointDecisionPart]
+    flags: list[FlagPart] = Field(description="three at the most, the gravest first")
+    missing: list[MissingPart]

@@ -1,0 +1,41 @@
+"""A unit for other tools in the document."""
+
+from __future__ import annotations
+
+from pydantic import Field
+
+from hersey.parts.part import Part
+
+
+class UnitVariablePart(Part):
+    """A variable of a unit: its number, name, cause, unit, what it is, and its start in that unit."""
+
+    reference: int
+    name: str
+    causality: str
+    unit: str
+    description: str
+    start: float | None = Field(description="null where the motion makes it")
+
+
+class TrialPart(Part):
+    """What FMPy found in a unit: problems, and the greatest differences from the core, as shares."""
+
+    problems: list[str]
+    differences: dict[str, float | None] = Field(description="null where no number came")
+    events: int = Field(description="changes of mode in the run")
+
+
+class UnitPart(Part):
+    """A drive as a unit for other tools: what it takes, gives and was made of."""
+
+    file: str
+    fmi: str = Field(description="version of the interface")
+    drive: str = Field(description="speed, or torque")
+    port: str | None = Field(description="of a speed: translational, or rotational; null with a torque")
+    start: str
+    token: str = Field(description="sum of the content, by which library and description belong together")
+    platforms: list[str]
+    facts: dict[str, str] = Field(description="what it was made of")
+    variables: list[UnitVariablePart]
+    check: TrialPart | None = Field(default=None, description="null where it was not tried")

@@ -1,0 +1,36 @@
+"""Ages at failure in the document."""
+
+from __future__ import annotations
+
+from pydantic import Field
+
+from hersey.parts.part import Holed, Numbers, Part
+
+
+class BLifePart(Part):
+    """The age by which a share of all units has failed; an end is null where it is not told."""
+
+    share: float
+    age: float
+    low: float
+    high: float | None
+    level: float
+
+
+class PopulationPart(Part):
+    """The Weibull law of ages at failure, in ``unit``; null where too few units have failed."""
+
+    ages: Numbers = Field(description="ascending, shape (units,)")
+    failed: list[bool] = Field(description="which of them are ages at failure, shape (units,)")
+    shape: float | None
+    scale: float | None
+    shape_interval: Holed | None = Field(description="low and high")
+    scale_interval: Holed | None = Field(description="low and high")
+    level: float = Field(description="of the intervals")
+    unit: str = Field(description="of ages; empty if none was said")
+    note: str = Field(description="what few failures do not tell; empty if nothing")
+    seed: int
+    b10: BLifePart | None
+    b50: BLifePart | None
+    median_ranks: Numbers = Field(description="shares failed at the ages at failure, ascending")
+    verdict: str

@@ -1,0 +1,195 @@
+"""Logs and dwells in the document."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from hersey.parts.part import Part
+from hersey.parts.rest import RestPart
+
+
+class ChannelUse(Part):
+    """A column used for a role, name and unit as written in the file."""
+
+    role: str
+    name: str
+    unit: str
+
+
+class MachineFilePart(Part):
+    """The file that states the machine."""
+
+    name: str
+    sha256: str
+
+
+class InputFile(Part):
+    """A file that went in; the sampling interval is the median, in s."""
+
+    name: str
+    sha256: str
+    bytes: int
+    rows: int
+    missing_rows: int
+    duration: float = Field(description="s")
+    sampling_interval: float = Field(description="s")
+    gaps: int = Field(description="times that rows are missing")
+    channels: list[ChannelUse]
+    comments: list[str] = Field(description="comment lines above the header")
+
+
+class DwellPart(Part):
+    """A dwell: times in s, speed in rad/s, torque in N m, temperature in K; errors are standard errors."""
+
+    run: int
+    start: float
+    end: float
+    speed: float
+    speed_error: float
+    torque: float
+    torque_error: float
+    temperature: float | None
+    temperature_error: float | None
+    rows: int
+    effective_rows: float = Field(description="independent samples")
+    settling_rows: int = Field(description="cut at the ends")
+    approach: Literal["from below", "from above", "start"]
+    load: float | None = Field(description="N, null if not known")
+    tare: float = Field(description="N m, subtracted")
+
+
+class Point(DwellPart):
+    """A dwell beside the fit: damping in N m s/rad."""
+
+    group_temperature: float | None = Field(description="K, mean of the dwells at about this temperature")
+    damping: float
+    damping_fitted: float
+    residual: float = Field(description="ln(measured/fitted)")
+
+
+class RejectedStretch(Part):
+    """A stretch that is not used; times in s."""
+
+    run: int
+    start: float
+    end: float
+    rows: int
+    kind: str = Field(description="what is wrong")
+    label: str = Field(description="the same in words, without numbers")
+    reason: str
+    speed: float | None = Field(default=None, description="rad/s, mean")
+
+
+class Quality(Part):
+    """How the rows of the log were used; torques in N m."""
+
+    rows: int
+    rows_used: int
+    rows_settling: int
+    rows_rejected: int
+    standing_torque: float | None
+    tare: float
+    rejected: list[RejectedStretch]
+
+
+class PointsPart(Part):
+    """The dwells of a log; torques in N m."""
+
+    points: list[DwellPart]
+    rejected: list[RejectedStretch]
+    tare: float
+    tare_error: float
+    tare_errors: list[list[float]] = Field(description="N m, shape (points, disturbances)")
+    notes: list[str]
+    standing_torque: float | None
+    rest: RestPart | None = Field(default=None, description="taken off, so that torque is that of the film")
+    rest_errors: list[list[float]] = Field(default=[], description="N m, shape (points, errors)")
+
+
+class ImpossiblePart(Part):
+    """Readings of a channel that cannot be right, for one reason; values in its unit as written."""
+
+    role: str
+    channel: str
+    unit: str
+    reason: str = Field(description="range, code, outlier, sign, drop-out, jump, clock or marked")
+    rows: int
+    values: list[tuple[float, int]] = Field(description="the most frequent ones, and how often they occur")
+    low: float | None = Field(description="null where the file itself marks them as invalid")
+    high: float | None
+    where: str = Field(description="the first of them, in words")
+    limits: str = Field(description="what is believed, in words; empty unless the reason is range")
+
+
+class LogFilePart(Part):
+    """A file that was read."""
+
+    name: str
+    sha256: str
+    bytes: int
+    rows: int
+    missing_rows: int
+    channels: list[ChannelUse]
+    comments: list[str] = Field(description="comment lines above the header")
+    cut_off: bool = Field(description="the file ends before its time")
+    notes: list[str]
+    impossible: list[ImpossiblePart] = Field(default=[], description="readings that cannot be right")
+
+
+class RunPart(Part):
+    """What a file recorded: least and greatest time (s), torque (N m), speed (rad/s) and more where known."""
+
+    name: str
+    rows: int
+    sampling_interval: float = Field(description="s")
+    gaps: int = Field(description="times that rows are missing")
+    time: tuple[float, float]
+    torque: tuple[float, float]
+    speed: tuple[float, float]
+    temperature: tuple[float, float] | None = Field(description="K")
+    load: tuple[float, float] | None = Field(description="N")
+
+
+class EffectPart(Part):
+    """How far a correction moved a role, SI; the share is of the median of the absolute values before."""
+
+    role: str
+    largest: float
+    typical: float = Field(description="root mean square")
+    share: float | None
+
+
+class CorrectionPart(Part):
+    """A correction: its parameters as written with units, and its effects."""
+
+    name: str
+    parameters: list[tuple[str, str]]
+    effects: list[EffectPart]
+    note: str
+
+
+class LogPart(Part):
+    """A log of torque without its rows."""
+
+    rows: int
+    files: list[LogFilePart]
+    runs: list[RunPart]
+    corrections: list[CorrectionPart]
+
+
+class Series(Part):
+    """Samples for display: time in s, values in the unit of the chart."""
+
+    time: list[float]
+    value: list[float]
+
+
+class Timeline(Part):
+    """The log thinned for display, runs one after another: rad/s, N m, K."""
+
+    speed: Series
+    torque: Series
+    temperature: Series | None
+    starts: list[float] = Field(description="s, start of each run")

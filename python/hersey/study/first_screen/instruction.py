@@ -1,0 +1,252 @@
+"""The one sentence of the first screen, its interval, and what happens otherwise."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from hersey.damping.surface import DampingSurface
+from hersey.damping.trend import Trend
+from hersey.decision.behaviour import Behaviour, PointBehaviour
+from hersey.decision.edges import Edge, Edges, edges_of
+from hersey.parts.decision import Signal
+from hersey.posterior.result import SAFE
+from hersey.stability.operating_map import OperatingMap
+from hersey.study.first_screen.words import (
+    at,
+    between,
+    degrees,
+    figures,
+    listed,
+    mm,
+    per_cent_of,
+    roll,
+    signed,
+    starting,
+    torque,
+    within,
+)
+
+#: Signals, the gravest last.
+_ORDER: tuple[Signal, ...] = ("good", "watch", "act")
+
+
+class Words(NamedTuple):
+    """What is said of one speed, and of several."""
+
+    one: str
+    several: str
+
+
+_SLIDES_ON = Words(
+    "may stick from rest, and is smooth once it slides",
+    "may stick from rest, and are smooth once they slide",
+)
+_NOT_KNOWN = Words(
+    "cannot be judged: torque may still fall at the fastest dwell",
+    "cannot be judged: torque may still fall at the fastest dwell",
+)
+_OF_KIND: Mapping[str, tuple[Words, Signal]] = {
+    "smooth": (Words("runs smoothly", "run smoothly"), "good"),
+    "unknown": (Words("may stick", "may stick"), "watch"),
+    "sticks": (Words("sticks from any start", "stick from any start"), "act"),
+    "not started": (Words("does not start", "do not start"), "act"),
+    "stalls": (Words("stalls", "stall"), "act"),
+    "too fast": (Words("is faster than the drive", "are faster than the drive"), "act"),
+}
+
+
+@dataclass(frozen=True)
+class Instruction:
+    """The decision in words."""
+
+    signal: Signal
+    instruction: str
+    interval: str
+    otherwise: str
+
+
+def of_machine(found: Behaviour, map_: OperatingMap, unit: str) -> Instruction:
+    """Return what to do with a machine whose drives were drawn; torques in a unit."""
+    kelvin = found.temperature
+    edges = edges_of(found.posterior, kelvin)
+    where, fold, turn = at(kelvin), edges.fold, edges.transition
+    if edges.starts is False:
+        return _not_started(where, kelvin, edges, map_, unit)
+    if not edges.turns:
+        interval = f"{where}V* is not known: torque may still fall at the fastest dwell"
+    elif edges.bistable:
+        interval = _interval(f"{where}V* is", fold)
+    else:
+        interval = _interval(f"{where}drag is least at", turn)
+    said, signal = _of_points(found)
+    general, of_general = _general(edges, map_, unit)
+    if not said:
+        return Instruction(
+            of_general, f"{where}{general}" if where else _capital(general), interval, _below(edges)
+        )
+    otherwise = f"{_capital(_slides(edges))}{_below(edges)}"
+    return Instruction(signal, said, interval, otherwise)
+
+
+def _of_points(found: Behaviour) -> tuple[str, Signal]:
+    """One sentence for each verdict on the user's points, and the gravest signal of them."""
+    grouped: dict[Words, list[str]] = {}
+    signals: list[Signal] = []
+    levels = {point.point.temperature for point in found.points}
+    for each in found.points:
+        words, signal = _verdict_words(each)
+        where = f" at {degrees(each.point.temperature)}" if len(levels) > 1 else ""
+        grouped.setdefault(words, []).append(f"{mm(each.point.speed)} mm/s{where}")
+        signals.append(signal)
+    sentences = [
+        f"{listed(speeds)} {words.one if len(speeds) == 1 else words.several}"
+        for words, speeds in grouped.items()
+    ]
+    return ". ".join(sentences), max(signals, key=_ORDER.index, default="good")
+
+
+def _verdict_words(found: PointBehaviour) -> tuple[Words, Signal]:
+    """What happens at a point, and its signal."""
+    kind, plan = found.verdict.kind, found.plan
+    planned = plan is not None and plan.found
+    if kind == "unknown" and found.verdict.probability.unknown > 1.0 - SAFE:
+        return _NOT_KNOWN, "watch"
+    if kind == "depends" and not planned:
+        return _SLIDES_ON, "act"
+    if kind in ("depends", "unknown") and planned:
+        return Words("needs the start-up profile", "need the start-up profile"), "watch"
+    return _OF_KIND[kind]
+
+
+def _general(edges: Edges, map_: OperatingMap, unit: str) -> tuple[str, Signal]:
+    """What to do without operating points."""
+    if not math.isfinite(edges.safe):
+        if not edges.turns:
+            return (
+                "record faster dwells: torque may still fall at the fastest, so V* is not known",
+                "watch",
+            )
+        return "do not rely on a start from rest: no speed is known to be smooth", "watch"
+    run = f"run above {_up(edges.safe)} mm/s"
+    if edges.safe > edges.greatest:
+        return f"{run}, more than the {mm(edges.greatest)} mm/s of the drive", "act"
+    if edges.starts is None:
+        return f"{run}, and make sure that it starts: {_starting(edges, map_, unit)}", "watch"
+    return run, "good"
+
+
+def _slides(edges: Edges) -> str:
+    if not math.isfinite(edges.safe):
+        return "no speed is known to be smooth from any start. "
+    return f"the belt slides from any start above {_up(edges.safe)} mm/s. "
+
+
+def _below(edges: Edges) -> str:
+    return f"Below {figures(1e3 * edges.sticks_below, up=False)} mm/s it sticks."
+
+
+def _capital(text: str) -> str:
+    return f"{text[:1].upper()}{text[1:]}"
+
+
+def of_log(surface: DampingSurface, trend: Trend) -> Instruction:
+    """Return what the log alone tells, in speeds of the roll."""
+    if surface.transition is None:
+        return _one_branch(surface, trend)
+    ends = [None] if surface.b is None or surface.temperature_range is None else [*surface.temperature_range]
+    kelvin = max(ends, key=surface.transition_speed)
+    found = surface.transition_estimate(kelvin)
+    lead = at(kelvin)
+    slower = "Below it torque rises as the drive slows, and the drive can stick and slip"
+    if not found.told:
+        text = _lead(lead, f"keep the roll well above {roll(found.value)} rpm")
+        interval = f"torque is least at {roll(found.value)} rpm, interval not told"
+        return Instruction("watch", text, interval, f"{slower}.")
+    factor = 60.0 / math.tau
+    value, low, high = found.value, found.low, found.high
+    text = _lead(lead, f"keep the roll above {figures(high * factor, up=True)} rpm")
+    interval = f"torque is least at {roll(value)} {within(low, high, factor)} rpm"
+    return Instruction(
+        "watch", text, interval, f"{slower}; how far above it that lasts, only the machine tells."
+    )
+
+
+def _one_branch(surface: DampingSurface, trend: Trend) -> Instruction:
+    """What a log says whose fit shows no transition; claims are tested on the dwells themselves."""
+    low, high = (roll(speed) for speed in surface.speed_range)
+    c = surface.c
+    interval = f"exponent of damping {signed(c.value)}"
+    interval += f" [{signed(c.low)}, {signed(c.high)}]" if c.told else ", interval not determined"
+    if trend.falls and not trend.rises:
+        return Instruction(
+            "watch",
+            f"Measure faster dwells: torque falls as speed rises, from {low} to {high} rpm",
+            interval,
+            "Where torque falls with speed the drive can stick and slip. Where that ends is not known.",
+        )
+    if trend.falls:
+        return Instruction(
+            "watch",
+            f"Keep the roll well above {roll(trend.least)} rpm: below it torque rises as the drive slows",
+            interval,
+            "Torque falls and rises with speed, but no transition is determined: record more dwells below "
+            f"{roll(trend.least)} rpm.",
+        )
+    if trend.constant:
+        # the exponent of one law may exclude a level torque where no test without a law does
+        level = not c.told or c.low <= -1.0 <= c.high
+        what = "torque is constant within" if level else "torque stays about its mean within"
+        return Instruction(
+            "watch",
+            f"Record dwells slower than {low} and faster than {high} rpm: {what} {per_cent_of(trend.spread)}",
+            interval,
+            "Whether torque falls at lower speeds is not known, so sticking cannot be ruled out.",
+        )
+    return Instruction(
+        "watch",
+        f"Measure dwells slower than {low} rpm: down to there torque rises with speed",
+        interval,
+        f"A belt that slides keeps sliding down to {low} rpm. From rest it may stick: "
+        "torque below that speed is not known.",
+    )
+
+
+def _not_started(
+    where: str, kelvin: float | None, edges: Edges, map_: OperatingMap, unit: str
+) -> Instruction:
+    needed, limit = torque(edges.holding.high, unit, up=True), torque(edges.limit, unit)
+    if map_.limited_by == "motor torque":
+        what = f"give the roll more than {needed}: the motor's {limit} do not start a belt at rest"
+    else:
+        what = f"let the roll grip more than {needed}: at {limit} it slips on a belt at rest"
+    turn = figures(1e3 * edges.transition.high, up=True)
+    takes = map_.state_at(kelvin, edges.transition.high).torque
+    if takes <= edges.limit:
+        otherwise = f"A belt that slides already goes on sliding above {turn} mm/s."
+    else:
+        otherwise = f"It does not slide on either: sliding takes {torque(takes, unit)} at {turn} mm/s."
+    return Instruction("act", _lead(where, what), _starting(edges, map_, unit), otherwise)
+
+
+def _starting(edges: Edges, map_: OperatingMap, unit: str) -> str:
+    held = edges.holding
+    return starting(held.low, held.value, held.high, edges.limit, map_.limited_by, unit)
+
+
+def _interval(what: str, edge: Edge) -> str:
+    if edge.told:
+        return between(what, edge.value, edge.low, edge.high)
+    least = figures(1e3 * edge.low, up=False)
+    value = f"{mm(edge.value)} mm/s" if math.isfinite(edge.value) else "not found"
+    return f"{what} {value}, at least {least}; no upper end can be determined"
+
+
+def _lead(where: str, what: str) -> str:
+    return f"{where}{what}" if where else f"{what[0].upper()}{what[1:]}"
+
+
+def _up(speed: float) -> str:
+    return figures(1e3 * speed, up=True)

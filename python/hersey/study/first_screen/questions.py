@@ -1,0 +1,71 @@
+"""A question in the place of a conclusion, in words."""
+
+from __future__ import annotations
+
+from hersey.damping.dwells import SteadyPoints
+from hersey.damping.surface import DampingSurface
+from hersey.decision.plausibility import Question
+from hersey.errors import Setting
+from hersey.machine.machine import Machine
+from hersey.parts.decision import DecisionPart, PointDecisionPart
+from hersey.study.first_screen.missing import missing
+from hersey.study.first_screen.words import figures, mm
+
+
+def unanswered(
+    question: Question,
+    points: SteadyPoints,
+    surface: DampingSurface,
+    machine: Machine | None,
+    machine_file: str,
+) -> DecisionPart:
+    """Return the first screen of a log whose numbers cannot be what they are called."""
+    text, remedy = in_words(question)
+    return DecisionPart(
+        signal="act",
+        instruction=text,
+        interval="",
+        otherwise=f"{remedy} Nothing is concluded until then.",
+        points=[
+            PointDecisionPart(
+                name=point.name,
+                speed=point.speed,
+                temperature=point.temperature,
+                signal="watch",
+                words="not judged until the question is answered",
+            )
+            for point in (machine.points if machine is not None else ())
+        ],
+        flags=[],
+        missing=missing(points, surface, machine, machine_file),
+    )
+
+
+def in_words(question: Question) -> tuple[str, str]:
+    """Return the question, and what to do if the answer is yes."""
+    times = figures(question.times)
+    of = {
+        "motor": "your motor's limit",
+        "friction": "what friction in the nip can take",
+        "drive": "your drive's greatest speed",
+        "usual": "what such machines have",
+    }[question.of]
+    if question.kind == "swapped":
+        torque, speed = Setting("torque", "channel"), Setting("speed", "channel")
+        return (
+            f"Are the torque and speed columns swapped? Torque is {times} times {of}",
+            f"Name the columns with {torque.to()} and {speed.to()}.",
+        )
+    if question.kind == "radius unit":
+        return (
+            f"Is the roll radius {figures(1e3 * question.value)} mm? That is {figures(question.value)} m",
+            "Correct roll_radius in the machine file.",
+        )
+    if question.kind == "torque unit":
+        unit = "Is torque in mN·m?" if question.thousandfold else "Is the unit of torque right?"
+        return f"{unit} It is {times} times {of}", f"Give the unit with {Setting('torque', 'unit').to()}."
+    faster = f"The belt would run at {mm(question.value)} mm/s, {times} times {of}"
+    return (
+        f"Is the unit of speed right? {faster}",
+        f"Give the unit with {Setting('speed', 'unit').to()}, or correct roll_radius.",
+    )
