@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
 import pytest
+import xarray as xr
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -237,6 +238,17 @@ def test_speeds_of_the_stability_room_take_units() -> None:
     assert bears == hersey.disturbance(TRAIN, DRAG, drive_speed=1.2)
     with pytest.raises(UnitError, match="target_speed"):
         hersey.plan_profile(TRAIN, DRAG, target_speed="60 rpm")  # type: ignore[arg-type]
+
+
+def test_what_a_sweep_varies_takes_units_by_name() -> None:
+    stick_speed = registry.Quantity(10, "mm/s")
+    texts: dict[str, Any] = {"stiffness": ["0.9 N/mm", "1.1 N/mm"], "stick_speed": stick_speed}
+    plain = {"stiffness": [900.0, 1100.0], "stick_speed": 0.01}
+    for sweep in (hersey.hysteresis_sweep, partial(hersey.sweep, drive_speed="1000 mm/s")):
+        swept, same = (sweep(TRAIN, DRAG, **each) for each in (texts, plain))  # type: ignore[operator]
+        xr.testing.assert_allclose(swept, same, rtol=1e-14)
+        with pytest.raises(UnitError, match="stiffness: "):
+            sweep(TRAIN, DRAG, stiffness="1 s")  # type: ignore[operator]
 
 
 def test_draws_of_a_band_take_units() -> None:

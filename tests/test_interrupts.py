@@ -27,6 +27,7 @@ from hersey.lubrication.reynolds import solve_line_contact
 from hersey.motion.sweep import sweep
 from hersey.stability.disturbance import disturbance, safe_step
 from hersey.stability.hysteresis import cycles_without_sticking, hysteresis
+from hersey.motion.work import Work
 from hersey.stability.hysteresis_sweep import hysteresis_sweep
 PAPER = {"ehl_exponent": -0.7, "mixed_exponent": -1.2, "stick_speed": 0.01}
 TRAIN, DRAG = Drivetrain(1000, 1), Drag(50, 1, **PAPER)
@@ -61,8 +62,10 @@ CALLS = {
     "simulate with bristles": "simulate(TRAIN, BRISTLES, drive_speed=1.0, duration=1e9, most_steps=inf)",
     "samples": "simulate(TRAIN, BRISTLES, drive_speed=0.0, duration=1.0, samples=20_000_000)",
     "stick_slip": "[stick_slip(TRAIN, BRISTLES, drive_speed=1.0) for _ in range(9999)]",
-    "sweep": "sweep(TRAIN, DRAG, drive_speed=[0.5, 1.0], duration=1e300, most_steps=inf)",
-    "sweep with bristles": "sweep(TRAIN, BRISTLES, drive_speed=np.linspace(0.5, 2, 5000), threads=2)",
+    "sweep": "sweep(TRAIN, DRAG, drive_speed=[0.5, 1.0], duration=1e300, work=Work(most_steps=inf))",
+    "sweep with bristles": (
+        "sweep(TRAIN, BRISTLES, drive_speed=np.linspace(0.5, 2, 5000), work=Work(threads=2))"
+    ),
     "hysteresis": "hysteresis(TRAIN, BRISTLES, most_steps=inf)",
     "samples of a band": "hysteresis(TRAIN, DRAG, samples={'mass': np.linspace(1, 2, 3_000_000)})",
     "hysteresis_sweep": "hysteresis_sweep(TRAIN, BRISTLES, stiffness=np.linspace(500, 2000, 100))",

@@ -109,9 +109,11 @@ if TYPE_CHECKING:
     from hersey.motion.simulation import StickSlipCycle, Trajectory, simulate, stick_slip
     from hersey.motion.stepper import Stepper
     from hersey.motion.sweep import sweep
+    from hersey.motion.work import Work
     from hersey.posterior.evidence import BreakAway, Start, StickSlip
     from hersey.posterior.result import Posterior
     from hersey.posterior.sampling import posterior
+    from hersey.scale.store import SweepFolder
     from hersey.stability.disturbance import Disturbance, SafeStep, disturbance, safe_step
     from hersey.stability.hysteresis import (
         CyclesWithoutSticking,
@@ -138,6 +140,8 @@ _HOMES = {
     "motion.simulation": "Drivetrain StickSlipCycle Trajectory simulate stick_slip",
     "motion.stepper": "Stepper",
     "motion.sweep": "sweep",
+    "motion.work": "Work",
+    "scale.store": "SweepFolder",
     "damping.dwells": "SteadyPoints",
     "damping.estimate": "Estimate",
     "damping.branches": "Transition",
@@ -248,12 +252,14 @@ __all__ = [
     "Stepper",
     "StickSlip",
     "StickSlipCycle",
+    "SweepFolder",
     "TestDesign",
     "TorqueLog",
     "Trajectory",
     "Transition",
     "Uncertainty",
     "WarmUp",
+    "Work",
     "__version__",
     "compare",
     "compare_models",

@@ -18,6 +18,7 @@ from hersey.damping.surface import DampingSurface
 from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.machine import Machine
 from hersey.machine.uncertainty import Uncertainty
+from hersey.motion.work import Work
 from hersey.stability.hysteresis import hysteresis
 from hersey.stability.hysteresis_sweep import hysteresis_sweep
 from hersey.stability.operating_map import OperatingMap, operating_map
@@ -132,7 +133,7 @@ def test_intervals_are_those_of_the_draws(
             stick_speed=moved,
             zip=True,
             lower=False,
-            tolerance=1e-13,
+            work=Work(tolerance=1e-13),
         ).upper.values
         assert few.upper_interval[:, i].tolist() == pytest.approx(middle(folds), rel=1e-9)
     assert few.uncertain == ("stiffness", "stick_speed")

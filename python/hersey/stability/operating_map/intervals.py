@@ -14,6 +14,7 @@ from hersey.damping.surface import DampingSurface
 from hersey.machine.uncertainty import Uncertainty
 from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import Drag
+from hersey.motion.work import Work
 from hersey.scale.tasks import done, in_order
 from hersey.stability.hysteresis_sweep import sweep_bands
 from hersey.stability.operating_map.edges import law_at, laws_at, require_all
@@ -135,7 +136,7 @@ def _folds(
         {**drawing.uncertain, **drawn, "stick_speed": below},
         zip=True,
         lower=False,
-        threads=threads,
+        work=Work(threads=threads),
     )
     require_all(band)
     # without stick-slip the belt slides from the transition speed up, if anything moves it
