@@ -446,7 +446,7 @@ def test_a_population_without_a_law_still_shows_its_units() -> None:
 def test_a_motion_with_temperature_as_a_state_shows_it() -> None:
     drag = surface().drag(**machine().belt)
     run = hersey.simulate(
-        machine().train, drag, drive_speed=0.03, heat=machine().heat, duration=5.0, samples=51
+        machine().train, drag, drive_speed=0.03, temperature=machine().heat, duration=5.0, samples=51
     )
     shown = chart_of(run).to_dict(validate=False)
     assert "Temperature (°C)" in titles(shown)

@@ -50,7 +50,7 @@ def test_a_cold_belt_is_waited_for(plan: Plan) -> None:
     gripping = replace(TRAIN, grip=250.0)
     for sooner, slips in ((0.0, False), (5.0, True)):
         drive = hersey.Schedule([0.0, *(np.asarray(plan.schedule.times)[1:] - sooner)], plan.schedule.values)
-        run = simulate(gripping, DRAG, drive_speed=drive, heat=HEAT, duration=plan.duration + 2.0)
+        run = simulate(gripping, DRAG, drive_speed=drive, temperature=HEAT, duration=plan.duration + 2.0)
         assert any(event.guard == "grip_lost" for event in run.events) == slips
     assert run.events
     warm = warm_up(TRAIN, DRAG, HEAT, target_speed=0.12, force_limit=250.0, acceleration=0.5, margin=0.0)
@@ -60,7 +60,7 @@ def test_a_cold_belt_is_waited_for(plan: Plan) -> None:
 def test_the_course_is_that_of_the_plan_itself(plan: Plan) -> None:
     assert plan.course is not None
     assert plan.schedule is not None
-    run = simulate(TRAIN, DRAG, drive_speed=plan.schedule, heat=HEAT, duration=60.0, samples=601)
+    run = simulate(TRAIN, DRAG, drive_speed=plan.schedule, temperature=HEAT, duration=60.0, samples=601)
     assert run.film_temperature is not None
     said = [plan.course.at(t) for t in run.time.tolist()]
     np.testing.assert_allclose(run.film_temperature, said, atol=0.05 + 0.02)
@@ -91,7 +91,13 @@ def test_a_trial_with_heat_is_the_motion_with_heat() -> None:
         [MachineSample(TRAIN, DRAG)], [shape], thermal, force=True, tolerance=1e-11, heat=light
     )
     run = simulate(
-        TRAIN, DRAG, drive_speed=shape.schedule(), heat=light, duration=2.0, samples=20_001, tolerance=1e-11
+        TRAIN,
+        DRAG,
+        drive_speed=shape.schedule(),
+        temperature=light,
+        duration=2.0,
+        samples=20_001,
+        tolerance=1e-11,
     )
     released = [e.time for e in run.events if e.from_mode in ("stuck", "microslip")][-1]
     assert run.film_temperature is not None
