@@ -32,7 +32,11 @@ WARM = hersey.Drag(
 ROLL = hersey.Contact(
     roll_radius=15e-3, rubber_thickness=3.5e-3, modulus=1e6, poisson_ratio=0.48, length=0.22, load=250.0
 )
-LAYER = {"effective_modulus": 2.63e6, "thickness": 3.5e-3, "poisson": 0.49, "nodes": 51}
+LAYER: dict[str, Any] = {
+    "effective_modulus": 2.63e6,
+    "layer": hersey.ElasticLayer("3.5 mm", 0.49),  # type: ignore[arg-type]
+    "nodes": 51,
+}
 
 
 def oil() -> hersey.Lubricant:

@@ -23,7 +23,7 @@ from math import inf
 import numpy as np, xarray
 from hersey import Drag, Drivetrain, simulate, stick_slip, _core
 from hersey.lubrication import paper
-from hersey.lubrication.reynolds import solve_line_contact
+from hersey.lubrication.reynolds import ElasticLayer, solve_line_contact
 from hersey.motion.sweep import sweep
 from hersey.stability.disturbance import disturbance, safe_step
 from hersey.stability.hysteresis import cycles_without_sticking, hysteresis
@@ -37,7 +37,7 @@ from hersey import Limits, plan_profile
 from hersey.document.assembly import analyse
 from hersey.identification.trace_file import read_trace
 BENCH, PLANNED = "examples/bench.csv", Limits(speed=4, acceleration=10)
-NIP = {"effective_modulus": 2.63e6, "thickness": 3.5e-3, "poisson": 0.49}
+NIP = {"effective_modulus": 2.63e6, "layer": ElasticLayer(3.5e-3, 0.49)}
 MADE
 print("ready", flush=True)
 try:

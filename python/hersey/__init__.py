@@ -93,7 +93,12 @@ if TYPE_CHECKING:
         mixed_torque,
     )
     from hersey.lubrication.mixed_drag import MixedDrag
-    from hersey.lubrication.reynolds import LineContactSolution, solve_line_contact
+    from hersey.lubrication.reynolds import (
+        ElasticLayer,
+        LineContactSolution,
+        ThickeningFluid,
+        solve_line_contact,
+    )
     from hersey.machine import (
         Limits,
         Machine,
@@ -161,7 +166,7 @@ _HOMES = {
     "lubrication.film": "Film drag_torque film_thickness",
     "lubrication.mixed": "Asperities BoundaryFriction MixedContact MixedFilm mixed_contact mixed_torque",
     "lubrication.mixed_drag": "MixedDrag",
-    "lubrication.reynolds": "LineContactSolution solve_line_contact",
+    "lubrication.reynolds": "ElasticLayer LineContactSolution ThickeningFluid solve_line_contact",
     "machine": "Limits Machine OperatingPoint Uncertainty read_machine read_temperature_profile",
     "verdict.regime": "Regime regime",
     "verdict.evidence": "MeasuredFilm measured_film",
@@ -208,6 +213,7 @@ __all__ = [
     "DragTable",
     "Drift",
     "Drivetrain",
+    "ElasticLayer",
     "Endings",
     "Estimate",
     "ExportedUnit",
@@ -254,6 +260,7 @@ __all__ = [
     "StickSlipCycle",
     "SweepFolder",
     "TestDesign",
+    "ThickeningFluid",
     "TorqueLog",
     "Trajectory",
     "Transition",

@@ -13,7 +13,7 @@ import pytest
 
 from hersey import Drag, Drivetrain, simulate, stick_slip
 from hersey.errors import ParameterError, UnfinishedError
-from hersey.lubrication.reynolds import solve_line_contact
+from hersey.lubrication.reynolds import ElasticLayer, ThickeningFluid, solve_line_contact
 from hersey.motion.sweep import sweep
 from hersey.motion.work import Work
 from hersey.stability.hysteresis import hysteresis
@@ -76,8 +76,10 @@ def test_films_out_of_all_measure_end(name: str, thickness: float | None) -> Non
     begun = time.process_time()
     for value in EXTREME:
         given = {**nip, "effective_modulus": 2.63e6, "nodes": 101, name: value}
+        if (alpha := given.pop("pressure_viscosity", None)) is not None:
+            given["viscosity"] = ThickeningFluid(given["viscosity"], alpha)
         with contextlib.suppress(ParameterError, UnfinishedError):
-            solve_line_contact(**given, thickness=thickness, poisson=thickness and 0.49)
+            solve_line_contact(**given, layer=thickness and ElasticLayer(thickness, 0.49))
     assert time.process_time() - begun < 10 * LONG
 
 
