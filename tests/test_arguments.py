@@ -287,9 +287,7 @@ def test_the_temperature_of_a_measured_film_takes_units() -> None:
 def test_the_map_takes_units() -> None:
     map_ = hersey.operating_map(
         surface(),
-        hersey.Drivetrain("11 N/mm", "11 kg"),  # type: ignore[arg-type]
-        roll_radius="15 mm",  # type: ignore[arg-type]
-        stick_speed="0.3 mm/s",  # type: ignore[arg-type]
+        hersey.Machine("11 N/mm", "11 kg", roll_radius="15 mm", stick_speed="0.3 mm/s"),  # type: ignore[arg-type]
         temperatures=["100 degC", "150 degC"],
         speeds=["10 mm/s", "100 mm/s"],
         draws=1,

@@ -33,10 +33,11 @@ PAPER = {"ehl_exponent": -0.7, "mixed_exponent": -1.2, "stick_speed": 0.01}
 TRAIN, DRAG = Drivetrain(1000, 1), Drag(50, 1, **PAPER)
 BRISTLES = Drag(50, 1, **PAPER, closure="lugre", bristle_stiffness=1e5, bristle_damping=100.0)
 import hersey
-from hersey import Limits, plan_profile
+from hersey import Limits, Machine, plan_profile
 from hersey.document.assembly import analyse
 from hersey.identification.trace_file import read_trace
-BENCH, PLANNED = "examples/bench.csv", Limits(speed=4, acceleration=10)
+BENCH = "examples/bench.csv"
+PLANNED = Machine(1000, 1, 0.02, 0.01, limits=Limits(speed=4, acceleration=10))
 NIP = {"effective_modulus": 2.63e6, "layer": ElasticLayer(3.5e-3, 0.49)}
 MADE
 print("ready", flush=True)
@@ -78,11 +79,8 @@ CALLS = {
     "models": "[hersey.compare_models(POINTS) for _ in range(9999)]",
     "identify": "[hersey.identify(RECORD) for _ in range(99)]",
     "analyse": "[analyse(LOG, POINTS) for _ in range(999)]",
-    "map": (
-        "[hersey.operating_map(SURFACE, MACHINE.train, roll_radius=MACHINE.roll_radius, "
-        "limits=MACHINE.limits, stick_speed=MACHINE.stick_speed) for _ in range(999)]"
-    ),
-    "plan": "[plan_profile(TRAIN, DRAG, target_speed=1.2, limits=PLANNED) for _ in range(999)]",
+    "map": ("[hersey.operating_map(SURFACE, MACHINE) for _ in range(999)]"),
+    "plan": "[plan_profile(PLANNED, DRAG, target_speed=1.2) for _ in range(999)]",
     "films": "_core.layer(np.broadcast_arrays(np.linspace(900.0, 1300.0, 10**7), 0.015, 0.0035, 2e6, 0.48))",
 }
 #: Processor time before the interrupt, and the most that may follow it, s; what is promised is 0.5 s of time.

@@ -17,9 +17,10 @@ from hersey.machine.limits import Limits
 from hersey.machine.uncertainty import Uncertainty
 from hersey.stability.plan import Plan, plan_profile
 from hersey.stability.plan.planner import Proof, Unknown
-from hersey.stability.plan.trial import MachineSample, Shape, TemperatureProfile, outcomes
+from hersey.stability.plan.trial import Follow, MachineSample, Shape, TemperatureProfile, outcomes
 from hersey.stability.plan.warming import apart, course_of
 from hersey.stability.warm_up import warm_up
+from tests.machines import machine_of
 
 TRAIN = Drivetrain(11e3, 11.0)
 DRAG = hersey.Drag(50, 0.01, -0.7, -1.2, 3e-4, reference_temperature=400.0, force_temperature_exponent=-4.0)
@@ -39,7 +40,7 @@ def _short_search() -> Iterator[None]:
 
 @pytest.fixture(scope="module")
 def plan() -> Plan:
-    return plan_profile(TRAIN, DRAG, target_speed=0.12, heat=HEAT, limits=LIMITS)
+    return plan_profile(machine_of(TRAIN, limits=LIMITS), DRAG, target_speed=0.12, temperature=HEAT)
 
 
 def test_a_cold_belt_is_waited_for(plan: Plan) -> None:
@@ -71,10 +72,10 @@ def test_the_course_is_that_of_the_plan_itself(plan: Plan) -> None:
 
 def test_what_no_warmth_mends_is_named() -> None:
     limits = replace(LIMITS, spring_force=150.0)
-    found = plan_profile(TRAIN, DRAG, target_speed=0.12, heat=HEAT, limits=limits)
+    found = plan_profile(machine_of(TRAIN, limits=limits), DRAG, target_speed=0.12, temperature=HEAT)
     assert [obstacle.limit for obstacle in found.obstacles] == ["spring_force"]
     weak = replace(HEAT, heater_power=0.0, setpoint=None)
-    cold = plan_profile(TRAIN, DRAG, target_speed=0.12, heat=weak, limits=LIMITS)
+    cold = plan_profile(machine_of(TRAIN, limits=LIMITS), DRAG, target_speed=0.12, temperature=weak)
     assert [obstacle.limit for obstacle in cold.obstacles] == ["spring_force"]
     assert cold.obstacles[0].needed is not None
     assert cold.obstacles[0].needed > 400.0
@@ -86,9 +87,9 @@ def test_a_trial_with_heat_is_the_motion_with_heat() -> None:
         replace(HEAT, film_capacity=2.0, heater_power=0.0, setpoint=None),
         Shape(0.12, 0.12, 0.4, wait=0.5),
     )
-    thermal = TemperatureProfile(course_of(TRAIN, DRAG, light, shape.schedule()))
+    thermal = TemperatureProfile(course_of(TRAIN, DRAG, light, shape.schedule()), light)
     [found] = outcomes(
-        [MachineSample(TRAIN, DRAG)], [shape], thermal, force=True, tolerance=1e-11, heat=light
+        [MachineSample(TRAIN, DRAG)], [shape], thermal, how=Follow(force=True, tolerance=1e-11)
     )
     run = simulate(
         TRAIN,
@@ -115,17 +116,19 @@ def test_draws_make_their_own_temperature(monkeypatch: pytest.MonkeyPatch) -> No
 
     def watched(self: Unknown, *given: Any) -> Proof:
         proof = verify(self, *given)
-        seen.append((given[-1] is HEAT, proof.draws))
+        seen.append((given[2].heat is HEAT, proof.draws))
         return proof
 
     monkeypatch.setattr(Unknown, "verify", watched)
     found = plan_profile(
-        TRAIN,
+        machine_of(
+            TRAIN,
+            limits=replace(LIMITS, spring_force=1000.0),
+            uncertainty={"transition_force": Uncertainty(share=0.05)},
+        ),
         DRAG,
         target_speed=0.12,
-        heat=HEAT,
-        limits=replace(LIMITS, spring_force=1000.0),
-        uncertainty={"transition_force": Uncertainty(share=0.05)},
+        temperature=HEAT,
         confidence=0.5,
     )
     assert (found.draws, found.wait) == (60, 0.0)
@@ -137,7 +140,7 @@ def test_draws_make_their_own_temperature(monkeypatch: pytest.MonkeyPatch) -> No
 def test_rounds_that_do_not_end_are_said(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("hersey.stability.plan.planner.ROUNDS", 1)
     limits = replace(LIMITS, spring_force=1000.0)
-    found = plan_profile(TRAIN, DRAG, target_speed=0.12, heat=HEAT, limits=limits)
+    found = plan_profile(machine_of(TRAIN, limits=limits), DRAG, target_speed=0.12, temperature=HEAT)
     assert not found.found
     assert math.isnan(found.duration)
     [obstacle] = found.obstacles
@@ -145,8 +148,6 @@ def test_rounds_that_do_not_end_are_said(monkeypatch: pytest.MonkeyPatch) -> Non
     assert "do not agree after 1 rounds" in obstacle.text
 
 
-def test_heat_and_temperature_exclude_each_other() -> None:
-    with pytest.raises(ParameterError, match="either temperature or heat"):
-        plan_profile(TRAIN, DRAG, target_speed=0.12, heat=HEAT, temperature=400.0)
+def test_heat_needs_a_drag_that_varies() -> None:
     with pytest.raises(ParameterError, match="does not vary with temperature"):
-        plan_profile(TRAIN, DRAG.at(400.0), target_speed=0.12, heat=HEAT)
+        plan_profile(TRAIN, DRAG.at(400.0), target_speed=0.12, temperature=HEAT)
