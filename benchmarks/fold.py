@@ -36,7 +36,7 @@ def folds(side: int, tolerance: float) -> Any:
         stiffness=np.linspace(500, 2000, side),
         transition_force=np.linspace(25, 100, side),
         lower=False,
-        tolerance=tolerance,
+        work=hersey.Work(tolerance=tolerance),
     )
 
 
@@ -118,7 +118,9 @@ def measure_machine() -> list[tuple[float, float, float, float]]:
 
     def all_draws(tolerance: float) -> Any:
         found = [
-            hersey.hysteresis_sweep(train, law, **draws, zip=True, lower=False, tolerance=tolerance)
+            hersey.hysteresis_sweep(
+                train, law, **draws, zip=True, lower=False, work=hersey.Work(tolerance=tolerance)
+            )
             for law, draws in laws
         ]
         return np.concatenate([grid.upper.values for grid in found])

@@ -53,7 +53,7 @@ def swept(duration: float | None, tolerance: float) -> Any:
         drive_speed=v2,
         zip=True,
         duration=duration,
-        tolerance=tolerance,
+        work=hersey.Work(tolerance=tolerance),
     )
 
 

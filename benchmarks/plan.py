@@ -24,6 +24,7 @@ from scipy.optimize import differential_evolution
 
 import hersey
 from hersey.machine.limits import Limits
+from hersey.machine.machine import Machine
 from hersey.machine.uncertainty import Uncertainty
 from hersey.stability.hysteresis import hysteresis
 from hersey.stability.plan import Plan, plan_profile
@@ -106,13 +107,17 @@ def case(number: int) -> Case:
 def planned(given: Case, seed: int) -> Plan:
     """Return the plan of a case."""
     return plan_profile(
-        given.train,
+        Machine(
+            given.train.stiffness,
+            given.train.mass,
+            given.roll_radius or 0.02,
+            given.drag.stick_speed,
+            limits=given.limits,
+            uncertainty=given.uncertainty,
+        ),
         given.drag,
         target_speed=given.target,
         temperature=given.temperature,
-        limits=given.limits,
-        roll_radius=given.roll_radius,
-        uncertainty=given.uncertainty,
         confidence=CONFIDENCE,
         seed=seed,
     )

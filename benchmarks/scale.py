@@ -191,14 +191,20 @@ def split(folder: Path, sets: int) -> dict[str, Any]:
     values = axes(sets)
     alone, shared, same = [], [], True
     with local_workers(WORKERS) as client:
-        hersey.sweep(TRAIN, DRAG, drive_speed=values["drive_speed"], client=client, out=folder / "warm.zarr")
+        hersey.sweep(
+            TRAIN,
+            DRAG,
+            drive_speed=values["drive_speed"],
+            work=hersey.Work(client=client),
+            out=folder / "warm.zarr",
+        )
         for turn in range(3):
             begun = time.perf_counter()
             one = hersey.sweep(TRAIN, DRAG, **values)
             alone.append(time.perf_counter() - begun)
             path = folder / f"split-{turn}.zarr"
             begun = time.perf_counter()
-            two = hersey.sweep(TRAIN, DRAG, **values, client=client, out=path)
+            two = hersey.sweep(TRAIN, DRAG, **values, work=hersey.Work(client=client), out=path)
             shared.append(time.perf_counter() - begun)
             same = same and bits(one) == bits(two)
             shutil.rmtree(path)

@@ -20,7 +20,7 @@ for power in range(3, 13):
     run = hersey.simulate(train, drag, drive_speed=1.0, duration=5.0, samples=2, tolerance=tolerance)
     error = max(abs(cycle.frequency / EXACT - 1), 1e-14)
     rows.append({"tolerance": tolerance, "error": error, "what": "single motion (order 14)"})
-    lanes = hersey.sweep(train, drag, drive_speed=1.0, tolerance=tolerance)
+    lanes = hersey.sweep(train, drag, drive_speed=1.0, work=hersey.Work(tolerance=tolerance))
     error = max(abs(float(lanes.frequency) / EXACT - 1), 1e-14)
     rows.append({"tolerance": tolerance, "error": error, "what": "lanes (order 12)"})
     print(f"tolerance {tolerance:.0e}: error {rows[-2]['error']:.1e}, lanes {error:.1e}, steps {run.steps}")

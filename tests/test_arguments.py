@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
 import pytest
+import xarray as xr
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -31,7 +32,11 @@ WARM = hersey.Drag(
 ROLL = hersey.Contact(
     roll_radius=15e-3, rubber_thickness=3.5e-3, modulus=1e6, poisson_ratio=0.48, length=0.22, load=250.0
 )
-LAYER = {"effective_modulus": 2.63e6, "thickness": 3.5e-3, "poisson": 0.49, "nodes": 51}
+LAYER: dict[str, Any] = {
+    "effective_modulus": 2.63e6,
+    "layer": hersey.ElasticLayer("3.5 mm", 0.49),  # type: ignore[arg-type]
+    "nodes": 51,
+}
 
 
 def oil() -> hersey.Lubricant:
@@ -239,6 +244,17 @@ def test_speeds_of_the_stability_room_take_units() -> None:
         hersey.plan_profile(TRAIN, DRAG, target_speed="60 rpm")  # type: ignore[arg-type]
 
 
+def test_what_a_sweep_varies_takes_units_by_name() -> None:
+    stick_speed = registry.Quantity(10, "mm/s")
+    texts: dict[str, Any] = {"stiffness": ["0.9 N/mm", "1.1 N/mm"], "stick_speed": stick_speed}
+    plain = {"stiffness": [900.0, 1100.0], "stick_speed": 0.01}
+    for sweep in (hersey.hysteresis_sweep, partial(hersey.sweep, drive_speed="1000 mm/s")):
+        swept, same = (sweep(TRAIN, DRAG, **each) for each in (texts, plain))  # type: ignore[operator]
+        xr.testing.assert_allclose(swept, same, rtol=1e-14)
+        with pytest.raises(UnitError, match="stiffness: "):
+            sweep(TRAIN, DRAG, stiffness="1 s")  # type: ignore[operator]
+
+
 def test_draws_of_a_band_take_units() -> None:
     texts: dict[str, Any] = {
         "stiffness": ["0.9 N/mm", "1.1 N/mm", "1 N/mm"],
@@ -271,9 +287,7 @@ def test_the_temperature_of_a_measured_film_takes_units() -> None:
 def test_the_map_takes_units() -> None:
     map_ = hersey.operating_map(
         surface(),
-        hersey.Drivetrain("11 N/mm", "11 kg"),  # type: ignore[arg-type]
-        roll_radius="15 mm",  # type: ignore[arg-type]
-        stick_speed="0.3 mm/s",  # type: ignore[arg-type]
+        hersey.Machine("11 N/mm", "11 kg", roll_radius="15 mm", stick_speed="0.3 mm/s"),  # type: ignore[arg-type]
         temperatures=["100 degC", "150 degC"],
         speeds=["10 mm/s", "100 mm/s"],
         draws=1,

@@ -11,6 +11,7 @@ from hersey import Drag, Drivetrain, hysteresis, simulate, solve_line_contact, s
 from hersey.errors import HerseyError, ParameterError, UnfinishedError
 from hersey.lubrication.contact import shore_a_modulus
 from hersey.lubrication.lubricant import Lubricant
+from hersey.lubrication.reynolds import ThickeningFluid
 
 TRAIN = Drivetrain(1000, 1)
 PAPER = {"ehl_exponent": -0.7, "mixed_exponent": -1.2, "stick_speed": 0.01}
@@ -74,9 +75,9 @@ def test_what_does_not_end_is_no_mistake_of_the_user() -> None:
 
 
 def test_a_lost_film_says_where() -> None:
-    hard = {"effective_modulus": 4.6e11, "pressure_viscosity": 2.2e-8, "thickening": "barus"}
+    oil = ThickeningFluid(0.04, pressure_viscosity=2.2e-8, thickening="barus")
     with pytest.raises(UnfinishedError) as caught:
-        solve_line_contact(0.01, 2e6, 0.01, 0.04, **hard)
+        solve_line_contact(0.01, 2e6, 0.01, oil, effective_modulus=4.6e11)
     assert caught.value.quantity in ("pressure_viscosity", "entrainment_speed")
     assert caught.value.value is not None
     assert caught.value.value >= 0

@@ -9,6 +9,7 @@ import pickle
 import re
 import subprocess
 from collections import Counter
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -175,6 +176,57 @@ def test_public_functions_are_documented() -> None:
         thing = getattr(hersey, name)
         if callable(thing):
             assert inspect.getdoc(thing), name
+
+
+#: Parameters of a public function at the most; the keywords that it takes by ``**`` are one group of them.
+MOST_PARAMETERS = 8
+#: Functions that have more, and why.
+MORE_PARAMETERS = {
+    # how a log is read is one set of keywords of `inspect`; here each is a parameter still
+    "hersey.log.reading.read",
+    "hersey.log.mapping.read_with_mapping",
+    # inputs of a unit and their start values, each of which the unit has as a variable
+    "hersey.exchange.unit.export_fmu",
+    # the parts of a document, put together in one place
+    "hersey.study.first_screen.decision.decision",
+    "hersey.study.first_screen.flags.flags",
+}
+
+
+_NAMED_BLOCKS = (ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
+
+
+def public_functions(tree: ast.AST, name: str) -> Iterator[tuple[str, int]]:
+    """Each public function or method under a dotted name, with the number of its parameters."""
+    for node in ast.iter_child_nodes(tree):
+        if isinstance(node, _NAMED_BLOCKS) and node.name.startswith("_"):
+            continue
+        if isinstance(node, ast.ClassDef):
+            yield from public_functions(node, f"{name}.{node.name}")
+        elif isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+            given = [*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs]
+            given += [each for each in (node.args.vararg, node.args.kwarg) if each is not None]
+            own = isinstance(tree, ast.ClassDef) and given and given[0].arg in ("self", "cls")
+            yield f"{name}.{node.name}", len(given) - bool(own)
+
+
+def test_no_public_function_has_many_parameters() -> None:
+    """The flags of a command are the parameters of its function, so commands do not count."""
+    flags = {
+        f"{each.callback.__module__}.{each.callback.__name__}"
+        for command in commands().values()
+        for each in (command, *getattr(command, "commands", {}).values())
+        if each.callback is not None
+    }
+    found = {
+        function: count
+        for module, path in modules().items()
+        for function, count in public_functions(ast.parse(path.read_text()), module)
+    }
+    assert len(found) > 1000
+    assert flags <= found.keys() | {"hersey.cli.export._root"}
+    many = {function for function, count in found.items() if count > MOST_PARAMETERS} - flags
+    assert many == MORE_PARAMETERS, sorted(many ^ MORE_PARAMETERS)
 
 
 @pytest.mark.parametrize("module", [m for m, path in modules().items() if ">>> " in path.read_text()])

@@ -23,20 +23,22 @@ from math import inf
 import numpy as np, xarray
 from hersey import Drag, Drivetrain, simulate, stick_slip, _core
 from hersey.lubrication import paper
-from hersey.lubrication.reynolds import solve_line_contact
+from hersey.lubrication.reynolds import ElasticLayer, solve_line_contact
 from hersey.motion.sweep import sweep
 from hersey.stability.disturbance import disturbance, safe_step
 from hersey.stability.hysteresis import cycles_without_sticking, hysteresis
+from hersey.motion.work import Work
 from hersey.stability.hysteresis_sweep import hysteresis_sweep
 PAPER = {"ehl_exponent": -0.7, "mixed_exponent": -1.2, "stick_speed": 0.01}
 TRAIN, DRAG = Drivetrain(1000, 1), Drag(50, 1, **PAPER)
 BRISTLES = Drag(50, 1, **PAPER, closure="lugre", bristle_stiffness=1e5, bristle_damping=100.0)
 import hersey
-from hersey import Limits, plan_profile
+from hersey import Limits, Machine, plan_profile
 from hersey.study import study
 from hersey.identification.trace_file import read_trace
-BENCH, PLANNED = "examples/bench.csv", Limits(speed=4, acceleration=10)
-NIP = {"effective_modulus": 2.63e6, "thickness": 3.5e-3, "poisson": 0.49}
+BENCH = "examples/bench.csv"
+PLANNED = Machine(1000, 1, 0.02, 0.01, limits=Limits(speed=4, acceleration=10))
+NIP = {"effective_modulus": 2.63e6, "layer": ElasticLayer(3.5e-3, 0.49)}
 MADE
 print("ready", flush=True)
 try:
@@ -61,8 +63,10 @@ CALLS = {
     "simulate with bristles": "simulate(TRAIN, BRISTLES, drive_speed=1.0, duration=1e9, most_steps=inf)",
     "samples": "simulate(TRAIN, BRISTLES, drive_speed=0.0, duration=1.0, samples=20_000_000)",
     "stick_slip": "[stick_slip(TRAIN, BRISTLES, drive_speed=1.0) for _ in range(9999)]",
-    "sweep": "sweep(TRAIN, DRAG, drive_speed=[0.5, 1.0], duration=1e300, most_steps=inf)",
-    "sweep with bristles": "sweep(TRAIN, BRISTLES, drive_speed=np.linspace(0.5, 2, 5000), threads=2)",
+    "sweep": "sweep(TRAIN, DRAG, drive_speed=[0.5, 1.0], duration=1e300, work=Work(most_steps=inf))",
+    "sweep with bristles": (
+        "sweep(TRAIN, BRISTLES, drive_speed=np.linspace(0.5, 2, 5000), work=Work(threads=2))"
+    ),
     "hysteresis": "hysteresis(TRAIN, BRISTLES, most_steps=inf)",
     "samples of a band": "hysteresis(TRAIN, DRAG, samples={'mass': np.linspace(1, 2, 3_000_000)})",
     "hysteresis_sweep": "hysteresis_sweep(TRAIN, BRISTLES, stiffness=np.linspace(500, 2000, 100))",
@@ -75,11 +79,8 @@ CALLS = {
     "models": "[hersey.compare_models(POINTS) for _ in range(9999)]",
     "identify": "[hersey.identify(RECORD) for _ in range(99)]",
     "study": "[study(POINTS) for _ in range(999)]",
-    "map": (
-        "[hersey.operating_map(SURFACE, MACHINE.train, roll_radius=MACHINE.roll_radius, "
-        "limits=MACHINE.limits, stick_speed=MACHINE.stick_speed) for _ in range(999)]"
-    ),
-    "plan": "[plan_profile(TRAIN, DRAG, target_speed=1.2, limits=PLANNED) for _ in range(999)]",
+    "map": ("[hersey.operating_map(SURFACE, MACHINE) for _ in range(999)]"),
+    "plan": "[plan_profile(PLANNED, DRAG, target_speed=1.2) for _ in range(999)]",
     "films": "_core.layer(np.broadcast_arrays(np.linspace(900.0, 1300.0, 10**7), 0.015, 0.0035, 2e6, 0.48))",
 }
 #: Processor time before the interrupt, and the most that may follow it, s; what is promised is 0.5 s of time.

@@ -54,6 +54,7 @@ from hersey.result import LINE, Result, json_value, table_of
 from hersey.verdict.evidence import verdict
 from tests.conftest import ROOT
 from tests.life import shipped, test_ageing_maps, test_other_uses
+from tests.machines import machine_of, map_of
 
 BENCH = ROOT / "examples" / "bench.csv"
 TRAIN = hersey.Drivetrain(1000, 1)
@@ -122,7 +123,7 @@ def mixed() -> hersey.MixedFilm:
 
 def map_() -> hersey.OperatingMap:
     m = machine()
-    return hersey.operating_map(
+    return map_of(
         surface(),
         m.train,
         roll_radius=m.roll_radius,
@@ -136,7 +137,7 @@ def map_() -> hersey.OperatingMap:
 
 def plan() -> hersey.Plan:
     limits = hersey.Limits(speed=4, acceleration=10)
-    return hersey.plan_profile(TRAIN, DRAG, target_speed=1.2, limits=limits)
+    return hersey.plan_profile(machine_of(TRAIN, limits=limits), DRAG, target_speed=1.2)
 
 
 def warm_up() -> hersey.WarmUp:

@@ -14,7 +14,7 @@ from hersey.charts.style import BLUE, INK, ORANGE, WIDTH, Chart, Row, plot, rows
 from hersey.errors import ParameterError
 from hersey.lubrication.contact import Contact
 from hersey.lubrication.film import Film, film_thickness
-from hersey.lubrication.reynolds import LineContactSolution, solve_line_contact
+from hersey.lubrication.reynolds import ElasticLayer, LineContactSolution, solve_line_contact
 from hersey.machine.machine import Machine
 from paper.cross_section import contact_of, film_at, told
 from paper.drawing import HEATER, RUBBER
@@ -137,8 +137,7 @@ def _solved(film: Film) -> LineContactSolution:
         float(film.entrainment_speed),
         float(film.viscosity),
         effective_modulus=contact.effective_modulus,
-        thickness=contact.rubber_thickness,
-        poisson=contact.poisson_ratio,
+        layer=ElasticLayer(contact.rubber_thickness, contact.poisson_ratio),
     )
 
 

@@ -96,7 +96,12 @@ if TYPE_CHECKING:
         mixed_torque,
     )
     from hersey.lubrication.mixed_drag import MixedDrag
-    from hersey.lubrication.reynolds import LineContactSolution, solve_line_contact
+    from hersey.lubrication.reynolds import (
+        ElasticLayer,
+        LineContactSolution,
+        ThickeningFluid,
+        solve_line_contact,
+    )
     from hersey.machine import (
         Limits,
         Machine,
@@ -112,10 +117,12 @@ if TYPE_CHECKING:
     from hersey.motion.simulation import StickSlipCycle, Trajectory, simulate, stick_slip
     from hersey.motion.stepper import Stepper
     from hersey.motion.sweep import sweep
+    from hersey.motion.work import Work
     from hersey.posterior.evidence import BreakAway, Start, StickSlip
     from hersey.posterior.result import Posterior
     from hersey.posterior.sampling import posterior
     from hersey.report.page import report
+    from hersey.scale.store import SweepFolder
     from hersey.stability.disturbance import Disturbance, SafeStep, disturbance, safe_step
     from hersey.stability.hysteresis import (
         CyclesWithoutSticking,
@@ -143,6 +150,8 @@ _HOMES = {
     "motion.simulation": "Drivetrain StickSlipCycle Trajectory simulate stick_slip",
     "motion.stepper": "Stepper",
     "motion.sweep": "sweep",
+    "motion.work": "Work",
+    "scale.store": "SweepFolder",
     "damping.dwells": "SteadyPoints",
     "damping.estimate": "Estimate",
     "damping.branches": "Transition",
@@ -163,7 +172,7 @@ _HOMES = {
     "lubrication.film": "Film drag_torque film_thickness",
     "lubrication.mixed": "Asperities BoundaryFriction MixedContact MixedFilm mixed_contact mixed_torque",
     "lubrication.mixed_drag": "MixedDrag",
-    "lubrication.reynolds": "LineContactSolution solve_line_contact",
+    "lubrication.reynolds": "ElasticLayer LineContactSolution ThickeningFluid solve_line_contact",
     "machine": "Limits Machine OperatingPoint Uncertainty read_machine read_temperature_profile",
     "verdict.regime": "Regime regime",
     "verdict.evidence": "MeasuredFilm measured_film",
@@ -212,6 +221,7 @@ __all__ = [
     "DragTable",
     "Drift",
     "Drivetrain",
+    "ElasticLayer",
     "Endings",
     "Estimate",
     "ExportedUnit",
@@ -258,12 +268,15 @@ __all__ = [
     "StickSlip",
     "StickSlipCycle",
     "Study",
+    "SweepFolder",
     "TestDesign",
+    "ThickeningFluid",
     "TorqueLog",
     "Trajectory",
     "Transition",
     "Uncertainty",
     "WarmUp",
+    "Work",
     "__version__",
     "compare",
     "compare_models",

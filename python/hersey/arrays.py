@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import threading
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any, TypeVar
 
@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hersey.errors import ParameterError
+from hersey.spelling import meant, printable
 
 R = TypeVar("R")
 FloatArray = NDArray[np.float64]
@@ -75,6 +76,29 @@ def numbers_of(name: str, value: ArrayLike) -> FloatArray:
     if numbers.size == 0:
         raise ParameterError(f"{name} is empty")
     return numbers
+
+
+def refuse_unknown(
+    taker: str, given: Iterable[str], known: Sequence[str], elsewhere: Mapping[str, str] | None = None
+) -> None:
+    """Refuse a keyword that is none of those known; the message names the nearest, or all of them.
+
+    ``elsewhere`` says what to write for one that belongs into another argument.
+
+    Examples
+    --------
+    >>> refuse_unknown("sweep", ["stifness"], ["stiffness", "mass"])
+    Traceback (most recent call last):
+        ...
+    hersey.errors.ParameterError: sweep does not take 'stifness': did you mean stiffness?
+    """
+    for name in given:
+        if name not in known:
+            near = meant(name, known)
+            remedy = f"did you mean {near}?" if near else f"it takes {', '.join(known)}"
+            if elsewhere and name in elsewhere:
+                remedy = f"write {elsewhere[name]}"
+            raise ParameterError(f"{taker} does not take '{printable(name)}': {remedy}", quantity=name)
 
 
 def crossed(given: dict[str, FloatArray]) -> tuple[list[str], dict[str, FloatArray]]:

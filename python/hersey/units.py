@@ -443,16 +443,21 @@ def argument(name: str, kind: Kind, value: Any) -> Any:
 
 
 def takes_si(**kinds: Kind) -> Callable[[Callable[P, R]], Callable[P, R]]:
-    """Let a function take the arguments named as `argument` does, each of its kind."""
+    """Let a function take the arguments named as `argument` does, each of its kind.
+
+    They may be parameters of the function, or keywords that it takes by ``**``.
+    """
 
     def decorate(function: Callable[P, R]) -> Callable[P, R]:
         signature = inspect.signature(function)
+        by_name = [p.name for p in signature.parameters.values() if p.kind is p.VAR_KEYWORD]
 
         @wraps(function)
         def called(*args: P.args, **kwargs: P.kwargs) -> R:
             given = signature.bind(*args, **kwargs)
-            for name in kinds.keys() & given.arguments.keys():
-                given.arguments[name] = argument(name, kinds[name], given.arguments[name])
+            for into in (given.arguments, *(given.arguments.get(name, {}) for name in by_name)):
+                for name in kinds.keys() & into.keys():
+                    into[name] = argument(name, kinds[name], into[name])
             return function(*given.args, **given.kwargs)
 
         return called

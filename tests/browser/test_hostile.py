@@ -17,10 +17,11 @@ from hersey.charts.render import picture
 from hersey.document.analysis import Analysis
 from hersey.machine.machine import read_machine
 from hersey.report.page import render
-from hersey.stability.operating_map import OperatingMap, operating_map
+from hersey.stability.operating_map import OperatingMap
 from tests.browser.hostile import NAMES, ON_A_LINE
 from tests.browser.opening import Opened
 from tests.conftest import ROOT
+from tests.machines import map_of
 
 #: Signs of a name that a picture shows as what cannot be shown, or a line of text breaks at.
 _SIGNS = {ord("\x1b"): "\ufffd", ord("\x07"): "\ufffd", 0xD83D: "\ufffd"}
@@ -154,7 +155,7 @@ def drawn_map(points: hersey.SteadyPoints, tmp_path_factory: pytest.TempPathFact
     machine = read_machine(path)
     surface = hersey.fit(points)
     options = {"limits": machine.limits, "points": machine.points, "uncertainty": None}
-    return operating_map(
+    return map_of(
         surface,
         machine.train,
         roll_radius=machine.roll_radius,

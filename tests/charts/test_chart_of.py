@@ -26,6 +26,7 @@ from tests import test_results
 from tests.charts.test_charts import titles
 from tests.conftest import ROOT
 from tests.life import shipped, test_ageing_maps, test_other_uses
+from tests.machines import machine_of, map_of
 
 RPM = 2 * np.pi / 60
 EXAMPLES = ROOT / "examples"
@@ -100,11 +101,9 @@ def plan() -> hersey.Plan:
         roll_radius=machine().roll_radius, stick_speed=machine().stick_speed, temperature=423.15
     )
     return hersey.plan_profile(
-        machine().train,
+        machine_of(machine().train, limits=machine().limits, roll_radius=machine().roll_radius),
         drag,
         target_speed=0.1,
-        limits=machine().limits,
-        roll_radius=machine().roll_radius,
     )
 
 
@@ -116,7 +115,7 @@ def warm_up() -> hersey.WarmUp:
 
 
 def belt_map() -> hersey.OperatingMap:
-    return hersey.operating_map(
+    return map_of(
         surface(),
         machine().train,
         roll_radius=machine().roll_radius,
@@ -446,7 +445,7 @@ def test_a_population_without_a_law_still_shows_its_units() -> None:
 def test_a_motion_with_temperature_as_a_state_shows_it() -> None:
     drag = surface().drag(**machine().belt)
     run = hersey.simulate(
-        machine().train, drag, drive_speed=0.03, heat=machine().heat, duration=5.0, samples=51
+        machine().train, drag, drive_speed=0.03, temperature=machine().heat, duration=5.0, samples=51
     )
     shown = chart_of(run).to_dict(validate=False)
     assert "Temperature (°C)" in titles(shown)

@@ -27,6 +27,7 @@ from hersey.stability.plan.draws import drawn as machines_drawn
 from hersey.testbench.truth import Truth
 from hersey.verdict.cautions import _rest_warnings
 from tests.damping.test_surface import grid, points_of
+from tests.machines import map_of
 
 CONSTANT, PER_SPEED, SLOPE, AT = 0.020, 0.001, -0.002, 150.0 + 273.15
 SPEEDS, TEMPERATURES = np.geomspace(0.5, 15, 8), np.array([100.0, 125.0, 150.0, 175.0])
@@ -285,9 +286,7 @@ def test_motion_map_and_limits_count_film_and_rest() -> None:
                 total = surface.total_torque(v / 0.015, kelvin)
                 assert drag.force(v) * 0.015 == pytest.approx(total, rel=1e-9)
     hot, limits = [400.0, AT], hersey.Limits(motor_torque=1.2)
-    map_ = hersey.operating_map(
-        surface, hersey.Drivetrain(11e3, 11.0), **belt, limits=limits, temperatures=hot, draws=2
-    )
+    map_ = map_of(surface, hersey.Drivetrain(11e3, 11.0), **belt, limits=limits, temperatures=hot, draws=2)
     assert map_.state_at(AT, 0.1).torque == pytest.approx(surface.total_torque(0.1 / 0.015, AT), rel=1e-9)
     for kelvin, speed in zip(hot, map_.stall_above, strict=True):
         assert surface.total_torque(speed / 0.015, kelvin) == pytest.approx(1.2, rel=1e-9)

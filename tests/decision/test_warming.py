@@ -95,11 +95,6 @@ def test_a_target_below_the_transition_is_refused(drawn: Posterior) -> None:
     assert plan.obstacles
 
 
-def test_temperature_comes_from_one_place(drawn: Posterior) -> None:
-    with pytest.raises(ParameterError, match="either temperature"):
-        plan_warm_start(drawn, 0.1)
-
-
 def test_a_stick_speed_that_stays_is_refused(drawn: Posterior) -> None:
     """A table moves its stick speed with temperature: one that is fixed cannot be followed."""
     fixed = replace(drawn.model.machine, stick_speed_rule="fixed")

@@ -197,7 +197,7 @@ def test_a_thermal_loop_closed_outside_follows_that_of_the_core(tmp_path: Path) 
         surroundings=400.0, heater_power=2.0, film_temperature=400.0, roll_temperature=400.0,
     )  # fmt: skip
     drag = replace(WARM, closure="stiction")
-    core = hersey.simulate(TRAIN, drag, drive_speed=0.3, heat=heat, duration=step * count, samples=3)
+    core = hersey.simulate(TRAIN, drag, drive_speed=0.3, temperature=heat, duration=step * count, samples=3)
     rates = np.array([[-0.45 / 0.5, 0.4 / 0.5], [0.4 / 2.0, -0.5 / 2.0]])
     decay = expm(rates * step)
     gain = np.linalg.solve(rates, decay - np.eye(2))

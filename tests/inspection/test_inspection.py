@@ -10,7 +10,7 @@ import polars as pl
 import pytest
 
 from hersey import testbench
-from hersey.errors import HerseyError
+from hersey.errors import HerseyError, ParameterError, UnitError
 from hersey.inspection import inspect
 from hersey.inspection.clock import clock_of
 from hersey.inspection.faults import noise_of, quantisation_step, traits
@@ -359,6 +359,15 @@ def test_what_is_no_log_is_refused(tmp_path: Path) -> None:
     result = run("inspect", "none.csv", cwd=tmp_path)
     assert result.returncode == 2
     assert "there is no such file" in result.stderr
+
+
+def test_a_word_that_inspect_does_not_know_is_named(root: Path) -> None:
+    with pytest.raises(ParameterError, match=r"inspect does not take 'isotermal': did you mean isothermal\?"):
+        inspect(root / "examples" / "bench.csv", isotermal=True)  # type: ignore[call-arg]
+    given = {"every": "20 ms", "radius": "15 mm"}
+    with pytest.raises(UnitError, match="every: "):
+        inspect(root / "examples" / "bench.csv", every="20 mm")  # type: ignore[arg-type]
+    assert inspect(root / "examples" / "bench.csv", **given).support is not None  # type: ignore[arg-type]
 
 
 def test_a_doubtful_unit_is_told_of_logs_and_of_tables_of_means(tmp_path: Path) -> None:

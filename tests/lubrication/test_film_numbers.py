@@ -11,7 +11,7 @@ from hersey.errors import ParameterError
 from hersey.lubrication.contact import Contact, nip_width, shore_a_modulus
 from hersey.lubrication.film import drag_torque, film_thickness, shear_heating
 from hersey.lubrication.lubricant import EXAMPLES, Lubricant, ShearThinning
-from hersey.lubrication.reynolds import exponent, solve_line_contact
+from hersey.lubrication.reynolds import ElasticLayer, exponent, solve_line_contact
 
 ROLL = Contact(
     roll_radius=15e-3,
@@ -248,8 +248,7 @@ def test_torque_is_the_integral_of_the_numerical_solution(case: tuple[float, ...
         0.5 * belt,
         eta,
         effective_modulus=roll.effective_modulus,
-        thickness=rubber,
-        poisson=nu,
+        layer=ElasticLayer(rubber, nu),
     )
     arm = 0.22 * radius
     # 201 nodes leave the solver's own shear up to 1 % off where the film is thinnest

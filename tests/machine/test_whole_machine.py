@@ -11,6 +11,7 @@ import hersey
 from hersey.errors import ParameterError
 from hersey.machine.machine import Machine
 from tests.conftest import ROOT
+from tests.machines import machine_of
 
 EXAMPLES = ROOT / "examples"
 AT = 180 + 273.15
@@ -34,7 +35,7 @@ def test_a_map_of_the_machine_holds_its_stick_speed_where_it_was_stated() -> Non
     assert [point.name for point in map_.points] == ["full speed", "thick paper"]
     assert map_.stall_above is not None
     bare = hersey.operating_map(
-        surface, machine, stick_speed_rule="fixed", points=(), temperatures=[AT, AT + 1], draws=2
+        surface, replace(machine, stick_speed_rule="fixed", points=()), temperatures=[AT, AT + 1], draws=2
     )
     assert bare.points == ()
     assert bare.state_at(AT + 1, 0.05).upper != map_.state_at(AT + 1, 0.05).upper
@@ -57,12 +58,10 @@ def test_bands_laps_and_plans_take_the_machine() -> None:
     certain = replace(machine, uncertainty={})
     plan = hersey.plan_profile(certain, surface, target_speed=0.2, temperature=AT)
     given = hersey.plan_profile(
-        machine.train,
+        machine_of(machine.train, limits=machine.limits, roll_radius=machine.roll_radius),
         surface.drag(**machine.belt),
         target_speed=0.2,
         temperature=AT,
-        limits=machine.limits,
-        roll_radius=machine.roll_radius,
     )
     assert plan.to_dict() == given.to_dict()
 
@@ -71,5 +70,5 @@ def test_a_surface_needs_a_machine() -> None:
     surface, machine = fitted()
     with pytest.raises(ParameterError, match="needs the machine"):
         hersey.hysteresis(machine.train, surface, temperature=AT)
-    with pytest.raises(ParameterError, match="roll_radius is missing"):
-        hersey.operating_map(surface, machine.train)
+    with pytest.raises(ParameterError, match="which states roll radius and stick speed"):
+        hersey.operating_map(surface, machine.train)  # type: ignore[arg-type]

@@ -13,8 +13,9 @@ import pytest
 
 from hersey import Drag, Drivetrain, simulate, stick_slip
 from hersey.errors import ParameterError, UnfinishedError
-from hersey.lubrication.reynolds import solve_line_contact
+from hersey.lubrication.reynolds import ElasticLayer, ThickeningFluid, solve_line_contact
 from hersey.motion.sweep import sweep
+from hersey.motion.work import Work
 from hersey.stability.hysteresis import hysteresis
 from hersey.stability.hysteresis_sweep import hysteresis_sweep
 
@@ -43,7 +44,7 @@ def settled(train: Drivetrain, drag: Drag) -> object:
 
 
 def swept(train: Drivetrain, drag: Drag) -> object:
-    return sweep(train, drag, drive_speed=[0.5, 1.0], duration=1e300, most_steps=FEW)
+    return sweep(train, drag, drive_speed=[0.5, 1.0], duration=1e300, work=Work(most_steps=FEW))
 
 
 def band(train: Drivetrain, drag: Drag) -> object:
@@ -75,8 +76,10 @@ def test_films_out_of_all_measure_end(name: str, thickness: float | None) -> Non
     begun = time.process_time()
     for value in EXTREME:
         given = {**nip, "effective_modulus": 2.63e6, "nodes": 101, name: value}
+        if (alpha := given.pop("pressure_viscosity", None)) is not None:
+            given["viscosity"] = ThickeningFluid(given["viscosity"], alpha)
         with contextlib.suppress(ParameterError, UnfinishedError):
-            solve_line_contact(**given, thickness=thickness, poisson=thickness and 0.49)
+            solve_line_contact(**given, layer=thickness and ElasticLayer(thickness, 0.49))
     assert time.process_time() - begun < 10 * LONG
 
 
@@ -95,10 +98,10 @@ def test_a_soft_spring_for_ever_says_how_much_was_done_and_how_to_allow_more() -
 
 
 def test_a_belt_of_a_sweep_that_takes_too_long_is_among_the_failures() -> None:
-    few = sweep(TRAIN, DRAG, drive_speed=[0.5, 1.0], duration=1e300, most_steps=FEW)
+    few = sweep(TRAIN, DRAG, drive_speed=[0.5, 1.0], duration=1e300, work=Work(most_steps=FEW))
     assert few.kind.values.tolist() == ["failed", "failed"]
     assert all(f"after {FEW} steps" in failure for failure in few.attrs["failures"])
-    alike = sweep(TRAIN, DRAG, drive_speed=[1.0, 0.5], duration=1e300, most_steps=FEW, threads=2)
+    alike = sweep(TRAIN, DRAG, drive_speed=[1.0, 0.5], duration=1e300, work=Work(most_steps=FEW, threads=2))
     assert few.attrs["failures"][0][7:] == alike.attrs["failures"][1][7:]
 
 
@@ -142,12 +145,12 @@ def test_more_sets_than_memory_are_refused(together: bool) -> None:
 @pytest.mark.parametrize("value", [0, -1, float("nan")])
 def test_a_number_of_steps_or_threads_is_at_least_one(name: str, value: float) -> None:
     with pytest.raises(ParameterError, match=f"{name} is"):
-        sweep(TRAIN, DRAG, drive_speed=1.0, **{name: value})
+        sweep(TRAIN, DRAG, drive_speed=1.0, work=Work(**{name: value}))  # type: ignore[arg-type]
 
 
 def test_more_threads_than_anybody_has_give_the_same() -> None:
     speeds = np.linspace(0.5, 2.0, 600)
-    many = sweep(TRAIN, DRAG, drive_speed=speeds, threads=10**30)
+    many = sweep(TRAIN, DRAG, drive_speed=speeds, work=Work(threads=10**30))
     assert many.identical(sweep(TRAIN, DRAG, drive_speed=speeds))
 
 

@@ -43,7 +43,7 @@ def test_two_bodies_at_rest_follow_the_exponential_of_their_matrix() -> None:
     matrix = np.array([[-(5.0 + 0.3) / 20, 5.0 / 20], [5.0 / 200, -(5.0 + 1.0) / 200]])
     constant = np.array([(100.0 + 0.3 * 295 - 20) / 20, (1.0 * 295 - 10) / 200])
     heat = replace(_HEAT, film_load=20.0, roll_load=10.0)
-    run = hersey.simulate(_TRAIN, _DRAG, drive_speed=0.0, heat=heat, duration=100.0, samples=21)
+    run = hersey.simulate(_TRAIN, _DRAG, drive_speed=0.0, temperature=heat, duration=100.0, samples=21)
     limit = np.linalg.solve(matrix, -constant)
     exact = np.array([limit + expm(matrix * t) @ (np.array([350.0, 300.0]) - limit) for t in run.time])
     assert run.film_temperature == pytest.approx(exact[:, 0], rel=1e-9)
@@ -53,7 +53,9 @@ def test_two_bodies_at_rest_follow_the_exponential_of_their_matrix() -> None:
 def test_all_heat_is_accounted_for() -> None:
     """Friction, heater and losses make up what the two bodies hold more: closed, with no losses."""
     heat = replace(_HEAT, film_loss=0.0, roll_loss=0.0)
-    run = hersey.simulate(_TRAIN, _DRAG, drive_speed=3.0, heat=heat, duration=20.0, samples=3, start="steady")
+    run = hersey.simulate(
+        _TRAIN, _DRAG, drive_speed=3.0, temperature=heat, duration=20.0, samples=3, start="steady"
+    )
     assert run.film_temperature is not None
     assert run.roll_temperature is not None
     gained = 20.0 * np.ptp(run.film_temperature[[0, -1]]) + 200.0 * np.ptp(run.roll_temperature[[0, -1]])
@@ -63,7 +65,9 @@ def test_all_heat_is_accounted_for() -> None:
 def test_the_rest_of_the_drive_does_not_heat_the_film() -> None:
     heat = replace(_HEAT, film_loss=0.0, roll_loss=0.0)
     drag = replace(_DRAG, rest_force=10.0, rest_damping=2.0)
-    run = hersey.simulate(_TRAIN, drag, drive_speed=3.0, heat=heat, duration=20.0, samples=3, start="steady")
+    run = hersey.simulate(
+        _TRAIN, drag, drive_speed=3.0, temperature=heat, duration=20.0, samples=3, start="steady"
+    )
     assert run.film_temperature is not None
     assert run.roll_temperature is not None
     gained = 20.0 * np.ptp(run.film_temperature[[0, -1]]) + 200.0 * np.ptp(run.roll_temperature[[0, -1]])
@@ -75,7 +79,7 @@ def test_friction_of_a_belt_that_is_held_against_the_pull_never_cools() -> None:
     """The belt of the paper is thrown ahead and held while the spring pulls it back."""
     drag = replace(_DRAG, closure="retained")
     heat = replace(_HEAT, film_loss=0.0, exchange=0.0, heater_power=0.0, film_temperature=400.0)
-    run = hersey.simulate(_TRAIN, drag, drive_speed=0.05, heat=heat, duration=8.0, samples=2001)
+    run = hersey.simulate(_TRAIN, drag, drive_speed=0.05, temperature=heat, duration=8.0, samples=2001)
     assert run.film_temperature is not None
     assert run.spring_force.min() < -100.0
     assert np.diff(run.film_temperature).min() > -1e-10
@@ -85,7 +89,7 @@ def test_friction_of_a_belt_that_is_held_against_the_pull_never_cools() -> None:
 
 def test_a_heater_holds_its_setpoint() -> None:
     heat = replace(_HEAT, setpoint=400.0, heater_power=2000.0, heater_gain=500.0)
-    run = hersey.simulate(_TRAIN, _DRAG, drive_speed=0.0, heat=heat, duration=400.0, samples=401)
+    run = hersey.simulate(_TRAIN, _DRAG, drive_speed=0.0, temperature=heat, duration=400.0, samples=401)
     film = run.film_temperature
     assert film is not None
     assert run.roll_temperature is not None
@@ -106,19 +110,25 @@ def test_a_heater_holds_its_setpoint() -> None:
 )
 def test_any_balance_keeps_the_energy(speed: float, power: float, capacity: float, exchange: float) -> None:
     heat = replace(_HEAT, heater_power=power, film_capacity=capacity, exchange=exchange)
-    run = hersey.simulate(_TRAIN, _DRAG, drive_speed=speed, heat=heat, duration=2.0, samples=3)
+    run = hersey.simulate(_TRAIN, _DRAG, drive_speed=speed, temperature=heat, duration=2.0, samples=3)
     assert abs(run.energy.residual) < 1e-8
 
 
 def test_what_is_refused() -> None:
-    with pytest.raises(ParameterError, match="either temperature or heat"):
-        hersey.simulate(_TRAIN, _DRAG, drive_speed=1.0, heat=_HEAT, temperature=350.0, duration=1.0)
+    with pytest.raises(ParameterError, match=r"write temperature=HeatBalance\(\.\.\.\)"):
+        hersey.simulate(_TRAIN, _DRAG, drive_speed=1.0, heat=_HEAT, duration=1.0)  # type: ignore[call-arg]
+    with pytest.raises(ParameterError, match=r"did you mean tolerance\?"):
+        hersey.simulate(_TRAIN, _DRAG, drive_speed=1.0, duration=1.0, tolerence=1e-3)  # type: ignore[call-arg]
     with pytest.raises(ParameterError, match="does not vary"):
-        hersey.simulate(_TRAIN, _DRAG.at(400.0), drive_speed=1.0, heat=_HEAT, duration=1.0)
+        hersey.simulate(_TRAIN, _DRAG.at(400.0), drive_speed=1.0, temperature=_HEAT, duration=1.0)
     with pytest.raises(ParameterError, match="heat capacity is 0"):
-        hersey.simulate(_TRAIN, _DRAG, drive_speed=1.0, heat=replace(_HEAT, film_capacity=0.0), duration=1.0)
+        hersey.simulate(
+            _TRAIN, _DRAG, drive_speed=1.0, temperature=replace(_HEAT, film_capacity=0.0), duration=1.0
+        )
     with pytest.raises(ParameterError, match="gain"):
         replace(_HEAT, heater_gain=1.0)
     with pytest.raises(HerseyError, match="temperature"):
         # the heat that is taken away leads to 0 K
-        hersey.simulate(_TRAIN, _DRAG, drive_speed=0.0, heat=replace(_HEAT, film_load=1e4), duration=100.0)
+        hersey.simulate(
+            _TRAIN, _DRAG, drive_speed=0.0, temperature=replace(_HEAT, film_load=1e4), duration=100.0
+        )

@@ -127,7 +127,7 @@ def test_heat(case: dict[str, Any]) -> None:
         _TRAIN,
         drag,
         drive_speed=case["drive_speed"],
-        heat=heat,
+        temperature=heat,
         duration=case["duration"],
         samples=count,
         start=start,

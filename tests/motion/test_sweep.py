@@ -59,7 +59,7 @@ def test_lanes_find_what_the_single_motion_finds(
     drag = hersey.Drag(force, 1.0, ehl_exponent=ehl, mixed_exponent=mixed, stick_speed=stick)
     train = hersey.Drivetrain(k, 1.0)
     one = hersey.stick_slip(train, drag, drive_speed=drive, tolerance=1e-10)
-    many = hersey.sweep(train, drag, drive_speed=drive, tolerance=1e-10)
+    many = hersey.sweep(train, drag, drive_speed=drive, work=hersey.Work(tolerance=1e-10))
     assert str(many.kind.values) == one.kind
     for name in NUMBERS:
         scale = {"stretch": abs(one.stretch_max), "speed": stick}.get(name.split("_")[0], 0.0)
@@ -78,8 +78,8 @@ def test_every_lap_and_the_closed_orbit_agree() -> None:
 
 def test_the_same_bits_for_any_number_of_threads_and_any_company() -> None:
     sets = draws(1500)
-    one = hersey.sweep(TRAIN, DRAG, **sets, zip=True, threads=1)
-    three = hersey.sweep(TRAIN, DRAG, **sets, zip=True, threads=3)
+    one = hersey.sweep(TRAIN, DRAG, **sets, zip=True, work=hersey.Work(threads=1))
+    three = hersey.sweep(TRAIN, DRAG, **sets, zip=True, work=hersey.Work(threads=3))
     alone = hersey.sweep(TRAIN, DRAG, **{n: v[700:701] for n, v in sets.items()}, zip=True)
     for name in NUMBERS:
         assert one[name].values.tobytes() == three[name].values.tobytes()
@@ -107,7 +107,13 @@ def test_all_outcomes_are_told_apart() -> None:
 
 def test_progress_is_told_and_can_stop_the_sweep() -> None:
     seen: list[tuple[int, int]] = []
-    hersey.sweep(TRAIN, DRAG, **draws(3000), zip=True, progress=lambda done, of: seen.append((done, of)))
+    hersey.sweep(
+        TRAIN,
+        DRAG,
+        **draws(3000),
+        zip=True,
+        work=hersey.Work(progress=lambda done, of: seen.append((done, of))),
+    )
     assert seen[-1] == (3000, 3000)
     assert [done for done, _ in seen] == sorted(done for done, _ in seen)
 
@@ -115,7 +121,7 @@ def test_progress_is_told_and_can_stop_the_sweep() -> None:
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        hersey.sweep(TRAIN, DRAG, **draws(3000), zip=True, duration=100.0, progress=stop)
+        hersey.sweep(TRAIN, DRAG, **draws(3000), zip=True, duration=100.0, work=hersey.Work(progress=stop))
 
 
 @pytest.mark.parametrize(
@@ -128,8 +134,12 @@ def test_progress_is_told_and_can_stop_the_sweep() -> None:
         ({"stiffness": {"soft": 1.0}}, "stiffness is not a number"),
         ({"stiffness": [[1.0]]}, "zip=True"),
         ({"stiffness": [1, 2], "mass": [1, 2, 3], "zip": True}, "do not fit together"),
-        ({"threads": 0}, "threads"),
+        ({"work": hersey.Work(threads=0)}, "threads"),
         ({"start": "flying"}, "flying"),
+        ({"stifness": [1.0]}, r"sweep does not take 'stifness': did you mean stiffness\?"),
+        ({"threads": 2}, r"write work=Work\(threads=\.\.\.\)"),
+        ({"overwrite": True}, r"write out=SweepFolder\(\.\.\., overwrite=\.\.\.\)"),
+        ({"zzz": 2}, "it takes stiffness, mass, "),
         ({"duration": -1.0}, "duration is -1"),
     ],
 )
@@ -192,7 +202,9 @@ def test_the_steady_start_is_that_of_the_single_motion() -> None:
 
 
 def test_tolerance_and_duration_reach_the_motion() -> None:
-    rough, usual = (hersey.sweep(TRAIN, DRAG, drive_speed=1.0, tolerance=t) for t in (1e-3, 1e-9))
+    rough, usual = (
+        hersey.sweep(TRAIN, DRAG, drive_speed=1.0, work=hersey.Work(tolerance=t)) for t in (1e-3, 1e-9)
+    )
     assert float(rough.frequency) != float(usual.frequency)
     assert float(rough.frequency) == pytest.approx(float(usual.frequency), rel=2e-2)
     assert (rough.attrs["tolerance"], usual.attrs["closure"]) == (1e-3, "retained")

@@ -22,7 +22,9 @@ def test_the_error_is_in_proportion_to_the_tolerance(method: str) -> None:
     def frequency(tolerance: float) -> float:
         if method == "single":
             return hersey.stick_slip(TRAIN, DRAG, drive_speed=1.0, tolerance=tolerance).frequency
-        return float(hersey.sweep(TRAIN, DRAG, drive_speed=1.0, tolerance=tolerance).frequency)
+        return float(
+            hersey.sweep(TRAIN, DRAG, drive_speed=1.0, work=hersey.Work(tolerance=tolerance)).frequency
+        )
 
     errors = [abs(frequency(tolerance) / EXACT - 1) for tolerance in TOLERANCES]
     assert slope(errors) == pytest.approx(1.0, abs=0.25)

@@ -148,6 +148,8 @@ def test_the_same_seed_gives_the_same_bits_and_the_rest_is_told(
     for draws, seed in ((10, 1), (400, -1)):
         with pytest.raises(hersey.HerseyError, match="must be at least"):
             posterior(demo, model.machine, surface=model.surface, draws=draws, seed=seed)
+    with pytest.raises(hersey.errors.ParameterError, match=r"take 'thread': did you mean threads\?"):
+        posterior(demo, model.machine, surface=model.surface, thread=2)  # type: ignore[call-arg]
 
 
 def test_probabilities_add_up_and_follow_the_draws(alone: Posterior) -> None:

@@ -28,7 +28,7 @@ Damage = Callable[[Path], object]
 def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A sweep that is kept, in ten chunks of seven."""
     out = tmp_path_factory.mktemp("damage") / "a.zarr"
-    hersey.sweep(TRAIN, DRAG, **GRID, out=out, chunk=7)
+    hersey.sweep(TRAIN, DRAG, **GRID, out=out, work=hersey.Work(chunk=7))
     return out
 
 
@@ -180,7 +180,7 @@ def test_a_store_that_does_not_say_whose_it_is(text: str, out: Path) -> None:
 def test_a_store_of_an_older_hersey_is_read_and_does_not_go_on(out: Path) -> None:
     """Its chunks cannot be checked."""
     edit(out / "zarr.json", lambda told: told["attributes"]["hersey"].update(format=1))
-    with pytest.raises(OutputError, match=r"a\.zarr was begun by an older hersey.*--no-resume --force"):
+    with pytest.raises(OutputError, match=r"a\.zarr was begun by an older.*resume=False and overwrite=True"):
         hersey.sweep(TRAIN, DRAG, **GRID, out=out)
     assert xr.open_zarr(out, chunks=None).frequency.shape == (5, 2, 7)
 

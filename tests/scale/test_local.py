@@ -103,12 +103,14 @@ def test_an_item_that_ends_every_worker_is_an_error(workers: LocalWorkers) -> No
 
 def test_the_bits_of_a_sweep_are_those_of_one_process(workers: LocalWorkers, tmp_path: Path) -> None:
     memory = hersey.sweep(TRAIN, DRAG, **GRID)
-    assert_same(hersey.sweep(TRAIN, DRAG, **GRID, client=workers, chunk=6), memory)
-    kept = hersey.sweep(TRAIN, DRAG, **GRID, client=workers, chunk=6, out=tmp_path / "a.zarr")
+    assert_same(hersey.sweep(TRAIN, DRAG, **GRID, work=hersey.Work(client=workers, chunk=6)), memory)
+    kept = hersey.sweep(
+        TRAIN, DRAG, **GRID, work=hersey.Work(client=workers, chunk=6), out=tmp_path / "a.zarr"
+    )
     assert_same(kept, memory)
     given = {"stiffness": np.geomspace(300.0, 3000.0, 5), "mass": [0.5, 2.0]}
     bands = hersey.hysteresis_sweep(TRAIN, DRAG, **given)
-    assert bands.identical(hersey.hysteresis_sweep(TRAIN, DRAG, **given, client=workers))
+    assert bands.identical(hersey.hysteresis_sweep(TRAIN, DRAG, **given, work=hersey.Work(client=workers)))
 
 
 def test_they_end_with_the_block_also_at_work() -> None:

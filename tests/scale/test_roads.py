@@ -48,7 +48,7 @@ def test_folds_by_workers_are_those_of_one_process(
     seen: list[tuple[int, int]] = []
     alone = hersey.hysteresis_sweep(TRAIN, drag, **varied)
     worked = hersey.hysteresis_sweep(
-        TRAIN, drag, **varied, client=client, progress=lambda *counted: seen.append(counted)
+        TRAIN, drag, **varied, work=hersey.Work(client=client, progress=lambda *counted: seen.append(counted))
     )
     assert alone.identical(worked)
     assert np.unique(alone.upper).size > 1 + len(alone.attrs["failures"])  # bands that can be told apart
@@ -61,7 +61,7 @@ def test_a_value_out_of_range_has_its_place_among_all(client: Any) -> None:
     with pytest.raises(ParameterError) as alone:
         hersey.hysteresis_sweep(TRAIN, DRAG, mass=[1.0] * 40 + [-1.0])
     with pytest.raises(ParameterError) as worked:
-        hersey.hysteresis_sweep(TRAIN, DRAG, mass=[1.0] * 40 + [-1.0], client=client)
+        hersey.hysteresis_sweep(TRAIN, DRAG, mass=[1.0] * 40 + [-1.0], work=hersey.Work(client=client))
     assert (str(worked.value), worked.value.index) == (str(alone.value), alone.value.index)
 
 

@@ -10,6 +10,7 @@ import subprocess
 import sys
 import time
 import warnings
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -88,11 +89,11 @@ def test_chunks_have_the_bits_of_the_whole(given: dict[str, Any], chunk: int, tm
     given = given or {"drive_speed": 1.0}
     memory = hersey.sweep(TRAIN, DRAG, **given)
     out = tmp_path / "sweep.zarr"
-    assert_same(hersey.sweep(TRAIN, DRAG, **given, out=out, chunk=chunk, threads=2), memory)
+    assert_same(hersey.sweep(TRAIN, DRAG, **given, out=out, work=hersey.Work(chunk=chunk, threads=2)), memory)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         assert_same(xr.open_zarr(out, chunks=None), memory)
-    hersey.sweep(TRAIN, DRAG, **given, out=tmp_path / "sweep.parquet", chunk=chunk)
+    hersey.sweep(TRAIN, DRAG, **given, out=tmp_path / "sweep.parquet", work=hersey.Work(chunk=chunk))
     table = pl.read_parquet(tmp_path / "sweep.parquet")
     whole = tmp_path / "whole.parquet"
     whole.write_bytes(rows(memory, ".parquet"))
@@ -105,16 +106,24 @@ def test_workers_find_the_same_bits(client: Client, given: dict[str, Any], tmp_p
     memory = hersey.sweep(TRAIN, DRAG, **given)
     seen: list[tuple[int, int]] = []
     brought = hersey.sweep(
-        TRAIN, DRAG, **given, client=client, chunk=6, progress=lambda now, of: seen.append((now, of))
+        TRAIN,
+        DRAG,
+        **given,
+        work=hersey.Work(client=client, chunk=6, progress=lambda now, of: seen.append((now, of))),
     )
     assert_same(brought, memory)
     assert brought.attrs == memory.attrs
     assert seen[-1] == (memory.kind.size, memory.kind.size)
-    assert_same(hersey.sweep(TRAIN, DRAG, **given, client=client, out=tmp_path / "a.zarr", chunk=6), memory)
+    assert_same(
+        hersey.sweep(TRAIN, DRAG, **given, work=hersey.Work(client=client, chunk=6), out=tmp_path / "a.zarr"),
+        memory,
+    )
 
 
 def test_a_store_says_what_it_holds(tmp_path: Path) -> None:
-    hersey.sweep(TRAIN, DRAG, **GRID, out=tmp_path / "a.zarr", tolerance=1e-8, start="steady")
+    hersey.sweep(
+        TRAIN, DRAG, **GRID, out=tmp_path / "a.zarr", work=hersey.Work(tolerance=1e-8), start="steady"
+    )
     grid = xr.open_zarr(tmp_path / "a.zarr", chunks=None)
     assert grid.frequency.attrs["units"] == "Hz"
     assert grid.stiffness.attrs == {"long_name": "stiffness", "units": "N/m"}
@@ -140,7 +149,7 @@ def test_only_what_is_lacking_is_done_again(
     suffix: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     out = tmp_path / f"a{suffix}"
-    before = hersey.sweep(TRAIN, DRAG, **GRID, out=out, chunk=7)
+    before = hersey.sweep(TRAIN, DRAG, **GRID, out=out, work=hersey.Work(chunk=7))
     if suffix == ".zarr":
         (out / "status" / "c" / "3").unlink()  # as of a worker that was killed before it told
         (out / "frequency" / "c" / "1" / "1" / "0").write_bytes(b"torn")
@@ -179,13 +188,14 @@ def test_a_task_looks_first_whether_its_chunk_is_there(shared: Path) -> None:
 
 def test_what_is_counted_is_what_is_counted_in_memory(tmp_path: Path) -> None:
     """With sets that fail: their indices and reasons too."""
-    given = {**GRID, "most_steps": 150}
-    memory = hersey.sweep(TRAIN, DRAG, **given)
+    few = hersey.Work(most_steps=150)
+    memory = hersey.sweep(TRAIN, DRAG, **GRID, work=few)
     counted = summary(memory)
     assert 20 < counted["kinds"]["failed"] < 70
     for suffix in (".zarr", ".parquet"):
-        found = hersey.sweep(TRAIN, DRAG, **given, out=tmp_path / f"a{suffix}", chunk=4)
-        again = hersey.sweep(TRAIN, DRAG, **given, out=tmp_path / f"a{suffix}")
+        out = tmp_path / f"a{suffix}"
+        found = hersey.sweep(TRAIN, DRAG, **GRID, out=out, work=replace(few, chunk=4))
+        again = hersey.sweep(TRAIN, DRAG, **GRID, out=out, work=few)
         for each in (found, again):
             assert each.attrs["kinds"] == counted["kinds"]
             assert each.attrs["stick_slip"] == counted["stick_slip"]
@@ -201,12 +211,11 @@ def test_what_is_counted_is_what_is_counted_in_memory(tmp_path: Path) -> None:
         ({"stiffness": GRID["stiffness"] * 1.1}, "stiffness is 500 to 2000 there and 550 to 2200 here"),
         ({"stiffness": GRID["stiffness"][[0, 2, 1, 3, 4]]}, "stiffness has other values there"),
         ({"mass": 2.0}, "mass is 1 there and 2 here"),
-        ({"tolerance": 1e-8}, "tolerance is 1e-09 there and 1e-08 here"),
+        ({"work": hersey.Work(tolerance=1e-8)}, "tolerance is 1e-09 there and 1e-08 here"),
         ({"start": "steady"}, "start is rest there and steady here"),
-        ({"most_steps": 1e6}, "most steps is 5000000 there and 1000000 here"),
+        ({"work": hersey.Work(most_steps=1e6)}, "most steps is 5000000 there and 1000000 here"),
         ({"duration": 3.0}, "duration is None there and 3.0 here"),
-        ({"chunk": 4}, "is cut into chunks of 7 sets, and 4 are asked for"),
-        ({"resume": False}, "use overwrite=True to replace it"),
+        ({"work": hersey.Work(chunk=4)}, "is cut into chunks of 7 sets, and 4 are asked for"),
     ],
 )
 def test_another_sweep_is_refused(change: dict[str, Any], says: str, shared: Path) -> None:
@@ -218,11 +227,16 @@ def test_another_sweep_is_refused(change: dict[str, Any], says: str, shared: Pat
     assert before == {path: path.stat().st_mtime_ns for path in before}
 
 
+def test_a_sweep_that_shall_not_go_on_is_refused(shared: Path) -> None:
+    with pytest.raises(OutputError, match="use overwrite=True to replace it, or leave out resume=False"):
+        hersey.sweep(TRAIN, DRAG, **GRID, out=hersey.SweepFolder(shared, resume=False))
+
+
 @pytest.fixture(scope="module")
 def shared(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A sweep that is kept, in chunks of 7."""
     out = tmp_path_factory.mktemp("kept") / "a.zarr"
-    hersey.sweep(TRAIN, DRAG, **GRID, out=out, chunk=7)
+    hersey.sweep(TRAIN, DRAG, **GRID, out=out, work=hersey.Work(chunk=7))
     return out
 
 
@@ -258,7 +272,7 @@ def test_a_damaged_manifest_is_not_believed(change: dict[str, Any], shared: Path
 def test_a_damaged_note_is_told(tmp_path: Path) -> None:
     """One that is whole and says something else than a note does."""
     out = tmp_path / "a.parquet"
-    hersey.sweep(TRAIN, DRAG, **GRID, out=out, chunk=7)
+    hersey.sweep(TRAIN, DRAG, **GRID, out=out, work=hersey.Work(chunk=7))
     chunk = out / "0000004.parquet"
     pl.read_parquet(chunk).write_parquet(chunk, metadata={"hersey": '{"kinds": 3}'})
     with pytest.raises(OutputError, match="what is told of chunk 4 is damaged"):
@@ -277,16 +291,16 @@ def test_another_version_is_refused(shared: Path) -> None:
 def test_one_starts_anew_only_where_told_and_only_over_ours(tmp_path: Path) -> None:
     out = tmp_path / "a.zarr"
     hersey.sweep(TRAIN, DRAG, drive_speed=[1.0], out=out)
-    anew = hersey.sweep(TRAIN, DRAG, **GRID, out=out, resume=False, overwrite=True)
+    anew = hersey.sweep(TRAIN, DRAG, **GRID, out=hersey.SweepFolder(out, resume=False, overwrite=True))
     assert_same(anew, hersey.sweep(TRAIN, DRAG, **GRID))
     assert [path.name for path in tmp_path.iterdir()] == ["a.zarr"]
     for name in ("b.zarr", "b.parquet"):
         other = tmp_path / name
         other.mkdir()
         (other / "mine.txt").write_text("dear")
-        for how in ({}, {"resume": False, "overwrite": True}):
+        for out in (other, hersey.SweepFolder(other, resume=False, overwrite=True)):
             with pytest.raises(OutputError, match="no sweep of hersey made it"):
-                hersey.sweep(TRAIN, DRAG, drive_speed=[1.0], out=other, **how)
+                hersey.sweep(TRAIN, DRAG, drive_speed=[1.0], out=out)
         assert (other / "mine.txt").read_text() == "dear"
     (tmp_path / "c.zarr").write_text("a file")
     for path, says in (
@@ -319,12 +333,12 @@ def test_values_out_of_range_are_refused_before_anything_is_kept(tmp_path: Path)
     assert not out.exists()
     sets = {**PAIRS, "stiffness": np.where(np.arange(23) == 17, -1.0, PAIRS["stiffness"])}
     with pytest.raises(ParameterError, match=r"set 17: stiffness is -1") as caught:
-        hersey.sweep(TRAIN, DRAG, **sets, out=out, chunk=5)
+        hersey.sweep(TRAIN, DRAG, **sets, out=out, work=hersey.Work(chunk=5))
     assert caught.value.index == 17
     with pytest.raises(ParameterError, match="chunk is 2\\.5"):
-        hersey.sweep(TRAIN, DRAG, **GRID, out=out, chunk=2.5)  # type: ignore[arg-type]
+        hersey.sweep(TRAIN, DRAG, **GRID, out=out, work=hersey.Work(chunk=2.5))  # type: ignore[arg-type]
     with pytest.raises(ParameterError, match="neither out nor client"):
-        hersey.sweep(TRAIN, DRAG, **GRID, chunk=2)
+        hersey.sweep(TRAIN, DRAG, **GRID, work=hersey.Work(chunk=2))
 
 
 def test_nothing_as_long_as_the_sweep_is_laid_out(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -340,7 +354,7 @@ def test_nothing_as_long_as_the_sweep_is_laid_out(tmp_path: Path, monkeypatch: p
             mass=np.linspace(1, 2, 1000),
             drive_speed=np.linspace(0.4, 2, 1000),
             out=tmp_path / "a.zarr",
-            chunk=10_000,
+            work=hersey.Work(chunk=10_000),
         )
 
 

@@ -298,7 +298,7 @@ def test_intervals_come_from_the_draws() -> None:
 def test_same_bits_whatever_the_threads() -> None:
     axes = {"stiffness": np.linspace(300, 3000, 23), "transition_force": np.linspace(5, 400, 17)}
     one = hersey.hysteresis_sweep(TRAIN, DRAG, **axes)
-    two = hersey.hysteresis_sweep(TRAIN, DRAG, **axes, threads=2)
+    two = hersey.hysteresis_sweep(TRAIN, DRAG, **axes, work=hersey.Work(threads=2))
     np.testing.assert_array_equal(one.upper, two.upper)
     np.testing.assert_array_equal(one.lower, two.lower)
 
@@ -318,11 +318,11 @@ def test_what_is_out_of_range_is_refused_by_name() -> None:
     with pytest.raises(ParameterError, match="set 1: stick_speed"):
         hersey.hysteresis_sweep(TRAIN, DRAG, stick_speed=[0.01, 2.0])
     with pytest.raises(ParameterError, match="threads is 0"):
-        hersey.hysteresis_sweep(TRAIN, DRAG, threads=0)
+        hersey.hysteresis_sweep(TRAIN, DRAG, work=hersey.Work(threads=0))
     with pytest.raises(ParameterError, match="tolerance"):
         hersey.hysteresis(TRAIN, DRAG, tolerance=0.0)
     with pytest.raises(ParameterError, match="tolerance"):
-        hersey.hysteresis_sweep(TRAIN, DRAG, tolerance=float("nan"))
+        hersey.hysteresis_sweep(TRAIN, DRAG, work=hersey.Work(tolerance=float("nan")))
 
 
 def test_the_interval_of_a_fit_reaches_the_band(points: hersey.SteadyPoints) -> None:
@@ -462,7 +462,7 @@ def test_the_tolerance_of_a_band_is_that_asked_for() -> None:
     )
     assert rough.upper != usual.upper
     assert rough.upper == pytest.approx(usual.upper, rel=1e-3)
-    swept = hersey.hysteresis_sweep(TRAIN, DRAG, tolerance=1e-5)
+    swept = hersey.hysteresis_sweep(TRAIN, DRAG, work=hersey.Work(tolerance=1e-5))
     assert float(swept.upper) == rough.upper
     assert swept.attrs["tolerance"] == 1e-5
 

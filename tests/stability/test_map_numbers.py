@@ -18,9 +18,11 @@ from hersey.damping.surface import DampingSurface
 from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.machine import Machine
 from hersey.machine.uncertainty import Uncertainty
+from hersey.motion.work import Work
 from hersey.stability.hysteresis import hysteresis
 from hersey.stability.hysteresis_sweep import hysteresis_sweep
-from hersey.stability.operating_map import OperatingMap, operating_map
+from hersey.stability.operating_map import OperatingMap
+from tests.machines import map_of
 
 AT: dict[str, Any] = {"roll_radius": 0.015, "stick_speed": 3e-4}
 KELVIN = np.array([400.0, 450.0, 468.0])
@@ -29,7 +31,7 @@ RPM = 2 * np.pi / 60
 
 @pytest.fixture(scope="module")
 def few(surface: DampingSurface, machine: Machine) -> OperatingMap:
-    return operating_map(
+    return map_of(
         surface,
         machine.train,
         **AT,
@@ -80,8 +82,8 @@ def test_the_interval_of_the_fold_is_that_of_the_draws_that_are_started(
         "draws": 40,
         "seed": 5,
     }
-    weak = operating_map(surface, replace(machine.train, grip=grip), **given)
-    strong = operating_map(surface, machine.train, **given)
+    weak = map_of(surface, replace(machine.train, grip=grip), **given)
+    strong = map_of(surface, machine.train, **given)
     low, high = weak.holding_interval[:, 1] / AT["roll_radius"]
     assert low < grip < high  # some of the draws are started, some are not
     drag = drag_of(surface).at(450.0)
@@ -132,7 +134,7 @@ def test_intervals_are_those_of_the_draws(
             stick_speed=moved,
             zip=True,
             lower=False,
-            tolerance=1e-13,
+            work=Work(tolerance=1e-13),
         ).upper.values
         assert few.upper_interval[:, i].tolist() == pytest.approx(middle(folds), rel=1e-9)
     assert few.uncertain == ("stiffness", "stick_speed")
@@ -140,12 +142,12 @@ def test_intervals_are_those_of_the_draws(
 
 def test_the_seed_moves_both_intervals(few: OperatingMap, surface: DampingSurface, machine: Machine) -> None:
     given: dict[str, Any] = {**AT, "uncertainty": machine.uncertainty, "temperatures": KELVIN, "draws": 20}
-    other = operating_map(surface, machine.train, **given, seed=6)
-    again = operating_map(surface, machine.train, **given, seed=5)
+    other = map_of(surface, machine.train, **given, seed=6)
+    again = map_of(surface, machine.train, **given, seed=5)
     assert not np.any(other.transition_interval == few.transition_interval)
     assert not np.any(other.upper_interval == few.upper_interval)
     np.testing.assert_array_equal(again.upper_interval, few.upper_interval)
-    more = operating_map(surface, machine.train, **(given | {"draws": 40}), seed=5)
+    more = map_of(surface, machine.train, **(given | {"draws": 40}), seed=5)
     assert not np.array_equal(more.upper_interval, few.upper_interval)
 
 
@@ -153,8 +155,8 @@ def test_between_few_temperatures_the_fold_is_interpolated_in_logarithms(
     surface: DampingSurface, machine: Machine
 ) -> None:
     kelvin = np.linspace(440.0, 468.0, 25)
-    fine = operating_map(surface, machine.train, **AT, temperatures=kelvin, draws=3)
-    knots = operating_map(surface, machine.train, **AT, temperatures=np.linspace(440.0, 468.0, 13), draws=3)
+    fine = map_of(surface, machine.train, **AT, temperatures=kelvin, draws=3)
+    knots = map_of(surface, machine.train, **AT, temperatures=np.linspace(440.0, 468.0, 13), draws=3)
     np.testing.assert_allclose(fine.upper_interval[:, ::2], knots.upper_interval, rtol=1e-9)
     ratio = np.log(knots.upper_interval / knots.transition)
     between = np.exp(0.5 * (ratio[:, 1:] + ratio[:, :-1])) * fine.transition[1::2]
@@ -183,7 +185,7 @@ def test_stall_and_contours_by_hand(few: OperatingMap) -> None:
 def test_default_axes(surface: DampingSurface, machine: Machine, isothermal: DampingSurface) -> None:
     assert surface.temperature_range is not None
     cold, hot = surface.temperature_range
-    plain = operating_map(surface, machine.train, **AT, draws=1)
+    plain = map_of(surface, machine.train, **AT, draws=1)
     margin = 0.15 * (hot - cold)
     np.testing.assert_allclose(plain.temperature, np.linspace(cold - margin, hot + margin, 61), rtol=1e-12)
     slow, fast = (0.015 * w for w in surface.speed_range)
@@ -191,23 +193,21 @@ def test_default_axes(surface: DampingSurface, machine: Machine, isothermal: Dam
     high = max(fast, min(plain.upper.max(), 10 * fast))
     np.testing.assert_allclose(plain.speed, np.geomspace(0.7 * low, 1.25 * high, 81), rtol=1e-9)
     points = [OperatingPoint("far", 3.0, 500.0), OperatingPoint("near", 1e-4, 330.0)]
-    wide = operating_map(surface, machine.train, **AT, draws=1, points=points)
+    wide = map_of(surface, machine.train, **AT, draws=1, points=points)
     assert wide.temperature is not None
     assert (wide.temperature[0], wide.temperature[-1]) == pytest.approx((330.0 - margin, 500.0 + margin))
     assert (wide.speed[0], wide.speed[-1]) == pytest.approx((0.7e-4, 3.75))
     for limit, top in ((2.5 * fast, 1.25 * max(high, 2.5 * fast)), (3.5 * fast, 1.25 * high)):
-        shown = operating_map(surface, machine.train, **AT, draws=1, limits=Limits(speed=limit))
+        shown = map_of(surface, machine.train, **AT, draws=1, limits=Limits(speed=limit))
         assert shown.speed[-1] == pytest.approx(top)
-    freezing = operating_map(
-        surface, machine.train, **AT, draws=1, points=[OperatingPoint("ice", 0.01, 275.15)]
-    )
+    freezing = map_of(surface, machine.train, **AT, draws=1, points=[OperatingPoint("ice", 0.01, 275.15)])
     assert freezing.temperature is not None
     assert freezing.temperature[0] == pytest.approx(cold - 0.5 * (cold - 273.15)) or freezing.temperature[
         0
     ] == pytest.approx(275.15 - 0.5 * 2.0)
-    given = operating_map(surface, machine.train, **AT, draws=1, temperatures=KELVIN, speeds=[0.01, 0.02])
+    given = map_of(surface, machine.train, **AT, draws=1, temperatures=KELVIN, speeds=[0.01, 0.02])
     assert given.speed.tolist() == [0.01, 0.02]
-    assert operating_map(isothermal, machine.train, **AT, draws=1).temperature is None
+    assert map_of(isothermal, machine.train, **AT, draws=1).temperature is None
 
 
 def test_a_state_is_extrapolated_outside_the_dwells(few: OperatingMap) -> None:
@@ -282,7 +282,7 @@ def test_sentences_of_a_map_that_knows_little(
     surface: DampingSurface, isothermal: DampingSurface, machine: Machine
 ) -> None:
     points = [OperatingPoint("fast", 0.5, 440.0)]
-    bare = operating_map(
+    bare = map_of(
         surface, machine.train, **AT, draws=1, temperatures=KELVIN, points=points, limits=Limits(speed=0.4)
     )
     assert bare.warnings[0].endswith(
@@ -293,13 +293,13 @@ def test_sentences_of_a_map_that_knows_little(
         "fast: extrapolated, no dwell lies that far out",
         "fast: faster than the drive, 400 mm/s",
     )
-    one = operating_map(isothermal, machine.train, **AT, draws=1)
+    one = map_of(isothermal, machine.train, **AT, draws=1)
     assert one.warnings[0].startswith("V* depends on the stick speed, 0.3 mm/s here, which nobody measures;")
     assert one.warnings[1] == (
         "the fit is isothermal: the map holds at the temperature of the log, for the points too"
     )
     at = float(one.transition[0])
-    near = operating_map(isothermal, machine.train, **AT, draws=1, points=[OperatingPoint("edge", at, 400.0)])
+    near = map_of(isothermal, machine.train, **AT, draws=1, points=[OperatingPoint("edge", at, 400.0)])
     low, high = (1e3 * edge[0] for edge in near.transition_interval)
     assert near.warnings[-1] == (
         f"edge: within the 95 % interval of the transition speed ({low:.3g} to {high:.3g} mm/s), so the "
@@ -316,7 +316,7 @@ def test_what_the_fit_says_of_its_draws_is_said_by_the_map(surface: DampingSurfa
         wide.drag_samples(
             1000, 0, roll_radius=0.015, stick_speed=drag_of(wide).at(450.0).stick_speed, temperature=450.0
         )
-    drawn = operating_map(wide, machine.train, **AT, draws=2, temperatures=[450.0, 451.0])
+    drawn = map_of(wide, machine.train, **AT, draws=2, temperatures=[450.0, 451.0])
     said = str(caught[0].message)
     assert said.endswith(
         "draws of the fit had no falling branch and were drawn again: the intervals hold for fits that "

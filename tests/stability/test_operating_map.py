@@ -25,9 +25,10 @@ from hersey.errors import InsufficientDataError, MissingFileError, OutputError, 
 from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.machine import Machine
 from hersey.result import json_value
-from hersey.stability.operating_map import STATES, OperatingMap, operating_map
+from hersey.stability.operating_map import STATES, OperatingMap
 from tests.cli.command import run
 from tests.conftest import ROOT
+from tests.machines import map_of
 
 #: What a belt settles to from rest and from steady sliding, by state of the map.
 SETTLES_TO = {
@@ -45,7 +46,7 @@ QUICK: dict[str, Any] = {**AT, "draws": 2}
 @pytest.fixture(scope="module")
 def drawn(surface: DampingSurface, machine: Machine) -> OperatingMap:
     points = (*machine.points, OperatingPoint("cold <b>start</b>", 1.2, 350.0))
-    return operating_map(surface, machine.train, **AT, limits=machine.limits, points=points)
+    return map_of(surface, machine.train, **AT, limits=machine.limits, points=points)
 
 
 @pytest.fixture(scope="module")
@@ -82,7 +83,7 @@ def simulated(train: hersey.Drivetrain, drawn: OperatingMap, kelvin: Any, speed:
 def test_the_map_agrees_with_simulation_from_below_and_above(
     surface: DampingSurface, machine: Machine, size: int
 ) -> None:
-    drawn = operating_map(surface, machine.train, **QUICK)
+    drawn = map_of(surface, machine.train, **QUICK)
     kelvin, speed = np.linspace(360.0, 466.0, size), np.geomspace(2e-4, 0.15, size)
     states = drawn.states(kelvin[:, None], speed[None, :])
     assert {"creep", "stick_slip", "bistable", "smooth"} <= set(states.ravel())
@@ -96,7 +97,7 @@ def test_the_map_agrees_with_simulation_from_below_and_above(
 
 def test_the_edges_part_what_simulation_finds_beside_them(surface: DampingSurface, machine: Machine) -> None:
     kelvin = np.array([430.0, 450.0, 468.0])
-    drawn = operating_map(surface, machine.train, **QUICK, temperatures=kelvin)
+    drawn = map_of(surface, machine.train, **QUICK, temperatures=kelvin)
     for i, t in enumerate(kelvin):
         lower, bend, upper = drawn.lower[i], drawn.transition[i], drawn.upper[i]
         beside = [0.997 * lower, (lower * bend) ** 0.5, 1.003 * bend, 0.999 * upper, 1.001 * upper]
@@ -109,7 +110,7 @@ def test_the_edges_part_what_simulation_finds_beside_them(surface: DampingSurfac
 
 def test_below_the_stick_speed_the_belt_creeps(surface: DampingSurface, machine: Machine) -> None:
     kelvin = np.array([400.0, 435.85])
-    drawn = operating_map(surface, machine.train, **QUICK, temperatures=kelvin)
+    drawn = map_of(surface, machine.train, **QUICK, temperatures=kelvin)
     for t, stick in zip(kelvin, drawn.stick_speed, strict=True):
         assert stick == drawn.drag.at(t).stick_speed
         assert drawn.states(t, [0.1 * stick, 0.999 * stick, 1.001 * stick]).tolist() == [
@@ -127,19 +128,19 @@ def test_where_the_roll_slips_a_belt_may_swing_without_sticking(
 ) -> None:
     """Just below V* of a roll whose grip is a little more than starts the belt."""
     kelvin = 453.15
-    law = operating_map(surface, machine.train, **QUICK, temperatures=[kelvin, 460.0]).drag.at(kelvin)
+    law = map_of(surface, machine.train, **QUICK, temperatures=[kelvin, 460.0]).drag.at(kelvin)
     limits = Limits(roll_friction=0.5, nip_load=2 * 1.02 * law.holding_force)
-    drawn = operating_map(surface, machine.train, **QUICK, limits=limits, temperatures=[kelvin, 460.0])
+    drawn = map_of(surface, machine.train, **QUICK, limits=limits, temperatures=[kelvin, 460.0])
     state = drawn.state_at(kelvin, 0.9999 * drawn.upper[0])
     assert state.state == "bistable"
     assert "swings while the roll slips" in state.verdict()
-    free = operating_map(surface, machine.train, **QUICK, temperatures=[kelvin, 460.0])
+    free = map_of(surface, machine.train, **QUICK, temperatures=[kelvin, 460.0])
     assert "slips." in free.state_at(kelvin, 0.99 * free.upper[0]).verdict()
 
 
 def test_stall_is_where_the_drag_exceeds_the_limit(surface: DampingSurface, machine: Machine) -> None:
     grip = Limits(roll_friction=0.2, nip_load=250.0, motor_torque=8.0)  # too weak for a belt at rest
-    drawn = operating_map(surface, machine.train, **QUICK, limits=grip)
+    drawn = map_of(surface, machine.train, **QUICK, limits=grip)
     assert (drawn.torque_limit, drawn.limited_by) == (pytest.approx(0.2 * 250 * 0.015), "roll friction")
     t, above, below = drawn.temperature[30], drawn.stall_above[30], drawn.stall_below[30]
     assert 0 < below < drawn.transition[30] < above < math.inf
@@ -150,15 +151,15 @@ def test_stall_is_where_the_drag_exceeds_the_limit(surface: DampingSurface, mach
     # one that slides more slowly than the transition sticks sooner or later, and is held for good
     assert drawn.lower[30] == 0
     assert set(drawn.states(t, around)) == {"stall"}
-    motor = operating_map(surface, machine.train, **QUICK, limits=replace(grip, motor_torque=0.74))
+    motor = map_of(surface, machine.train, **QUICK, limits=replace(grip, motor_torque=0.74))
     assert (motor.torque_limit, motor.limited_by) == (0.74, "motor torque")
-    free = operating_map(surface, machine.train, **QUICK)
+    free = map_of(surface, machine.train, **QUICK)
     assert motor.beyond == "motor"
     assert np.all(np.isinf(free.stall_above))
     assert np.all(free.stall_below == 0)
     assert free.starts.all()
     assert any("motor_torque" in text for text in free.warnings)
-    tight = operating_map(surface, machine.train, **QUICK, limits=Limits(motor_torque=0.5))
+    tight = map_of(surface, machine.train, **QUICK, limits=Limits(motor_torque=0.5))
     assert set(tight.states(t, tight.speed)) == {"motor"}
 
 
@@ -170,7 +171,7 @@ def test_what_the_roll_cannot_bear_simulation_finds_slipping(
 ) -> None:
     """A belt at rest bears 288 N: a roll of 250 N starts none, one of 300 N slips where it runs heavier."""
     limits = Limits(roll_friction=0.5, nip_load=2 * grip)
-    drawn = operating_map(surface, machine.train, **QUICK, limits=limits, temperatures=[360.0, 453.15])
+    drawn = map_of(surface, machine.train, **QUICK, limits=limits, temperatures=[360.0, 453.15])
     assert drawn.starts.tolist() == [grip == 300.0] * 2
     assert drawn.holding == pytest.approx([0.015 * drawn.drag.at(t).holding_force for t in (360.0, 453.15)])
     gripping = replace(machine.train, grip=grip)
@@ -184,7 +185,7 @@ def test_what_the_roll_cannot_bear_simulation_finds_slipping(
     assert ("goes on sliding" in smooth.verdict()) == (grip == 250.0)
     said = "\n".join([*drawn.warnings, drawn.summary()])
     assert ("so it is not started at all" in said) == ("not started" in said) == (grip == 250.0)
-    own = operating_map(surface, gripping, **QUICK, temperatures=[360.0, 453.15])  # the drivetrain's own grip
+    own = map_of(surface, gripping, **QUICK, temperatures=[360.0, 453.15])  # the drivetrain's own grip
     assert own.torque_limit == pytest.approx(0.015 * grip)
     parts = bands_of(drawn, Frame.of(drawn))
     shown = {name for name, edges in parts.items() if any(np.any(high > low) for low, high in edges)}
@@ -222,9 +223,7 @@ def test_a_map_of_a_small_grip_is_what_simulation_does(
     train = replace(machine.train, stiffness=1.1e7, grip=grip)  # stiff: the spring swings far
     kelvin = [400.0, 453.15]
     free, drawn = (
-        operating_map(
-            surface, t, **QUICK, temperatures=kelvin, limits=replace(machine.limits, motor_torque=None)
-        )
+        map_of(surface, t, **QUICK, temperatures=kelvin, limits=replace(machine.limits, motor_torque=None))
         for t in (replace(train, grip=None), train)
     )
     assert bool(drawn.upper[1] < free.upper[1]) == below_the_free
@@ -267,9 +266,7 @@ def test_what_is_uncertain_widens_the_interval_of_the_fold(
 ) -> None:
     at = np.array([450.0, 465.0])
     fit_only, all_of_it = (
-        operating_map(
-            surface, machine.train, **AT, points=machine.points, temperatures=at, uncertainty=uncertainty
-        )
+        map_of(surface, machine.train, **AT, points=machine.points, temperatures=at, uncertainty=uncertainty)
         for uncertainty in ({}, machine.uncertainty)
     )
     assert all_of_it.uncertain == ("stiffness", "stick_speed")
@@ -376,7 +373,7 @@ def test_bad_maps_are_refused(
     surface: DampingSurface, machine: Machine, arguments: dict[str, Any], message: str
 ) -> None:
     with pytest.raises(ParameterError, match=message):
-        operating_map(surface, machine.train, **{**QUICK, **arguments})
+        map_of(surface, machine.train, **{**QUICK, **arguments})
 
 
 @pytest.mark.parametrize(
@@ -398,11 +395,11 @@ def test_bad_look_ups_are_refused(
 def test_without_a_falling_branch_there_is_no_map(surface: DampingSurface, machine: Machine) -> None:
     rising = replace(surface, transition=None, rejected_transition="a second branch does not pay")
     with pytest.raises(InsufficientDataError, match=r"does not pay.*record slower dwells"):
-        operating_map(rising, machine.train, **QUICK)
+        map_of(rising, machine.train, **QUICK)
 
 
 def test_an_isothermal_fit_has_a_map_of_one_column(isothermal: DampingSurface, machine: Machine) -> None:
-    drawn = operating_map(isothermal, machine.train, **QUICK, limits=machine.limits, points=machine.points)
+    drawn = map_of(isothermal, machine.train, **QUICK, limits=machine.limits, points=machine.points)
     assert drawn.temperature is None
     assert drawn.lower.shape == (1,)
     assert drawn.transition_interval.shape == (2, 1)
@@ -412,14 +409,14 @@ def test_an_isothermal_fit_has_a_map_of_one_column(isothermal: DampingSurface, m
     with pytest.raises(ParameterError, match="isothermal"):
         drawn.state_at(400.0, 0.12)
     with pytest.raises(ParameterError, match="isothermal"):
-        operating_map(isothermal, machine.train, **QUICK, temperatures=[400.0, 410.0])
+        map_of(isothermal, machine.train, **QUICK, temperatures=[400.0, 410.0])
     svg = picture(map_chart(drawn, tooltips=False), ".svg").decode()
     assert "Operating map (isothermal fit)" in svg
     assert "Temperature" not in svg
 
 
 def test_the_document_is_json_without_infinities(surface: DampingSurface, machine: Machine) -> None:
-    drawn = operating_map(surface, machine.train, **QUICK, points=machine.points)
+    drawn = map_of(surface, machine.train, **QUICK, points=machine.points)
     document = json.loads(json.dumps(drawn.to_dict(), allow_nan=False))
     assert document["stall_above"] == [None] * 61
     assert np.shape(document["torque"]) == (61, 81)
@@ -460,7 +457,7 @@ def test_labels_do_not_overlap(surface: DampingSurface, machine: Machine) -> Non
     from hersey.charts.operating_map.frame import HEIGHT, WIDTH
 
     crowd = tuple(OperatingPoint(f"point {i}", 0.04 + 0.004 * i, 450.0 + i) for i in range(6))
-    drawn = operating_map(surface, machine.train, **QUICK, limits=machine.limits, points=crowd)
+    drawn = map_of(surface, machine.train, **QUICK, limits=machine.limits, points=crowd)
     labels = Labels(WIDTH, HEIGHT)
     _layers(drawn, Frame.of(drawn), labels)
     boxes = [text.box for text in labels.texts]

@@ -19,6 +19,7 @@ from hersey.machine.limits import Limits
 from hersey.machine.uncertainty import Uncertainty
 from hersey.stability.plan.draws import lower_bound, most_failures, needed
 from tests.cli.command import run
+from tests.machines import machine_of
 
 TRAIN = hersey.Drivetrain(1000, 1)
 DRAG = hersey.Drag(50, 1, ehl_exponent=-0.7, mixed_exponent=-1.2, stick_speed=0.01)
@@ -38,7 +39,9 @@ def test_bounds_are_those_of_the_binomial() -> None:
 
 def test_straight_up_where_the_past_does_not_matter() -> None:
     """Above V* every start ends smooth: the steepest ramp will do, for by its end the belt slides."""
-    plan = hersey.plan_profile(TRAIN, DRAG, target_speed=3.0, limits=Limits(speed=4.0, acceleration=3.0))
+    plan = hersey.plan_profile(
+        machine_of(TRAIN, limits=Limits(speed=4.0, acceleration=3.0)), DRAG, target_speed=3.0
+    )
     assert plan.kind == "direct"
     assert plan.duration == pytest.approx(1.0, rel=1e-5)
     assert plan.response is not None
@@ -48,7 +51,7 @@ def test_straight_up_where_the_past_does_not_matter() -> None:
 
 def test_overshoot_in_the_band() -> None:
     """The paper's case: below V* = 2.17 it comes from above (it overshoots to 2.5 v_t; we need less time)."""
-    plan = hersey.plan_profile(TRAIN, DRAG, target_speed=1.9, limits=WIDE)
+    plan = hersey.plan_profile(machine_of(TRAIN, limits=WIDE), DRAG, target_speed=1.9)
     assert plan.found
     by_hand = hersey.Schedule([0.0, 0.25, 1.25, 1.31], [0.0, 2.5, 2.5, 1.9])
     assert plan.duration < by_hand.times[-1]
@@ -91,7 +94,7 @@ def test_the_same_seed_gives_the_same_plan() -> None:
     ],
 )
 def test_the_forbidding_limit_is_named(limits: Limits, target: float, limit: str, text: str) -> None:
-    plan = hersey.plan_profile(TRAIN, DRAG, target_speed=target, limits=limits)
+    plan = hersey.plan_profile(machine_of(TRAIN, limits=limits), DRAG, target_speed=target)
     assert plan.kind == "impossible"
     assert not plan.found
     assert plan.rows() == []
@@ -102,12 +105,12 @@ def test_the_forbidding_limit_is_named(limits: Limits, target: float, limit: str
 def test_the_number_that_would_do_does() -> None:
     """A limit raised to what the plan asks for leaves a profile."""
     tight = Limits(speed=4.0, acceleration=10.0, spring_force=100.0)
-    refused = hersey.plan_profile(TRAIN, DRAG, target_speed=1.9, limits=tight)
+    refused = hersey.plan_profile(machine_of(TRAIN, limits=tight), DRAG, target_speed=1.9)
     assert refused.kind == "impossible"
     enough = refused.obstacles[0].needed
     assert enough is not None
     wider = replace(tight, spring_force=enough)
-    plan = hersey.plan_profile(TRAIN, DRAG, target_speed=1.9, limits=wider)
+    plan = hersey.plan_profile(machine_of(TRAIN, limits=wider), DRAG, target_speed=1.9)
     assert plan.found
     assert plan.warnings == (
         "the roll's grip is not stated (roll_friction and nip_load): it is taken to hold throughout",
@@ -125,7 +128,7 @@ FUSER_LIMITS = Limits(speed=0.4, acceleration=0.5, motor_torque=8.0, roll_fricti
 def test_a_roll_that_cannot_start_the_belt_has_no_plan() -> None:
     """Once a plan of 98.5 % with a remark: its motion needed 434 N, and the roll grips with 180 N."""
     refused = hersey.plan_profile(
-        FUSER, FUSER_DRAG, target_speed=0.045, limits=FUSER_LIMITS, roll_radius=0.015
+        machine_of(FUSER, limits=FUSER_LIMITS, roll_radius=0.015), FUSER_DRAG, target_speed=0.045
     )
     assert [o.limit for o in refused.obstacles] == ["grip"]
     assert refused.obstacles[0].given == pytest.approx(180.0)
@@ -140,9 +143,13 @@ def test_a_plan_comes_up_more_slowly_where_the_grip_is_scarce() -> None:
     """Between what starts the belt and what the quickest profile takes: another, which keeps the grip."""
     grip = 1.02 * FUSER_DRAG.holding_force
     limits = replace(FUSER_LIMITS, nip_load=1000.0)
-    free = hersey.plan_profile(FUSER, FUSER_DRAG, target_speed=0.12, limits=limits, roll_radius=0.015)
+    free = hersey.plan_profile(
+        machine_of(FUSER, limits=limits, roll_radius=0.015), FUSER_DRAG, target_speed=0.12
+    )
     train = replace(FUSER, grip=grip)
-    kept = hersey.plan_profile(train, FUSER_DRAG, target_speed=0.12, limits=limits, roll_radius=0.015)
+    kept = hersey.plan_profile(
+        machine_of(train, limits=limits, roll_radius=0.015), FUSER_DRAG, target_speed=0.12
+    )
     assert free.peak_force > grip > kept.peak_force
     assert kept.duration > free.duration
     for plan, slips in ((free, True), (kept, False)):
@@ -164,7 +171,7 @@ def test_waiting_for_warmth() -> None:
     )
     course = hersey.Schedule([0.0, 20.0, 30.0], [320.0, 400.0, 400.0])
     limits = Limits(speed=4.0, acceleration=10.0, spring_force=1.5 * drag.at(400.0).breakaway_force)
-    plan = hersey.plan_profile(TRAIN, drag, target_speed=2.5, temperature=course, limits=limits)
+    plan = hersey.plan_profile(machine_of(TRAIN, limits=limits), drag, target_speed=2.5, temperature=course)
     assert plan.found
     assert 1.0 < plan.wait < 20.0
     assert plan.verdict().startswith("Wait ")
@@ -174,13 +181,14 @@ def test_waiting_for_warmth() -> None:
 
 def test_motor_torque_is_a_limit_at_the_roll() -> None:
     plan = hersey.plan_profile(
-        TRAIN, DRAG, target_speed=1.9, limits=replace(WIDE, motor_torque=8.0), roll_radius=0.02
+        machine_of(TRAIN, limits=replace(WIDE, motor_torque=8.0), roll_radius=0.02), DRAG, target_speed=1.9
     )
     use = {use.name: use for use in plan.uses}["motor_torque"]
     assert use.used == pytest.approx(0.02 * plan.peak_force)
     assert use.used <= 8.0
+    flat = machine_of(TRAIN, limits=replace(WIDE, motor_torque=8.0), roll_radius=0.0)
     with pytest.raises(ParameterError, match="roll_radius"):
-        hersey.plan_profile(TRAIN, DRAG, target_speed=1.9, limits=replace(WIDE, motor_torque=8.0))
+        hersey.plan_profile(flat, DRAG, target_speed=1.9)
 
 
 @pytest.mark.parametrize(
@@ -192,14 +200,16 @@ def test_motor_torque_is_a_limit_at_the_roll() -> None:
         ({"seed": -1}, "seed is -1"),
         ({"uncertainty": {"colour": Uncertainty(share=0.1)}}, "'colour' is no parameter"),
         ({"samples": {"stiffness": [1.0, 2.0], "mass": [1.0]}}, "differ in length"),
+        ({"samples": [(TRAIN, DRAG)]}, "at least 40 machines"),
         ({"limits": Limits(speed=-1.0)}, "speed is -1"),
         ({"temperature": 300.0}, "temperature"),
     ],
 )
 def test_bad_arguments_are_named(changed: dict[str, object], words: str) -> None:
-    given: dict[str, object] = {"target_speed": 1.9, "limits": WIDE}
+    given: dict[str, object] = {"target_speed": 1.9, "limits": WIDE, **changed}
+    stated = {name: given.pop(name) for name in ("limits", "uncertainty") if name in given}
     with pytest.raises(ParameterError, match=words):
-        hersey.plan_profile(TRAIN, DRAG, **(given | changed))  # type: ignore[arg-type]
+        hersey.plan_profile(machine_of(TRAIN, **stated), DRAG, **given)  # type: ignore[arg-type]
 
 
 def test_smooth_closures_are_refused() -> None:

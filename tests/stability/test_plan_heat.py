@@ -17,9 +17,10 @@ from hersey.machine.limits import Limits
 from hersey.machine.uncertainty import Uncertainty
 from hersey.stability.plan import Plan, plan_profile
 from hersey.stability.plan.planner import Proof, Unknown
-from hersey.stability.plan.trial import MachineSample, Shape, TemperatureProfile, outcomes
+from hersey.stability.plan.trial import Follow, MachineSample, Shape, TemperatureProfile, outcomes
 from hersey.stability.plan.warming import apart, course_of
 from hersey.stability.warm_up import warm_up
+from tests.machines import machine_of
 
 TRAIN = Drivetrain(11e3, 11.0)
 DRAG = hersey.Drag(50, 0.01, -0.7, -1.2, 3e-4, reference_temperature=400.0, force_temperature_exponent=-4.0)
@@ -39,7 +40,7 @@ def _short_search() -> Iterator[None]:
 
 @pytest.fixture(scope="module")
 def plan() -> Plan:
-    return plan_profile(TRAIN, DRAG, target_speed=0.12, heat=HEAT, limits=LIMITS)
+    return plan_profile(machine_of(TRAIN, limits=LIMITS), DRAG, target_speed=0.12, temperature=HEAT)
 
 
 def test_a_cold_belt_is_waited_for(plan: Plan) -> None:
@@ -50,7 +51,7 @@ def test_a_cold_belt_is_waited_for(plan: Plan) -> None:
     gripping = replace(TRAIN, grip=250.0)
     for sooner, slips in ((0.0, False), (5.0, True)):
         drive = hersey.Schedule([0.0, *(np.asarray(plan.schedule.times)[1:] - sooner)], plan.schedule.values)
-        run = simulate(gripping, DRAG, drive_speed=drive, heat=HEAT, duration=plan.duration + 2.0)
+        run = simulate(gripping, DRAG, drive_speed=drive, temperature=HEAT, duration=plan.duration + 2.0)
         assert any(event.guard == "grip_lost" for event in run.events) == slips
     assert run.events
     warm = warm_up(TRAIN, DRAG, HEAT, target_speed=0.12, force_limit=250.0, acceleration=0.5, margin=0.0)
@@ -60,7 +61,7 @@ def test_a_cold_belt_is_waited_for(plan: Plan) -> None:
 def test_the_course_is_that_of_the_plan_itself(plan: Plan) -> None:
     assert plan.course is not None
     assert plan.schedule is not None
-    run = simulate(TRAIN, DRAG, drive_speed=plan.schedule, heat=HEAT, duration=60.0, samples=601)
+    run = simulate(TRAIN, DRAG, drive_speed=plan.schedule, temperature=HEAT, duration=60.0, samples=601)
     assert run.film_temperature is not None
     said = [plan.course.at(t) for t in run.time.tolist()]
     np.testing.assert_allclose(run.film_temperature, said, atol=0.05 + 0.02)
@@ -71,10 +72,10 @@ def test_the_course_is_that_of_the_plan_itself(plan: Plan) -> None:
 
 def test_what_no_warmth_mends_is_named() -> None:
     limits = replace(LIMITS, spring_force=150.0)
-    found = plan_profile(TRAIN, DRAG, target_speed=0.12, heat=HEAT, limits=limits)
+    found = plan_profile(machine_of(TRAIN, limits=limits), DRAG, target_speed=0.12, temperature=HEAT)
     assert [obstacle.limit for obstacle in found.obstacles] == ["spring_force"]
     weak = replace(HEAT, heater_power=0.0, setpoint=None)
-    cold = plan_profile(TRAIN, DRAG, target_speed=0.12, heat=weak, limits=LIMITS)
+    cold = plan_profile(machine_of(TRAIN, limits=LIMITS), DRAG, target_speed=0.12, temperature=weak)
     assert [obstacle.limit for obstacle in cold.obstacles] == ["spring_force"]
     assert cold.obstacles[0].needed is not None
     assert cold.obstacles[0].needed > 400.0
@@ -86,12 +87,18 @@ def test_a_trial_with_heat_is_the_motion_with_heat() -> None:
         replace(HEAT, film_capacity=2.0, heater_power=0.0, setpoint=None),
         Shape(0.12, 0.12, 0.4, wait=0.5),
     )
-    thermal = TemperatureProfile(course_of(TRAIN, DRAG, light, shape.schedule()))
+    thermal = TemperatureProfile(course_of(TRAIN, DRAG, light, shape.schedule()), light)
     [found] = outcomes(
-        [MachineSample(TRAIN, DRAG)], [shape], thermal, force=True, tolerance=1e-11, heat=light
+        [MachineSample(TRAIN, DRAG)], [shape], thermal, how=Follow(force=True, tolerance=1e-11)
     )
     run = simulate(
-        TRAIN, DRAG, drive_speed=shape.schedule(), heat=light, duration=2.0, samples=20_001, tolerance=1e-11
+        TRAIN,
+        DRAG,
+        drive_speed=shape.schedule(),
+        temperature=light,
+        duration=2.0,
+        samples=20_001,
+        tolerance=1e-11,
     )
     released = [e.time for e in run.events if e.from_mode in ("stuck", "microslip")][-1]
     assert run.film_temperature is not None
@@ -109,17 +116,19 @@ def test_draws_make_their_own_temperature(monkeypatch: pytest.MonkeyPatch) -> No
 
     def watched(self: Unknown, *given: Any) -> Proof:
         proof = verify(self, *given)
-        seen.append((given[-1] is HEAT, proof.draws))
+        seen.append((given[2].heat is HEAT, proof.draws))
         return proof
 
     monkeypatch.setattr(Unknown, "verify", watched)
     found = plan_profile(
-        TRAIN,
+        machine_of(
+            TRAIN,
+            limits=replace(LIMITS, spring_force=1000.0),
+            uncertainty={"transition_force": Uncertainty(share=0.05)},
+        ),
         DRAG,
         target_speed=0.12,
-        heat=HEAT,
-        limits=replace(LIMITS, spring_force=1000.0),
-        uncertainty={"transition_force": Uncertainty(share=0.05)},
+        temperature=HEAT,
         confidence=0.5,
     )
     assert (found.draws, found.wait) == (60, 0.0)
@@ -131,7 +140,7 @@ def test_draws_make_their_own_temperature(monkeypatch: pytest.MonkeyPatch) -> No
 def test_rounds_that_do_not_end_are_said(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("hersey.stability.plan.planner.ROUNDS", 1)
     limits = replace(LIMITS, spring_force=1000.0)
-    found = plan_profile(TRAIN, DRAG, target_speed=0.12, heat=HEAT, limits=limits)
+    found = plan_profile(machine_of(TRAIN, limits=limits), DRAG, target_speed=0.12, temperature=HEAT)
     assert not found.found
     assert math.isnan(found.duration)
     [obstacle] = found.obstacles
@@ -139,8 +148,6 @@ def test_rounds_that_do_not_end_are_said(monkeypatch: pytest.MonkeyPatch) -> Non
     assert "do not agree after 1 rounds" in obstacle.text
 
 
-def test_heat_and_temperature_exclude_each_other() -> None:
-    with pytest.raises(ParameterError, match="either temperature or heat"):
-        plan_profile(TRAIN, DRAG, target_speed=0.12, heat=HEAT, temperature=400.0)
+def test_heat_needs_a_drag_that_varies() -> None:
     with pytest.raises(ParameterError, match="does not vary with temperature"):
-        plan_profile(TRAIN, DRAG.at(400.0), target_speed=0.12, heat=HEAT)
+        plan_profile(TRAIN, DRAG.at(400.0), target_speed=0.12, temperature=HEAT)

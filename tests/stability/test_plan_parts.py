@@ -21,7 +21,16 @@ from hersey.stability.plan.draws import Trials, drawn, lower_bound, most_failure
 from hersey.stability.plan.obstacles import Reach, _obstacle, speed_text
 from hersey.stability.plan.planner import Unknown
 from hersey.stability.plan.search import Room, Search
-from hersey.stability.plan.trial import FINE, MachineSample, Shape, TemperatureProfile, outcomes, rounded
+from hersey.stability.plan.trial import (
+    FINE,
+    Follow,
+    MachineSample,
+    Shape,
+    TemperatureProfile,
+    outcomes,
+    rounded,
+)
+from tests.machines import machine_of
 
 TRAIN = hersey.Drivetrain(1000, 1)
 DRAG = hersey.Drag(50, 1, ehl_exponent=-0.7, mixed_exponent=-1.2, stick_speed=0.01)
@@ -121,8 +130,8 @@ def test_a_trial_that_ends_early_ends_as_the_motion_does(closure: str, target: f
         assert (found.ready < math.inf) == slides
         if slides:
             assert found.ready == pytest.approx(max(released, shape.ramps), rel=1e-6)
-            [late] = outcomes([machine], [shape], course, latest=found.ready)
-            [soon] = outcomes([machine], [shape], course, latest=found.ready * 1.0001)
+            [late] = outcomes([machine], [shape], course, how=Follow(latest=found.ready))
+            [soon] = outcomes([machine], [shape], course, how=Follow(latest=found.ready * 1.0001))
             assert (late.ready, soon.ready) == (math.inf, found.ready) or released <= shape.ramps
         kinds.add(slides)
     assert kinds == {True, False}
@@ -418,11 +427,15 @@ LIMITS = Limits(
 
 @pytest.fixture(scope="module")
 def plan() -> Plan:
-    return hersey.plan_profile(TRAIN, DRAG, target_speed=1.9, limits=LIMITS, roll_radius=0.02, confidence=0.9)
+    return hersey.plan_profile(
+        machine_of(TRAIN, limits=LIMITS, roll_radius=0.02), DRAG, target_speed=1.9, confidence=0.9
+    )
 
 
 def test_the_seed_of_a_search_moves_what_is_tried(plan: Plan) -> None:
-    other = hersey.plan_profile(TRAIN, DRAG, target_speed=1.9, limits=LIMITS, roll_radius=0.02, seed=2)
+    other = hersey.plan_profile(
+        machine_of(TRAIN, limits=LIMITS, roll_radius=0.02), DRAG, target_speed=1.9, seed=2
+    )
     assert other.rows() != plan.rows()
     assert (plan.seed, other.seed) == (1, 2)
     assert other.duration == pytest.approx(plan.duration, rel=0.05)
@@ -480,7 +493,7 @@ def test_what_a_plan_says(plan: Plan) -> None:
 
 
 def test_what_forbids_a_plan_in_numbers() -> None:
-    slow = hersey.plan_profile(TRAIN, DRAG, target_speed=1.9, limits=Limits(speed=1.5))
+    slow = hersey.plan_profile(machine_of(TRAIN, limits=Limits(speed=1.5)), DRAG, target_speed=1.9)
     assert (slow.obstacles[0].given, slow.obstacles[0].needed) == (1.5, 1.9)
     low = hersey.plan_profile(TRAIN, DRAG, target_speed=0.9)
     assert low.obstacles[0].text == (

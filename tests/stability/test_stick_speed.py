@@ -14,6 +14,7 @@ from hersey.errors import ParameterError
 from hersey.stability.plan.of_log import _uncertainty, drag_and_draws
 from tests.conftest import ROOT
 from tests.damping.test_surface import points_of
+from tests.machines import map_of
 
 HOT = 180.0 + 273.15
 RULES = (WITH_TRANSITION, FIXED)
@@ -46,7 +47,7 @@ def test_map_band_and_plan_agree(fitted: hersey.DampingSurface, rule: str, at: f
     m = machine(rule, at)
     by_itself = fitted.drag(**m.belt, temperature=HOT)
     planned, _ = drag_and_draws(fitted, m, HOT, 1, varies=False)
-    map_ = hersey.operating_map(fitted, m.train, **m.belt, temperatures=[430.0, HOT], draws=2)
+    map_ = map_of(fitted, m.train, **m.belt, temperatures=[430.0, HOT], draws=2)
     state = map_.state_at(HOT, 0.03)
     laws = [by_itself, planned]
     if rule == WITH_TRANSITION:
@@ -98,9 +99,9 @@ def test_a_range_of_the_stick_speed_moves_with_it(fitted: hersey.DampingSurface)
     given: dict[str, Any] = {"temperatures": [420.0, HOT], "draws": 4, "seed": 3}
     sticking = {name: value for name, value in m.belt.items() if name != "roll_radius"}
     first = fitted.stick_speed_at(fitted.reference_temperature, **sticking)
-    stated = hersey.operating_map(fitted, m.train, **m.belt, uncertainty=m.uncertainty, **given)
+    stated = map_of(fitted, m.train, **m.belt, uncertainty=m.uncertainty, **given)
     moved = {"stick_speed": known.times(first / 3e-4)}
-    at_reference = hersey.operating_map(
+    at_reference = map_of(
         fitted, m.train, roll_radius=m.roll_radius, stick_speed=first, uncertainty=moved, **given
     )
     assert stated.upper_interval == pytest.approx(at_reference.upper_interval, rel=1e-9)
@@ -108,12 +109,10 @@ def test_a_range_of_the_stick_speed_moves_with_it(fitted: hersey.DampingSurface)
 
 def test_map_and_plan_say_which_stick_speed_they_took(fitted: hersey.DampingSurface) -> None:
     m = machine()
-    said = hersey.operating_map(fitted, m.train, **m.belt, temperatures=[430.0, HOT], draws=2).warnings[0]
+    said = map_of(fitted, m.train, **m.belt, temperatures=[430.0, HOT], draws=2).warnings[0]
     assert "0.3 mm/s at" in said
     assert "with the transition speed it moves from" in said
-    fixed = hersey.operating_map(
-        fitted, m.train, **machine(FIXED).belt, temperatures=[430.0, HOT], draws=2
-    ).warnings[0]
+    fixed = map_of(fitted, m.train, **machine(FIXED).belt, temperatures=[430.0, HOT], draws=2).warnings[0]
     assert "0.3 mm/s at all temperatures" in fixed
     plan = hersey.plan_profile(m.train, fitted.drag(**m.belt, temperature=HOT), target_speed=0.2)
     assert f"stick speed {1e3 * plan.stick_speed:.4g} mm/s" in plan.summary()

@@ -74,7 +74,9 @@ def test_drag_keeps_the_limit_and_the_drive_its_acceleration() -> None:
     assert np.max(np.abs(np.diff(warm.drive_speed))) <= 0.5 * warm.time[1] * (1 + 1e-9)
     # friction of the slow drive warms, too: sooner than standing, and the force of the motion is that drag
     assert warm.full_speed < warm.full_speed_standing
-    again = hersey.simulate(_TRAIN, _DRAG, drive_speed=warm.schedule, heat=_HEAT, duration=warm.time[-1])
+    again = hersey.simulate(
+        _TRAIN, _DRAG, drive_speed=warm.schedule, temperature=_HEAT, duration=warm.time[-1]
+    )
     assert again.film_temperature is not None
     assert np.interp(warm.time, again.time, again.film_temperature) == pytest.approx(
         warm.film_temperature, abs=0.1

@@ -10,7 +10,7 @@ import pytest
 import hersey
 from hersey.lubrication.contact import Contact
 from hersey.lubrication.lubricant import Lubricant
-from hersey.lubrication.reynolds import exponent, solve_line_contact
+from hersey.lubrication.reynolds import ElasticLayer, exponent, solve_line_contact
 from hersey.verdict.contact_regimes import contact_regimes, damping_exponent, thermal_exponent
 from hersey.verdict.regimes import REGIMES
 
@@ -37,8 +37,7 @@ def test_the_band_is_the_range_of_the_solver_over_the_dwells() -> None:
                 0.5 * speed * 15e-3,
                 float(OIL.viscosity(kelvin)),
                 effective_modulus=ROLL.effective_modulus,
-                thickness=3.5e-3,
-                poisson=0.48,
+                layer=ElasticLayer(3.5e-3, 0.48),
                 nodes=401,
             ),
         )

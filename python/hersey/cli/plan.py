@@ -99,23 +99,22 @@ def plan(
     machine = read_machine(machine_file)
     wanted = target_of(target, machine)
     kelvin = temperature_of(at)
-    warmth = heat_of(machine, machine_file, start) if heat else None
     with memory_limit(reading.max_memory):
         profile = None if profile_file is None else read_temperature_profile(profile_file)
+    changing = heat_of(machine, machine_file, start) if heat else profile
     surface, drawn = reading.surface_and_posterior(logs, fit_file, machine, trace, seed=seed)
-    if drawn is not None and not heat and profile is None:
+    if drawn is not None and changing is None:
         check_temperature(surface, kelvin)
         with working("planning"):
             planned = plan_start_up(drawn, kelvin, wanted, confidence=confidence)
         give("plan", planned, called="profile", table=out, figure=figure, replace=replaced, as_json=as_json)
         return
     with bar("planning", unit="profiles") as progress:
-        if drawn is not None:
+        if drawn is not None and changing is not None:
             planned = plan_warm_start(
                 drawn,
                 wanted,
-                temperature=profile,
-                heat=warmth,
+                temperature=changing,
                 confidence=confidence,
                 seed=seed,
                 progress=progress,
@@ -125,8 +124,7 @@ def plan(
                 surface,
                 machine,
                 target_speed=wanted,
-                temperature=kelvin if profile is None else profile,
-                heat=warmth,
+                temperature=kelvin if changing is None else changing,
                 confidence=confidence,
                 seed=seed,
                 progress=progress,

@@ -201,7 +201,13 @@ def _warming(
     drag = warming_drag(surface, machine)
     with working("simulating"):
         run = moved(
-            machine.train, drag, drive_speed=speed, heat=warmth, duration=time, start=start, check=check
+            machine.train,
+            drag,
+            drive_speed=speed,
+            temperature=warmth,
+            duration=time,
+            start=start,
+            check=check,
         )
     film = run.film_temperature
     assert film is not None

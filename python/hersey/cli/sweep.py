@@ -6,7 +6,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -77,6 +77,8 @@ def sweep(
 
     from hersey.motion.parameters import MOST_SETS
     from hersey.motion.scenario import read_scenario, summary
+    from hersey.motion.work import Work
+    from hersey.scale.store import SweepFolder
 
     stated = of_a_machine(machine) if machine is not None else None
     described = read_scenario(
@@ -87,16 +89,16 @@ def sweep(
     )
     told: list[str] = []
     with workers(scheduler, processes) as client, bar("simulating", unit="sets") as progress:
+        work = Work(threads=threads, client=client, chunk=chunk, progress=progress)
         if out is not None and in_chunks:
-            how: dict[str, Any] = {"chunk": chunk, "resume": resume, "overwrite": force, "threads": threads}
             with _said_if_interrupted():
-                found = described.keep(out, client=client, progress=progress, **how)
+                found = described.keep(SweepFolder(out, resume, force), work)
             counted = found.summary()
             told += found.notes
             if found.before:
                 told.append(f"{found.before} of {found.chunks} chunks were there")
         else:
-            result = described.run(threads=threads, progress=progress, client=client)
+            result = described.run(work)
             counted = summary(result)
             told += result.attrs.get("notes", [])
     if out is not None and not in_chunks:

@@ -25,13 +25,9 @@ def map_of(
     points = tuple(p for p in model.machine.points if p not in [each.point for each in without])
     map_ = given_map(
         model.surface,
-        model.machine.train,
+        replace(model.machine, points=points),
         drag,
         lambda kelvin: found.map_edges(kelvin, threads=threads),
-        roll_radius=model.machine.roll_radius,
-        stick_speed_rule=model.machine.stick_speed_rule,
-        limits=model.machine.limits,
-        points=points,
     )
     if judged is None:
         varies = map_.temperature is not None

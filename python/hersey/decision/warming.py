@@ -21,8 +21,7 @@ def plan_warm_start(
     found: Posterior,
     target_speed: float,
     *,
-    temperature: Schedule | None = None,
-    heat: HeatBalance | None = None,
+    temperature: Schedule | HeatBalance,
     confidence: float = 0.95,
     seed: int = 1,
     progress: Progress | None = None,
@@ -35,9 +34,7 @@ def plan_warm_start(
     Parameters
     ----------
     temperature
-        K against time, s.
-    heat
-        Instead of it: what makes the temperature.
+        K against time, s; or what makes it.
     confidence
         Share of the fresh draws that must slide.
     seed
@@ -48,42 +45,34 @@ def plan_warm_start(
     Raises
     ------
     ParameterError
-        If a value is out of range, the log is isothermal, or neither or both of temperature and heat are
-        given.
+        If a value is out of range, or the log is isothermal.
     """
-    if (temperature is None) == (heat is None):
-        raise ParameterError("give either temperature, as a profile, or heat, which makes it")
     model, machine = found.model, found.model.machine
     if machine.stick_speed_rule == FIXED:
         raise ParameterError(
             f"a stick speed that is '{FIXED}' at all temperatures cannot be followed while temperature "
             f"changes: give one temperature, or stick_speed_rule '{WITH_TRANSITION}'"
         )
-    course = TemperatureProfile(temperature)
-    last = course.at(course.end) if heat is None else heat.setpoint
+    if isinstance(temperature, HeatBalance):
+        coldest = min(float(temperature.film_temperature), float(temperature.roll_temperature))
+        last = temperature.setpoint
+    else:
+        course = TemperatureProfile(temperature)
+        coldest = min(value for _, value in course.levels)
+        last = course.at(course.end)
     kelvin = last or found.temperature or model.surface.reference_temperature
     if kelvin is None:
         raise ParameterError("the log is isothermal: its drag does not vary with temperature")
-    coldest = _coldest(course, heat)
     [(train, drag)] = drags_through(model, typical_draw(found, kelvin), kelvin, coldest)
     if drag.closure == "stribeck":  # what is drawn of a plan needs a stuck phase
         drag = replace(drag, closure="retained")
     return plan_profile(
-        train,
+        replace(machine, stiffness=train.stiffness, mass=train.mass),
         drag,
         target_speed=target_speed,
         temperature=temperature,
-        heat=heat,
-        limits=machine.limits,
-        roll_radius=machine.roll_radius,
-        machines=drags_through(model, found.drives, kelvin, coldest),
+        samples=drags_through(model, found.drives, kelvin, coldest),
         confidence=confidence,
         seed=seed,
         progress=progress,
     )
-
-
-def _coldest(course: TemperatureProfile, heat: HeatBalance | None) -> float:
-    if heat is None:
-        return min(value for _, value in course.levels)
-    return min(float(heat.film_temperature), float(heat.roll_temperature))

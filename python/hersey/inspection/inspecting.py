@@ -7,11 +7,11 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypedDict, Unpack
 
 import numpy as np
 
-from hersey.arrays import FloatArray
+from hersey.arrays import FloatArray, refuse_unknown
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.dwells.doubtful import doubtful_order, doubtful_tare
 from hersey.damping.dwells.misleading import in_words, misleading
@@ -44,6 +44,20 @@ _SPEED_NAME = re.compile(r"spe?e?d|velocity|rpm|drehzahl", re.IGNORECASE)
 MEANS = "a table of means"
 #: More files than this are shown without the tables of their channels.
 _TABLES = 3
+
+
+class Reading(TypedDict, total=False):
+    """How a log is read, each by its name: as `hersey.read_with_mapping` takes it."""
+
+    mapping: LogMapping | str | Path | None
+    channels: Mapping[str, str] | None
+    units: Mapping[str, str] | None
+    isothermal: bool
+    signs: Mapping[str, int] | None
+    drop_missing: bool
+    every: float | None
+    radius: float | Sequence[float] | None
+    load: float | Sequence[float] | None
 
 
 @dataclass(frozen=True)
@@ -195,35 +209,28 @@ class Inspection(Result):
 def inspect(
     paths: str | Path | Sequence[str | Path],
     *,
-    mapping: LogMapping | str | Path | None = None,
-    channels: Mapping[str, str] | None = None,
-    units: Mapping[str, str] | None = None,
-    isothermal: bool = False,
-    signs: Mapping[str, int] | None = None,
-    drop_missing: bool = False,
-    every: float | None = None,
-    radius: float | Sequence[float] | None = None,
-    load: float | Sequence[float] | None = None,
     min_dwell: float = 2.0,
     tare: str = "none",
     rotation: str = "both",
     temperature_scale: str = "degC",
     means: bool = False,
+    **reading: Unpack[Reading],
 ) -> Inspection:
     """Look at logs before a fit: also at such that cannot be fitted, or have no torque.
 
     Parameters
     ----------
-    paths, channels, units, isothermal, drop_missing, every, radius, load
+    paths
         As for `hersey.read`.
-    mapping, signs
-        As for `hersey.log.mapping.read_with_mapping`.
     min_dwell, tare, rotation
         As for `TorqueLog.steady`.
     temperature_scale
         As for `hersey.fit`.
     means
         Whether the files are tables of means: one row per dwell, no clock.
+    **reading
+        Any of ``mapping``, ``channels``, ``units``, ``isothermal``, ``signs``, ``drop_missing``, ``every``,
+        ``radius`` and ``load``, as for `hersey.read_with_mapping`.
 
     Raises
     ------
@@ -235,10 +242,13 @@ def inspect(
     >>> inspect("examples/bench.csv").support.speeds
     10
     """
+    refuse_unknown("inspect", reading, tuple(Reading.__annotations__))
     files = [paths] if isinstance(paths, str | Path) else list(paths)
+    mapping, channels, units = reading.get("mapping"), reading.get("channels"), reading.get("units")
+    signs, isothermal = reading.get("signs"), reading.get("isothermal", False)
     chosen = mapping if isinstance(mapping, LogMapping) else mapping_of(files, mapping)
     chosen = chosen.turned(signs or {})
-    stated = Stated(every, as_stated(radius), as_stated(load))
+    stated = Stated(reading.get("every"), as_stated(reading.get("radius")), as_stated(reading.get("load")))
     said = without_what_is_said(chosen, channels or {}, stated)
     choices = {
         role: ChannelChoice(
@@ -261,7 +271,7 @@ def inspect(
         channels,
         units,
         isothermal=_tries(isothermal, cold and not hopeless),
-        drop_missing=_tries(drop_missing, holes and not hopeless),
+        drop_missing=_tries(reading.get("drop_missing", False), holes and not hopeless),
         stated=stated,
     )
     if read is None:

@@ -14,7 +14,7 @@ from typing import Literal
 from hersey import _core
 from hersey.arrays import FloatArray
 from hersey.errors import ParameterError
-from hersey.units import takes_si
+from hersey.units import fields_in_si, takes_si
 
 #: Nodes between inlet and outlet.
 NODES = 201
@@ -28,6 +28,45 @@ _INDENTATION, _HALF_WIDTH = 0.15, 0.3
 _GRID_ERROR = 0.01
 #: Pressure above which Barus' law overstates viscosity, Pa.
 _BARUS = 0.4e9
+
+
+@dataclass(frozen=True)
+class ElasticLayer:
+    """An elastic layer on a rigid base: ``thickness`` (m) and Poisson ratio ``poisson``, up to 0.5."""
+
+    thickness: float
+    poisson: float
+
+    def __post_init__(self) -> None:
+        """Bring the thickness to SI if it comes with its unit."""
+        fields_in_si(self, {"thickness": "length"})
+
+
+@dataclass(frozen=True)
+class ThickeningFluid:
+    """A lubricant that pressure thickens, at one temperature.
+
+    Parameters
+    ----------
+    viscosity
+        At zero pressure, Pa s.
+    pressure_viscosity
+        Coefficient alpha at zero pressure, 1/Pa; 0 in a rubber nip.
+    thickening
+        Law that alpha belongs to: ``roelands`` (pole at 6.31e-5 Pa s and -0.196 GPa) or ``barus``.
+    compressible
+        Whether the density follows Dowson and Higginson.
+    """
+
+    viscosity: float
+    pressure_viscosity: float = 0.0
+    thickening: Literal["roelands", "barus"] = "roelands"
+    compressible: bool = False
+
+    def __post_init__(self) -> None:
+        """Bring the values to SI if they come with units."""
+        kinds = {"viscosity": "viscosity", "pressure_viscosity": "pressure-viscosity coefficient"}
+        fields_in_si(self, kinds)
 
 
 @dataclass(frozen=True)
@@ -110,23 +149,17 @@ class LineContactSolution:
     entrainment_speed="belt speed",
     viscosity="viscosity",
     effective_modulus="pressure",
-    thickness="length",
     sliding_speed="belt speed",
-    pressure_viscosity="pressure-viscosity coefficient",
 )
 def solve_line_contact(
     radius: float,
     load: float,
     entrainment_speed: float,
-    viscosity: float,
+    viscosity: float | ThickeningFluid,
     *,
     effective_modulus: float,
-    thickness: float | None = None,
-    poisson: float | None = None,
+    layer: ElasticLayer | None = None,
     sliding_speed: float | None = None,
-    pressure_viscosity: float = 0.0,
-    thickening: Literal["roelands", "barus"] = "roelands",
-    compressible: bool = False,
     nodes: int = NODES,
 ) -> LineContactSolution:
     """Return pressure, film and friction of a roll on an elastic surface, fully flooded and isothermal.
@@ -140,20 +173,13 @@ def solve_line_contact(
     entrainment_speed
         Mean u of the surface speeds, m/s.
     viscosity
-        At zero pressure, Pa s. The lubricant is Newtonian.
+        Of a Newtonian lubricant, Pa s; or a `ThickeningFluid`, which pressure changes.
     effective_modulus
         E' = 2/[(1-nu1^2)/E1 + (1-nu2^2)/E2], Pa; of a soft layer alone 2E/(1-nu^2).
-    thickness, poisson
-        Thickness (m) and Poisson ratio (up to 0.5) of an elastic layer bonded to a rigid base. Default:
-        a half space.
+    layer
+        An elastic layer bonded to a rigid base. Default: a half space.
     sliding_speed
         Speed of the roll less that of what it runs against, m/s. Default: 2u, the other surface at rest.
-    pressure_viscosity
-        Coefficient alpha at zero pressure, 1/Pa; 0 in a rubber nip.
-    thickening
-        Law that alpha belongs to: ``roelands`` (pole at 6.31e-5 Pa s and -0.196 GPa) or ``barus``.
-    compressible
-        Whether the density follows Dowson and Higginson.
     nodes
         50 to 4001. The error of the film falls with their square.
 
@@ -166,21 +192,18 @@ def solve_line_contact(
 
     Examples
     --------
-    >>> layer = {"effective_modulus": 2.63e6, "thickness": 3.5e-3, "poisson": 0.49}
-    >>> nip = solve_line_contact(0.015, 1136, 0.1, 0.1, **layer)
+    >>> layer = ElasticLayer(thickness=3.5e-3, poisson=0.49)
+    >>> nip = solve_line_contact(0.015, 1136, 0.1, 0.1, effective_modulus=2.63e6, layer=layer)
     >>> round(nip.minimum_thickness * 1e6, 1), round(exponent("damping", nip), 2)  # um
     (8.0, -0.55)
     """
-    if (thickness is None) != (poisson is None):
-        missing = "poisson" if poisson is None else "thickness"
-        raise ParameterError(f"{missing} is not given: a layer needs its thickness and its Poisson ratio")
+    fluid = viscosity if isinstance(viscosity, ThickeningFluid) else ThickeningFluid(viscosity)
     slide = 2.0 * entrainment_speed if sliding_speed is None else sliding_speed
-    layer = None if thickness is None or poisson is None else (float(thickness), float(poisson))
     solution = _core.line_contact(
         (float(radius), 0.5 * float(effective_modulus), float(load)),
-        layer,
+        None if layer is None else (float(layer.thickness), float(layer.poisson)),
         (float(entrainment_speed), float(slide)),
-        (float(viscosity), float(pressure_viscosity), thickening, bool(compressible)),
+        (float(fluid.viscosity), float(fluid.pressure_viscosity), fluid.thickening, fluid.compressible),
         min(max(int(nodes), 0), _MANY),
     )
     for profile in (solution.x, solution.pressure, solution.film_thickness):
@@ -207,7 +230,7 @@ def solve_line_contact(
         friction=abs(solution.traction_1) / load,
         iterations=solution.iterations,
         stations=solution.stations,
-        cautions=_cautions(solution, radius, thickness, barus=thickening == "barus"),
+        cautions=_cautions(solution, radius, layer, barus=fluid.thickening == "barus"),
     )
 
 
@@ -246,13 +269,13 @@ def _exponents(of: _core.Exponents) -> LineExponents:
 
 
 def _cautions(
-    solution: _core.LineContact, radius: float, thickness: float | None, *, barus: bool
+    solution: _core.LineContact, radius: float, layer: ElasticLayer | None, *, barus: bool
 ) -> tuple[str, ...]:
     """What a reader must know before the numbers are used."""
     cautions = []
-    if thickness is not None and -solution.offset > _INDENTATION * thickness:
+    if layer is not None and -solution.offset > _INDENTATION * layer.thickness:
         cautions.append(
-            f"the layer is indented by {-solution.offset / thickness:.0%} of its thickness: linear "
+            f"the layer is indented by {-solution.offset / layer.thickness:.0%} of its thickness: linear "
             f"elasticity, meant for up to {_INDENTATION:.0%}, is a sketch there"
         )
     if solution.outlet > _HALF_WIDTH * radius:

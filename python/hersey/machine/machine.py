@@ -32,10 +32,20 @@ from hersey.machine.uncertainty import Uncertainty, read_uncertainty
 from hersey.motion.belt import Drivetrain
 from hersey.motion.heat import HeatBalance
 from hersey.spelling import printable
-from hersey.units import takes_si
+from hersey.units import fields_in_si, takes_si
 
 #: Belt speed (m/s) whose film says which law holds, where the machine states no points.
 _USUAL_SPEED = 0.1
+
+
+#: Kinds of the units in which the numbers of a machine may be given.
+_KINDS = {
+    "stiffness": "stiffness",
+    "mass": "mass",
+    "roll_radius": "length",
+    "stick_speed": "belt speed",
+    "stick_speed_temperature": "temperature",
+}
 
 
 @plain_dataclass(frozen=True)
@@ -71,6 +81,10 @@ class Machine:
     static_friction: float | None = None
     life: LifeTable = field(default_factory=LifeTable)
     gear: GearTable | None = None
+
+    def __post_init__(self) -> None:
+        """Bring the values to SI if they come with units."""
+        fields_in_si(self, _KINDS)
 
     @property
     def mixed(self) -> MixedContact | None:

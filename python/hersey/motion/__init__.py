@@ -9,6 +9,7 @@ simulation  stick-slip motion of the belt, and what it settles to
 stepper     the same motion from call to call, with inputs given on the way
 parameters  names of the parameters, and the kinds of their units
 sets        the parameter sets of a sweep, laid out only as far as they are followed
+work        how they are worked out: how exactly, and by whom
 following   following them, here or at a worker
 kept        a sweep that is kept chunk by chunk, and goes on where it stopped
 sweep       what thousands of belts settle to, in one call

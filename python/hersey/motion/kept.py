@@ -29,6 +29,7 @@ from hersey.motion.following import (
 )
 from hersey.motion.parameters import KINDS, MOST_SETS
 from hersey.motion.sets import Later, Sets
+from hersey.motion.work import ALONE, Work
 from hersey.scale.cluster import connected, refuse_others, threads_of
 from hersey.scale.cutting import Cut
 from hersey.scale.kinds import kind_of
@@ -37,6 +38,7 @@ from hersey.scale.store import (
     Coordinate,
     Folder,
     Layout,
+    SweepFolder,
     Variable,
     opened,
     remove_unfinished_of,
@@ -95,54 +97,43 @@ class _Pieces(Sequence[Later]):
 
 
 def kept(
-    sets: Sets,
-    rules: Rules,
-    out: str | Path,
-    *,
-    client: Client | LocalWorkers | str | None = None,
-    threads: int = 1,
-    chunk: int | None = None,
-    resume: bool = True,
-    overwrite: bool = False,
-    units: str = "SI",
-    progress: Callable[[int, int], object] | None = None,
+    sets: Sets, rules: Rules, out: str | Path | SweepFolder, work: Work = ALONE, *, units: str = "SI"
 ) -> Kept:
     """Follow every set, keep each chunk in the folder ``out`` as it ends, and count the outcomes.
 
-    What is there of the same sweep is not done again. An error that ends it says how many chunks are kept;
-    Ctrl-C says so in a note of `KeyboardInterrupt`.
+    ``rules`` have the tolerance and the steps. What is there of the same sweep is not done again. An error
+    that ends it says how many chunks are kept; Ctrl-C says so in a note of `KeyboardInterrupt`.
 
     Raises
     ------
     ParameterError, OutputError, UnfinishedError, MissingFileError
         As `hersey.sweep`.
     """
-    path, kind = Path(out).absolute(), kind_of(Path(out))
+    target = SweepFolder.of(out)
+    path, kind = target.absolute, kind_of(Path(target.path))
     refuse_early(rules, sets)
     scenario = {**rules.told(), "zip": sets.zip, "units": units, "parameters": sets.told()}
-    with _connected(client) as known:
-        workers = threads if known is None else max(threads_of(known), 1)
+    with _connected(work.client) as known:
+        workers = work.threads if known is None else max(threads_of(known), 1)
         tried = trial(rules, sets)
-        asked = None if chunk is None else _cut(sets, chunk)
+        asked = None if work.chunk is None else _cut(sets, work.chunk)
 
         def planned() -> Cut:
             return asked or Cut.into(sets.shape, usual_chunk(sets.count, tried.each, workers))
 
         with opened(
-            path,
+            target,
             kind,
             scenario,
             partial(_layout, sets, rules, units),
             shape=sets.shape,
             planned=planned,
             asked=asked,
-            resume=resume,
-            overwrite=overwrite,
         ) as folder:
             notes: list[str] = []
             if known is not None:
                 notes = _probed(known, rules, tried, (path, kind, sha256_of(scenario)))
-            return _followed(sets, rules, folder, known, threads, progress, notes)
+            return _followed(sets, rules, folder, known, work.threads, work.progress, notes)
 
 
 def _followed(
@@ -212,19 +203,14 @@ def _left(ended: int, count: int) -> str:
     return f"{ended} of {count} chunks are kept: the same command goes on"
 
 
-def gathered(
-    sets: Sets,
-    rules: Rules,
-    *,
-    client: Client | LocalWorkers | str,
-    chunk: int | None = None,
-    progress: Callable[[int, int], object] | None = None,
-) -> tuple[dict[str, NDArray[Any]], list[str], list[str]]:
+def gathered(sets: Sets, rules: Rules, work: Work) -> tuple[dict[str, NDArray[Any]], list[str], list[str]]:
     """Return the numbers of every set as workers find them, flat, the failures, and what to tell."""
-    with _connected(client) as known:
+    with _connected(work.client) as known:
         assert known is not None
         tried = trial(rules, sets)
-        wished = usual_chunk(sets.count, tried.each, max(threads_of(known), 1)) if chunk is None else chunk
+        wished = work.chunk
+        if wished is None:
+            wished = usual_chunk(sets.count, tried.each, max(threads_of(known), 1))
         cut = Cut.into(sets.shape, wished)
         notes = _probed(known, rules, tried, None)
         columns: dict[str, NDArray[Any]] = {}
@@ -232,7 +218,7 @@ def gathered(
         pieces = _Pieces(sets, cut, range(cut.count))
         task = partial(bring, rules)
         for _, (first, values, failed) in done(
-            task, pieces, client=known, progress=progress, size=lambda later: later.size
+            task, pieces, client=known, progress=work.progress, size=lambda later: later.size
         ):
             for name, column in values.items():
                 if name not in columns:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass as plain_dataclass
-from dataclasses import field
+from dataclasses import field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -20,13 +20,13 @@ from hersey.motion.drag import Drag
 from hersey.motion.parameters import MOST_SETS, PARAMETERS
 from hersey.motion.simulation import TOLERANCE
 from hersey.motion.sweep import planned, sweep
+from hersey.motion.work import ALONE, Work
 
 if TYPE_CHECKING:
     import xarray as xr
-    from distributed import Client
 
     from hersey.motion.kept import Kept
-    from hersey.scale.local import LocalWorkers
+    from hersey.scale.store import SweepFolder
 
 
 @plain_dataclass(frozen=True)
@@ -56,14 +56,8 @@ class Scenario:
         sizes = [values.size for values in self.parameters.values()]
         return max(sizes) if self.zip else int(np.prod(sizes, dtype=float))
 
-    def run(
-        self,
-        *,
-        threads: int = 1,
-        progress: Callable[[int, int], object] | None = None,
-        client: Client | LocalWorkers | None = None,
-    ) -> xr.Dataset:
-        """Return what each parameter set settles to; see `hersey.sweep`."""
+    def run(self, work: Work = ALONE) -> xr.Dataset:
+        """Return what each parameter set settles to, as exactly as the scenario says; see `hersey.sweep`."""
         train, drag, varied = self._arguments()
         return sweep(
             train,
@@ -72,14 +66,11 @@ class Scenario:
             zip=self.zip,
             start=self.start,
             duration=self.duration,
-            threads=threads,
-            tolerance=self.tolerance,
-            progress=progress,
-            client=client,
+            work=replace(work, tolerance=self.tolerance),
         )
 
-    def keep(self, out: Path, **how: Any) -> Kept:
-        """Keep each chunk of sets in a folder as it ends; ``how`` is as of `hersey.motion.kept.kept`."""
+    def keep(self, out: Path | SweepFolder, work: Work = ALONE) -> Kept:
+        """Keep each chunk of sets in a folder as it ends."""
         from hersey.motion.kept import kept
 
         train, drag, varied = self._arguments()
@@ -92,7 +83,7 @@ class Scenario:
             duration=self.duration,
             tolerance=self.tolerance,
         )
-        return kept(sets, rules, out, units=self.units, **how)
+        return kept(sets, rules, out, work, units=self.units)
 
     def _arguments(self) -> tuple[Drivetrain, Drag, dict[str, Any]]:
         """What `hersey.sweep` takes: train, drag, and each parameter."""

@@ -11,13 +11,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from operator import attrgetter
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypedDict, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hersey import _core
-from hersey.arrays import FloatArray
+from hersey.arrays import FloatArray, refuse_unknown
 from hersey.errors import HerseyError, ParameterError
 from hersey.motion.belt import BeltDrag, Drivetrain, Train, belt_of
 from hersey.motion.drag import AnyDrag
@@ -32,8 +32,32 @@ if TYPE_CHECKING:
 
 #: Relative tolerance of the steps.
 TOLERANCE = 1e-9
+#: Times at which a motion is returned.
+SAMPLES = 2001
 #: Share of the drive speed by which a steady start is off.
 NUDGE = _core.NUDGE
+
+
+class Numerics(TypedDict, total=False):
+    """How a motion is integrated, each by its name.
+
+    Parameters
+    ----------
+    samples
+        Times at which it is returned, equally spaced, both ends among them; 2001 if not given.
+    tolerance
+        Relative tolerance of the steps; 1e-9 if not given.
+    check
+        Whether it is also integrated with Dormand and Prince's Runge-Kutta pair, and the difference reported.
+    most_steps
+        Work that the motion may take, in steps of a microsecond or so; a step of a stiff motion, or with
+        bristles, counts for 40.
+    """
+
+    samples: int
+    tolerance: float
+    check: bool
+    most_steps: float
 
 
 class Event(NamedTuple):
@@ -296,14 +320,10 @@ def simulate(
     *,
     drive_speed: float | Schedule | None = None,
     drive_torque: float | Schedule | None = None,
-    temperature: float | Schedule | None = None,
-    heat: HeatBalance | None = None,
+    temperature: float | Schedule | HeatBalance | None = None,
     duration: float,
-    samples: int = 2001,
     start: str | tuple[float, float] = "rest",
-    tolerance: float = TOLERANCE,
-    check: bool = False,
-    most_steps: float = MOST_STEPS,
+    **numerics: Unpack[Numerics],
 ) -> Trajectory:
     """Return the motion over ``duration``, its events located to rounding.
 
@@ -315,17 +335,14 @@ def simulate(
         Instead of it: force on the mass, or torque on the rotor, which a spring holds to the ground (Eq. 11);
         only here the stiffness may be zero.
     temperature
-        K; needed if the drag varies with it.
-    heat
-        Instead of it: what makes the temperature, which is a state then, warmed by friction too.
+        K; needed if the drag varies with it. Or what makes it: then it is a state, warmed by friction too.
+    duration
+        s.
     start
         ``rest`` (belt at rest, spring slack), ``steady`` (sliding with the drive as it is at time 0), or a
         pair of belt speed and stretch.
-    check
-        Also integrate with Dormand and Prince's Runge-Kutta pair and report the difference.
-    most_steps
-        Work that the motion may take, in steps of a microsecond or so; a step of a stiff motion, or with
-        bristles, counts for 40.
+    **numerics
+        Any of ``samples``, ``tolerance``, ``check`` and ``most_steps``; see `Numerics`.
 
     Raises
     ------
@@ -344,15 +361,24 @@ def simulate(
     >>> abs(run.energy.residual) < 1e-8, run.check.same_events
     (True, True)
     """
-    count, steps = whole("samples", samples, 2), whole("most_steps", most_steps)
-    check_inputs(drag, drive_speed, drive_torque, temperature, heat)
+    refuse_unknown(
+        "simulate", numerics, tuple(Numerics.__annotations__), {"heat": "temperature=HeatBalance(...)"}
+    )
+    count, steps = (
+        whole("samples", numerics.get("samples", SAMPLES), 2),
+        whole("most_steps", numerics.get("most_steps", MOST_STEPS)),
+    )
+    tolerance = float(numerics.get("tolerance", TOLERANCE))
+    check_inputs(drag, drive_speed, drive_torque, temperature)
     given = drive_speed if drive_speed is not None else drive_torque
     drive = Schedule.of(given if given is not None else 0.0)
-    course = None if temperature is None else Schedule.of(temperature).shifted(-drag.temperature_zero)
-    law = drag.law()
-    at_start = course
-    if heat is not None:
-        at_start = Schedule.of(heat.film_temperature).shifted(-drag.temperature_zero)
+    law, zero = drag.law(), drag.temperature_zero
+    heat, course, at_start = None, None, None
+    if isinstance(temperature, HeatBalance):
+        heat = temperature
+        at_start = Schedule.of(heat.film_temperature).shifted(-zero)
+    elif temperature is not None:
+        at_start = course = Schedule.of(temperature).shifted(-zero)
     state = start_state(train, law, drive, at_start, start, is_torque=drive_speed is None)
 
     def run(integrator: str) -> _core.Trajectory:
@@ -364,10 +390,10 @@ def simulate(
             state,
             float(duration),
             count,
-            float(tolerance),
+            tolerance,
             integrator,
             steps,
-            None if heat is None else heat.arguments(drag.temperature_zero),
+            None if heat is None else heat.arguments(zero),
         )
 
     trajectory = run("adaptive")
@@ -386,22 +412,18 @@ def simulate(
             energy.work, energy.dissipated, energy.slipped, energy.stored, energy.owed, energy.residual
         ),
         steps=trajectory.steps,
-        check=_self_check(lambda: run("dormand-prince"), trajectory) if check else None,
+        check=_self_check(lambda: run("dormand-prince"), trajectory) if numerics.get("check") else None,
     )
 
 
-def check_inputs(
-    drag: AnyDrag, drive_speed: Any, drive_torque: Any, temperature: Any, heat: HeatBalance | None = None
-) -> None:
+def check_inputs(drag: AnyDrag, drive_speed: Any, drive_torque: Any, temperature: Any) -> None:
     """Refuse inputs of a motion that do not go together, or that its drag does not know."""
     if (drive_speed is None) == (drive_torque is None):
         raise ParameterError("give either drive_speed or drive_torque")
-    if heat is not None and temperature is not None:
-        raise ParameterError("give either temperature or heat, which makes it")
-    if drag.varies_with_temperature and temperature is None and heat is None:
+    if drag.varies_with_temperature and temperature is None:
         raise ParameterError("the drag varies with temperature: give temperature")
-    if (temperature is not None or heat is not None) and not drag.varies_with_temperature:
-        what = "temperature" if heat is None else "heat"
+    if temperature is not None and not drag.varies_with_temperature:
+        what = "heat" if isinstance(temperature, HeatBalance) else "temperature"
         raise ParameterError(f"{what} is given, but the drag does not vary with temperature")
 
 

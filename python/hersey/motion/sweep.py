@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,22 +11,22 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hersey import _core
-from hersey.arrays import numbers_of
+from hersey.arrays import numbers_of, refuse_unknown
 from hersey.errors import ParameterError
 from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import Drag
 from hersey.motion.following import NUMBERS, Rules, values_of
-from hersey.motion.parameters import KINDS, MOST_STEPS, refuse_too_many, whole
+from hersey.motion.parameters import KINDS, MOST_STEPS, PARAMETERS, refuse_too_many, whole
 from hersey.motion.sets import Sets
 from hersey.motion.simulation import TOLERANCE
+from hersey.motion.work import ALONE, HELD, Work
 from hersey.units import takes_si
 
 if TYPE_CHECKING:
     import xarray as xr
-    from distributed import Client
 
     from hersey.motion.kept import Kept
-    from hersey.scale.local import LocalWorkers
+    from hersey.scale.store import SweepFolder
 
 
 @takes_si(duration="time", **{name: kind for name, kind in KINDS.items() if kind is not None})
@@ -33,32 +34,18 @@ def sweep(
     train: Drivetrain,
     drag: Drag,
     *,
-    drive_speed: ArrayLike,
-    stiffness: ArrayLike | None = None,
-    mass: ArrayLike | None = None,
-    transition_force: ArrayLike | None = None,
-    transition_speed: ArrayLike | None = None,
-    ehl_exponent: ArrayLike | None = None,
-    mixed_exponent: ArrayLike | None = None,
-    stick_speed: ArrayLike | None = None,
     zip: bool = False,  # noqa: A002 - NumPy users know what it means
     start: str = "rest",
     duration: float | None = None,
-    threads: int = 1,
-    tolerance: float = TOLERANCE,
-    progress: Callable[[int, int], object] | None = None,
-    most_steps: float = MOST_STEPS,
-    client: Client | LocalWorkers | str | None = None,
-    out: str | Path | None = None,
-    chunk: int | None = None,
-    resume: bool = True,
-    overwrite: bool = False,
+    work: Work = ALONE,
+    out: str | Path | SweepFolder | None = None,
+    **varied: ArrayLike,
 ) -> xr.Dataset:
     """Return what each combination of parameters settles to, as `stick_slip` does for one.
 
-    Each parameter is a number or an array; those not given are those of ``train`` and ``drag``. Arrays of one
-    dimension span one axis each, named by the parameter. With ``zip`` arrays go together by NumPy's rules,
-    along an axis ``set`` (or ``dim_0``, ``dim_1`` ... if they have several dimensions).
+    Each parameter is a number or an array; those not given are those of ``train`` and ``drag``. Arrays of
+    one dimension span one axis each, named by the parameter. With ``zip`` arrays go together by NumPy's
+    rules, along an axis ``set`` (or ``dim_0``, ``dim_1`` ... if they have several dimensions).
 
     Parameters
     ----------
@@ -67,22 +54,16 @@ def sweep(
     duration
         If given, each belt is followed for this time and its last whole lap is reported; otherwise until its
         orbit has closed, which is exact and much quicker.
-    threads
-        Threads to use. The result is the same, bit for bit, for any number.
-    progress
-        Called with (done, all) some twenty times a second; what it raises ends the sweep.
-    most_steps
-        Work that each belt may take, as for `simulate`; one that does not suffice is among the failures.
-    client
-        A ``distributed.Client``, or the address of a scheduler: its workers follow the sets, in chunks. The
-        result is the same, bit for bit, on processors and systems of one kind.
+    work
+        How exactly, and by how many threads or workers; a relative tolerance of 1e-9 if it states none.
     out
         A folder that ends in .zarr or .parquet, in which each chunk of sets is kept as it ends; then a sweep
-        has no limit of sets. What is there of the same sweep is not done again. Units stand there as SI.
-    chunk
-        Sets of a chunk; by default as many as take a second or two.
-    resume, overwrite
-        With ``resume=False`` what is there does not count: it is refused, or gone with ``overwrite``.
+        has no limit of sets. What is there of the same sweep is not done again, unless a `SweepFolder` says
+        so. Units stand there as SI.
+    **varied
+        ``drive_speed`` (m/s), which is needed, and any of ``stiffness`` (N/m), ``mass`` (kg),
+        ``transition_force`` (N), ``transition_speed`` (m/s), ``ehl_exponent``, ``mixed_exponent`` and
+        ``stick_speed`` (m/s).
 
     Returns
     -------
@@ -96,8 +77,8 @@ def sweep(
     Raises
     ------
     ParameterError
-        If a value is out of range, with the parameter's name; if ``chunk`` is, or no scheduler answers, or a
-        worker has another hersey.
+        If a value is out of range, with the parameter's name, or there is no parameter of a name; if no
+        scheduler answers, or a worker has another hersey.
     OutputError
         If ``out`` is of another sweep, at work elsewhere, or cannot be written.
     UnfinishedError
@@ -112,17 +93,8 @@ def sweep(
     >>> dict(grid.sizes), round(float(grid.frequency.sel(stiffness=1000, drive_speed=1.0)), 5)
     ({'stiffness': 2, 'drive_speed': 3}, 3.94031)
     """
-    varied = {
-        "stiffness": stiffness,
-        "mass": mass,
-        "transition_force": transition_force,
-        "transition_speed": transition_speed,
-        "ehl_exponent": ehl_exponent,
-        "mixed_exponent": mixed_exponent,
-        "stick_speed": stick_speed,
-        "drive_speed": drive_speed,
-    }
-    workers = whole("threads", threads)
+    refuse_unknown("sweep", varied, PARAMETERS, HELD)
+    work = replace(work, threads=whole("threads", work.threads))
     sets, rules = planned(
         train,
         drag,
@@ -130,24 +102,22 @@ def sweep(
         zip=zip,
         start=start,
         duration=duration,
-        tolerance=tolerance,
-        most_steps=most_steps,
+        tolerance=work.within(TOLERANCE),
+        most_steps=work.most_steps,
     )
     if out is not None:
         from hersey.motion.kept import kept
 
-        more: dict[str, Any] = {"chunk": chunk, "resume": resume, "overwrite": overwrite}
-        found = kept(sets, rules, out, client=client, threads=workers, progress=progress, **more)
-        return _opened(sets, rules, found)
+        return _opened(sets, rules, kept(sets, rules, out, work))
     refuse_too_many(sets.given.values(), zip=zip)
-    if client is not None:
+    if work.client is not None:
         from hersey.motion.kept import gathered
 
-        columns, failures, notes = gathered(sets, rules, client=client, chunk=chunk, progress=progress)
+        columns, failures, notes = gathered(sets, rules, work)
         return _labelled(sets, rules, columns, failures, notes)
-    if chunk is not None:
+    if work.chunk is not None:
         raise ParameterError("chunk is given, but neither out nor client: nothing is cut into chunks")
-    motions = rules.follow(sets, workers, progress)
+    motions = rules.follow(sets, work.threads, work.progress)
     failures = [f"set {failure.index}: {failure.error}" for failure in motions.failures]
     return _labelled(sets, rules, values_of(motions), failures, [])
 
@@ -165,6 +135,8 @@ def planned(
 ) -> tuple[Sets, Rules]:
     """Return the sets of a sweep, and what holds for all; arguments as `sweep`.
 
+    A parameter that is None or not there is that of train or drag.
+
     Raises
     ------
     ParameterError
@@ -176,9 +148,11 @@ def planned(
         raise ParameterError(f"start '{start}' is not known: rest or steady")
     drag.beside(1)  # refuses what a sweep has no parameter for
     parameters: dict[str, Any] = {**vars(train), **vars(drag)}
-    given = {
-        name: numbers_of(name, parameters[name] if value is None else value) for name, value in varied.items()
-    }
+    asked = {name: values for name, values in varied.items() if values is not None}
+    if "drive_speed" not in asked:
+        raise ParameterError("a sweep needs a drive_speed", quantity="drive_speed")
+    parameters |= asked
+    given = {name: numbers_of(name, parameters[name]) for name in PARAMETERS}
     lasting = None if duration is None else float(duration)
     rules = Rules(drag, train.grip, start, lasting, float(tolerance), whole("most_steps", most_steps))
     return Sets(given, zip), rules

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import TypedDict, Unpack
 
 import numpy as np
 
-from hersey.arrays import FloatArray
+from hersey.arrays import FloatArray, refuse_unknown
 from hersey.damping.curves import CurveMixture, fit_curves
 from hersey.damping.dwells import SteadyPoints
 from hersey.damping.fit import fit
@@ -41,6 +42,27 @@ _STATED_STATIC = 0.05
 Progress = Callable[[float], object]
 
 
+class Sampling(TypedDict, total=False):
+    """How a posterior is drawn, each by its name.
+
+    Parameters
+    ----------
+    draws
+        All populations together, at least 40; 1000 if not given.
+    seed
+        Of the random draws; 1 if not given.
+    threads
+        For the motion of the draws; the result does not depend on it.
+    progress
+        Called with the share of the work that is done.
+    """
+
+    draws: int
+    seed: int
+    threads: int
+    progress: Progress | None
+
+
 def posterior(
     points: SteadyPoints,
     machine: Machine,
@@ -50,11 +72,7 @@ def posterior(
     traces: Sequence[TorqueLog] = (),
     evidence: Sequence[Evidence] | None = None,
     temperature: float | None = None,
-    draws: int = DRAWS,
-    seed: int = 1,
-    moves: Moves | None = None,
-    progress: Progress | None = None,
-    threads: int = 1,
+    **sampling: Unpack[Sampling],
 ) -> Posterior:
     """Return draws of drag curve, closure, stick speed, stiffness and mass that all evidence allows.
 
@@ -73,14 +91,8 @@ def posterior(
         Starts, stick-slip and break-away; by default those found in the log of the points and in ``traces``.
     temperature
         K, of the headline; by default that of the operating points, or the hottest measured.
-    draws
-        All populations together, at least 40.
-    seed
-        Of the random draws.
-    progress
-        Called with the share of the work that is done.
-    threads
-        For the motion of the draws; the result does not depend on it.
+    **sampling
+        Any of ``draws``, ``seed``, ``threads`` and ``progress``; see `Sampling`.
 
     Raises
     ------
@@ -96,6 +108,8 @@ def posterior(
     >>> max(found.closures(), key=found.closures().get)
     'retained'
     """
+    refuse_unknown("posterior", sampling, tuple(Sampling.__annotations__))
+    draws, seed, threads = sampling.get("draws", DRAWS), sampling.get("seed", 1), sampling.get("threads", 1)
     if draws < 20 * CHAINS or seed < 0:
         name, value, least = ("draws", draws, 20 * CHAINS) if draws < 20 * CHAINS else ("seed", seed, 0)
         raise ParameterError(f"{name} is {value}: it must be at least {least}")
@@ -106,11 +120,9 @@ def posterior(
     kelvin = temperature if temperature is not None else decision_temperature(found, machine)
 
     def populations_of(model: DriveModel, evidence: Sequence[Evidence]) -> list[Population]:
-        chosen = moves or Moves()
+        told = [_part(sampling.get("progress"), chain) for chain in range(CHAINS)]
         return [
-            _population(
-                model, evidence, draws // CHAINS, seed, chain, chosen, _part(progress, chain), threads
-            )
+            _population(model, evidence, draws // CHAINS, seed, chain, told[chain], threads)
             for chain in range(CHAINS)
         ]
 
@@ -223,7 +235,6 @@ def _population(
     count: int,
     seed: int,
     chain: int,
-    moves: Moves,
     progress: Progress | None,
     threads: int,
 ) -> Population:
@@ -246,7 +257,7 @@ def _population(
         # a draw whose motion cannot be followed does not count
         return np.where(np.isnan(value), -np.inf, value)
 
-    return sample(start, target, chances, model.curves.weights, random, moves, progress, count=count)
+    return sample(start, target, chances, model.curves.weights, random, Moves(), progress, count=count)
 
 
 def _joined(parts: Sequence[Drives]) -> Drives:

@@ -119,9 +119,38 @@ def sha256_of(scenario: Scenario) -> str:
     return hashlib.sha256(json.dumps(scenario, sort_keys=True).encode()).hexdigest()
 
 
+@dataclass(frozen=True)
+class SweepFolder:
+    """A folder in which a sweep is kept, and what becomes of one that is there.
+
+    Parameters
+    ----------
+    path
+        It ends in .zarr or .parquet.
+    resume
+        Whether what is there of the same sweep counts, and is not done again.
+    overwrite
+        Whether a sweep that does not count is replaced; else it is refused.
+    """
+
+    path: str | Path
+    resume: bool = True
+    overwrite: bool = False
+
+    @classmethod
+    def of(cls, given: str | Path | SweepFolder) -> SweepFolder:
+        """Return the folder as given, or that of a path."""
+        return given if isinstance(given, SweepFolder) else cls(given)
+
+    @property
+    def absolute(self) -> Path:
+        """The path from the root on."""
+        return Path(self.path).absolute()
+
+
 @contextmanager
 def opened(
-    path: Path,
+    out: SweepFolder,
     kind: Kind,
     scenario: Scenario,
     layout: Callable[[Cut], Layout],
@@ -129,10 +158,8 @@ def opened(
     shape: tuple[int, ...],
     planned: Callable[[], Cut],
     asked: Cut | None = None,
-    resume: bool = True,
-    overwrite: bool = False,
 ) -> Iterator[Folder]:
-    """Yield the folder at a path: the one begun for the same scenario, or a new one; nobody else has it.
+    """Yield the folder: the one begun for the same scenario, or a new one; nobody else has it.
 
     ``layout`` is that of the grid of ``shape`` in a cut; a new one is cut as ``planned``. A folder that is
     cut otherwise than ``asked`` is refused, and so is one whose manifest is not, to the letter, what this
@@ -144,9 +171,9 @@ def opened(
         If the folder is of another scenario, holds something else, is at work elsewhere, or cannot be
         written; it says what differs.
     """
-    path = path.absolute()
+    path = out.absolute
     try:
-        with _taken(kind, path, scenario, resume=resume, overwrite=overwrite) as begun:
+        with _taken(kind, out, scenario) as begun:
             if begun is None:
                 new = layout(planned())
                 _create(kind, path, new, _manifest(kind, scenario, new))
@@ -222,10 +249,9 @@ def _written(fill: float) -> float | str:
 
 
 @contextmanager
-def _taken(
-    kind: Kind, path: Path, scenario: Scenario, *, resume: bool, overwrite: bool
-) -> Iterator[Scenario | None]:
+def _taken(kind: Kind, out: SweepFolder, scenario: Scenario) -> Iterator[Scenario | None]:
     """Yield the manifest of what was begun and shall go on, or None; what shall go is gone then."""
+    path = out.absolute
     if not path.parent.is_dir():
         raise OutputError(f"{path}: there is no directory {path.parent}")
     if not path.exists() or (path.is_dir() and not any(path.iterdir())):
@@ -236,11 +262,11 @@ def _taken(
     manifest = kind.read_manifest(path)
     if manifest is None:
         raise OutputError(f"{path} is there, and no sweep of hersey made it: name another")
-    if resume:
+    if out.resume:
         refuse_another(path, manifest, scenario)
         yield manifest
         return
-    if not overwrite:
+    if not out.overwrite:
         raise OutputError(
             f"{path} exists: use {OVERWRITE.to()} to replace it, or leave out "
             f"{_NO_RESUME.to(python='False')} to go on with it"

@@ -13,12 +13,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hersey import _core
-from hersey.arrays import FloatArray, crossed, numbers_of, together
+from hersey.arrays import FloatArray, crossed, numbers_of, refuse_unknown, together
 from hersey.errors import ParameterError
 from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import BESIDE, Drag
 from hersey.motion.following import usual_chunk
-from hersey.motion.parameters import KINDS, MOST_STEPS, OF_THE_BELT, refuse_too_many, whole
+from hersey.motion.parameters import KINDS, OF_THE_BELT, refuse_too_many, whole
+from hersey.motion.work import ALONE, HELD, Work
 from hersey.scale.cluster import connected, threads_of
 from hersey.scale.tasks import done
 from hersey.units import takes_si
@@ -26,6 +27,8 @@ from hersey.units import takes_si
 if TYPE_CHECKING:
     import xarray as xr
     from distributed import Client
+
+    from hersey.scale.local import LocalWorkers
 
 #: Relative tolerance of the steps: the fold asks for more digits than a trajectory.
 TOLERANCE = 1e-11
@@ -57,28 +60,29 @@ def hysteresis_sweep(
     train: Drivetrain,
     drag: Drag,
     *,
-    stiffness: ArrayLike | None = None,
-    mass: ArrayLike | None = None,
-    transition_force: ArrayLike | None = None,
-    transition_speed: ArrayLike | None = None,
-    ehl_exponent: ArrayLike | None = None,
-    mixed_exponent: ArrayLike | None = None,
-    stick_speed: ArrayLike | None = None,
     temperature: ArrayLike | None = None,
     zip: bool = False,  # noqa: A002 - NumPy users know what it means
     lower: bool = True,
-    threads: int = 1,
-    tolerance: float = TOLERANCE,
-    progress: Callable[[int, int], object] | None = None,
-    most_steps: float = MOST_STEPS,
-    client: Client | str | None = None,
+    work: Work = ALONE,
+    **varied: ArrayLike,
 ) -> xr.Dataset:
     """Return the band of each combination of parameters, as `hysteresis` does for one.
 
-    Axes, ``zip``, ``threads``, ``progress`` and ``client`` are those of `sweep`, ``most_steps`` that of
-    `hysteresis`. On one machine threads do as much as workers.
-    ``temperature`` (K) is needed if the drag varies with it, and takes the place of the transition force and
-    of all speeds. Without ``lower`` the lower edge is left out (not a number): a tenth of the time.
+    Parameters
+    ----------
+    temperature
+        K; needed if the drag varies with it, in place of the transition force and of all speeds.
+    zip
+        As in `sweep`.
+    lower
+        Whether the lower edge is found, too; without it (not a number there) it takes a tenth of the time.
+    work
+        As in `sweep`, with a tolerance of 1e-11 if it states none; ``most_steps`` is that of `hysteresis`. On
+        one machine threads do as much as workers.
+    **varied
+        Any of ``stiffness`` (N/m), ``mass`` (kg), ``transition_force`` (N), ``transition_speed`` (m/s),
+        ``ehl_exponent``, ``mixed_exponent`` and ``stick_speed`` (m/s): numbers or arrays; those not given
+        are those of ``train`` and ``drag``.
 
     Returns
     -------
@@ -93,34 +97,14 @@ def hysteresis_sweep(
     """
     import xarray as xr
 
-    varied = {
-        "stiffness": stiffness,
-        "mass": mass,
-        "transition_force": transition_force,
-        "transition_speed": transition_speed,
-        "ehl_exponent": ehl_exponent,
-        "mixed_exponent": mixed_exponent,
-        "stick_speed": stick_speed,
-    }
-    swept = sweep_bands(
-        train,
-        drag,
-        varied,
-        temperature=temperature,
-        zip=zip,
-        lower=lower,
-        threads=threads,
-        tolerance=tolerance,
-        progress=progress,
-        most_steps=most_steps,
-        client=client,
-    )
+    refuse_unknown("hysteresis_sweep", varied, OF_THE_BELT, HELD)
+    swept = sweep_bands(train, drag, varied, temperature=temperature, zip=zip, lower=lower, work=work)
     return xr.Dataset(
         {name: (swept.axes, values) for name, values in swept.columns.items()},
         coords=swept.coordinates,
         attrs={
             "closure": drag.closure,
-            "tolerance": tolerance,
+            "tolerance": work.within(TOLERANCE),
             "hersey_version": _core.VERSION,
             "failures": list(swept.failures),
         },
@@ -145,11 +129,7 @@ def sweep_bands(
     temperature: ArrayLike | None = None,
     zip: bool = False,  # noqa: A002 - NumPy users know what it means
     lower: bool = True,
-    threads: int = 1,
-    tolerance: float = TOLERANCE,
-    progress: Callable[[int, int], object] | None = None,
-    most_steps: float = MOST_STEPS,
-    client: Client | str | None = None,
+    work: Work = ALONE,
 ) -> SweptBands:
     """Return what `hysteresis_sweep` does, as arrays: xarray takes long to import.
 
@@ -173,13 +153,13 @@ def sweep_bands(
     shape = next(iter(columns.values())).shape
     if temperature is not None:
         columns = {**columns, **_at_temperatures(drag, columns["temperature"])}
-    rules = BandRules(train, drag, float(tolerance), whole("most_steps", most_steps), lower)
+    rules = BandRules(train, drag, work.within(TOLERANCE), whole("most_steps", work.most_steps), lower)
     flat = {name: np.ascontiguousarray(column.ravel()) for name, column in columns.items()}
-    workers = whole("threads", threads)
-    if client is None:
-        values, failures = _told(0, rules.follow(flat, workers, progress))
+    workers = whole("threads", work.threads)
+    if work.client is None:
+        values, failures = _told(0, rules.follow(flat, workers, work.progress))
     else:
-        values, failures = _by_workers(rules, flat, client, progress)
+        values, failures = _by_workers(rules, flat, work.client, work.progress)
     coordinates = {
         name: (axes, columns[name]) if zip and values.ndim else values
         for name, values in given.items()
@@ -272,7 +252,7 @@ def _of_part(rules: BandRules, part: _Part) -> _Told:
 def _by_workers(
     rules: BandRules,
     columns: Mapping[str, FloatArray],
-    client: Client | str,
+    client: Client | LocalWorkers | str,
     progress: Callable[[int, int], object] | None,
 ) -> _Told:
     """Return the bands as workers find them, each task some seconds of them."""

@@ -256,7 +256,7 @@ def warm_up(
 
     def moved(speed: float | Schedule, duration: float) -> Trajectory:
         count = _FINER * (_POINTS - 1) + 1
-        return simulate(train, drag, drive_speed=speed, heat=heat, duration=duration, samples=count)
+        return simulate(train, drag, drive_speed=speed, temperature=heat, duration=duration, samples=count)
 
     resting = moved(0.0, longest)
     warm = np.flatnonzero(rule.allowed(_film(resting)) >= target_speed)
@@ -391,7 +391,7 @@ def _at_once(
         replace(train, grip=None),
         drag,
         drive_speed=target,
-        heat=heat,
+        temperature=heat,
         duration=end,
         samples=_POINTS,
         start="steady",

@@ -25,7 +25,7 @@ from hersey.lubrication.contact import Contact, nip_width
 from hersey.lubrication.film import REGIMES, Film, film_thickness
 from hersey.lubrication.film_temperature import film_temperature
 from hersey.lubrication.lubricant import Lubricant
-from hersey.lubrication.reynolds import exponent, solve_line_contact
+from hersey.lubrication.reynolds import ElasticLayer, ThickeningFluid, exponent, solve_line_contact
 from hersey.result import Result, json_record, table_of
 from hersey.units import celsius, takes_si
 from hersey.verdict.contact_regimes import (
@@ -299,11 +299,9 @@ def solved_exponent(contact: Contact, lubricant: Lubricant, speed: float, temper
             contact.reduced_radius,
             contact.load_per_length,
             0.5 * speed * contact.roll_radius,
-            float(lubricant.viscosity(temperature)),
+            ThickeningFluid(float(lubricant.viscosity(temperature)), float(lubricant.alpha(temperature))),
             effective_modulus=contact.effective_modulus,
-            thickness=contact.rubber_thickness,
-            poisson=contact.poisson_ratio,
-            pressure_viscosity=float(lubricant.alpha(temperature)),
+            layer=ElasticLayer(contact.rubber_thickness, contact.poisson_ratio),
         )
     except (ParameterError, UnfinishedError):
         return None

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -160,7 +161,7 @@ def _fit_from(law: AnyLaw, data: Observations, tried: list[FloatArray], scatter:
     columns = disturbances(data, grouped, shared, np.zeros(len(data)))
     errors = np.array(data.torque_error)
     sigma = np.sqrt(errors**2 + scatter**2)
-    roughly = partial(search, law, data, columns, sigma, precision=1e-4, calls=8)
+    roughly = partial(search, law, data, columns, sigma, effort=Effort(1e-4, 8))
     nothing = np.zeros(columns.shape[1])
     best = min((roughly(np.append(start, nothing)) for start in tried), key=lambda m: m.cost)
     for _ in range(_ROUNDS):
@@ -268,6 +269,17 @@ def _settled(
     return abs(scatter - before) <= least and all(m <= 10.0 * least for m in moved)
 
 
+class Effort(NamedTuple):
+    """When a search ends: at a relative ``precision``, or after so many ``calls`` of the law."""
+
+    precision: float = 1e-9
+    calls: int = 20
+
+
+#: The effort of a search where none is stated.
+USUAL = Effort()
+
+
 def search(
     law: AnyLaw,
     data: Observations,
@@ -277,8 +289,7 @@ def search(
     *,
     held: tuple[int, float] | None = None,
     expected: FloatArray | None = None,
-    precision: float = 1e-9,
-    calls: int = 20,
+    effort: Effort = USUAL,
 ) -> Minimum:
     """Return the least cost at fixed standard errors, over the values and the effects of disturbances.
 
@@ -292,8 +303,8 @@ def search(
         Index and value of one parameter that is not varied.
     expected
         Expectation of the effects, in their standard errors; zeros if not given.
-    precision, calls
-        As `minimise` has them.
+    effort
+        When it ends.
     """
     free = np.ones(start.size, dtype=bool)
     base = np.array(start)
@@ -318,7 +329,7 @@ def search(
         slopes = np.column_stack([law.jacobian(full[:size], data.inputs), columns])
         return np.asarray(np.vstack([-slopes / sigma[:, None], prior])[:, free])
 
-    minimum = minimise(residual, jacobian, base[free], precision=precision, calls=calls)
+    minimum = minimise(residual, jacobian, base[free], precision=effort.precision, calls=effort.calls)
     rows = np.zeros((minimum.jacobian.shape[0], start.size))
     rows[:, free] = minimum.jacobian
     return Minimum(whole(minimum.values), minimum.cost, rows)
@@ -338,7 +349,7 @@ def left_out(fit: LawFit, data: Observations) -> FloatArray:
         if groups > 1 and np.unique(data.inputs.group[kept]).size < groups:
             return out
         columns = fit.disturbances[kept]
-        minimum = search(fit.law, data.take(kept), columns, fit.sigma[kept], start, precision=1e-6)
+        minimum = search(fit.law, data.take(kept), columns, fit.sigma[kept], start, effort=Effort(1e-6))
         out[missing] = _residuals(fit.law, data.take(missing), fit.disturbances[missing], minimum.values)
     return out
 
@@ -377,7 +388,7 @@ def resampled(fit: LawFit, data: Observations, count: int, seed: int) -> FloatAr
             fit.disturbances[sample],
             fit.sigma[sample],
             expected=random.standard_normal(fit.effects.size),
-            precision=1e-6,
+            effort=Effort(1e-6),
         )
         draws[row] = min((refit(s) for s in starts), key=lambda m: m.cost).values[: fit.values.size]
     return draws

@@ -22,7 +22,7 @@ import numpy as np
 from hersey.arrays import FloatArray
 from hersey.damping.candidates.branched import FREE, Law
 from hersey.damping.candidates.constant_plus import ConstantPlusLaw
-from hersey.damping.candidates.fitting import AnyLaw, LawFit, not_identified, resampled, search
+from hersey.damping.candidates.fitting import AnyLaw, Effort, LawFit, not_identified, resampled, search
 from hersey.damping.candidates.observations import Inputs, Observations
 from hersey.damping.candidates.shared_errors import Freedom, SharedScatter, shared_variance
 from hersey.damping.candidates.shared_load import SharedLoadLaw
@@ -248,7 +248,7 @@ def _crossing(fit: LawFit, data: Observations, parameter: int, error: float, tar
             fit.sigma,
             warm,
             held=(parameter, value + step * error),
-            precision=1e-7,
+            effort=Effort(1e-7),
         )
         rise = minimum.cost - fit.cost
         if rise < target:

@@ -11,9 +11,10 @@ import numpy as np
 
 from hersey.arrays import FloatArray
 from hersey.damping.surface import DampingSurface
-from hersey.machine.uncertainty import Uncertainty
+from hersey.machine.machine import Machine
 from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import Drag
+from hersey.motion.work import Work
 from hersey.scale.tasks import done, in_order
 from hersey.stability.hysteresis_sweep import sweep_bands
 from hersey.stability.operating_map.edges import law_at, laws_at, require_all
@@ -47,7 +48,7 @@ class Intervals(NamedTuple):
 
 
 @dataclass(frozen=True)
-class _Draws:
+class Drawing:
     """What is drawn at every temperature alike; a task of its own draws the rest and looks for the folds."""
 
     surface: DampingSurface
@@ -58,6 +59,20 @@ class _Draws:
     rule: str
     seed: int
     draws: int
+
+    @classmethod
+    def of(cls, surface: DampingSurface, machine: Machine, drag: Drag, draws: int, seed: int) -> Drawing:
+        """Return so many draws of what the machine says is uncertain of drivetrain and stick speed."""
+        train = machine.train
+        known = {**asdict(train), "stick_speed": drag.stick_speed}
+        rng = np.random.default_rng(seed)
+        uncertain = {
+            name: spread.draw(rng, known[name], draws)
+            for name, spread in machine.uncertainty.items()
+            if name in known
+        }
+        radius, rule = machine.roll_radius, machine.stick_speed_rule
+        return cls(surface, train, drag, uncertain, radius, rule, seed, draws)
 
     def drag_at(self, kelvin: float | None, count: int) -> tuple[dict[str, FloatArray], list[str]]:
         """Return so many draws of the drag at a temperature (K), and what there is to say of them."""
@@ -73,25 +88,9 @@ class _Draws:
 
 
 def intervals(
-    surface: DampingSurface,
-    train: Drivetrain,
-    drag: Drag,
-    kelvin: FloatArray | None,
-    uncertainty: Mapping[str, Uncertainty],
-    roll_radius: float,
-    rule: str,
-    seed: int,
-    draws: int,
-    threads: int,
-    client: Client | str | None = None,
+    drawing: Drawing, kelvin: FloatArray | None, *, threads: int = 1, client: Client | str | None = None
 ) -> Intervals:
     """Return the intervals at each temperature, from draws of the fit and of what is uncertain beside it."""
-    known = {**asdict(train), "stick_speed": drag.stick_speed}
-    rng = np.random.default_rng(seed)
-    uncertain = {
-        name: spread.draw(rng, known[name], draws) for name, spread in uncertainty.items() if name in known
-    }
-    drawing = _Draws(surface, train, drag, uncertain, roll_radius, rule, seed, draws)
     levels: list[float | None] = [None] if kelvin is None else kelvin.tolist()
     said: dict[str, None] = {}
     edges = []
@@ -116,12 +115,14 @@ def intervals(
             np.array([np.exp(np.interp(kelvin, at, np.log(edge))) for edge in ends])
             for ends in (upper, holding)
         )
-    bend = np.array([law.transition_speed for law in laws_at(drag, kelvin, rule)])
-    return Intervals(np.array(edges).T, upper * bend, holding * roll_radius, tuple(uncertain), tuple(said))
+    laws = laws_at(drawing.drag, kelvin, drawing.rule)
+    bend = np.array([law.transition_speed for law in laws])
+    torque = holding * drawing.roll_radius
+    return Intervals(np.array(edges).T, upper * bend, torque, tuple(drawing.uncertain), tuple(said))
 
 
 def _folds(
-    drawing: _Draws, threads: int, kelvin: float | None
+    drawing: Drawing, threads: int, kelvin: float | None
 ) -> tuple[tuple[float, float], tuple[float, float], list[str]]:
     """V* over the transition speed and what a belt at rest bears (N) at a temperature: 95 % of the draws."""
     law = law_at(drawing.drag, kelvin, drawing.rule)
@@ -135,7 +136,7 @@ def _folds(
         {**drawing.uncertain, **drawn, "stick_speed": below},
         zip=True,
         lower=False,
-        threads=threads,
+        work=Work(threads=threads),
     )
     require_all(band)
     # without stick-slip the belt slides from the transition speed up, if anything moves it

@@ -2,23 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hersey.arrays import FloatArray
-from hersey.damping.surface import FIXED, WITH_TRANSITION, DampingSurface
+from hersey.damping.surface import FIXED, DampingSurface
 from hersey.errors import InsufficientDataError, ParameterError
-from hersey.machine.limits import Limits, OperatingPoint
+from hersey.machine.limits import OperatingPoint
 from hersey.machine.machine import Machine
-from hersey.machine.uncertainty import Uncertainty
-from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import DragTable, PowerDrag
 from hersey.stability.operating_map.edges import GivenEdges, contour, edges_at, laws_at, shown_laws
-from hersey.stability.operating_map.intervals import FOLD_DRAWS, Intervals, intervals
+from hersey.stability.operating_map.intervals import FOLD_DRAWS, Drawing, Intervals, intervals
 from hersey.stability.operating_map.result import OperatingMap
 from hersey.stability.operating_map.state import PlacedPoint
 from hersey.stability.operating_map.window import shown_speeds, shown_temperatures
@@ -28,24 +26,11 @@ if TYPE_CHECKING:
     from distributed import Client
 
 
-@takes_si(
-    roll_radius="length",
-    stick_speed="belt speed",
-    stick_speed_temperature="temperature",
-    temperatures="temperature",
-    speeds="belt speed",
-)
+@takes_si(temperatures="temperature", speeds="belt speed")
 def operating_map(
     surface: DampingSurface,
-    machine: Machine | Drivetrain,
+    machine: Machine,
     *,
-    roll_radius: float | None = None,
-    stick_speed: float | None = None,
-    stick_speed_temperature: float | None = None,
-    stick_speed_rule: str | None = None,
-    limits: Limits | None = None,
-    points: Sequence[OperatingPoint] | None = None,
-    uncertainty: Mapping[str, Uncertainty] | None = None,
     temperatures: ArrayLike | None = None,
     speeds: ArrayLike | None = None,
     seed: int = 0,
@@ -60,19 +45,11 @@ def operating_map(
     surface
         The fitted surface; it must have a transition.
     machine
-        The machine's file (`hersey.read_machine`), which states all up to ``uncertainty``; what is given
-        beside it comes before its own. Or a drivetrain: stiffness (N/m) and mass (kg) at the belt.
-    roll_radius, stick_speed, stick_speed_temperature, stick_speed_rule
-        As in `DampingSurface.drag`; with a drivetrain the first two are needed, the stick speed is that at
-        the fit's reference temperature if no other is given, and moves as the transition speed does.
-    limits
-        What the drive can bear: ``motor_torque``, or ``roll_friction`` with ``nip_load``, gives the stall;
-        a grip that the drivetrain states comes before theirs.
-    points
-        Operating points to judge.
-    uncertainty
-        How far ``stiffness``, ``mass`` and ``stick_speed`` are known, for the interval of V*; what it says of
-        other parameters is left alone, since the fit knows them better.
+        From its file (`hersey.read_machine`), or made by hand. Its stick speed is that at the fit's reference
+        temperature if it states no other, and moves as the transition speed does. ``motor_torque`` among its
+        limits, or ``roll_friction`` with ``nip_load``, gives the stall. Its operating points are judged. Of
+        its uncertainty that of ``stiffness``, ``mass`` and ``stick_speed`` counts for the interval of V*; the
+        fit knows other parameters better.
     temperatures
         K, ascending; by default the measured range and the points, and a little beyond.
     speeds
@@ -96,29 +73,16 @@ def operating_map(
     --------
     >>> from hersey import fit, read
     >>> surface = fit(read("examples/bench.csv").steady(tare="standing"))
-    >>> map_ = operating_map(surface, Drivetrain(11e3, 11.0), roll_radius=0.015, stick_speed=1.3e-3)
+    >>> machine = Machine(stiffness=11e3, mass=11.0, roll_radius=0.015, stick_speed=1.3e-3)
+    >>> map_ = operating_map(surface, machine)
     >>> [map_.state_at(180 + 273.15, v).state for v in (0.02, 0.045, 0.2)]
     ['stick_slip', 'bistable', 'smooth']
     """
-    given: dict[str, Any] = {
-        "roll_radius": roll_radius,
-        "stick_speed": stick_speed,
-        "stick_speed_temperature": stick_speed_temperature,
-        "stick_speed_rule": stick_speed_rule,
-        "limits": limits,
-        "points": points,
-        "uncertainty": uncertainty,
-    }
-    given = {name: value for name, value in given.items() if value is not None}
-    if isinstance(machine, Machine):
-        stated = replace(machine, **given)
-        train = stated.train
-    else:
-        for needed in ("roll_radius", "stick_speed"):
-            if needed not in given:
-                raise ParameterError(f"{needed} is missing: give it, or the machine in place of its train")
-        stated = Machine(machine.stiffness, machine.mass, **given)
-        train = stated.limits.gripping(machine)
+    if not isinstance(machine, Machine):
+        raise ParameterError(
+            "a map needs the machine, which states roll radius and stick speed: give read_machine(...) or "
+            "Machine(...) in place of its train"
+        )
     if draws < 1:
         raise ParameterError(f"draws is {draws}: at least 1 is needed")
     if surface.transition is None:
@@ -129,45 +93,37 @@ def operating_map(
     at = surface.reference_temperature
     first = surface.stick_speed_at(
         at,
-        stick_speed=stated.stick_speed,
-        stick_speed_temperature=stated.stick_speed_temperature,
-        stick_speed_rule=stated.stick_speed_rule,
+        stick_speed=machine.stick_speed,
+        stick_speed_temperature=machine.stick_speed_temperature,
+        stick_speed_rule=machine.stick_speed_rule,
     )
-    radius, rule = stated.roll_radius, stated.stick_speed_rule
+    train, radius, rule = machine.train, machine.roll_radius, machine.stick_speed_rule
     drag = surface.drag(roll_radius=radius, stick_speed=first)
-    known = dict(stated.uncertainty)
+    known = dict(machine.uncertainty)
     if "stick_speed" in known:  # stated with the stick speed, so at its temperature
-        known["stick_speed"] = known["stick_speed"].times(first / stated.stick_speed)
-    kelvin = shown_temperatures(surface, drag, stated.points, temperatures)
+        known["stick_speed"] = known["stick_speed"].times(first / machine.stick_speed)
+    kelvin = shown_temperatures(surface, drag, machine.points, temperatures)
     edges = edges_at(train, drag, kelvin, rule)
-    found = intervals(surface, train, drag, kelvin, known, radius, rule, seed, draws, threads, client)
+    drawing = Drawing.of(surface, replace(machine, uncertainty=known), drag, draws, seed)
+    found = intervals(drawing, kelvin, threads=threads, client=client)
     holding = np.array([law.holding_force for law in laws_at(drag, kelvin, rule)])
     return _drawn(
         surface,
-        train,
+        machine,
         drag,
         kelvin,
         edges,
         holding * radius,
         found,
-        roll_radius=radius,
-        stick_speed_rule=rule,
-        limits=stated.limits,
-        points=stated.points,
         speeds=speeds,
     )
 
 
 def given_map(
     surface: DampingSurface,
-    train: Drivetrain,
+    machine: Machine,
     drag: DragTable,
     edges_of: Callable[[FloatArray | None], GivenEdges],
-    *,
-    roll_radius: float,
-    stick_speed_rule: str = WITH_TRANSITION,
-    limits: Limits | None = None,
-    points: Sequence[OperatingPoint] = (),
 ) -> OperatingMap:
     """Return a map whose edges were found elsewhere, from a posterior of drives.
 
@@ -175,15 +131,15 @@ def given_map(
     ----------
     surface
         The fit, for the ranges of its dwells.
-    train, drag
-        The drive, and the typical drag, whose torque is shown.
+    machine
+        As in `operating_map`.
+    drag
+        The typical drag, whose torque is shown.
     edges_of
         Edges at the temperatures (K; None if isothermal) of the map.
-    roll_radius, stick_speed_rule, limits, points
-        As in `operating_map`.
     """
-    limits = limits or Limits()
-    kelvin = shown_temperatures(surface, drag, points, None)
+    roll_radius = machine.roll_radius
+    kelvin = shown_temperatures(surface, drag, machine.points, None)
     given = edges_of(kelvin)
     edges = {
         "lower": given.transition,
@@ -199,39 +155,32 @@ def given_map(
     )
     return _drawn(
         surface,
-        limits.gripping(train),
+        machine,
         drag,
         kelvin,
         edges,
         given.holding * roll_radius,
         found,
-        roll_radius=roll_radius,
-        stick_speed_rule=stick_speed_rule,
-        limits=limits,
-        points=points,
         speeds=None,
     )
 
 
 def _drawn(
     surface: DampingSurface,
-    train: Drivetrain,
+    machine: Machine,
     drag: PowerDrag,
     kelvin: FloatArray | None,
     edges: dict[str, FloatArray],
     holding: FloatArray,
     found: Intervals,
     *,
-    roll_radius: float,
-    stick_speed_rule: str,
-    limits: Limits,
-    points: Sequence[OperatingPoint],
     speeds: ArrayLike | None,
 ) -> OperatingMap:
     """The map of edges (m/s) and starting torques (N m), with torque, stall and points."""
+    train, limits, roll_radius = machine.train, machine.limits, machine.roll_radius
     reach = surface.speed_range[0] * roll_radius, surface.speed_range[1] * roll_radius
-    speed_grid = shown_speeds(edges, reach, points, limits.speed, speeds)
-    laws = shown_laws(drag, kelvin, stick_speed_rule)
+    speed_grid = shown_speeds(edges, reach, machine.points, limits.speed, speeds)
+    laws = shown_laws(drag, kelvin, machine.stick_speed_rule)
     limit, limited_by = torque_limit(train.grip, limits.motor_torque, roll_radius)
     below, above = contour(laws, np.inf if limit is None else limit / roll_radius)
     map_ = OperatingMap(
@@ -256,9 +205,9 @@ def _drawn(
         roll_radius=float(roll_radius),
         train=train,
         drag=drag,
-        stick_speed_rule=stick_speed_rule,
+        stick_speed_rule=machine.stick_speed_rule,
     )
-    placed = tuple(_placed(map_, point) for point in points)
+    placed = tuple(_placed(map_, point) for point in machine.points)
     return replace(map_, points=placed, warnings=(*found.warnings, *_remarks(map_, placed)))
 
 

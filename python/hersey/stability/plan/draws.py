@@ -17,7 +17,7 @@ from hersey.machine.uncertainty import Uncertainty
 from hersey.motion.belt import Drivetrain
 from hersey.motion.drag import BESIDE, AnyDrag
 from hersey.motion.parameters import OF_THE_BELT
-from hersey.stability.plan.trial import COARSE, MachineSample, Shape, TemperatureProfile, outcomes
+from hersey.stability.plan.trial import COARSE, Follow, MachineSample, Shape, TemperatureProfile, outcomes
 
 #: Relative distance that a profile for known parameters keeps from failure, in each of them.
 _EDGE = 1e-3
@@ -173,9 +173,8 @@ class Trials:
             [shape],
             self.thermal,
             self.force_limit,
-            latest=best,
+            Follow(latest=best, tolerance=tolerance),
             allowed=self.allowed,
-            tolerance=tolerance,
         )
         return [outcome.ready for outcome in found]
 
@@ -193,7 +192,7 @@ class Trials:
 
     def peak(self, shape: Shape) -> float:
         """Return the spring force that all but the allowed machines keep below; infinite if it fails."""
-        found = outcomes(self.machines, [shape], self.thermal, force=True)
+        found = outcomes(self.machines, [shape], self.thermal, how=Follow(force=True))
         return self.kept([f.peak_force if f.ready < math.inf else math.inf for f in found])
 
     def kept(self, values: Sequence[float]) -> float:

@@ -30,8 +30,7 @@ def plan_of_log(
     machine: Machine,
     *,
     target_speed: float,
-    temperature: float | Schedule | None = None,
-    heat: HeatBalance | None = None,
+    temperature: float | Schedule | HeatBalance | None = None,
     confidence: float = 0.95,
     seed: int = 1,
     progress: Progress | None = None,
@@ -45,8 +44,8 @@ def plan_of_log(
     target_speed
         m/s.
     temperature
-        K, or its profile; None for the fit of an isothermal log, or with ``heat``.
-    heat, confidence, seed, progress
+        K, its profile, or what makes it; None for the fit of an isothermal log.
+    confidence, seed, progress
         As in `plan_profile`.
 
     Raises
@@ -56,18 +55,14 @@ def plan_of_log(
     ParameterError
         If temperature and fit do not go together, or a value is out of range, with its name.
     """
-    varies = heat is not None or isinstance(temperature, Schedule)
-    kelvin = None if isinstance(temperature, Schedule) else temperature
+    varies = isinstance(temperature, Schedule | HeatBalance)
+    kelvin = None if isinstance(temperature, Schedule | HeatBalance) else temperature
     drag, samples = drag_and_draws(surface, machine, kelvin, seed, varies=varies)
     plan = plan_profile(
-        machine.train,
+        replace(machine, uncertainty=_uncertainty(machine, drag)),
         drag,
         target_speed=target_speed,
         temperature=temperature if varies else None,
-        heat=heat,
-        limits=machine.limits,
-        roll_radius=machine.roll_radius,
-        uncertainty=_uncertainty(machine, drag),
         samples=samples,
         confidence=confidence,
         seed=seed,

@@ -6,6 +6,7 @@ import math
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -28,6 +29,7 @@ from hersey.stability.plan.search import Progress, Room, Search
 from hersey.stability.plan.trial import (
     FORCE,
     ROUNDING,
+    Follow,
     MachineSample,
     Outcome,
     Shape,
@@ -61,21 +63,18 @@ _LONG, _LONG_LAPS = 10, 20_000
 #: Samples of the response.
 _SAMPLES = 2001
 _CLOSURES = ("retained", "stiction")
+#: What is known without draws.
+NO_SAMPLES: Mapping[str, ArrayLike] = MappingProxyType({})
 
 
-@takes_si(target_speed="belt speed", temperature="temperature", roll_radius="length")
+@takes_si(target_speed="belt speed", temperature="temperature")
 def plan_profile(
     train: Train,
     drag: BeltDrag,
     *,
     target_speed: float,
-    temperature: float | Schedule | None = None,
-    heat: HeatBalance | None = None,
-    limits: Limits | None = None,
-    roll_radius: float | None = None,
-    uncertainty: Mapping[str, Uncertainty] | None = None,
-    samples: Mapping[str, ArrayLike] | None = None,
-    machines: Sequence[tuple[Drivetrain, AnyDrag]] = (),
+    temperature: float | Schedule | HeatBalance | None = None,
+    samples: Mapping[str, ArrayLike] | Sequence[tuple[Drivetrain, AnyDrag]] = NO_SAMPLES,
     confidence: float = 0.95,
     seed: int = 1,
     progress: Progress | None = None,
@@ -85,32 +84,24 @@ def plan_profile(
     Parameters
     ----------
     train, drag
-        A drivetrain and its drag; or a machine (`hersey.read_machine`) and the surface fitted to its log,
-        which take radius, stick speed and grip from the machine's file. A machine also states what is not
-        given of limits, uncertainty and roll radius.
+        A machine (`hersey.read_machine`, `hersey.Machine`) and its drag, or the surface fitted to its log.
+        Its ``limits`` hold over the whole profile and after it: ``speed`` and ``acceleration`` of the drive,
+        and the spring force of the simulated motion against ``spring_force``, ``motor_torque`` over
+        ``roll_radius`` (the inertia of the drive itself is not in the model) and the roll's grip,
+        ``roll_friction * nip_load``. No plan lets the roll slip on the belt. Its ``uncertainty`` says how far
+        parameters are known; without it the plan is that of the nominal ones. A drivetrain alone has neither
+        limits, but for its grip, nor uncertainty.
     target_speed
         m/s, as all speeds here.
     temperature
         K, or its profile from the moment at which the drive could start; needed if the drag varies
-        with it.
-    heat
-        Instead of it: what makes the temperature from that moment on, friction under the plan too. Plan and
-        temperature are found in rounds; the proof has the temperature as a state of every motion.
-    limits
-        Checked over the whole profile and after it: ``speed`` and ``acceleration`` of the drive, and the
-        spring force of the simulated motion against ``spring_force``, ``motor_torque`` over ``roll_radius``
-        (the inertia of the drive itself is not in the model) and the roll's grip, ``roll_friction *
-        nip_load`` unless ``train`` states its own. No plan lets the roll slip on the belt.
-    roll_radius
-        m; needed with a limit of torque.
-    uncertainty
-        How far parameters are known, by name; without it the plan is that of the nominal parameters.
+        with it. Or what makes the temperature from that moment on, friction under the plan too: plan and
+        temperature are found in rounds, and the proof has the temperature as a state of every motion.
     samples
         Draws that go together, arrays of equal length by parameter (`DampingSurface.drag_samples`), for a
-        drag that varies with temperature at its reference temperature. They come before ``uncertainty``.
-    machines
-        Instead of both: whole machines drawn at random, at least 40. The search tries every other one, and
-        the rest prove what it finds.
+        drag that varies with temperature at its reference temperature. They come before the uncertainty of
+        the machine. Or instead of it whole machines drawn at random, at least 40: the search tries every
+        other one, and the rest prove what it finds.
     confidence
         Share of the belts that must be smooth and keep the limits, 0.5 to 0.999.
     seed
@@ -130,28 +121,29 @@ def plan_profile(
     >>> from hersey import Drag
     >>> drag = Drag(50, 1, ehl_exponent=-0.7, mixed_exponent=-1.2, stick_speed=0.01)
     >>> limits = Limits(speed=4, acceleration=10)
-    >>> plan = plan_profile(Drivetrain(1000, 1), drag, target_speed=1.2, limits=limits)
+    >>> machine = Machine(1000, 1, roll_radius=0.02, stick_speed=0.01, limits=limits)
+    >>> plan = plan_profile(machine, drag, target_speed=1.2)
     >>> plan.kind, plan.share
     ('overshoot', 1.0)
     """
-    if isinstance(train, Machine):
-        limits = train.limits if limits is None else limits
-        uncertainty = train.uncertainty if uncertainty is None and not machines else uncertainty
-        roll_radius = train.roll_radius if roll_radius is None else roll_radius
+    machine = train if isinstance(train, Machine) else None
+    limits = Limits() if machine is None else machine.limits
     train, drag, temperature = belt_of(train, drag, temperature)
-    limits = Limits() if limits is None else limits
     _check(drag, target_speed, limits, confidence, seed)
-    if machines and (uncertainty or samples or len(machines) < _LEAST):
-        raise ParameterError(f"machines: give at least {_LEAST}, without uncertainty and samples")
-    if heat is not None and temperature is not None:
-        raise ParameterError("give either temperature or heat, which makes it")
-    reach = Reach.of(limits, roll_radius, train.grip)
-    gripping, train = limits.gripping(train), replace(train, grip=None)  # the grip is a limit of force here
-    given = [MachineSample(replace(each, grip=None), of) for each, of in machines]
-    unknown = Unknown(train, drag, dict(uncertainty or {}), dict(samples or {}), seed, given)
+    reach = Reach.of(limits, None if machine is None else machine.roll_radius, train.grip)
+    gripping, train = train, replace(train, grip=None)  # the grip is a limit of force here
+    uncertainty = {} if machine is None else dict(machine.uncertainty)
+    if isinstance(samples, Mapping):
+        unknown = Unknown(train, drag, uncertainty, dict(samples), seed)
+    elif len(samples) >= _LEAST:
+        machines = [MachineSample(replace(each, grip=None), of) for each, of in samples]
+        unknown = Unknown(train, drag, {}, {}, seed, machines)
+    else:
+        raise ParameterError(f"samples: give at least {_LEAST} machines")
     asked = _Asked(unknown, gripping, target_speed, limits, reach, confidence, progress)
-    if heat is None:
+    if not isinstance(temperature, HeatBalance):
         return asked.on(TemperatureProfile(temperature))[0]
+    heat = temperature
     course = course_of(train, drag, heat)
     for _ in range(ROUNDS):
         thermal = TemperatureProfile(course)
@@ -160,7 +152,7 @@ def plan_profile(
             return replace(plan, course=course)
         before, course = course, course_of(gripping, drag, heat, plan.schedule)
         if (off := apart(before, course)) < ALIKE:
-            return asked.proven(plan, shape, TemperatureProfile(course), heat)
+            return asked.proven(plan, shape, TemperatureProfile(course, heat))
     text = f"plan and temperature do not agree after {ROUNDS} rounds: they differ by {off:.2g} K"
     return asked.without(plan, Obstacle("temperature", off, None, text), course)
 
@@ -233,11 +225,11 @@ class _Asked:
         obstacle = Obstacle("confidence", self.confidence, share, text)
         return Plan(**facts, **NOTHING, warnings=(), obstacles=(obstacle,), tried=tried)
 
-    def proven(self, plan: Plan, shape: Shape, thermal: TemperatureProfile, heat: HeatBalance) -> Plan:
+    def proven(self, plan: Plan, shape: Shape, thermal: TemperatureProfile) -> Plan:
         """Return the plan with a proof of its own: temperature is a state of every motion."""
         assert thermal.schedule is not None
         proof = self.unknown.verify(
-            shape, plan.duration, thermal, self.reach.force, self.confidence, _VERIFIED + 1, heat
+            shape, plan.duration, thermal, self.reach.force, self.confidence, _VERIFIED + 1
         )
         if not proof.accepted:
             text = (
@@ -320,24 +312,15 @@ class Unknown:
         force_limit: float,
         confidence: float,
         number: int,
-        heat: HeatBalance | None = None,
     ) -> Proof:
-        """Try a profile on draws that the search has not seen; with ``heat`` each makes its temperature."""
+        """Try a profile on draws that the search has not seen; with heat each makes its temperature."""
         machines, impossible = self.drawn(number, max(_FRESH, math.ceil(10.0 / (1.0 - confidence))))
         laps = thermal.end / machines[0].lap
-        long = 0 if heat is not None else _LONG if laps < _LONG_LAPS else 1
+        long = 0 if thermal.heat is not None else _LONG if laps < _LONG_LAPS else 1
 
         def tried(machines: Sequence[MachineSample], until: float = 0.0) -> list[Outcome]:
-            return outcomes(
-                machines,
-                [shape],
-                thermal,
-                force_limit,
-                force=True,
-                until=until,
-                tolerance=_TIGHT,
-                heat=heat,
-            )
+            how = Follow(force=True, until=until, tolerance=_TIGHT)
+            return outcomes(machines, [shape], thermal, force_limit, how)
 
         found = [*tried(machines[:long], thermal.end), *tried(machines[long:])]
         [nominal] = tried([MachineSample(self.train, self.drag)])

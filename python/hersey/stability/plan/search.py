@@ -20,6 +20,7 @@ from hersey.stability.plan.trial import (
     COARSE,
     FINE,
     ROUNDING,
+    Follow,
     MachineSample,
     Outcome,
     Shape,
@@ -189,7 +190,8 @@ class Search:
         limit, found = self.trials.force_limit, []
         for wait in dict.fromkeys(shape.wait for shape in shapes):
             same = [shape for shape in shapes if shape.wait == wait]
-            done = outcomes([self.nominal], same, self.thermal, limit, force=force, tolerance=COARSE)
+            how = Follow(force=force, tolerance=COARSE)
+            done = outcomes([self.nominal], same, self.thermal, limit, how)
             found += list(zip(same, done, strict=True))
         return found
 
@@ -264,7 +266,8 @@ class Search:
     def _alone(self, shapes: Sequence[Shape], below: float = math.inf) -> list[float]:
         """Times at which the nominal machine is ready with each of some profiles of one wait."""
         limit = self.trials.force_limit
-        found = outcomes([self.nominal], shapes, self.thermal, limit, latest=below, tolerance=COARSE)
+        how = Follow(latest=below, tolerance=COARSE)
+        found = outcomes([self.nominal], shapes, self.thermal, limit, how)
         return [outcome.ready for outcome in found]
 
     def _on_all(self, shape: Shape, alone: float, below: float) -> float:

@@ -124,12 +124,30 @@ class Outcome(NamedTuple):
     why: str
 
 
-class TemperatureProfile:
-    """Temperature against time, K, or none."""
+@dataclass(frozen=True)
+class Follow:
+    """How a motion is followed: at least ``until`` a time (s), and what is not ready before ``latest`` fails.
 
-    def __init__(self, given: float | Schedule | None) -> None:
+    ``force`` says whether the greatest spring force is wanted, ``tolerance`` is that of the steps.
+    """
+
+    force: bool = False
+    until: float = 0.0
+    latest: float = math.inf
+    tolerance: float = FINE
+
+
+#: To its end, without the force.
+PLAINLY = Follow()
+
+
+class TemperatureProfile:
+    """Temperature against time, K, or none; with ``heat`` each motion makes its own, and this is nominal."""
+
+    def __init__(self, given: float | Schedule | None, heat: HeatBalance | None = None) -> None:
         """Take the profile as `simulate` does."""
         self.schedule = None if given is None else Schedule.of(given)
+        self.heat = heat
         self._arguments: dict[tuple[float, float], ScheduleArguments] = {}
 
     @property
@@ -217,7 +235,7 @@ class MachineSample:
         tolerance: float = FINE,
     ) -> Outcome:
         """Return what the profile does to this machine."""
-        return outcomes([self], [shape], thermal, force_limit, force=force, tolerance=tolerance)[0]
+        return outcomes([self], [shape], thermal, force_limit, Follow(force=force, tolerance=tolerance))[0]
 
     def belt(self, force_limit: float) -> _core.StartingBelt:
         """Return the machine as the core takes it: the limit of force is the grip of the roll."""
@@ -251,28 +269,23 @@ def outcomes(
     shapes: Sequence[Shape],
     thermal: TemperatureProfile,
     force_limit: float = math.inf,
+    how: Follow = PLAINLY,
     *,
-    latest: float = math.inf,
     allowed: int | None = None,
-    force: bool = False,
-    until: float = 0.0,
-    tolerance: float = FINE,
-    heat: HeatBalance | None = None,
 ) -> list[Outcome]:
     """Return what a profile does to each machine, in order, until more than ``allowed`` of them fail.
 
-    Or what each profile, of one wait and target, does to one machine. Followed at least ``until`` that time,
-    and while the temperature changes quickly.
-    What is not ready before ``latest`` fails. The motion is that of a roll whose grip is the limit of force:
-    where the force passes it is an event located to rounding, and up to there the roll grips, so that a grip
-    changes nothing. With ``heat`` temperature is a state of each motion, from the wait on; the profile of
-    temperature then tells what comes after.
+    Or what each profile, of one wait and target, does to one machine. It is also followed while the
+    temperature changes quickly. The motion is that of a roll whose grip is the limit of force: where the
+    force passes it is an event located to rounding, and up to there the roll grips, so that a grip changes
+    nothing. With ``heat`` of the profile temperature is a state of each motion, from the wait on; the profile
+    then tells what comes after.
     """
     if not machines or not shapes:
         return []
 
     def followed(some: Sequence[MachineSample], may_fail: int | None) -> list[Outcome]:
-        return _followed(some, shapes, thermal, force_limit, latest, may_fail, force, until, tolerance, heat)
+        return _followed(some, shapes, thermal, force_limit, how, may_fail)
 
     if allowed is None:
         return followed(machines, None)
@@ -290,15 +303,11 @@ def _followed(
     shapes: Sequence[Shape],
     thermal: TemperatureProfile,
     force_limit: float,
-    latest: float,
+    how: Follow,
     allowed: int | None,
-    force: bool,
-    until: float,
-    tolerance: float,
-    heat: HeatBalance | None,
 ) -> list[Outcome]:
     """What the core says of these machines, and what comes after the profile."""
-    zero = machines[0].drag.temperature_zero
+    zero, heat, until = machines[0].drag.temperature_zero, thermal.heat, how.until
     begin = 0.0 if heat is not None else shapes[0].wait
     if thermal.end <= _QUICK * machines[0].lap:
         until = max(until, thermal.end)
@@ -310,17 +319,17 @@ def _followed(
         ],
         None if heat is not None else thermal.arguments(begin, zero),
         None if heat is None else heat.arguments(zero),
-        (shapes[0].target, until - begin, latest - begin),
-        force,
+        (shapes[0].target, until - begin, how.latest - begin),
+        how.force,
         max(len(machines), len(shapes)) if allowed is None else allowed,
-        tolerance,
+        how.tolerance,
         _THREADS,
         MOST_STEPS,
     )
     found = []
     for i, (at, pull, ending) in enumerate(zip(released, peaks, endings, strict=True)):
         machine, shape = machines[i % len(machines)], shapes[i % len(shapes)]
-        peak = min(pull, force_limit) if force else math.nan
+        peak = min(pull, force_limit) if how.force else math.nan
         if ending:
             found.append(Outcome(math.inf, peak, _WHY.get(ending, ending.replace("_", "-"))))
         else:

@@ -24,7 +24,9 @@ def course_of(
 
     From the start of the heat balance on, for half an hour at the most.
     """
-    run = simulate(train, drag, drive_speed=drive_speed, heat=heat, duration=_LONGEST, samples=_SAMPLES)
+    run = simulate(
+        train, drag, drive_speed=drive_speed, temperature=heat, duration=_LONGEST, samples=_SAMPLES
+    )
     assert run.film_temperature is not None
     last = float(run.film_temperature[-1])
     moving = np.flatnonzero(np.abs(run.film_temperature - last) > ALIKE)
