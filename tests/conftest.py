@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -19,11 +21,27 @@ SHARED = ROOT.parent / "shared"
 SLOW = tuple(line for line in (ROOT / "tests" / "slow.txt").read_text().splitlines() if line[:1] != "#")
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark the tests of `slow.txt`, which `make quick` leaves out."""
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Add what `make nightly` asks for."""
+    parser.addoption("--nightly", action="store_true", help="run the tests marked nightly too")
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Mark the tests of `slow.txt`, which `make quick` leaves out, and leave the nightly ones out."""
     for item in items:
         if item.nodeid.startswith(SLOW):
             item.add_marker("slow")
+    if not config.getoption("--nightly"):
+        nightly = [item for item in items if item.get_closest_marker("nightly")]
+        config.hook.pytest_deselected(items=nightly)
+        items[:] = [item for item in items if not item.get_closest_marker("nightly")]
+
+
+def mostly_nightly(cases: Iterable[Any], *kept: Any) -> list[Any]:
+    """Cases of a test of which `make test` tries only those kept, for they take the paths of all others."""
+    cases = list(cases)
+    assert set(kept) <= set(cases)
+    return [case if case in kept else pytest.param(case, marks=pytest.mark.nightly) for case in cases]
 
 
 @pytest.fixture(scope="session")
