@@ -41,7 +41,11 @@ def mostly_nightly(cases: Iterable[Any], *kept: Any) -> list[Any]:
     """Cases of a test of which `make test` tries only those kept, for they take the paths of all others."""
     cases = list(cases)
     assert set(kept) <= set(cases)
-    return [case if case in kept else pytest.param(case, marks=pytest.mark.nightly) for case in cases]
+    nightly = pytest.mark.nightly
+    return [
+        case if case in kept else pytest.param(*(case if isinstance(case, tuple) else (case,)), marks=nightly)
+        for case in cases
+    ]
 
 
 @pytest.fixture(scope="session")

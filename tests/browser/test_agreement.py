@@ -8,18 +8,21 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
+from unittest import mock
 
 import numpy as np
 import pytest
 from playwright.sync_api import Browser, Locator, Page, expect
 
 import hersey
+from hersey.decision import behaviour
 from hersey.document.assembly import analyse
 from hersey.document.parts import Analysis
 from hersey.log.means import read_means
 from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.machine import Machine, read_machine
-from hersey.posterior.sampling import posterior
+from hersey.posterior.sampling import DRAWS, posterior
 from hersey.report.page import render
 from tests.browser.opening import Opened
 from tests.conftest import ROOT
@@ -77,10 +80,20 @@ def judged(
     request: pytest.FixtureRequest,
     points: hersey.SteadyPoints,
     tmp_path_factory: pytest.TempPathFactory,
-) -> tuple[Analysis, hersey.SteadyPoints, Machine]:
+) -> tuple[Analysis, hersey.Posterior, Machine]:
+    """The document of a machine, and the draws that it was made of."""
     machine = MACHINES[request.param]
     dwells = _rising(tmp_path_factory.mktemp("rising")) if request.param == "only rising" else points
-    return analyse(dwells.log, dwells, machine=machine), dwells, machine
+    found: list[hersey.Posterior] = []
+
+    def drawn(*given: Any, **named: Any) -> hersey.Posterior:
+        found.append(posterior(*given, **named))
+        return found[-1]
+
+    with mock.patch.object(behaviour, "posterior", drawn):
+        document = analyse(dwells.log, dwells, machine=machine)
+    assert [len(each.drives) for each in found] == [DRAWS]
+    return document, found[0], machine
 
 
 def _verdict(found: hersey.Posterior, machine: Machine, kelvin: float | None, speed: float) -> str:
@@ -109,13 +122,12 @@ def _verdict(found: hersey.Posterior, machine: Machine, kelvin: float | None, sp
 
 
 def test_document_sentence_list_map_and_plan_agree(
-    judged: tuple[Analysis, hersey.SteadyPoints, Machine],
+    judged: tuple[Analysis, hersey.Posterior, Machine],
 ) -> None:
-    document, dwells, machine = judged
+    document, found, machine = judged
     decision, map_ = document.decision, document.map
     assert decision is not None
     assert map_ is not None
-    found = posterior(dwells, machine)
     assert [p.name for p in decision.points] == [p.name for p in machine.points]
     for point, stated, placed in zip(decision.points, machine.points, map_.points, strict=True):
         kelvin = None if found.temperature is None else stated.temperature
@@ -139,7 +151,7 @@ def test_document_sentence_list_map_and_plan_agree(
 
 
 def test_the_page_says_the_same(
-    judged: tuple[Analysis, hersey.SteadyPoints, Machine], browser: Browser, tmp_path: Path
+    judged: tuple[Analysis, hersey.Posterior, Machine], browser: Browser, tmp_path: Path
 ) -> None:
     document, _, _ = judged
     assert document.decision is not None
