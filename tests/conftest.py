@@ -16,9 +16,13 @@ from hersey.machine.machine import read_machine
 
 ROOT = Path(__file__).parents[1]
 SHARED = ROOT.parent / "shared"
-
-
-SLOW = tuple(line for line in (ROOT / "tests" / "slow.txt").read_text().splitlines() if line[:1] != "#")
+#: What `make quick` leaves out, by marker: the starts of names in a list of the same name.
+LISTED = {
+    marker: tuple(
+        line for line in (ROOT / "tests" / f"{marker}.txt").read_text().splitlines() if line[:1] != "#"
+    )
+    for marker in ("slow", "lasting")
+}
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -27,10 +31,11 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Mark the tests of `slow.txt`, which `make quick` leaves out, and leave the nightly ones out."""
+    """Mark the tests that are listed, and leave the nightly ones out."""
     for item in items:
-        if item.nodeid.startswith(SLOW):
-            item.add_marker("slow")
+        for marker, starts in LISTED.items():
+            if item.nodeid.startswith(starts):
+                item.add_marker(marker)
     if not config.getoption("--nightly"):
         nightly = [item for item in items if item.get_closest_marker("nightly")]
         config.hook.pytest_deselected(items=nightly)
