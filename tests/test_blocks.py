@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.conftest import ROOT
+from tests.life import shipped
 
 FILES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 #: A block, and the comment before it if it cannot run here.
@@ -51,7 +52,8 @@ def test_a_block_runs_alone(name: str, pasted: Callable[[str], None]) -> None:
 
 @pytest.mark.parametrize("name", sorted(RUN.keys() - QUICK.keys()))
 def test_a_long_block_runs_alone(name: str, pasted: Callable[[str], None]) -> None:
-    pasted(name)
+    with shipped.few():
+        pasted(name)
 
 
 def test_only_a_cluster_is_not_here() -> None:

@@ -94,7 +94,8 @@ def test_a_command_prints_its_part(
 ) -> None:
     """The whole document is one that is made once for all tests; `test_cli` has the command make its own."""
     monkeypatch.setattr("hersey.document.assembly.analyse", lambda *_, **__: document)
-    told = printed([name, *(files.get(argument, argument) for argument in ARGUMENTS[name])])
+    with shipped.few():
+        told = printed([name, *(files.get(argument, argument) for argument in ARGUMENTS[name])])
     assert told["schema_version"] == SCHEMA_VERSION
     assert told["hersey_version"] == hersey.__version__
     assert told["command"].startswith("hersey")
