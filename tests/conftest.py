@@ -10,6 +10,7 @@ import pytest
 
 import hersey
 from hersey import testbench
+from hersey.decision.behaviour import Working
 from hersey.document.assembly import analyse
 from hersey.document.parts import Analysis
 from hersey.machine.machine import read_machine
@@ -94,6 +95,12 @@ def surface(points: hersey.SteadyPoints) -> hersey.DampingSurface:
 def document(log: hersey.TorqueLog, points: hersey.SteadyPoints) -> Analysis:
     machine = read_machine(ROOT / "tests" / "stand" / "machine.toml")
     return analyse(log, points, command="hersey report bench.csv", machine=machine)
+
+
+@pytest.fixture
+def few_draws(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let a report rest on a quarter of the draws, where it is looked at in words."""
+    monkeypatch.setattr(Working.__init__, "__defaults__", ((), None, 250))
 
 
 @pytest.fixture

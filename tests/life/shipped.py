@@ -20,6 +20,8 @@ from hersey.life import other_uses
 from hersey.life.age import Age
 from hersey.life.campaign import Entry
 from hersey.life.campaign.kept import entry_of
+from hersey.life.growth import fit as growth_module
+from hersey.life.growth import posterior as growth_posterior
 from hersey.life.indicators import sticking
 from hersey.machine.machine import Machine, read_machine
 from hersey.testbench.stand import RPM
@@ -112,10 +114,19 @@ def opened(units: int = 2) -> hersey.Campaign:
     return hersey.Campaign.open(write(Path(_FOLDER.name) / f"life-{units}.hersey", units), write=False)
 
 
+def fewer(patch: pytest.MonkeyPatch) -> None:
+    """A third of the draws: what they would tell better is the matter of the benchmark."""
+    patch.setattr(growth_posterior, "_ROUNDS", (100, 100, 100, 200))
+    patch.setattr(growth_posterior, "_MOST", 2.0)
+    patch.setattr(growth_posterior, "_POPULATION", 64)
+    patch.setattr(growth_module, "_DRAWS", 1000)
+
+
 @contextmanager
 def few() -> Iterator[None]:
     """Look for V* in few runs and at few uses: each takes a second, and tests of their own see all."""
     with pytest.MonkeyPatch.context() as patch:
+        fewer(patch)
         patch.setattr(sticking, "MOST_FOLDS", 4)
         patch.setattr(sticking, "_DRAWS", 2)
         patch.setattr(other_uses, "_LIMITS", (0.8, 1.0, 1.25))
