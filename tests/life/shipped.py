@@ -16,7 +16,7 @@ import polars as pl
 import pytest
 
 import hersey
-from hersey.life import other_uses
+from hersey.life import ageing_maps, other_uses
 from hersey.life.age import Age
 from hersey.life.campaign import Entry
 from hersey.life.campaign.kept import entry_of
@@ -124,11 +124,12 @@ def fewer(patch: pytest.MonkeyPatch) -> None:
 
 @contextmanager
 def few() -> Iterator[None]:
-    """Look for V* in few runs and at few uses: each takes a second, and tests of their own see all."""
+    """Look for V* in few runs, uses and places of a map, at a second each: tests of their own see all."""
     with pytest.MonkeyPatch.context() as patch:
         fewer(patch)
         patch.setattr(sticking, "MOST_FOLDS", 4)
         patch.setattr(sticking, "_DRAWS", 2)
+        patch.setattr(ageing_maps, "TEMPERATURES", 7)
         patch.setattr(other_uses, "_LIMITS", (0.8, 1.0, 1.25))
         yield
 
