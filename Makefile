@@ -17,7 +17,7 @@ SUM_OF_SOURCES := cat $(PHYSICS_SOURCES) | sha256sum | cut -c1-64
 # The core for C and for units of other tools, beside the room that packs them. Its name ends as the system's libraries do.
 LIBRARY := python/hersey/exchange/library
 
-.PHONY: help build physics demo demo-life test quick lint format typecheck test-rust test-python browser lowest fuzz \
+.PHONY: help build physics demo demo-life test quick nightly lint format typecheck test-rust test-python browser lowest fuzz \
   fuzz-read benchmark mutants mutants-python mutants-rust clean
 .DEFAULT_GOAL := help
 
@@ -62,7 +62,10 @@ demo-life: build ## follow the shipped life test of eight units to what ends the
 	$(BIN)/hersey life build/demo-life/life.hersey --machine examples/machine.toml \
 	  --out build/demo-life/life.html --figures build/demo-life/figures --force
 
-test: lint typecheck test-rust test-python ## everything: lint, types, Rust and Python tests, the page in a browser
+# What keeps one core busy goes beside what else does; then the tests of the package take all cores.
+test: build ## everything: lint, types, Rust and Python tests, the page in a browser
+	$(MAKE) --no-print-directory --jobs=2 --output-sync=target lint typecheck test-rust
+	$(MAKE) --no-print-directory test-python
 
 lint: build ## check format and style
 	$(BIN)/ruff format --check --quiet .
@@ -82,11 +85,18 @@ typecheck: build ## check types, and the stub against the bindings
 test-rust: ## tests of the core, and of it for C
 	cargo test --release --quiet --package hersey-core --package hersey-c
 
+# Each worker begins with its part of the tests in their order, so that few files are shared, and then takes from others.
+TESTED := PYTHONDONTWRITEBYTECODE= OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --dist worksteal
+
 test-python: build browser ## tests of the package and the page
-	PYTHONDONTWRITEBYTECODE= OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --dist worksteal
+	$(TESTED)
 
 quick: build ## the tests of the package that take a moment, while working
-	$(BIN)/python -m pytest -n auto --dist worksteal -m "not slow" --ignore tests/browser
+	$(TESTED) -m "not slow and not lasting" --ignore tests/browser
+
+nightly: build browser ## every case of every test, then fuzzing and mutants (hours)
+	$(TESTED) --nightly
+	$(MAKE) --no-print-directory --keep-going fuzz fuzz-read mutants
 
 # The page is tested in a real Chromium; Playwright drives the one of the system.
 browser: ## install Chromium if there is none

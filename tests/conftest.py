@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 import hersey
 from hersey import testbench
+from hersey.decision.behaviour import Working
 from hersey.document.analysis import Analysis
 from hersey.document.assembly import document_of
 from hersey.machine.machine import read_machine
@@ -15,16 +18,41 @@ from hersey.study import study
 
 ROOT = Path(__file__).parents[1]
 SHARED = ROOT.parent / "shared"
+#: What `make quick` leaves out, by marker: the starts of names in a list of the same name.
+LISTED = {
+    marker: tuple(
+        line for line in (ROOT / "tests" / f"{marker}.txt").read_text().splitlines() if line[:1] != "#"
+    )
+    for marker in ("slow", "lasting")
+}
 
 
-SLOW = tuple(line for line in (ROOT / "tests" / "slow.txt").read_text().splitlines() if line[:1] != "#")
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Add what `make nightly` asks for."""
+    parser.addoption("--nightly", action="store_true", help="run the tests marked nightly too")
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark the tests of `slow.txt`, which `make quick` leaves out."""
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Mark the tests that are listed, and leave the nightly ones out."""
     for item in items:
-        if item.nodeid.startswith(SLOW):
-            item.add_marker("slow")
+        for marker, starts in LISTED.items():
+            if item.nodeid.startswith(starts):
+                item.add_marker(marker)
+    if not config.getoption("--nightly"):
+        nightly = [item for item in items if item.get_closest_marker("nightly")]
+        config.hook.pytest_deselected(items=nightly)
+        items[:] = [item for item in items if not item.get_closest_marker("nightly")]
+
+
+def mostly_nightly(cases: Iterable[Any], *kept: Any) -> list[Any]:
+    """Cases of a test of which `make test` tries only those kept, for they take the paths of all others."""
+    cases = list(cases)
+    assert set(kept) <= set(cases)
+    nightly = pytest.mark.nightly
+    return [
+        case if case in kept else pytest.param(*(case if isinstance(case, tuple) else (case,)), marks=nightly)
+        for case in cases
+    ]
 
 
 @pytest.fixture(scope="session")
@@ -68,6 +96,12 @@ def surface(points: hersey.SteadyPoints) -> hersey.DampingSurface:
 def document(points: hersey.SteadyPoints) -> Analysis:
     machine = read_machine(ROOT / "tests" / "stand" / "machine.toml")
     return document_of(study(points, machine), command="hersey report bench.csv")
+
+
+@pytest.fixture
+def few_draws(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let a report rest on a quarter of the draws, where it is looked at in words."""
+    monkeypatch.setattr(Working.__init__, "__defaults__", ((), None, 250))
 
 
 @pytest.fixture

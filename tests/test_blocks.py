@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.conftest import ROOT
+from tests.conftest import ROOT, mostly_nightly
+from tests.life import shipped
 
 FILES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 #: A block, and the comment before it if it cannot run here.
@@ -49,9 +50,15 @@ def test_a_block_runs_alone(name: str, pasted: Callable[[str], None]) -> None:
     pasted(name)
 
 
-@pytest.mark.parametrize("name", sorted(RUN.keys() - QUICK.keys()))
+#: The call of `follow` is what the README types as `hersey life`, of the same eight units.
+LASTING = sorted(RUN.keys() - QUICK.keys())
+KEPT = [name for name in LASTING if "follow(" not in RUN[name]]
+
+
+@pytest.mark.parametrize("name", mostly_nightly(LASTING, *KEPT))
 def test_a_long_block_runs_alone(name: str, pasted: Callable[[str], None]) -> None:
-    pasted(name)
+    with shipped.few():
+        pasted(name)
 
 
 def test_only_a_cluster_is_not_here() -> None:

@@ -15,12 +15,18 @@ from hersey import testbench
 from hersey.cli.application import VERBS
 from tests.cli.command import run
 from tests.cli.test_cli import example
-from tests.conftest import ROOT, SHARED
+from tests.conftest import ROOT, SHARED, mostly_nightly
+from tests.life import shipped
 
 EXAMPLES = sorted((ROOT / "examples").glob("[0-9]*.py"))
 
 
-@pytest.mark.parametrize("script", EXAMPLES, ids=lambda p: p.stem)
+@pytest.mark.parametrize(
+    "script",
+    # what `08_paper_figures` does is called and looked at in tests/paper
+    mostly_nightly(EXAMPLES, *(each for each in EXAMPLES if each.stem != "08_paper_figures")),
+    ids=lambda p: p.stem,
+)
 def test_example(
     script: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -52,9 +58,10 @@ def test_readme_commands(tmp_path: Path) -> None:
     lines = [line for line in commands() if line not in OWN]
     assert len(lines) >= 15
     helped = {example(verb) for verb in VERBS}  # which tests/cli/test_cli.py types
-    for line in lines:
-        if line not in helped:
-            typed(line, tmp_path)
+    with shipped.few():
+        for line in lines:
+            if line not in helped:
+                typed(line, tmp_path)
 
 
 #: Commands of the README for the reader's own files: those of the line, made here of the example's.

@@ -18,7 +18,7 @@ import pytest
 import hersey
 from hersey import errors
 from hersey.cli.application import VERBS, load
-from tests.conftest import ROOT, SLOW
+from tests.conftest import LISTED, ROOT
 from tests.mutants import files_for, named, sample, table
 
 PACKAGE = ROOT / "python" / "hersey"
@@ -344,8 +344,8 @@ def test_the_repository_names_no_machine_and_no_registry() -> None:
             assert host.encode() not in text, f"{path.name} names {host}"
 
 
-def test_the_list_of_slow_tests_names_none_that_is_gone() -> None:
-    for line in SLOW:
+def test_the_lists_of_slow_and_lasting_tests_name_none_that_is_gone() -> None:
+    for line in (line for starts in LISTED.values() for line in starts):
         path, _, test = line.partition("::")
         assert (ROOT / path).exists(), line
         assert not test or f"def {test}" in (ROOT / path).read_text(), line

@@ -1,16 +1,20 @@
 """Ctrl-C in the midst of each call that can last: the call ends with KeyboardInterrupt, and soon.
 
-Each call would last minutes or hours. It runs in a process of its own, which is interrupted once it has
-worked; what is measured is its processor time afterwards, which a busy machine does not lengthen.
+Each call would last minutes or hours. It runs in a process beside this one, which is interrupted once it has
+worked and then takes the next call; what is measured is its processor time after the interrupt, which a busy
+machine does not lengthen.
 """
 
 from __future__ import annotations
 
+import json
 import os
+import select
 import signal
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -18,7 +22,7 @@ import pytest
 from tests.conftest import ROOT
 
 HEAD = """
-import sys
+import json, sys
 from math import inf
 import numpy as np, xarray
 from hersey import Drag, Drivetrain, simulate, stick_slip, _core
@@ -39,22 +43,27 @@ from hersey.identification.trace_file import read_trace
 BENCH = "examples/bench.csv"
 PLANNED = Machine(1000, 1, 0.02, 0.01, limits=Limits(speed=4, acceleration=10))
 NIP = {"effective_modulus": 2.63e6, "layer": ElasticLayer(3.5e-3, 0.49)}
-MADE
-print("ready", flush=True)
-try:
-    CALL
-except KeyboardInterrupt:
-    print("interrupted", flush=True)
+made = set()
+while typed := sys.stdin.readline():
+    needed, call = json.loads(typed)
+    for text in needed:
+        if text not in made:
+            exec(text)
+            made.add(text)
+    print("ready", flush=True)
+    try:
+        exec(compile(call, "call", "exec"))  # of a text, Python would end as if nobody had caught it
+    except KeyboardInterrupt:
+        print("interrupted", flush=True)
 """
-#: What some calls are given, made only for them: it takes longer than all else.
-_POINTS = 'POINTS = hersey.read(BENCH).steady(tare="standing")'
+#: What some calls are given, made once for all of them.
 MADE = {
     "RECORD": (
         'TRACE = read_trace("examples/stick-slip.csv")\n'
         "RECORD = hersey.cycles(TRACE.time, TRACE.value, drive_speed=0.02)"
     ),
-    "POINTS": _POINTS,
-    "SURFACE": f"{_POINTS}; SURFACE = hersey.fit(POINTS)",
+    "POINTS": 'POINTS = hersey.read(BENCH).steady(tare="standing")',
+    "SURFACE": 'SURFACE = hersey.fit(hersey.read(BENCH).steady(tare="standing"))',
     "MACHINE": 'MACHINE = hersey.read_machine("examples/machine.toml")',
 }
 #: Each with what would make it last for long.
@@ -94,25 +103,51 @@ def processor_time(process: int) -> float:
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
+@pytest.fixture(scope="module")
+def children() -> Iterator[list[subprocess.Popen[str]]]:
+    """The process that has ended every call so far, if there is one; it ends by itself after the last."""
+    kept: list[subprocess.Popen[str]] = []
+    yield kept
+    for child in kept:
+        told, _ = child.communicate(timeout=60.0)
+        assert (child.returncode, told) == (0, "")
+
+
+def started() -> subprocess.Popen[str]:
+    """A process that runs what it is told on its standard input."""
+    return subprocess.Popen(
+        [sys.executable, "-c", HEAD],
+        cwd=ROOT,
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
+
+
 @pytest.mark.skipif(not (PROCESSES / "self" / "stat").exists(), reason="processor time is read from /proc")
 @pytest.mark.parametrize("call", CALLS.values(), ids=CALLS)
-def test_an_interrupt_ends_the_call(call: str) -> None:
-    made = "\n".join(text for name, text in MADE.items() if name in call)
-    command = [sys.executable, "-c", HEAD.replace("MADE", made).replace("CALL", call)]
-    with subprocess.Popen(
-        command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
-    ) as child:
-        assert child.stdout is not None
-        try:
-            assert child.stdout.readline() == "ready\n"
-            begun = processor_time(child.pid)
-            while (worked := processor_time(child.pid) - begun) < WORKED and child.poll() is None:
-                time.sleep(0.02)
-            child.send_signal(signal.SIGINT)
-            # two threads may work after it; a call that goes on is stopped here by its processor time
-            while child.poll() is None and processor_time(child.pid) - begun - worked < 2 * MOST:
-                time.sleep(0.02)
-            assert child.poll() is not None, "the call goes on"
-            assert child.stdout.read() == "interrupted\n"
-        finally:
+def test_an_interrupt_ends_the_call(call: str, children: list[subprocess.Popen[str]]) -> None:
+    child = children.pop() if children else started()
+    assert child.stdin is not None
+    assert child.stdout is not None
+    try:
+        needed = [text for name, text in MADE.items() if name in call]
+        print(json.dumps([needed, call]), file=child.stdin, flush=True)
+        assert child.stdout.readline() == "ready\n"
+        begun = processor_time(child.pid)
+        while (worked := processor_time(child.pid) - begun) < WORKED and child.poll() is None:
+            time.sleep(0.02)
+        child.send_signal(signal.SIGINT)
+        # two threads may work after it; a call that goes on is stopped here by its processor time
+        while processor_time(child.pid) - begun - worked < 2 * MOST:
+            if select.select([child.stdout], [], [], 0.02)[0]:
+                break
+        else:
+            pytest.fail("the call goes on")
+        assert child.stdout.readline() == "interrupted\n"
+        children.append(child)
+    finally:
+        if not children:
             child.kill()
+            child.communicate()

@@ -97,7 +97,8 @@ def document(*arguments: str, reworded: bool) -> dict[str, Any]:
 @pytest.mark.parametrize(
     "arguments",
     [
-        ("fit", "examples/bench.csv", "--tare", "standing"),
+        # the report holds the fit and its verdict
+        pytest.param(("fit", "examples/bench.csv", "--tare", "standing"), marks=pytest.mark.nightly),
         ("report", "examples/bench.csv", "--machine", "examples/machine.toml", "--tare", "standing"),
         ("inspect", "examples/bench.csv"),
     ],

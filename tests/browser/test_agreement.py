@@ -8,22 +8,25 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
+from unittest import mock
 
 import numpy as np
 import pytest
 from playwright.sync_api import Browser, Locator, Page, expect
 
 import hersey
+from hersey.decision import behaviour
 from hersey.document.analysis import Analysis
 from hersey.document.assembly import document_of
 from hersey.log.means import read_means
 from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.machine import Machine, read_machine
-from hersey.posterior.sampling import posterior
+from hersey.posterior.sampling import DRAWS, posterior
 from hersey.report.page import render
 from hersey.study import study
 from tests.browser.opening import Opened
-from tests.conftest import ROOT
+from tests.conftest import ROOT, mostly_nightly
 
 HOT, COOL = 453.15, 403.15
 #: Words of each verdict: the sentence of one speed and of several, the list, and the signal.
@@ -73,15 +76,29 @@ MACHINES = {
 }
 
 
-@pytest.fixture(scope="module", params=MACHINES)
+#: A drive that is too slow for a point is judged by its stated speed alone, which `test_judge` looks at.
+JUDGED = mostly_nightly(MACHINES, *(MACHINES.keys() - {"slow drive"}))
+
+
+@pytest.fixture(scope="module", params=JUDGED)
 def judged(
     request: pytest.FixtureRequest,
     points: hersey.SteadyPoints,
     tmp_path_factory: pytest.TempPathFactory,
-) -> tuple[Analysis, hersey.SteadyPoints, Machine]:
+) -> tuple[Analysis, hersey.Posterior, Machine]:
+    """The document of a machine, and the draws that it was made of."""
     machine = MACHINES[request.param]
     dwells = _rising(tmp_path_factory.mktemp("rising")) if request.param == "only rising" else points
-    return document_of(study(dwells, machine)), dwells, machine
+    found: list[hersey.Posterior] = []
+
+    def drawn(*given: Any, **named: Any) -> hersey.Posterior:
+        found.append(posterior(*given, **named))
+        return found[-1]
+
+    with mock.patch.object(behaviour, "posterior", drawn):
+        document = document_of(study(dwells, machine))
+    assert [len(each.drives) for each in found] == [DRAWS]
+    return document, found[0], machine
 
 
 def _verdict(found: hersey.Posterior, machine: Machine, kelvin: float | None, speed: float) -> str:
@@ -110,13 +127,12 @@ def _verdict(found: hersey.Posterior, machine: Machine, kelvin: float | None, sp
 
 
 def test_document_sentence_list_map_and_plan_agree(
-    judged: tuple[Analysis, hersey.SteadyPoints, Machine],
+    judged: tuple[Analysis, hersey.Posterior, Machine],
 ) -> None:
-    document, dwells, machine = judged
+    document, found, machine = judged
     decision, map_ = document.decision, document.map
     assert decision is not None
     assert map_ is not None
-    found = posterior(dwells, machine)
     assert [p.name for p in decision.points] == [p.name for p in machine.points]
     for point, stated, placed in zip(decision.points, machine.points, map_.points, strict=True):
         kelvin = None if found.temperature is None else stated.temperature
@@ -140,7 +156,7 @@ def test_document_sentence_list_map_and_plan_agree(
 
 
 def test_the_page_says_the_same(
-    judged: tuple[Analysis, hersey.SteadyPoints, Machine], browser: Browser, tmp_path: Path
+    judged: tuple[Analysis, hersey.Posterior, Machine], browser: Browser, tmp_path: Path
 ) -> None:
     document, _, _ = judged
     assert document.decision is not None

@@ -154,7 +154,7 @@ def drawn_map(points: hersey.SteadyPoints, tmp_path_factory: pytest.TempPathFact
     path.write_text(f"{text}\n{names}", encoding="utf-8")
     machine = read_machine(path)
     surface = hersey.fit(points)
-    options = {"limits": machine.limits, "points": machine.points, "uncertainty": None}
+    options = {"limits": machine.limits, "points": machine.points, "uncertainty": {}}
     return map_of(
         surface,
         machine.train,

@@ -19,7 +19,7 @@ from hersey.document.analysis import Analysis
 from hersey.document.assembly import load
 from tests.browser.conftest import SCREENS
 from tests.browser.opening import Opened
-from tests.conftest import ROOT
+from tests.conftest import ROOT, mostly_nightly
 from tests.files.test_tables import CELLS
 
 Report = Callable[[str], tuple[Path, Analysis]]
@@ -217,35 +217,57 @@ def test_drawings_say_what_they_show(each: tuple[Opened, Analysis]) -> None:
     assert unnamed == 0
 
 
-@pytest.mark.parametrize("width", [360, 390, 768, 1000])
-def test_nothing_is_wider_than_the_page(browser: Browser, report: Report, width: int) -> None:
-    for name in ("demo", "plain"):
-        opened = Opened(browser, report(name)[0], size=(width, 800))
+@pytest.mark.parametrize("name", ["demo", "plain"])
+def test_nothing_is_wider_than_the_page(browser: Browser, report: Report, name: str) -> None:
+    """As it opens on a small phone, and as wide as it may then be made."""
+    opened = Opened(browser, report(name)[0], size=(360, 800))
+    opened.page.wait_for_timeout(150)
+    picture(opened.page, f"{name}-360", whole=True)
+    assert opened.page.evaluate(_COVERED) == []
+    broken = opened.page.evaluate(  # a word of a heading that stands in two lines
+        """() => [...document.querySelectorAll(
+             "h1, h2, h3, .finding, .lead, .points td, .btn, th")].flatMap((e) => {
+             const walk = document.createTreeWalker(e, NodeFilter.SHOW_TEXT), out = [];
+             while (walk.nextNode()) for (const word of walk.currentNode.data.matchAll(/[^\\s-]+/g)) {
+               const range = new Range();
+               range.setStart(walk.currentNode, word.index);
+               range.setEnd(walk.currentNode, word.index + word[0].length);
+               if (range.getClientRects().length > 1) out.push(word[0]);
+             }
+             return out;
+           })"""
+    )
+    assert broken == []
+    for width in (360, 390, 768, 1000):
+        opened.page.set_viewport_size({"width": width, "height": 800})
         opened.page.wait_for_timeout(150)
         assert opened.page.evaluate("document.documentElement.scrollWidth") <= width
-        if width == 360:
-            picture(opened.page, f"{name}-{width}", whole=True)
-            assert opened.page.evaluate(_COVERED) == []
-            broken = opened.page.evaluate(  # a word of a heading that stands in two lines
-                """() => [...document.querySelectorAll(
-                     "h1, h2, h3, .finding, .lead, .points td, .btn, th")].flatMap((e) => {
-                     const walk = document.createTreeWalker(e, NodeFilter.SHOW_TEXT), out = [];
-                     while (walk.nextNode()) for (const word of walk.currentNode.data.matchAll(/[^\\s-]+/g)) {
-                       const range = new Range();
-                       range.setStart(walk.currentNode, word.index);
-                       range.setEnd(walk.currentNode, word.index + word[0].length);
-                       if (range.getClientRects().length > 1) out.push(word[0]);
-                     }
-                     return out;
-                   })"""
-            )
-            assert broken == []
-        opened.assert_quiet()
-        opened.page.close()
+    opened.assert_quiet()
+    opened.page.close()
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.nightly  # in make test a page is made wider; here it opens at each width
+@pytest.mark.parametrize("width", [390, 768, 1000])
 @pytest.mark.parametrize("name", ["demo", "plain"])
+def test_nothing_is_wider_than_the_page_that_opens(
+    browser: Browser, report: Report, name: str, width: int
+) -> None:
+    opened = Opened(browser, report(name)[0], size=(width, 800))
+    opened.page.wait_for_timeout(150)
+    assert opened.page.evaluate("document.documentElement.scrollWidth") <= width
+    opened.assert_quiet()
+    opened.page.close()
+
+
+#: Each page and each scheme once: the page makes what stands on it, the scheme its colours.
+SEEN = mostly_nightly(
+    [(name, scheme) for name in ("demo", "plain") for scheme in ("light", "dark")],
+    ("demo", "light"),
+    ("plain", "dark"),
+)
+
+
+@pytest.mark.parametrize(("name", "scheme"), SEEN)
 def test_it_is_accessible(
     browser: Browser, report: Report, name: str, scheme: Literal["light", "dark"]
 ) -> None:

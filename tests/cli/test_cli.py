@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import re
 import shlex
@@ -11,9 +12,9 @@ from pathlib import Path
 
 import pytest
 
-from hersey.cli.application import VERBS
+from hersey.cli.application import VERBS, load
 from tests.cli.command import run, start
-from tests.conftest import ROOT
+from tests.conftest import ROOT, mostly_nightly
 from tests.life import shipped
 
 #: Verbs that wait for a person: tests/app types them.
@@ -28,15 +29,30 @@ def example(*command: str) -> str:
     return re.sub(r"\s+", " ", found[1])
 
 
-@pytest.mark.parametrize("command", [(), *[(c,) for c in VERBS if c not in LASTING]])
-def test_the_example_in_the_help_works_as_typed(command: tuple[str, ...], examples_here: Path) -> None:
-    if command == ("life",):
+#: Verbs that take seconds, and work with a log, a machine or a campaign in tests of their own.
+LONG = ("models", "map", "posterior", "plan", "warmup", "life")
+ASKED = ["", *(verb for verb in VERBS if verb not in LASTING)]
+
+
+@pytest.mark.parametrize("verb", LONG)
+def test_the_example_of_a_long_verb_can_be_typed(verb: str, examples_here: Path) -> None:
+    """Its words are those of the verb; what it does with them is the matter of other tests."""
+    _, named, *typed = shlex.split(example(verb))
+    assert named == verb
+    with contextlib.chdir(examples_here), load(verb).make_context(verb, typed) as context:
+        assert context.params
+    assert all((examples_here / word).exists() for word in typed if word.startswith("examples/"))
+
+
+@pytest.mark.parametrize("verb", mostly_nightly(ASKED, *(each for each in ASKED if each not in LONG)))
+def test_the_example_in_the_help_works_as_typed(verb: str, examples_here: Path) -> None:
+    if verb == "life":
         shipped.write(examples_here / "life.hersey", 1)
-    if command == ("export",):
+    if verb == "export":
         told = ["--tare", "standing", "--no-load", "examples/no-load.csv"]
         fit = run("fit", "examples/bench.csv", *told, "--json", cwd=examples_here).stdout
         (examples_here / "fit.json").write_text(fit)
-    typed = shlex.split(example(*command))
+    typed = shlex.split(example(*verb.split()))
     result = run(*typed[1:], cwd=examples_here)
     assert result.returncode == 0, result.stderr
     assert result.stdout

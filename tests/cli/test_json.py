@@ -99,7 +99,8 @@ def test_a_command_prints_its_part(
     """The whole document is one that is made once for all tests; `test_cli` has the command make its own."""
     monkeypatch.setattr(sys.modules["hersey.study"], "study", lambda *_, **__: None)
     monkeypatch.setattr("hersey.document.assembly.document_of", lambda *_, **__: document)
-    told = printed([name, *(files.get(argument, argument) for argument in ARGUMENTS[name])])
+    with shipped.few():
+        told = printed([name, *(files.get(argument, argument) for argument in ARGUMENTS[name])])
     assert told["schema_version"] == SCHEMA_VERSION
     assert told["hersey_version"] == hersey.__version__
     assert told["command"].startswith("hersey")

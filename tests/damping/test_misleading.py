@@ -19,6 +19,7 @@ from hersey.log.corrections import thermal_lag
 from hersey.log.sensors import HYSTERESIS_OF_LARGEST, TEMPERATURE_LAG
 from hersey.verdict.cautions import cautions
 from tests.cli.command import run
+from tests.conftest import mostly_nightly
 from tests.damping.bench_logs import RPM, B, Bench, C
 from tests.damping.test_surface import SPEEDS, points_of
 
@@ -62,7 +63,11 @@ STRUCTURES: dict[str, tuple[Kind, Callable[[int], hersey.SteadyPoints]]] = {
 }
 
 
-@pytest.mark.parametrize("name", STRUCTURES)
+#: One of each kind of finding.
+KEPT = ("hysteresis", "relaxing, rising", "days", "lag, rising", "6 bits")
+
+
+@pytest.mark.parametrize("name", mostly_nightly(STRUCTURES, *KEPT))
 def test_the_interval_holds_the_truth_and_a_finding_names_the_cause(name: str) -> None:
     kind, points_of = STRUCTURES[name]
     inside = {"c": 0, "b": 0}
@@ -152,8 +157,15 @@ def test_a_lag_that_is_corrected_is_not_reported() -> None:
     assert found(log.steady(tare="standing"), "temperature lag") is None
 
 
-@pytest.mark.parametrize("noise", [0.0, 0.001, 0.004])
-@pytest.mark.parametrize("bits", [3, 5, 8])
+@pytest.mark.parametrize(
+    ("bits", "noise"),
+    mostly_nightly(
+        [(bits, noise) for bits in (3, 5, 8) for noise in (0.0, 0.001, 0.004)],
+        (3, 0.0),
+        (5, 0.004),
+        (8, 0.001),
+    ),
+)
 def test_coarse_torque_never_ends_in_a_traceback(bits: int, noise: float) -> None:
     for seed in range(3):
         points = replace(BENCH, bits=bits, noise=noise).points(seed)

@@ -73,6 +73,7 @@ def test_swapped_columns_are_asked_about(points: hersey.SteadyPoints, machine: h
     assert in_words(found)[0].startswith("Are the torque and speed columns swapped?")
 
 
+@pytest.mark.usefixtures("few_draws")
 def test_the_first_screen_asks_and_concludes_nothing(bench_csv: Path, machine: hersey.Machine) -> None:
     text = bench_csv.read_text().replace("Drive torque [N*m]", "Drive torque [kN*m]")
     path = bench_csv.parent / "thousandfold.csv"

@@ -19,6 +19,7 @@ from hersey.document.assembly import fit_document
 from hersey.document.printed import PRINTED
 from hersey.document.saved_fit import read_fit
 from hersey.errors import ParameterError
+from tests.conftest import mostly_nightly
 
 TOKENS = ("NaN", "Infinity", "-Infinity")
 #: What may be changed, by key, and why.
@@ -129,7 +130,11 @@ def may_be(key: str, change: Any) -> bool:
     return not isinstance(change, str | list) and change != 1e308 and any(p.fullmatch(key) for p, _ in WORDS)
 
 
-@pytest.mark.parametrize("name", ["corner or bend", "shared scatter", "less the rest", "one power of speed"])
+#: A fit less the rest of the drive has every part that a fit may have, one power of speed the fewest.
+KINDS = ["corner or bend", "shared scatter", "less the rest", "one power of speed"]
+
+
+@pytest.mark.parametrize("name", mostly_nightly(KINDS, "less the rest", "one power of speed"))
 def test_a_changed_number_is_refused(name: str, tmp_path: Path) -> None:
     document = copy.deepcopy(documents()[name])
     path = tmp_path / "fit.json"

@@ -315,6 +315,7 @@ def _table(speeds: np.ndarray, torques: np.ndarray, machine: Machine | None = No
     return document
 
 
+@pytest.mark.usefixtures("few_draws")
 def test_a_stick_speed_above_the_transition_does_not_end_the_report(
     log: hersey.TorqueLog, machine: Machine
 ) -> None:

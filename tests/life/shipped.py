@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -11,11 +13,16 @@ from types import SimpleNamespace
 from typing import Any
 
 import polars as pl
+import pytest
 
 import hersey
+from hersey.life import ageing_maps, other_uses
 from hersey.life.age import Age
 from hersey.life.campaign import Entry
 from hersey.life.campaign.kept import entry_of
+from hersey.life.growth import fit as growth_module
+from hersey.life.growth import posterior as growth_posterior
+from hersey.life.indicators import sticking
 from hersey.machine.machine import Machine, read_machine
 from hersey.testbench.stand import RPM
 from hersey.units import ZERO_CELSIUS
@@ -107,11 +114,32 @@ def opened(units: int = 2) -> hersey.Campaign:
     return hersey.Campaign.open(write(Path(_FOLDER.name) / f"life-{units}.hersey", units), write=False)
 
 
+def fewer(patch: pytest.MonkeyPatch) -> None:
+    """A third of the draws: what they would tell better is the matter of the benchmark."""
+    patch.setattr(growth_posterior, "_ROUNDS", (100, 100, 100, 200))
+    patch.setattr(growth_posterior, "_MOST", 2.0)
+    patch.setattr(growth_posterior, "_POPULATION", 64)
+    patch.setattr(growth_module, "_DRAWS", 1000)
+
+
+@contextmanager
+def few() -> Iterator[None]:
+    """Look for V* in few runs, uses and places of a map, at a second each: tests of their own see all."""
+    with pytest.MonkeyPatch.context() as patch:
+        fewer(patch)
+        patch.setattr(sticking, "MOST_FOLDS", 4)
+        patch.setattr(sticking, "_DRAWS", 2)
+        patch.setattr(ageing_maps, "TEMPERATURES", 7)
+        patch.setattr(other_uses, "_LIMITS", (0.8, 1.0, 1.25))
+        yield
+
+
 @cache
 def followed(units: int = 2) -> hersey.LifeTest:
     """What ends some of the shipped units, and when; of few ways, which is quicker."""
-    few = replace(machine(), limits=hersey.Limits(motor_torque=1.0), points=machine().points[:1])
-    return hersey.follow(opened(units), few)
+    less = replace(machine(), limits=hersey.Limits(motor_torque=1.0), points=machine().points[:1])
+    with few():
+        return hersey.follow(opened(units), less)
 
 
 def write(path: Path, units: int = 2) -> Path:

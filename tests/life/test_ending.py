@@ -17,6 +17,7 @@ from hersey.life.growth import fit as growth_module
 from hersey.life.growth import posterior as growth_posterior
 from hersey.life.growth.fit import fit_growth
 from hersey.life.indicator import Indicator, Indicators, OwnAges, Runs
+from tests.life.shipped import fewer
 
 UNITS, AGES = 6, np.linspace(0.0, 600.0, 7)
 RATE = np.array([0.0008, 0.0009, 0.0010, 0.0011, 0.0012, 0.0030])
@@ -36,14 +37,6 @@ def linear(rate: np.ndarray, ages: np.ndarray = AGES) -> np.ndarray:
 
 def of(*each: Indicator, names: tuple[str, ...] = NAMES, age: np.ndarray = AGE, **more: Any) -> Indicators:
     return Indicators(Runs(tuple(range(1, len(names) + 1)), names, age, "pages"), each, **more)
-
-
-def fewer(patch: pytest.MonkeyPatch) -> None:
-    """A third of the draws: what they would tell better is the matter of the benchmark."""
-    patch.setattr(growth_posterior, "_ROUNDS", (100, 100, 100, 200))
-    patch.setattr(growth_posterior, "_MOST", 2.0)
-    patch.setattr(growth_posterior, "_POPULATION", 64)
-    patch.setattr(growth_module, "_DRAWS", 1000)
 
 
 @pytest.fixture(autouse=True)

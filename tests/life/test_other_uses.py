@@ -16,7 +16,6 @@ from hersey.life.other_uses import AS_STATED, OtherUses, Use, UseEnd, other_uses
 from hersey.machine.duty import LifeTable
 from hersey.machine.machine import Machine
 from tests.life import shipped
-from tests.life.test_ending import fewer
 
 
 def machine() -> Machine:
@@ -28,7 +27,7 @@ def machine() -> Machine:
 @pytest.fixture(scope="module")
 def told() -> tuple[OtherUses, hersey.Endings]:
     with pytest.MonkeyPatch.context() as patch:
-        fewer(patch)
+        shipped.fewer(patch)
         patch.setattr(module, "_LIMITS", (1.0, 1.25))
         patch.setattr(module, "_COLDER", (-10.0, 0.0))
         found = hersey.indicators_of(shipped.opened(2), machine(), signs=False)

@@ -8,6 +8,8 @@ from __future__ import annotations
 import pytest
 from benchmarks.strangers import intervals, transitions, verdicts
 
+from tests.conftest import mostly_nightly
+
 SEED = 12
 
 
@@ -16,7 +18,7 @@ def verdicts_of(*names: str, logs: int) -> list[verdicts.Verdict]:
     return [verdict for verdict in judged if isinstance(verdict, verdicts.Verdict)]
 
 
-@pytest.mark.parametrize("test", ["good", "poor"])
+@pytest.mark.parametrize("test", mostly_nightly(["good", "poor"], "good"))  # poor: less is named
 def test_no_regime_is_named_that_is_not_the_truth_s(test: str) -> None:
     names = [f"coulomb-8-160/{ratio:g}/{test}" for ratio in verdicts.RATIOS[2:10:2]]
     names += [f"coulomb-25-100/{ratio:g}/{test}" for ratio in verdicts.RATIOS[3:10:3]]
@@ -33,7 +35,7 @@ def test_true_power_laws_are_named() -> None:
     assert not any(v.wrong for v in judged)
 
 
-@pytest.mark.parametrize("setting", ["visit5", "slow1", "line"])
+@pytest.mark.parametrize("setting", mostly_nightly(["visit5", "slow1", "line"], "visit5"))
 def test_intervals_hold_the_truth(setting: str) -> None:
     """Of 10 logs at least 8 for each exponent: 95 % do so with a probability of 0.99."""
     rows = [intervals.one_log(SEED, setting, index) for index in range(10)]
@@ -50,7 +52,11 @@ def test_two_visits_do_not_tell_b() -> None:
     assert row["c"].told
 
 
-@pytest.mark.parametrize("name", transitions.NAMES)
+#: Of each sign that tells a transition: none, scattered, and the weakest and the strongest there is.
+TOLD = (transitions.NAMES[0], "none/scattered", *(f"with/{each:g}" for each in transitions.STRENGTHS[::3]))
+
+
+@pytest.mark.parametrize("name", mostly_nightly(transitions.NAMES, *TOLD))
 def test_transitions_are_announced_where_they_are(name: str) -> None:
     for index in range(3):
         said = transitions.one_log(SEED, name, index)
