@@ -27,7 +27,9 @@
 //! | `mixed_contact` | a contact whose load film and asperities share                      |
 //! | `speeds`        | speeds of a given force, and from which on the drag rises           |
 //! | `temperature`   | how the law varies with temperature                                 |
+//! | `at_temperature` | the law as it is at one temperature                                |
 
+mod at_temperature;
 mod closure;
 mod curve;
 mod law;
