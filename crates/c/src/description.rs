@@ -382,6 +382,13 @@ mod tests {
     }
 
     #[test]
+    fn every_number_of_a_drag_is_a_parameter() {
+        for name in hersey_core::drag::form::NUMBERS {
+            assert!(settable(name).is_some(), "{name} is in no place of the table of variables");
+        }
+    }
+
+    #[test]
     fn what_is_wrong_is_named_with_its_line() {
         for (from, to, words) in [
             ("mass = 1.0", "mass = one", "mass 'one' is no number"),

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use hersey_core::Error;
-use hersey_core::drag::form::{CHOICES, LISTS, NUMBERS};
+use hersey_core::drag::form::{CHOICES, LISTS, NUMBERS, Shape};
 use hersey_core::drag::{Closure, ClosureKind, Drag, DragForm, Rest};
 use hersey_core::wire::Values;
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
@@ -79,15 +79,20 @@ impl Values for Given {
 /// Static force, if it is not that which makes drag continuous, and force and damping of the rest of the drive.
 pub type CommonArguments = (Option<f64>, f64, f64);
 
-pub fn with_common(drag: Drag, (force, rest, damping): CommonArguments) -> Result<Drag, Error> {
-    let drag = match force {
-        Some(force) => drag.with_breakaway_force(force)?,
-        None => drag,
-    };
-    drag.with_rest(Rest { force: rest, damping })
+/// The law of one of many sets: force and speed of the transition, both exponents and the stick speed.
+pub fn two_branches(
+    [transition_force, transition_speed, ehl_exponent, mixed_exponent, stick_speed]: [f64; 5],
+    closure: Closure,
+    (static_force, force, damping): CommonArguments,
+) -> Result<Drag, Error> {
+    let shape = Shape::Power { transition_force, transition_speed, ehl_exponent, mixed_exponent };
+    let rest = Rest { force, damping };
+    let (strengthening, temperature_law) = (None, None);
+    DragForm { shape, stick_speed, closure, static_force, rest, strengthening, temperature_law }
+        .law()
 }
 
-/// The same of each of many sets, from columns in that order; not a number where there is no static force.
+/// `CommonArguments` of each of many sets, from columns in that order; not a number where there is no static force.
 pub fn beside_from(
     py: Python<'_>,
     columns: Option<[PyReadonlyArray1<'_, f64>; 3]>,
