@@ -160,6 +160,115 @@ def test_core_layers() -> None:
             assert forbidden not in text, f"{path.name}: {forbidden}"
 
 
+#: A path of Rust that begins in the crate, in the room above, or in a module of the file itself.
+_PATH = r"\b(?:crate|super|self{children})(?=::)(?:::(?:\w+|\*))*(?:::(?=\{{))?"
+
+
+def opened(braces: str) -> list[str]:
+    """The paths of a ``{{a, b::{{c, d}}}}``, each in full; ``braces`` begins with the first brace."""
+    found, prefixes, name = [], [""], ""
+    for sign in re.sub(r"\s+as \w+|\s", "", braces):
+        if sign == "{":
+            prefixes.append(prefixes[-1] + name)
+        elif sign in ",}":
+            found += [prefixes[-1] + name] if name else []
+            prefixes = prefixes[:-1] if sign == "}" else prefixes
+        name = "" if sign in "{,}" else name + sign
+        if len(prefixes) == 1:
+            break
+    return found
+
+
+def rust_paths(text: str, children: set[str]) -> list[tuple[bool, str]]:
+    """Every path that a Rust file takes, in full, and whether it only hands the thing on (``pub use``)."""
+    found = []
+    pattern = _PATH.format(children="".join(f"|{name}" for name in sorted(children)))
+    for match in re.finditer(pattern, text):
+        before = text[max(0, match.start() - 40) : match.start()]
+        if before.endswith("::"):
+            continue
+        handed_on = re.search(r"\bpub(\([\w ]+\))? use $", before) is not None
+        ends = opened(text[match.end() :]) if match.group().endswith("::") else [""]
+        found += [(handed_on, match.group() + end) for end in ends]
+    return found
+
+
+def rust_arrows(sources: Path) -> dict[str, set[str]]:
+    """Every file of a crate, as ``a::b``, with the files whose things it names; unit tests left out.
+
+    A method that is called is no arrow: its type was named where it came from.
+    """
+    files = {}
+    for path in sources.rglob("*.rs"):
+        parts = path.relative_to(sources).with_suffix("").parts
+        text = path.read_text().split("#[cfg(test)]\nmod tests")[0]
+        files[tuple(part for part in parts if part not in {"mod", "lib"})] = re.sub(r"//.*", "", text)
+    own = {
+        module: {child[-1] for child in files if child[:-1] == module and child != module} for module in files
+    }
+    paths = {module: rust_paths(text, own[module]) for module, text in files.items()}
+
+    def home(module: tuple[str, ...], path: str) -> tuple[str, ...]:
+        """The file in which the thing at a path is defined, seen from a module."""
+        names = path.split("::")
+        at = () if names[0] == "crate" else module
+        for i, name in enumerate(names):
+            if name in {"crate", "self"}:
+                continue
+            if name == "super":
+                at = at[:-1]
+            elif (*at, name) in files:
+                at = (*at, name)
+            else:
+                handed = [p for on, p in paths[at] if on and p.split("::")[-1] == name]
+                return home(at, "::".join((handed[0], *names[i + 1 :]))) if handed else at
+        return at
+
+    return {
+        "::".join(module): {"::".join(home(module, path)) for on, path in taken if not on}
+        - {"::".join(module)}
+        for module, taken in paths.items()
+    }
+
+
+def circles(arrows: dict[str, set[str]]) -> dict[str, set[str]]:
+    """What is left once all are gone that lead nowhere else, or to which nothing leads."""
+    left = {module: others & arrows.keys() for module, others in arrows.items()}
+    while ends := {
+        module for module in left if not left[module] or module not in set().union(*left.values())
+    }:
+        left = {module: others - ends for module, others in left.items() if module not in ends}
+    return left
+
+
+@pytest.mark.parametrize("crate", ["core", "py", "c", "wasm"])
+def test_no_circle_of_rust(crate: str) -> None:
+    arrows = rust_arrows(ROOT / "crates" / crate / "src")
+    assert sum(map(len, arrows.values())) > len(arrows) - 1, "nothing was seen"
+    left = circles(arrows)
+    assert not left, "\n".join(f"{module} -> {', '.join(sorted(left[module]))}" for module in sorted(left))
+
+
+def test_a_circle_of_rust_is_seen(tmp_path: Path) -> None:
+    """By a ``use``, by a name that the room hands on, and by a path in the middle of a line."""
+    (tmp_path / "room").mkdir()
+    texts = {
+        "lib": "pub mod room;\npub mod low;\n",
+        "low": "pub struct Low;\n#[cfg(test)]\nmod tests {\n use crate::room::Thing;\n}\n",
+        "room/mod": "mod one;\nmod two;\nmod three;\npub use one::{Other, Thing};\n",
+        "room/one": "use super::two::{\n    self,\n    Two,\n};\npub struct Thing;\n",
+        "room/two": "use crate::{low::Low, room::Thing}; // crate::room::three::Three\n",
+        "room/three": "fn f() -> f64 { super::two::g() }\n",
+    }
+    for name, text in texts.items():
+        (tmp_path / f"{name}.rs").write_text(text)
+    arrows = rust_arrows(tmp_path)
+    assert arrows["low"] == set()
+    assert arrows["room::two"] == {"low", "room::one"}
+    assert arrows["room::one"] == arrows["room::three"] == {"room::two"}
+    assert circles(arrows) == {"room::one": {"room::two"}, "room::two": {"room::one"}}
+
+
 def test_every_error_is_a_built_in_and_survives_pickling() -> None:
     kinds = [k for k in vars(errors).values() if isinstance(k, type) and issubclass(k, errors.HerseyError)]
     assert len(kinds) > 5

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from hersey.errors import ParameterError, UnfinishedError
 
 __all__ = [
+    "CLOSURES",
     "FILM_CONSTANTS",
     "FILM_LOAD_EXPONENTS",
     "FILM_SPEED_EXPONENTS",
@@ -22,6 +23,7 @@ __all__ = [
     "REGIMES",
     "SHARING",
     "VERSION",
+    "VISCOSITY_LAWS",
     "Band",
     "Bands",
     "Correction",
@@ -51,6 +53,7 @@ __all__ = [
     "Traction",
     "Trajectory",
     "Viscosity",
+    "ViscosityForm",
     "ViscosityLaw",
     "asperity_integral",
     "band",
@@ -97,6 +100,8 @@ MOST_STEPS: int
 NIP_RATIO_RANGE: tuple[float, float]
 NUDGE: float
 REGIMES: list[str]
+CLOSURES: list[str]
+VISCOSITY_LAWS: dict[str, ViscosityForm]
 SHARING: list[str]
 VERSION: str
 
@@ -118,28 +123,7 @@ _Heat: TypeAlias = tuple[
 
 @final
 class Law:
-    def __new__(
-        cls,
-        transition: tuple[float, float],
-        ehl_exponent: float,
-        mixed_exponent: float,
-        stick_speed: float,
-        closure: _Closure,
-    ) -> Law: ...
-    @staticmethod
-    def tabulated(
-        speeds: Sequence[float], forces: Sequence[float], stick_speed: float, closure: _Closure
-    ) -> Law: ...
-    @staticmethod
-    def mixed(numbers: Sequence[float], viscosity: float, stick_speed: float, closure: _Closure) -> Law: ...
-    def with_viscosity_law(
-        self, reference: float, viscosity: ViscosityLaw, boundary_slope: float, rest_slope: float
-    ) -> Law: ...
-    def with_temperature_law(
-        self, reference: float, force_exponent: float, speed_exponent: float, rest_slope: float
-    ) -> Law: ...
-    def with_strengthening(self, growth: float, time: float) -> Law: ...
-    def with_common(self, common: tuple[float | None, float, float]) -> Law: ...
+    def __new__(cls, values: dict[str, str | float | Sequence[float]]) -> Law: ...
     def at(self, temperature: float) -> Law: ...
     def force(self, speed: _Floats) -> _Floats: ...
     def speeds_of(self, force: float) -> Pair: ...
@@ -159,14 +143,23 @@ class Law:
 @final
 class ViscosityLaw:
     @staticmethod
-    def arrhenius(points: Sequence[tuple[float, float]]) -> ViscosityLaw: ...
-    @staticmethod
-    def vogel(points: Sequence[tuple[float, float]]) -> ViscosityLaw: ...
-    @staticmethod
-    def walther(points: Sequence[tuple[float, float]], density: float) -> ViscosityLaw: ...
+    def through(
+        kind: str, points: Sequence[tuple[float, float]], density: float | None = None
+    ) -> ViscosityLaw: ...
+    @property
+    def kind(self) -> str: ...
     def at(self, temperature: _Floats) -> Viscosity: ...
     @property
     def coefficients(self) -> list[tuple[str, float]]: ...
+
+@final
+class ViscosityForm:
+    @property
+    def points(self) -> int: ...
+    @property
+    def kinematic(self) -> bool: ...
+    @property
+    def coefficients(self) -> list[str]: ...
 
 @final
 class Pair:

@@ -122,7 +122,7 @@ def part(drag: AnyDrag) -> dict[str, Any]:
     return own | {
         "sharing": dict(zip(_core.SHARING, numbers, strict=True)),
         "viscosity": float(oil.viscosity(drag.temperature)),
-        "viscosity_law": {"kind": "vogel", **dict(oil.law.coefficients)},
+        "viscosity_law": {"kind": oil.law.kind, **dict(oil.law.coefficients)},
         "reference_temperature": drag.temperature,
         "boundary_temperature_slope": float(contact.friction.slope / contact.friction.at(drag.temperature)),
     }

@@ -15,14 +15,15 @@
  *   law = power | table | mixed drag against speed:
  *       power   transition_force, transition_speed, ehl_exponent, mixed_exponent
  *       table   lists speeds and forces, ascending in speed
- *       mixed   viscosity, and the list numbers: reference, film exponent, load exponent, stiffness of the
- *               asperities, boundary, shear, rolling, rolling exponent (as crates/core/src/lubrication/mixed.rs has them)
+ *       mixed   viscosity, and the list numbers: reference, film exponent, load exponent, edge, roundness, stiffness
+ *               of the asperities, boundary, shear, rolling, rolling exponent (crates/core/src/lubrication/mixed/sharing.rs)
  *   closure = retained | stiction | stribeck | lugre      below stick_speed
  *       lugre    bristle_stiffness, bristle_damping
  *       stiction static_growth and static_growth_time, if the static force grows at rest
- *   temperature_law = none | power | arrhenius | vogel | walther      with all but none: reference_temperature
+ *   temperature_law = none | power | a law of viscosity                with all but none: reference_temperature
  *       power   force_temperature_exponent, speed_temperature_exponent; temperature_zero (0)
- *       others  list viscosity_numbers: prefactor, activation energy | prefactor, slope, zero | a, b, density;
+ *       the laws of viscosity by their words, each with what the list viscosity_numbers has; any other is refused:
+ *               arrhenius (prefactor, activation_energy), vogel (prefactor, slope, zero), walther (a, b, density);
  *               boundary_temperature_slope (0) with law = mixed
  *       all     rest_temperature_slope (0)
  *   stiffness, mass, stick_speed                          always

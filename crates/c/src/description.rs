@@ -5,7 +5,9 @@
 use crate::variables::{
     COUNT, Causality, DRIVE_SPEED, DRIVE_TORQUE, Port, ROLL_SPEED, TEMPERATURE, VARIABLES, place_of,
 };
-use hersey_core::lubrication::mixed::Sharing;
+use hersey_core::drag::ClosureKind;
+use hersey_core::drag::form::{Belongs, CHOICES, Kinds, LISTS, ShapeKind, TemperatureKind};
+use hersey_core::wire::Unreadable;
 use hersey_core::work::MOST_STEPS;
 
 /// The format that this library reads.
@@ -44,18 +46,6 @@ choice! {
     Coupling { Translational = "translational", Rotational = "rotational" }
 }
 choice! {
-    /// Shape of the law of drag.
-    Law { Power = "power", Table = "table", Mixed = "mixed" }
-}
-choice! {
-    /// What the belt does near rest.
-    Closure { Retained = "retained", Stiction = "stiction", Stribeck = "stribeck", LuGre = "lugre" }
-}
-choice! {
-    /// How the law varies with temperature.
-    Warmth { None = "none", Power = "power", Arrhenius = "arrhenius", Vogel = "vogel", Walther = "walther" }
-}
-choice! {
     /// Where the motion starts.
     Start { Rest = "rest", Steady = "steady", Given = "given" }
 }
@@ -65,17 +55,9 @@ choice! {
 pub struct Choices {
     pub drive: Drive,
     pub coupling: Coupling,
-    pub law: Law,
-    pub closure: Closure,
-    pub warmth: Warmth,
+    /// Those of its drag.
+    pub drag: Kinds,
     pub start: Start,
-}
-
-/// Whether a variable is one of such a drive, and if so whether it needs a value.
-enum Belongs {
-    No,
-    Optional,
-    Needed,
 }
 
 impl Choices {
@@ -88,38 +70,26 @@ impl Choices {
         }
     }
 
+    /// Whether the law varies with temperature.
+    fn varies(self) -> bool {
+        self.drag.temperature != TemperatureKind::None
+    }
+
+    /// Whether a variable is one of such a drive, and if so whether it needs a value.
     fn belongs(self, name: &str) -> Belongs {
         let needed = match name {
             "drive_speed" => self.port() == Some(Port::Translational),
             "roll_speed" => self.port() == Some(Port::Rotational),
             "drive_torque" => self.drive == Drive::Torque,
             "roll_radius" => self.port() != Some(Port::Translational),
-            "temperature" | "reference_temperature" => self.warmth != Warmth::None,
-            "transition_force" | "transition_speed" | "ehl_exponent" | "mixed_exponent" => {
-                self.law == Law::Power
-            }
-            "viscosity" => self.law == Law::Mixed,
-            "bristle_stiffness" | "bristle_damping" => self.closure == Closure::LuGre,
-            "force_temperature_exponent" | "speed_temperature_exponent" => {
-                self.warmth == Warmth::Power
-            }
+            "temperature" => self.varies(),
             "start_belt_speed" | "start_stretch" => self.start == Start::Given,
-            "stiffness" | "mass" | "stick_speed" => true,
-            _ => return if self.may_have(name) { Belongs::Optional } else { Belongs::No },
+            "stiffness" | "mass" => true,
+            "grip" if self.drive == Drive::Speed => return Belongs::Optional,
+            "tolerance" => return Belongs::Optional,
+            _ => return self.drag.belongs(name),
         };
         if needed { Belongs::Needed } else { Belongs::No }
-    }
-
-    fn may_have(self, name: &str) -> bool {
-        match name {
-            "grip" => self.drive == Drive::Speed,
-            "temperature_zero" => self.warmth == Warmth::Power,
-            "rest_temperature_slope" => self.warmth != Warmth::None,
-            "boundary_temperature_slope" => self.law == Law::Mixed && self.warmth != Warmth::None,
-            "static_growth" | "static_growth_time" => self.closure == Closure::Stiction,
-            "static_force" | "rest_force" | "rest_damping" | "tolerance" => true,
-            _ => false,
-        }
     }
 }
 
@@ -138,13 +108,8 @@ pub struct Description {
     pub choices: Choices,
     /// What the variables start with.
     pub values: Values,
-    /// Points of a tabulated law.
-    pub speeds: Vec<f64>,
-    pub forces: Vec<f64>,
-    /// Numbers of a contact that shares its load, in the core's order.
-    pub numbers: Vec<f64>,
-    /// Those of the viscosity that moves the law.
-    pub viscosity_numbers: Vec<f64>,
+    /// The lists of the drag, in the order of the core's names.
+    pub lists: [Vec<f64>; LISTS.len()],
     /// Least and greatest belt speed and temperature at which the law was measured, if they are known.
     pub measured: Measured,
     /// The word by which a tool makes sure that library and unit belong together.
@@ -185,6 +150,16 @@ impl Line<'_> {
         if numbers.len() > MOST_NUMBERS { Err(many()) } else { Ok(numbers) }
     }
 
+    /// The kind of a word, of those that the core has.
+    fn kind<K>(&self, of: fn(&str) -> Result<K, Unreadable>) -> Result<K, String> {
+        of(self.value).map_err(|error| match error {
+            Unreadable::Unknown { known, .. } => {
+                self.refused(&format!("is none of {}", known.join(", ")))
+            }
+            other => self.refused(&other.to_string()),
+        })
+    }
+
     /// So many numbers.
     fn exactly(&self, count: usize) -> Result<Vec<f64>, String> {
         let numbers = self.numbers()?;
@@ -215,7 +190,7 @@ impl<'a> Lines<'a> {
                 .split_once('=')
                 .ok_or_else(|| format!("line {number} of the drive is not 'name = value'"))?;
             let line = Line { number, name: name.trim(), value: value.trim() };
-            if !KNOWN.contains(&line.name) && settable(line.name).is_none() {
+            if !is_known(line.name) && settable(line.name).is_none() {
                 return Err(format!(
                     "line {number} of the drive: '{:.40}' is no name of it",
                     line.name
@@ -263,24 +238,21 @@ impl Lines<'_> {
 
 const OUT_OF_PLACE: &str = "does not belong to the other choices of the drive";
 
-/// Names that are no variables.
-const KNOWN: [&str; 15] = [
+/// Names of the drive that are neither variables nor of the drag.
+const KNOWN: [&str; 8] = [
     "format",
     "token",
     "drive",
     "port",
-    "law",
-    "closure",
-    "temperature_law",
     "start",
-    "speeds",
-    "forces",
-    "numbers",
-    "viscosity_numbers",
     "measured_speeds",
     "measured_temperatures",
     "most_steps",
 ];
+
+fn is_known(name: &str) -> bool {
+    [&KNOWN[..], &CHOICES, &LISTS].concat().contains(&name)
+}
 
 /// Place of a variable that a text may give.
 fn settable(name: &str) -> Option<usize> {
@@ -301,9 +273,11 @@ impl Description {
         let choices = Choices {
             drive: Drive::of(lines.needed("drive")?)?,
             coupling: lines.find("port").map_or(Ok(Coupling::Translational), Coupling::of)?,
-            law: Law::of(lines.needed("law")?)?,
-            closure: Closure::of(lines.needed("closure")?)?,
-            warmth: Warmth::of(lines.needed("temperature_law")?)?,
+            drag: Kinds {
+                shape: lines.needed("law")?.kind(ShapeKind::of)?,
+                closure: lines.needed("closure")?.kind(ClosureKind::of)?,
+                temperature: lines.needed("temperature_law")?.kind(TemperatureKind::of)?,
+            },
             start: lines.find("start").map_or(Ok(Start::Rest), Start::of)?,
         };
         if let (Drive::Torque, Start::Steady, Some(line)) =
@@ -316,27 +290,18 @@ impl Description {
         {
             return Err(line.refused("needs drive = speed: a torque acts on the roll already"));
         }
-        let coefficients = match choices.warmth {
-            Warmth::None | Warmth::Power => None,
-            Warmth::Arrhenius => Some(2),
-            Warmth::Vogel | Warmth::Walther => Some(3),
-        };
-        let (table, mixed) = (choices.law == Law::Table, choices.law == Law::Mixed);
+        let mut lists = [const { Vec::new() }; LISTS.len()];
+        for (list, name) in lists.iter_mut().zip(LISTS) {
+            let belongs = choices.drag.belongs(name) != Belongs::No;
+            *list = lines.list(name, belongs, choices.drag.count(name))?;
+        }
         Ok(Self {
             choices,
             values: values(&lines, choices)?,
-            speeds: lines.list("speeds", table, None)?,
-            forces: lines.list("forces", table, None)?,
-            numbers: lines.list("numbers", mixed, Some(Sharing::NAMES.len()))?,
-            viscosity_numbers: lines.list(
-                "viscosity_numbers",
-                coefficients.is_some(),
-                coefficients,
-            )?,
+            lists,
             measured: Measured {
                 speed: lines.range("measured_speeds", true)?,
-                temperature: lines
-                    .range("measured_temperatures", choices.warmth != Warmth::None)?,
+                temperature: lines.range("measured_temperatures", choices.varies())?,
             },
             token: lines.find("token").map(|line| line.value.to_owned()),
             most_steps: lines.find("most_steps").map_or(Ok(MOST_STEPS), |line| {
@@ -405,7 +370,7 @@ mod tests {
     #[test]
     fn a_text_is_read_with_what_it_leaves_out() {
         let read = Description::read(BASELINE).unwrap();
-        assert_eq!(read.choices.closure, Closure::Retained);
+        assert_eq!(read.choices.drag.closure, ClosureKind::Retained);
         assert!((read.values[place_of("stiffness").unwrap()] - 1000.0).abs() < 1e-12);
         assert!(read.values[place_of("rest_force").unwrap()].abs() < 1e-300);
         assert!(read.values[place_of("grip").unwrap()].is_nan() && !read.is_warmed());
@@ -414,6 +379,13 @@ mod tests {
         assert_eq!(Description::read(TORQUE).unwrap().drive_place(), DRIVE_TORQUE);
         let again = Description::read(&BASELINE.replace('\n', "\r\n")).unwrap();
         assert_eq!(again.values.map(f64::to_bits), read.values.map(f64::to_bits));
+    }
+
+    #[test]
+    fn every_number_of_a_drag_is_a_parameter() {
+        for name in hersey_core::drag::form::NUMBERS {
+            assert!(settable(name).is_some(), "{name} is in no place of the table of variables");
+        }
     }
 
     #[test]
@@ -429,6 +401,22 @@ mod tests {
             ("mass = 1.0", "mass = 1.0\ntemperature = 300", OUT_OF_PLACE),
             ("mass = 1.0", "mass = 1.0\nspeeds = 1 2", OUT_OF_PLACE),
             ("law = power", "law = spline", "law 'spline' is none of power, table, mixed"),
+            ("law = power", "law = table", "the drive has no line 'speeds = ...'"),
+            (
+                "temperature_law = none",
+                "temperature_law = roelands\nviscosity_numbers = 1 2 3",
+                "temperature_law 'roelands' is none of none, power, arrhenius, vogel, walther",
+            ),
+            (
+                "temperature_law = none",
+                "viscosity_numbers = 1 2 3",
+                "the drive has no line 'temperature_law = ...'",
+            ),
+            (
+                "temperature_law = none",
+                "temperature_law = arrhenius\nviscosity_numbers = 1 2 3",
+                "has 3 numbers: 2 are needed",
+            ),
             ("mass = 1.0", "mass = 1.0\nroll_speed = 2", OUT_OF_PLACE),
             ("mass = 1.0", "mass = 1.0\nmeasured_speeds = 2 1", "is no range"),
             ("mass = 1.0", "mass = 1.0\nmeasured_speeds = 2", "has 1 numbers: 2 are needed"),

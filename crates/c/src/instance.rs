@@ -1,8 +1,8 @@
 //! One drive under way: its phase, its values, its motion, and what of that a tool outside may see.
 
-use hersey_core::Work;
 use hersey_core::drag::Mode;
 use hersey_core::motion::{Event, Moment, State, Stepper};
+use hersey_core::{Error, Work};
 
 use crate::account::{Account, Acting, CUT, Share};
 use crate::description::{Description, Drive, Values};
@@ -550,7 +550,7 @@ impl Instance {
             let event = along.advance(end, work)?;
             Ok(event.map_or(Ok([*before, middle, along.state()]), |event| Err(event.time)))
         };
-        let words = |error| self.making().words(error);
+        let words = |error: Error| self.making().words(error);
         let early = match look(end).map_err(words)? {
             Ok(nodes) => return Ok(nodes),
             Err(early) => early.next_down(),

@@ -1,20 +1,34 @@
 //! The core's objects of a described drive.
 
 use hersey_core::Error;
-use hersey_core::drag::{self, Drag, Rest, SpeedLaw, Strengthening, TemperatureLaw};
-use hersey_core::lubrication::mixed::{MixedLaw, Sharing};
-use hersey_core::lubrication::viscosity;
+use hersey_core::drag::form::LISTS;
+use hersey_core::drag::{Drag, DragForm};
 use hersey_core::motion::{self, Drivetrain, Integrator, Schedule, Stepper, System};
+use hersey_core::wire::{Unreadable, Values as ByName};
 
-use crate::description::{
-    Choices, Closure, Coupling, Description, Drive, Law, Start, Values, Warmth,
-};
+use crate::description::{Choices, Coupling, Description, Drive, Start, Values};
 use crate::variables::{TEMPERATURE, place_of};
 
 /// A drive with the values that its variables have.
 pub struct Making<'a> {
     pub description: &'a Description,
     pub values: &'a Values,
+}
+
+/// What the core reads of the drag; its kinds are known.
+impl ByName for Making<'_> {
+    fn word(&self, _: &str) -> Option<&str> {
+        None
+    }
+
+    fn number(&self, field: &str) -> Option<f64> {
+        self.given(field)
+    }
+
+    fn numbers(&self, field: &str) -> Option<&[f64]> {
+        let place = LISTS.iter().position(|name| *name == field)?;
+        self.description.lists.get(place).map(Vec::as_slice)
+    }
 }
 
 impl Making<'_> {
@@ -77,8 +91,9 @@ impl Making<'_> {
     }
 
     /// Why there is no such motion; the core counts temperatures in the scale of the law.
-    pub fn words(&self, error: Error) -> String {
-        match (error.quantity(), self.given("temperature_zero")) {
+    pub fn words(&self, error: impl Into<Unreadable>) -> String {
+        let error = error.into();
+        match (error.field(), self.given("temperature_zero")) {
             (Some("temperature"), Some(zero)) if zero != 0.0 => {
                 format!("{error} (counted from temperature_zero, {zero} K)")
             }
@@ -91,87 +106,12 @@ impl Making<'_> {
         self.given("grip").map_or(Ok(train), |grip| train.with_grip(grip))
     }
 
-    fn closure(&self) -> drag::Closure {
-        match self.description.choices.closure {
-            Closure::Retained => drag::Closure::Retained,
-            Closure::Stiction => drag::Closure::Stiction,
-            Closure::Stribeck => drag::Closure::Stribeck,
-            Closure::LuGre => drag::Closure::LuGre {
-                bristle_stiffness: self.value("bristle_stiffness"),
-                bristle_damping: self.value("bristle_damping"),
-            },
-        }
-    }
-
-    fn temperature_law(&self) -> Option<TemperatureLaw> {
-        let number =
-            |i: usize| self.description.viscosity_numbers.get(i).copied().unwrap_or(f64::NAN);
-        let (a, b, c) = (number(0), number(1), number(2));
-        let speed = match self.description.choices.warmth {
-            Warmth::None => return None,
-            Warmth::Power => SpeedLaw::Power(self.value("speed_temperature_exponent")),
-            Warmth::Arrhenius => SpeedLaw::Viscosity(viscosity::TemperatureLaw::Arrhenius {
-                prefactor: a,
-                activation_energy: b,
-            }),
-            Warmth::Vogel => SpeedLaw::Viscosity(viscosity::TemperatureLaw::Vogel {
-                prefactor: a,
-                slope: b,
-                zero: c,
-            }),
-            Warmth::Walther => {
-                SpeedLaw::Viscosity(viscosity::TemperatureLaw::Walther { a, b, density: c })
-            }
-        };
-        Some(TemperatureLaw {
-            reference: self.temperature(self.value("reference_temperature")),
-            force_exponent: self.given("force_temperature_exponent").unwrap_or(0.0),
-            speed,
-            boundary_slope: self.given("boundary_temperature_slope").unwrap_or(0.0),
-            rest_slope: self.given("rest_temperature_slope").unwrap_or(0.0),
-        })
-    }
-
-    fn shape(&self) -> Result<Drag, Error> {
-        let (stick_speed, closure) = (self.value("stick_speed"), self.closure());
-        let Description { choices, speeds, forces, numbers, .. } = self.description;
-        match (choices.law, <[f64; 10]>::try_from(&numbers[..])) {
-            (Law::Power, _) => Drag::new(
-                self.value("transition_force"),
-                self.value("transition_speed"),
-                self.value("ehl_exponent"),
-                self.value("mixed_exponent"),
-                stick_speed,
-                closure,
-            ),
-            (Law::Mixed, Ok(numbers)) => {
-                let law = MixedLaw::new(Sharing::from_numbers(numbers))?;
-                Drag::mixed(law, self.value("viscosity"), stick_speed, closure)
-            }
-            _ => Drag::tabulated(speeds, forces, stick_speed, closure),
-        }
-    }
-
-    fn drag(&self) -> Result<Drag, Error> {
-        let drag = self.shape()?;
-        let drag = match self.given("static_force") {
-            Some(force) => drag.with_breakaway_force(force)?,
-            None => drag,
-        };
-        let rest = Rest { force: self.value("rest_force"), damping: self.value("rest_damping") };
-        let drag = drag.with_rest(rest)?;
-        let drag = match self.given("static_growth").filter(|growth| *growth != 0.0) {
-            Some(growth) => drag.with_strengthening(Strengthening {
-                growth,
-                time: self.value("static_growth_time"),
-            })?,
-            None => drag,
-        };
-        self.temperature_law().map_or(Ok(drag.clone()), |law| drag.with_temperature_law(law))
+    fn drag(&self) -> Result<Drag, Unreadable> {
+        Ok(DragForm::of(self.description.choices.drag, self)?.law()?)
     }
 
     /// The motion from its start, at the inputs as they are.
-    pub fn stepper(&self) -> Result<Stepper, Error> {
+    pub fn stepper(&self) -> Result<Stepper, Unreadable> {
         let (train, drag) = (self.train()?, self.drag()?);
         let given = self.values[self.description.drive_place()];
         let given = self.drive(given);
@@ -195,6 +135,6 @@ impl Making<'_> {
             }
         };
         let system = System::new(train, &drag, drive, temperature.map(Schedule::constant))?;
-        Stepper::new(system, start, self.value("tolerance"), Integrator::Adaptive)
+        Ok(Stepper::new(system, start, self.value("tolerance"), Integrator::Adaptive)?)
     }
 }

@@ -4,6 +4,7 @@
 //! |---------------------------|------------------------------------------------------------------------------------|
 //! | `error`                   | the closed list of ways an input can be wrong, or a computation can end unfinished |
 //! | `work`                    | how much work a computation may do, and whether anybody still waits for it         |
+//! | `wire`                    | values by name, as all ways into the core hand them over, and what is wrong with them |
 //! | `lubrication::viscosity`  | viscosity against temperature, pressure and shear rate                             |
 //! | `lubrication::contact`    | moduli, Hertz, rubber hardness                                                     |
 //! | `lubrication::layer`      | a rigid cylinder pressed into a bonded elastic layer: nip width and pressure       |
@@ -15,6 +16,7 @@
 //! | `drag`                    | drag against belt speed and temperature: EHL and mixed branches                    |
 //! | `drag::closure`           | what the drag does below the stick speed                                           |
 //! | `drag::curve`             | drag as a smooth curve through points                                              |
+//! | `drag::form`              | a drag as plain values by name                                                     |
 //! | `motion::schedule`        | drive speed, torque and temperature against time                                   |
 //! | `motion::system`          | drivetrain, drag, drive and temperature: the equation to solve                     |
 //! | `motion::surroundings`    | drive, temperature and law of drag at one time of the motion                       |
@@ -49,6 +51,7 @@ pub mod error;
 pub mod lubrication;
 pub mod motion;
 pub mod stability;
+pub mod wire;
 pub mod work;
 
 pub use error::Error;

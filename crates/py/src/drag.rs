@@ -1,14 +1,17 @@
 //! The drag law as an object that Python holds.
 
+use std::collections::HashMap;
+
 use hersey_core::Error;
-use hersey_core::drag::{Closure, Drag, Rest, SpeedLaw, Strengthening, TemperatureLaw};
-use hersey_core::lubrication::mixed::{MixedLaw, Sharing};
+use hersey_core::drag::form::{CHOICES, LISTS, NUMBERS, Shape};
+use hersey_core::drag::{Closure, ClosureKind, Drag, DragForm, Rest};
+use hersey_core::wire::Values;
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
-use crate::errors::{raised, refused};
+use crate::errors::{raised, refused, unreadable};
 use crate::interrupt::{copied, interruptible};
-use crate::lubrication::ViscosityLaw;
 
 /// A drag law.
 #[pyclass(frozen, module = "hersey._core")]
@@ -27,36 +30,69 @@ pub struct Pair {
 pub type ClosureArguments<'a> = (&'a str, Option<f64>, Option<f64>);
 
 pub fn closure_from((name, stiffness, damping): ClosureArguments) -> PyResult<Closure> {
-    match name {
-        "retained" => Ok(Closure::Retained),
-        "stiction" => Ok(Closure::Stiction),
-        "stribeck" => Ok(Closure::Stribeck),
-        "lugre" => {
-            let missing = |name| refused(name, format!("closure 'lugre' needs {name}"));
-            Ok(Closure::LuGre {
-                bristle_stiffness: stiffness.ok_or_else(|| missing("bristle_stiffness"))?,
-                bristle_damping: damping.ok_or_else(|| missing("bristle_damping"))?,
-            })
+    let closure = ClosureKind::of(name).and_then(|kind| Closure::of(kind, (stiffness, damping)));
+    closure.map_err(unreadable)
+}
+
+/// One value of the wire form.
+#[derive(FromPyObject)]
+enum Value {
+    Word(String),
+    Number(f64),
+    Numbers(Vec<f64>),
+}
+
+/// Values by name, all of them fields of a drag.
+struct Given(HashMap<&'static str, Value>);
+
+impl Given {
+    fn new(values: &Bound<'_, PyDict>) -> PyResult<Self> {
+        let mut given = HashMap::new();
+        for (name, value) in values {
+            let name: String = name.extract()?;
+            let fields = || [&CHOICES[..], &NUMBERS, &LISTS].concat();
+            let field = fields().into_iter().find(|field| *field == name).ok_or_else(|| {
+                refused("drag", format!("'{name}' is no value of a drag: {}", fields().join(", ")))
+            })?;
+            if !value.is_none() {
+                given.insert(field, value.extract()?);
+            }
         }
-        other => {
-            let known = "retained, stiction, stribeck or lugre";
-            Err(refused("closure", format!("closure '{other}' is not known: {known}")))
-        }
+        Ok(Self(given))
+    }
+}
+
+impl Values for Given {
+    fn word(&self, field: &str) -> Option<&str> {
+        if let Some(Value::Word(word)) = self.0.get(field) { Some(word) } else { None }
+    }
+
+    fn number(&self, field: &str) -> Option<f64> {
+        if let Some(Value::Number(number)) = self.0.get(field) { Some(*number) } else { None }
+    }
+
+    fn numbers(&self, field: &str) -> Option<&[f64]> {
+        if let Some(Value::Numbers(numbers)) = self.0.get(field) { Some(numbers) } else { None }
     }
 }
 
 /// Static force, if it is not that which makes drag continuous, and force and damping of the rest of the drive.
 pub type CommonArguments = (Option<f64>, f64, f64);
 
-pub fn with_common(drag: Drag, (force, rest, damping): CommonArguments) -> Result<Drag, Error> {
-    let drag = match force {
-        Some(force) => drag.with_breakaway_force(force)?,
-        None => drag,
-    };
-    drag.with_rest(Rest { force: rest, damping })
+/// The law of one of many sets: force and speed of the transition, both exponents and the stick speed.
+pub fn two_branches(
+    [transition_force, transition_speed, ehl_exponent, mixed_exponent, stick_speed]: [f64; 5],
+    closure: Closure,
+    (static_force, force, damping): CommonArguments,
+) -> Result<Drag, Error> {
+    let shape = Shape::Power { transition_force, transition_speed, ehl_exponent, mixed_exponent };
+    let rest = Rest { force, damping };
+    let (strengthening, temperature_law) = (None, None);
+    DragForm { shape, stick_speed, closure, static_force, rest, strengthening, temperature_law }
+        .law()
 }
 
-/// The same of each of many sets, from columns in that order; not a number where there is no static force.
+/// `CommonArguments` of each of many sets, from columns in that order; not a number where there is no static force.
 pub fn beside_from(
     py: Python<'_>,
     columns: Option<[PyReadonlyArray1<'_, f64>; 3]>,
@@ -73,86 +109,11 @@ pub fn beside_from(
 
 #[pymethods]
 impl Law {
-    /// Two branches that meet at the transition.
+    /// From plain values by name: the wire form of the core.
     #[new]
-    fn new(
-        transition: (f64, f64),
-        ehl_exponent: f64,
-        mixed_exponent: f64,
-        stick_speed: f64,
-        closure: ClosureArguments<'_>,
-    ) -> PyResult<Self> {
-        let (force, speed) = transition;
-        let closure = closure_from(closure)?;
-        Drag::new(force, speed, ehl_exponent, mixed_exponent, stick_speed, closure)
-            .map(Self)
-            .map_err(raised)
-    }
-
-    /// A chain of branches through measured points.
-    #[staticmethod]
-    fn tabulated(
-        speeds: Vec<f64>,
-        forces: Vec<f64>,
-        stick_speed: f64,
-        closure: ClosureArguments<'_>,
-    ) -> PyResult<Self> {
-        Drag::tabulated(&speeds, &forces, stick_speed, closure_from(closure)?)
-            .map(Self)
-            .map_err(raised)
-    }
-
-    /// A contact whose load film and asperities share, from the numbers of `MixedLaw` and a viscosity.
-    #[staticmethod]
-    fn mixed(
-        numbers: [f64; 10],
-        viscosity: f64,
-        stick_speed: f64,
-        closure: ClosureArguments<'_>,
-    ) -> PyResult<Self> {
-        let law = MixedLaw::new(Sharing::from_numbers(numbers));
-        let closure = closure_from(closure)?;
-        law.and_then(|law| Drag::mixed(law, viscosity, stick_speed, closure))
-            .map(Self)
-            .map_err(raised)
-    }
-
-    /// The same law, its speeds varying as the inverse of a viscosity, at temperatures in K.
-    fn with_viscosity_law(
-        &self,
-        reference: f64,
-        viscosity: &ViscosityLaw,
-        boundary_slope: f64,
-        rest_slope: f64,
-    ) -> PyResult<Self> {
-        let speed = SpeedLaw::Viscosity(viscosity.0);
-        let temperature_law =
-            TemperatureLaw { reference, force_exponent: 0.0, speed, boundary_slope, rest_slope };
-        self.0.clone().with_temperature_law(temperature_law).map(Self).map_err(raised)
-    }
-
-    /// The same law, varying with temperature.
-    fn with_temperature_law(
-        &self,
-        reference: f64,
-        force_exponent: f64,
-        speed_exponent: f64,
-        rest_slope: f64,
-    ) -> PyResult<Self> {
-        let powers = TemperatureLaw::powers(reference, force_exponent, speed_exponent);
-        let temperature_law = TemperatureLaw { rest_slope, ..powers };
-        self.0.clone().with_temperature_law(temperature_law).map(Self).map_err(raised)
-    }
-
-    /// The same law with another static force, unless there is none, and the rest of the drive beside it.
-    fn with_common(&self, common: CommonArguments) -> PyResult<Self> {
-        with_common(self.0.clone(), common).map(Self).map_err(raised)
-    }
-
-    /// The same law with a static force that grows with the time at rest.
-    fn with_strengthening(&self, growth: f64, time: f64) -> PyResult<Self> {
-        let strengthening = Strengthening { growth, time };
-        self.0.clone().with_strengthening(strengthening).map(Self).map_err(raised)
+    fn new(values: &Bound<'_, PyDict>) -> PyResult<Self> {
+        let form = DragForm::read(&Given::new(values)?);
+        form.and_then(|form| Ok(form.law()?)).map(Self).map_err(unreadable)
     }
 
     /// The law at one temperature.

@@ -4,13 +4,13 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;
 
 use hersey_core::Error;
-use hersey_core::drag::{Closure, Drag};
+use hersey_core::drag::Closure;
 use hersey_core::motion::{Belt, Drivetrain, Outcome, Span, Start, StickSlipCycle, ensemble};
 use hersey_core::work::Work;
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 
-use crate::drag::{ClosureArguments, CommonArguments, beside_from, closure_from, with_common};
+use crate::drag::{ClosureArguments, CommonArguments, beside_from, closure_from, two_branches};
 use crate::errors::{Failure, raised, raised_at};
 use crate::interrupt::{PATIENCE, copied, interruptible};
 
@@ -140,7 +140,7 @@ fn belt_of(
     steady: bool,
 ) -> Result<Belt, Error> {
     let [k, m, force, speed, ehl, mixed, stick, drive_speed] = set;
-    let drag = with_common(Drag::new(force, speed, ehl, mixed, stick, closure)?, common)?;
+    let drag = two_branches([force, speed, ehl, mixed, stick], closure, common)?;
     let train = Drivetrain::new(k, m)?;
     let train = grip.map_or(Ok(train), |grip| train.with_grip(grip))?;
     let start =

@@ -1,6 +1,7 @@
 //! Errors of the core as exceptions of `hersey.errors`, with their fields.
 
 use hersey_core::Error;
+use hersey_core::wire::Unreadable;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -23,6 +24,14 @@ pub fn refused(quantity: &'static str, message: String) -> PyErr {
             class.call((message,), Some(&fields))
         }))
     })
+}
+
+/// The exception of values that make no object of the core.
+pub fn unreadable(why: Unreadable) -> PyErr {
+    match why {
+        Unreadable::Impossible(error) => raised(error),
+        other => refused(other.field().unwrap_or_default(), other.to_string()),
+    }
 }
 
 fn into_raised(built: PyResult<Bound<'_, PyAny>>) -> PyErr {

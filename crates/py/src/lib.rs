@@ -32,9 +32,9 @@ mod _core {
     #[pymodule_export]
     use super::lubrication::{
         Correction, EllipticFilm, Hertz, LayerNip, LineFilm, ShearHeating, Traction, Viscosity,
-        ViscosityLaw, carreau, effective_modulus, elliptic_film, ellipticity, hertz, inlet_heating,
-        inlet_length, layer, layer_factor, line_film, paper, reduced_radius, shear_heating,
-        shear_thinning, shore_a_modulus, soft_traction, starvation,
+        ViscosityForm, ViscosityLaw, carreau, effective_modulus, elliptic_film, ellipticity, hertz,
+        inlet_heating, inlet_length, layer, layer_factor, line_film, paper, reduced_radius,
+        shear_heating, shear_thinning, shore_a_modulus, soft_traction, starvation,
     };
     #[pymodule_export]
     use super::mixed::{
@@ -71,6 +71,8 @@ mod _core {
         module.add("FILM_CONSTANTS", super::lubrication::FILM_CONSTANTS)?;
         module.add("FILM_SPEED_EXPONENTS", super::lubrication::speed_exponents())?;
         module.add("FILM_LOAD_EXPONENTS", super::lubrication::load_exponents())?;
+        module.add("CLOSURES", hersey_core::drag::ClosureKind::WORDS)?;
+        module.add("VISCOSITY_LAWS", super::lubrication::viscosity_laws(module.py())?)?;
         module.add("SHARING", hersey_core::lubrication::mixed::Sharing::NAMES)?;
         module.add("GREENWOOD_TRIPP", hersey_core::lubrication::mixed::GREENWOOD_TRIPP)?;
         module.add("GAS_CONSTANT", hersey_core::lubrication::viscosity::GAS_CONSTANT)?;

@@ -7,12 +7,12 @@ use hersey_core::lubrication::film::{self, EllipticContact, LineContact, Regime}
 use hersey_core::lubrication::layer as bonded;
 use hersey_core::lubrication::paper::Nip;
 use hersey_core::lubrication::traction::{self, Edge};
-use hersey_core::lubrication::viscosity::{Carreau, Point, TemperatureLaw};
+use hersey_core::lubrication::viscosity::{self, Carreau, Point, TemperatureLaw, ViscosityKind};
 use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::errors::{raised, raised_at, refused};
+use crate::errors::{raised, raised_at, refused, unreadable};
 use crate::interrupt::{copied, interruptible};
 
 /// Arrays of one shape, one for each quantity.
@@ -147,22 +147,13 @@ pub struct ViscosityLaw(pub TemperatureLaw);
 
 #[pymethods]
 impl ViscosityLaw {
-    /// Through two points (K, Pa s).
+    /// Of a kind, through points (K, Pa s); density in kg/m^3, where the law is one of kinematic viscosity.
     #[staticmethod]
-    fn arrhenius(points: [Point; 2]) -> PyResult<Self> {
-        TemperatureLaw::arrhenius(points).map(Self).map_err(raised)
-    }
-
-    /// Through three points (K, Pa s).
-    #[staticmethod]
-    fn vogel(points: [Point; 3]) -> PyResult<Self> {
-        TemperatureLaw::vogel(points).map(Self).map_err(raised)
-    }
-
-    /// Through two points (K, m^2/s), at a density in kg/m^3.
-    #[staticmethod]
-    fn walther(points: [Point; 2], density: f64) -> PyResult<Self> {
-        TemperatureLaw::walther(points, density).map(Self).map_err(raised)
+    #[pyo3(signature = (kind, points, density=None))]
+    fn through(kind: &str, points: Vec<Point>, density: Option<f64>) -> PyResult<Self> {
+        let law = ViscosityKind::of(kind)
+            .and_then(|kind| TemperatureLaw::through(kind, &points, density));
+        law.map(Self).map_err(unreadable)
     }
 
     /// Viscosity (Pa s) and d ln eta/d ln T at temperatures (K).
@@ -176,21 +167,39 @@ impl ViscosityLaw {
         })
     }
 
+    /// Its word among the laws.
+    #[getter]
+    fn kind(&self) -> &'static str {
+        self.0.kind().word()
+    }
+
     /// The coefficients by name.
     #[getter]
     fn coefficients(&self) -> Vec<(&'static str, f64)> {
-        match self.0 {
-            TemperatureLaw::Arrhenius { prefactor, activation_energy } => {
-                vec![("prefactor", prefactor), ("activation_energy", activation_energy)]
-            }
-            TemperatureLaw::Vogel { prefactor, slope, zero } => {
-                vec![("prefactor", prefactor), ("slope", slope), ("zero", zero)]
-            }
-            TemperatureLaw::Walther { a, b, density } => {
-                vec![("a", a), ("b", b), ("density", density)]
-            }
-        }
+        self.0.kind().form().coefficients.iter().copied().zip(self.0.coefficients()).collect()
     }
+}
+
+/// What a law of viscosity is made of.
+#[pyclass(frozen, get_all, module = "hersey._core")]
+pub struct ViscosityForm {
+    /// Points through which it goes.
+    points: usize,
+    /// Whether it is one of kinematic viscosity, so that it needs a density.
+    kinematic: bool,
+    /// Names of its coefficients.
+    coefficients: Vec<&'static str>,
+}
+
+/// The laws of viscosity by their words.
+pub fn viscosity_laws(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+    let laws = PyDict::new(py);
+    for kind in ViscosityKind::ALL {
+        let viscosity::Form { points, kinematic, coefficients } = kind.form();
+        let coefficients = coefficients.to_vec();
+        laws.set_item(kind.word(), ViscosityForm { points, kinematic, coefficients })?;
+    }
+    Ok(laws)
 }
 
 /// Share of viscosity left at a shear rate: rate, relaxation time, exponent, limit.

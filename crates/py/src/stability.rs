@@ -8,7 +8,7 @@ use hersey_core::work::{MOST_STEPS, Work};
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 
-use crate::drag::{ClosureArguments, Law, beside_from, closure_from, with_common};
+use crate::drag::{ClosureArguments, Law, beside_from, closure_from, two_branches};
 use crate::ensemble::{column, each, failures, in_chunks};
 use crate::errors::{Failure, raised_at};
 use crate::interrupt::{copied, interruptible};
@@ -125,10 +125,10 @@ pub fn bands<'py>(
     let common = beside_from(py, beside)?;
     let belt = |i: usize| -> Result<(Drivetrain, Drag), Error> {
         let [k, m, force, speed, ehl, mixed, stick] = std::array::from_fn(|c| columns[c][i]);
-        let drag = Drag::new(force, speed, ehl, mixed, stick, closure)?;
+        let drag = two_branches([force, speed, ehl, mixed, stick], closure, common(i))?;
         let train = Drivetrain::new(k, m)?;
         let train = grip.map_or(Ok(train), |grip| train.with_grip(grip))?;
-        Ok((train, with_common(drag, common(i))?))
+        Ok((train, drag))
     };
     let belts = each(py, columns[0].len(), |i| belt(i).map_err(|error| (i, error)))?
         .map_err(|(i, error)| raised_at("set", i, error))?;

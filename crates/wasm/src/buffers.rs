@@ -55,3 +55,10 @@ pub fn answered(function: fn(&mut Question) -> Result<Vec<f64>, Refusal>) -> u32
         }
     })
 }
+
+/// Put words where those of a refusal stand.
+pub fn say(words: String) {
+    BUFFERS.with_borrow_mut(|buffers| {
+        (buffers.answer, buffers.refusal) = (Vec::new(), words);
+    });
+}

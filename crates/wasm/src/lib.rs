@@ -4,7 +4,7 @@
 //! |------------|--------------------------------------------------------------------|
 //! | `buffers`  | the buffer of the question, that of the answer, and its words      |
 //! | `question` | numbers in the order in which they were asked, as drive and law    |
-//! | `law`      | the law of drag of a question                                      |
+//! | `law`      | the law of drag of a question, and the names of its parts          |
 //! | `answers`  | what each exported function computes: calls of the core, no more   |
 //! | `refusal`  | an error of the core as JSON, with its fields                      |
 //!
@@ -35,6 +35,13 @@ pub extern "C" fn hersey_question(length: usize) -> *mut f64 {
 #[unsafe(no_mangle)]
 pub extern "C" fn hersey_answer() -> *const f64 {
     buffers::answer()
+}
+
+/// Write the names of which a law of drag is made, as JSON, to where the words of a refusal are.
+#[allow(unsafe_code)]
+#[unsafe(no_mangle)]
+pub extern "C" fn hersey_names() {
+    buffers::say(law::names());
 }
 
 /// Where the words of a refusal are.

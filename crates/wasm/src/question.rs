@@ -53,6 +53,15 @@ impl<'a> Question<'a> {
         }
     }
 
+    /// One of some kinds, by its place among them.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // anything else is none of them
+    pub fn one_of<K>(&mut self, kinds: impl IntoIterator<Item = K>) -> Result<K, Refusal> {
+        let place = self.number()?;
+        let known = place >= 0.0 && place.fract() == 0.0;
+        let kind = known.then(|| kinds.into_iter().nth(place as usize)).flatten();
+        kind.ok_or(Refusal::Malformed("a choice of no known kind"))
+    }
+
     pub fn flag(&mut self) -> Result<bool, Refusal> {
         Ok(self.number()? != 0.0)
     }

@@ -3,11 +3,14 @@
 use std::fmt::Write;
 
 use hersey_core::Error;
+use hersey_core::wire::Unreadable;
 
 /// Why there is no answer.
 pub enum Refusal {
     /// The core says so.
     Core(Error),
+    /// A value that the law needs is missing.
+    Unreadable(Unreadable),
     /// The question is not one of those that the function takes; a fault of the page.
     Malformed(&'static str),
 }
@@ -18,11 +21,25 @@ impl From<Error> for Refusal {
     }
 }
 
+impl From<Unreadable> for Refusal {
+    fn from(error: Unreadable) -> Self {
+        match error {
+            Unreadable::Impossible(error) => Self::Core(error),
+            other => Self::Unreadable(other),
+        }
+    }
+}
+
 impl Refusal {
     /// `message` and, of the core's, the fields that it has; numbers that are infinite or none are left out.
     pub fn json(&self) -> String {
         match self {
             Self::Malformed(what) => format!("{{\"message\":{}}}", quoted(what)),
+            Self::Unreadable(why) => format!(
+                "{{\"message\":{},\"quantity\":{}}}",
+                quoted(&why.to_string()),
+                quoted(why.field().unwrap_or_default())
+            ),
             Self::Core(error) => of_core(error),
         }
     }
@@ -52,6 +69,6 @@ fn of_core(error: &Error) -> String {
     text
 }
 
-fn quoted(text: &str) -> String {
+pub fn quoted(text: &str) -> String {
     format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\""))
 }

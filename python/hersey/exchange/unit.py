@@ -17,13 +17,13 @@ from hersey.damping.fitted_law import FittedLaw
 from hersey.errors import ParameterError
 from hersey.exchange.description import Model, description
 from hersey.exchange.documentation import LICENSE_TEXT, page
-from hersey.exchange.drive_file import Value, drive_text, drive_values
+from hersey.exchange.drive_file import drive_text, drive_values
 from hersey.exchange.platforms import own_library, platform_named, read_library, this_platform
 from hersey.exchange.variables import Variable, variables_of
 from hersey.files.writing import write_atomically
 from hersey.lubrication.mixed_drag import MixedDrag
 from hersey.motion.belt import Drivetrain
-from hersey.motion.drag import AnyDrag
+from hersey.motion.drag import AnyDrag, Wire
 from hersey.motion.simulation import TOLERANCE, simulate
 from hersey.result import json_record
 from hersey.spelling import printable
@@ -240,7 +240,7 @@ def _values(
     start: str | tuple[float, float],
     roll_radius: float | None,
     tolerance: float,
-) -> dict[str, Value]:
+) -> dict[str, Wire]:
     """All that the library is told of the motion; ``given`` are the inputs in the units of the belt."""
     values = drive_values(train, drag) | {"drive": drive, "tolerance": tolerance}
     moved, rotates = given[DRIVES[drive]] or 0.0, drive == "speed" and port == ROTATIONAL
@@ -257,9 +257,9 @@ def _values(
     return values | {"start": "given", "start_belt_speed": start[0], "start_stretch": start[1]}
 
 
-def _measured(drag: AnyDrag, fitted: FittedLaw | None, roll_radius: float | None) -> dict[str, Value]:
+def _measured(drag: AnyDrag, fitted: FittedLaw | None, roll_radius: float | None) -> dict[str, Wire]:
     """Belt speeds and temperatures beyond which the library warns, as far as they are known."""
-    found: dict[str, Value] = {}
+    found: dict[str, Wire] = {}
     if fitted is not None and roll_radius is not None:
         found["measured_speeds"] = [speed * roll_radius for speed in fitted.speed_range]
     heat = _measured_heat(drag, fitted)
@@ -277,7 +277,7 @@ def _measured_heat(drag: AnyDrag, fitted: FittedLaw | None) -> tuple[float, floa
     return None
 
 
-def _own(variables: tuple[Variable, ...], values: Mapping[str, Value], fmi: str) -> tuple[Variable, ...]:
+def _own(variables: tuple[Variable, ...], values: Mapping[str, Wire], fmi: str) -> tuple[Variable, ...]:
     """The variables that this drive has: of inputs and parameters those that it gives a value.
 
     Outputs of a port are those of this one; of a drive by a torque there is none. FMI 2.0 needs no time

@@ -15,7 +15,7 @@ from hersey.errors import ParameterError
 from hersey.units import ZERO_CELSIUS, argument, fields_in_si, takes_si
 
 #: Laws of viscosity against temperature, and how many points each takes.
-MODELS = {"arrhenius": 2, "vogel": 3, "walther": 2}
+MODELS = {name: form.points for name, form in _core.VISCOSITY_LAWS.items()}
 
 
 @dataclass(frozen=True)
@@ -96,8 +96,10 @@ class Lubricant:
             raise ParameterError(
                 f"viscosity model '{self.model}' takes {MODELS[self.model]} points, not {len(self.points)}"
             )
-        if self.model == "walther" and self.density is None:
-            raise ParameterError("viscosity model 'walther' is one of kinematic viscosity: give the density")
+        if _core.VISCOSITY_LAWS[self.model].kinematic and self.density is None:
+            raise ParameterError(
+                f"viscosity model '{self.model}' is one of kinematic viscosity: give the density"
+            )
         for value in (self.density, self.conductivity, self.uncertainty):
             if value is not None and not value > 0:
                 raise ParameterError(f"density, conductivity and uncertainty must be above 0, not {value:g}")
@@ -110,11 +112,7 @@ class Lubricant:
 
     def _through_points(self) -> _core.ViscosityLaw:
         try:
-            if self.model == "walther" and self.density is not None:
-                kinematic = [(t, eta / self.density) for t, eta in self.points]
-                return _core.ViscosityLaw.walther(kinematic, self.density)
-            law = _core.ViscosityLaw.vogel if self.model == "vogel" else _core.ViscosityLaw.arrhenius
-            return law(self.points)
+            return _core.ViscosityLaw.through(self.model, self.points, self.density)
         except ParameterError as error:
             raise error.within(f"viscosities of {self.name}") from None
 

@@ -6,9 +6,8 @@ from dataclasses import KW_ONLY, dataclass
 
 import numpy as np
 
-from hersey import _core
 from hersey.lubrication.mixed import MixedContact
-from hersey.motion.drag import KINDS, BesideShape
+from hersey.motion.drag import KINDS, BesideShape, Wire
 from hersey.units import fields_in_si, takes_si
 
 
@@ -59,16 +58,16 @@ class MixedDrag(BesideShape):
         """Return the belt speed of least drag of the contact, m/s, at a temperature, K."""
         return self.law_at(temperature).transition_speed
 
-    def law(self) -> _core.Law:
-        """Return the law as the core holds it."""
+    def _shape(self) -> dict[str, Wire]:
         lubricant, friction = self.contact.lubricant, self.contact.friction
         kelvin = np.asarray(self.temperature, dtype=float)
-        numbers = [float(number) for number in self.contact.numbers(kelvin)]
-        viscosity = float(lubricant.viscosity(kelvin))
-        law = _core.Law.mixed(numbers, viscosity, float(self.stick_speed), self._closure)
-        return law.with_common(self._beside).with_viscosity_law(
-            float(self.temperature),
-            lubricant.law,
-            float(friction.slope / friction.at(kelvin)),
-            float(self.rest_temperature_slope),
-        )
+        return {
+            "law": "mixed",
+            "numbers": [float(number) for number in self.contact.numbers(kelvin)],
+            "viscosity": float(lubricant.viscosity(kelvin)),
+            "temperature_law": lubricant.law.kind,
+            "viscosity_numbers": list(lubricant.coefficients().values()),
+            "reference_temperature": float(self.temperature),
+            "boundary_temperature_slope": float(friction.slope / friction.at(kelvin)),
+            "rest_temperature_slope": float(self.rest_temperature_slope),
+        }

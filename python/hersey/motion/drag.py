@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import KW_ONLY, dataclass, replace
 from typing import Any, Self
 
@@ -14,7 +15,9 @@ from hersey.errors import ParameterError
 from hersey.units import fields_in_si, takes_si
 
 #: What the belt does near zero speed; see docs/closures.md.
-CLOSURES = ("retained", "stiction", "stribeck", "lugre")
+CLOSURES = tuple(_core.CLOSURES)
+#: A value of the wire form.
+Wire = str | float | Sequence[float]
 #: What every law takes besides its shape.
 BESIDE = ("static_force", "rest_force", "rest_damping")
 #: Kinds of what every drag law takes.
@@ -33,6 +36,8 @@ class AnyDrag:
 
     #: Zero of the temperature scale of the law, K.
     temperature_zero: float = 0.0
+    #: Belt speed below which the closure holds, m/s.
+    stick_speed: float
 
     def law(self) -> _core.Law:
         """Return the law as the core holds it."""
@@ -92,16 +97,37 @@ class BesideShape(AnyDrag):
     rest_force: float = 0.0
     rest_damping: float = 0.0
 
-    @property
-    def _closure(self) -> tuple[str, float | None, float | None]:
-        """What the belt does near rest, as the core takes it."""
-        return self.closure, self.bristle_stiffness, self.bristle_damping
+    def _shape(self) -> dict[str, Wire]:
+        """The law and how it varies with temperature, in the wire form."""
+        raise NotImplementedError
 
-    @property
-    def _beside(self) -> tuple[float | None, float, float]:
-        """`BESIDE`, as the core takes it."""
-        static = None if self.static_force is None else float(self.static_force)
-        return static, float(self.rest_force), float(self.rest_damping)
+    def wire(self) -> dict[str, Wire]:
+        """Return the drag as plain values by name, as the core and the drive file of a unit take it.
+
+        What is not given is left out; see ``crates/core/src/drag/form.rs``.
+        """
+        near = {
+            name: getattr(self, name) for name in ("bristle_stiffness", "bristle_damping", "static_force")
+        }
+        return {
+            **self._shape(),
+            **{name: float(value) for name, value in near.items() if value is not None},
+            "stick_speed": float(self.stick_speed),
+            "closure": self.closure,
+            "rest_force": float(self.rest_force),
+            "rest_damping": float(self.rest_damping),
+        }
+
+    def law(self) -> _core.Law:
+        """Return the law as the core holds it."""
+        return _core.Law(self.wire())
+
+
+#: What `PowersOfTemperature` adds to a law.
+_POWERS = (
+    *("reference_temperature", "temperature_zero"),
+    *("force_temperature_exponent", "speed_temperature_exponent", "rest_temperature_slope"),
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -124,16 +150,11 @@ class PowersOfTemperature(BesideShape):
         """Whether the law varies with temperature."""
         return self.reference_temperature is not None
 
-    def _varying(self, law: _core.Law) -> _core.Law:
-        """A law of the core with this dependence on temperature."""
+    def _temperature_law(self) -> dict[str, Wire]:
+        """How the law varies with temperature, in the wire form."""
         if self.reference_temperature is None:
-            return law
-        return law.with_temperature_law(
-            self.reference_temperature - self.temperature_zero,
-            float(self.force_temperature_exponent),
-            float(self.speed_temperature_exponent),
-            float(self.rest_temperature_slope),
-        )
+            return {"temperature_law": "none"}
+        return {"temperature_law": "power", **{name: float(getattr(self, name)) for name in _POWERS}}
 
     @takes_si(temperature="temperature")
     def at(self, temperature: float | None) -> Self:
@@ -232,18 +253,12 @@ class Drag(PowersOfTemperature):
             "stick_speed": self.stick_speed * speed,
         }
 
-    def law(self) -> _core.Law:
-        """Return the law as the core holds it."""
-        law = _core.Law(
-            (float(self.transition_force), float(self.transition_speed)),
-            float(self.ehl_exponent),
-            float(self.mixed_exponent),
-            float(self.stick_speed),
-            self._closure,
-        ).with_common(self._beside)
-        if self.static_growth and self.static_growth_time is not None:
-            law = law.with_strengthening(float(self.static_growth), float(self.static_growth_time))
-        return self._varying(law)
+    def _shape(self) -> dict[str, Wire]:
+        names = ["transition_force", "transition_speed", "ehl_exponent", "mixed_exponent"]
+        if self.static_growth:
+            names += ["static_growth", "static_growth_time"]
+        numbers = {name: float(getattr(self, name)) for name in names}
+        return {"law": "power", **self._temperature_law(), **numbers}
 
     def beside(self, sets: int) -> list[FloatArray] | None:
         """Return `BESIDE`, each for so many sets; not a number where there is no static force.
@@ -257,7 +272,8 @@ class Drag(PowersOfTemperature):
             raise ParameterError("static_growth is of one belt: a sweep of many has no such parameter")
         if self.static_force is None and not self.rest_force and not self.rest_damping:
             return None
-        return [np.full(sets, np.nan if value is None else value) for value in self._beside]
+        values = [getattr(self, name) for name in BESIDE]
+        return [np.full(sets, np.nan if value is None else float(value)) for value in values]
 
 
 @dataclass(frozen=True)
@@ -290,12 +306,8 @@ class DragTable(PowersOfTemperature):
         object.__setattr__(self, "forces", tuple(float(f) for f in self.forces))
         self.law()
 
-    def law(self) -> _core.Law:
-        """Return the law as the core holds it."""
-        law = _core.Law.tabulated(
-            list(self.speeds), list(self.forces), float(self.stick_speed), self._closure
-        )
-        return self._varying(law.with_common(self._beside))
+    def _shape(self) -> dict[str, Wire]:
+        return {"law": "table", "speeds": self.speeds, "forces": self.forces, **self._temperature_law()}
 
     def _scaled(self, force: float, speed: float) -> dict[str, Any]:
         return {

@@ -1,6 +1,7 @@
 //! What the drag does below the stick speed: the choices, each with its source.
 
 use crate::error::{Error, above, at_least};
+use crate::wire::{Unreadable, kinds};
 
 /// Width of the smoothed reversal of `Stribeck`, in stick speeds.
 const SMOOTHING: f64 = 0.05;
@@ -26,7 +27,55 @@ pub enum Closure {
     },
 }
 
+kinds! {
+    /// The closures by their words.
+    ClosureKind of "closure" {
+        /// As of `Closure`, here and below.
+        Retained = "retained",
+        /// Stops dead.
+        Stiction = "stiction",
+        /// Smooth.
+        Stribeck = "stribeck",
+        /// Bristles.
+        LuGre = "lugre",
+    }
+}
+
 impl Closure {
+    /// The closure of a kind, with the stiffness and the damping of the bristles where it has some.
+    ///
+    /// # Errors
+    /// If a number that it needs is not given.
+    pub fn of(
+        kind: ClosureKind,
+        (stiffness, damping): (Option<f64>, Option<f64>),
+    ) -> Result<Self, Unreadable> {
+        let needed = |field, number: Option<f64>| {
+            let choice = Some(("closure", kind.word()));
+            number.ok_or(Unreadable::Missing { field, choice })
+        };
+        Ok(match kind {
+            ClosureKind::Retained => Self::Retained,
+            ClosureKind::Stiction => Self::Stiction,
+            ClosureKind::Stribeck => Self::Stribeck,
+            ClosureKind::LuGre => Self::LuGre {
+                bristle_stiffness: needed("bristle_stiffness", stiffness)?,
+                bristle_damping: needed("bristle_damping", damping)?,
+            },
+        })
+    }
+
+    /// Its kind.
+    #[must_use]
+    pub fn kind(self) -> ClosureKind {
+        match self {
+            Self::Retained => ClosureKind::Retained,
+            Self::Stiction => ClosureKind::Stiction,
+            Self::Stribeck => ClosureKind::Stribeck,
+            Self::LuGre { .. } => ClosureKind::LuGre,
+        }
+    }
+
     pub(super) fn check(self) -> Result<(), Error> {
         if let Self::LuGre { bristle_stiffness, bristle_damping } = self {
             above("bristle_stiffness", bristle_stiffness, 0.0)?;

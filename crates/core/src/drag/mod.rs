@@ -27,9 +27,13 @@
 //! | `mixed_contact` | a contact whose load film and asperities share                      |
 //! | `speeds`        | speeds of a given force, and from which on the drag rises           |
 //! | `temperature`   | how the law varies with temperature                                 |
+//! | `at_temperature` | the law as it is at one temperature                                |
+//! | `form`          | a drag as plain values by name, as all ways into the core hand it over |
 
+mod at_temperature;
 mod closure;
 mod curve;
+pub mod form;
 mod law;
 mod mixed_contact;
 mod mode;
@@ -38,8 +42,9 @@ mod speeds;
 mod strengthening;
 mod temperature;
 
-pub use closure::Closure;
+pub use closure::{Closure, ClosureKind};
 pub use curve::Curve;
+pub use form::DragForm;
 pub use law::Drag;
 pub(crate) use mixed_contact::MixedContact;
 pub use mode::Mode;

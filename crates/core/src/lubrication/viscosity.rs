@@ -1,6 +1,7 @@
 //! Viscosity against temperature, pressure and shear rate.
 
 use crate::error::{Error, above, at_least, at_most, finite};
+use crate::wire::{Unreadable, exactly, kinds};
 
 /// Molar gas constant, J/(mol K) (exact in SI since 2019).
 pub const GAS_CONSTANT: f64 = 8.314_462_618_153_24;
@@ -37,6 +38,42 @@ pub enum TemperatureLaw {
         /// kg/m^3.
         density: f64,
     },
+}
+
+kinds! {
+    /// The laws of viscosity by their words: what all ways into the core know of them stands here and in `form`.
+    ViscosityKind of "temperature_law" {
+        /// As of `TemperatureLaw`, here and below.
+        Arrhenius = "arrhenius",
+        /// Vogel-Fulcher-Tammann.
+        Vogel = "vogel",
+        /// ASTM D341.
+        Walther = "walther",
+    }
+}
+
+/// What a law of viscosity is made of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Form {
+    /// Points through which it goes.
+    pub points: usize,
+    /// Whether it is one of kinematic viscosity, so that it needs a density.
+    pub kinematic: bool,
+    /// Its coefficients, in SI.
+    pub coefficients: &'static [&'static str],
+}
+
+impl ViscosityKind {
+    /// What a law of this kind is made of.
+    #[must_use]
+    pub const fn form(self) -> Form {
+        let (points, kinematic, coefficients): (_, _, &[_]) = match self {
+            Self::Arrhenius => (2, false, &["prefactor", "activation_energy"]),
+            Self::Vogel => (3, false, &["prefactor", "slope", "zero"]),
+            Self::Walther => (2, true, &["a", "b", "density"]),
+        };
+        Form { points, kinematic, coefficients }
+    }
 }
 
 /// A temperature (K) and the viscosity there.
@@ -107,6 +144,71 @@ impl TemperatureLaw {
         let y = |nu: f64| walther_z(nu / CENTISTOKES).log10().log10();
         let b = (y(nu1) - y(nu2)) / (t2 / t1).log10();
         Ok(Self::Walther { a: y(nu1) + b * t1.log10(), b, density })
+    }
+
+    /// The law of a kind through points of dynamic viscosity (Pa s); the density (kg/m^3) is for those that need one.
+    ///
+    /// # Errors
+    /// If there are too few points or too many, the density is needed and missing, or the points do not fit the law.
+    pub fn through(
+        kind: ViscosityKind,
+        points: &[Point],
+        density: Option<f64>,
+    ) -> Result<Self, Unreadable> {
+        let needed = kind.form().points;
+        let count = |_| Unreadable::Count { field: "points", found: points.len(), needed };
+        Ok(match kind {
+            ViscosityKind::Arrhenius => Self::arrhenius(points.try_into().map_err(count)?)?,
+            ViscosityKind::Vogel => Self::vogel(points.try_into().map_err(count)?)?,
+            ViscosityKind::Walther => {
+                let choice = Some(("temperature_law", kind.word()));
+                let density = density.ok_or(Unreadable::Missing { field: "density", choice })?;
+                let points: [Point; 2] = points.try_into().map_err(count)?;
+                Self::walther(points.map(|(t, eta)| (t, eta / density)), density)?
+            }
+        })
+    }
+
+    /// The law of a kind, from its coefficients in the order of its form.
+    ///
+    /// # Errors
+    /// If there are too few or too many.
+    pub fn from_coefficients(kind: ViscosityKind, numbers: &[f64]) -> Result<Self, Unreadable> {
+        const FIELD: &str = "viscosity_numbers";
+        Ok(match kind {
+            ViscosityKind::Arrhenius => {
+                let [prefactor, activation_energy] = exactly(FIELD, numbers)?;
+                Self::Arrhenius { prefactor, activation_energy }
+            }
+            ViscosityKind::Vogel => {
+                let [prefactor, slope, zero] = exactly(FIELD, numbers)?;
+                Self::Vogel { prefactor, slope, zero }
+            }
+            ViscosityKind::Walther => {
+                let [a, b, density] = exactly(FIELD, numbers)?;
+                Self::Walther { a, b, density }
+            }
+        })
+    }
+
+    /// Its kind.
+    #[must_use]
+    pub fn kind(&self) -> ViscosityKind {
+        match self {
+            Self::Arrhenius { .. } => ViscosityKind::Arrhenius,
+            Self::Vogel { .. } => ViscosityKind::Vogel,
+            Self::Walther { .. } => ViscosityKind::Walther,
+        }
+    }
+
+    /// Its coefficients, in the order of its form.
+    #[must_use]
+    pub fn coefficients(&self) -> Vec<f64> {
+        match *self {
+            Self::Arrhenius { prefactor, activation_energy } => vec![prefactor, activation_energy],
+            Self::Vogel { prefactor, slope, zero } => vec![prefactor, slope, zero],
+            Self::Walther { a, b, density } => vec![a, b, density],
+        }
     }
 
     /// Dynamic viscosity (Pa s) at a temperature (K).

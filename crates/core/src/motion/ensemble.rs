@@ -1,9 +1,10 @@
 //! What thousands of belts settle to: laps in lanes where they are plain, the full motion where they are not.
 
-use super::cycle::{CycleKind, Span, StickSlipCycle, settle};
+use super::cycle::{Span, settle};
 use super::hybrid::Motion;
 use super::lanes::{Lanes, arrival, run_lanes};
 use super::piece::Piece;
+use super::stick_slip_cycle::{CycleKind, StickSlipCycle};
 use super::system::{Drivetrain, Integrator, Start, System, checked_tolerance};
 use crate::drag::{Closure, Drag, Mode, Rest};
 use crate::error::{Error, above, finite, unless_stopped};

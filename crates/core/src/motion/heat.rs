@@ -13,8 +13,9 @@ use super::piece::{Path, Piece};
 use super::polynomial::{
     INVERSE, INVERSE_NEXT, ORDER, Polynomial, derivative, first_crossing, value,
 };
+use super::recurrence::product;
 use super::schedule::Schedule;
-use super::taylor::{product, rough_root};
+use super::taylor::rough_root;
 use crate::drag::Mode;
 use crate::error::{Error, above, at_least, finite};
 

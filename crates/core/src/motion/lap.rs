@@ -1,8 +1,8 @@
 //! One lap of a periodic motion: where it begins and ends, what happens on it, and where the laps are heading.
 
-use super::cycle::{CycleKind, StickSlipCycle};
 use super::event::{Event, Guard};
 use super::piece::Piece;
+use super::stick_slip_cycle::{CycleKind, StickSlipCycle};
 use super::system::Drivetrain;
 use crate::drag::{Closure, Drag, Mode};
 

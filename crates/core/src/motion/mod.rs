@@ -5,6 +5,7 @@
 //! | `schedule`    | drive speed, torque and temperature against time                          |
 //! | `system`      | drivetrain, drag, drive and temperature: the equation to solve            |
 //! | `polynomial`  | Taylor polynomials of fixed order; first root in an interval              |
+//! | `recurrence`  | products, powers and exponentials of such polynomials, coefficient by coefficient |
 //! | `thermal`     | how the law of drag moves while the temperature does, as series           |
 //! | `heat`        | temperature as a state: two bodies, a heater and friction                 |
 //! | `sharing`     | series of the force of a contact whose load film and asperities share     |
@@ -22,6 +23,7 @@
 //! | `trajectory`  | the motion sampled at given times, with its event table and energies      |
 //! | `lanes`       | slip laps of many belts at once, several to a register                    |
 //! | `ensemble`    | what thousands of belts settle to                                         |
+//! | `stick_slip_cycle` | what a motion has settled to: its kind, and the numbers of its lap    |
 //! | `lap`         | one lap: its sections, its extremes, and where the laps are heading       |
 //! | `cycle`       | what the motion settles to: steady sliding, oscillation, stick-slip       |
 //! | `overtakings` | a motion seen only where the belt overtakes the drive                     |
@@ -44,6 +46,7 @@ mod moment;
 mod overtakings;
 mod piece;
 mod polynomial;
+mod recurrence;
 mod returning;
 mod runge_kutta;
 mod schedule;
@@ -54,13 +57,14 @@ mod start_up;
 mod start_ups;
 mod stepper;
 mod steps;
+mod stick_slip_cycle;
 mod surroundings;
 mod system;
 mod taylor;
 mod thermal;
 mod trajectory;
 
-pub use cycle::{CycleKind, Span, StickSlipCycle, settle, stick_slip};
+pub use cycle::{Span, settle, stick_slip};
 pub use ensemble::{Belt, Outcome, ensemble};
 pub use event::{Event, Guard};
 pub use heat::{HeatBalance, Heater};
@@ -72,6 +76,7 @@ pub use schedule::{Cubic, Schedule};
 pub use start_up::{Ending, StartUp, Started, start_up};
 pub use start_ups::{BeltAtRest, Starting, start_ups};
 pub use stepper::{State, Stepper};
+pub use stick_slip_cycle::{CycleKind, StickSlipCycle};
 pub(crate) use system::checked_tolerance;
 pub use system::{Drive, Drivetrain, Integrator, NUDGE, Start, System};
 pub use trajectory::{Energy, Trajectory, simulate};

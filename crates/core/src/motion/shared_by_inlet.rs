@@ -8,8 +8,7 @@
 //! `w' = 2 q (1-w) (r - n_f X'/X)`, and of the pressure P over the largest, `(1-P)' = n P r` and `c = (1-P)^(p_max/p_mean)`.
 
 use super::polynomial::{INVERSE, ORDER, Polynomial};
-use super::sharing::series_from;
-use super::taylor::product;
+use super::recurrence::{product, series_from};
 use crate::lubrication::mixed::{Inlet, OFFSET, SHARPNESS, Sharing, peak};
 
 /// Weight of asperities below which the film is alone, to the last digit.

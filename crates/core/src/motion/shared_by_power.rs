@@ -5,8 +5,7 @@
 //! equation of Greenwood and Tripp's integral.
 
 use super::polynomial::{INVERSE, ORDER, Polynomial};
-use super::sharing::series_from;
-use super::taylor::product;
+use super::recurrence::{product, series_from};
 use crate::lubrication::mixed::{Sharing, asperity_integral, power_film};
 
 /// The series, as far as they are known.

@@ -5,9 +5,9 @@
 //! step costs the integral of Greenwood and Tripp as often as one solution of the law.
 
 use super::polynomial::{INVERSE, ORDER, POWERS, Polynomial};
+use super::recurrence::{product, series_from};
 use super::shared_by_inlet::InletSeries;
 use super::shared_by_power::PowerSeries;
-use super::taylor::product;
 use crate::drag::MixedContact;
 use crate::lubrication::mixed::{Inlet, Sharing};
 
@@ -60,13 +60,6 @@ pub(super) struct SharingSeries {
     /// Speed over lambda, and the power of `X` of the rolling part.
     thinness: Polynomial,
     rolled: Polynomial,
-}
-
-/// A series of which the first coefficient is known.
-pub(super) fn series_from(first: f64) -> Polynomial {
-    let mut c = [0.0; ORDER + 1];
-    c[0] = first;
-    c
 }
 
 impl SharingSeries {

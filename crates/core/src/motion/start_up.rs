@@ -5,10 +5,11 @@
 
 use std::f64::consts::TAU;
 
-use super::cycle::{CycleKind, Span, settle, swing_that_dies_out};
+use super::cycle::{Span, settle, swing_that_dies_out};
 use super::event::Guard;
 use super::hybrid::Motion;
 use super::piece::Piece;
+use super::stick_slip_cycle::CycleKind;
 use super::system::{Integrator, Start, System};
 use crate::drag::{Drag, Mode};
 use crate::error::{Error, above};

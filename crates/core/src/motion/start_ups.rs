@@ -8,12 +8,13 @@
 use std::f64::consts::TAU;
 use std::sync::OnceLock;
 
-use super::cycle::{CycleKind, STEADY, Span, settle};
+use super::cycle::{STEADY, Span, settle};
 use super::event::Guard;
 use super::hybrid::Motion;
 use super::lanes::{Lanes, arrival, run_lanes};
 use super::schedule::Schedule;
 use super::start_up::{Ending, StartUp, Started, WATCH, greatest_pull, holds, start_up};
+use super::stick_slip_cycle::CycleKind;
 use super::system::{Drive, Drivetrain, Integrator, Start, System, checked_tolerance};
 use crate::drag::{Closure, Drag, Mode, Rest};
 use crate::error::{Error, above, unless_stopped};

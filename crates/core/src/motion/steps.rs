@@ -4,13 +4,12 @@ use super::event::ROUNDING;
 use super::hybrid::Motion;
 use super::piece::{Path, Phase, Piece};
 use super::polynomial::{INVERSE, ORDER, Polynomial, first_crossing, value};
+use super::recurrence::{Recurrence, product};
 use super::runge_kutta::{Flow, Formula, growth};
 use super::schedule::Cubic;
 use super::sharing::SharingStart;
 use super::system::Integrator;
-use super::taylor::{
-    Recurrence, Series, Slip, SlipStart, UNCHANGED, creep_series, held_series, product, rough_root,
-};
+use super::taylor::{Series, Slip, SlipStart, UNCHANGED, creep_series, held_series, rough_root};
 use crate::drag::{Closure, Mode, Strengthening, TemperatureLaw};
 use crate::error::Error;
 

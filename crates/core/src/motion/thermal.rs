@@ -1,7 +1,7 @@
 //! How the law of drag moves while the temperature does: the factors of its forces and speeds as series.
 
 use super::polynomial::{INVERSE, ORDER, POWERS, Polynomial};
-use super::taylor::{Recurrence, composed, product};
+use super::recurrence::{Recurrence, composed, product};
 use crate::drag::{SpeedLaw, TemperatureLaw};
 use crate::error::Error;
 use crate::lubrication::viscosity::{self, GAS_CONSTANT};

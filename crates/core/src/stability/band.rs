@@ -2,7 +2,8 @@
 
 use super::cycles;
 use super::fold::{Fold, Gripped, SlippingFold, folds, gripped};
-use super::slip_lap::SlipLap;
+use super::secant::below_three;
+use super::slip_lap::{SlipLap, slip_lap};
 use super::smooth::SmoothBelt;
 use crate::drag::{Closure, Drag};
 use crate::error::{Error, unless_stopped};
@@ -243,28 +244,6 @@ fn released(train: &Drivetrain, drag: &Drag) -> Start {
     Start { belt_speed, stretch: drag.holding_force(belt_speed) / train.stiffness() }
 }
 
-/// The belt in scaled units, if its drag has two power branches whose force follows the speed at once.
-///
-/// A constant drag of the rest of the drive only shifts the pull. One that grows with speed must leave drag that
-/// falls from the stick speed on.
-#[must_use]
-pub fn slip_lap(train: &Drivetrain, drag: &Drag) -> Option<SlipLap> {
-    let (mixed, ehl) = drag.two_branches()?;
-    let memory = matches!(drag.closure(), Closure::LuGre { .. });
-    if memory || mixed >= 0.0 || ehl <= 0.0 {
-        return None;
-    }
-    let impedance = (train.stiffness() * train.mass()).sqrt();
-    let lap = SlipLap {
-        damping: drag.transition_force() / (drag.transition_speed() * impedance),
-        slowest: drag.stick_speed() / drag.transition_speed(),
-        mixed,
-        ehl,
-        rest: drag.rest().damping / impedance,
-    };
-    (lap.slowest < lap.rising_from()).then_some(lap)
-}
-
 /// Folds by half laps, for the closures whose stuck belt is released and caught where the branches end.
 fn half_lap_folds(
     belts: &[(Drivetrain, Drag)],
@@ -424,19 +403,6 @@ fn lower_edges(
         edges[place] = Some(points.iter().fold(none, |least: f64, (_, drive)| least.min(*drive)));
     }
     Ok(edges)
-}
-
-/// Bottom of the parabola through the least point and its neighbours, if it lies between them.
-pub(super) fn below_three(points: &[(f64, f64)]) -> Option<f64> {
-    let least = (0..points.len()).min_by(|i, j| points[*i].1.total_cmp(&points[*j].1))?;
-    if least == 0 || least + 1 == points.len() {
-        return None;
-    }
-    let [(a, fa), (b, fb), (c, fc)] = [points[least - 1], points[least], points[least + 1]];
-    let (left, right) = ((b - a) * (fb - fc), (b - c) * (fb - fa));
-    let bottom = b - 0.5 * ((b - a) * left - (b - c) * right) / (left - right);
-    let apart = |x: f64| (x - b).abs() > 1e-6 * b;
-    (bottom > a && bottom < c && apart(bottom)).then_some(bottom)
 }
 
 /// Least drive speed above `from` at which a belt from `start`, at rest or released, ends without sticking and

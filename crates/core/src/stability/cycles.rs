@@ -1,8 +1,7 @@
 //! Swings around steady sliding that never stick, each by its slowest speed.
 
-use super::band::slip_lap;
 use super::fold::{self, Fold};
-use super::slip_lap::SlipLap;
+use super::slip_lap::{SlipLap, slip_lap};
 use crate::drag::Drag;
 use crate::error::{Error, above, at_least, below};
 use crate::motion::{Drivetrain, checked_tolerance};

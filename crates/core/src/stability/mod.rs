@@ -22,10 +22,10 @@ mod slip_lap;
 mod smooth;
 mod unstable;
 
-pub use band::{Band, Method, bands, slip_lap};
+pub use band::{Band, Method, bands};
 pub use curve_laps::{CurveBelt, CurveCycle, CurveFold, CurveStart, curve_folds, curve_starts};
 pub use curve_start_up::{CurveStarted, curve_start_ups};
 pub use cycles::{Swing, cycles, swings};
 pub use fold::Fold;
-pub use slip_lap::SlipLap;
+pub use slip_lap::{SlipLap, slip_lap};
 pub use unstable::{UnstableLap, unstable_lap};

@@ -85,3 +85,16 @@ impl Search {
         Step::Again
     }
 }
+
+/// Bottom of the parabola through the least point and its neighbours, if it lies between them.
+pub(super) fn below_three(points: &[(f64, f64)]) -> Option<f64> {
+    let least = (0..points.len()).min_by(|i, j| points[*i].1.total_cmp(&points[*j].1))?;
+    if least == 0 || least + 1 == points.len() {
+        return None;
+    }
+    let [(a, fa), (b, fb), (c, fc)] = [points[least - 1], points[least], points[least + 1]];
+    let (left, right) = ((b - a) * (fb - fc), (b - c) * (fb - fa));
+    let bottom = b - 0.5 * ((b - a) * left - (b - c) * right) / (left - right);
+    let apart = |x: f64| (x - b).abs() > 1e-6 * b;
+    (bottom > a && bottom < c && apart(bottom)).then_some(bottom)
+}

@@ -3,6 +3,9 @@
 //! Time is scaled by `sqrt(m/k)`, speed by `v_t` and pull by `v_t sqrt(k m)`; what the rest of the drive drags at any speed
 //! only shifts the pull, which is counted from there.
 
+use crate::drag::{Closure, Drag};
+use crate::motion::Drivetrain;
+
 /// Most iterations for the speed that drags with a given force.
 const MAX_NEWTON: usize = 50;
 
@@ -82,6 +85,28 @@ impl SlipLap {
     pub(super) fn guess(&self) -> f64 {
         0.45 + 0.52 * self.slowest.powf(-0.26)
     }
+}
+
+/// The belt in scaled units, if its drag has two power branches whose force follows the speed at once.
+///
+/// A constant drag of the rest of the drive only shifts the pull. One that grows with speed must leave drag that
+/// falls from the stick speed on.
+#[must_use]
+pub fn slip_lap(train: &Drivetrain, drag: &Drag) -> Option<SlipLap> {
+    let (mixed, ehl) = drag.two_branches()?;
+    let memory = matches!(drag.closure(), Closure::LuGre { .. });
+    if memory || mixed >= 0.0 || ehl <= 0.0 {
+        return None;
+    }
+    let impedance = (train.stiffness() * train.mass()).sqrt();
+    let lap = SlipLap {
+        damping: drag.transition_force() / (drag.transition_speed() * impedance),
+        slowest: drag.stick_speed() / drag.transition_speed(),
+        mixed,
+        ehl,
+        rest: drag.rest().damping / impedance,
+    };
+    (lap.slowest < lap.rising_from()).then_some(lap)
 }
 
 #[cfg(test)]

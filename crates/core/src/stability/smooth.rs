@@ -9,7 +9,7 @@
 
 use std::collections::VecDeque;
 
-use super::band::below_three;
+use super::secant::below_three;
 use crate::drag::{Closure, Drag};
 use crate::error::Error;
 use crate::motion::{Drivetrain, Overtakings, Start, System};

@@ -8,16 +8,6 @@ async function physics(bytes) {
     "transition_speed", "stick_speed", "holding_force", "reversal", "table_point", "grip_lost", "grip_regained",
   ];
   const KINDS = ["steady_sliding", "oscillation", "stick_slip", "unsettled", "stalled", "grip_slip"];
-  const CLOSURES = ["retained", "stiction", "stribeck", "lugre"];
-  const VISCOSITIES = {
-    arrhenius: [2, "prefactor", "activation_energy"],
-    vogel: [3, "prefactor", "slope", "zero"],
-    walther: [4, "a", "b", "density"],
-  };
-  const SHARING = [
-    "reference", "film_exponent", "load_exponent", "edge", "roundness", "stiffness", "boundary", "shear", "rolling",
-    "rolling_exponent",
-  ];
   const RULES = ["with transition", "fixed"];
   // those of hersey.simulate and hersey.hysteresis, where a question does not say
   const TOLERANCE = { motion: 1e-9, band: 1e-11 };
@@ -26,6 +16,14 @@ async function physics(bytes) {
 
   const module = bytes instanceof WebAssembly.Module ? bytes : await WebAssembly.compile(bytes);
   let core = (await WebAssembly.instantiate(module)).exports;
+  // words and names of which a law of drag is made, in the order in which a question has them
+  core.hersey_names();
+  const NAMES = JSON.parse(words());
+
+  function words() {
+    const text = new Uint8Array(core.memory.buffer, core.hersey_refusal(), core.hersey_answer_length());
+    return new TextDecoder().decode(text.slice());
+  }
 
   function refused(fields) {
     const error = Object.assign(new Error(fields.message), fields);
@@ -39,10 +37,8 @@ async function physics(bytes) {
       const place = core.hersey_question(numbers.length);
       new Float64Array(core.memory.buffer, place, numbers.length).set(numbers);
       const refuses = core[name]();
-      const length = core.hersey_answer_length();
-      if (!refuses) return new Float64Array(core.memory.buffer, core.hersey_answer(), length).slice();
-      const text = new Uint8Array(core.memory.buffer, core.hersey_refusal(), length).slice();
-      throw refused(JSON.parse(new TextDecoder().decode(text)));
+      if (refuses) throw refused(JSON.parse(words()));
+      return new Float64Array(core.memory.buffer, core.hersey_answer(), core.hersey_answer_length()).slice();
     } catch (error) {
       if (!(error instanceof WebAssembly.RuntimeError)) throw error;
       // the memory of the page did not suffice: nothing in there can be relied on any more
@@ -68,47 +64,40 @@ async function physics(bytes) {
   const list = (name, values) => [values.length, ...Array.from(values, (value) => number(name, value))];
   const ofTrain = (train) => [...named(["stiffness", "mass"], train), given("grip", train.grip)];
 
-  // numbers of the shape of a law, which its fields tell: powers, points, or mixed lubrication
+  // the words and lists of a law, which its fields tell: powers, points, or mixed lubrication
   function ofShape(drag) {
-    if (drag.sharing) return [2, [number("viscosity", drag.viscosity), ...named(SHARING, drag.sharing)]];
-    if (drag.speeds) {
-      if (drag.speeds.length !== drag.forces.length) {
-        throw refused({ message: `the drag table has ${drag.speeds.length} speeds, but ${drag.forces.length} forces` });
-      }
-      return [1, [...drag.speeds, ...drag.forces].map((value) => number("drag table", value))];
+    if (drag.sharing) return { law: "mixed", numbers: named(NAMES.sharing, drag.sharing) };
+    if (!drag.speeds) return { law: "power" };
+    if (drag.speeds.length !== drag.forces.length) {
+      throw refused({ message: `the drag table has ${drag.speeds.length} speeds, but ${drag.forces.length} forces` });
     }
-    return [0, named(["transition_force", "transition_speed", "ehl_exponent", "mixed_exponent"], drag)];
+    const { speeds, forces } = drag;
+    [...speeds, ...forces].forEach((value) => number("drag table", value));
+    return { law: "table", speeds, forces };
   }
   const varies = (drag) => drag.reference_temperature !== null && drag.reference_temperature !== undefined;
   const zeroOf = (drag) => or("temperature_zero", drag, 0);
 
   function ofTemperature(drag) {
-    if (!varies(drag)) return [0, 0, 0, 0, 0, 0, 0, 0];
-    const reference = number("reference_temperature", drag.reference_temperature) - zeroOf(drag);
-    const slopes = ["boundary_temperature_slope", "rest_temperature_slope"].map((name) => or(name, drag, 0));
-    if (drag.viscosity_law) {
-      const { kind, ...law } = drag.viscosity_law;
-      known("viscosity law", Object.keys(VISCOSITIES), kind);
-      const [code, ...names] = VISCOSITIES[kind];
-      return [code, reference, 0, ...slopes, ...[...named(names, law), 0].slice(0, 3)];
-    }
-    const [force, speed] = named(["force_temperature_exponent", "speed_temperature_exponent"], drag);
-    return [1, reference, force, ...slopes, speed, 0, 0];
+    if (!varies(drag)) return { temperature_law: "none" };
+    if (!drag.viscosity_law) return { temperature_law: "power" };
+    const { kind, ...law } = drag.viscosity_law;
+    known("viscosity law", Object.keys(NAMES.viscosity), kind);
+    return { temperature_law: kind, viscosity_numbers: named(NAMES.viscosity[kind], law) };
   }
 
   function ofDrag(drag) {
-    const [shape, numbers] = ofShape(drag);
-    const bristles = drag.closure === "lugre"
-      ? named(["bristle_stiffness", "bristle_damping"], drag) : [0, 0];
     const growth = or("static_growth", drag, 0);
     if (growth && (drag.closure !== "stiction" || !drag.static_growth_time)) {
       const needed = drag.closure === "stiction" ? "static_growth_time" : "closure 'stiction'";
       throw refused({ message: `static_growth is ${growth}: it needs ${needed}`, quantity: "static_growth" });
     }
+    const { law, temperature_law, ...lists } = { ...ofShape(drag), ...ofTemperature(drag) };
     return [
-      shape, number("stick_speed", drag.stick_speed), known("closure", CLOSURES, drag.closure), ...bristles,
-      given("static_force", drag.static_force), or("rest_force", drag, 0), or("rest_damping", drag, 0),
-      growth, or("static_growth_time", drag, 1), ...ofTemperature(drag), numbers.length, ...numbers,
+      known("law", NAMES.law, law), known("closure", NAMES.closure, drag.closure),
+      known("temperature_law", NAMES.temperature_law, temperature_law),
+      ...NAMES.numbers.map((name) => given(name, drag[name])),
+      ...NAMES.lists.flatMap((name) => list(name, lists[name] ?? [])),
     ];
   }
 
