@@ -120,7 +120,7 @@ SEED ?= 1
 COUNT ?= 20000
 MINUTES ?= 60
 fuzz-read: build ## 20,000 damaged files through every reader (minutes; SEED=1 COUNT=20000 MINUTES=60)
-	$(BIN)/python -m tests.strangers.fuzz_read --seed $(SEED) --count $(COUNT) --minutes $(MINUTES)
+	$(BIN)/python -m tests.untrusted_input.fuzz_read --seed $(SEED) --count $(COUNT) --minutes $(MINUTES)
 
 mutants: mutants-python mutants-rust ## faults planted one by one: how many do the tests see? (hours)
 

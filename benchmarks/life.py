@@ -152,7 +152,7 @@ def campaign_of(logs: list[Log], scale: float, folder: Path) -> Campaign:
     from hersey.damping.dwells import SteadyPoints
     from hersey.life.age import Age
     from hersey.life.campaign import Campaign
-    from hersey.life.campaign.kept import entry_of
+    from hersey.life.campaign.conversion import entry_of
 
     campaign = Campaign.create(folder / "life.hersey")
     rows = []
@@ -225,7 +225,7 @@ def campaign(seed: int, folder: Path) -> Outcome:
     """Draw a campaign, ask hersey what ends its units, and set it beside the truth."""
     from hersey.life.ending.endings import endings
     from hersey.life.film.through_life import film_life
-    from hersey.life.indicators.telling import indicators_of
+    from hersey.life.indicators.of_campaign import indicators_of
     from hersey.machine.machine import read_machine
 
     world, random = draw(seed), np.random.default_rng([seed, 77])

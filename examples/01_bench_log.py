@@ -31,8 +31,8 @@ ends = zip(transition.measured, transition.low, transition.high, strict=True)
 for speeds, true in zip(ends, told["transition_speeds_rpm"], strict=True):
     value, low, high = (hersey.units.rpm(speed) for speed in speeds)
     print(f"transition: {value:.3g} rpm [{low:.3g}, {high:.3g}], in truth {true:.3g}")
-print(*document.carried.text, sep="\n")
+print(*document.torque_budget.text, sep="\n")
 
 FOLDER.mkdir(parents=True, exist_ok=True)
-for name in ("damping", "carried"):
+for name in ("damping", "torque_budget"):
     charts(document)[name].save(FOLDER / f"01_bench_{name}.png", scale_factor=2)

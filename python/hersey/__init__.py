@@ -78,7 +78,7 @@ if TYPE_CHECKING:
     from hersey.life.growth.fit import Growth, fit_growth
     from hersey.life.growth.limit_ages import AgesAtLimit
     from hersey.life.indicator import Indicator, Indicators, Runs
-    from hersey.life.indicators.telling import indicators_of
+    from hersey.life.indicators.of_campaign import indicators_of
     from hersey.life.other_uses import OtherUses, other_uses
     from hersey.life.population import BLife, Population, weibull
     from hersey.log import TorqueLog, memory_limit, read
@@ -193,7 +193,7 @@ _HOMES = {
     "life.growth.limit_ages": "AgesAtLimit",
     "life.indicator": "Indicator Indicators Runs",
     "life.ending.endings": "Endings endings",
-    "life.indicators.telling": "indicators_of",
+    "life.indicators.of_campaign": "indicators_of",
     "life.following": "LifeTest follow",
     "life.ageing_maps": "AgeingMaps",
     "life.other_uses": "OtherUses other_uses",

@@ -26,7 +26,7 @@ def test_every_result_has_its_chart(document: Analysis) -> None:
         ("simulation_speed", document.simulation),
         ("simulation_force", document.simulation),
         ("compare", document.compare),
-        ("carried", document.carried),
+        ("torque_budget", document.torque_budget),
     ):
         assert (name in names) == (part is not None), name
     decided = document.decision.points if document.decision else []

@@ -19,7 +19,7 @@ from benchmarks.advice import followed
 
 from tests.cli.command import Done, run
 from tests.conftest import mostly_nightly
-from tests.strangers.other_blocks import xlsx
+from tests.untrusted_input.other_blocks import xlsx
 
 HEADER = ("Time [s]", "Torque [N*m]", "Speed [rpm]", "Temperature [degC]")
 #: Rounds of advice at the most: a file may have two mistakes.

@@ -15,7 +15,7 @@ from hersey.decision.behaviour import Behaviour, Working
 from hersey.decision.judge import judge
 from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.machine import Machine, read_machine
-from hersey.parts import CarriedPart, DecisionPart, FilmPart, RegimePart
+from hersey.parts import DecisionPart, FilmPart, RegimePart, TorqueBudgetPart
 from hersey.stability.operating_map import OperatingMap
 from hersey.study.first_screen import decision
 from hersey.verdict.regime import regime
@@ -84,10 +84,12 @@ def decide(
         unit: str = "N·m",
         dwells: hersey.SteadyPoints = known,
         surface: DampingSurface = surface,
-        carried: CarriedPart | None = None,
+        torque_budget: TorqueBudgetPart | None = None,
         **changed: object,
     ) -> DecisionPart:
         of = replace(machine, **changed)  # type: ignore[arg-type]
-        return decision(dwells, surface, of, seen=seen, film=film, carried=carried, found=found, unit=unit)
+        return decision(
+            dwells, surface, of, seen=seen, film=film, torque_budget=torque_budget, found=found, unit=unit
+        )
 
     return decided

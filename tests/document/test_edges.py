@@ -18,7 +18,7 @@ from hersey.decision.edges import Edge, Edges, edges_of
 from hersey.decision.judge import judge
 from hersey.machine.limits import Limits, OperatingPoint
 from hersey.machine.machine import Machine
-from hersey.parts import CarriedPart, RegimePart
+from hersey.parts import RegimePart, TorqueBudgetPart
 from hersey.stability.operating_map import OperatingMap
 from hersey.study.first_screen.flags import flags
 from hersey.study.first_screen.instruction import of_log
@@ -157,8 +157,8 @@ def test_warnings_of_the_log(points: hersey.SteadyPoints, surface: DampingSurfac
 def test_torque_far_from_the_file_is_a_warning(
     decide: Decide, found: Behaviour, ratio: tuple[float, float, float], told: bool
 ) -> None:
-    carried = CarriedPart.model_construct(ratio=ratio)
-    titles = {flag.title for flag in decide(replace(found, points=()), carried=carried).flags}
+    torque_budget = TorqueBudgetPart.model_construct(ratio=ratio)
+    titles = {flag.title for flag in decide(replace(found, points=()), torque_budget=torque_budget).flags}
     assert ("Torque and file disagree." in titles) == told
 
 

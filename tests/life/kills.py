@@ -21,7 +21,7 @@ from pathlib import Path
 
 from hersey.life.age import Age
 from hersey.life.campaign import Campaign, Entry
-from hersey.life.campaign.kept import entry_of
+from hersey.life.campaign.conversion import entry_of
 
 #: Runs that a process adds if nothing kills it, and those of one transaction.
 _RUNS, _TOGETHER = 40, 3

@@ -19,7 +19,7 @@ import hersey
 from hersey.life import ageing_maps, other_uses
 from hersey.life.age import Age
 from hersey.life.campaign import Entry
-from hersey.life.campaign.kept import entry_of
+from hersey.life.campaign.conversion import entry_of
 from hersey.life.growth import fit as growth_module
 from hersey.life.growth import posterior as growth_posterior
 from hersey.life.indicators import sticking

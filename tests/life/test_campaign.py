@@ -24,7 +24,7 @@ from hersey.errors import HerseyError, MissingFileError, OutputError, ParameterE
 from hersey.life.age import Age
 from hersey.life.campaign import Campaign, Entry
 from hersey.life.campaign import store as storing
-from hersey.life.campaign.kept import entry_of
+from hersey.life.campaign.conversion import entry_of
 from tests.conftest import ROOT
 
 TABLE = "speed [rpm],torque [mN*m],temperature [degC]\n"

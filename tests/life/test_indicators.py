@@ -14,10 +14,10 @@ import hersey
 from hersey.errors import InsufficientDataError, ParameterError, UnitError
 from hersey.life.age import Age
 from hersey.life.campaign import Campaign, Entry
-from hersey.life.campaign.kept import entry_of
+from hersey.life.campaign.conversion import entry_of
 from hersey.life.indicator import Indicator, Indicators
 from hersey.life.indicators import sticking
-from hersey.life.indicators.telling import indicators_of
+from hersey.life.indicators.of_campaign import indicators_of
 from hersey.life.indicators.torque_surface import RunDwells
 from hersey.machine import Limits, Machine
 from hersey.machine.duty import GearTable, LifeTable

@@ -19,7 +19,7 @@ from hersey.log.formats import format_of, opened
 from hersey.log.means import is_means_table, read_means
 from hersey.log.recording import LONGEST_CELL
 from tests.conftest import shared
-from tests.strangers.other_blocks import xlsx
+from tests.untrusted_input.other_blocks import xlsx
 
 pytest.importorskip("fastexcel")
 HEAD = ["Time [s]", "Torque [N*m]", "Speed [rpm]", "Temp [degC]", "Remark"]

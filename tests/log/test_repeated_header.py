@@ -10,7 +10,7 @@ import pytest
 import hersey
 from hersey.errors import UnreadableLogError
 from hersey.identification.trace_file import read_trace
-from tests.strangers.other_blocks import xlsx
+from tests.untrusted_input.other_blocks import xlsx
 
 ROWS = 40
 

@@ -28,8 +28,8 @@ from hersey.log.formats.opening import _ENVIRONMENT
 from hersey.processes.child import Child, FailedError, LostError
 from hersey.processes.confinement import places
 from hersey.processes.system_calls import filter_of
-from tests.strangers.seeds import SEEDS
-from tests.strangers.watching import children, is_gone, state, wait_until
+from tests.untrusted_input.seeds import SEEDS
+from tests.untrusted_input.watching import children, is_gone, state, wait_until
 
 HOSTILE = Path(__file__).with_name("hostile.py")
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="the sandbox is Linux's")

@@ -16,7 +16,7 @@ import zarr
 
 import hersey
 from hersey.errors import OutputError
-from hersey.motion.kept import opened_dataset
+from hersey.motion.checkpoint import opened_dataset
 from tests.scale.test_sweeps import DRAG, GRID, TRAIN, assert_same
 
 #: Chunk 3 of ten of seven sets, and chunk 4.

@@ -24,7 +24,7 @@ from hersey.scale.local import LocalWorkers, local_workers
 from hersey.scale.tasks import done
 from tests.cli.command import HERSEY
 from tests.scale.test_sweeps import DRAG, GRID, SCENARIO, TRAIN, assert_same, finished
-from tests.strangers.watching import is_gone, linux, wait_until
+from tests.untrusted_input.watching import is_gone, linux, wait_until
 
 
 @pytest.fixture(scope="module")

@@ -121,22 +121,22 @@ def test_the_page_does_not_contradict_itself(page: Analysis) -> None:
 
 
 def test_the_page_says_who_carries_the_torque(page: Analysis, machine: Machine) -> None:
-    carried = page.carried
-    assert carried is not None
-    low, mean, high = carried.ratio
+    budget = page.torque_budget
+    assert budget is not None
+    low, mean, high = budget.ratio
     assert 0.5 < low < high < 2.0
     assert mean == pytest.approx(1.0, abs=0.02)
-    whole = np.sum([carried.rest, carried.contact, carried.shear, carried.inlet], axis=0)
+    whole = np.sum([budget.rest, budget.contact, budget.shear, budget.inlet], axis=0)
     truth = FullTruth(machine.mixed, REST)
-    level = np.full(whole.size, carried.temperature - ZERO_CELSIUS)
-    assert whole == pytest.approx(truth.torque(np.array(carried.speed), level), rel=0.01)
-    shares, agreement, hard = carried.text
+    level = np.full(whole.size, budget.temperature - ZERO_CELSIUS)
+    assert whole == pytest.approx(truth.torque(np.array(budget.speed), level), rel=0.01)
+    shares, agreement, hard = budget.text
     assert "208 mN m at 5 rpm (film 3%, contact 10%, rest 87%)" in shares
     assert "at 17.4 rpm (film 6%, contact 1%, rest 94%)" in shares
     assert agreement.startswith("Measured torque is 1.00 times that")
     assert hard.startswith("Eq. 9 of the paper gives 1 N m at 17.4 rpm, 84 times film and contact")
     # The level of the paper, 50 ozf at 1 in/s.
-    assert np.interp(0.0254 / 0.015, carried.speed, whole) == pytest.approx(50 * 0.278 * 0.015, rel=0.15)
+    assert np.interp(0.0254 / 0.015, budget.speed, whole) == pytest.approx(50 * 0.278 * 0.015, rel=0.15)
 
 
 def test_without_asperities_nothing_is_said_of_who_carries(machine: Machine) -> None:

@@ -1,6 +1,6 @@
 """One chart per result.
 
-=============  ====================================================
+=============  ==========================================================================
 style          sizes, colours, the smallest pieces
 labels         where texts stand, so that none covers another
 vega           drawing and bundling, in a process of their own (`vega_script` runs there)
@@ -17,7 +17,7 @@ friction       the Stribeck curve: dwells, model, regimes, stall
 mixed          torque of film and asperities against speed
 transition     transition speed against temperature
 stick_speed    V* against the stick speed
-carried        what film, contact and rest of the drive take, stacked
+torque_budget  what film, contact and rest of the drive take, stacked
 motion         a trajectory, and the lap to which it settles
 cycles         trace, cycles and fitted motion
 hysteresis     what the belt does at which drive speed
@@ -32,7 +32,7 @@ film_life      the film of units that age, and the layer of oil that feeds it
 growth         growth with age, and the ages at a limit
 endings        ways to fail against age
 other_uses     the ages in other uses of the machine
-=============  ====================================================
+=============  ==========================================================================
 """
 
 from __future__ import annotations

@@ -11,7 +11,6 @@ from pathlib import Path
 import altair as alt
 import numpy as np
 
-from hersey.charts.carried import carried_chart
 from hersey.charts.damping import logs_chart
 from hersey.charts.film import regime_chart
 from hersey.charts.labels import apart
@@ -41,6 +40,7 @@ from hersey.charts.style import (
     unchecked,
     zoom,
 )
+from hersey.charts.torque_budget import torque_budget_chart
 from hersey.charts.transition import transition_chart
 from hersey.document.analysis import Analysis
 from hersey.parts import PlanPart, Point, Series
@@ -72,7 +72,7 @@ def charts(document: Analysis, *, but: tuple[str, ...] = ()) -> dict[str, Chart]
         "regime": regime,
         "film": film,
         "transition": transition,
-        "carried": carried,
+        "torque_budget": torque_budget,
         "stick_speed": stick_speed,
         "simulation_speed": simulation_speed,
         "simulation_force": simulation_force,
@@ -222,9 +222,9 @@ def transition(document: Analysis) -> Chart | None:
     return transition_chart(part.temperature, part.speed, part.measured, part.low, part.high)
 
 
-def carried(document: Analysis) -> Chart | None:
+def torque_budget(document: Analysis) -> Chart | None:
     """What of the torque the film carries, what the contact, what the rest of the drive."""
-    return None if document.carried is None else carried_chart(document.carried)
+    return None if document.torque_budget is None else torque_budget_chart(document.torque_budget)
 
 
 def stick_speed(document: Analysis) -> Chart | None:

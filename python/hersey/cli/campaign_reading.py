@@ -20,7 +20,7 @@ from hersey.cli.options import Reading
 from hersey.errors import HerseyError, UnreadableLogError
 from hersey.files.reading import hash_of
 from hersey.life.campaign import Entry
-from hersey.life.campaign.kept import entry_of
+from hersey.life.campaign.conversion import entry_of
 from hersey.processes.child import Child, FailedError, LostError
 
 if TYPE_CHECKING:

@@ -10,7 +10,6 @@ from typing import Literal
 from pydantic import Field
 
 from hersey.parts.campaign import CampaignPart
-from hersey.parts.carried import CarriedPart
 from hersey.parts.cycles import CyclesPart
 from hersey.parts.decision import DecisionPart
 from hersey.parts.exchange import UnitPart
@@ -24,6 +23,7 @@ from hersey.parts.motion import SimulationPart, StickSlipPart, SweepPart
 from hersey.parts.part import SCHEMA_VERSION, Part
 from hersey.parts.posterior import PosteriorPart
 from hersey.parts.stability import BandPart, MapPart, PlanPart, StickSpeedPart, WarmUpPart
+from hersey.parts.torque_budget import TorqueBudgetPart
 
 
 class Analysis(Part):
@@ -48,7 +48,7 @@ class Analysis(Part):
     fit: FitPart
     regime: RegimePart
     film: FilmPart | None = None
-    carried: CarriedPart | None = None
+    torque_budget: TorqueBudgetPart | None = None
     simulation: SimulationPart | None = Field(
         default=None, description="below the transition; null without a machine or a transition"
     )

@@ -78,7 +78,7 @@ def document_of(study: Study, *, command: str = "", made: str | None = None) -> 
         fit=_fit_part(points, study.surface, study.curves),
         regime=RegimePart.model_validate(study.regime.to_dict()),
         film=study.nip,
-        carried=study.torque_budget,
+        torque_budget=study.torque_budget,
         simulation=study.simulation,
         timeline=_timeline(log),
         uncertainty={} if machine is None else ranges(machine),

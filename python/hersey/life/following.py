@@ -13,7 +13,7 @@ from hersey.life.drift.result import Drift, fit_drift
 from hersey.life.ending.endings import Endings, endings
 from hersey.life.film.through_life import FilmLife, film_life
 from hersey.life.indicator import Indicators
-from hersey.life.indicators.telling import indicators_of
+from hersey.life.indicators.of_campaign import indicators_of
 from hersey.life.other_uses import OtherUses, other_uses
 from hersey.result import Result
 

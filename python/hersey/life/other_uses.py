@@ -16,9 +16,9 @@ from hersey.life.ending.first import ages_of_new, ends_of_units
 from hersey.life.ending.joined import correlations
 from hersey.life.ending.way import FittedWay, fitted_way, last_ages
 from hersey.life.growth.limit_ages import Interval, share_of_units
-from hersey.life.indicators.corners import corners
+from hersey.life.indicators.load_cases import load_cases
+from hersey.life.indicators.of_campaign import indicators_of
 from hersey.life.indicators.run_dwells import read_runs_of
-from hersey.life.indicators.telling import indicators_of
 from hersey.result import Result, json_record
 from hersey.units import celsius
 
@@ -196,7 +196,7 @@ class _Ways:
 
 def _coldest(campaign: Campaign, machine: Machine) -> float | None:
     """The coldest start as the ways to fail take it, K."""
-    ends = corners(machine, read_runs_of(campaign, machine.rest))
+    ends = load_cases(machine, read_runs_of(campaign, machine.rest))
     return None if ends is None else ends[0].temperature
 
 

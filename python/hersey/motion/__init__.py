@@ -1,6 +1,6 @@
 """The motion of the belt: names, units and results over the core's physics.
 
-==========  =====================================================
+==========  ============================================================================
 schedule    drive speed, torque or temperature against time
 drag        drag laws: force against belt speed and temperature
 heat        temperature as a state: two bodies, a heater and friction
@@ -11,8 +11,8 @@ parameters  names of the parameters, and the kinds of their units
 sets        the parameter sets of a sweep, laid out only as far as they are followed
 work        how they are worked out: how exactly, and by whom
 following   following them, here or at a worker
-kept        a sweep that is kept chunk by chunk, and goes on where it stopped
+checkpoint  a sweep that is kept chunk by chunk, and goes on where it stopped
 sweep       what thousands of belts settle to, in one call
 scenario    a sweep described by a file
-==========  =====================================================
+==========  ============================================================================
 """

@@ -25,7 +25,7 @@ from hersey.motion.work import ALONE, Work
 if TYPE_CHECKING:
     import xarray as xr
 
-    from hersey.motion.kept import Kept
+    from hersey.motion.checkpoint import Checkpoint
     from hersey.scale.store import SweepFolder
 
 
@@ -69,9 +69,9 @@ class Scenario:
             work=replace(work, tolerance=self.tolerance),
         )
 
-    def keep(self, out: Path | SweepFolder, work: Work = ALONE) -> Kept:
+    def keep(self, out: Path | SweepFolder, work: Work = ALONE) -> Checkpoint:
         """Keep each chunk of sets in a folder as it ends."""
-        from hersey.motion.kept import kept
+        from hersey.motion.checkpoint import checkpointed
 
         train, drag, varied = self._arguments()
         sets, rules = planned(
@@ -83,7 +83,7 @@ class Scenario:
             duration=self.duration,
             tolerance=self.tolerance,
         )
-        return kept(sets, rules, out, work, units=self.units)
+        return checkpointed(sets, rules, out, work, units=self.units)
 
     def _arguments(self) -> tuple[Drivetrain, Drag, dict[str, Any]]:
         """What `hersey.sweep` takes: train, drag, and each parameter."""

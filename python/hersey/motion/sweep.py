@@ -25,7 +25,7 @@ from hersey.units import takes_si
 if TYPE_CHECKING:
     import xarray as xr
 
-    from hersey.motion.kept import Kept
+    from hersey.motion.checkpoint import Checkpoint
     from hersey.scale.store import SweepFolder
 
 
@@ -106,12 +106,12 @@ def sweep(
         most_steps=work.most_steps,
     )
     if out is not None:
-        from hersey.motion.kept import kept
+        from hersey.motion.checkpoint import checkpointed
 
-        return _opened(sets, rules, kept(sets, rules, out, work))
+        return _opened(sets, rules, checkpointed(sets, rules, out, work))
     refuse_too_many(sets.given.values(), zip=zip)
     if work.client is not None:
-        from hersey.motion.kept import gathered
+        from hersey.motion.checkpoint import gathered
 
         columns, failures, notes = gathered(sets, rules, work)
         return _labelled(sets, rules, columns, failures, notes)
@@ -181,12 +181,12 @@ def _labelled(
     )
 
 
-def _opened(sets: Sets, rules: Rules, found: Kept) -> xr.Dataset:
+def _opened(sets: Sets, rules: Rules, found: Checkpoint) -> xr.Dataset:
     """The sweep as it is kept."""
     import xarray as xr
 
     if found.path.suffix == ".zarr":
-        from hersey.motion.kept import opened_dataset
+        from hersey.motion.checkpoint import opened_dataset
 
         result = opened_dataset(found.path)
     else:

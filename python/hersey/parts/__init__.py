@@ -1,35 +1,34 @@
 """One part per result: what the document and every ``--json`` hold, validated.
 
-==========  ==================================================
-part        what every part is
-rest        the rest of the drive
-log         logs and dwells
-fit         the damping surface and the regime
-film        the film of a nip
-mixed       film and asperities that share its load
-carried     what carries the torque of the drive
-motion      trajectories, cycles, sweeps
-stability   bands, maps, plans, warm-ups
-life        ages at failure
-drift       what moved with age
-film_life   the film of units that age
-ending      growth of indicators, and what ends units
-ageing_maps the maps of a unit through its life
-other_uses  the ages in other uses
-life_test   a life test followed: all of these
-models      candidates, comparisons of logs, designs
-inspection  what a log holds
-campaign    runs of many units at many ages
-cycles      cycles of a trace and the drive behind them
-exchange    a unit for other tools
-decision    what to do, first of all
-posterior   what dwells, starts and stick-slip say together
-==========  ==================================================
+=============  ===============================================
+part           what every part is
+rest           the rest of the drive
+log            logs and dwells
+fit            the damping surface and the regime
+film           the film of a nip
+mixed          film and asperities that share its load
+torque_budget  what carries the torque of the drive
+motion         trajectories, cycles, sweeps
+stability      bands, maps, plans, warm-ups
+life           ages at failure
+drift          what moved with age
+film_life      the film of units that age
+ending         growth of indicators, and what ends units
+ageing_maps    the maps of a unit through its life
+other_uses     the ages in other uses
+life_test      a life test followed: all of these
+models         candidates, comparisons of logs, designs
+inspection     what a log holds
+campaign       runs of many units at many ages
+cycles         cycles of a trace and the drive behind them
+exchange       a unit for other tools
+decision       what to do, first of all
+posterior      what dwells, starts and stick-slip say together
+=============  ===============================================
 """
 
 from hersey.parts.ageing_maps import AgeingMapsPart
 from hersey.parts.campaign import CampaignPart
-from hersey.parts.carried import CarriedPart
 from hersey.parts.cycles import CyclesPart, DrivePart
 from hersey.parts.decision import DecisionPart, FlagPart, MissingPart, PointDecisionPart
 from hersey.parts.drift import DriftPart
@@ -87,6 +86,7 @@ from hersey.parts.stability import (
     StickSpeedPart,
     WarmUpPart,
 )
+from hersey.parts.torque_budget import TorqueBudgetPart
 
 __all__ = [
     "SCHEMA_VERSION",
@@ -95,7 +95,6 @@ __all__ = [
     "BandPart",
     "BranchPart",
     "CampaignPart",
-    "CarriedPart",
     "Cell",
     "ChannelUse",
     "ClosurePart",
@@ -149,6 +148,7 @@ __all__ = [
     "StickSpeedPart",
     "SweepPart",
     "Timeline",
+    "TorqueBudgetPart",
     "TrajectoryPart",
     "TransitionAt",
     "TransitionPart",

@@ -17,7 +17,7 @@ from hersey.decision.behaviour import Behaviour, Step, Working
 from hersey.errors import HerseyError, ParameterError
 from hersey.log import TorqueLog
 from hersey.machine.machine import Machine, read_machine
-from hersey.parts import CarriedPart, ComparisonPart, DecisionPart, FilmPart, RegimePart, SimulationPart
+from hersey.parts import ComparisonPart, DecisionPart, FilmPart, RegimePart, SimulationPart, TorqueBudgetPart
 from hersey.result import Result
 from hersey.study.display_units import display_units
 from hersey.study.first_screen import decision
@@ -65,7 +65,7 @@ class Study(Result):
     machine: Machine | None
     machine_file: Path | None
     nip: FilmPart | None
-    torque_budget: CarriedPart | None
+    torque_budget: TorqueBudgetPart | None
     behaviour: Behaviour | None
     simulation: SimulationPart | None
     comparison: LogComparison | None
@@ -183,7 +183,7 @@ def study(
             machine,
             seen=RegimePart.model_validate(seen.to_dict()),
             film=film,
-            carried=budget,
+            torque_budget=budget,
             compared=None if comparison is None else ComparisonPart.model_validate(comparison.to_dict()),
             found=found,
             why=why,

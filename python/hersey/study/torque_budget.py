@@ -11,7 +11,7 @@ from hersey.lubrication import paper
 from hersey.lubrication.film_temperature import film_temperature
 from hersey.lubrication.mixed import MixedContact, MixedFilm
 from hersey.machine.machine import Machine
-from hersey.parts.carried import CarriedPart
+from hersey.parts.torque_budget import TorqueBudgetPart
 from hersey.units import celsius, rpm
 
 #: Speeds at which the parts are drawn.
@@ -22,7 +22,7 @@ _AGREES = 2.0
 
 def torque_budget(
     points: SteadyPoints, surface: DampingSurface, machine: Machine | None
-) -> CarriedPart | None:
+) -> TorqueBudgetPart | None:
     """Return the parts of the torque at the hottest dwells; None if the machine does not state them all."""
     mixed = None if machine is None else machine.mixed
     if mixed is None or surface.b is None:
@@ -39,7 +39,7 @@ def torque_budget(
     grid = np.geomspace(*ends, _SPEEDS)
     drawn = _at(mixed, grid, np.full(_SPEEDS, level))
     named = np.array([ends[0], turn, ends[1]] if ends[0] < turn < ends[1] else ends)
-    return CarriedPart(
+    return TorqueBudgetPart(
         temperature=level,
         speed=grid.tolist(),
         rest=_rest(points, grid, np.full(_SPEEDS, level)).tolist(),

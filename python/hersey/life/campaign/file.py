@@ -148,7 +148,7 @@ class Campaign:
             If the file cannot be written.
         """
         parsed = Age.parse(age) if isinstance(age, str) else age
-        from hersey.life.campaign.kept import entry_of
+        from hersey.life.campaign.conversion import entry_of
 
         entry = entry_of(points, log, fit=fit, settings=settings)
         return self.add_entries([(entry, unit, parsed)], force=force)[0]
@@ -206,7 +206,7 @@ class Campaign:
         ParameterError
             If there is no such run.
         """
-        from hersey.life.campaign.kept import points_of
+        from hersey.life.campaign.conversion import points_of
 
         columns = ", ".join(f'"{name}"' for name in COLUMNS)
         reduction = self._of_run("reduction", run)
@@ -223,7 +223,7 @@ class Campaign:
 
         Runs of the same rest share one object.
         """
-        from hersey.life.campaign.kept import drive_of
+        from hersey.life.campaign.conversion import drive_of
 
         with told(self.path):
             rows = self._database.execute("SELECT id, reduction FROM runs")
@@ -285,7 +285,7 @@ class Campaign:
         """
         import polars as pl
 
-        from hersey.life.campaign.kept import rests_of
+        from hersey.life.campaign.conversion import rests_of
 
         kinds = {"INTEGER": pl.Int64, "REAL": pl.Float64, "TEXT": pl.String}
         columns = ", ".join(f'd."{name}"' for name in COLUMNS)

@@ -3,10 +3,10 @@
 ==============  ========================================================================
 run_dwells      the runs of a campaign with their dwells, as a torque surface takes them
 torque_surface  the torque of a run between its dwells, without a law
-corners         the states at which a drive that ages fails first
+load_cases      the states at which a drive that ages fails first
 at_states       what the runs say of some states: torque, and its curve
 sticking        speeds of stick-slip against those of the points
 gear_fatigue    the damage of a gear per age
-telling         `indicators_of`: all ways to fail whose limits the machine states
+of_campaign     `indicators_of`: all ways to fail whose limits the machine states
 ==============  ========================================================================
 """

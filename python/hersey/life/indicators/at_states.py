@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hersey.arrays import BoolArray, FloatArray, IntArray
-from hersey.life.indicators.corners import State
+from hersey.life.indicators.load_cases import State
 from hersey.life.indicators.run_dwells import CampaignRuns
 from hersey.life.indicators.torque_surface import TorqueSurface, shared_kernel
 

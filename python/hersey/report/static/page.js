@@ -24,7 +24,7 @@ async function warmUp(parent) {
   checks(part, data.warm_up.warnings.map((text) => ["watch", pretty(text)]));
 }
 const SHOWN = new Set(["schema_version", "hersey_version", "title", "command", "made", "machine", "synthetic", "decision", "verdict", "warnings", "files", "quality", "points", "fit",
-  "regime", "film", "carried", "simulation", "timeline", "stick_speed_sweep", "models", "compare", "against", "units", "band", "map", "posterior", "plan", "warm_up", "uncertainty"]);
+  "regime", "film", "torque_budget", "simulation", "timeline", "stick_speed_sweep", "models", "compare", "against", "units", "band", "map", "posterior", "plan", "warm_up", "uncertainty"]);
 function others(parent) {
   const left = Object.entries(data).filter(([name, part]) => part !== null && !SHOWN.has(name));
   if (!left.length) return;

@@ -23,11 +23,11 @@ async function regimeSection(parent) {
   else explanations(columns);
   const more = add(part, "div", "", "columns");
   await chart(more, "transition");
-  await chart(more, "carried");
-  if (data.carried) {
+  await chart(more, "torque_budget");
+  if (data.torque_budget) {
     const said = add(more, "div", "", "across");
-    said.id = "carried";
-    for (const text of data.carried.text) add(said, "p", pretty(text), "note");
+    said.id = "torque_budget";
+    for (const text of data.torque_budget.text) add(said, "p", pretty(text), "note");
   }
   const all = fold(part, "The reasoning in full, and all regimes tested");
   const verdict = add(all, "div");
@@ -73,13 +73,13 @@ function tried(parent) {
   const count = plural(all.length, "law");
   const held = all.filter((each) => each.verdict === "not excluded");
   const next = held[1] ? `; the next is worse by ${digits(held[1].aicc - held[0].aicc, 2)} in AICc` : "";
-  const part = section(parent, "candidates", "Candidates", held.length
+  const part = section(parent, "candidates", "Model comparison", held.length
     ? `Of ${count} tried ${held.length === 1 ? "one is not excluded" : `${plural(held.length, "law").split(" ")[0]} are not excluded, the likeliest`}: ${held[0].name}${next}.`
     : `Of ${count} tried none holds; the nearest is ${all[0].name}.`);
   const least = Math.min(...all.map((each) => each.aicc));
   table(fold(part, `The ${count}`), ["Law", "ΔAICc", "Constant share, %", "p of its bend", "Result"], all.map((each) => [
     each.name, digits(each.aicc - least), each.constant_share === null ? "–" : digits(100 * each.constant_share), each.curvature === null ? "–" : digits(each.curvature, 2), pretty(each.verdict)]),
-  [1, 2, 3], { name: "candidates", label: "Candidates" });
+  [1, 2, 3], { name: "candidates", label: "Model comparison" });
 }
 function candidates(parent) {
   const { models } = data;
@@ -90,7 +90,7 @@ function candidates(parent) {
   const order = [...models.candidates].sort((a, b) => (a.delta_aicc ?? 1e9) - (b.delta_aicc ?? 1e9));
   const best = models.candidates.find((each) => each.key === models.chosen);
   const next = order.find((each) => each.key !== models.chosen && each.delta_aicc !== null);
-  const part = section(parent, "candidates", "Candidates",
+  const part = section(parent, "candidates", "Model comparison",
     `Of ${plural(order.length, "law")} ${best?.name ?? models.chosen} is chosen${best?.cross_validation ? `: it misses dwells left out by ${digits(100 * best.cross_validation)} %` : ""}`
     + `${next ? `; the next is worse by ${digits(next.delta_aicc - (best?.delta_aicc ?? 0), 2)} in AICc` : ""}.`);
   checks(part, models.warnings.map((text) => ["watch", pretty(text)]));
@@ -98,7 +98,7 @@ function candidates(parent) {
   const percent = (value) => value === null ? "–" : digits(100 * value);
   const element = table(all, ["Law", "Numbers", "ΔAICc", "ΔBIC", "Left out, %", "Scatter, %"], order.map((each) => [
     each.name, String(Object.keys(each.parameters).length), digits(each.delta_aicc), digits(each.delta_bic), percent(each.cross_validation), percent(each.scatter)]),
-  [1, 2, 3, 4, 5], { name: "candidates", label: "Candidates" });
+  [1, 2, 3, 4, 5], { name: "candidates", label: "Model comparison" });
   order.forEach((each, i) => { if (each.key === models.chosen) element.tBodies[0].rows[i].className = "kept"; });
   const why = fold(part, "Why this one, and its numbers");
   models.reasons.forEach((text) => add(why, "p", pretty(text), "text"));

@@ -13,7 +13,7 @@ from hersey.decision.behaviour import Behaviour
 from hersey.decision.edges import edges_of
 from hersey.decision.plausibility import asked
 from hersey.machine.machine import Machine
-from hersey.parts import CarriedPart, ComparisonPart, DecisionPart, FilmPart, RegimePart
+from hersey.parts import ComparisonPart, DecisionPart, FilmPart, RegimePart, TorqueBudgetPart
 from hersey.parts.decision import Signal, SpeedPart
 from hersey.study.first_screen.advice import advised
 from hersey.study.first_screen.flags import flags
@@ -30,7 +30,7 @@ def decision(
     *,
     seen: RegimePart,
     film: FilmPart | None,
-    carried: CarriedPart | None,
+    torque_budget: TorqueBudgetPart | None,
     found: Behaviour | None,
     compared: ComparisonPart | None = None,
     why: str = "",
@@ -58,7 +58,7 @@ def decision(
         of_points = points_of_log(surface, machine, rises=trend.rises and not trend.falls)
     else:
         of_points = []
-    against = flags(points, surface, seen, film, carried, found, why, compared, unit)
+    against = flags(points, surface, seen, film, torque_budget, found, why, compared, unit)
     signals: list[Signal] = [said.signal, *(point.signal for point in of_points)]
     signals += [flag.signal for flag in against if flag.signal == "act" or flag.section == "compare"]
     if found is not None and map_ is not None and (points.rest is None or not found.points):

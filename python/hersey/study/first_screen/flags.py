@@ -10,7 +10,7 @@ from hersey.damping.surface import DampingSurface
 from hersey.decision.behaviour import Behaviour
 from hersey.decision.edges import edges_of
 from hersey.log.doubtful import doubtful_units
-from hersey.parts import CarriedPart, ComparisonPart, FilmPart, RegimePart
+from hersey.parts import ComparisonPart, FilmPart, RegimePart, TorqueBudgetPart
 from hersey.parts.decision import FlagPart, Signal
 from hersey.posterior.result import SAFE
 from hersey.stability.operating_map import OperatingMap
@@ -34,7 +34,7 @@ def flags(
     surface: DampingSurface,
     seen: RegimePart,
     film: FilmPart | None,
-    carried: CarriedPart | None,
+    torque_budget: TorqueBudgetPart | None,
     found: Behaviour | None,
     why: str = "",
     compared: ComparisonPart | None = None,
@@ -46,7 +46,7 @@ def flags(
     """
     map_ = None if found is None else found.map
     out = [] if found is None else _unused(found)
-    out += [*_contradictions(film, carried), *_of_log(points, surface)]
+    out += [*_contradictions(film, torque_budget), *_of_log(points, surface)]
     if why:
         out.append(FlagPart(signal="act", title="No band.", text=f"{_sentence(why)}.", section="band"))
     if found is not None and map_ is not None:
@@ -76,7 +76,7 @@ def _compared(found: ComparisonPart) -> FlagPart:
     return FlagPart(signal=signal, title=f"{what} since {found.a}.", text=found.verdict, section="compare")
 
 
-def _contradictions(film: FilmPart | None, carried: CarriedPart | None) -> list[FlagPart]:
+def _contradictions(film: FilmPart | None, torque_budget: TorqueBudgetPart | None) -> list[FlagPart]:
     out = []
     if film is not None and film.contradicted and film.exponents is not None:
         e = film.exponents
@@ -85,8 +85,8 @@ def _contradictions(film: FilmPart | None, carried: CarriedPart | None) -> list[
         measured = "" if value is None else f"Measured {signed(value)}; "
         text = f"{measured}the film solved for this nip gives {signed(theory)}."
         out.append(FlagPart(signal="watch", title="Exponent and nip disagree.", text=text, section="regime"))
-    if carried is not None and (carried.ratio[0] < 1 / _FAR or carried.ratio[2] > _FAR):
-        low, mean, high = (figures(ratio) for ratio in carried.ratio)
+    if torque_budget is not None and (torque_budget.ratio[0] < 1 / _FAR or torque_budget.ratio[2] > _FAR):
+        low, mean, high = (figures(ratio) for ratio in torque_budget.ratio)
         text = f"Measured torque is {mean} times what the file states, {low} to {high} by dwell."
         out.append(FlagPart(signal="watch", title="Torque and file disagree.", text=text, section="regime"))
     if not out and film is not None and film.misfits and film.misfits[0].signal == "act":

@@ -13,8 +13,8 @@ from pathlib import Path
 
 import numpy as np
 
-from tests.strangers.mdf_blocks import Channel, formula, mdf3, mf4
-from tests.strangers.other_blocks import lvm, mat4, mat5, matrix, tdms, xlsx
+from tests.untrusted_input.mdf_blocks import Channel, formula, mdf3, mf4
+from tests.untrusted_input.other_blocks import lvm, mat4, mat5, matrix, tdms, xlsx
 
 ROWS = 60
 TIME = np.arange(ROWS) * 0.01

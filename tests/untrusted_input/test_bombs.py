@@ -19,10 +19,10 @@ from hersey.errors import HerseyError
 from hersey.log import list_channels
 from hersey.log.formats import opening
 from tests.conftest import mostly_nightly
-from tests.strangers.mdf_blocks import Channel, mf4
-from tests.strangers.other_blocks import MAT5_HEAD, lvm, matrix, tdms, xlsx
-from tests.strangers.seeds import ROWS, SPEED, TABLE, TEMPERATURE, TIME, TORQUE
-from tests.strangers.watching import children, linux, peak_memory, processor_time
+from tests.untrusted_input.mdf_blocks import Channel, mf4
+from tests.untrusted_input.other_blocks import MAT5_HEAD, lvm, matrix, tdms, xlsx
+from tests.untrusted_input.seeds import ROWS, SPEED, TABLE, TEMPERATURE, TIME, TORQUE
+from tests.untrusted_input.watching import children, linux, peak_memory, processor_time
 
 h5py = pytest.importorskip("h5py")
 pytest.importorskip("nptdms")

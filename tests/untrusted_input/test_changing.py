@@ -18,8 +18,8 @@ from hersey.errors import HerseyError
 from hersey.files.reading import OpenFile
 from hersey.log.formats import opening
 from tests.conftest import mostly_nightly
-from tests.strangers.seeds import SEEDS, SPEED, TORQUE
-from tests.strangers.watching import linux
+from tests.untrusted_input.seeds import SEEDS, SPEED, TORQUE
+from tests.untrusted_input.watching import linux
 
 pytest.importorskip("h5py")
 pytest.importorskip("nptdms")

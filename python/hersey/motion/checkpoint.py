@@ -68,7 +68,7 @@ _ABOUT = {
 
 
 @dataclass(frozen=True)
-class Kept:
+class Checkpoint:
     """What a sweep left in its folder: what was counted, in how many chunks, and what to tell of it."""
 
     path: Path
@@ -96,9 +96,9 @@ class _Pieces(Sequence[Later]):
         return Later(self._sets, self._cut, self._numbers[index])
 
 
-def kept(
+def checkpointed(
     sets: Sets, rules: Rules, out: str | Path | SweepFolder, work: Work = ALONE, *, units: str = "SI"
-) -> Kept:
+) -> Checkpoint:
     """Follow every set, keep each chunk in the folder ``out`` as it ends, and count the outcomes.
 
     ``rules`` have the tolerance and the steps. What is there of the same sweep is not done again. An error
@@ -144,7 +144,7 @@ def _followed(
     threads: int,
     progress: Callable[[int, int], object] | None,
     notes: list[str],
-) -> Kept:
+) -> Checkpoint:
     """Do what is not done."""
     tally, count = Tally(), folder.cut.count
     lacking = np.ones(count, dtype=bool)
@@ -187,7 +187,7 @@ def _followed(
     except KeyboardInterrupt as interrupt:
         interrupt.add_note(_left(ended, count))
         raise
-    return Kept(folder.path, tally, count, before, tuple(notes))
+    return Checkpoint(folder.path, tally, count, before, tuple(notes))
 
 
 def _done_again(path: Path, damaged: list[int]) -> list[str]:

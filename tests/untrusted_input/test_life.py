@@ -21,10 +21,10 @@ from hersey.log.formats import opening
 from hersey.log.formats.opening import _Reader
 from hersey.processes.child import Child
 from tests.conftest import ROOT
-from tests.strangers.mdf_blocks import Channel, mf4
-from tests.strangers.other_blocks import tdms
-from tests.strangers.seeds import COLUMNS, ROWS, SEEDS, SPEED, TEMPERATURE, TIME
-from tests.strangers.watching import children, is_gone, linux, open_files, state, wait_until
+from tests.untrusted_input.mdf_blocks import Channel, mf4
+from tests.untrusted_input.other_blocks import tdms
+from tests.untrusted_input.seeds import COLUMNS, ROWS, SEEDS, SPEED, TEMPERATURE, TIME
+from tests.untrusted_input.watching import children, is_gone, linux, open_files, state, wait_until
 
 h5py = pytest.importorskip("h5py")
 pytest.importorskip("nptdms")

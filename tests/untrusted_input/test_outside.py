@@ -16,9 +16,9 @@ import hersey
 from hersey.errors import HerseyError, MissingFileError
 from hersey.log import list_channels
 from hersey.spelling import printable
-from tests.strangers.other_blocks import tdms
-from tests.strangers.seeds import COLUMNS, ROWS, SEEDS, SPEED, TORQUE
-from tests.strangers.watching import linux
+from tests.untrusted_input.other_blocks import tdms
+from tests.untrusted_input.seeds import COLUMNS, ROWS, SEEDS, SPEED, TORQUE
+from tests.untrusted_input.watching import linux
 
 h5py = pytest.importorskip("h5py")
 pytest.importorskip("nptdms")

@@ -1,4 +1,4 @@
-"""Damages sound files and reads them: ``make fuzz-read``, or ``python -m tests.strangers.fuzz_read --help``.
+"""Damages sound files and reads them: ``make fuzz-read``.
 
 An input is told by the seed of the run and its number alone; a failing one is kept, with how it was made.
 """
@@ -29,8 +29,8 @@ from hersey.log import list_channels
 from hersey.log.mapping import read_mapping
 from hersey.machine import read_machine, read_temperature_profile
 from hersey.motion.scenario import read_scenario
-from tests.strangers.seeds import SEEDS
-from tests.strangers.watching import (
+from tests.untrusted_input.seeds import SEEDS
+from tests.untrusted_input.watching import (
     children,
     listening_to_output,
     peak_memory,

@@ -15,9 +15,9 @@ import pytest
 import hersey
 from hersey.errors import UnreadableLogError
 from tests.conftest import mostly_nightly
-from tests.strangers import fuzz_read
-from tests.strangers.fuzz_read import Fuzz, Input, fuzz, sound_files
-from tests.strangers.watching import linux
+from tests.untrusted_input import fuzz_read
+from tests.untrusted_input.fuzz_read import Fuzz, Input, fuzz, sound_files
+from tests.untrusted_input.watching import linux
 
 pytestmark = linux
 pytest.importorskip("asammdf")

@@ -1,4 +1,4 @@
-"""The states of a machine at which a drive that ages fails first: its points, and two corners of its use."""
+"""States of a machine at which an ageing drive fails first: its points, and two load cases of its use."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def point_states(machine: Machine) -> tuple[State, ...]:
     )
 
 
-def corners(machine: Machine, runs: CampaignRuns) -> tuple[State, State] | None:
+def load_cases(machine: Machine, runs: CampaignRuns) -> tuple[State, State] | None:
     """Return the cold fast and the hot slow corner of the machine's use; None if no run has a dwell.
 
     Fastest and slowest are those of ``[[points]]``; without these the speed of ``[limits]``, else what all

@@ -7,7 +7,7 @@ from pydantic import Field
 from hersey.parts.part import Numbers, Part
 
 
-class CarriedPart(Part):
+class TorqueBudgetPart(Part):
     """Parts of the torque, N m at rad/s, at one temperature by the machine's file; and the dwells."""
 
     temperature: float = Field(description="K, of the hottest dwells")

@@ -16,8 +16,8 @@ from hersey.errors import InsufficientDataError
 from hersey.life.age import one_of
 from hersey.life.indicator import Indicator, Indicators
 from hersey.life.indicators.at_states import AtStates, at_states
-from hersey.life.indicators.corners import State, corners, point_states
 from hersey.life.indicators.gear_fatigue import gear_fatigue, running_time, shares_of
+from hersey.life.indicators.load_cases import State, load_cases, point_states
 from hersey.life.indicators.run_dwells import CampaignRuns, read_runs_of
 from hersey.life.indicators.sticking import DRAWN_RUNS, folds, static_force, stick_speed_at, transitions
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 #: Standard deviations that enclose 95 % of a normal distribution on either side.
 _DEVIATIONS = 1.96
-#: Places of the states: the corners, rest, and from there on the points.
+#: Places of the states: the load cases, rest, and from there on the points.
 _COLD, _SLOW, _STILL, _POINTS = 0, 1, 2, slice(3, None)
 
 #: Indicators, and what cannot be said.
@@ -48,7 +48,7 @@ def indicators_of(campaign: Campaign, machine: Machine, *, signs: bool = True) -
         If [gear] states no curve, or an age in another unit than the campaign's.
     """
     runs = read_runs_of(campaign, machine.rest)
-    ends = corners(machine, runs)
+    ends = load_cases(machine, runs)
     if ends is None:
         raise InsufficientDataError(
             f"{campaign.path.name} has no run with dwells: add logs with 'hersey campaign add'"

@@ -19,8 +19,16 @@ from hersey.errors import HerseyError
 from hersey.log import list_channels
 from hersey.log.formats import opening
 from hersey.processes.child import Child, FailedError
-from tests.strangers.mdf_blocks import RANGE_TO_TEXT, VALUE_TO_TEXT, Channel, Conversion, formula, mdf3, mf4
-from tests.strangers.seeds import ROWS, SPEED, TEMPERATURE, TIME, hdf5, tdms
+from tests.untrusted_input.mdf_blocks import (
+    RANGE_TO_TEXT,
+    VALUE_TO_TEXT,
+    Channel,
+    Conversion,
+    formula,
+    mdf3,
+    mf4,
+)
+from tests.untrusted_input.seeds import ROWS, SPEED, TEMPERATURE, TIME, hdf5, tdms
 
 pytest.importorskip("asammdf")
 RAW = np.arange(1, ROWS + 1, dtype="<u2")

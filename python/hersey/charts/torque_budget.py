@@ -16,7 +16,7 @@ from hersey.charts.style import (
     tip,
     torque_unit,
 )
-from hersey.parts import CarriedPart
+from hersey.parts import TorqueBudgetPart
 from hersey.units import celsius, rpm
 
 #: Parts from below, with their names and shades that stay apart in grey.
@@ -28,7 +28,7 @@ _PARTS = (
 )
 
 
-def carried_chart(part: CarriedPart) -> Chart:
+def torque_budget_chart(part: TorqueBudgetPart) -> Chart:
     """Return the parts of the torque as areas, one upon another, and the whole torque of the dwells."""
     factor, unit = torque_unit(max(part.measured_torque))
     names, shades = [name for _, name, _ in _PARTS], [shade for _, _, shade in _PARTS]
